@@ -1,0 +1,267 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Rosbag2 folders (MCAP): writing them so that a crash costs little, and reading them."""
+
+from contextlib import suppress
+from functools import cache
+import os
+from pathlib import Path
+import shutil
+
+from rosbags.highlevel import AnyReader
+from rosbags.interfaces import (
+    Qos,
+    QosDurability,
+    QosHistory,
+    QosLiveliness,
+    QosReliability,
+    QosTime,
+)
+from rosbags.rosbag2 import StoragePlugin, Writer
+from rosbags.rosbag2.storage_mcap import McapWriter
+from rosbags.typesys import get_typestore, Stores
+
+from quad_ident_ros.errors import InputError
+
+_PENDING_BYTES = 1 << 22
+_DISTRO = 'ros_distro: rosbags', 'ros_distro: jazzy'
+_FOREVER = QosTime(9223372036, 854775807)
+_QOS = Qos(QosHistory.KEEP_ALL, 0, QosReliability.RELIABLE, QosDurability.VOLATILE, _FOREVER,
+           _FOREVER, QosLiveliness.AUTOMATIC, _FOREVER, False)
+
+
+@cache
+def _typestore():
+    return get_typestore(Stores.ROS2_JAZZY)
+
+
+class BagWriter:
+    """
+    A rosbag2 folder that grows while a flight is recorded.
+
+    After every flush the folder on disk is a whole, indexed bag, the same as close would leave,
+    and stays it until the next flush: a killed process loses what came after its last flush and
+    nothing else, and a full disk costs no more. A failed flush may be tried again.
+    Args: path of a folder that does not exist yet; topics the (name, message type) of each topic.
+    Raises InputError where they cannot be, OSError where the folder cannot be written. Not for
+    use by several threads at once.
+    """
+
+    def __init__(self, path, topics):
+        """Make the folder, with a bag without messages."""
+        path = Path(path)
+        topics = list(topics)
+        names = [name for name, _ in topics]
+        types = _typestore().fielddefs
+        if path.exists():
+            raise InputError(f'{path}: there is something already; name a folder that is not')
+        if len(set(names)) != len(names):
+            raise InputError(f'{path}: the topics {names} repeat one; name each once')
+        for name, msgtype in topics:
+            if msgtype not in types:
+                raise InputError(f'{path}, topic {name}: {msgtype!r} is no message type of ROS 2 '
+                                 'Jazzy; name one such as geometry_msgs/msg/PoseStamped')
+        self._writer = _Writer(path, version=9, storage_plugin=StoragePlugin.MCAP)
+        self._writer.open()
+        self._storage = self._writer.storage
+        self._dirty = True
+        self._failed = False
+        try:
+            self._connections = {
+                name: self._writer.add_connection(name, msgtype, typestore=_typestore(),
+                                                  offered_qos_profiles=[_QOS])
+                for name, msgtype in topics}
+            self.flush()
+        except BaseException:
+            self._storage.abort()
+            shutil.rmtree(path, ignore_errors=True)
+            raise
+
+    def write(self, topic, stamp_ns, cdr):
+        """
+        Add a message.
+
+        Args: topic its name; stamp_ns its time >= 0, ns; cdr the serialized message, bytes.
+        Raises InputError for another topic, OSError as flush: now and then it flushes by itself.
+        """
+        if topic not in self._connections:
+            raise InputError(f'{self._writer.path}: there is no topic {topic!r} in this bag; it '
+                             f'has: {", ".join(self._connections)}')
+        self._dirty = True
+        self._writer.write(self._connections[topic], stamp_ns, cdr)
+        if self._storage.bio.pending > _PENDING_BYTES:
+            self.flush()
+
+    def flush(self):
+        """Hand all messages to the operating system; OSError where it does not take them."""
+        if not self._dirty:
+            return
+        self._failed = True
+        try:
+            self._writer.close()
+            _replace_text(self._writer.metapath, *_DISTRO)
+        except BaseException:
+            with suppress(OSError):
+                _temporary(self._writer.metapath).unlink(missing_ok=True)
+            raise
+        finally:
+            self._writer.storage = self._storage
+        self._dirty = self._failed = False
+
+    def close(self):
+        """Flush and close; after a failed flush try once more, without an error."""
+        failed_before = self._failed
+        try:
+            self.flush()
+        except OSError:
+            if not failed_before:
+                raise
+        finally:
+            self._dirty = False
+            self._storage.abort()
+
+    def __enter__(self):
+        """Return the writer itself."""
+        return self
+
+    def __exit__(self, *_):
+        """Close the bag."""
+        self.close()
+
+
+def read_bag_messages(path, topics=None):
+    """
+    Yield the (topic, stamp in ns, message) of a rosbag2 folder (or .mcap file) by time.
+
+    Args: topics the names of those to read (others are not even deserialized), or None for all.
+    Raises InputError, at the first message at the latest, where there is no bag to read.
+    """
+    path = Path(path)
+    if not path.exists():
+        raise InputError(f'{path}: there is no such bag; give the path of a rosbag2 folder')
+    if path.is_dir() and not (path / 'metadata.yaml').exists():
+        raise InputError(f'{path}: no bag, it has no metadata.yaml; give the path of a rosbag2 '
+                         'folder, or make the file with: ros2 bag reindex FOLDER')
+    try:
+        with AnyReader([path], default_typestore=_typestore()) as reader:
+            wanted = [connection for connection in reader.connections
+                      if topics is None or connection.topic in topics]
+            # Without connections, messages() would yield those of all.
+            for connection, stamp, data in reader.messages(wanted) if wanted else ():
+                yield connection.topic, stamp, reader.deserialize(data, connection.msgtype)
+    except Exception as error:  # a damaged bag makes the reader raise anything
+        reason = ' '.join(str(error).split()) or type(error).__name__
+        raise InputError(f'{path}: this bag cannot be read ({reason}); check it with: ros2 bag '
+                         'info FOLDER, or record it again') from error
+
+
+class _TailedFile:
+    """
+    A file whose end, the tail, is written anew at every commit and left alone in between.
+
+    It stands in for the file that McapWriter writes to: what that writes is kept in memory until
+    commit, so that the file on disk has its tail at all times but within the one write.
+    """
+
+    def __init__(self, raw):
+        """Go on at the position of an unbuffered file, which nothing is behind."""
+        self._raw = raw
+        self._base = raw.tell()
+        self._pending = bytearray()
+        self._body = 0
+        self._old_tail = b''
+
+    @property
+    def pending(self):
+        """Return the number of bytes that are not committed."""
+        return len(self._pending)
+
+    def tell(self):
+        """Return the position that the next byte is written to."""
+        return self._base + len(self._pending)
+
+    def write(self, data):
+        """Add bytes; return their number."""
+        before = len(self._pending)
+        self._pending += data
+        return len(self._pending) - before
+
+    def begin_tail(self):
+        """Have all that is written from here to the next commit be the tail."""
+        self._body = len(self._pending)
+
+    def drop_tail(self):
+        """Forget what was written of the tail."""
+        del self._pending[self._body:]
+
+    def close(self):
+        """Commit: write body and tail, or, if that fails, put the old tail back and raise."""
+        try:
+            self._write(self._pending)
+        except BaseException:
+            with suppress(OSError):
+                self._write(self._old_tail)
+                self._raw.truncate()
+            raise
+        self._base += self._body
+        self._old_tail = bytes(self._pending[self._body:])
+        self._pending.clear()
+
+    def release(self):
+        """Close the file on disk as it is."""
+        self._raw.close()
+
+    def _write(self, data):
+        self._raw.seek(self._base)
+        with memoryview(data) as rest:
+            done = 0
+            while done < len(rest):
+                done += self._raw.write(rest[done:])
+
+
+class _Storage(McapWriter):
+    """An McapWriter that can be closed, that is finished with an index, again and again."""
+
+    def __init__(self, path, compression):
+        """Make the file."""
+        super().__init__(path, compression)
+        self.bio = _TailedFile(self.bio.detach())
+
+    def close_chunk(self):
+        """Close the pending chunk; one without messages spans the times 0 to 0, as MCAP has it."""
+        if not self.chunk.msgs:
+            self.chunk.message_start_time = 0
+        super().close_chunk()
+
+    def close(self, version, metadata):
+        """Write the pending chunk and the tail."""
+        if self.chunk.bio.tell():
+            self.close_chunk()
+        self.bio.begin_tail()
+        try:
+            super().close(version, metadata.replace(*_DISTRO))
+        except BaseException:
+            self.bio.drop_tail()
+            raise
+
+    def abort(self):
+        """Close the file on disk as it is."""
+        self.bio.release()
+
+
+class _Writer(Writer):
+    """A Writer onto that storage; its close may be called again once storage is set again."""
+
+    STORAGE_PLUGINS = {StoragePlugin.MCAP: _Storage}
+
+
+def _replace_text(path, old, new):
+    """Replace text in a file, which is whole at all times."""
+    temporary = _temporary(path)
+    temporary.write_text(path.read_text('utf8').replace(old, new), 'utf8')
+    os.replace(temporary, path)
+
+
+def _temporary(path):
+    """Return the path that Writer and _replace_text make a file at before they rename it."""
+    return path.with_name(f'{path.name}.tmp')

@@ -1,0 +1,174 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The flight record: the samples of one flight, by column name."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+import re
+from typing import NamedTuple
+
+import numpy as np
+
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.model.attitude import euler_from_quaternion, unwrap_euler
+
+KNOWN = {
+    't': 's',
+    'px': 'm', 'py': 'm', 'pz': 'm',
+    'vx': 'm/s', 'vy': 'm/s', 'vz': 'm/s',
+    'qw': '1', 'qx': '1', 'qy': '1', 'qz': '1',
+    'wx': 'rad/s', 'wy': 'rad/s', 'wz': 'rad/s',
+    'ax': 'm/s^2', 'ay': 'm/s^2', 'az': 'm/s^2',
+    'vbat': 'V',
+    'u1': 'N', 'u2': 'N', 'u3': 'N', 'u4': 'N m',
+    'phi': 'rad', 'theta': 'rad', 'psi': 'rad',
+}
+"""Unit of each column that the flight record format names, but cmd1..N and rotor1..N."""
+
+INPUTS = ('u1', 'u2', 'u3', 'u4')
+QUATERNION = ('qw', 'qx', 'qy', 'qz')
+EULER = ('phi', 'theta', 'psi')
+
+_ROTOR_COLUMN = re.compile(r'(cmd|rotor)[1-9][0-9]*')
+
+
+class Fault(NamedTuple):
+    """A value that a flight record may not hold: its column and sample (0-based), and why."""
+
+    column: str
+    sample: int
+    problem: str
+    remedy: str
+
+
+def unit(name):
+    """Return the unit of a known column (str), or None for an unknown one."""
+    return 'rad/s' if _ROTOR_COLUMN.fullmatch(name) else KNOWN.get(name)
+
+
+def find_fault(t, columns):
+    """
+    Return the first value that a flight record may not hold.
+
+    Args: t (N,) s; columns name -> (N,) in the unit of the name.
+    Returns a Fault, or None: t is finite and strictly increasing, known columns are finite.
+    """
+    for name, values in {'t': t, **columns}.items():
+        if unit(name) is not None and not np.isfinite(values).all():
+            k = int(np.argmin(np.isfinite(values)))
+            return Fault(name, k, f'{values[k]} is no finite number',
+                         'remove the sample or fill in its value')
+    stuck = t[1:] <= t[:-1]
+    if stuck.any():
+        k = int(np.argmax(stuck)) + 1
+        return Fault('t', k, f'{t[k]} s does not come after {t[k - 1]} s',
+                     'sort the samples by time and keep one of each')
+    return None
+
+
+@dataclass(frozen=True, eq=False)
+class FlightRecord:
+    """
+    One flight: sample times and the columns of the flight record format, known or not.
+
+    Args: t (N,) s, finite, strictly increasing, N >= 2; columns name -> (N,) float64 in the unit
+    of the name (see unit), finite where the name is known; info provenance, JSON-able, for
+    example name, trim, vehicle, source, dropped.
+    The arrays are read-only views of those given. Raises InputError where the above is not so.
+    """
+
+    t: np.ndarray
+    columns: Mapping
+    info: Mapping = field(default_factory=dict)
+
+    def __post_init__(self):
+        """Check the samples and make them read-only float64 arrays."""
+        object.__setattr__(self, 'info', dict(self.info))
+        t = self._checked('t', self.t, None)
+        if len(t) < 2:
+            raise InputError(f'{self._label()} has {len(t)} samples; at least 2 are needed')
+        columns = {name: self._checked(name, values, len(t))
+                   for name, values in self.columns.items()}
+        fault = find_fault(t, columns)
+        if fault is not None:
+            raise InputError(f'{self._label()}, sample {fault.sample}, column {fault.column!r}: '
+                             f'{fault.problem}; {fault.remedy}')
+        object.__setattr__(self, 't', t)
+        object.__setattr__(self, 'columns', columns)
+
+    def __len__(self):
+        """Return the number of samples."""
+        return len(self.t)
+
+    def has(self, *names):
+        """Return whether all of the named columns are there (t always is)."""
+        return all(name == 't' or name in self.columns for name in names)
+
+    def stack(self, *names):
+        """Return the named columns side by side, (N, k); InputError names those missing."""
+        missing = [name for name in names if not self.has(name)]
+        if missing:
+            raise InputError(f'{self._label()} has no column {", ".join(missing)}; it has: '
+                             f'{", ".join(["t", *self.columns])}')
+        return np.stack([self.t if name == 't' else self.columns[name] for name in names], axis=-1)
+
+    def inputs(self):
+        """Return the paper's inputs U1..U4, (N, 4) N, N, N, N m; InputError without them."""
+        return self.stack(*INPUTS)
+
+    def euler(self):
+        """
+        Return roll, pitch and yaw without jumps, (N, 3) rad.
+
+        They are the columns phi, theta, psi, or else made from the quaternion, starting from its
+        first sample with pitch in [-pi/2, pi/2]. Raises InputError where neither is there, or
+        where a quaternion is no attitude.
+        """
+        if self.has(*EULER):
+            return self.stack(*EULER)
+        if not self.has(*QUATERNION):
+            raise InputError(f'{self._label()} has no attitude; give the columns qw, qx, qy, qz '
+                             'or phi, theta, psi')
+        quaternion = self.stack(*QUATERNION)
+        norm = np.linalg.norm(quaternion, axis=-1)
+        if norm.min() < 1e-3:
+            raise InputError(f'{self._label()}, sample {int(norm.argmin())}, columns qw..qz: the '
+                             'quaternion is zero; remove the sample or fill in its attitude')
+        folded = euler_from_quaternion(quaternion / norm[:, None])
+        return unwrap_euler(folded, folded[0])
+
+    def slice(self, start, stop=None):
+        """Return the record of samples start..stop - 1, counted as Python slices do."""
+        part = slice(start, stop)
+        return FlightRecord(self.t[part],
+                            {name: values[part] for name, values in self.columns.items()},
+                            self.info)
+
+    def last(self, seconds):
+        """Return the record of the samples of the last seconds (s); all where it is shorter."""
+        return self.slice(int(np.searchsorted(self.t, self.t[-1] - seconds)))
+
+    def period(self):
+        """Return the median time between samples, s."""
+        return float(np.median(np.diff(self.t)))
+
+    def _label(self):
+        source = self.info.get('source') or self.info.get('name')
+        return f'{source}' if source else 'the flight record'
+
+    def _checked(self, name, values, length):
+        if not isinstance(name, str) or not name.isprintable() or name != name.strip() or not name:
+            raise InputError(f'{self._label()}: {str(name)[:40]!r} is no column name; use '
+                             'printable text without spaces around it')
+        if length is not None and name == 't':
+            raise InputError(f'{self._label()}: the columns repeat t; give it once')
+        try:
+            array = np.asarray(values, dtype=float).view()
+        except (TypeError, ValueError):
+            raise InputError(f'{self._label()}, column {name!r}: the values are no numbers; '
+                             'give numbers or leave the column out') from None
+        if array.ndim != 1 or (length is not None and len(array) != length):
+            raise InputError(f'{self._label()}, column {name!r}: shape {array.shape} does not '
+                             f'fit; give one value for each sample, {length or "(N,)"}')
+        array.flags.writeable = False
+        return array

@@ -1,0 +1,21 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""An input taken from a recorded flight."""
+
+import numpy as np
+
+from quad_ident_ros import schema
+from quad_ident_ros.data.csv import read_csv
+
+
+def recorded(t, file, column, trim=0.0):
+    """
+    Return a column of a flight record (.csv, .csv.gz), held between its samples, minus trim.
+
+    The record's clock is set to begin at t[0]; after its last sample it keeps the last value.
+    Raises InputError for a file or column that cannot be read.
+    """
+    record = read_csv(file)
+    values = record.stack(column)[:, 0] - schema.number('trim', trim)
+    index = np.searchsorted(record.t - record.t[0], t - t[0] + 5e-10, side='right') - 1
+    return values[index]

@@ -1,0 +1,191 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Experiments: which model is flown, under which inputs, with which measurement noise."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from quad_ident_ros import __version__, resources, schema
+from quad_ident_ros.data.record import FlightRecord
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.excitation import excite
+from quad_ident_ros.model import attitude, mixing
+from quad_ident_ros.model.simulate import LONGEST_STEP, MODELS, omega_r_of, simulate
+from quad_ident_ros.model.vehicle import Vehicle, load_vehicle
+
+INPUTS = ('U1', 'U2', 'U3', 'U4')
+OUTPUTS = ('phi', 'theta', 'psi', 'z')
+NOISE_UNITS = {'attitude': 'rad', 'altitude': 'm', 'position': 'm', 'velocity': 'm/s',
+               'rate': 'rad/s'}
+
+
+@dataclass(frozen=True)
+class Run:
+    """One flight of an experiment: its name, length (s), excitations and outputs to identify."""
+
+    name: str
+    duration: float
+    inputs: dict
+    outputs: tuple
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """
+    A set of flights from rest.
+
+    period s between samples; trim 'hover' (the weight on U1) or 'zero'; altitude m at the start;
+    omega_r 'zero', 'from_rotors' or rad/s; noise: standard deviation per channel (NOISE_UNITS).
+    """
+
+    name: str
+    description: str
+    model: str
+    vehicle: Vehicle
+    period: float
+    trim: str
+    altitude: float
+    runs: tuple
+    omega_r: object = 'zero'
+    omega_r_sign: int = 1
+    step: float | None = None
+    noise: dict = field(default_factory=dict)
+
+    def trim_input(self):
+        """Return the inputs U1..U4 (4,) from which the excitations deviate."""
+        return self.vehicle.hover_input if self.trim == 'hover' else np.zeros(4)
+
+    def sample_times(self, run):
+        """Return the sample times of a run, (N,) s from 0 to its duration."""
+        return np.arange(int(np.floor(run.duration / self.period + 1e-9)) + 1) * self.period
+
+    def input_signals(self, run):
+        """Return the inputs U1..U4 of a run, (N, 4): trim plus excitations."""
+        t = self.sample_times(run)
+        signals = np.tile(self.trim_input(), (len(t), 1))
+        for name, spec in run.inputs.items():
+            where = f'experiment {self.name}, run {run.name}, {name}'
+            signals[:, INPUTS.index(name)] += excite(where, spec, t)
+        return signals
+
+    def infeasible(self, run):
+        """Say why no rotor speeds give the inputs of a run, or return None where some do."""
+        return mixing.infeasibility(self.vehicle, self.input_signals(run), self.sample_times(run))
+
+
+def load_experiment(name_or_path, vehicle=None):
+    """
+    Return the experiment of a shipped name or of an experiment file.
+
+    Args: vehicle: a name or path that replaces the experiment's own vehicle.
+    Raises InputError that names file and key where the file does not describe an experiment.
+    """
+    path = resources.find('experiments', name_or_path)
+    where = str(path)
+    data = resources.read_yaml(path)
+    schema.check_keys(where, data, ('name', 'description', 'model', 'vehicle', 'period', 'trim',
+                                    'altitude', 'runs', 'omega_r', 'omega_r_sign', 'step',
+                                    'noise'),
+                      ('name', 'model', 'vehicle', 'period', 'trim', 'runs'))
+    omega_r = data.get('omega_r', 'zero')
+    if omega_r not in ('zero', 'from_rotors'):
+        omega_r = schema.number(f'{where}: omega_r (zero, from_rotors or rad/s)', omega_r)
+    model = schema.choice(f'{where}: model', data['model'], tuple(MODELS))
+    step = data.get('step')
+    if step is not None:
+        step = schema.number(f'{where}: step', step, 0.0, exclusive=True)
+    runs = data['runs']
+    if not isinstance(runs, list) or not runs:
+        raise InputError(f'{where}: runs: expected a list of runs')
+    runs = tuple(_run(f'{where}: runs[{i}]', run) for i, run in enumerate(runs))
+    if len({run.name for run in runs}) != len(runs):
+        raise InputError(f'{where}: runs: two runs have the same name')
+    return Experiment(
+        name=str(data['name']), description=str(data.get('description', '')), model=model,
+        vehicle=load_vehicle(vehicle or data['vehicle']),
+        period=schema.number(f'{where}: period', data['period'], 0.0, exclusive=True),
+        trim=schema.choice(f'{where}: trim', data['trim'], ('hover', 'zero')),
+        altitude=schema.number(f'{where}: altitude', data.get('altitude', 0.0)),
+        runs=runs, omega_r=omega_r,
+        omega_r_sign=schema.choice(f'{where}: omega_r_sign', data.get('omega_r_sign', 1), (1, -1)),
+        step=step, noise=check_noise(f'{where}: noise', data.get('noise', {})))
+
+
+def _run(where, data):
+    schema.check_keys(where, data, ('name', 'duration', 'inputs', 'outputs'),
+                      ('name', 'duration', 'inputs', 'outputs'))
+    schema.check_keys(f'{where}: inputs', data['inputs'], INPUTS)
+    if not isinstance(data['outputs'], list):
+        raise InputError(f'{where}: outputs: expected a list of {", ".join(OUTPUTS)}')
+    outputs = tuple(schema.choice(f'{where}: outputs', name, OUTPUTS) for name in data['outputs'])
+    return Run(str(data['name']),
+               schema.number(f'{where}: duration', data['duration'], 0.0, exclusive=True),
+               dict(data['inputs']), outputs)
+
+
+def check_noise(where, noise):
+    """Return the noise as floats per channel; raises InputError for an unknown channel."""
+    schema.check_keys(where, noise, NOISE_UNITS)
+    return {name: schema.number(f'{where}: {name}', value, 0.0) for name, value in noise.items()}
+
+
+def fly(experiment, run, *, noise=None, seed=0):
+    """
+    Simulate one run of an experiment and measure it.
+
+    Args: noise: standard deviations that replace the experiment's; seed of the noise.
+    Returns a Simulation whose record carries its provenance in `info`: the same seed gives the
+    same bytes.
+    """
+    inputs = experiment.input_signals(run)
+    t = experiment.sample_times(run)
+    noise = experiment.noise if noise is None else noise
+    info = {
+        'name': f'{experiment.name}/{run.name}', 'experiment': experiment.name, 'run': run.name,
+        'model': experiment.model, 'vehicle': experiment.vehicle.name,
+        'outputs': list(run.outputs), 'trim': experiment.trim_input().tolist(),
+        'initial': {'phi': 0.0, 'theta': 0.0, 'psi': 0.0, 'z': experiment.altitude},
+        'starts_at_rest': True, 'infeasible': experiment.infeasible(run), 'noise': dict(noise),
+        'seed': seed, 'step': experiment.step or LONGEST_STEP[experiment.model],
+        'version': __version__}
+    omega_r = omega_r_of(experiment.omega_r, experiment.vehicle, inputs, t,
+                         experiment.omega_r_sign)
+    flight = simulate(experiment.vehicle, experiment.model, inputs, experiment.period,
+                      omega_r=omega_r, altitude=experiment.altitude, step=experiment.step,
+                      info=info)
+    # Each run has a stream of its own, so that a run's noise does not depend on the others.
+    stream = np.random.default_rng([seed, experiment.runs.index(run)])
+    info = {**info, 'status': flight.status, 'end_time': flight.end_time}
+    record = measure(flight.record, noise, stream)
+    return type(flight)(FlightRecord(record.t, record.columns, info), flight.status,
+                        flight.end_time)
+
+
+def measure(record, noise, random):
+    """
+    Return the record with white Gaussian noise added to its measured columns.
+
+    Args: noise: standard deviation per channel of NOISE_UNITS; attitude noise is added to the
+    Euler angles, and the quaternion is that of the noisy angles; random: a NumPy generator.
+    """
+    columns = dict(record.columns)
+
+    def add(channel, names):
+        draws = random.standard_normal((len(names), len(record)))
+        for name, draw in zip(names, draws, strict=True):
+            if noise.get(channel, 0.0) > 0:
+                columns[name] = columns[name] + noise[channel] * draw
+
+    add('position', ('px', 'py'))
+    add('altitude', ('pz',))
+    add('velocity', ('vx', 'vy', 'vz'))
+    add('rate', ('wx', 'wy', 'wz'))
+    draws = random.standard_normal((3, len(record)))
+    if noise.get('attitude', 0.0) > 0:
+        for name, draw in zip(('phi', 'theta', 'psi'), draws, strict=True):
+            columns[name] = columns[name] + noise['attitude'] * draw
+        euler = np.stack([columns[name] for name in ('phi', 'theta', 'psi')], axis=-1)
+        quaternion = attitude.quaternion_from_euler(euler)
+        columns.update(zip(('qw', 'qx', 'qy', 'qz'), quaternion.T, strict=True))
+    return FlightRecord(record.t, columns, record.info)

@@ -1,0 +1,32 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Levy-distributed steps by Mantegna's algorithm: the paper's eqs. (25), (26)."""
+
+from math import gamma, pi, sin
+
+import numpy as np
+
+from quad_ident_ros.errors import InputError
+
+
+def levy_sigma(exponent, form='mantegna'):
+    """
+    Return the standard deviation of Mantegna's numerator for a Levy exponent lambda.
+
+    The braces of eq. (26) to the power 1/lambda are sigma (R. Mantegna, Phys. Rev. E 49, 1994),
+    not sigma squared as printed; 'printed' takes them so all the same. Raises InputError unless
+    0 < lambda < 2 (the paper's 1 < lambda <= 3 makes sigma zero at 2 and complex above).
+    """
+    if not 0.0 < exponent < 2.0:
+        raise InputError(f'lambda: {exponent:g} is out of range, expected 0 < lambda < 2')
+    braces = (gamma(1 + exponent) * sin(pi * exponent / 2)
+              / (gamma((1 + exponent) / 2) * exponent * 2 ** ((exponent - 1) / 2)))
+    sigma = braces ** (1 / exponent)
+    return sigma ** 0.5 if form == 'printed' else sigma
+
+
+def levy_steps(random, exponent, shape, form='mantegna'):
+    """Return Levy-distributed steps of the given shape: S = u / |v|^(1/lambda)."""
+    u = random.normal(0.0, levy_sigma(exponent, form), shape)
+    v = random.standard_normal(shape)
+    return u / np.abs(v) ** (1 / exponent)

@@ -1,0 +1,100 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Least squares on the recurring equation: the paper's section 5, with the formulas put right.
+
+It is exact on data of the model's class without noise; noise in y enters both sides of eq. (31)
+and biases the poles, the more the faster the sampling. Therefore the record is thinned where its
+input allows that.
+"""
+
+import numpy as np
+from scipy.optimize import minimize_scalar
+
+from quad_ident_ros.identify.objective import Objective
+from quad_ident_ros.identify.transfer import Discrete, printed_parameters, to_continuous
+
+THINNED = 40   # samples that thinning leaves, at least
+
+
+def least_squares_fit(objective, space):
+    """
+    Return the Fitted model of the LS method and remarks, or None and the reason it failed.
+
+    A complex pair is kept by the rule of the parameter `poles` (see space.COMPLEX_PENALTY), and
+    otherwise refitted with a double real pole.
+    """
+    signal = objective.signal
+    factor = thinning(signal)
+    remarks = [f'thinned to every {factor}th sample'] if factor > 1 else []
+    model = to_continuous(estimate(signal.u[::factor], signal.y[::factor],
+                                   signal.period * factor))
+    if model is None:
+        return None, ['the estimated roots are not positive: no continuous model has them '
+                      '(noise does this to the recurring equation)']
+    mean = model.c1 / 2
+    half = (model.a - model.b) / 2
+    half = -half.imag if model.form == 'complex' else half
+    fitted = Objective(signal, (model.gain, model.gain)).fit(mean, half)
+    if half < 0:
+        double = _double_real(objective, mean)
+        if not fitted.cost * space.complex_penalty < double.cost:
+            return double, [*remarks, 'the estimated poles were complex: refitted with a double '
+                                      'real pole']
+    if not np.isfinite(fitted.cost):
+        return None, ['the estimated model diverges over the record']
+    return fitted, remarks
+
+
+def thinning(signal):
+    """Return the largest factor that leaves THINNED samples and a held input between them."""
+    longest = max(1, (len(signal.u) - 1) // THINNED)
+    changes = np.flatnonzero(np.diff(signal.u[:-1])) + 1
+    for factor in range(longest, 1, -1):
+        if not (changes % factor).any():
+            return factor
+    return 1
+
+
+def regression(u, y):
+    """
+    Return matrix F and vector Y of eq. (35), rows k = 0..N-3, columns y0, y1, u0, u1.
+
+    Written in differences of y, which spans the same space and keeps the digits that
+    y(k+2) ~ 2 y(k+1) - y(k) loses. Where the input never changes its two columns are one.
+    """
+    first, second = y[1:-1] - y[:-2], y[2:] - 2 * y[1:-1] + y[:-2]
+    held = np.column_stack([u[:-2], u[1:-1]])
+    if np.all(held == held[0]):
+        held = held[:, :1]
+    return np.column_stack([-first, -y[:-2], held]), second
+
+
+def estimate(u, y, period):
+    """Return the Discrete model of least squares: eq. (34), solved by orthogonal factors."""
+    matrix, target = regression(u, y)
+    scale = np.linalg.norm(matrix, axis=0)
+    scale[scale == 0] = 1.0
+    solution = np.linalg.lstsq(matrix / scale, target, rcond=None)[0] / scale
+    root_sum, root_product = solution[:2]
+    b0, b1 = (0.0, solution[2]) if len(solution) == 3 else solution[2:]
+    return Discrete(root_sum, root_sum ** 2 - 4 * root_product, b0, b1, period)
+
+
+def printed_estimate(u, y, period):
+    """
+    Return K, a, b of eqs. (35)-(37) to the letter: complex nonsense, kept for comparison.
+
+    The normal equations of a step are singular; the smallest solution is taken.
+    """
+    matrix = np.column_stack([-y[:-2], -y[1:-1], u[:-2], u[1:-1]])
+    a0, a1, b0, b1 = np.linalg.lstsq(matrix, y[2:], rcond=None)[0]
+    return printed_parameters(a0, a1, b0, b1, period)
+
+
+def _double_real(objective, guess):
+    """Return the best fit with a = b near a guess."""
+    size = abs(guess) + 1 / objective.signal.t[-1]
+    found = minimize_scalar(lambda mean: objective.of_poles([2 * mean], [mean ** 2])[0][0],
+                            bounds=(guess - 3 * size, guess + 3 * size), method='bounded')
+    return objective.fit(found.x, 0.0)

@@ -1,0 +1,34 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The methods. To add one, write its file and its line in METHODS."""
+
+from dataclasses import dataclass
+from typing import Callable
+
+from quad_ident_ros.identify.cs import cs
+from quad_ident_ros.identify.ls import least_squares_fit
+from quad_ident_ros.identify.pso import pso
+from quad_ident_ros.identify.pso_cs import pso_cs
+
+
+@dataclass(frozen=True)
+class Method:
+    """
+    A way to fit a model.
+
+    search: a function of a Search that minimises its cost, for methods that try candidates;
+    direct: a function of (objective, space) that returns (Fitted or None, remarks), for others.
+    """
+
+    name: str
+    label: str
+    search: Callable | None = None
+    direct: Callable | None = None
+
+
+METHODS = {method.name: method for method in (
+    Method('pso', 'PSO', search=pso),
+    Method('cs', 'CS', search=cs),
+    Method('pso_cs', 'PSO-CS', search=pso_cs),
+    Method('ls', 'LS', direct=least_squares_fit),
+)}

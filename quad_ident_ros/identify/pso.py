@@ -1,0 +1,33 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Particle swarm optimisation: the paper's eqs. (21)-(24)."""
+
+import numpy as np
+
+from quad_ident_ros.identify.space import SIZE
+
+
+def pso(search):
+    """
+    Minimise by a swarm with one global best.
+
+    R1 C1 and R2 C2 are drawn per coordinate and generation, R in [0, 1], C1 in [0, c1], C2 in
+    [0, c2]; velocities start at zero and positions are clipped to the box (the paper leaves
+    these open).
+    """
+    settings, random = search.settings, search.random
+    x, costs = search.start()
+    best, best_costs = x.copy(), costs.copy()
+    velocity = np.zeros_like(x)
+    while search.going():
+        own, common = _pull(random, settings.c1, x.shape), _pull(random, settings.c2, x.shape)
+        velocity = (settings.inertia * velocity + own * (best - x)
+                    + common * (search.best - x))
+        x = np.clip(x + velocity, 0.0, SIZE)
+        costs = search.evaluate(x)
+        better = costs < best_costs
+        best[better], best_costs[better] = x[better], costs[better]
+
+
+def _pull(random, strength, shape):
+    return random.uniform(0.0, 1.0, shape) * random.uniform(0.0, strength, shape)

@@ -1,0 +1,95 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""From a flight record to the four input-output pairs that are identified."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from quad_ident_ros.errors import InputError
+
+OUTPUTS = ('phi', 'theta', 'psi', 'z')
+INPUT_OF = {'phi': 'U2', 'theta': 'U3', 'psi': 'U4', 'z': 'U1'}
+OUTPUT_UNITS = {'phi': 'rad', 'theta': 'rad', 'psi': 'rad', 'z': 'm'}
+GAIN_UNITS = {'phi': 'rad/s^2/N', 'theta': 'rad/s^2/N', 'psi': 'rad/s^2/(N m)', 'z': 'm/s^2/N'}
+
+# Sample times off the grid by less than this share of a period count as on it.
+GRID_TOLERANCE = 1e-3
+LONGEST_GAP = 10    # periods that interpolation may bridge
+MISSING_SHARE = 0.2  # of the samples that interpolation may fill
+
+
+@dataclass(frozen=True)
+class Signal:
+    """
+    One input-output pair on an even grid: deviations u (N,) from trim and y (N,) from the start.
+
+    at_rest tells that the vehicle was at rest, at y = 0, at the first sample.
+    """
+
+    output: str
+    t: np.ndarray
+    u: np.ndarray
+    y: np.ndarray
+    period: float
+    at_rest: bool
+
+
+def signals(record, *, trim=None, outputs=None, initial_state='auto'):
+    """
+    Return the pairs of a record whose input is excited, and remarks on the data.
+
+    Args: trim: inputs U1..U4 from which deviations count, by default the record's own
+    (`info['trim']`) or else the first sample's; outputs: names to identify, by default the
+    record's own or all; initial_state 'rest', 'free' or 'auto' (rest where the record says that
+    it starts so).
+    Returns (list of Signal, list of str). Raises InputError for missing columns, too few samples
+    or gaps that cannot be bridged.
+    """
+    if len(record) < 8:
+        raise InputError(f'the record has {len(record)} samples; at least 8 are needed')
+    inputs = record.inputs()
+    measured = np.column_stack([record.euler(), record.stack('pz')])
+    t, inputs, measured, remarks = _even_grid(record.t, inputs, measured)
+    at_rest = bool(record.info.get('starts_at_rest')) if initial_state == 'auto' \
+        else initial_state == 'rest'
+    if trim is None:
+        trim = record.info.get('trim')
+    if trim is None:
+        trim = inputs[0]
+        remarks.append('the record says no trim: inputs count from their first sample')
+    deviation = inputs - np.asarray(trim, float)
+    known = record.info.get('initial', {}) if at_rest else {}
+    start = [known.get(name, measured[0, i]) for i, name in enumerate(OUTPUTS)]
+    wanted = outputs or record.info.get('outputs') or OUTPUTS
+    found = []
+    for i, name in enumerate(OUTPUTS):
+        u = deviation[:, int(INPUT_OF[name][1]) - 1]
+        # The last input acts after the last sample, so it excites nothing.
+        if name in wanted and np.abs(u[:-1]).max() > 1e-9 * (1 + np.abs(trim).max()):
+            found.append(Signal(name, t - t[0], np.ascontiguousarray(u),
+                                measured[:, i] - start[i], float(t[1] - t[0]), at_rest))
+    return found, remarks
+
+
+def _even_grid(t, inputs, measured):
+    steps = np.diff(t)
+    period = float(np.median(steps))
+    if np.abs(steps - period).max() <= GRID_TOLERANCE * period:
+        grid = t[0] + (t[-1] - t[0]) / (len(t) - 1) * np.arange(len(t))
+        return grid, inputs, measured, []
+    if steps.max() > LONGEST_GAP * period:
+        k = int(np.argmax(steps))
+        raise InputError(f'the record has a gap of {steps[k]:.3g} s after t = {t[k]:.6g} s '
+                         f'({steps[k] / period:.0f} periods; at most {LONGEST_GAP} can be '
+                         'bridged): identify the parts before and after it by themselves')
+    grid = np.arange(t[0], t[-1] + 0.5 * period, period)
+    missing = len(grid) - len(t)
+    if missing > MISSING_SHARE * len(grid):
+        raise InputError(f'{missing} of {len(grid)} samples are missing; at most '
+                         f'{MISSING_SHARE:.0%} can be filled: record again with a deeper queue')
+    held = np.searchsorted(t, grid + GRID_TOLERANCE * period, side='right') - 1
+    remark = (f'sample times are uneven ({steps.min():.4g} to {steps.max():.4g} s): resampled to '
+              f'{period:.4g} s, {max(missing, 0)} samples filled by interpolation')
+    columns = [np.interp(grid, t, column) for column in measured.T]
+    return grid, inputs[held], np.column_stack(columns), [remark]

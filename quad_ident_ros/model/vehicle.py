@@ -1,0 +1,94 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The vehicle file: the nominal vehicle, what is known of it beforehand."""
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from quad_ident_ros import resources, schema
+from quad_ident_ros.errors import InputError
+
+
+@dataclass(frozen=True)
+class Rotor:
+    """A rotor: its place in the body frame (m) and the sign of its reaction torque about +z."""
+
+    position: tuple
+    spin: int
+
+
+@dataclass(frozen=True)
+class Vehicle:
+    """
+    A rigid multirotor; SI units, body frame x forward, y left, z up.
+
+    inertia (3,) kg m^2; thrust_coefficient N/(rad/s)^2; torque_coefficient N m/(rad/s)^2;
+    linear_drag (3,) N/(m/s); rotational_drag (3,) N m/(rad/s)^2; speeds rad/s.
+    """
+
+    name: str
+    mass: float
+    inertia: tuple
+    gravity: float
+    thrust_coefficient: float
+    torque_coefficient: float
+    rotors: tuple
+    rotor_inertia: float = 0.0
+    rotor_radius: float = 0.0
+    linear_drag: tuple = (0.0, 0.0, 0.0)
+    rotational_drag: tuple = (0.0, 0.0, 0.0)
+    speed_min: float = 0.0
+    speed_max: float = float('inf')
+
+    @property
+    def arm_length(self):
+        """Lever arm l in m: the mean distance of the rotors from the body's z axis."""
+        return float(np.mean([np.hypot(r.position[0], r.position[1]) for r in self.rotors]))
+
+    @property
+    def hover_input(self):
+        """Inputs U1..U4 (4,) that hold the vehicle still: the weight on U1, N."""
+        return np.array([self.mass * self.gravity, 0.0, 0.0, 0.0])
+
+
+def load_vehicle(name_or_path):
+    """
+    Return the vehicle of a shipped name or of a vehicle file.
+
+    Raises InputError that names file and key where the file does not describe a vehicle.
+    """
+    path = resources.find('vehicles', name_or_path)
+    return vehicle_from_mapping(resources.read_yaml(path), str(path))
+
+
+def vehicle_from_mapping(data, where):
+    """Return the vehicle that the mapping of a vehicle file describes; raises InputError."""
+    known = [field.name for field in fields(Vehicle)]
+    required = [name for name in known[:7]]
+    schema.check_keys(where, data, known, required)
+    values = {'name': str(data['name'])}
+    for key in ('mass', 'gravity', 'thrust_coefficient', 'torque_coefficient'):
+        values[key] = schema.number(f'{where}: {key}', data[key], 0.0, exclusive=True)
+    values['inertia'] = schema.numbers(f'{where}: inertia', data['inertia'], 3, minimum=0.0,
+                                       exclusive=True)
+    for key in ('rotor_inertia', 'rotor_radius', 'speed_min', 'speed_max'):
+        if key in data:
+            values[key] = schema.number(f'{where}: {key}', data[key], 0.0)
+    for key in ('linear_drag', 'rotational_drag'):
+        if key in data:
+            values[key] = schema.numbers(f'{where}: {key}', data[key], 3, minimum=0.0)
+    if not isinstance(data['rotors'], list) or not data['rotors']:
+        raise InputError(f'{where}: rotors: expected a list of {{position: [x, y, z], spin: 1}}')
+    values['rotors'] = tuple(_rotor(f'{where}: rotors[{i}]', rotor)
+                             for i, rotor in enumerate(data['rotors']))
+    vehicle = Vehicle(**values)
+    if vehicle.speed_max <= vehicle.speed_min:
+        raise InputError(f'{where}: speed_max must be greater than speed_min')
+    return vehicle
+
+
+def _rotor(where, data):
+    schema.check_keys(where, data, ('position', 'spin'), ('position', 'spin'))
+    return Rotor(schema.numbers(f'{where}: position', data['position'], 3),
+                 schema.choice(f'{where}: spin', data['spin'], (1, -1)))

@@ -1,0 +1,68 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Where the installed configuration lies, and how its files are read."""
+
+import os
+import sys
+from pathlib import Path
+
+import yaml
+
+from quad_ident_ros.errors import InputError
+
+PACKAGE = 'quad_ident_ros'
+
+
+def config_dir():
+    """Return the folder `config/`, from the source tree, an ament prefix or the Python prefix."""
+    source = Path(__file__).resolve().parents[1]
+    prefixes = [p for p in os.environ.get('AMENT_PREFIX_PATH', '').split(os.pathsep) if p]
+    candidates = [source] if (source / 'package.xml').exists() else []
+    candidates += [Path(prefix) / 'share' / PACKAGE for prefix in [*prefixes, sys.prefix]]
+    for candidate in candidates:
+        if (candidate / 'config').is_dir():
+            return candidate / 'config'
+    raise InputError(f'the folder share/{PACKAGE}/config was not found: install {PACKAGE} again, '
+                     'or source its workspace')
+
+
+def names(kind):
+    """Return the sorted names of the files that ship in config/<kind>."""
+    return sorted(path.stem for path in (config_dir() / kind).glob('*.yaml'))
+
+
+def find(kind, name_or_path):
+    """
+    Return the path of a shipped file by its name, or of a user's file by its path.
+
+    Raises InputError that lists the shipped names where there is no such file.
+    """
+    text = str(name_or_path)
+    path = Path(text).expanduser()
+    if path.suffix in ('.yaml', '.yml') or os.sep in text:
+        if path.is_file():
+            return path
+        raise InputError(f'{text}: there is no such file')
+    shipped = config_dir() / kind / f'{text}.yaml'
+    if shipped.is_file():
+        return shipped
+    raise InputError(f'{text!r} is not among the {kind} ({", ".join(names(kind))}); '
+                     'give one of these or the path of a .yaml file')
+
+
+def read_yaml(path):
+    """Return the mapping in a YAML file; raises InputError with file and line where it fails."""
+    try:
+        data = yaml.safe_load(Path(path).read_text(encoding='utf-8'))
+    except OSError as error:
+        raise InputError(f'{path}: cannot be read: {error.strerror}') from None
+    except UnicodeDecodeError:
+        raise InputError(f'{path}: is not text in UTF-8; expected a YAML file') from None
+    except yaml.YAMLError as error:
+        mark = getattr(error, 'problem_mark', None)
+        where = f', line {mark.line + 1}' if mark else ''
+        problem = getattr(error, 'problem', None) or str(error).splitlines()[0]
+        raise InputError(f'{path}{where}: is not YAML: {problem}') from None
+    if not isinstance(data, dict):
+        raise InputError(f'{path}: expected `key: value` lines')
+    return data

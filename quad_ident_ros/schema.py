@@ -1,0 +1,70 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Checks of values that come from files, parameters and the command line."""
+
+import difflib
+import math
+
+from quad_ident_ros.errors import InputError
+
+
+def unknown_key(where, key, known):
+    """Return the InputError for a key that is not known, with the nearest known one."""
+    near = difflib.get_close_matches(str(key), list(known), n=1)
+    hint = f'did you mean {near[0]!r}?' if near else f'known are {", ".join(sorted(known))}'
+    return InputError(f'{where}: {key!r} is not known here; {hint}')
+
+
+def check_keys(where, mapping, known, required=()):
+    """Raise InputError where `mapping` is none, lacks a required key or has an unknown one."""
+    if not isinstance(mapping, dict):
+        raise InputError(f'{where}: expected `key: value` lines, got {mapping!r}')
+    for key in mapping:
+        if key not in known:
+            raise unknown_key(where, key, known)
+    for key in required:
+        if key not in mapping:
+            raise InputError(f'{where}: {key!r} is missing')
+
+
+def number(where, value, minimum=-math.inf, maximum=math.inf, exclusive=False):
+    """Return a finite float within bounds, or raise InputError that says where and what."""
+    # YAML 1.1 reads 1e-3 (no dot) as text; it is a number to everybody else.
+    if isinstance(value, str):
+        try:
+            value = float(value)
+        except ValueError:
+            raise InputError(f'{where}: expected a number, got {value!r}') from None
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise InputError(f'{where}: expected a number, got {value!r}')
+    value = float(value)
+    if not math.isfinite(value):
+        raise InputError(f'{where}: expected a finite number, got {value}')
+    low = value <= minimum if exclusive else value < minimum
+    if low or value > maximum:
+        sign = '>' if exclusive else '>='
+        limits = [f'{sign} {minimum:g}'] if minimum > -math.inf else []
+        limits += [f'<= {maximum:g}'] if maximum < math.inf else []
+        raise InputError(f'{where}: {value:g} is out of range, expected {" and ".join(limits)}')
+    return value
+
+
+def numbers(where, value, count, **limits):
+    """Return a tuple of `count` floats, each checked as `number` does."""
+    if not isinstance(value, list | tuple) or len(value) != count:
+        raise InputError(f'{where}: expected a list of {count} numbers, got {value!r}')
+    return tuple(number(f'{where}[{i}]', entry, **limits) for i, entry in enumerate(value))
+
+
+def choice(where, value, options):
+    """Return `value` if it is among the options, or raise InputError that lists them."""
+    if value not in options:
+        raise InputError(f'{where}: {value!r} is not one of {", ".join(map(str, options))}')
+    return value
+
+
+def integer(where, value, minimum):
+    """Return a whole number of at least `minimum`, or raise InputError."""
+    if isinstance(value, bool) or not isinstance(value, int) or value < minimum:
+        raise InputError(f'{where}: expected a whole number of at least {minimum}, got {value!r}')
+    return value

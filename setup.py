@@ -1,0 +1,68 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Build and installation of the package, with colcon or with pip."""
+
+from glob import glob
+import os
+
+from setuptools import find_packages, setup
+
+PACKAGE = 'quad_ident_ros'
+SHARE = f'share/{PACKAGE}'
+
+
+def files_below(folder):
+    """List (destination, files) for every folder below one, for data_files."""
+    found = []
+    for path, _, names in sorted(os.walk(folder)):
+        files = [f'{path}/{name}' for name in sorted(names) if not name.startswith('.')]
+        if files:
+            found.append((f'{SHARE}/{path}', files))
+    return found
+
+
+setup(
+    name=PACKAGE,
+    version='0.1.0',
+    description='Online identification of quadrotors and diagnosis of their sim-to-real gap',
+    long_description=(
+        'ROS 2 nodes and a command line that simulate a quadrotor, record its flight, identify '
+        'the parameters of its model with their uncertainty and explain what is left of the gap '
+        'between model and flight.'
+    ),
+    long_description_content_type='text/plain',
+    author='quad_ident_ros contributors',
+    maintainer='quad_ident_ros maintainers',
+    maintainer_email='maintainers@example.org',
+    license='Apache-2.0',
+    keywords=['ROS', 'quadrotor', 'system identification', 'sim-to-real'],
+    classifiers=[
+        'Development Status :: 4 - Beta',
+        'Intended Audience :: Science/Research',
+        'Operating System :: POSIX :: Linux',
+        'Programming Language :: Python :: 3',
+        'Topic :: Scientific/Engineering',
+    ],
+    packages=find_packages(include=[PACKAGE, f'{PACKAGE}.*']),
+    data_files=[
+        ('share/ament_index/resource_index/packages', [f'resource/{PACKAGE}']),
+        (SHARE, ['package.xml']),
+        (f'{SHARE}/launch', sorted(glob('launch/*.launch.py'))),
+        # What `ros2 run` starts, whether colcon or pip installed the package.
+        (f'lib/{PACKAGE}', sorted(glob('scripts/*'))),
+        *files_below('config'),
+    ],
+    python_requires='>=3.10',
+    install_requires=[
+        'numpy>=1.26',
+        'scipy>=1.11',
+        'numba>=0.58',
+        'matplotlib>=3.6',
+        'PyYAML>=6',
+        'rich>=13',
+        'rosbags>=0.11',
+    ],
+    extras_require={'test': ['pytest>=7.4', 'hypothesis>=6.80', 'ruff>=0.4']},
+    zip_safe=True,
+    entry_points={'console_scripts': ['quad_ident = quad_ident_ros.cli.main:main']},
+)
