@@ -8,26 +8,35 @@ from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
 from launch_ros.parameter_descriptions import ParameterValue
 
-# Name, default and description of each argument, and the type of the parameter it sets.
+# Name, default, description and type of each argument.
 ARGUMENTS = (
-    ('namespace', '', 'namespace of the three nodes and their topics', None),
-    ('experiment', '', 'experiment to fly, a name or a YAML file; empty: the default one', str),
-    ('vehicle', '', 'vehicle to simulate, a name or a YAML file; empty: the default one', str),
-    ('real_time_factor', '1.0', 'seconds of simulated time for each second of real time', float),
-    ('use_sim_time', 'true', 'whether recorder and identifier follow the topic /clock', bool),
-    ('output', '', 'folder for the recording and the results; empty: the default one', str),
-    ('method', '', 'method of identification; empty: the default one', str),
+    ('namespace', '', 'Namespace of the nodes and of their topics.', str),
+    ('experiment', 'hover_single_axis', 'Name of an experiment or path of its file.', str),
+    ('vehicle', '', "Name of a vehicle or path of its file; empty: the experiment's.", str),
+    ('real_time_factor', '1.0', 'Simulated seconds per second; 0.0: as fast as it goes.', float),
+    ('use_sim_time', 'false', 'Publish the simulated time on /clock and follow it.', bool),
+    ('output', '', 'Folder for recordings; empty: nothing is written.', str),
+    ('method', 'all', 'Method of identification, or all.', str),
 )
-NODES = (
-    ('simulator', ('experiment', 'vehicle', 'real_time_factor')),
-    ('recorder', ('use_sim_time', 'output')),
-    ('identifier', ('use_sim_time', 'method', 'output')),
-)
+# The parameters of each node, and the arguments that they come from.
+NODES = {
+    'simulator': {
+        'experiment': 'experiment',
+        'vehicle': 'vehicle',
+        'real_time_factor': 'real_time_factor',
+        'publish_clock': 'use_sim_time',
+    },
+    'recorder': {'use_sim_time': 'use_sim_time', 'output': 'output'},
+    'identifier': {'use_sim_time': 'use_sim_time', 'method': 'method'},
+}
 
 
 def generate_launch_description():
     """Describe the arguments and the nodes."""
-    types = {name: value_type for name, _, _, value_type in ARGUMENTS}
+    values = {
+        name: ParameterValue(LaunchConfiguration(name), value_type=value_type)
+        for name, _, _, value_type in ARGUMENTS
+    }
     return LaunchDescription(
         [
             DeclareLaunchArgument(name, default_value=default, description=description)
@@ -40,13 +49,8 @@ def generate_launch_description():
                 name=node,
                 namespace=LaunchConfiguration('namespace'),
                 output='screen',
-                parameters=[
-                    {
-                        name: ParameterValue(LaunchConfiguration(name), value_type=types[name])
-                        for name in parameters
-                    }
-                ],
+                parameters=[{name: values[source] for name, source in parameters.items()}],
             )
-            for node, parameters in NODES
+            for node, parameters in NODES.items()
         ]
     )

@@ -62,18 +62,20 @@ class BagWriter:
                 raise InputError(f'{path}, topic {name}: {msgtype!r} is no message type of ROS 2 '
                                  'Jazzy; name one such as geometry_msgs/msg/PoseStamped')
         self._writer = _Writer(path, version=9, storage_plugin=StoragePlugin.MCAP)
-        self._writer.open()
-        self._storage = self._writer.storage
         self._dirty = True
         self._failed = False
+        self._storage = None
         try:
+            self._writer.open()
+            self._storage = self._writer.storage
             self._connections = {
                 name: self._writer.add_connection(name, msgtype, typestore=_typestore(),
                                                   offered_qos_profiles=[_QOS])
                 for name, msgtype in topics}
             self.flush()
-        except BaseException:
-            self._storage.abort()
+        except OSError:
+            if self._storage:
+                self._storage.abort()
             shutil.rmtree(path, ignore_errors=True)
             raise
 
@@ -225,7 +227,13 @@ class _Storage(McapWriter):
     def __init__(self, path, compression):
         """Make the file."""
         super().__init__(path, compression)
-        self.bio = _TailedFile(self.bio.detach())
+        raw = self.bio.raw
+        try:
+            self.bio.detach()
+        except OSError:
+            raw.close()
+            raise
+        self.bio = _TailedFile(raw)
 
     def close_chunk(self):
         """Close the pending chunk; one without messages spans the times 0 to 0, as MCAP has it."""

@@ -1,0 +1,106 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The bounded window of joined rows, cut into flight records."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from quad_ident_ros.data.record import FlightRecord
+from quad_ident_ros.data.topics import record_columns, run_at
+
+# What holds for a run only from its first sample on.
+FIRST_SAMPLE_INFO = ('starts_at_rest', 'initial')
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Bounds of a window, in samples and seconds, and the share of it that the next one keeps."""
+
+    samples: int = 60000
+    seconds: float = 600.0
+    overlap: float = 0.0
+
+
+class RecordBuffer:
+    """
+    Collects rows and cuts them into flight records.
+
+    A record is complete when the run that a notice announced has its last sample, when the next
+    run begins, when the clock begins anew, or when the window is full.
+    Args: columns: raw columns of a row; limits: Limits.
+    """
+
+    def __init__(self, columns, limits):
+        self.limits = limits
+        self._columns = tuple(columns)
+        self._rows = []
+        self._runs = []
+        self._run = None
+
+    def __len__(self):
+        return len(self._rows)
+
+    def add_run(self, notice):
+        """Take the notice of a run and return the records that it completes."""
+        self._runs = [run for run in self._runs if run.start_ns != notice.start_ns] + [notice]
+        if self._run is not None and self._run.start_ns == notice.start_ns:
+            self._run = notice
+            return []
+        # Rows of a run may come before its notice: topics do not wait for one another.
+        rows, self._rows = self._rows, []
+        return self.add_rows(rows)
+
+    def add_rows(self, rows):
+        """Take rows (stamp_ns, values) and return the records that they complete."""
+        done = []
+        for row in rows:
+            stamp = row[0]
+            restarted = bool(self._rows) and stamp <= self._rows[-1][0]
+            run = run_at(self._runs, stamp)
+            if restarted or run is not self._run:
+                done += self.complete()
+                self._run = run
+            self._rows.append(row)
+            if run is not None and stamp >= run.stop_ns:
+                done += self.complete()
+                self._runs.remove(run)
+                self._run = None
+            elif self._full():
+                done += self.complete(self.limits.overlap)
+        return done
+
+    @property
+    def in_run(self):
+        """Whether an announced run is under way."""
+        return self._run is not None
+
+    def complete(self, overlap=0.0):
+        """Return [the record of the rows so far] or [], keeping a share of the rows."""
+        rows = self._rows
+        self._rows = rows[len(rows) - int(overlap * len(rows)):]
+        if len(rows) < 2:
+            return []
+        stamps = np.array([row[0] for row in rows])
+        info = dict(self._run.info) if self._run else {}
+        missing = _missing(stamps)
+        if self._run is not None:
+            if stamps[0] != self._run.start_ns:
+                info = {key: value for key, value in info.items()
+                        if key not in FIRST_SAMPLE_INFO}
+            if stamps[-1] == self._run.stop_ns and stamps[0] == self._run.start_ns:
+                missing = self._run.samples - len(rows)
+        info.update(start_ns=int(stamps[0]), dropped=missing)
+        table = np.array([row[1] for row in rows])
+        return [FlightRecord((stamps - stamps[0]) * 1e-9,
+                             record_columns(self._columns, table), info)]
+
+    def _full(self):
+        span = self._rows[-1][0] - self._rows[0][0]
+        return (len(self._rows) >= self.limits.samples
+                or span >= self.limits.seconds * 1e9 * (1 - 1e-9))
+
+
+def _missing(stamps):
+    steps = np.diff(stamps)
+    return int(np.maximum(np.round(steps / np.median(steps)) - 1, 0).sum())

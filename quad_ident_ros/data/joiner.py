@@ -1,0 +1,147 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Joining of topics into rows by stamp, with an account of everything that went wrong."""
+
+import heapq
+import math
+from collections import deque
+from dataclasses import dataclass, field
+
+# A stamp that goes back by more than this is a clock that began anew, not a late message.
+RESTART_NS = 1_000_000_000
+REMEMBERED = 2000   # emitted stamps kept to tell a duplicate from a late message
+
+
+@dataclass
+class Counts:
+    """
+    What became of the messages.
+
+    received: per topic. joined: rows. dropped: stamps that some topic never delivered. late:
+    messages after their row was given up. duplicated: a stamp twice on one topic. out_of_order: a
+    stamp older than the one before it on its topic. nan: messages with a value that is no finite
+    number. lost and incompatible_qos: as the middleware reports them. restarts: of the clock.
+    missing: stamps that no topic delivered, by the count that the sender announced or else by
+    the sample period.
+    """
+
+    received: dict = field(default_factory=dict)
+    joined: int = 0
+    dropped: int = 0
+    late: int = 0
+    duplicated: int = 0
+    out_of_order: int = 0
+    nan: int = 0
+    lost: int = 0
+    incompatible_qos: int = 0
+    restarts: int = 0
+    missing: int = 0
+
+    def problems(self):
+        """Return the counts of what went wrong that are not zero."""
+        return {name: count for name, count in vars(self).items()
+                if name not in ('received', 'joined') and count}
+
+
+class Joiner:
+    """
+    Joins messages of several topics that carry the same stamp into rows in stamp order.
+
+    Topics may run ahead of one another by any time: a row is given up only when each topic that
+    it lacks has delivered `hold` later stamps, or when `most` rows wait.
+    Args: topics: names that a row needs.
+    """
+
+    def __init__(self, topics, hold=20, most=20000):
+        self.topics = tuple(topics)
+        self.counts = Counts(received=dict.fromkeys(self.topics, 0))
+        self._hold, self._most = hold, most
+        # A row's key is (era, stamp): an era ends where the clock begins anew.
+        self._pending = {}
+        self._keys = []
+        self._last = dict.fromkeys(self.topics, (0, -1))
+        self._before = dict.fromkeys(self.topics)
+        self._emitted = (0, -1)
+        self._recent = deque(maxlen=REMEMBERED)
+
+    def add(self, topic, stamp_ns, values):
+        """
+        Take a message's values (tuple of float) and return the rows that it completes.
+
+        A row is (stamp_ns, values of all topics in their order). Rows come in rising order of
+        stamps; after a restart of the clock they begin anew.
+        """
+        counts = self.counts
+        counts.received[topic] += 1
+        key = self._place(topic, stamp_ns)
+        counts.restarts = max(era for era, _ in self._last.values())
+        parts = self._pending.get(key)
+        if (parts and topic in parts) or (not parts and key in self._recent):
+            counts.duplicated += 1
+            return []
+        if key <= self._emitted:
+            counts.late += 1
+            return []
+        if not all(map(math.isfinite, values)):
+            counts.nan += 1
+            values = None
+        if parts is None:
+            parts = self._pending[key] = {}
+            heapq.heappush(self._keys, key)
+        parts[topic] = values
+        return self._ready(self._given_up)
+
+    def drain(self):
+        """Return the rows that are complete, giving up those that are not."""
+        return self._ready(lambda key, parts: True)
+
+    def _place(self, topic, stamp):
+        """Return the key of a message and note where its topic is."""
+        era, last = self._last[topic]
+        before = self._before[topic]
+        if before is not None and stamp > before:
+            # The clock did not begin anew: one message came far too late.
+            self._before[topic] = None
+            self._last[topic] = (era - 1, stamp)
+            self.counts.out_of_order += 1
+            return self._last[topic]
+        if last - stamp > RESTART_NS:
+            self._before[topic] = last
+            self._last[topic] = (era + 1, stamp)
+            return self._last[topic]
+        if stamp < last:
+            self.counts.out_of_order += 1
+            return era, stamp
+        if stamp > last and before is not None:
+            self._before[topic] = None
+        self._last[topic] = (era, stamp)
+        return era, stamp
+
+    def _given_up(self, key, parts):
+        if len(self._pending) > self._most:
+            return True
+        missing = [topic for topic in self.topics if topic not in parts]
+        if any(self._last[topic] <= key for topic in missing):
+            return False
+        return all(sum(topic in other for at, other in self._pending.items() if at > key)
+                   >= self._hold or self._last[topic][0] > key[0] for topic in missing)
+
+    def _ready(self, given_up):
+        rows = []
+        while self._keys:
+            key = self._keys[0]
+            parts = self._pending[key]
+            complete = len(parts) == len(self.topics)
+            if not complete and not given_up(key, parts):
+                break
+            heapq.heappop(self._keys)
+            del self._pending[key]
+            self._emitted = key
+            self._recent.append(key)
+            spoilt = any(value is None for value in parts.values())
+            if complete and not spoilt:
+                rows.append((key[1], tuple(v for name in self.topics for v in parts[name])))
+            elif not spoilt:
+                self.counts.dropped += 1
+        self.counts.joined += len(rows)
+        return rows

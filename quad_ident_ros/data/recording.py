@@ -1,0 +1,115 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""A recording on disk: the messages as a bag, the joined rows as CSV files."""
+
+from pathlib import Path
+
+import numpy as np
+
+from quad_ident_ros.data.bag import BagWriter
+from quad_ident_ros.data.csv import CsvAppender
+from quad_ident_ros.data.topics import (
+    FLIGHT_TOPICS,
+    RUN_TOPIC,
+    RUN_TYPE,
+    raw_columns,
+    record_columns,
+    run_at,
+)
+
+
+class Recording:
+    """
+    Writes messages to <folder>/bag and rows to <folder>/flight_1.csv, flight_2.csv, ...
+
+    What was flushed survives a kill -9. A CSV file ends, and the next one begins, where the rows
+    are not one flight any more: between announced runs, and where the clock begins anew.
+    Args: parent: the folder in which recording_1, recording_2, ... is made; topics: the names of
+    the topics that rows consist of, and of `run`, each with the full name that the bag keeps.
+    Raises OSError where the disk refuses.
+    """
+
+    def __init__(self, parent, topics):
+        self.folder = _make_next(Path(parent).expanduser())
+        self._full_names = dict(topics)
+        joined = [name for name in topics if name != RUN_TOPIC]
+        self._raw = raw_columns(joined)
+        types = [(topics[name], FLIGHT_TOPICS[name].type) for name in joined]
+        self._bag = BagWriter(self.folder / 'bag', [*types, (topics[RUN_TOPIC], RUN_TYPE)])
+        self._runs = []
+        self._run = None
+        self._last = None
+        self._csv = None
+        self._origin = None
+        self._rows = []
+        self._number = 0
+
+    def write(self, topic, received_ns, cdr):
+        """Take a message as it came: its topic, time of receipt (ns) and serialized bytes."""
+        self._bag.write(self._full_names[topic], received_ns, cdr)
+
+    def add_run(self, notice):
+        """Take the notice of a run: its rows go into a CSV file of their own."""
+        self._runs.append(notice)
+
+    def add_rows(self, rows):
+        """Take joined rows (stamp_ns, values)."""
+        self._rows += rows
+
+    def flush(self):
+        """Hand everything to the operating system."""
+        self._append()
+        if self._csv is not None:
+            self._csv.flush()
+        self._bag.flush()
+
+    def close(self):
+        """Finish the files."""
+        try:
+            self._append()
+            self._end_flight()
+        finally:
+            self._bag.close()
+
+    def _append(self):
+        rows, self._rows = self._rows, []
+        flight = []
+        for row in rows:
+            run = run_at(self._runs, row[0])
+            if self._last is not None and (run is not self._run or row[0] <= self._last):
+                self._write_rows(flight)
+                self._end_flight()
+                flight = []
+            self._run, self._last = run, row[0]
+            flight.append(row)
+        self._write_rows(flight)
+
+    def _write_rows(self, rows):
+        if not rows:
+            return
+        stamps = np.array([row[0] for row in rows])
+        columns = record_columns(self._raw, np.array([row[1] for row in rows]))
+        if self._csv is None:
+            self._number += 1
+            self._origin = stamps[0]
+            self._csv = CsvAppender(self.folder / f'flight_{self._number}.csv', ['t', *columns])
+        t = (stamps - self._origin) * 1e-9
+        self._csv.append(np.column_stack([t, *columns.values()]))
+
+    def _end_flight(self):
+        if self._csv is not None:
+            self._csv.close()
+        self._csv = None
+
+
+def _make_next(parent):
+    parent.mkdir(parents=True, exist_ok=True)
+    number = 1
+    while True:
+        folder = parent / f'recording_{number}'
+        try:
+            folder.mkdir()
+        except FileExistsError:
+            number += 1
+            continue
+        return folder

@@ -1,0 +1,53 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Flight records from a bag that the recorder, or `ros2 bag record`, has written."""
+
+from quad_ident_ros.data.bag import read_bag_messages
+from quad_ident_ros.data.buffer import Limits, RecordBuffer
+from quad_ident_ros.data.joiner import Joiner
+from quad_ident_ros.data.topics import (
+    FLIGHT_TOPICS,
+    RUN_TOPIC,
+    RunNotice,
+    raw_columns,
+    stamp_ns,
+)
+from quad_ident_ros.errors import InputError
+
+UNBOUNDED = Limits(samples=2 ** 62, seconds=float('inf'))
+
+
+def read_bag(path):
+    """
+    Return the flight records in a bag, one per announced run, joined as the recorder does.
+
+    Raises InputError for a path that is no bag, or a bag with none of the topics of a flight or
+    with those of several vehicles.
+    """
+    messages, spaces = [], set()
+    for topic, _, message in read_bag_messages(path):
+        space, _, name = topic.rpartition('/')
+        if name in FLIGHT_TOPICS or name == RUN_TOPIC:
+            messages.append((name, message))
+            spaces.add(space)
+    if len(spaces) > 1:
+        raise InputError(f'{path}: holds the flights of several vehicles ({len(spaces)} '
+                         'namespaces); record each into a bag of its own')
+    present = {name for name, _ in messages}
+    topics = [name for name in FLIGHT_TOPICS if name in present]
+    if not topics:
+        raise InputError(f'{path}: has none of the topics {", ".join(FLIGHT_TOPICS)}')
+    joiner, buffer = Joiner(topics), RecordBuffer(raw_columns(topics), UNBOUNDED)
+    records = []
+    for name, message in messages:
+        if name == RUN_TOPIC:
+            records += buffer.add_run(RunNotice.from_json(message.data))
+        else:
+            rows = joiner.add(name, stamp_ns(message), FLIGHT_TOPICS[name].values(message))
+            records += buffer.add_rows(rows)
+    records += buffer.add_rows(joiner.drain())
+    records += buffer.complete()
+    if not records:
+        raise InputError(f'{path}: its topics share no stamps, so there is no flight in it')
+    return [type(record)(record.t, record.columns, {**record.info, 'source': str(path)})
+            for record in records]

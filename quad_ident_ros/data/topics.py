@@ -1,0 +1,124 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+The topics that carry a flight: their types, and how messages become columns of a record.
+
+The functions take any message object with the fields of its type, whether from rclpy or from a
+bag.
+"""
+
+import json
+from dataclasses import dataclass
+from typing import Callable
+
+import numpy as np
+
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.model.attitude import rotation_matrix
+
+
+@dataclass(frozen=True)
+class FlightTopic:
+    """A topic: its message type, the raw columns it carries, and how to read them."""
+
+    name: str
+    type: str
+    columns: tuple
+    values: Callable
+
+
+def _pose(message):
+    p, q = message.pose.position, message.pose.orientation
+    return p.x, p.y, p.z, q.w, q.x, q.y, q.z
+
+
+def _twist(message):
+    v, w = message.twist.linear, message.twist.angular
+    return v.x, v.y, v.z, w.x, w.y, w.z
+
+
+def _input(message):
+    force, torque = message.wrench.force, message.wrench.torque
+    return force.z, torque.x, torque.y, torque.z
+
+
+def _attitude(message):
+    return message.vector.x, message.vector.y, message.vector.z
+
+
+# The pose's height comes as `height`, so that the `altitude` topic, where joined, has the say.
+FLIGHT_TOPICS = {topic.name: topic for topic in (
+    FlightTopic('attitude', 'geometry_msgs/msg/Vector3Stamped', ('phi', 'theta', 'psi'),
+                _attitude),
+    FlightTopic('altitude', 'geometry_msgs/msg/PointStamped', ('pz',), lambda m: (m.point.z,)),
+    FlightTopic('pose', 'geometry_msgs/msg/PoseStamped',
+                ('px', 'py', 'height', 'qw', 'qx', 'qy', 'qz'), _pose),
+    FlightTopic('twist', 'geometry_msgs/msg/TwistStamped',
+                ('body_vx', 'body_vy', 'body_vz', 'wx', 'wy', 'wz'), _twist),
+    FlightTopic('input', 'geometry_msgs/msg/WrenchStamped', ('u1', 'u2', 'u3', 'u4'), _input),
+)}
+
+RUN_TOPIC = 'run'
+RUN_TYPE = 'std_msgs/msg/String'
+
+
+def stamp_ns(message):
+    """Return the stamp of a message with a header, ns."""
+    stamp = message.header.stamp
+    return stamp.sec * 1_000_000_000 + stamp.nanosec
+
+
+def raw_columns(topics):
+    """Return the names of the raw columns that the topics carry together."""
+    return tuple(column for name in topics for column in FLIGHT_TOPICS[name].columns)
+
+
+def record_columns(names, table):
+    """
+    Return the columns of the flight record format from raw ones.
+
+    Args: names: raw columns; table (N, len(names)). The velocity of `twist` is that of the body
+    frame and is turned into the world by the attitude of `pose`, where both are there.
+    """
+    columns = dict(zip(names, np.asarray(table, float).T, strict=True))
+    height = columns.pop('height', None)
+    if height is not None:
+        columns.setdefault('pz', height)
+    body = [columns.pop(name, None) for name in ('body_vx', 'body_vy', 'body_vz')]
+    if body[0] is not None and 'qw' in columns:
+        quaternion = np.stack([columns[name] for name in ('qw', 'qx', 'qy', 'qz')], axis=-1)
+        velocity = np.einsum('nij,jn->in', rotation_matrix(quaternion), np.stack(body))
+        columns.update(zip(('vx', 'vy', 'vz'), velocity, strict=True))
+    return columns
+
+
+@dataclass(frozen=True)
+class RunNotice:
+    """What a simulator announces: first and last stamp (ns), samples and provenance of a run."""
+
+    start_ns: int
+    stop_ns: int
+    samples: int
+    info: dict
+
+    def to_json(self):
+        """Return the notice as text."""
+        return json.dumps({'start_ns': self.start_ns, 'stop_ns': self.stop_ns,
+                           'samples': self.samples, 'info': self.info})
+
+    @classmethod
+    def from_json(cls, text):
+        """Return the notice that a text holds; raises InputError where it holds none."""
+        try:
+            data = json.loads(text)
+            notice = cls(int(data['start_ns']), int(data['stop_ns']), int(data['samples']),
+                         dict(data['info']))
+        except (ValueError, KeyError, TypeError):
+            raise InputError(f'topic {RUN_TOPIC}: {text[:60]!r} announces no run; expected JSON '
+                             'with start_ns, stop_ns, samples and info') from None
+        return notice
+
+
+def run_at(runs, stamp):
+    """Return the notice of the run that a stamp (ns) belongs to, or None."""
+    return next((run for run in runs if run.start_ns <= stamp <= run.stop_ns), None)

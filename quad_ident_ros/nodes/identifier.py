@@ -1,0 +1,302 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Node `identifier`: fits K/((s+a)(s+b)) to the records of the recorder."""
+
+import json
+import sys
+import threading
+import time
+
+from diagnostic_msgs.msg import DiagnosticArray
+from rclpy.node import Node
+from std_msgs.msg import Float64MultiArray, String
+from std_srvs.srv import Trigger
+
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.identify.identify import Settings, identify
+from quad_ident_ros.identify.levy import levy_sigma
+from quad_ident_ros.identify.methods import METHODS
+from quad_ident_ros.identify.result import as_data, parameter_table
+from quad_ident_ros.identify.search import Cancelled, SwarmSettings
+from quad_ident_ros.identify.signals import OUTPUTS
+from quad_ident_ros.identify.space import COMPLEX_PENALTY
+from quad_ident_ros.nodes import process
+from quad_ident_ros.nodes.messages import (
+    ERROR,
+    OK,
+    WARN,
+    diagnostics_message,
+    parameter_message,
+    record_from_message,
+)
+from quad_ident_ros.nodes.parameters import NodeParameters, ParameterSpec, help_text
+from quad_ident_ros.nodes.qos import latched
+
+PROGRESS_PERIOD = 0.1   # s between two messages on ~/progress
+
+_SWARM = SwarmSettings()
+SPECS = (
+    ParameterSpec('method', 'all', 'Method to run.', choices=('all', *METHODS)),
+    ParameterSpec('mode', 'once', 'once: fit the first complete experiment, then only on '
+                  '~/identify; continuous: fit each new record.', choices=('once', 'continuous')),
+    ParameterSpec('seed', 0, 'Seed of the searches.', limits=(0, 2 ** 31)),
+    ParameterSpec('window', 0.0, 'Seconds at the end of a record that are fitted; 0 takes all.',
+                  limits=(0.0, 1e6)),
+    ParameterSpec('pole_bounds', [], 'Lower and upper bound of a and b, 1/s; empty: from the '
+                  'data.', length=(0, 2)),
+    ParameterSpec('gain_bounds', [], 'Lower and upper bound of K; empty: from the data.',
+                  length=(0, 2)),
+    ParameterSpec('poles', 'auto', 'Complex pairs: never (real), where they at least halve the '
+                  'error (auto), or where they are better at all (any).',
+                  choices=tuple(COMPLEX_PENALTY)),
+    ParameterSpec('search', 'per_output', "per_output solves for K; joint is the paper's literal "
+                  '12-dimensional search.', choices=('per_output', 'joint')),
+    ParameterSpec('box', 'scaled', 'Read the box [0, 200] as scaled coordinates or literally.',
+                  choices=('scaled', 'literal')),
+    ParameterSpec('initial_state', 'auto', 'State at the start of a record: rest, free '
+                  '(estimated) or auto (rest where the record says so).',
+                  choices=('auto', 'rest', 'free')),
+    ParameterSpec('trim', [], 'U1..U4 from which inputs count; empty: what the record says, or '
+                  'its first sample.', length=(0, 4)),
+    ParameterSpec('evaluations', 0, 'Evaluations of the objective per search, the same for each '
+                  'method; 0 goes by generations.', limits=(0, 100_000_000)),
+    ParameterSpec('population', _SWARM.population, 'Particles or nests, N.', limits=(2, 100_000)),
+    ParameterSpec('generations', _SWARM.generations, 'Generations.', limits=(1, 1_000_000)),
+    ParameterSpec('w', _SWARM.inertia, 'Inertia weight of PSO.', limits=(0.0, 2.0)),
+    ParameterSpec('c1', _SWARM.c1, 'Largest pull to the own best.', limits=(0.0, 10.0)),
+    ParameterSpec('c2', _SWARM.c2, 'Largest pull to the common best.', limits=(0.0, 10.0)),
+    ParameterSpec('pa', _SWARM.abandon, 'Probability that an egg is discovered.',
+                  limits=(0.0, 1.0)),
+    ParameterSpec('alpha', _SWARM.alpha, 'Step size of the Levy flights.', limits=(0.0, 1000.0)),
+    ParameterSpec('alpha_units', _SWARM.alpha_units, 'Alpha in coordinates of the box (raw) or '
+                  'as a share of it (range).', choices=('raw', 'range')),
+    ParameterSpec('lambda', _SWARM.levy_lambda, 'Exponent of the Levy flights, between 0 and 2.',
+                  limits=(0.0, 2.0)),
+    ParameterSpec('replacement', _SWARM.replacement, 'Discovery of eggs: standard or eq. (28) as '
+                  'printed.', choices=('standard', 'printed')),
+    ParameterSpec('levy', _SWARM.levy, 'Eq. (26) as Mantegna has it or as printed.',
+                  choices=('mantegna', 'printed')),
+)
+
+HELP = f"""identifier: fits K/((s+a)(s+b)) to the records of the recorder.
+
+  ros2 run quad_ident_ros identifier --ros-args -p method:=pso_cs -p seed:=1
+  ros2 topic echo /parameters --once
+  ros2 service call /identifier/identify std_srvs/srv/Trigger
+
+Subscribes: record (std_msgs/Float64MultiArray, latched)
+Publishes (latched, but progress and diagnostics):
+  parameters           std_msgs/Float64MultiArray  K, a, b of phi, theta, psi, z (4 x 3), best method
+  parameters/<method>  std_msgs/Float64MultiArray  the same of one method ({', '.join(METHODS)})
+  parameters_json      std_msgs/String             everything: units, standard errors, metrics, ...
+  ~/progress           std_msgs/String             JSON: method, output, fraction
+  /diagnostics         diagnostic_msgs/DiagnosticArray
+Not a number stands for an output that was not excited, and for a, b of a complex pair.
+Services (std_srvs/Trigger): ~/identify fits what is there, ~/cancel ends a fit
+
+Parameters (--ros-args -p NAME:=VALUE):
+{help_text(SPECS)}"""
+
+
+class Identifier(Node):
+    """Fits records in a thread of its own, so that the executor stays free."""
+
+    def __init__(self, **kwargs):
+        super().__init__('identifier', **kwargs)
+        self._config = NodeParameters(self, SPECS, _settings)
+        self._best = self.create_publisher(Float64MultiArray, 'parameters', latched())
+        self._each = {name: self.create_publisher(Float64MultiArray, f'parameters/{name}',
+                                                  latched()) for name in METHODS}
+        self._json = self.create_publisher(String, 'parameters_json', latched())
+        self._progress = self.create_publisher(String, '~/progress', 10)
+        self._diagnostics = self.create_publisher(DiagnosticArray, '/diagnostics', 10)
+        self.create_service(Trigger, '~/identify', self._on_identify)
+        self.create_service(Trigger, '~/cancel', self._on_cancel)
+        self._records = {}
+        self._session = None
+        self._fitted_once = False
+        self._waiting = False
+        self._worker = None
+        self._cancelled = threading.Event()
+        self._outcome = None
+        self._status = (OK, 'waiting for a record', {})
+        # The guard condition is the one thing of a node that another thread may touch.
+        self._finished = self.create_guard_condition(self._on_finished)
+        self.create_timer(1.0, self._report)
+        self.create_subscription(Float64MultiArray, 'record', self._on_record, latched(16))
+
+    def close(self):
+        """End a fit that is running."""
+        self._cancelled.set()
+        if self._worker is not None:
+            self._worker.join()
+
+    def _on_record(self, message):
+        try:
+            record = record_from_message(message)
+        except InputError as error:
+            self.get_logger().error(str(error))
+            return
+        info = record.info
+        session = info.get('session')
+        if session != self._session:
+            self._records, self._session = {}, session
+        run = info.get('run_index', 0)
+        self._records.pop(run, None)   # the newest comes last, and has the say
+        self._records[run] = record
+        complete = len(self._records) >= info.get('run_count', 1)
+        if self._config['mode'] == 'continuous':
+            self._start()
+        elif complete and not self._fitted_once:
+            self._start()
+
+    def _on_identify(self, _, response):
+        if not self._records:
+            response.success = False
+            response.message = 'there is no record yet: is a recorder running? (~/flush)'
+            return response
+        busy = self._busy()
+        self._start()
+        response.success = True
+        response.message = ('a fit is running; another follows' if busy else
+                            f'fitting {len(self._records)} records')
+        return response
+
+    def _on_cancel(self, _, response):
+        response.success = self._busy()
+        response.message = 'cancelled' if response.success else 'no fit is running'
+        self._waiting = False
+        self._cancelled.set()
+        return response
+
+    def _busy(self):
+        return self._worker is not None
+
+    def _start(self):
+        """Begin a fit of the records as they are now, or after the one that is running."""
+        if self._busy():
+            self._waiting = True
+            return
+        self._waiting = False
+        self._fitted_once = True
+        self._cancelled.clear()
+        values = self._config.values()
+        records = list(self._records.values())
+        if values['window']:
+            records = [_end_of(record, values['window']) for record in records]
+        self._worker = threading.Thread(target=self._fit, args=(records, _settings(values)))
+        self._worker.start()
+
+    def _fit(self, records, settings):
+        last = 0.0
+        order = list(settings.methods)
+
+        def on_progress(method, output, share):
+            nonlocal last
+            if self._cancelled.is_set():
+                raise Cancelled
+            now = time.monotonic()
+            if now - last >= PROGRESS_PERIOD:
+                last = now
+                done = (order.index(method) + (OUTPUTS.index(output) + share) / len(OUTPUTS)
+                        if output in OUTPUTS else order.index(method) + share) / len(order)
+                self._progress.publish(String(data=json.dumps(
+                    {'method': method, 'output': output, 'fraction': round(done, 4)})))
+
+        try:
+            self._outcome = identify(records, settings, on_progress=on_progress)
+        except Cancelled:
+            self._outcome = 'cancelled'
+        except InputError as error:
+            self._outcome = error
+        self._finished.trigger()
+
+    def _on_finished(self):
+        if self._worker is None or self._outcome is None:
+            return
+        self._worker.join()
+        self._worker = None
+        outcome, self._outcome = self._outcome, None
+        if outcome == 'cancelled':
+            self._status = (WARN, 'the fit was cancelled', {})
+            self.get_logger().warning('the fit was cancelled')
+        elif isinstance(outcome, InputError):
+            self._status = (ERROR, str(outcome), {})
+            self.get_logger().error(str(outcome))
+        else:
+            self._publish(outcome)
+        self._report()
+        if self._waiting:
+            self._start()
+
+    def _publish(self, result):
+        for name, fit in result.methods.items():
+            self._each[name].publish(parameter_message(parameter_table(fit)))
+        best = result.methods[result.best]
+        self._best.publish(parameter_message(parameter_table(best)))
+        data = as_data(result)
+        self._json.publish(String(data=json.dumps(data)))
+        self._progress.publish(String(data=json.dumps(
+            {'method': result.best, 'output': '', 'fraction': 1.0})))
+        missing = [name for name in OUTPUTS if name not in best.outputs]
+        notes = [f'{name}: {fit.model.form}' for name, fit in best.outputs.items()
+                 if fit.model is not None and fit.model.form == 'complex']
+        text = f'best method {result.best}, cost {best.cost:.3g}'
+        if missing:
+            text += f'; not excited: {", ".join(missing)}'
+        if notes:
+            text += f'; complex poles, so a and b are not published: {", ".join(notes)}'
+        self._status = (WARN if missing or notes or data['dropped_samples'] else OK, text,
+                        {'best': result.best, 'cost': best.cost,
+                         'dropped_samples': data['dropped_samples'],
+                         **{f'fit_percent/{name}': fit.errors['fit_percent']
+                            for name, fit in best.outputs.items()}})
+        self.get_logger().info(text)
+
+    def _report(self):
+        level, text, values = self._status
+        if self._busy():
+            level, text = OK, 'fitting'
+        self._diagnostics.publish(diagnostics_message(self, level, text, values))
+
+
+def _settings(values):
+    """Return the Settings that parameter values stand for; raises InputError."""
+    levy_sigma(values['lambda'])
+    swarm = SwarmSettings(
+        population=values['population'], generations=values['generations'],
+        evaluations=values['evaluations'] or None, inertia=values['w'], c1=values['c1'],
+        c2=values['c2'], abandon=values['pa'], alpha=values['alpha'],
+        alpha_units=values['alpha_units'], levy_lambda=values['lambda'],
+        replacement=values['replacement'], levy=values['levy'])
+    for name in ('pole_bounds', 'gain_bounds'):
+        bounds = values[name]
+        if len(bounds) == 2 and not bounds[0] < bounds[1]:
+            raise InputError(f'parameter {name}: the lower bound must be below the upper, got '
+                             f'{list(bounds)}')
+    method = values['method']
+    return Settings(
+        methods=tuple(METHODS) if method == 'all' else (method,), seed=values['seed'],
+        swarm=swarm, search=values['search'], box=values['box'], poles=values['poles'],
+        pole_bounds=tuple(values['pole_bounds']) or None,
+        gain_bounds=tuple(values['gain_bounds']) or None,
+        initial_state=values['initial_state'], trim=tuple(values['trim']) or None)
+
+
+def _end_of(record, seconds):
+    """Return the last seconds of a record, which then does not begin at rest any more."""
+    part = record.last(seconds)
+    if len(part) == len(record):
+        return record
+    info = {key: value for key, value in record.info.items()
+            if key not in ('starts_at_rest', 'initial')}
+    return type(part)(part.t, part.columns, info)
+
+
+def main(args=None):
+    """Run the node; returns the exit code."""
+    return process.run(Identifier, HELP, args)
+
+
+if __name__ == '__main__':
+    sys.exit(main())

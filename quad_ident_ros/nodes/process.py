@@ -1,0 +1,118 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""A node as a process: start, signals, errors in one line, a clean end."""
+
+import os
+import signal
+import sys
+import tempfile
+from pathlib import Path
+
+import rclpy
+import yaml
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.signals import SignalHandlerOptions
+from rclpy.utilities import remove_ros_args
+
+from quad_ident_ros.errors import InputError
+
+try:
+    from rclpy.experimental.events_executor import EventsExecutor as FastExecutor
+except ImportError:   # early releases of Jazzy
+    FastExecutor = SingleThreadedExecutor
+
+
+def run(node_class, help_page, args=None, executor_class=SingleThreadedExecutor):
+    """
+    Run a node until it is told to stop and return the exit code.
+
+    Args: node_class: called without arguments, its `close()` is called at the end; help_page:
+    printed for --help; args: the command line, by default that of the process. Bad input gives
+    one line on standard error and exit code 2.
+    """
+    args = sys.argv if args is None else ['node', *args]
+    plain = remove_ros_args(args)[1:]
+    if '-h' in plain or '--help' in plain:
+        print(help_page)
+        return 0
+    name = Path(args[0]).stem
+    try:
+        if plain:
+            raise InputError(f'{plain[0]!r} is no option here: parameters are given as '
+                             '--ros-args -p NAME:=VALUE; --help lists them')
+        return _run(node_class, args, executor_class)
+    except InputError as error:
+        print(f'{name}: error: {error}', file=sys.stderr)
+        return 2
+
+
+def _run(node_class, args, executor_class):
+    _ensure_log_folder()
+    stop = []
+    previous = {number: signal.signal(number, lambda *_: stop.append(True))
+                for number in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        # rclpy's own handlers shut the context down under the running node, which then fails.
+        rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
+    except Exception as error:
+        raise InputError(f'the ROS arguments cannot be used: {_first_line(error)}') from None
+    node = executor = None
+    try:
+        node = node_class()
+        _check_parameter_files(args, node)
+        executor = executor_class()
+        executor.add_node(node)
+        while not stop:
+            executor.spin_once(timeout_sec=0.1)
+    finally:
+        if node is not None:
+            node.close()
+        if executor is not None:
+            executor.remove_node(node)
+            executor.shutdown()
+        if node is not None:
+            node.destroy_node()
+        rclpy.try_shutdown()
+        for number, handler in previous.items():
+            signal.signal(number, handler)
+    return 0
+
+
+def _ensure_log_folder():
+    """Give rclpy a folder for its log where it would find none."""
+    if 'ROS_LOG_DIR' not in os.environ and 'ROS_HOME' not in os.environ:
+        home = os.environ.get('HOME')
+        if not home or not os.access(home, os.W_OK):
+            os.environ['ROS_LOG_DIR'] = str(Path(tempfile.gettempdir()) / 'quad_ident_ros_log')
+
+
+def _check_parameter_files(args, node):
+    """Raise InputError for a parameter file that says nothing to this node: ROS 2 is silent."""
+    files = [args[i + 1] for i, word in enumerate(args[:-1]) if word == '--params-file']
+    full_name = node.get_fully_qualified_name()
+    for path in files:
+        keys = list(_node_names(yaml.safe_load(Path(path).read_text(encoding='utf-8')) or {}))
+        if not any(_matches(key, node.get_name(), full_name) for key in keys):
+            raise InputError(f'{path}: nothing in it is for this node, {full_name}; it is for '
+                             f'{", ".join(keys) or "none"}: use the name of the node or /**')
+
+
+def _node_names(data, prefix=''):
+    for key, value in data.items():
+        name = f'{prefix}/{str(key).strip("/")}'
+        if isinstance(value, dict) and 'ros__parameters' in value:
+            yield name
+        elif isinstance(value, dict):
+            yield from _node_names(value, name)
+
+
+def _matches(key, name, full_name):
+    if key.endswith('/**'):
+        return full_name.startswith(key[:-2])
+    if '*' in key:
+        return key.rsplit('/', 1)[-1] in (name, '*')
+    return key == full_name
+
+
+def _first_line(error):
+    return str(error).splitlines()[0] if str(error) else type(error).__name__

@@ -1,0 +1,256 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Node `recorder`: joins the topics of a flight into records, keeps and publishes them."""
+
+import json
+import sys
+
+from diagnostic_msgs.msg import DiagnosticArray
+import geometry_msgs.msg
+from rclpy.clock import Clock, ClockType
+from rclpy.event_handler import SubscriptionEventCallbacks
+from rclpy.node import Node
+from rclpy.serialization import deserialize_message
+from std_msgs.msg import Float64MultiArray, String
+from std_srvs.srv import Trigger
+
+from quad_ident_ros.data.buffer import Limits, RecordBuffer
+from quad_ident_ros.data.joiner import Joiner
+from quad_ident_ros.data.recording import Recording
+from quad_ident_ros.data.topics import (
+    FLIGHT_TOPICS,
+    RUN_TOPIC,
+    RunNotice,
+    raw_columns,
+    stamp_ns,
+)
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.nodes import process
+from quad_ident_ros.nodes.messages import ERROR, OK, WARN, diagnostics_message, record_message
+from quad_ident_ros.nodes.parameters import NodeParameters, ParameterSpec, help_text
+from quad_ident_ros.nodes.qos import BEST_EFFORT, LOSSLESS, latched
+
+FLUSH_PERIOD = 0.5   # s; a kill -9 loses at most this much of a recording
+IDLE = 2.0           # s without a message after which an announced run counts as over
+KEPT_RECORDS = 16    # records that a late identifier still gets
+
+SPECS = (
+    ParameterSpec('topics', tuple(FLIGHT_TOPICS), 'Topics that a row needs.',
+                  choices=tuple(FLIGHT_TOPICS), fixed=True),
+    ParameterSpec('window_samples', 60000, 'Samples after which a window is complete.',
+                  limits=(2, 10_000_000), fixed=True),
+    ParameterSpec('window_seconds', 600.0, 'Seconds after which a window is complete.',
+                  limits=(0.01, 1e6), fixed=True),
+    ParameterSpec('overlap', 0.0, 'Share of a full window that the next one keeps: 0.9 publishes '
+                  'a sliding window ten times per window length.', limits=(0.0, 0.999),
+                  fixed=True),
+    ParameterSpec('output', '', 'Folder for recordings (a bag and CSV files in a new '
+                  'recording_N); empty records in memory only.', fixed=True),
+)
+
+HELP = f"""recorder: joins the topics of a flight into records, keeps and publishes them.
+
+  ros2 run quad_ident_ros recorder --ros-args -p output:=flights
+  ros2 service call /recorder/flush std_srvs/srv/Trigger
+
+Subscribes (as the publisher offers, reliable first): attitude, altitude, pose, twist, input (types
+as the simulator publishes them), run (std_msgs/String, announces runs; not needed).
+Publishes:
+  record        std_msgs/Float64MultiArray (latched, 16 deep)  samples x columns, see the labels
+  ~/statistics  std_msgs/String (latched)                      JSON: received, joined, dropped,
+                late, duplicated, out of order, NaN, lost, recordings
+  /diagnostics  diagnostic_msgs/DiagnosticArray
+A record is complete when an announced run ends, when the window is full, or on the service.
+Services: ~/flush (std_srvs/Trigger)
+
+Parameters (--ros-args -p NAME:=VALUE):
+{help_text(SPECS)}"""
+
+
+class Recorder(Node):
+    """Buffers a flight and hands out records."""
+
+    def __init__(self, **kwargs):
+        super().__init__('recorder', **kwargs)
+        self._config = NodeParameters(self, SPECS, _validate)
+        parameters = self._config
+        self._topics = tuple(parameters['topics'])
+        self._joiner = Joiner(self._topics)
+        self._buffer = RecordBuffer(raw_columns(self._topics), Limits(
+            parameters['window_samples'], parameters['window_seconds'], parameters['overlap']))
+        self._records = 0
+        self._last_message = None
+        self._steady = Clock(clock_type=ClockType.STEADY_TIME)
+        self._recording = None
+        self._disk_error = None
+        self._record_publisher = self.create_publisher(Float64MultiArray, 'record',
+                                                       latched(KEPT_RECORDS))
+        self._statistics = self.create_publisher(String, '~/statistics', latched())
+        self._diagnostics = self.create_publisher(DiagnosticArray, '/diagnostics', 10)
+        self._subscriptions_by_topic = {}
+        self._refused = []
+        for name in self._topics:
+            self._subscribe(name, LOSSLESS)
+        runs = self.create_subscription(String, RUN_TOPIC, self._on_run, latched(32), raw=True)
+        if parameters['output']:
+            names = {name: subscription.topic_name
+                     for name, subscription in self._subscriptions_by_topic.items()}
+            self._on_disk(lambda: self._open_recording({**names, RUN_TOPIC: runs.topic_name}))
+        self.create_service(Trigger, '~/flush', self._on_flush)
+        self.create_timer(FLUSH_PERIOD, self._on_flush_timer, clock=self._steady)
+        self.create_timer(1.0, self._report, clock=self._steady)
+        self._report()
+
+    @property
+    def counts(self):
+        """The account of the messages (data.joiner.Counts)."""
+        return self._joiner.counts
+
+    def close(self):
+        """Finish the files on disk and publish the last account."""
+        self._keep(self._joiner.drain())
+        if self._recording is not None:
+            self._on_disk(self._recording.close)
+        self._report()
+
+    def _open_recording(self, names):
+        self._recording = Recording(self._config['output'], names)
+        self.get_logger().info(f'recording to {self._recording.folder}')
+
+    def _subscribe(self, name, quality):
+        topic = FLIGHT_TOPICS[name]
+        kind = getattr(geometry_msgs.msg, topic.type.rsplit('/', 1)[1])
+
+        def on_message(raw):
+            self._on_message(topic, kind, raw)
+
+        def on_lost(event):
+            self.counts.lost += event.total_count_change
+
+        def on_incompatible(event):
+            self.counts.incompatible_qos += event.total_count_change
+            self._refused.append(name)
+
+        self._subscriptions_by_topic[name] = self.create_subscription(
+            kind, name, on_message, quality, raw=True,
+            event_callbacks=SubscriptionEventCallbacks(message_lost=on_lost,
+                                                       incompatible_qos=on_incompatible))
+
+    def _on_message(self, topic, kind, raw):
+        self._last_message = self._steady.now().nanoseconds
+        message = deserialize_message(raw, kind)
+        self._write(topic.name, raw)
+        restarts = self.counts.restarts
+        rows = self._joiner.add(topic.name, stamp_ns(message), topic.values(message))
+        self._keep(rows)
+        if self.counts.restarts != restarts:
+            self.get_logger().warning('the clock of the messages went back: a new record begins')
+
+    def _write(self, name, raw):
+        if self._recording is not None:
+            now = self.get_clock().now().nanoseconds
+            self._on_disk(lambda: self._recording.write(name, now, raw))
+
+    def _on_run(self, raw):
+        self._write(RUN_TOPIC, raw)
+        try:
+            notice = RunNotice.from_json(deserialize_message(raw, String).data)
+        except InputError as error:
+            self.get_logger().error(str(error), throttle_duration_sec=10.0)
+            return
+        if self._recording is not None:
+            self._recording.add_run(notice)
+        self._publish(self._buffer.add_run(notice))
+
+    def _keep(self, rows):
+        if rows:
+            if self._recording is not None:
+                self._on_disk(lambda: self._recording.add_rows(rows))
+            self._publish(self._buffer.add_rows(rows))
+
+    def _publish(self, records):
+        for record in records:
+            self._records += 1
+            self.counts.missing += record.info['dropped']
+            info = {**record.info, 'problems': self.counts.problems()}
+            self._record_publisher.publish(record_message(
+                type(record)(record.t, record.columns, info)))
+            self.get_logger().info(f'record {self._records}: {len(record)} samples'
+                                   f'{" of " + info["name"] if "name" in info else ""}, '
+                                   f'{record.info["dropped"]} missing')
+        if records:
+            self._report()
+
+    def _on_flush(self, _, response):
+        self._keep(self._joiner.drain())
+        records = self._buffer.complete()
+        self._publish(records)
+        response.success = bool(records)
+        response.message = (f'published a record of {len(records[0])} samples' if records
+                            else 'there are fewer than two samples to publish')
+        return response
+
+    def _on_flush_timer(self):
+        now = self._steady.now().nanoseconds
+        idle = self._last_message is not None and now - self._last_message > IDLE * 1e9
+        if idle:
+            self._last_message = None
+            self._keep(self._joiner.drain())
+            if self._buffer.in_run:
+                self._publish(self._buffer.complete())
+        if self._recording is not None:
+            self._on_disk(self._recording.flush)
+        self._adapt()
+
+    def _adapt(self):
+        """Take what is offered where a publisher offers best effort only."""
+        while self._refused:
+            name = self._refused.pop()
+            self.destroy_subscription(self._subscriptions_by_topic[name])
+            self._subscribe(name, BEST_EFFORT)
+            self.get_logger().warning(f'{name} is offered as best effort: messages may be lost, '
+                                      'and are counted')
+
+    def _on_disk(self, action):
+        """Do something on disk; where it fails say so once and go on in memory."""
+        try:
+            action()
+        except OSError as error:
+            recording, self._recording = self._recording, None
+            where = recording.folder if recording else self._config['output']
+            self._disk_error = (f'{where}: recording stopped: {error.strerror or error}; what was '
+                                'written stays, the run goes on in memory')
+            self.get_logger().error(self._disk_error)
+            if recording is not None:
+                try:
+                    recording.close()
+                except OSError:
+                    pass   # it has been said
+
+    def _report(self):
+        folder = str(self._recording.folder) if self._recording else None
+        data = {**vars(self.counts), 'records': self._records, 'buffered': len(self._buffer),
+                'recording': folder, 'disk_error': self._disk_error}
+        self._statistics.publish(String(data=json.dumps(data)))
+        problems = self.counts.problems()
+        level, text = OK, f'{self.counts.joined} samples joined'
+        if problems:
+            level = WARN
+            text += ', ' + ', '.join(f'{count} {name}' for name, count in problems.items())
+        if self._disk_error:
+            level, text = ERROR, self._disk_error
+        self._diagnostics.publish(diagnostics_message(self, level, text, data))
+
+
+def _validate(values):
+    if not values['topics'] or len(set(values['topics'])) != len(values['topics']):
+        raise InputError('parameter topics: name at least one topic, and each once')
+
+
+def main(args=None):
+    """Run the node; returns the exit code."""
+    return process.run(Recorder, HELP, args, process.FastExecutor)
+
+
+if __name__ == '__main__':
+    sys.exit(main())

@@ -1,0 +1,310 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Node `simulator`: flies an experiment and publishes what a vehicle would."""
+
+import sys
+
+import numpy as np
+from geometry_msgs.msg import (
+    PointStamped,
+    PoseStamped,
+    TwistStamped,
+    Vector3Stamped,
+    WrenchStamped,
+)
+from rclpy._rclpy_pybind11 import RCLError
+from rclpy.clock import Clock, ClockType
+from rclpy.node import Node
+from rosgraph_msgs.msg import Clock as ClockMessage
+from std_msgs.msg import String
+from std_srvs.srv import Trigger
+
+from quad_ident_ros.data.topics import RUN_TOPIC, RunNotice
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.experiment import NOISE_UNITS, fly, load_experiment
+from quad_ident_ros.model.attitude import rotation_matrix
+from quad_ident_ros.nodes import process
+from quad_ident_ros.nodes.parameters import NodeParameters, ParameterSpec, help_text
+from quad_ident_ros.nodes.qos import LOSSLESS, STREAM, latched
+
+WORLD_FRAME, BODY_FRAME = 'world', 'base_link'
+SETTLING = 0.5      # s without a change of the subscriptions before the first run starts
+RUN_GAP = 10        # sample periods between the stamps of two runs
+BATCH = 20          # samples published before the executor has its turn
+STALLED = 5.0       # s of waiting for a subscriber after which the node says so
+
+SPECS = (
+    ParameterSpec('experiment', 'hover_single_axis',
+                  'Name of a shipped experiment or path of an experiment file.'),
+    ParameterSpec('vehicle', '', 'Name or path of a vehicle file that replaces the '
+                  "experiment's; empty keeps it."),
+    ParameterSpec('real_time_factor', 1.0, 'Simulated seconds per second; 0 runs as fast as the '
+                  'subscribers keep up, without loss.', limits=(0.0, 1000.0), fixed=True),
+    ParameterSpec('publish_clock', False, 'Publish /clock with the simulated time, which then '
+                  'begins at 0.', fixed=True),
+    ParameterSpec('autostart', True, 'Start the experiment by itself; otherwise ~/start does.',
+                  fixed=True),
+    ParameterSpec('wait_for_subscribers', True, 'Start only when somebody listens and the '
+                  'subscriptions have settled, so that nothing is missed.', fixed=True),
+    ParameterSpec('seed', 0, 'Seed of the measurement noise.', limits=(0, 2 ** 31)),
+    *(ParameterSpec(f'noise.{channel}', -1.0, f'Standard deviation of the {channel} noise, '
+                    f"{unit}; negative keeps the experiment's.", limits=(-1.0, 1e6))
+      for channel, unit in NOISE_UNITS.items()),
+)
+
+HELP = f"""simulator: flies an experiment and publishes what a vehicle would.
+
+  ros2 run quad_ident_ros simulator --ros-args -p experiment:=small_angle -p real_time_factor:=2.0
+
+Publishes (reliable; one stamp per sample on all five):
+  attitude  geometry_msgs/Vector3Stamped  roll, pitch, yaw, unwrapped, rad
+  altitude  geometry_msgs/PointStamped    point.z, m
+  pose      geometry_msgs/PoseStamped     in the world (ENU)
+  twist     geometry_msgs/TwistStamped    of the body, in body axes (FLU)
+  input     geometry_msgs/WrenchStamped   U1 in force.z (N); U2, U3 (N) and U4 (N m) in torque
+                                          x, y, z; the roll moment is l U2, l the arm length
+  run       std_msgs/String (latched)     JSON: what flies now, its stamps and provenance
+  /clock    rosgraph_msgs/Clock           with publish_clock
+Services: ~/start, ~/stop (std_srvs/Trigger)
+
+Parameters (--ros-args -p NAME:=VALUE):
+{help_text(SPECS)}"""
+
+
+class Simulator(Node):
+    """Flies the runs of an experiment one after the other and publishes their samples."""
+
+    def __init__(self, **kwargs):
+        super().__init__('simulator', **kwargs)
+        self._config = NodeParameters(self, SPECS, self._validate)
+        self._factor = self._config['real_time_factor']
+        if self._config['publish_clock'] and self.get_parameter('use_sim_time').value:
+            raise InputError('publish_clock and use_sim_time exclude each other: the clock would '
+                             'wait for itself')
+        # What comes from outside by /clock is the time; otherwise time only has to be steady.
+        self._steady = Clock(clock_type=ClockType.STEADY_TIME)
+        external = self.get_parameter('use_sim_time').value
+        self._pace = self.get_clock() if external else self._steady
+        quality = STREAM if self._factor else LOSSLESS
+        self._attitude = self.create_publisher(Vector3Stamped, 'attitude', quality)
+        self._altitude = self.create_publisher(PointStamped, 'altitude', quality)
+        self._pose = self.create_publisher(PoseStamped, 'pose', quality)
+        self._twist = self.create_publisher(TwistStamped, 'twist', quality)
+        self._input = self.create_publisher(WrenchStamped, 'input', quality)
+        self._run_publisher = self.create_publisher(String, RUN_TOPIC, latched(32))
+        self._streams = (self._attitude, self._altitude, self._pose, self._twist, self._input)
+        self._clock_publisher = None
+        if self._config['publish_clock']:
+            self._clock_publisher = self.create_publisher(ClockMessage, '/clock', 10)
+        self.create_service(Trigger, '~/start', self._on_start)
+        self.create_service(Trigger, '~/stop', self._on_stop)
+        self._messages = _Messages()
+        self._flight = None
+        self._queue = []
+        self._timer = None
+        self._epoch = 0
+        self._session = 0
+        self._waiting = None
+        self.done = False
+        if self._config['autostart']:
+            self.start()
+
+    def start(self):
+        """Begin the experiment anew, with the parameters as they are now."""
+        self._stop_timer()
+        experiment = self._load(self._config.values())
+        self._queue = list(experiment.runs)
+        self._experiment = experiment
+        self._flight = None
+        self.done = False
+        self._seen = (None, None)
+        if self._config['wait_for_subscribers']:
+            self.get_logger().info(f'{experiment.name}: waiting for subscribers '
+                                   '(wait_for_subscribers:=false starts without)')
+            self._timer = self.create_timer(0.02, self._await_subscribers,
+                                            clock=self._steady)
+        else:
+            self._begin()
+
+    def close(self):
+        """Stop publishing."""
+        self._stop_timer()
+
+    def _validate(self, values):
+        self._load(values)
+
+    def _load(self, values):
+        experiment = load_experiment(values['experiment'], values['vehicle'] or None)
+        for run in experiment.runs:
+            experiment.input_signals(run)
+        return experiment
+
+    def _on_start(self, _, response):
+        self.start()
+        response.success = True
+        response.message = f'{self._experiment.name}: {len(self._queue)} runs to fly'
+        return response
+
+    def _on_stop(self, _, response):
+        flying = not self.done
+        self._stop_timer()
+        self.done = True
+        response.success = True
+        response.message = 'stopped' if flying else 'nothing was flying'
+        return response
+
+    def _stop_timer(self):
+        if self._timer is not None:
+            self.destroy_timer(self._timer)
+            self._timer = None
+
+    def _await_subscribers(self):
+        now = self._steady.now()
+        counts = tuple(stream.get_subscription_count() for stream in self._streams)
+        if counts != self._seen[0]:
+            self._seen = (counts, now.nanoseconds)
+        settled = any(counts) and now.nanoseconds - self._seen[1] >= SETTLING * 1e9
+        # A clock that comes from outside stands at zero until its first message.
+        if settled and self._pace.now().nanoseconds > 0:
+            self._begin()
+
+    def _begin(self):
+        # Simulated time goes on where an experiment before it ended: stamps never go back.
+        if not self._config['publish_clock']:
+            self._epoch = max(self._epoch, self.get_clock().now().nanoseconds)
+        self._session = self._epoch
+        self._next_run()
+
+    def _next_run(self):
+        self._stop_timer()
+        if not self._queue:
+            self.done = True
+            self.get_logger().info(f'{self._experiment.name}: done')
+            return
+        run = self._queue.pop(0)
+        self._fly(run)
+        self._started = self._pace.now().nanoseconds
+        self._sent = 0
+        self._part = 0
+        period = self._experiment.period / self._factor if self._factor else 0.0
+        # A timer per sample would set the pace by its own lateness; it only asks what is due.
+        self._timer = self.create_timer(min(max(period, 0.001), 0.05) if self._factor else 0.0,
+                                        self._publish_due, clock=self._pace)
+
+    def _fly(self, run):
+        experiment = self._experiment
+        values = self._config.values()
+        noise = {channel: values[f'noise.{channel}'] for channel in NOISE_UNITS
+                 if values[f'noise.{channel}'] >= 0}
+        flight = fly(experiment, run, noise={**experiment.noise, **noise}, seed=values['seed'])
+        problem = flight.record.info['infeasible']
+        if problem:
+            self.get_logger().warning(f'{run.name}: {problem}')
+        if flight.status != 'complete':
+            self.get_logger().warning(f'{run.name}: the model diverged at t = '
+                                      f'{flight.end_time:.6g} s')
+        self._flight = flight
+        self._stamps = self._epoch + np.rint(flight.record.t * 1e9).astype(np.int64)
+        self._samples = _samples(flight.record)
+        period = round(experiment.period * 1e9)
+        self._epoch = int(self._stamps[-1]) + RUN_GAP * period
+        index = len(experiment.runs) - len(self._queue) - 1
+        info = {**flight.record.info, 'session': self._session, 'run_index': index,
+                'run_count': len(experiment.runs)}
+        notice = RunNotice(int(self._stamps[0]), int(self._stamps[-1]), len(self._stamps), info)
+        self._run_publisher.publish(String(data=notice.to_json()))
+        self.get_logger().info(f'{run.name}: {len(self._stamps)} samples, {flight.status}')
+
+    def _publish_due(self):
+        due = len(self._stamps)
+        if self._factor:
+            elapsed = (self._pace.now().nanoseconds - self._started) * 1e-9 * self._factor
+            due = min(due, int(elapsed / self._experiment.period + 1e-9) + 1)
+        else:
+            due = min(due, self._sent + BATCH)
+        while self._sent < due:
+            if not self._publish_sample():
+                return
+        if self._sent == len(self._stamps):
+            self._next_run()
+
+    def _publish_sample(self):
+        """Publish what is left of the next sample; False where a subscriber does not keep up."""
+        stamp = int(self._stamps[self._sent])
+        messages = self._messages.fill(stamp, self._samples[self._sent])
+        streams = [(self._attitude, messages.attitude), (self._altitude, messages.altitude),
+                   (self._pose, messages.pose), (self._twist, messages.twist),
+                   (self._input, messages.input)]
+        if self._clock_publisher is not None:
+            streams.append((self._clock_publisher, messages.clock))
+        while self._part < len(streams):
+            publisher, message = streams[self._part]
+            try:
+                publisher.publish(message)
+            except RCLError:
+                self._say_if_stalled(publisher)
+                return False
+            self._part += 1
+        self._waiting = None
+        self._part = 0
+        self._sent += 1
+        return True
+
+    def _say_if_stalled(self, publisher):
+        now = self._steady.now().nanoseconds
+        if self._waiting is None:
+            self._waiting = now
+        elif now - self._waiting > STALLED * 1e9:
+            self.get_logger().warning(f'waiting for a subscriber of {publisher.topic_name} that '
+                                      'does not keep up', throttle_duration_sec=STALLED)
+
+
+def _samples(record):
+    """Return the rows that the messages take: plain floats, fast to assign."""
+    world = record.stack('vx', 'vy', 'vz')
+    quaternion = record.stack('qw', 'qx', 'qy', 'qz')
+    body = np.einsum('nji,nj->ni', rotation_matrix(quaternion), world)
+    return np.hstack([record.euler(), record.stack('px', 'py', 'pz'), quaternion, body,
+                      record.stack('wx', 'wy', 'wz'), record.inputs()]).tolist()
+
+
+class _Messages:
+    """The messages of one sample, made once and filled for each."""
+
+    def __init__(self):
+        self.attitude, self.altitude, self.pose = Vector3Stamped(), PointStamped(), PoseStamped()
+        self.twist, self.input, self.clock = TwistStamped(), WrenchStamped(), ClockMessage()
+        for message in (self.attitude, self.altitude, self.pose):
+            message.header.frame_id = WORLD_FRAME
+        for message in (self.twist, self.input):
+            message.header.frame_id = BODY_FRAME
+
+    def fill(self, stamp_ns, row):
+        """Write a stamp (ns) and a row of _samples into the messages."""
+        seconds, nanoseconds = divmod(stamp_ns, 1_000_000_000)
+        for message in (self.attitude, self.altitude, self.pose, self.twist, self.input):
+            message.header.stamp.sec = seconds
+            message.header.stamp.nanosec = nanoseconds
+        self.clock.clock.sec, self.clock.clock.nanosec = seconds, nanoseconds
+        vector, point, pose = self.attitude.vector, self.altitude.point, self.pose.pose
+        vector.x, vector.y, vector.z = row[0:3]
+        pose.position.x, pose.position.y, pose.position.z = row[3:6]
+        point.z = row[5]
+        orientation = pose.orientation
+        orientation.w, orientation.x, orientation.y, orientation.z = row[6:10]
+        twist = self.twist.twist
+        twist.linear.x, twist.linear.y, twist.linear.z = row[10:13]
+        twist.angular.x, twist.angular.y, twist.angular.z = row[13:16]
+        wrench = self.input.wrench
+        wrench.force.z = row[16]
+        wrench.torque.x, wrench.torque.y, wrench.torque.z = row[17:20]
+        return self
+
+
+def main(args=None):
+    """Run the node; returns the exit code."""
+    return process.run(Simulator, HELP, args)
+
+
+if __name__ == '__main__':
+    sys.exit(main())
