@@ -37,6 +37,7 @@ class RecordBuffer:
         self._rows = []
         self._runs = []
         self._run = None
+        self._accounted = 0   # samples of this run in earlier records, or known to be missing
 
     def __len__(self):
         return len(self._rows)
@@ -59,11 +60,11 @@ class RecordBuffer:
             restarted = bool(self._rows) and stamp <= self._rows[-1][0]
             run = run_at(self._runs, stamp)
             if restarted or run is not self._run:
-                done += self.complete()
+                done += self.complete(run_over=True)
                 self._run = run
             self._rows.append(row)
             if run is not None and stamp >= run.stop_ns:
-                done += self.complete()
+                done += self.complete(run_over=True)
                 self._runs.remove(run)
                 self._run = None
             elif self._full():
@@ -75,21 +76,26 @@ class RecordBuffer:
         """Whether an announced run is under way."""
         return self._run is not None
 
-    def complete(self, overlap=0.0):
-        """Return [the record of the rows so far] or [], keeping a share of the rows."""
+    def complete(self, overlap=0.0, run_over=False):
+        """
+        Return [the record of the rows so far] or [], keeping a share of the rows.
+
+        run_over: no more rows of the announced run will come, so that those it lacks are known.
+        """
         rows = self._rows
         self._rows = rows[len(rows) - int(overlap * len(rows)):]
+        run, before = self._run, self._accounted
+        self._accounted = 0 if run_over else before + len(rows) - len(self._rows)
         if len(rows) < 2:
             return []
         stamps = np.array([row[0] for row in rows])
-        info = dict(self._run.info) if self._run else {}
         missing = _missing(stamps)
-        if self._run is not None:
-            if stamps[0] != self._run.start_ns:
-                info = {key: value for key, value in info.items()
-                        if key not in FIRST_SAMPLE_INFO}
-            if stamps[-1] == self._run.stop_ns and stamps[0] == self._run.start_ns:
-                missing = self._run.samples - len(rows)
+        info = dict(run.info) if run else {}
+        if run is not None and stamps[0] != run.start_ns:
+            info = {key: value for key, value in info.items() if key not in FIRST_SAMPLE_INFO}
+        if run is not None and run_over:
+            missing = run.samples - len(rows) - before
+        self._accounted += 0 if run_over else missing
         info.update(start_ns=int(stamps[0]), dropped=missing)
         table = np.array([row[1] for row in rows])
         return [FlightRecord((stamps - stamps[0]) * 1e-9,

@@ -137,7 +137,8 @@ class Joiner:
             heapq.heappop(self._keys)
             del self._pending[key]
             self._emitted = key
-            self._recent.append(key)
+            if complete:
+                self._recent.append(key)
             spoilt = any(value is None for value in parts.values())
             if complete and not spoilt:
                 rows.append((key[1], tuple(v for name in self.topics for v in parts[name])))

@@ -61,6 +61,10 @@ FLIGHT_TOPICS = {topic.name: topic for topic in (
 RUN_TOPIC = 'run'
 RUN_TYPE = 'std_msgs/msg/String'
 
+# The stamp (ns) up to which a recorder has joined: what lets a simulator run as fast as it keeps
+# up. The middleware's own acknowledgements come every 3 s only.
+JOINED_TOPIC = 'joined_until'
+
 
 def stamp_ns(message):
     """Return the stamp of a message with a header, ns."""

@@ -57,7 +57,8 @@ def collect(records, settings):
         remarks += said
     if not found:
         raise InputError('no input deviates from its trim in these data, so there is nothing to '
-                         'identify: excite U1..U4, or state the trim')
+                         'identify: excite U1..U4, or state the trim (hover: the '
+                         'weight on U1)')
     return {name: found[name] for name in OUTPUTS if name in found}, remarks
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from quad_ident_ros.identify.signals import GAIN_UNITS, INPUT_OF, OUTPUT_UNITS, OUTPUTS
-from quad_ident_ros.identify.transfer import SecondOrder
+from quad_ident_ros.identify.transfer import SecondOrder, response
 
 
 @dataclass(frozen=True)
@@ -129,3 +129,34 @@ def _clean(value):
     if isinstance(value, float) and not math.isfinite(value):
         return None
     return value
+
+
+def from_data(data, signals):
+    """
+    Return the Identification that as_data described.
+
+    Args: signals: the Signals it was fitted to, by output; the fitted responses are computed
+    anew from the models.
+    """
+    methods = {}
+    for name, method in data['methods'].items():
+        outputs = {output: _output_from(output, fit, signals[output])
+                   for output, fit in method['outputs'].items()}
+        methods[name] = MethodFit(name, outputs, method['seconds'])
+    known = ('schema', 'best', 'methods', 'samples', 'period', 'settings', 'remarks')
+    provenance = {key: value for key, value in data.items() if key not in known}
+    return Identification(methods, signals, data['settings'], tuple(data['remarks']), provenance)
+
+
+def _output_from(output, data, signal):
+    model = fitted = None
+    if data['form'] == 'complex':
+        pair = complex(data['pair']['real'], data['pair']['imaginary'])
+        model = SecondOrder(data['K'], pair, pair.conjugate())
+    elif data['form']:
+        model = SecondOrder(data['K'], data['a'], data['b'])
+    if model is not None:
+        fitted = response(model, signal.u, signal.period, data['initial'])
+    return OutputFit(output, model, tuple(data['initial']), fitted,
+                     math.inf if data['cost'] is None else data['cost'], data['errors'],
+                     data['standard_errors'], data['evaluations'], tuple(data['remarks']))

@@ -30,13 +30,13 @@ def run(node_class, help_page, args=None, executor_class=SingleThreadedExecutor)
     printed for --help; args: the command line, by default that of the process. Bad input gives
     one line on standard error and exit code 2.
     """
-    args = sys.argv if args is None else ['node', *args]
-    plain = remove_ros_args(args)[1:]
-    if '-h' in plain or '--help' in plain:
-        print(help_page)
-        return 0
-    name = Path(args[0]).stem
+    name = node_class.__name__.lower()
+    args = [name, *(sys.argv[1:] if args is None else args)]
     try:
+        plain = _plain_arguments(args)
+        if '-h' in plain or '--help' in plain:
+            print(help_page)
+            return 0
         if plain:
             raise InputError(f'{plain[0]!r} is no option here: parameters are given as '
                              '--ros-args -p NAME:=VALUE; --help lists them')
@@ -44,6 +44,15 @@ def run(node_class, help_page, args=None, executor_class=SingleThreadedExecutor)
     except InputError as error:
         print(f'{name}: error: {error}', file=sys.stderr)
         return 2
+
+
+def _plain_arguments(args):
+    """Return the words that are not for ROS; raises InputError for ROS arguments that fail."""
+    try:
+        return remove_ros_args(args)[1:]
+    except Exception as error:
+        raise InputError('the ROS arguments cannot be used (expected --ros-args -p NAME:=VALUE): '
+                         f'{_first_line(error)}') from None
 
 
 def _run(node_class, args, executor_class):

@@ -11,7 +11,7 @@ from rclpy.clock import Clock, ClockType
 from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.node import Node
 from rclpy.serialization import deserialize_message
-from std_msgs.msg import Float64MultiArray, String
+from std_msgs.msg import Float64MultiArray, String, UInt64
 from std_srvs.srv import Trigger
 
 from quad_ident_ros.data.buffer import Limits, RecordBuffer
@@ -19,6 +19,7 @@ from quad_ident_ros.data.joiner import Joiner
 from quad_ident_ros.data.recording import Recording
 from quad_ident_ros.data.topics import (
     FLIGHT_TOPICS,
+    JOINED_TOPIC,
     RUN_TOPIC,
     RunNotice,
     raw_columns,
@@ -31,7 +32,10 @@ from quad_ident_ros.nodes.parameters import NodeParameters, ParameterSpec, help_
 from quad_ident_ros.nodes.qos import BEST_EFFORT, LOSSLESS, latched
 
 FLUSH_PERIOD = 0.5   # s; a kill -9 loses at most this much of a recording
-IDLE = 2.0           # s without a message after which an announced run counts as over
+ACKNOWLEDGED = 10    # rows after which the publishers are told how far the joining is
+GONE = 2.0           # s after the last message when nobody publishes any more, and
+IDLE = 15.0          # s when somebody does, after which what is incomplete is given up; lost
+                     # messages are sent again every 3 s
 KEPT_RECORDS = 16    # records that a late identifier still gets
 
 SPECS = (
@@ -59,6 +63,7 @@ Publishes:
   record        std_msgs/Float64MultiArray (latched, 16 deep)  samples x columns, see the labels
   ~/statistics  std_msgs/String (latched)                      JSON: received, joined, dropped,
                 late, duplicated, out of order, NaN, lost, recordings
+  joined_until  std_msgs/UInt64                                stamp (ns) of the last joined row
   /diagnostics  diagnostic_msgs/DiagnosticArray
 A record is complete when an announced run ends, when the window is full, or on the service.
 Services: ~/flush (std_srvs/Trigger)
@@ -86,6 +91,8 @@ class Recorder(Node):
         self._record_publisher = self.create_publisher(Float64MultiArray, 'record',
                                                        latched(KEPT_RECORDS))
         self._statistics = self.create_publisher(String, '~/statistics', latched())
+        self._joined = self.create_publisher(UInt64, JOINED_TOPIC, 10)
+        self._unacknowledged = 0
         self._diagnostics = self.create_publisher(DiagnosticArray, '/diagnostics', 10)
         self._subscriptions_by_topic = {}
         self._refused = []
@@ -164,6 +171,10 @@ class Recorder(Node):
 
     def _keep(self, rows):
         if rows:
+            self._unacknowledged += len(rows)
+            if self._unacknowledged >= ACKNOWLEDGED:
+                self._unacknowledged = 0
+                self._joined.publish(UInt64(data=rows[-1][0]))
             if self._recording is not None:
                 self._on_disk(lambda: self._recording.add_rows(rows))
             self._publish(self._buffer.add_rows(rows))
@@ -192,15 +203,19 @@ class Recorder(Node):
 
     def _on_flush_timer(self):
         now = self._steady.now().nanoseconds
-        idle = self._last_message is not None and now - self._last_message > IDLE * 1e9
-        if idle:
+        if self._last_message is not None and now - self._last_message > self._patience() * 1e9:
             self._last_message = None
             self._keep(self._joiner.drain())
             if self._buffer.in_run:
-                self._publish(self._buffer.complete())
+                self._publish(self._buffer.complete(run_over=True))
         if self._recording is not None:
             self._on_disk(self._recording.flush)
         self._adapt()
+
+    def _patience(self):
+        alive = any(self.count_publishers(subscription.topic_name)
+                    for subscription in self._subscriptions_by_topic.values())
+        return IDLE if alive else GONE
 
     def _adapt(self):
         """Take what is offered where a publisher offers best effort only."""

@@ -16,10 +16,10 @@ from rclpy._rclpy_pybind11 import RCLError
 from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 from rosgraph_msgs.msg import Clock as ClockMessage
-from std_msgs.msg import String
+from std_msgs.msg import String, UInt64
 from std_srvs.srv import Trigger
 
-from quad_ident_ros.data.topics import RUN_TOPIC, RunNotice
+from quad_ident_ros.data.topics import JOINED_TOPIC, RUN_TOPIC, RunNotice
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.experiment import NOISE_UNITS, fly, load_experiment
 from quad_ident_ros.model.attitude import rotation_matrix
@@ -31,6 +31,8 @@ WORLD_FRAME, BODY_FRAME = 'world', 'base_link'
 SETTLING = 0.5      # s without a change of the subscriptions before the first run starts
 RUN_GAP = 10        # sample periods between the stamps of two runs
 BATCH = 20          # samples published before the executor has its turn
+AHEAD = 60          # samples that a recorder may be behind at full speed
+NO_ANSWER = 1.0     # s without news of a recorder after which it is not waited for
 STALLED = 5.0       # s of waiting for a subscriber after which the node says so
 
 SPECS = (
@@ -98,6 +100,9 @@ class Simulator(Node):
             self._clock_publisher = self.create_publisher(ClockMessage, '/clock', 10)
         self.create_service(Trigger, '~/start', self._on_start)
         self.create_service(Trigger, '~/stop', self._on_stop)
+        self._joined = self.create_subscription(UInt64, JOINED_TOPIC, self._on_joined, 10)
+        self._joined_until = 0
+        self._news = 0
         self._messages = _Messages()
         self._flight = None
         self._queue = []
@@ -111,8 +116,8 @@ class Simulator(Node):
 
     def start(self):
         """Begin the experiment anew, with the parameters as they are now."""
-        self._stop_timer()
         experiment = self._load(self._config.values())
+        self._stop_timer()
         self._queue = list(experiment.runs)
         self._experiment = experiment
         self._flight = None
@@ -140,13 +145,17 @@ class Simulator(Node):
         return experiment
 
     def _on_start(self, _, response):
-        self.start()
+        try:
+            self.start()
+        except InputError as error:   # the file has changed since it was named
+            response.message = str(error)
+            return response
         response.success = True
         response.message = f'{self._experiment.name}: {len(self._queue)} runs to fly'
         return response
 
     def _on_stop(self, _, response):
-        flying = not self.done
+        flying = self._timer is not None
         self._stop_timer()
         self.done = True
         response.success = True
@@ -184,11 +193,12 @@ class Simulator(Node):
         run = self._queue.pop(0)
         self._fly(run)
         self._started = self._pace.now().nanoseconds
+        self._news = self._steady.now().nanoseconds
         self._sent = 0
         self._part = 0
         period = self._experiment.period / self._factor if self._factor else 0.0
         # A timer per sample would set the pace by its own lateness; it only asks what is due.
-        self._timer = self.create_timer(min(max(period, 0.001), 0.05) if self._factor else 0.0,
+        self._timer = self.create_timer(min(max(period, 0.001), 0.05) if self._factor else 0.0005,
                                         self._publish_due, clock=self._pace)
 
     def _fly(self, run):
@@ -221,12 +231,23 @@ class Simulator(Node):
             elapsed = (self._pace.now().nanoseconds - self._started) * 1e-9 * self._factor
             due = min(due, int(elapsed / self._experiment.period + 1e-9) + 1)
         else:
-            due = min(due, self._sent + BATCH)
+            due = min(due, self._sent + BATCH, self._allowed())
         while self._sent < due:
             if not self._publish_sample():
                 return
         if self._sent == len(self._stamps):
             self._next_run()
+
+    def _allowed(self):
+        """Return how many samples of this run the recorders are ready for."""
+        waited = (self._steady.now().nanoseconds - self._news) * 1e-9
+        if waited > NO_ANSWER or not self.count_publishers(self._joined.topic_name):
+            return len(self._stamps)
+        return int(np.searchsorted(self._stamps, self._joined_until, side='right')) + AHEAD
+
+    def _on_joined(self, message):
+        self._joined_until = message.data
+        self._news = self._steady.now().nanoseconds
 
     def _publish_sample(self):
         """Publish what is left of the next sample; False where a subscriber does not keep up."""

@@ -1,0 +1,10 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Run `python -m quad_ident_ros`: the same as `quad_ident`."""
+
+import sys
+
+from quad_ident_ros.cli.main import main
+
+if __name__ == '__main__':
+    sys.exit(main())

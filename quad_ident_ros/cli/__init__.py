@@ -1,0 +1,3 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The command line `quad_ident`, one file per command."""

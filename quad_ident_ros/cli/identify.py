@@ -1,0 +1,116 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""`quad_ident identify`: fit the four models to recorded flights."""
+
+import argparse
+import sys
+from pathlib import Path
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn
+
+from quad_ident_ros.data.csv import read_csv
+from quad_ident_ros.data.replay import read_bag
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.identify.identify import Settings, identify, with_budget
+from quad_ident_ros.identify.methods import METHODS
+from quad_ident_ros.identify.result import as_data
+from quad_ident_ros.identify.space import COMPLEX_PENALTY
+from quad_ident_ros.model.vehicle import load_vehicle
+from quad_ident_ros.report.data import write_json
+from quad_ident_ros.report.picture import save_responses
+from quad_ident_ros.report.table import console, identification_table, legend, notes
+
+
+def add(commands):
+    """Add the command to the parser."""
+    parser = commands.add_parser(
+        'identify', help='fit K/((s+a)(s+b)) to recorded flights',
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        description='Fit K/((s+a)(s+b)) to roll, pitch, yaw and altitude of flight records. '
+                    'Several\nrecords, for instance one per axis, make one identification.',
+        epilog='A bag of our recorder knows its trim and that it starts at rest; for a CSV file '
+               'say it:\n  quad_ident identify flight_1.csv --trim hover --initial-state rest')
+    parser.add_argument('flights', nargs='+', metavar='FLIGHT',
+                        help='.csv, .csv.gz, the folder of a bag, or an .mcap file')
+    parser.add_argument('--method', choices=('all', *METHODS), default='all')
+    parser.add_argument('--seed', type=int, default=0, help='seed of the searches (default 0)')
+    parser.add_argument('--evaluations', type=int, metavar='N',
+                        help='evaluations of the objective per search, the same for each method '
+                             '(default: the 20 generations of the paper)')
+    parser.add_argument('--trim', choices=('record', 'hover', 'zero'), default='record',
+                        help='inputs that count as zero: what the record says or its first '
+                             "sample (default), the vehicle's weight on U1, or none")
+    parser.add_argument('--vehicle', default='paper_quadrotor',
+                        help='vehicle name or file, for --trim hover')
+    parser.add_argument('--initial-state', choices=('auto', 'rest', 'free'), default='auto',
+                        help='free estimates the state at the first sample; auto (default) takes '
+                             'rest where the record says so')
+    parser.add_argument('--poles', choices=tuple(COMPLEX_PENALTY), default='auto',
+                        help='complex pairs: real never, auto (default) where they at least '
+                             'halve the error, any where they are better at all')
+    parser.add_argument('--search', choices=('per_output', 'joint'), default='per_output',
+                        help="joint is the paper's literal 12-dimensional search")
+    parser.add_argument('--box', choices=('scaled', 'literal'), default='scaled')
+    for name, unit in (('pole', ', 1/s'), ('gain', '')):
+        parser.add_argument(f'--{name}-bounds', nargs=2, type=float, metavar=('LOW', 'HIGH'),
+                            help=f'bounds of the {name}s{unit} (default: from the data)')
+    parser.add_argument('--json', metavar='FILE', help='write the results as data; - prints them')
+    parser.add_argument('--picture', metavar='FILE',
+                        help='draw measured and fitted responses (.png, .svg, .pdf)')
+    parser.set_defaults(run=run)
+
+
+def run(options):
+    """Read the flights, identify, and show the result."""
+    if options.seed < 0:
+        raise InputError(f'--seed: expected a whole number of at least 0, got {options.seed}')
+    if options.evaluations is not None and options.evaluations < 1:
+        raise InputError(f'--evaluations: expected at least 1, got {options.evaluations}')
+    trim = {'record': None, 'zero': (0.0, 0.0, 0.0, 0.0)}.get(options.trim)
+    if options.trim == 'hover':
+        trim = tuple(load_vehicle(options.vehicle).hover_input)
+    settings = Settings(
+        methods=tuple(METHODS) if options.method == 'all' else (options.method,),
+        seed=options.seed, search=options.search, box=options.box, poles=options.poles,
+        pole_bounds=options.pole_bounds, gain_bounds=options.gain_bounds,
+        initial_state=options.initial_state, trim=trim)
+    settings = with_budget(settings, options.evaluations)
+    records = [record for path in options.flights for record in load(path)]
+    with progress_bar() as bar:
+        task = bar.add_task('fitting', total=len(settings.methods))
+
+        def on_progress(method, output, share):
+            bar.update(task, description=f'fitting {METHODS[method].label} {output}',
+                       completed=settings.methods.index(method) + (share if not output else 0))
+
+        result = identify(records, settings, on_progress=on_progress)
+    if options.json != '-':
+        show(result)
+    if options.picture:
+        save_responses(result, options.picture, 'Measured and fitted responses')
+    if options.json:
+        write_json(options.json, as_data(result))
+
+
+def load(path):
+    """Return the flight records in a file or bag; raises InputError."""
+    if Path(path).is_dir() or str(path).endswith('.mcap'):
+        return read_bag(path)
+    return [read_csv(path)]
+
+
+def progress_bar():
+    """Return a progress bar on standard error that goes away at the end."""
+    return Progress(TextColumn('{task.description}'), BarColumn(),
+                    TextColumn('{task.percentage:>3.0f} %'), transient=True,
+                    console=Console(stderr=True), disable=not sys.stderr.isatty())
+
+
+def show(result):
+    """Print the table of an identification and its remarks."""
+    screen = console()
+    screen.print(identification_table(result))
+    screen.print(legend(result), markup=False, highlight=False, soft_wrap=True)
+    for line in notes(result):
+        screen.print(f'  note: {line}', markup=False, highlight=False, soft_wrap=True)

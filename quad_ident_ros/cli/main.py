@@ -1,0 +1,54 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The command `quad_ident`."""
+
+import argparse
+import sys
+
+from quad_ident_ros import __version__
+from quad_ident_ros.cli import demo, identify, node, simulate, warm_up
+from quad_ident_ros.errors import InputError
+
+COMMANDS = (demo, simulate, identify, node, warm_up)
+
+EPILOG = """\
+examples:
+  quad_ident demo                                  simulate, record and identify on ROS 2
+  quad_ident simulate hover_single_axis -o flights make flight records without ROS
+  quad_ident identify flights/*.csv --trim hover --initial-state rest
+  quad_ident node identifier --ros-args -p method:=pso_cs
+"""
+
+
+def parser():
+    """Return the parser of the whole command line."""
+    top = argparse.ArgumentParser(
+        prog='quad_ident', epilog=EPILOG, formatter_class=argparse.RawDescriptionHelpFormatter,
+        description='Identify a quadrotor online: fit K/((s+a)(s+b)) to roll, pitch, yaw and '
+                    'altitude by PSO, CS, PSO-CS and LS.')
+    top.add_argument('--version', action='version', version=__version__)
+    commands = top.add_subparsers(dest='command', metavar='COMMAND')
+    for command in COMMANDS:
+        command.add(commands)
+    return top
+
+
+def main(args=None):
+    """Run a command and return the exit code: 0, or 2 with one line on standard error."""
+    top = parser()
+    options = top.parse_args(args)
+    if options.command is None:
+        top.print_help()
+        return 0
+    try:
+        return options.run(options) or 0
+    except InputError as error:
+        print(f'quad_ident {options.command}: error: {error}', file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        print(f'quad_ident {options.command}: interrupted', file=sys.stderr)
+        return 130
+    except BrokenPipeError:
+        # Whoever read our output has enough of it; say nothing when Python closes it.
+        sys.stdout = None
+        return 141

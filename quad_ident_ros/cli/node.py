@@ -1,0 +1,25 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""`quad_ident node`: run a ROS 2 node, for those who have no `ros2` command."""
+
+import argparse
+import importlib
+
+NODES = ('simulator', 'recorder', 'identifier')
+
+
+def add(commands):
+    """Add the command to the parser."""
+    parser = commands.add_parser(
+        'node', help='run a ROS 2 node (the same as `ros2 run quad_ident_ros NAME`)',
+        description='Run a ROS 2 node. `quad_ident node NAME --help` lists its topics, services '
+                    'and parameters.', add_help=False)
+    parser.add_argument('name', choices=NODES)
+    parser.add_argument('arguments', nargs=argparse.REMAINDER, help='--ros-args ...')
+    parser.set_defaults(run=run)
+
+
+def run(options):
+    """Run the node until it is stopped; returns its exit code."""
+    module = importlib.import_module(f'quad_ident_ros.nodes.{options.name}')
+    return module.main(options.arguments)

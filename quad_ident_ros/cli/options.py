@@ -1,0 +1,17 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Options that several commands share."""
+
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.experiment import check_noise
+
+
+def noise_from(entries):
+    """Return the noise that CHANNEL=STD entries stand for; raises InputError."""
+    noise = {}
+    for entry in entries or ():
+        name, sign, value = entry.partition('=')
+        if not sign:
+            raise InputError(f'--noise {entry}: expected CHANNEL=STD, for example attitude=0.002')
+        noise[name] = value
+    return check_noise('--noise', noise)

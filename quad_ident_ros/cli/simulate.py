@@ -1,0 +1,68 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""`quad_ident simulate`: make flight records without ROS."""
+
+import argparse
+import math
+from pathlib import Path
+
+from quad_ident_ros import resources
+from quad_ident_ros.cli.options import noise_from
+from quad_ident_ros.data.csv import write_csv
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.experiment import NOISE_UNITS, fly, load_experiment
+from quad_ident_ros.report.data import write_json
+
+
+def add(commands):
+    """Add the command to the parser."""
+    parser = commands.add_parser(
+        'simulate', help='fly an experiment in simulation and write flight records',
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        description='Fly an experiment in simulation, without ROS, and write one CSV per run.',
+        epilog='experiments that ship:\n' + ''.join(
+            f'  {name}\n' for name in resources.names('experiments'))
+        + 'vehicles that ship:\n' + ''.join(
+            f'  {name}\n' for name in resources.names('vehicles')))
+    parser.add_argument('experiment', help='name of a shipped experiment, or path of a .yaml')
+    parser.add_argument('--vehicle', help="vehicle name or file instead of the experiment's")
+    parser.add_argument('--noise', action='append', metavar='CHANNEL=STD',
+                        help='measurement noise, may be repeated; channels: '
+                             + ', '.join(f'{name} ({unit})' for name, unit in NOISE_UNITS.items()))
+    parser.add_argument('--seed', type=int, default=0, help='seed of the noise (default 0)')
+    parser.add_argument('-o', '--output', default='flights', metavar='FOLDER',
+                        help='where the CSV files go (default: flights)')
+    parser.add_argument('--json', metavar='FILE', help='write what was flown as data; - prints it')
+    parser.set_defaults(run=run)
+
+
+def run(options):
+    """Fly all runs of the experiment and write their records."""
+    if options.seed < 0:
+        raise InputError(f'--seed: expected a whole number of at least 0, got {options.seed}')
+    experiment = load_experiment(options.experiment, options.vehicle)
+    noise = {**experiment.noise, **noise_from(options.noise)}
+    report = []
+    for flight_run in experiment.runs:
+        flight = fly(experiment, flight_run, noise=noise, seed=options.seed)
+        path = Path(options.output) / f'{experiment.name}_{flight_run.name}.csv'
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            write_csv(path, flight.record)
+        except OSError as error:
+            raise InputError(f'{path}: cannot be written: {error.strerror}') from None
+        info = flight.record.info
+        report.append({**info, 'file': str(path), 'samples': len(flight.record)})
+        if options.json != '-':
+            print(f'{path}: {len(flight.record)} samples, {flight.status}'
+                  + (f' at t = {flight.end_time:.6g} s' if flight.status != 'complete' else ''))
+            if info['infeasible']:
+                print(f'  infeasible: {info["infeasible"]}')
+            last = {name: flight.record.columns[name][-1]
+                    for name in ('phi', 'theta', 'psi', 'pz')}
+            print('  last sample: ' + ', '.join(f'{name} = {value:.9g}'
+                                                for name, value in last.items()))
+    if options.json:
+        write_json(options.json, [{key: None if isinstance(value, float)
+                                   and not math.isfinite(value) else value
+                                   for key, value in entry.items()} for entry in report])

@@ -1,0 +1,194 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The demo: three nodes as processes on a domain of their own, watched until they are done."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+import rclpy
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.signals import SignalHandlerOptions
+from std_msgs.msg import Float64MultiArray, String
+
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.experiment import load_experiment
+from quad_ident_ros.identify.identify import Settings, collect
+from quad_ident_ros.identify.result import Identification, from_data
+from quad_ident_ros.nodes.domain import claim_domain
+from quad_ident_ros.nodes.messages import record_from_message
+from quad_ident_ros.nodes.qos import latched
+
+PATIENCE = 60.0      # s without any news after which the demo gives up
+STOPPING = 10.0      # s that a node has to end after it was told to
+
+# What a motion capture system leaves: 2 mrad and 5 mm.
+NOISE = {'attitude': 0.002, 'altitude': 0.005}
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What the demo gave: the identification, the recording's folder, seconds and counts."""
+
+    identification: Identification
+    recording: str
+    seconds: float
+    samples: int
+    dropped: int
+
+
+def run_demo(options, on_progress):
+    """
+    Fly an experiment through three processes and return the Outcome.
+
+    Args: options with experiment, seed, real_time_factor and output; on_progress: called with a
+    text and the share done. Raises InputError where a node fails; its log says more.
+    """
+    started = time.monotonic()
+    experiment = load_experiment(options.experiment)
+    if options.real_time_factor < 0 or options.seed < 0:
+        raise InputError('--real-time-factor and --seed must not be negative')
+    output = Path(options.output).resolve()
+    try:
+        (output / 'log').mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f'{output}: cannot be written: {error.strerror}') from None
+    domain, holder = claim_domain()
+    environment = {
+        **os.environ, 'ROS_DOMAIN_ID': str(domain), 'ROS_LOG_DIR': str(output / 'log'),
+        'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST',
+        'PYTHONPATH': os.pathsep.join(
+            [str(Path(__file__).resolve().parents[2]), os.environ.get('PYTHONPATH', '')]).strip(
+                os.pathsep)}
+    noise = {f'noise.{channel}': value for channel, value in NOISE.items()}
+    nodes = {
+        'recorder': {'output': str(output)},
+        'identifier': {'seed': options.seed},
+        'simulator': {'experiment': os.path.abspath(options.experiment)
+                      if os.path.exists(options.experiment) else options.experiment,
+                      'real_time_factor': float(options.real_time_factor),
+                      'seed': options.seed, **noise}}
+    with holder:
+        processes = {name: _start(name, parameters, output, environment)
+                     for name, parameters in nodes.items()}
+        try:
+            watcher = _Watcher(len(experiment.runs), on_progress)
+            _watch(watcher, processes, output, domain, environment)
+        finally:
+            codes = _stop(processes)
+    failed = [name for name, code in codes.items() if code != 0]
+    if failed:
+        raise InputError(f'{failed[0]} ended with exit code {codes[failed[0]]}: '
+                         f'{_last_line(output, failed[0])}')
+    pairs, _ = collect(watcher.records, Settings())
+    return Outcome(from_data(watcher.result, pairs), watcher.statistics['recording'],
+                   time.monotonic() - started, watcher.statistics['joined'],
+                   watcher.statistics['dropped'] + watcher.statistics['missing'])
+
+
+def _start(name, parameters, output, environment):
+    words = [word for key, value in parameters.items() for word in ('-p', f'{key}:={value}')]
+    with open(output / 'log' / f'{name}.txt', 'w', encoding='utf-8') as log:
+        return subprocess.Popen(
+            [sys.executable, '-m', f'quad_ident_ros.nodes.{name}', '--ros-args', *words],
+            stdout=log, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL, env=environment,
+            start_new_session=True)
+
+
+class _Watcher:
+    """Collects what the nodes publish and tells how far they are."""
+
+    def __init__(self, runs, on_progress):
+        self.records, self.statistics, self.result = [], {}, None
+        self.news = 0
+        self._runs, self._on_progress = runs, on_progress
+
+    def subscribe(self, node):
+        node.create_subscription(String, 'run', self._on_run, latched(32))
+        node.create_subscription(Float64MultiArray, 'record', self._on_record, latched(16))
+        node.create_subscription(String, 'recorder/statistics', self._on_statistics, latched())
+        node.create_subscription(String, 'identifier/progress', self._on_fit, 10)
+        node.create_subscription(String, 'parameters_json', self._on_result, latched())
+
+    @property
+    def done(self):
+        return (self.result is not None and len(self.records) == self._runs
+                and self.statistics.get('records') == self._runs)
+
+    def _tell(self, text, share):
+        self.news += 1
+        self._on_progress(text, share)
+
+    def _on_run(self, message):
+        info = json.loads(message.data)['info']
+        self._tell(f'flying {info["run"]}', 0.1 + 0.5 * info['run_index'] / self._runs)
+
+    def _on_record(self, message):
+        self.records.append(record_from_message(message))
+        self._tell(f'recorded {self.records[-1].info.get("run", "")}',
+                   0.1 + 0.5 * len(self.records) / self._runs)
+
+    def _on_statistics(self, message):
+        news = json.loads(message.data)
+        self.news += news != self.statistics
+        self.statistics = news
+
+    def _on_fit(self, message):
+        data = json.loads(message.data)
+        self._tell(f'fitting {data["method"]} {data["output"]}', 0.6 + 0.4 * data['fraction'])
+
+    def _on_result(self, message):
+        self.result = json.loads(message.data)
+        self._tell('identified', 1.0)
+
+
+def _watch(watcher, processes, output, domain, environment):
+    os.environ.setdefault('ROS_LOG_DIR', environment['ROS_LOG_DIR'])
+    os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
+    context = rclpy.Context()
+    rclpy.init(context=context, domain_id=domain, signal_handler_options=SignalHandlerOptions.NO)
+    node = rclpy.create_node('demo', context=context)
+    executor = SingleThreadedExecutor(context=context)
+    executor.add_node(node)
+    try:
+        watcher.subscribe(node)
+        news, since = -1, time.monotonic()
+        while not watcher.done:
+            executor.spin_once(timeout_sec=0.1)
+            for name, process in processes.items():
+                if process.poll() is not None:
+                    raise InputError(f'{name} ended early: {_last_line(output, name)}')
+            if watcher.news != news:
+                news, since = watcher.news, time.monotonic()
+            elif time.monotonic() - since > PATIENCE:
+                raise InputError(f'nothing has happened for {PATIENCE:g} s; the logs are in '
+                                 f'{output / "log"}')
+    finally:
+        executor.shutdown()
+        node.destroy_node()
+        context.try_shutdown()
+
+
+def _stop(processes):
+    """End the processes and return their exit codes."""
+    for process in processes.values():
+        process.send_signal(signal.SIGINT)
+    codes = {}
+    for name, process in processes.items():
+        try:
+            codes[name] = process.wait(STOPPING)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            codes[name] = process.wait()
+    return codes
+
+
+def _last_line(output, name):
+    path = output / 'log' / f'{name}.txt'
+    lines = [line for line in path.read_text(encoding='utf-8').splitlines() if line.strip()]
+    return f'{lines[-1].strip() if lines else "it said nothing"} (log: {path})'

@@ -1,0 +1,73 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The table of an identification that a person reads."""
+
+import math
+
+from rich import box
+from rich.console import Console
+from rich.table import Table
+
+from quad_ident_ros.identify.methods import METHODS
+from quad_ident_ros.identify.signals import GAIN_UNITS
+
+WIDTH = 124   # columns that the table needs: a narrower screen wraps it, and loses no digit
+
+
+def console():
+    """Return a console that does not cut the table, whatever the width of the screen."""
+    return Console(width=max(Console().width, WIDTH))
+
+
+def identification_table(identification):
+    """Return a rich Table: K, a, b with standard errors and the errors of each fit."""
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1), header_style='bold')
+    table.add_column('output', no_wrap=True)
+    table.add_column('method', no_wrap=True)
+    for name in ('K', 'a, 1/s', 'b, 1/s', 'IAE', 'ISE', 'ITAE', 'ITSE', 'fit %'):
+        table.add_column(name, justify='right', no_wrap=True)
+    for output in identification.signals:
+        fits = {name: method.outputs[output] for name, method in identification.methods.items()}
+        best = min(fits, key=lambda name: fits[name].cost)
+        for number, (name, fit) in enumerate(fits.items()):
+            table.add_row(output if number == 0 else '', METHODS[name].label, *_cells(fit),
+                          style='bold' if name == best else None,
+                          end_section=number == len(fits) - 1)
+    return table
+
+
+def legend(identification):
+    """Return the units of the table in a line."""
+    units = [f'{output} {GAIN_UNITS[output]}' for output in identification.signals]
+    return (f'K in: {", ".join(units)}. ± is one standard error. '
+            'Bold: the smallest error of its output.')
+
+
+def notes(identification):
+    """Return the remarks on data and fits as lines of text, without repeats."""
+    lines = list(identification.remarks)
+    for name, method in identification.methods.items():
+        for output, fit in method.outputs.items():
+            lines += [f'{METHODS[name].label}, {output}: {remark}' for remark in fit.remarks]
+    return list(dict.fromkeys(lines))
+
+
+def _cells(fit):
+    if fit.model is None:
+        return ['none'] * 3 + ['-'] * 5
+    model, error = fit.model, fit.standard_errors
+    if model.form == 'complex':
+        poles = [f'{model.a.real:.4g}', f'±{abs(model.a.imag):.4g}j']
+    else:
+        poles = [_with_error(model.a, error['a']), _with_error(model.b, error['b'])]
+    values = [fit.errors[key] for key in ('iae', 'ise', 'itae', 'itse')]
+    return [_with_error(model.gain, error['K']), *poles, *[f'{value:.2e}' if value < 1e-3 else f'{value:.3g}' for value in values],
+            f'{fit.errors["fit_percent"]:.3f}']
+
+
+def _with_error(value, error):
+    """Return a value with as many decimals as its standard error gives a meaning to."""
+    if error is None or not error > 0:
+        return f'{value:.5g}'
+    decimals = min(max(1 - math.floor(math.log10(error)), 0), 5)
+    return f'{value:.{decimals}f} ± {error:.{decimals}f}'
