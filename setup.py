@@ -24,7 +24,7 @@ def files_below(folder):
 setup(
     name=PACKAGE,
     version='0.1.0',
-    description='Online identification of quadrotors and diagnosis of their sim-to-real gap',
+    description='Online identification of quadrotors on ROS 2',
     long_description=(
         'ROS 2 nodes and a command line that simulate a quadrotor, record its flight, identify '
         'the parameters of its model with their uncertainty and explain what is left of the gap '

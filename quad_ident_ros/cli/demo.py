@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """`quad_ident demo`: the whole main job on real ROS 2."""
 
+import sys
+
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.identify.result import as_data
 from quad_ident_ros.report.data import write_json
@@ -38,9 +40,18 @@ def run(options):
         raise InputError(f'ROS 2 is not there ({error}): source a ROS 2 Jazzy, or start this as '
                          '`./run demo`, which installs it') from None
     with progress_bar() as bar:
-        task = bar.add_task('starting', total=1.0)
-        outcome = run_demo(options, lambda text, share: bar.update(task, description=text,
-                                                                    completed=share))
+        task = bar.add_task('starting simulator, recorder and identifier', total=1.0)
+        said = set()
+
+        def on_progress(text, share):
+            bar.update(task, description=text, completed=share)
+            # Where the bar cannot be drawn, each stage gets a line.
+            stage = text.split()[0]
+            if bar.disable and stage not in said:
+                said.add(stage)
+                print(f'{text} ...', file=sys.stderr)
+
+        outcome = run_demo(options, on_progress)
     result = outcome.identification
     picture = f'{options.output}/{PICTURE}'
     save_responses(result, picture, f'{options.experiment}: measured and identified over ROS 2')

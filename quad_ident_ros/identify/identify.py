@@ -152,10 +152,15 @@ def _finish(signal, output, fitted, evaluations, remarks=()):
     if fitted is None:
         return OutputFit(output, None, (0.0, 0.0), None, np.inf, dict.fromkeys(UNITS),
                          dict.fromkeys(('K', 'a', 'b', 'c1', 'c0')), evaluations, tuple(remarks))
-    fit = response(fitted.model, signal.u, signal.period, fitted.initial)
-    return OutputFit(output, fitted.model, fitted.initial, fit, fitted.cost,
-                     errors(signal.t, signal.y, fit), standard_errors(signal, fitted),
-                     evaluations, tuple(remarks))
+    model = fitted.model
+    fit = response(model, signal.u, signal.period, fitted.initial)
+    deviations = standard_errors(signal, fitted)
+    if model.form == 'real' and deviations['a'] and deviations['a'] > model.a - model.b:
+        remarks = (*remarks, 'a and b are closer than their errors: the data determine only '
+                             f'a + b = {model.c1:.4g} ± {deviations["c1"]:.1g} and '
+                             f'a b = {model.c0:.4g} ± {deviations["c0"]:.1g}')
+    return OutputFit(output, model, fitted.initial, fit, fitted.cost,
+                     errors(signal.t, signal.y, fit), deviations, evaluations, tuple(remarks))
 
 
 def _described(settings, spaces):

@@ -11,16 +11,20 @@ bounds that come from the data (docs/paper.md).
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.optimize import minimize
 
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.identify.objective import Objective
 
 SIZE = 200.0
 
-# Pole x record length of the coarse grid from which the bounds follow.
-REAL_GRID = np.array([-1.5, -0.5, 0.0, 0.5, 1.5, 3.0, 6.0, 12.0, 25.0, 60.0, 150.0, 600.0])
-MEAN_GRID = np.array([0.0, 0.5, 1.5, 5.0, 15.0, 50.0])
-TURN_GRID = np.array([1.0, 3.0, 6.0, 12.0, 25.0, 60.0, 150.0])
+# The coarse grid from which the bounds follow, in pole x record length: real poles, and the mean
+# and the angular frequency of pairs.
+REAL_GRID = np.array([-16.0, -8.0, -4.0, -2.0, -1.0, -0.5, 0.0, *2.0 ** np.arange(-1, 10)])
+MEAN_GRID = np.array([-3.0, -1.0, 0.0, 0.5, 1.5, 5.0, 15.0, 50.0])
+TURN_GRID = np.geomspace(1.0, 300.0, 50)
+REFINED = 3             # candidates of the grid that are refined,
+REFINING_STEPS = 60     # each by so many evaluations: enough for bounds, too few for a fit
 
 # How much larger the squared error of a complex pair counts, by the parameter `poles`. With
 # `auto` a pair is taken only where it at least halves the rms error of the best real poles: the
@@ -51,12 +55,6 @@ class Space:
             half = np.abs(half)
         return (p + q) / 2, half
 
-    def point(self, mean, half):
-        """Return the point (2,) of poles, clipped to the box."""
-        low, high = self.poles
-        pair = np.array([mean + half, mean - half])
-        return np.clip((pair - low) / (high - low) * SIZE, 0.0, SIZE)
-
     def cost(self, objective, points):
         """Return F (n,) of points (n, 2), with complex pairs penalised."""
         mean, half = self.mean_and_half(points)
@@ -68,7 +66,7 @@ def find_space(objective, poles='auto', pole_bounds=None, gain_bounds=None):
     """
     Return the search space of an output, from the data where bounds are not given.
 
-    The bounds enclose, twofold, the best candidate of a coarse grid, and at least
+    The bounds enclose, twofold, the rough optimum (see _rough_optimum), and at least
     [-2.5, 2.5] / T (errata section 3). Args: poles, a key of COMPLEX_PENALTY; pole_bounds
     (low, high) 1/s; gain_bounds (low, high). Raises InputError for empty bounds.
     """
@@ -78,33 +76,74 @@ def find_space(objective, poles='auto', pole_bounds=None, gain_bounds=None):
                              f'[{bounds[0]:g}, {bounds[1]:g}]')
     penalty = COMPLEX_PENALTY[poles]
     duration = objective.signal.t[-1] + objective.signal.period
-    mean, half = _grid(duration)
-    if np.isinf(penalty):
-        mean, half = mean[half >= 0], half[half >= 0]
-    costs, linear = objective.of_poles(2 * mean, mean ** 2 - half * np.abs(half))
-    best = int(np.argmin(np.where(half < 0, costs * penalty, costs)))
-    # The fold reads a pair m +- jw from p = m - w, q = m + w: the box must hold both.
-    reach = abs(half[best])
+    if pole_bounds is None or gain_bounds is None:
+        mean, half = _rough_optimum(objective, duration, penalty)
     if pole_bounds is None:
-        pole_bounds = (min(-2.5 / duration, 2 * (mean[best] - reach)),
-                       max(2.5 / duration, 2 * (mean[best] + reach)))
+        # The fold reads a pair m +- jw from p = m - w, q = m + w: the box must hold both.
+        reach = abs(half)
+        pole_bounds = (min(-2.5 / duration, 2 * (mean - reach)),
+                       max(2.5 / duration, 2 * (mean + reach)))
     if gain_bounds is None:
-        size = 3 * max(abs(linear[best, 0]), abs(_double_integrator_gain(objective)))
-        gain_bounds = (-size, size)
+        size = 3 * max(abs(_gain(objective, mean, half)), abs(_gain(objective, 0.0, 0.0)))
+        gain_bounds = (-size, size) if size > 0 else (-1.0, 1.0)
     return Space(tuple(map(float, pole_bounds)), tuple(map(float, gain_bounds)), penalty)
 
 
-def _grid(duration):
+def _rough_optimum(objective, duration, penalty):
+    """
+    Return mean and signed half-difference (1/s) near the best poles.
+
+    The best candidates of a coarse grid, of real poles and of pairs, are refined by a few simplex
+    steps. The valley of good fits is too narrow, and runs too far, for a grid alone: one that
+    misses it by little in one pole has its best candidate far off in the other.
+    """
+    def cost(points, ends):
+        mean, half = ends(points.T)
+        costs, _ = objective.of_poles(2 * mean / duration,
+                                      (mean ** 2 - half * np.abs(half)) / duration ** 2)
+        return np.log(np.clip(costs, 1e-18, 1e100))
+
+    found = []
+    for grid, ends, weight in ((_real_grid(), _real_ends, 1.0), (_pair_grid(), _pair_ends, penalty)):
+        if np.isinf(weight):
+            continue
+        starts = grid[np.argsort(cost(grid, ends), kind='stable')[:REFINED]]
+        for start in starts:
+            simplex = start + np.array([[0.0, 0.0], [0.4, 0.0], [0.0, 0.4]])
+            best = minimize(lambda point, ends=ends: cost(point[None], ends)[0], start,
+                            method='Nelder-Mead',
+                            options={'maxfev': REFINING_STEPS, 'xatol': 0.02, 'fatol': 0.01,
+                                     'initial_simplex': simplex})
+            found.append((best.fun + np.log(weight), ends(best.x)))
+    mean, half = min(found, key=lambda entry: entry[0])[1]
+    return mean / duration, half / duration
+
+
+def _real_grid():
+    """Return real poles a >= b of the grid, (n, 2), on the scale on which they are refined."""
     a, b = np.meshgrid(REAL_GRID, REAL_GRID)
-    a, b = a[a >= b], b[a >= b]
-    mean, turn = (grid.ravel() for grid in np.meshgrid(MEAN_GRID, TURN_GRID))
-    return (np.concatenate([(a + b) / 2, mean]) / duration,
-            np.concatenate([(a - b) / 2, -turn]) / duration)
+    return np.arcsinh(np.column_stack([a[a >= b], b[a >= b]]))
 
 
-def _double_integrator_gain(objective):
-    _, linear = Objective(objective.signal).of_poles(np.zeros(1), np.zeros(1))
-    return linear[0, 0]
+def _real_ends(point):
+    a, b = np.sinh(point)
+    return (a + b) / 2, np.abs(a - b) / 2
+
+
+def _pair_grid():
+    """Return mean and frequency of pairs of the grid, (n, 2), on their scale."""
+    mean, turn = np.meshgrid(np.arcsinh(MEAN_GRID), np.log(TURN_GRID))
+    return np.column_stack([mean.ravel(), turn.ravel()])
+
+
+def _pair_ends(point):
+    mean, turn = point
+    return np.sinh(mean), -np.exp(turn)
+
+
+def _gain(objective, mean, half):
+    """Return the best gain of poles mean +- half, whatever the bounds."""
+    return Objective(objective.signal).fit(mean, half).model.gain
 
 
 def literal_space(poles='auto'):

@@ -66,8 +66,12 @@ def _cells(fit):
 
 
 def _with_error(value, error):
-    """Return a value with as many decimals as its standard error gives a meaning to."""
+    """Return a value with the decimals that its standard error gives a meaning to, at least 3."""
     if error is None or not error > 0:
         return f'{value:.5g}'
-    decimals = min(max(1 - math.floor(math.log10(error)), 0), 5)
-    return f'{value:.{decimals}f} ± {error:.{decimals}f}'
+    decimals = min(max(1 - _exponent(error), 2 - _exponent(value), 0), 5)
+    return f'{value:.{decimals}f} ± {error:.2g}'
+
+
+def _exponent(number):
+    return math.floor(math.log10(abs(number))) if number else 0
