@@ -12,12 +12,14 @@ from quad_ident_ros.errors import InputError
 from quad_ident_ros.excitation import excite
 from quad_ident_ros.model import attitude, mixing
 from quad_ident_ros.model.simulate import LONGEST_STEP, MODELS, omega_r_of, simulate
-from quad_ident_ros.model.vehicle import Vehicle, load_vehicle
+from quad_ident_ros.model.vehicle import load_vehicle, Vehicle
 
 INPUTS = ('U1', 'U2', 'U3', 'U4')
 OUTPUTS = ('phi', 'theta', 'psi', 'z')
 NOISE_UNITS = {'attitude': 'rad', 'altitude': 'm', 'position': 'm', 'velocity': 'm/s',
                'rate': 'rad/s'}
+
+MOST_SAMPLES = 1_000_000    # of a run: 2.8 hours at 100 Hz, some 200 MB
 
 
 @dataclass(frozen=True)
@@ -95,16 +97,18 @@ def load_experiment(name_or_path, vehicle=None):
     step = data.get('step')
     if step is not None:
         step = schema.number(f'{where}: step', step, 0.0, exclusive=True)
+    period = schema.number(f'{where}: period', data['period'], 0.0, exclusive=True)
     runs = data['runs']
     if not isinstance(runs, list) or not runs:
         raise InputError(f'{where}: runs: expected a list of runs')
-    runs = tuple(_run(f'{where}: runs[{i}]', run) for i, run in enumerate(runs))
+    runs = tuple(_run(f'{where}: runs[{i}]', run, period) for i, run in enumerate(runs))
     if len({run.name for run in runs}) != len(runs):
         raise InputError(f'{where}: runs: two runs have the same name')
     return Experiment(
-        name=str(data['name']), description=str(data.get('description', '')), model=model,
+        name=schema.name(f'{where}: name', data['name']),
+        description=str(data.get('description', '')), model=model,
         vehicle=load_vehicle(vehicle or data['vehicle']),
-        period=schema.number(f'{where}: period', data['period'], 0.0, exclusive=True),
+        period=period,
         trim=schema.choice(f'{where}: trim', data['trim'], ('hover', 'zero')),
         altitude=schema.number(f'{where}: altitude', data.get('altitude', 0.0)),
         runs=runs, omega_r=omega_r,
@@ -112,16 +116,19 @@ def load_experiment(name_or_path, vehicle=None):
         step=step, noise=check_noise(f'{where}: noise', data.get('noise', {})))
 
 
-def _run(where, data):
+def _run(where, data, period):
     schema.check_keys(where, data, ('name', 'duration', 'inputs', 'outputs'),
                       ('name', 'duration', 'inputs', 'outputs'))
     schema.check_keys(f'{where}: inputs', data['inputs'], INPUTS)
-    if not isinstance(data['outputs'], list):
+    duration = schema.number(f'{where}: duration', data['duration'], period)
+    if duration / period > MOST_SAMPLES - 1:
+        raise InputError(f'{where}: duration: {duration:g} s at {period:g} s a sample are more '
+                         f'than {MOST_SAMPLES} samples; shorten it or lengthen the period')
+    if not isinstance(data['outputs'], list) or not data['outputs']:
         raise InputError(f'{where}: outputs: expected a list of {", ".join(OUTPUTS)}')
     outputs = tuple(schema.choice(f'{where}: outputs', name, OUTPUTS) for name in data['outputs'])
-    return Run(str(data['name']),
-               schema.number(f'{where}: duration', data['duration'], 0.0, exclusive=True),
-               dict(data['inputs']), outputs)
+    return Run(schema.name(f'{where}: name', data['name']), duration, dict(data['inputs']),
+               outputs)
 
 
 def check_noise(where, noise):

@@ -3,11 +3,12 @@
 """Where the installed configuration lies, and how its files are read."""
 
 import os
-import sys
 from pathlib import Path
+import sys
 
 import yaml
 
+from quad_ident_ros import schema
 from quad_ident_ros.errors import InputError
 
 PACKAGE = 'quad_ident_ros'
@@ -38,16 +39,26 @@ def find(kind, name_or_path):
     Raises InputError that lists the shipped names where there is no such file.
     """
     text = str(name_or_path)
-    path = Path(text).expanduser()
-    if path.suffix in ('.yaml', '.yml') or os.sep in text:
-        if path.is_file():
-            return path
-        raise InputError(f'{text}: there is no such file')
-    shipped = config_dir() / kind / f'{text}.yaml'
-    if shipped.is_file():
+    if os.sep in text or text.endswith(('.yaml', '.yml')):
+        path = _existing(text)
+        if path is None:
+            raise InputError(f'{text}: there is no such file')
+        return path
+    shipped = _existing(config_dir() / kind / f'{text}.yaml')
+    if shipped is not None:
         return shipped
     raise InputError(f'{text!r} is not among the {kind} ({", ".join(names(kind))}); '
                      'give one of these or the path of a .yaml file')
+
+
+def _existing(path):
+    """Return the path of a file that is there, or None."""
+    try:
+        path = Path(path).expanduser()
+        return path if path.is_file() else None
+    # No such user, no permission, a name that is too long or no name at all.
+    except (OSError, RuntimeError, ValueError):
+        return None
 
 
 def read_yaml(path):
@@ -63,6 +74,11 @@ def read_yaml(path):
         where = f', line {mark.line + 1}' if mark else ''
         problem = getattr(error, 'problem', None) or str(error).splitlines()[0]
         raise InputError(f'{path}{where}: is not YAML: {problem}') from None
+    # PyYAML lets these through, for a date such as 2001-99-99 or brackets a thousand deep.
+    except (ArithmeticError, AttributeError, LookupError, RecursionError, TypeError,
+            ValueError) as error:
+        raise InputError(f'{path}: holds a value that cannot be read: '
+                         f'{schema.shown(str(error))}') from None
     if not isinstance(data, dict):
         raise InputError(f'{path}: expected `key: value` lines')
     return data

@@ -4,21 +4,31 @@
 
 import difflib
 import math
+import reprlib
 
 from quad_ident_ros.errors import InputError
+
+_short = reprlib.Repr()
+_short.maxlevel = 2
+_short.maxstring = _short.maxother = 60
+
+
+def shown(value):
+    """Return a value as one short line for a message."""
+    return _short.repr(value)
 
 
 def unknown_key(where, key, known):
     """Return the InputError for a key that is not known, with the nearest known one."""
     near = difflib.get_close_matches(str(key), list(known), n=1)
     hint = f'did you mean {near[0]!r}?' if near else f'known are {", ".join(sorted(known))}'
-    return InputError(f'{where}: {key!r} is not known here; {hint}')
+    return InputError(f'{where}: {shown(key)} is not known here; {hint}')
 
 
 def check_keys(where, mapping, known, required=()):
     """Raise InputError where `mapping` is none, lacks a required key or has an unknown one."""
     if not isinstance(mapping, dict):
-        raise InputError(f'{where}: expected `key: value` lines, got {mapping!r}')
+        raise InputError(f'{where}: expected `key: value` lines, got {shown(mapping)}')
     for key in mapping:
         if key not in known:
             raise unknown_key(where, key, known)
@@ -34,10 +44,13 @@ def number(where, value, minimum=-math.inf, maximum=math.inf, exclusive=False):
         try:
             value = float(value)
         except ValueError:
-            raise InputError(f'{where}: expected a number, got {value!r}') from None
+            raise InputError(f'{where}: expected a number, got {shown(value)}') from None
     if isinstance(value, bool) or not isinstance(value, int | float):
-        raise InputError(f'{where}: expected a number, got {value!r}')
-    value = float(value)
+        raise InputError(f'{where}: expected a number, got {shown(value)}')
+    try:
+        value = float(value)
+    except OverflowError:
+        value = math.inf
     if not math.isfinite(value):
         raise InputError(f'{where}: expected a finite number, got {value}')
     low = value <= minimum if exclusive else value < minimum
@@ -52,19 +65,30 @@ def number(where, value, minimum=-math.inf, maximum=math.inf, exclusive=False):
 def numbers(where, value, count, **limits):
     """Return a tuple of `count` floats, each checked as `number` does."""
     if not isinstance(value, list | tuple) or len(value) != count:
-        raise InputError(f'{where}: expected a list of {count} numbers, got {value!r}')
+        raise InputError(f'{where}: expected a list of {count} numbers, got {shown(value)}')
     return tuple(number(f'{where}[{i}]', entry, **limits) for i, entry in enumerate(value))
 
 
 def choice(where, value, options):
-    """Return `value` if it is among the options, or raise InputError that lists them."""
-    if value not in options:
-        raise InputError(f'{where}: {value!r} is not one of {", ".join(map(str, options))}')
-    return value
+    """Return the option that `value` is, or raise InputError that lists them."""
+    # True == 1, but who writes `spin: yes` means something else.
+    if isinstance(value, bool) or value not in options:
+        raise InputError(f'{where}: {shown(value)} is not one of {", ".join(map(str, options))}')
+    return next(option for option in options if option == value)
+
+
+def name(where, value):
+    """Return a name, of text or a number, that can be part of a file name, or raise InputError."""
+    text = str(value) if isinstance(value, str | int | float) else ''
+    if not text.strip() or not text.isprintable() or '/' in text or len(text) > 100:
+        raise InputError(f'{where}: expected a name, one line of text without /, got '
+                         f'{shown(value)}')
+    return text
 
 
 def integer(where, value, minimum):
     """Return a whole number of at least `minimum`, or raise InputError."""
     if isinstance(value, bool) or not isinstance(value, int) or value < minimum:
-        raise InputError(f'{where}: expected a whole number of at least {minimum}, got {value!r}')
+        raise InputError(f'{where}: expected a whole number of at least {minimum}, got '
+                         f'{shown(value)}')
     return value

@@ -3,8 +3,8 @@
 """`quad_ident identify`: fit the four models to recorded flights."""
 
 import argparse
-import sys
 from pathlib import Path
+import sys
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn
@@ -12,7 +12,7 @@ from rich.progress import BarColumn, Progress, TextColumn
 from quad_ident_ros.data.csv import read_csv
 from quad_ident_ros.data.replay import read_bag
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.identify.identify import Settings, identify, with_budget
+from quad_ident_ros.identify.identify import identify, Settings, with_budget
 from quad_ident_ros.identify.methods import METHODS
 from quad_ident_ros.identify.result import as_data
 from quad_ident_ros.identify.space import COMPLEX_PENALTY

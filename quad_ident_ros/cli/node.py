@@ -13,7 +13,7 @@ def add(commands):
     parser = commands.add_parser(
         'node', help='run a ROS 2 node (the same as `ros2 run quad_ident_ros NAME`)',
         description='Run a ROS 2 node. `quad_ident node NAME --help` lists its topics, services '
-                    'and parameters.', add_help=False)
+                    'and parameters.')
     parser.add_argument('name', choices=NODES)
     parser.add_argument('arguments', nargs=argparse.REMAINDER, help='--ros-args ...')
     parser.set_defaults(run=run)

@@ -10,7 +10,7 @@ from quad_ident_ros import resources
 from quad_ident_ros.cli.options import noise_from
 from quad_ident_ros.data.csv import write_csv
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.experiment import NOISE_UNITS, fly, load_experiment
+from quad_ident_ros.experiment import fly, load_experiment, NOISE_UNITS
 from quad_ident_ros.report.data import write_json
 
 

@@ -3,7 +3,7 @@
 """`quad_ident warm-up`: compile the inner loops, so that the first real start need not."""
 
 from quad_ident_ros.experiment import fly, load_experiment
-from quad_ident_ros.identify.identify import Settings, identify
+from quad_ident_ros.identify.identify import identify, Settings
 from quad_ident_ros.identify.search import SwarmSettings
 
 

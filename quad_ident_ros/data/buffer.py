@@ -37,7 +37,9 @@ class RecordBuffer:
         self._rows = []
         self._runs = []
         self._run = None
-        self._accounted = 0   # samples of this run in earlier records, or known to be missing
+        self._accounted = 0   # samples of this run in earlier records, or missing before them
+        self._counted = 0     # samples missing between the rows that an overlap has kept
+        self.missing = 0      # samples that all records lack
 
     def __len__(self):
         return len(self._rows)
@@ -46,8 +48,10 @@ class RecordBuffer:
         """Take the notice of a run and return the records that it completes."""
         self._runs = [run for run in self._runs if run.start_ns != notice.start_ns] + [notice]
         if self._run is not None and self._run.start_ns == notice.start_ns:
-            self._run = notice
-            return []
+            # The same time again: the clock begins anew, and what is here is from before.
+            done = [] if notice == self._run else self.complete(run_over=True)
+            self._run, self._accounted = notice, 0 if done else self._accounted
+            return done
         # Rows of a run may come before its notice: topics do not wait for one another.
         rows, self._rows = self._rows, []
         return self.add_rows(rows)
@@ -61,12 +65,12 @@ class RecordBuffer:
             run = run_at(self._runs, stamp)
             if restarted or run is not self._run:
                 done += self.complete(run_over=True)
-                self._run = run
+                self._run, self._accounted = run, 0
             self._rows.append(row)
             if run is not None and stamp >= run.stop_ns:
                 done += self.complete(run_over=True)
                 self._runs.remove(run)
-                self._run = None
+                self._run, self._accounted = None, 0
             elif self._full():
                 done += self.complete(self.limits.overlap)
         return done
@@ -83,19 +87,21 @@ class RecordBuffer:
         run_over: no more rows of the announced run will come, so that those it lacks are known.
         """
         rows = self._rows
-        self._rows = rows[len(rows) - int(overlap * len(rows)):]
-        run, before = self._run, self._accounted
-        self._accounted = 0 if run_over else before + len(rows) - len(self._rows)
+        done = len(rows) - int(overlap * len(rows))
+        self._rows = rows[done:]
+        stamps = np.array([row[0] for row in rows], np.int64)
+        gaps = _gaps(stamps)
+        run, missing = self._run, int(gaps.sum())
+        if run is not None and run_over:
+            missing = max(run.samples - self._accounted - len(rows), 0)
+        self._accounted += done + int(gaps[:done].sum())
+        self.missing += missing - self._counted
+        self._counted = int(gaps[done:].sum())
         if len(rows) < 2:
             return []
-        stamps = np.array([row[0] for row in rows])
-        missing = _missing(stamps)
         info = dict(run.info) if run else {}
         if run is not None and stamps[0] != run.start_ns:
             info = {key: value for key, value in info.items() if key not in FIRST_SAMPLE_INFO}
-        if run is not None and run_over:
-            missing = run.samples - len(rows) - before
-        self._accounted += 0 if run_over else missing
         info.update(start_ns=int(stamps[0]), dropped=missing)
         table = np.array([row[1] for row in rows])
         return [FlightRecord((stamps - stamps[0]) * 1e-9,
@@ -107,6 +113,9 @@ class RecordBuffer:
                 or span >= self.limits.seconds * 1e9 * (1 - 1e-9))
 
 
-def _missing(stamps):
+def _gaps(stamps):
+    """Return how many samples are missing after each sample but the last."""
     steps = np.diff(stamps)
-    return int(np.maximum(np.round(steps / np.median(steps)) - 1, 0).sum())
+    if not steps.size:
+        return np.zeros(0)
+    return np.maximum(np.round(steps / np.median(steps)) - 1, 0)

@@ -186,14 +186,16 @@ def _parse_plain(rows, names):
     if table.shape[1] != len(names):
         return None
     lines = [k for k, row in enumerate(rows, 1) if k > 1 and row]
-    return lines, {name: column for name, column in zip(names, table.T.copy()) if name}
+    named = zip(names, table.T.copy(), strict=True)
+    return lines, {name: column for name, column in named if name}
 
 
 def _parse_any(path, rows, names):
     """Return line numbers and the columns without text of any table; InputError if it is none."""
     lines, cells = _cells(path, rows, names)
     columns = {}
-    for name, column in zip(names, zip(*cells) if cells else [()] * len(names)):
+    values = zip(*cells, strict=True) if cells else [()] * len(names)
+    for name, column in zip(names, values, strict=True):
         numbers = [_number(cell, unit(name) is None) for cell in column]
         if None not in numbers:
             columns[name] = np.array(numbers, dtype=float)
@@ -246,4 +248,4 @@ def _header_line(names):
 def _lines(columns):
     """Return the CSV lines of a list of columns (N,), bytes."""
     cells = [map(repr, np.asarray(column).tolist()) for column in columns]
-    return ''.join(f'{line}\n' for line in map(','.join, zip(*cells))).encode()
+    return ''.join(f'{line}\n' for line in map(','.join, zip(*cells, strict=True))).encode()

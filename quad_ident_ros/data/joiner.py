@@ -2,10 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Joining of topics into rows by stamp, with an account of everything that went wrong."""
 
-import heapq
-import math
 from collections import deque
 from dataclasses import dataclass, field
+import heapq
+import math
 
 # A stamp that goes back by more than this is a clock that began anew, not a late message.
 RESTART_NS = 1_000_000_000
@@ -55,12 +55,13 @@ class Joiner:
     def __init__(self, topics, hold=20, most=20000):
         self.topics = tuple(topics)
         self.counts = Counts(received=dict.fromkeys(self.topics, 0))
-        self._hold, self._most = hold, most
+        self._most = most
         # A row's key is (era, stamp): an era ends where the clock begins anew.
         self._pending = {}
         self._keys = []
         self._last = dict.fromkeys(self.topics, (0, -1))
         self._before = dict.fromkeys(self.topics)
+        self._newest = {name: deque(maxlen=hold) for name in self.topics}
         self._emitted = (0, -1)
         self._recent = deque(maxlen=REMEMBERED)
 
@@ -76,11 +77,14 @@ class Joiner:
         key = self._place(topic, stamp_ns)
         counts.restarts = max(era for era, _ in self._last.values())
         parts = self._pending.get(key)
-        if (parts and topic in parts) or (not parts and key in self._recent):
+        if parts is not None and topic in parts:
             counts.duplicated += 1
             return []
-        if key <= self._emitted:
-            counts.late += 1
+        if parts is None and key <= self._emitted:
+            if key in self._recent:
+                counts.duplicated += 1
+            else:
+                counts.late += 1
             return []
         if not all(map(math.isfinite, values)):
             counts.nan += 1
@@ -99,44 +103,54 @@ class Joiner:
         """Return the key of a message and note where its topic is."""
         era, last = self._last[topic]
         before = self._before[topic]
-        if before is not None and stamp > before:
+        if before is not None and stamp > before and self._emitted[0] < era:
             # The clock did not begin anew: one message came far too late.
+            self._pending.pop((era, last), None)
+            self._newest[topic].pop()
             self._before[topic] = None
-            self._last[topic] = (era - 1, stamp)
             self.counts.out_of_order += 1
-            return self._last[topic]
+            return self._move(topic, (era - 1, stamp))
         if last - stamp > RESTART_NS:
             self._before[topic] = last
-            self._last[topic] = (era + 1, stamp)
-            return self._last[topic]
+            return self._move(topic, (era + 1, stamp))
         if stamp < last:
             self.counts.out_of_order += 1
             return era, stamp
-        if stamp > last and before is not None:
+        if stamp > last:
             self._before[topic] = None
-        self._last[topic] = (era, stamp)
-        return era, stamp
+        return self._move(topic, (era, stamp))
+
+    def _move(self, topic, key):
+        if key != self._last[topic]:
+            self._newest[topic].append(key)
+        self._last[topic] = key
+        return key
 
     def _given_up(self, key, parts):
-        if len(self._pending) > self._most:
-            return True
-        missing = [topic for topic in self.topics if topic not in parts]
-        if any(self._last[topic] <= key for topic in missing):
-            return False
-        return all(sum(topic in other for at, other in self._pending.items() if at > key)
-                   >= self._hold or self._last[topic][0] > key[0] for topic in missing)
+        return len(self._pending) > self._most or all(
+            self._last[topic][0] > key[0] or self._has_gone_on(topic, key)
+            for topic in self.topics if topic not in parts)
+
+    def _has_gone_on(self, topic, key):
+        """Whether a topic has delivered `hold` stamps after a key."""
+        newest = self._newest[topic]
+        return len(newest) == newest.maxlen and newest[0] > key
 
     def _ready(self, given_up):
         rows = []
         while self._keys:
             key = self._keys[0]
-            parts = self._pending[key]
+            parts = self._pending.get(key)
+            if parts is None:
+                heapq.heappop(self._keys)
+                continue
             complete = len(parts) == len(self.topics)
             if not complete and not given_up(key, parts):
                 break
             heapq.heappop(self._keys)
             del self._pending[key]
-            self._emitted = key
+            if complete or key[0] == self._emitted[0]:
+                self._emitted = key
             if complete:
                 self._recent.append(key)
             spoilt = any(value is None for value in parts.values())

@@ -10,11 +10,11 @@ from quad_ident_ros.data.bag import BagWriter
 from quad_ident_ros.data.csv import CsvAppender
 from quad_ident_ros.data.topics import (
     FLIGHT_TOPICS,
-    RUN_TOPIC,
-    RUN_TYPE,
     raw_columns,
     record_columns,
     run_at,
+    RUN_TOPIC,
+    RUN_TYPE,
 )
 
 

@@ -7,9 +7,9 @@ from quad_ident_ros.data.buffer import Limits, RecordBuffer
 from quad_ident_ros.data.joiner import Joiner
 from quad_ident_ros.data.topics import (
     FLIGHT_TOPICS,
+    raw_columns,
     RUN_TOPIC,
     RunNotice,
-    raw_columns,
     stamp_ns,
 )
 from quad_ident_ros.errors import InputError

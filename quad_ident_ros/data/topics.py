@@ -7,9 +7,9 @@ The functions take any message object with the fields of its type, whether from 
 bag.
 """
 
-import json
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Callable
+import json
 
 import numpy as np
 

@@ -18,6 +18,9 @@ def prbs(t, amplitude=1.0, clock=0.1, order=9, seed=0):
     """
     amplitude = schema.number('amplitude', amplitude)
     clock = schema.number('clock', clock, 0.0, exclusive=True)
+    if len(t) > 1 and clock < (t[1] - t[0]) * (1 - 1e-9):
+        raise InputError(f'clock: {clock:g} s is shorter than the sample period, '
+                         f'{t[1] - t[0]:g} s')
     order = schema.integer('order', order, 2)
     if order > 20:
         raise InputError(f'order: {order} is out of range, expected 2 to 20')

@@ -6,6 +6,7 @@ import numpy as np
 
 from quad_ident_ros import schema
 from quad_ident_ros.data.csv import read_csv
+from quad_ident_ros.errors import InputError
 
 
 def recorded(t, file, column, trim=0.0):
@@ -15,6 +16,9 @@ def recorded(t, file, column, trim=0.0):
     The record's clock is set to begin at t[0]; after its last sample it keeps the last value.
     Raises InputError for a file or column that cannot be read.
     """
+    for name, value in (('file', file), ('column', column)):
+        if not isinstance(value, str):
+            raise InputError(f'{name}: expected text, got {schema.shown(value)}')
     record = read_csv(file)
     values = record.stack(column)[:, 0] - schema.number('trim', trim)
     index = np.searchsorted(record.t - record.t[0], t - t[0] + 5e-10, side='right') - 1

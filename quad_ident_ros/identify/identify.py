@@ -2,22 +2,24 @@
 # SPDX-License-Identifier: Apache-2.0
 """Identification of a set of flight records by one or more methods."""
 
-import time
 from dataclasses import dataclass, field, replace
+import time
 
 import numpy as np
 
 from quad_ident_ros import __version__
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.identify.methods import METHODS
-from quad_ident_ros.identify.metrics import UNITS, errors
+from quad_ident_ros.identify.metrics import errors, UNITS
 from quad_ident_ros.identify.objective import Fitted, Objective
 from quad_ident_ros.identify.result import Identification, MethodFit, OutputFit
 from quad_ident_ros.identify.search import Search, SwarmSettings
 from quad_ident_ros.identify.signals import OUTPUTS, signals
-from quad_ident_ros.identify.space import SIZE, find_space, literal_space
-from quad_ident_ros.identify.transfer import SecondOrder, response
+from quad_ident_ros.identify.space import find_space, literal_space, SIZE
+from quad_ident_ros.identify.transfer import response, SecondOrder
 from quad_ident_ros.identify.uncertainty import standard_errors
+
+OVERFLOW = 'no model within the bounds stays finite over the record'
 
 
 @dataclass(frozen=True)
@@ -111,6 +113,8 @@ def _search(method, objective, space, output, settings, random, on_progress):
     search = Search(lambda points: space.cost(objective, points), 2, settings.swarm, random,
                     lambda share: on_progress(method.name, output, share))
     method.search(search)
+    if not np.isfinite(search.best_cost):
+        return _finish(objective.signal, output, None, search.spent, [OVERFLOW])
     mean, half = space.mean_and_half(search.best[None])
     return _finish(objective.signal, output, objective.fit(mean[0], half[0]), search.spent)
 
@@ -138,6 +142,9 @@ def _joint(method, objectives, spaces, settings, random, on_progress):
     search = Search(cost, 3 * len(objectives), settings.swarm, random,
                     lambda share: on_progress(method.name, 'all', share))
     method.search(search)
+    if not np.isfinite(search.best_cost):
+        return {output: _finish(objective.signal, output, None, search.spent, [OVERFLOW])
+                for output, objective in objectives.items()}
     fits = {}
     for output, objective in objectives.items():
         gain, a, b = (values[0] for values in models(search.best[None], output, spaces[output]))

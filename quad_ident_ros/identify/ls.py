@@ -16,6 +16,10 @@ from quad_ident_ros.identify.transfer import Discrete, printed_parameters, to_co
 
 THINNED = 40   # samples that thinning leaves, at least
 
+# Poles closer than this share of their size, or of 1 / the record's length, count as equal:
+# rounding splits a double root by the square root of what it does to the coefficients.
+EQUAL = 1e-6
+
 
 def least_squares_fit(objective, space):
     """
@@ -35,6 +39,8 @@ def least_squares_fit(objective, space):
     mean = model.c1 / 2
     half = (model.a - model.b) / 2
     half = -half.imag if model.form == 'complex' else half
+    if abs(half) < EQUAL * (abs(mean) + 1 / signal.t[-1]):
+        half = 0.0
     fitted = Objective(signal, (model.gain, model.gain)).fit(mean, half)
     if half < 0:
         double = _double_real(objective, mean)

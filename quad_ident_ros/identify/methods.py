@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The methods. To add one, write its file and its line in METHODS."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Callable
 
 from quad_ident_ros.identify.cs import cs
 from quad_ident_ros.identify.ls import least_squares_fit

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from quad_ident_ros.compiled import compiled
-from quad_ident_ros.identify.signals import Signal
+from quad_ident_ros.identify.signals import LARGEST, Signal
 from quad_ident_ros.identify.transfer import SecondOrder, zoh
 
 
@@ -139,7 +139,8 @@ class Objective:
     @property
     def weight(self):
         """What makes F of a squared error: 1/(2 N range^2)."""
-        span = float(np.ptp(self.signal.y)) or 1.0
+        span = float(np.ptp(self.signal.y))
+        span = span if span > 1 / LARGEST else 1.0
         return 0.5 / (len(self.signal.y) * span ** 2)
 
     def of_poles(self, c1, c0):

@@ -2,13 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """What an identification gives, and its form as data."""
 
-import math
 from dataclasses import dataclass, field
+import math
 
 import numpy as np
 
 from quad_ident_ros.identify.signals import GAIN_UNITS, INPUT_OF, OUTPUT_UNITS, OUTPUTS
-from quad_ident_ros.identify.transfer import SecondOrder, response
+from quad_ident_ros.identify.transfer import response, SecondOrder
 
 
 @dataclass(frozen=True)

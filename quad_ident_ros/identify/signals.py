@@ -16,6 +16,8 @@ GAIN_UNITS = {'phi': 'rad/s^2/N', 'theta': 'rad/s^2/N', 'psi': 'rad/s^2/(N m)', 
 # Sample times off the grid by less than this share of a period count as on it.
 GRID_TOLERANCE = 1e-3
 LONGEST_GAP = 10    # periods that interpolation may bridge
+LARGEST = 1e50      # of inputs and outputs
+LARGEST_PERIOD = 1e9    # s between samples; 1 / LARGEST_PERIOD is the shortest
 MISSING_SHARE = 0.2  # of the samples that interpolation may fill
 
 
@@ -50,6 +52,7 @@ def signals(record, *, trim=None, outputs=None, initial_state='auto'):
         raise InputError(f'the record has {len(record)} samples; at least 8 are needed')
     inputs = record.inputs()
     measured = np.column_stack([record.euler(), record.stack('pz')])
+    _check_size(record.t, inputs, measured)
     t, inputs, measured, remarks = _even_grid(record.t, inputs, measured)
     at_rest = bool(record.info.get('starts_at_rest')) if initial_state == 'auto' \
         else initial_state == 'rest'
@@ -72,18 +75,31 @@ def signals(record, *, trim=None, outputs=None, initial_state='auto'):
     return found, remarks
 
 
+def _check_size(t, inputs, measured):
+    """Raise InputError for numbers whose squares and ratios no longer fit into a double."""
+    largest = max(np.abs(inputs).max(), np.abs(measured).max())
+    if largest > LARGEST:
+        raise InputError(f'the record holds a value of {largest:.3g}; above {LARGEST:g} nothing '
+                         'can be computed: check the units, or cut off where it diverged')
+    steps = np.diff(t)
+    if steps.min() < 1 / LARGEST_PERIOD or steps.max() > LARGEST_PERIOD:
+        raise InputError(f'the samples are {steps.min():.3g} to {steps.max():.3g} s apart; '
+                         f'expected {1 / LARGEST_PERIOD:g} to {LARGEST_PERIOD:g} s: check the '
+                         'unit of t')
+
+
 def _even_grid(t, inputs, measured):
     steps = np.diff(t)
     period = float(np.median(steps))
-    if np.abs(steps - period).max() <= GRID_TOLERANCE * period:
-        grid = t[0] + (t[-1] - t[0]) / (len(t) - 1) * np.arange(len(t))
+    grid = t[0] + (t[-1] - t[0]) / (len(t) - 1) * np.arange(len(t))
+    if np.abs(t - grid).max() <= GRID_TOLERANCE * period:
         return grid, inputs, measured, []
     if steps.max() > LONGEST_GAP * period:
         k = int(np.argmax(steps))
         raise InputError(f'the record has a gap of {steps[k]:.3g} s after t = {t[k]:.6g} s '
                          f'({steps[k] / period:.0f} periods; at most {LONGEST_GAP} can be '
                          'bridged): identify the parts before and after it by themselves')
-    grid = np.arange(t[0], t[-1] + 0.5 * period, period)
+    grid = np.arange(t[0], t[-1] + GRID_TOLERANCE * period, period)
     missing = len(grid) - len(t)
     if missing > MISSING_SHARE * len(grid):
         raise InputError(f'{missing} of {len(grid)} samples are missing; at most '

@@ -104,7 +104,8 @@ def _rough_optimum(objective, duration, penalty):
         return np.log(np.clip(costs, 1e-18, 1e100))
 
     found = []
-    for grid, ends, weight in ((_real_grid(), _real_ends, 1.0), (_pair_grid(), _pair_ends, penalty)):
+    kinds = ((_real_grid(), _real_ends, 1.0), (_pair_grid(), _pair_ends, penalty))
+    for grid, ends, weight in kinds:
         if np.isinf(weight):
             continue
         starts = grid[np.argsort(cost(grid, ends), kind='stable')[:REFINED]]

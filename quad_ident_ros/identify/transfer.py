@@ -9,8 +9,8 @@ special case. docs/paper.md derives the formulas and lists what eqs. (36), (37) 
 """
 
 import cmath
-import math
 from dataclasses import dataclass
+import math
 
 import numpy as np
 
@@ -50,12 +50,12 @@ class SecondOrder:
 
     @property
     def c1(self):
-        """a + b, 1/s."""
+        """Sum of a and b, 1/s."""
         return (self.a + self.b).real
 
     @property
     def c0(self):
-        """a b, 1/s^2."""
+        """Product of a and b, 1/s^2."""
         return (self.a * self.b).real
 
     @property
@@ -208,8 +208,9 @@ def to_continuous(discrete):
     """
     s, d, period = discrete.root_sum, discrete.root_difference, discrete.period
     if d < 0:
-        a = -cmath.log(1.0 - complex(s, math.sqrt(-d)) / 2) / period
-        a = complex(a.real, abs(a.imag))
+        # -ln(z)/T of z = 1 - (s + j sqrt(-d))/2, its real part from |z|^2 - 1 for slow poles.
+        a = complex(-0.5 * math.log1p((s * s - d) / 4 - s),
+                    math.atan2(math.sqrt(-d), 2.0 - s)) / period
         b = a.conjugate()
     else:
         slow, fast = (s - math.sqrt(d)) / 2, (s + math.sqrt(d)) / 2

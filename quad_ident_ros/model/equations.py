@@ -97,7 +97,8 @@ def rk4(model, x, inputs, omega_r, p, period, substeps, rate_limit, out):
     Integrate by classical Runge-Kutta, writing the state at each sample into out (N, states).
 
     Input row k (N, 4) is held from sample k to k + 1. Stops where a rate exceeds rate_limit
-    (rad/s) or is no number. Returns the count of samples written and the time reached, s.
+    (rad/s) or a state is no finite number. Returns the count of samples written and the time
+    reached, s.
     """
     size = x.size
     h = period / substeps
@@ -124,8 +125,11 @@ def rk4(model, x, inputs, omega_r, p, period, substeps, rate_limit, out):
                 for i in range(6, 10):
                     x[i] /= norm
             rate = max(abs(x[size - 3]), abs(x[size - 2]), abs(x[size - 1]))
-            # The comparison is written so that a rate that is no number stops the run too.
-            if not rate <= rate_limit:
+            size_of_all = 0.0
+            for i in range(size):
+                size_of_all += abs(x[i])
+            # The comparisons are written so that a state that is no number stops the run too.
+            if not (rate <= rate_limit and size_of_all < math.inf):
                 return k + 1, (k * substeps + s + 1) * h
         out[k + 1] = x
     return inputs.shape[0], (inputs.shape[0] - 1) * period

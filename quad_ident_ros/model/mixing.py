@@ -3,7 +3,9 @@
 """Between the inputs U1..U4 and the rotor speeds: the paper's eqs. (9) and (19)."""
 
 import numpy as np
-from scipy.optimize import nnls
+from scipy.optimize import lsq_linear
+
+RESIDUAL = 1e-6   # share of the inputs by which speeds that give them may miss
 
 
 def allocation_matrix(vehicle):
@@ -23,19 +25,24 @@ def allocation_matrix(vehicle):
 
 def squared_speeds(vehicle, inputs):
     """
-    Return the squared rotor speeds that give inputs, (N, n); negative where none can.
+    Return squared rotor speeds that give inputs, (N, n); see infeasibility where none can.
 
-    Args: inputs (N, 4) U1..U4. Of all solutions the smallest is taken, non-negative where there
-    is one.
+    Args: inputs (N, 4) U1..U4. Of all solutions the smallest is taken, unless it leaves the
+    speed limits and another one does not.
     """
+    inputs = np.asarray(inputs, float)
     matrix = allocation_matrix(vehicle)
-    squared = np.asarray(inputs, float) @ np.linalg.pinv(matrix).T
+    squared = inputs @ np.linalg.pinv(matrix).T
     if len(vehicle.rotors) > 4:
         scale = np.abs(matrix).max(axis=1)
-        for k in np.flatnonzero(squared.min(axis=1) < 0):
-            solution, residual = nnls(matrix / scale[:, None], inputs[k] / scale)
-            if residual < 1e-6 * np.linalg.norm(inputs[k] / scale):
-                squared[k] = solution
+        bounds = (vehicle.speed_min ** 2, vehicle.speed_max ** 2)
+        outside = np.flatnonzero(((squared < bounds[0]) | (squared > bounds[1])).any(axis=1))
+        # Inputs are mostly held for many samples: each is solved for once.
+        values, which = np.unique(inputs[outside], axis=0, return_inverse=True)
+        for k, value in enumerate(values / scale):
+            found = lsq_linear(matrix / scale[:, None], value, bounds, method='bvls')
+            if np.linalg.norm(found.fun) <= RESIDUAL * np.linalg.norm(value):
+                squared[outside[which.ravel() == k]] = found.x
     return squared
 
 
@@ -45,19 +52,28 @@ def infeasibility(vehicle, inputs, t):
 
     Args: inputs (N, 4) U1..U4; t (N,) s.
     """
+    inputs = np.asarray(inputs, float)
+    matrix = allocation_matrix(vehicle)
+    scale = np.abs(matrix).max(axis=1)
     squared = squared_speeds(vehicle, inputs)
     slack = 1e-9 * max(1.0, float(np.abs(squared).max()))
     low = vehicle.speed_min ** 2 - slack
     high = vehicle.speed_max ** 2 + slack
     bad = (squared < low) | (squared > high)
-    if not bad.any():
+    missed = np.linalg.norm((squared @ matrix.T - inputs) / scale, axis=1)
+    unreachable = missed > RESIDUAL * np.linalg.norm(inputs / scale, axis=1)
+    failing = bad.any(axis=1) | unreachable
+    if not failing.any():
         return None
-    k = int(np.argmax(bad.any(axis=1)))
-    rotor = int(np.argmax(bad[k]))
+    k = int(np.argmax(failing))
     values = ', '.join(f'{u:g}' for u in inputs[k])
-    return (f'no rotor speeds give U = ({values}) at t = {t[k]:g} s: rotor {rotor + 1} would need '
-            f'a squared speed of {squared[k, rotor]:.6g} (rad/s)^2, possible are '
-            f'{vehicle.speed_min ** 2:.6g} to {vehicle.speed_max ** 2:.6g}')
+    problem = f'no rotor speeds give U = ({values}) at t = {t[k]:g} s: '
+    if unreachable[k]:
+        return problem + f'the {len(vehicle.rotors)} rotors, as they are placed and spin, cannot'
+    rotor = int(np.argmax(bad[k]))
+    return (f'{problem}rotor {rotor + 1} would need a squared speed of {squared[k, rotor]:.6g} '
+            f'(rad/s)^2, possible are {vehicle.speed_min ** 2:.6g} to '
+            f'{vehicle.speed_max ** 2:.6g}')
 
 
 def residual_rotor_speed(vehicle, inputs):

@@ -17,6 +17,7 @@ MODELS = {'newton_euler': equations.NEWTON_EULER, 'paper': equations.PRINTED}
 LONGEST_STEP = {'newton_euler': 1e-4, 'paper': 1e-5}
 
 RATE_LIMIT = 1e6  # rad/s; beyond it a run counts as diverged
+MOST_STEPS = 10 ** 9    # of the integration: some minutes
 
 
 @dataclass(frozen=True)
@@ -46,7 +47,11 @@ def simulate(vehicle, model, inputs, period, *, omega_r=0.0, altitude=0.0, step=
         raise InputError(f'inputs: row {int(np.argmin(np.isfinite(inputs).all(axis=1)))} '
                          'holds a value that is no finite number')
     number = MODELS[model]
-    substeps = max(1, int(np.ceil(period / (step or LONGEST_STEP[model]) - 1e-9)))
+    step = step or LONGEST_STEP[model]
+    if period / step * len(inputs) > MOST_STEPS:
+        raise InputError(f'{len(inputs)} samples of {period:g} s at a step of {step:g} s are more '
+                         f'than {MOST_STEPS:.0e} steps: shorten the run or lengthen the step')
+    substeps = max(1, int(np.ceil(period / step - 1e-9)))
     x = np.zeros(equations.STATE_SIZE[number])
     x[2] = altitude
     if number == equations.NEWTON_EULER:

@@ -67,7 +67,7 @@ def vehicle_from_mapping(data, where):
     known = [field.name for field in fields(Vehicle)]
     required = [name for name in known[:7]]
     schema.check_keys(where, data, known, required)
-    values = {'name': str(data['name'])}
+    values = {'name': schema.name(f'{where}: name', data['name'])}
     for key in ('mass', 'gravity', 'thrust_coefficient', 'torque_coefficient'):
         values[key] = schema.number(f'{where}: {key}', data[key], 0.0, exclusive=True)
     values['inertia'] = schema.numbers(f'{where}: inertia', data['inertia'], 3, minimum=0.0,
@@ -83,6 +83,8 @@ def vehicle_from_mapping(data, where):
     values['rotors'] = tuple(_rotor(f'{where}: rotors[{i}]', rotor)
                              for i, rotor in enumerate(data['rotors']))
     vehicle = Vehicle(**values)
+    if not vehicle.arm_length > 0:
+        raise InputError(f'{where}: rotors: all of them lie on the z axis; give their places')
     if vehicle.speed_max <= vehicle.speed_min:
         raise InputError(f'{where}: speed_max must be greater than speed_min')
     return vehicle

@@ -2,14 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """The demo: three nodes as processes on a domain of their own, watched until they are done."""
 
+from dataclasses import dataclass
 import json
 import os
+from pathlib import Path
 import signal
 import subprocess
 import sys
 import time
-from dataclasses import dataclass
-from pathlib import Path
 
 import rclpy
 from rclpy.executors import SingleThreadedExecutor
@@ -18,8 +18,8 @@ from std_msgs.msg import Float64MultiArray, String
 
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.experiment import load_experiment
-from quad_ident_ros.identify.identify import Settings, collect
-from quad_ident_ros.identify.result import Identification, from_data
+from quad_ident_ros.identify.identify import collect, Settings
+from quad_ident_ros.identify.result import from_data, Identification
 from quad_ident_ros.nodes.domain import claim_domain
 from quad_ident_ros.nodes.messages import record_from_message
 from quad_ident_ros.nodes.qos import latched

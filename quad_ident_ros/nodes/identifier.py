@@ -13,7 +13,7 @@ from std_msgs.msg import Float64MultiArray, String
 from std_srvs.srv import Trigger
 
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.identify.identify import Settings, identify
+from quad_ident_ros.identify.identify import identify, Settings
 from quad_ident_ros.identify.levy import levy_sigma
 from quad_ident_ros.identify.methods import METHODS
 from quad_ident_ros.identify.result import as_data, parameter_table
@@ -22,14 +22,14 @@ from quad_ident_ros.identify.signals import OUTPUTS
 from quad_ident_ros.identify.space import COMPLEX_PENALTY
 from quad_ident_ros.nodes import process
 from quad_ident_ros.nodes.messages import (
+    diagnostics_message,
     ERROR,
     OK,
-    WARN,
-    diagnostics_message,
     parameter_message,
     record_from_message,
+    WARN,
 )
-from quad_ident_ros.nodes.parameters import NodeParameters, ParameterSpec, help_text
+from quad_ident_ros.nodes.parameters import help_text, NodeParameters, ParameterSpec
 from quad_ident_ros.nodes.qos import latched
 
 PROGRESS_PERIOD = 0.1   # s between two messages on ~/progress
@@ -86,7 +86,7 @@ HELP = f"""identifier: fits K/((s+a)(s+b)) to the records of the recorder.
 
 Subscribes: record (std_msgs/Float64MultiArray, latched)
 Publishes (latched, but progress and diagnostics):
-  parameters           std_msgs/Float64MultiArray  K, a, b of phi, theta, psi, z (4 x 3), best method
+  parameters           std_msgs/Float64MultiArray  K, a, b of phi, theta, psi, z: best method
   parameters/<method>  std_msgs/Float64MultiArray  the same of one method ({', '.join(METHODS)})
   parameters_json      std_msgs/String             everything: units, standard errors, metrics, ...
   ~/progress           std_msgs/String             JSON: method, output, fraction

@@ -2,11 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Messages that carry tables: flight records and fitted parameters, with labelled dimensions."""
 
-import json
 from array import array
+import json
 
-import numpy as np
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+import numpy as np
 from std_msgs.msg import Float64MultiArray, MultiArrayDimension
 
 from quad_ident_ros.data.record import FlightRecord

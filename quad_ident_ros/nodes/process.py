@@ -3,16 +3,16 @@
 """A node as a process: start, signals, errors in one line, a clean end."""
 
 import os
+from pathlib import Path
 import signal
 import sys
 import tempfile
-from pathlib import Path
 
 import rclpy
-import yaml
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import remove_ros_args
+import yaml
 
 from quad_ident_ros.errors import InputError
 

@@ -20,16 +20,16 @@ from quad_ident_ros.data.recording import Recording
 from quad_ident_ros.data.topics import (
     FLIGHT_TOPICS,
     JOINED_TOPIC,
+    raw_columns,
     RUN_TOPIC,
     RunNotice,
-    raw_columns,
     stamp_ns,
 )
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.nodes import process
-from quad_ident_ros.nodes.messages import ERROR, OK, WARN, diagnostics_message, record_message
-from quad_ident_ros.nodes.parameters import NodeParameters, ParameterSpec, help_text
-from quad_ident_ros.nodes.qos import BEST_EFFORT, LOSSLESS, latched
+from quad_ident_ros.nodes.messages import diagnostics_message, ERROR, OK, record_message, WARN
+from quad_ident_ros.nodes.parameters import help_text, NodeParameters, ParameterSpec
+from quad_ident_ros.nodes.qos import BEST_EFFORT, latched, LOSSLESS
 
 FLUSH_PERIOD = 0.5   # s; a kill -9 loses at most this much of a recording
 ACKNOWLEDGED = 10    # rows after which the publishers are told how far the joining is

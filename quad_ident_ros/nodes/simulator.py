@@ -4,7 +4,6 @@
 
 import sys
 
-import numpy as np
 from geometry_msgs.msg import (
     PointStamped,
     PoseStamped,
@@ -12,6 +11,7 @@ from geometry_msgs.msg import (
     Vector3Stamped,
     WrenchStamped,
 )
+import numpy as np
 from rclpy._rclpy_pybind11 import RCLError
 from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
@@ -21,11 +21,11 @@ from std_srvs.srv import Trigger
 
 from quad_ident_ros.data.topics import JOINED_TOPIC, RUN_TOPIC, RunNotice
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.experiment import NOISE_UNITS, fly, load_experiment
+from quad_ident_ros.experiment import fly, load_experiment, NOISE_UNITS
 from quad_ident_ros.model.attitude import rotation_matrix
 from quad_ident_ros.nodes import process
-from quad_ident_ros.nodes.parameters import NodeParameters, ParameterSpec, help_text
-from quad_ident_ros.nodes.qos import LOSSLESS, STREAM, latched
+from quad_ident_ros.nodes.parameters import help_text, NodeParameters, ParameterSpec
+from quad_ident_ros.nodes.qos import latched, LOSSLESS, STREAM
 
 WORLD_FRAME, BODY_FRAME = 'world', 'base_link'
 SETTLING = 0.5      # s without a change of the subscriptions before the first run starts

@@ -3,8 +3,8 @@
 """Results as JSON files."""
 
 import json
-import sys
 from pathlib import Path
+import sys
 
 from quad_ident_ros.errors import InputError
 

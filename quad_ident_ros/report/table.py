@@ -11,7 +11,7 @@ from rich.table import Table
 from quad_ident_ros.identify.methods import METHODS
 from quad_ident_ros.identify.signals import GAIN_UNITS
 
-WIDTH = 124   # columns that the table needs: a narrower screen wraps it, and loses no digit
+WIDTH = 150   # columns that the table may need: a narrower screen wraps it, and loses no digit
 
 
 def console():
@@ -61,7 +61,8 @@ def _cells(fit):
     else:
         poles = [_with_error(model.a, error['a']), _with_error(model.b, error['b'])]
     values = [fit.errors[key] for key in ('iae', 'ise', 'itae', 'itse')]
-    return [_with_error(model.gain, error['K']), *poles, *[f'{value:.2e}' if value < 1e-3 else f'{value:.3g}' for value in values],
+    return [_with_error(model.gain, error['K']), *poles,
+            *[f'{value:.2e}' if value < 1e-3 else f'{value:.3g}' for value in values],
             f'{fit.errors["fit_percent"]:.3f}']
 
 

@@ -33,7 +33,7 @@ import yaml
 
 import quad_ident_ros
 from quad_ident_ros.nodes.messages import record_from_message
-from quad_ident_ros.nodes.qos import LOSSLESS, latched
+from quad_ident_ros.nodes.qos import latched, LOSSLESS
 
 DEADLINE = 20.0   # s that anything may take before a test fails
 

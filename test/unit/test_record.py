@@ -148,7 +148,7 @@ def test_euler_from_quaternions_with_jumping_sign(scale):
                        2.5 + 0.05 * np.arange(count)], -1)
     quaternion = scale * quaternion_from_euler(angles)
     quaternion[::3] *= -1
-    flight = record(count, **dict(zip(('qw', 'qx', 'qy', 'qz'), quaternion.T)))
+    flight = record(count, **dict(zip(('qw', 'qx', 'qy', 'qz'), quaternion.T, strict=True)))
     np.testing.assert_allclose(flight.euler(), angles, atol=1e-9)
 
 

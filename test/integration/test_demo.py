@@ -1,0 +1,64 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The demo: the whole chain as a user starts it."""
+
+import json
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from quad_ident_ros.data.csv import read_csv
+from quad_ident_ros.data.replay import read_bag
+from quad_ident_ros.experiment import fly, load_experiment
+from quad_ident_ros.identify.identify import identify
+from quad_ident_ros.identify.result import parameter_table
+from quad_ident_ros.nodes.demo import NOISE
+
+
+@pytest.fixture(scope='module')
+def demo(tmp_path_factory):
+    """Return the folder of a finished demo and the data that it wrote."""
+    folder = tmp_path_factory.mktemp('demo')
+    done = subprocess.run([sys.executable, '-m', 'quad_ident_ros', 'demo', '-o', str(folder),
+                           '--json', str(folder / 'out.json')],
+                          capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, done.stderr
+    assert 'PSO-CS' in done.stdout
+    return folder, json.loads((folder / 'out.json').read_text())
+
+
+def test_what_came_over_ros_is_what_the_library_computes(demo):
+    _, data = demo
+    experiment = load_experiment('hover_single_axis')
+    direct = identify([fly(experiment, run, noise=NOISE).record for run in experiment.runs])
+    assert data['dropped_samples'] == 0
+    assert data['best'] == direct.best
+    for name, fit in direct.methods.items():
+        outputs = data['methods'][name]['outputs']
+        received = np.array([[outputs[output][key] for key in ('K', 'a', 'b')]
+                             for output in ('phi', 'theta', 'psi', 'z')], float)
+        # Stamps in whole nanoseconds move the sample period by rounding only.
+        np.testing.assert_allclose(received, parameter_table(fit), rtol=1e-6, atol=1e-6)
+
+
+def test_the_recording_holds_the_flights(demo):
+    folder, data = demo
+    experiment = load_experiment('hover_single_axis')
+    from_bag = read_bag(folder / 'recording_1' / 'bag')
+    assert len(from_bag) == len(experiment.runs)
+    for number, (run, record) in enumerate(zip(experiment.runs, from_bag, strict=True), 1):
+        flown = fly(experiment, run, noise=NOISE).record
+        from_csv = read_csv(folder / 'recording_1' / f'flight_{number}.csv')
+        for name in ('phi', 'theta', 'psi', 'pz', 'u1', 'u2', 'u3', 'u4', 'wx', 'qw'):
+            np.testing.assert_array_equal(record.columns[name], flown.columns[name])
+            np.testing.assert_array_equal(from_csv.columns[name], flown.columns[name])
+        for name in ('vx', 'vy', 'vz'):   # turned into the body and back
+            np.testing.assert_allclose(record.columns[name], flown.columns[name], atol=1e-9)
+        assert record.info['starts_at_rest']
+
+
+def test_the_picture_is_there(demo):
+    folder, _ = demo
+    assert (folder / 'responses.png').read_bytes().startswith(b'\x89PNG')

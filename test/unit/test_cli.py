@@ -1,0 +1,103 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The command line: what it writes, and how it takes bad input."""
+
+import json
+
+import numpy as np
+import pytest
+
+from quad_ident_ros.cli.main import main
+from quad_ident_ros.data.csv import read_csv
+from quad_ident_ros.experiment import fly, load_experiment
+from quad_ident_ros.identify.identify import identify, Settings
+
+
+@pytest.fixture(scope='module')
+def flights(tmp_path_factory):
+    """Return the CSV files that `simulate` wrote, by run."""
+    folder = tmp_path_factory.mktemp('flights')
+    assert main(['simulate', 'small_angle', '--noise', 'attitude=1e-6', '--seed', '3',
+                 '-o', str(folder)]) == 0
+    return {name: folder / f'small_angle_{name}.csv' for name in ('phi', 'theta', 'psi', 'z')}
+
+
+def test_help_of_every_command_names_it(capsys):
+    assert main([]) == 0
+    assert 'identify' in capsys.readouterr().out
+    for command in ('demo', 'simulate', 'identify', 'node'):
+        with pytest.raises(SystemExit) as end:
+            main([command, '--help'])
+        assert end.value.code == 0
+        assert command in capsys.readouterr().out
+
+
+def test_simulate_writes_what_the_library_flies(flights):
+    experiment = load_experiment('small_angle')
+    for run in experiment.runs:
+        flown = fly(experiment, run, noise={'attitude': 1e-6}, seed=3).record
+        written = read_csv(flights[run.name])
+        np.testing.assert_array_equal(written.t, flown.t)
+        for name, values in flown.columns.items():
+            np.testing.assert_array_equal(written.columns[name], values)
+
+
+def test_identify_gives_what_the_library_gives(flights, tmp_path):
+    out, picture = tmp_path / 'out.json', tmp_path / 'deep' / 'fit.png'
+    arguments = [*map(str, flights.values()), '--trim', 'hover', '--initial-state', 'rest']
+    assert main(['identify', *arguments, '--seed', '5', '--json', str(out),
+                 '--picture', str(picture)]) == 0
+    data = json.loads(out.read_text())
+    trim = (0.65 * 9.806, 0.0, 0.0, 0.0)
+    direct = identify([read_csv(path) for path in flights.values()],
+                      Settings(seed=5, trim=trim, initial_state='rest'))
+    for name, method in direct.methods.items():
+        for output, fit in method.outputs.items():
+            assert data['methods'][name]['outputs'][output]['K'] == fit.model.gain
+    assert picture.read_bytes().startswith(b'\x89PNG')
+
+
+def test_json_on_standard_output_is_all_there_is(flights, capsys):
+    assert main(['identify', str(flights['z']), '--trim', 'hover', '--initial-state', 'rest',
+                 '--method', 'ls', '--json', '-']) == 0
+    data = json.loads(capsys.readouterr().out)
+    assert data['methods']['ls']['outputs']['z']['K'] == pytest.approx(1 / 0.65, rel=1e-3)
+
+
+def test_the_table_shows_all_methods_and_units(flights, capsys):
+    assert main(['identify', str(flights['z']), '--trim', 'hover', '--initial-state',
+                 'rest']) == 0
+    shown = capsys.readouterr().out
+    for text in ('PSO', 'CS', 'PSO-CS', 'LS', 'IAE', 'ITSE', 'm/s^2/N', 'fit %'):
+        assert text in shown
+
+
+# FLIGHT stands for a flight, FOLDER for an empty folder.
+BAD_CALLS = {
+    'no such file': 'identify FOLDER/none.csv',
+    'a folder that is no bag': 'identify FOLDER',
+    'no such experiment': 'simulate smal_angle',
+    'no such vehicle': 'simulate small_angle --vehicle none',
+    'unknown noise channel': 'simulate small_angle --noise atitude=1',
+    'noise that is no number': 'simulate small_angle --noise attitude=x',
+    'noise below zero': 'simulate small_angle --noise attitude=-1',
+    'noise without a value': 'simulate small_angle --noise attitude',
+    'negative seed': 'identify FLIGHT --seed -1',
+    'no evaluations': 'identify FLIGHT --evaluations 0',
+    'empty bounds': 'identify FLIGHT --trim hover --pole-bounds 1 -1',
+    'nothing excited': 'identify FLIGHT',
+    'unknown kind of picture': 'identify FLIGHT --trim hover --method ls --picture FOLDER/x.none',
+    'output below a file': 'simulate small_angle -o FLIGHT/x',
+    'json below a file': 'identify FLIGHT --trim hover --method ls --json FLIGHT/x.json',
+}
+
+
+@pytest.mark.parametrize('call', BAD_CALLS.values(), ids=BAD_CALLS)
+def test_bad_input_gets_one_line_and_exit_code_2(call, flights, tmp_path, capsys):
+    words = [word.replace('FLIGHT', str(flights['z'])).replace('FOLDER', str(tmp_path))
+             for word in call.split()]
+    assert main(words) == 2
+    said = capsys.readouterr().err.strip()
+    assert said.startswith('quad_ident ')
+    assert ': error: ' in said
+    assert '\n' not in said

@@ -1,0 +1,72 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What holds of the repository as a whole: style, shipped files, documents."""
+
+from pathlib import Path
+import re
+import subprocess
+import sys
+
+import pytest
+import yaml
+
+from quad_ident_ros import resources
+from quad_ident_ros.cli.main import parser
+from quad_ident_ros.experiment import load_experiment
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def test_style():
+    done = subprocess.run([sys.executable, '-m', 'ruff', 'check', str(ROOT)],
+                          capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout
+
+
+@pytest.mark.parametrize('path', sorted((ROOT / 'quad_ident_ros').rglob('*.py')),
+                         ids=lambda path: path.name)
+def test_every_source_file_names_its_licence(path):
+    assert path.read_text(encoding='utf-8').splitlines()[1] == \
+        '# SPDX-License-Identifier: Apache-2.0'
+
+
+@pytest.mark.parametrize('name', resources.names('experiments'))
+def test_shipped_experiments_load_under_their_own_name(name):
+    experiment = load_experiment(name)
+    assert experiment.name == name
+    for run in experiment.runs:
+        assert len(experiment.input_signals(run)) == len(experiment.sample_times(run))
+
+
+def test_the_parameters_file_has_parameters_of_the_nodes_only():
+    from quad_ident_ros.nodes import identifier, recorder, simulator
+    data = yaml.safe_load((ROOT / 'config' / 'parameters.yaml').read_text(encoding='utf-8'))
+    for node, module in (('simulator', simulator), ('recorder', recorder),
+                         ('identifier', identifier)):
+        known = {spec.name: spec for spec in module.SPECS}
+        for name, value in _flat(data[f'/**/{node}']['ros__parameters']):
+            assert value == known[name].default
+            known[name].check(value)
+
+
+def _flat(mapping, prefix=''):
+    for key, value in mapping.items():
+        if isinstance(value, dict):
+            yield from _flat(value, f'{prefix}{key}.')
+        else:
+            yield prefix + key, value
+
+
+def test_the_readme_calls_commands_that_exist():
+    text = (ROOT / 'README.md').read_text(encoding='utf-8')
+    calls = re.findall(r'^    \./run (\S+)(.*?)(?:  #.*)?$', text, flags=re.MULTILINE)
+    assert {name for name, _ in calls} >= {'demo', 'test', 'simulate', 'identify'}
+    for name, rest in calls:
+        if name != 'test':
+            parser().parse_args([name, *rest.split()])
+
+
+def test_links_in_documents_lead_somewhere():
+    for document in [ROOT / 'README.md', ROOT / 'CONTRIBUTING.md', *(ROOT / 'docs').glob('*.md')]:
+        for target in re.findall(r'\]\(([^)#]+)', document.read_text(encoding='utf-8')):
+            assert target.startswith('http') or (document.parent / target).exists(), target
