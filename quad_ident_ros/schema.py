@@ -9,7 +9,7 @@ import reprlib
 from quad_ident_ros.errors import InputError
 
 _short = reprlib.Repr()
-_short.maxlevel = 2
+_short.maxlevel = 1
 _short.maxstring = _short.maxother = 60
 
 
@@ -20,8 +20,9 @@ def shown(value):
 
 def unknown_key(where, key, known):
     """Return the InputError for a key that is not known, with the nearest known one."""
-    near = difflib.get_close_matches(str(key), list(known), n=1)
-    hint = f'did you mean {near[0]!r}?' if near else f'known are {", ".join(sorted(known))}'
+    lower = {str(name).lower(): name for name in known}
+    near = difflib.get_close_matches(str(key).lower(), list(lower), n=1)
+    hint = f'did you mean {lower[near[0]]!r}?' if near else f'known are {", ".join(sorted(known))}'
     return InputError(f'{where}: {shown(key)} is not known here; {hint}')
 
 

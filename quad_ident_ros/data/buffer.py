@@ -48,9 +48,11 @@ class RecordBuffer:
         """Take the notice of a run and return the records that it completes."""
         self._runs = [run for run in self._runs if run.start_ns != notice.start_ns] + [notice]
         if self._run is not None and self._run.start_ns == notice.start_ns:
+            if notice == self._run:
+                return []
             # The same time again: the clock begins anew, and what is here is from before.
-            done = [] if notice == self._run else self.complete(run_over=True)
-            self._run, self._accounted = notice, 0 if done else self._accounted
+            done = self.complete(run_over=True)
+            self._run, self._accounted = notice, 0
             return done
         # Rows of a run may come before its notice: topics do not wait for one another.
         rows, self._rows = self._rows, []

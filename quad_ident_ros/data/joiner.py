@@ -21,8 +21,8 @@ class Counts:
     messages after their row was given up. duplicated: a stamp twice on one topic. out_of_order: a
     stamp older than the one before it on its topic. nan: messages with a value that is no finite
     number. lost and incompatible_qos: as the middleware reports them. restarts: of the clock.
-    missing: stamps that no topic delivered, by the count that the sender announced or else by
-    the sample period.
+    missing: samples that the records lack, whatever became of them, by the count that the sender
+    announced or else by the sample period.
     """
 
     received: dict = field(default_factory=dict)

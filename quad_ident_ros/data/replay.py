@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Flight records from a bag that the recorder, or `ros2 bag record`, has written."""
 
+from contextlib import suppress
+
 from quad_ident_ros.data.bag import read_bag_messages
 from quad_ident_ros.data.buffer import Limits, RecordBuffer
 from quad_ident_ros.data.joiner import Joiner
@@ -9,12 +11,22 @@ from quad_ident_ros.data.topics import (
     FLIGHT_TOPICS,
     raw_columns,
     RUN_TOPIC,
+    RUN_TYPE,
     RunNotice,
     stamp_ns,
 )
 from quad_ident_ros.errors import InputError
 
 UNBOUNDED = Limits(samples=2 ** 62, seconds=float('inf'))
+
+_TYPES = {RUN_TOPIC: RUN_TYPE, **{topic.name: topic.type for topic in FLIGHT_TOPICS.values()}}
+
+
+class _FlightTopics:
+    """The topics of a flight in any namespace: what else is in a bag is not even decoded."""
+
+    def __contains__(self, topic):
+        return topic.rpartition('/')[2] in _TYPES
 
 
 def read_bag(path):
@@ -25,28 +37,31 @@ def read_bag(path):
     with those of several vehicles.
     """
     messages, spaces = [], set()
-    for topic, _, message in read_bag_messages(path):
+    for topic, _, message in read_bag_messages(path, _FlightTopics()):
         space, _, name = topic.rpartition('/')
-        if name in FLIGHT_TOPICS or name == RUN_TOPIC:
-            messages.append((name, message))
+        if message.__msgtype__ != _TYPES[name]:
+            continue   # another program's
+        messages.append((space, name, message))
+        if name != RUN_TOPIC:
             spaces.add(space)
     if len(spaces) > 1:
         raise InputError(f'{path}: holds the flights of several vehicles ({len(spaces)} '
                          'namespaces); record each into a bag of its own')
-    present = {name for name, _ in messages}
+    present = {name for _, name, _ in messages}
     topics = [name for name in FLIGHT_TOPICS if name in present]
     if not topics:
         raise InputError(f'{path}: has none of the topics {", ".join(FLIGHT_TOPICS)}')
     joiner, buffer = Joiner(topics), RecordBuffer(raw_columns(topics), UNBOUNDED)
     records = []
-    for name, message in messages:
-        if name == RUN_TOPIC:
-            records += buffer.add_run(RunNotice.from_json(message.data))
-        else:
+    for space, name, message in messages:
+        if name != RUN_TOPIC:
             rows = joiner.add(name, stamp_ns(message), FLIGHT_TOPICS[name].values(message))
             records += buffer.add_rows(rows)
+        elif space in spaces:
+            with suppress(InputError):   # a flight needs no notice, and `run` is a common name
+                records += buffer.add_run(RunNotice.from_json(message.data))
     records += buffer.add_rows(joiner.drain())
-    records += buffer.complete()
+    records += buffer.complete(run_over=True)
     if not records:
         raise InputError(f'{path}: its topics share no stamps, so there is no flight in it')
     return [type(record)(record.t, record.columns, {**record.info, 'source': str(path)})

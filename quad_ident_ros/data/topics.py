@@ -117,7 +117,7 @@ class RunNotice:
             data = json.loads(text)
             notice = cls(int(data['start_ns']), int(data['stop_ns']), int(data['samples']),
                          dict(data['info']))
-        except (ValueError, KeyError, TypeError):
+        except (ValueError, KeyError, TypeError, OverflowError, RecursionError):
             raise InputError(f'topic {RUN_TOPIC}: {text[:60]!r} announces no run; expected JSON '
                              'with start_ns, stop_ns, samples and info') from None
         return notice

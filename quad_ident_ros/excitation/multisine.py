@@ -7,7 +7,7 @@ import numpy as np
 from quad_ident_ros import schema
 from quad_ident_ros.errors import InputError
 
-MOST = 1000     # sines
+MOST = 200      # sines
 
 
 def multisine(t, amplitude=1.0, low=0.1, high=5.0, count=10):
@@ -27,8 +27,7 @@ def multisine(t, amplitude=1.0, low=0.1, high=5.0, count=10):
     nyquist = 0.5 / (t[1] - t[0])
     if high >= nyquist:
         raise InputError(f'high: {high:g} Hz is not below half the sample rate, {nyquist:g} Hz')
-    frequency = np.geomspace(low, high, count)
-    n = np.arange(count)
-    signal = np.sin(2 * np.pi * frequency * (t - t[0])[:, None]
-                    - np.pi * n * (n + 1) / count).sum(axis=1)
+    signal = np.zeros(len(t))
+    for n, frequency in enumerate(np.geomspace(low, high, count)):
+        signal += np.sin(2 * np.pi * frequency * (t - t[0]) - np.pi * n * (n + 1) / count)
     return amplitude * signal / np.abs(signal).max()

@@ -127,7 +127,8 @@ def _real_grid():
 
 
 def _real_ends(point):
-    a, b = np.sinh(point)
+    # Where noise leaves no trace of a pole, the refinement would take it to infinity.
+    a, b = np.sinh(np.clip(point, *np.arcsinh([2 * REAL_GRID.min(), 2 * REAL_GRID.max()])))
     return (a + b) / 2, np.abs(a - b) / 2
 
 
@@ -139,7 +140,8 @@ def _pair_grid():
 
 def _pair_ends(point):
     mean, turn = point
-    return np.sinh(mean), -np.exp(turn)
+    return (np.sinh(np.clip(mean, *np.arcsinh([2 * MEAN_GRID.min(), 2 * MEAN_GRID.max()]))),
+            -np.exp(np.minimum(turn, np.log(2 * TURN_GRID.max()))))
 
 
 def _gain(objective, mean, half):

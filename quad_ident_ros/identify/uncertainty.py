@@ -38,7 +38,7 @@ def standard_errors(signal, fitted):
     if freedom < 1 or not np.isfinite(jacobian).all():
         return nothing
     norms = np.linalg.norm(jacobian, axis=0)
-    if not (norms > 0).all():
+    if not (norms > 1e-100).all():
         return nothing
     information = (jacobian / norms).T @ (jacobian / norms)
     if np.linalg.cond(information) > WORST_CONDITION:

@@ -40,7 +40,8 @@ def simulate(vehicle, model, inputs, period, *, omega_r=0.0, altitude=0.0, step=
     Raises InputError where it diverged within the first sample, or where the inputs are no
     numbers.
     """
-    inputs = np.ascontiguousarray(inputs, float)
+    # Copies: a read-only array would have the integrator compiled anew.
+    inputs = np.array(inputs, float, order='C')
     if inputs.ndim != 2 or inputs.shape[1] != 4 or len(inputs) < 2:
         raise InputError(f'inputs: expected an array (N >= 2, 4), got {inputs.shape}')
     if not np.isfinite(inputs).all():
@@ -57,7 +58,7 @@ def simulate(vehicle, model, inputs, period, *, omega_r=0.0, altitude=0.0, step=
     if number == equations.NEWTON_EULER:
         x[6] = 1.0
     states = np.empty((len(inputs), x.size))
-    speeds = np.ascontiguousarray(np.broadcast_to(np.asarray(omega_r, float), (len(inputs),)))
+    speeds = np.array(np.broadcast_to(np.asarray(omega_r, float), (len(inputs),)), order='C')
     count, end = equations.rk4(number, x, inputs, speeds, equations.parameter_vector(vehicle),
                                period, substeps, RATE_LIMIT, states)
     if count < 2:

@@ -88,7 +88,7 @@ def run_demo(options, on_progress):
     pairs, _ = collect(watcher.records, Settings())
     return Outcome(from_data(watcher.result, pairs), watcher.statistics['recording'],
                    time.monotonic() - started, watcher.statistics['joined'],
-                   watcher.statistics['dropped'] + watcher.statistics['missing'])
+                   watcher.statistics['missing'])
 
 
 def _start(name, parameters, output, environment):

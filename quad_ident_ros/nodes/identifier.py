@@ -6,6 +6,7 @@ import json
 import sys
 import threading
 import time
+import traceback
 
 from diagnostic_msgs.msg import DiagnosticArray
 from rclpy.node import Node
@@ -181,13 +182,11 @@ class Identifier(Node):
         self._fitted_once = True
         self._cancelled.clear()
         values = self._config.values()
-        records = list(self._records.values())
-        if values['window']:
-            records = [_end_of(record, values['window']) for record in records]
-        self._worker = threading.Thread(target=self._fit, args=(records, _settings(values)))
+        self._worker = threading.Thread(target=self._fit, args=(
+            list(self._records.values()), values['window'], _settings(values)))
         self._worker.start()
 
-    def _fit(self, records, settings):
+    def _fit(self, records, window, settings):
         last = 0.0
         order = list(settings.methods)
 
@@ -204,11 +203,17 @@ class Identifier(Node):
                     {'method': method, 'output': output, 'fraction': round(done, 4)})))
 
         try:
+            if window:
+                records = [_end_of(record, window) for record in records]
             self._outcome = identify(records, settings, on_progress=on_progress)
         except Cancelled:
             self._outcome = 'cancelled'
         except InputError as error:
             self._outcome = error
+        except Exception as error:   # records come from anybody: none may silence the node
+            self.get_logger().debug(traceback.format_exc())
+            self._outcome = InputError('topic record: these records cannot be fitted: '
+                                       f'{type(error).__name__}: {error}')
         self._finished.trigger()
 
     def _on_finished(self):

@@ -57,15 +57,27 @@ def record_from_message(message):
     names = dims[1].label.split(',')
     if len(names) != dims[1].size:
         raise InputError(f'topic record: {dims[1].size} columns but {len(names)} names')
-    table = np.frombuffer(message.data, float).reshape(dims[0].size, dims[1].size)
+    if len(set(names)) != len(names):
+        raise InputError('topic record: a column is named twice')
+    table = np.reshape(message.data, (dims[0].size, dims[1].size))
     columns = dict(zip(names, table.T.copy(), strict=True))
-    try:
-        info = json.loads(dims[2].label) if dims[2].label else {}
-    except ValueError:
-        raise InputError('topic record: the label of the third dimension is no JSON') from None
+    info = _info_from(dims[2].label)
     if 't' not in columns:
         raise InputError('topic record: there is no column t')
     return FlightRecord(columns.pop('t'), columns, info)
+
+
+def _info_from(label):
+    try:
+        info = json.loads(label or '{}')
+    except (ValueError, RecursionError):
+        info = None
+    if not isinstance(info, dict):
+        raise InputError('topic record: the label of the third dimension is no JSON object')
+    for name in ('run_index', 'run_count'):
+        if not isinstance(info.get(name, 0), int):
+            raise InputError(f'topic record: {name} is no whole number')
+    return info
 
 
 def diagnostics_message(node, level, text, values):

@@ -131,17 +131,28 @@ class Recorder(Node):
         def on_message(raw):
             self._on_message(topic, kind, raw)
 
-        def on_lost(event):
-            self.counts.lost += event.total_count_change
+        count_refused = self._event_counter('incompatible_qos')
 
         def on_incompatible(event):
-            self.counts.incompatible_qos += event.total_count_change
+            count_refused(event)
             self._refused.append(name)
 
         self._subscriptions_by_topic[name] = self.create_subscription(
             kind, name, on_message, quality, raw=True,
-            event_callbacks=SubscriptionEventCallbacks(message_lost=on_lost,
-                                                       incompatible_qos=on_incompatible))
+            event_callbacks=SubscriptionEventCallbacks(
+                message_lost=self._event_counter('lost'), incompatible_qos=on_incompatible))
+
+    def _event_counter(self, name):
+        """Return a callback that adds the events of a subscription to a count."""
+        seen = 0
+
+        def count(event):
+            # total_count_change lacks what was before the executor knew the subscription.
+            nonlocal seen
+            setattr(self.counts, name, getattr(self.counts, name) + event.total_count - seen)
+            seen = event.total_count
+
+        return count
 
     def _on_message(self, topic, kind, raw):
         self._last_message = self._steady.now().nanoseconds
@@ -180,9 +191,9 @@ class Recorder(Node):
             self._publish(self._buffer.add_rows(rows))
 
     def _publish(self, records):
+        self.counts.missing = self._buffer.missing
         for record in records:
             self._records += 1
-            self.counts.missing += record.info['dropped']
             info = {**record.info, 'problems': self.counts.problems()}
             self._record_publisher.publish(record_message(
                 type(record)(record.t, record.columns, info)))

@@ -296,12 +296,12 @@ class Vehicle:
     """Publishes crafted flights on the five topics."""
 
     def __init__(self, graph, topics=tuple(STREAMS), quality=LOSSLESS):
-        self._publishers = {name: graph.advertise(STREAMS[name], name, quality)
+        self.publishers = {name: graph.advertise(STREAMS[name], name, quality)
                             for name in topics}
 
     def send(self, stamp, value=0.0, topics=None):
-        for name in topics or self._publishers:
-            self._publishers[name].publish(sample(name, stamp, value))
+        for name in topics or self.publishers:
+            self.publishers[name].publish(sample(name, stamp, value))
 
     def fly(self, count, first=10 ** 9, period=10 ** 7):
         """Publish samples with even stamps and rising values, and return the stamps."""

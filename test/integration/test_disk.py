@@ -1,0 +1,192 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What the recorder writes: it is what was published, and it survives kill -9 and full disks."""
+
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from graph import stamps_of, STREAMS, Vehicle, write_experiment
+import numpy as np
+import pytest
+from std_msgs.msg import Float64MultiArray, String
+
+from quad_ident_ros.data.bag import read_bag_messages
+from quad_ident_ros.data.csv import read_csv
+from quad_ident_ros.data.replay import read_bag
+from quad_ident_ros.nodes.qos import latched
+from quad_ident_ros.nodes.recorder import Recorder
+from quad_ident_ros.nodes.simulator import Simulator
+
+SECOND = 10 ** 9
+
+
+def await_recorder(graph):
+    """Wait until the recorder of another process hears all of the topics."""
+    graph.spin_until(lambda: all(graph.probe.count_subscribers(name) for name in STREAMS),
+                     'the recorder')
+
+
+def same(one, other):
+    np.testing.assert_allclose(one.t, other.t, rtol=0, atol=1e-12)
+    assert list(one.columns) == list(other.columns)
+    for name, values in one.columns.items():
+        np.testing.assert_array_equal(other.columns[name], values)
+
+
+def test_bag_and_csv_hold_what_was_published(fast_graph, tmp_path):
+    graph = fast_graph
+    path = write_experiment(tmp_path / 'two.yaml', {'psi': (2.0, {'U4': 0.01}),
+                                                    'z': (1.0, {'U1': 0.5})})
+    heard = {name: graph.listen(kind, f'/quad/{name}') for name, kind in STREAMS.items()}
+    records = graph.listen(Float64MultiArray, '/quad/record', latched(16))
+    statistics = graph.listen(String, '/quad/recorder/statistics', latched())
+    recorder = graph.start(Recorder, {'output': str(tmp_path / 'flights')}, namespace='quad')
+    graph.start(Simulator, {'experiment': path, 'real_time_factor': 0.0, 'noise.attitude': 0.01},
+                namespace='quad')
+    graph.spin_until(lambda: len(records) == 2 and all(len(m) == 302 for m in heard.values()),
+                     'the flights')
+    folder = tmp_path / 'flights/recording_1'
+    assert statistics.data()[-1]['recording'] == str(folder)
+    graph.stop(recorder)
+    assert sorted(path.name for path in folder.iterdir()) == ['bag', 'flight_1.csv',
+                                                              'flight_2.csv']
+    published = records.records()
+    for record, bag, csv in zip(published, read_bag(folder / 'bag'),
+                                [read_csv(folder / f'flight_{k}.csv') for k in (1, 2)],
+                                strict=True):
+        same(record, bag)
+        same(record, csv)
+        for key in ('run', 'experiment', 'trim', 'outputs', 'start_ns', 'session'):
+            assert bag.info[key] == record.info[key]
+    # The bag has the messages as they were, under their full names and in order.
+    for name, messages in heard.items():
+        kept = [message for topic, _, message in read_bag_messages(folder / 'bag',
+                                                                   [f'/quad/{name}'])]
+        np.testing.assert_array_equal(stamps_of(kept), stamps_of(messages))
+    first = next(read_bag_messages(folder / 'bag', ['/quad/input']))[2]
+    assert first.wrench.torque.z == heard['input'][0].wrench.torque.z == 0.01
+    assert first.header.frame_id == 'base_link'
+
+
+def test_each_recorder_has_a_folder_of_its_own(fast_graph, tmp_path):
+    for k in (1, 2):
+        recorder = fast_graph.start(Recorder, {'output': str(tmp_path)})
+        Vehicle(fast_graph).fly(30)
+        fast_graph.spin_until(lambda: recorder.counts.joined == 30, 'the samples')  # noqa: B023
+        fast_graph.stop(recorder)
+        assert len(read_csv(tmp_path / f'recording_{k}/flight_1.csv')) == 30
+
+
+@pytest.mark.parametrize('seconds', [1.2, 2.4])
+def test_kill_9_loses_at_most_the_last_second(graph, processes, tmp_path, seconds):
+    """Compare the newest stamp on the wire with the newest on disk."""
+    path = write_experiment(tmp_path / 'long.yaml', {'psi': (60.0, {'U4': 0.001})})
+    wire = graph.listen(STREAMS['attitude'], 'attitude')
+    recorder = processes.start('recorder', {'output': str(tmp_path / 'flights')})
+    await_recorder(graph)
+    graph.start(Simulator, {'experiment': path, 'real_time_factor': 1.0})
+    graph.spin_until(lambda: len(wire) > 100 * seconds, 'a part of the flight')
+    recorder.kill()
+    newest = stamps_of(wire)[-1]
+    folder = tmp_path / 'flights/recording_1'
+    [flight] = read_bag(folder / 'bag')
+    csv = read_csv(folder / 'flight_1.csv')
+    # Every sample from the first on, to one at most a second old.
+    np.testing.assert_allclose(np.diff(flight.t), 0.01, atol=1e-9)
+    np.testing.assert_allclose(np.diff(csv.t), 0.01, atol=1e-9)
+    lost = {'bag': newest * 1e-9 - (flight.info['start_ns'] * 1e-9 + flight.t[-1]),
+            'csv': newest * 1e-9 - (flight.info['start_ns'] * 1e-9 + csv.t[-1])}
+    print(f'killed after {seconds} s: lost {lost}')
+    assert flight.info['start_ns'] == stamps_of(wire)[0]
+    assert max(lost.values()) <= 1.0
+    assert flight.info['run'] == 'psi'
+
+
+def test_a_recorder_that_was_killed_goes_on_in_a_new_folder(graph, processes, tmp_path):
+    path = write_experiment(tmp_path / 'long.yaml', {'psi': (60.0, {'U4': 0.001})})
+    heard = graph.listen(String, 'recorder/statistics', latched())
+    recorder = processes.start('recorder', {'output': str(tmp_path / 'flights')})
+    await_recorder(graph)
+    graph.start(Simulator, {'experiment': path, 'real_time_factor': 1.0})
+    graph.spin_until(lambda: heard and heard.data()[-1]['joined'] > 100, 'samples')
+    recorder.kill()
+    again = processes.start('recorder', {'output': str(tmp_path / 'flights')})
+    folder = tmp_path / 'flights/recording_2'
+    graph.spin_until(lambda: heard.data()[-1]['recording'] == str(folder)
+                     and heard.data()[-1]['joined'] > 10, 'the recorder again')
+    assert again.stop()[0] == 0
+    [first], [second] = read_bag(folder.with_name('recording_1') / 'bag'), read_bag(folder / 'bag')
+    # The announcement of the run is there for it, and it does not take its start for the run's.
+    assert first.info['run'] == second.info['run'] == 'psi'
+    assert first.info['starts_at_rest'] is True and 'starts_at_rest' not in second.info
+    assert second.info['start_ns'] > first.info['start_ns'] + first.t[-1] * 1e9
+    assert len(second) > 10 and second.info['dropped'] > 1000
+
+
+def test_output_that_cannot_be_written_is_said_once(fast_graph, processes, tmp_path):
+    """The folder would lie below a regular file, which not even root can write."""
+    graph = fast_graph
+    (tmp_path / 'file').write_text('x')
+    output = str(tmp_path / 'file/flights')
+    process = processes.start('recorder', {'output': output})
+    statistics = graph.listen(String, 'recorder/statistics', latched())
+    diagnostics = graph.listen(DiagnosticArray, '/diagnostics')
+    records = graph.listen(Float64MultiArray, 'record', latched(16))
+    vehicle = Vehicle(graph)
+    vehicle.fly(100)
+    graph.spin_until(lambda: statistics and statistics.data()[-1]['joined'] == 100, 'the samples')
+    account = statistics.data()[-1]
+    assert account['recording'] is None
+    assert account['disk_error'] == (f'{output}: recording stopped: Not a directory; what was '
+                                     'written stays, the run goes on in memory')
+    assert graph.trigger('recorder/flush').success
+    graph.spin_until(lambda: records, 'the record')
+    assert len(records.records()[0]) == 100
+    graph.spin_until(lambda: diagnostics, 'diagnostics')
+    assert diagnostics[-1].status[0].level == DiagnosticStatus.ERROR
+    assert diagnostics[-1].status[0].message == account['disk_error']
+    assert process.stop()[0] == 0
+    errors = [line for line in process.errors().splitlines() if 'ERROR' in line]
+    assert len(errors) == 1 and account['disk_error'] in errors[0]
+    assert 'Traceback' not in process.errors()
+
+
+def test_a_disk_that_fills_up_ends_the_recording_only(fast_graph, processes, tmp_path):
+    """A limit on file sizes stands in for the full disk: it fails in the middle of a write."""
+    graph = fast_graph
+    limit = 1024   # kB; more than the middleware needs for its own files
+    path = write_experiment(tmp_path / 'long.yaml', {'psi': (30.0, {'U4': 0.001})})
+    process = processes.start('recorder', {'output': str(tmp_path / 'flights')},
+                              shell=f'ulimit -f {limit}')
+    statistics = graph.listen(String, 'recorder/statistics', latched())
+    records = graph.listen(Float64MultiArray, 'record', latched(16))
+    await_recorder(graph)
+    graph.start(Simulator, {'experiment': path, 'real_time_factor': 10.0})
+    graph.spin_until(lambda: records, 'the record')
+    [record] = records.records()
+    assert len(record) == 3001 and record.info['dropped'] == 0
+    graph.spin_until(lambda: statistics.data()[-1]['records'] == 1, 'the account')
+    folder = tmp_path / 'flights/recording_1'
+    account = statistics.data()[-1]
+    assert account['recording'] is None
+    assert account['disk_error'].startswith(f'{folder}: recording stopped: File too large')
+    assert process.stop()[0] == 0
+    assert len([line for line in process.errors().splitlines() if 'ERROR' in line]) == 1
+    assert 'Traceback' not in process.errors()
+    # What was written before is a whole bag and a whole CSV file.
+    [flight] = read_bag(folder / 'bag')
+    csv = read_csv(folder / 'flight_1.csv')
+    for read in (flight, csv):
+        assert 100 < len(read) < 3001
+        for name in ('psi', 'wz', 'u4'):
+            np.testing.assert_array_equal(read.columns[name],
+                                          record.columns[name][:len(read)])
+
+
+def test_a_clock_that_begins_anew_begins_a_file(fast_graph, tmp_path):
+    recorder = fast_graph.start(Recorder, {'output': str(tmp_path)})
+    vehicle = Vehicle(fast_graph)
+    vehicle.fly(60, first=100 * SECOND)
+    vehicle.fly(80, first=0)
+    fast_graph.spin_until(lambda: recorder.counts.joined == 140, 'the samples')
+    fast_graph.stop(recorder)
+    assert [len(read_csv(tmp_path / f'recording_1/flight_{k}.csv')) for k in (1, 2)] == [60, 80]
+    assert [len(flight) for flight in read_bag(tmp_path / 'recording_1/bag')] == [60, 80]

@@ -1,0 +1,209 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The nodes as processes: options, refused parameters, signals, starting again."""
+
+import os
+import signal
+
+from graph import DEADLINE, Processes, write_experiment
+import pytest
+from std_msgs.msg import Float64MultiArray, String
+import yaml
+
+from quad_ident_ros.nodes import identifier, recorder, simulator
+from quad_ident_ros.nodes.messages import record_message
+from quad_ident_ros.nodes.qos import latched
+from test_identifier import ENDLESS, flights
+
+NODES = {'simulator': simulator, 'recorder': recorder, 'identifier': identifier}
+
+# What is said, by node and parameters.
+REFUSED = {
+    'simulator': [
+        ({'experiment': 'nonsense'}, "'nonsense' is not among the experiments"),
+        ({'experiment': '/nowhere/x.yaml'}, '/nowhere/x.yaml: there is no such file'),
+        ({'vehicle': 'paper_quadrotr'}, "'paper_quadrotr' is not among the vehicles"),
+        ({'real_time_factor': 2}, 'parameter real_time_factor: expected a number with a dot'),
+        ({'real_time_factor': -1.0}, 'parameter real_time_factor'),
+        ({'noise.attitude': 'much'}, 'parameter noise.attitude: expected a number with a dot'),
+        ({'publish_clock': True, 'use_sim_time': True}, 'publish_clock and use_sim_time exclude'),
+        ({'expriment': 'small_angle'}, "'expriment' is not known here; did you mean 'experiment'"),
+    ],
+    'recorder': [
+        ({'topics': ['input', 'outputs']}, "parameter topics: 'outputs' is not one of"),
+        ({'topics': ['input', 'input']}, 'parameter topics: name at least one topic, and each'),
+        ({'window_samples': 1}, 'parameter window_samples'),
+        ({'window_seconds': 0.0}, 'parameter window_seconds'),
+        ({'overlap': 1.0}, 'parameter overlap'),
+        ({'output': 3}, 'parameter output: expected text, got 3'),
+        ({'windw_samples': 5}, "did you mean 'window_samples'"),
+    ],
+    'identifier': [
+        ({'method': 'simplex'}, "'simplex' is not one of all, pso, cs, pso_cs, ls"),
+        ({'seed': 1.5}, 'parameter seed: expected a whole number from 0 to'),
+        ({'seed': -1}, 'parameter seed'),
+        ({'lambda': 2.0}, 'lambda'),
+        ({'lambda': 1}, 'parameter lambda: expected a number with a dot'),
+        ({'pole_bounds': [2.0, 1.0]}, 'pole_bounds: the lower bound must be below the upper'),
+        ({'gain_bounds': [1.0]}, 'parameter gain_bounds: expected 0 or 2 numbers, got 1'),
+        ({'pole_bounds': ['low', 'high']}, 'parameter pole_bounds: expected a list of numbers'),
+        ({'trim': [1.0, 2.0]}, 'parameter trim: expected 0 or 4 numbers, got 2'),
+        ({'metod': 'ls'}, "'metod' is not known here; did you mean 'method'"),
+    ],
+}
+
+
+def check_refusal(process, node, said):
+    assert process.wait() == 2, (said, process.errors())
+    [line] = process.errors().splitlines()
+    assert line.startswith(f'{node}: error: '), line
+    assert said in line
+    assert process.output() == ''
+
+
+@pytest.mark.parametrize('node', REFUSED)
+def test_bad_parameters_are_refused_in_one_line(processes, node):
+    cases = [(processes.start(node, parameters), said) for parameters, said in REFUSED[node]]
+    for process, said in cases:
+        check_refusal(process, node, said)
+
+
+@pytest.mark.parametrize('words, said', [
+    (['--method', 'ls'], "'--method' is no option here: parameters are given as --ros-args -p"),
+    (['--ros-args', '-p', 'method'], 'the ROS arguments cannot be used'),
+    (['--ros-args', '--params-file', '/nowhere.yaml'], 'the ROS arguments cannot be used'),
+])
+def test_bad_words_are_refused_in_one_line(processes, words, said):
+    check_refusal(processes.run('identifier', *words), 'identifier', said)
+
+
+def test_a_parameter_file_for_others_is_refused(processes, tmp_path):
+    path = tmp_path / 'parameters.yaml'
+    path.write_text(yaml.safe_dump({'identifer': {'ros__parameters': {'method': 'ls'}}}))
+    process = processes.start('identifier', arguments=['--params-file', str(path)])
+    check_refusal(process, 'identifier', f'{path}: nothing in it is for this node, /identifier; '
+                                         'it is for /identifer')
+
+
+@pytest.mark.parametrize('key', ['/quad/identifier', '/**', '/**/identifier'])
+def test_a_parameter_file_is_used(graph, processes, tmp_path, key):
+    path = tmp_path / 'parameters.yaml'
+    path.write_text(yaml.safe_dump({key: {'ros__parameters': {
+        'method': 'ls', 'seed': 4, 'pole_bounds': [-1.0, 12.0]}}}))
+    json = graph.listen(String, '/quad/parameters_json', latched())
+    process = processes.start('identifier', arguments=['--params-file', str(path),
+                                                       '-r', '__ns:=/quad'])
+    publisher = graph.advertise(Float64MultiArray, '/quad/record', latched(16))
+    for record in flights():
+        publisher.publish(record_message(record))
+    graph.spin_until(lambda: json, 'the result')
+    settings = json.data()[0]['settings']
+    assert (settings['methods'], settings['seed']) == (['ls'], 4)
+    assert settings['bounds']['psi']['poles'] == [-1.0, 12.0]
+    assert process.stop()[0] == 0
+
+
+def test_the_parameter_file_that_ships_fits_the_nodes(graph, processes):
+    path = os.path.join(os.path.dirname(__file__), '../../config/parameters.yaml')
+    started = [processes.start(node, arguments=['--params-file', path]) for node in NODES]
+    await_nodes(graph, NODES)
+    assert [process.stop()[0] for process in started] == [0, 0, 0]
+
+
+@pytest.mark.parametrize('node', NODES)
+@pytest.mark.parametrize('option', ['--help', '-h'])
+def test_help_names_every_parameter(processes, node, option):
+    process = processes.run(node, option)
+    assert process.wait() == 0
+    assert process.errors() == ''
+    text = process.output()
+    assert text.startswith(f'{node}: ') and f'ros2 run quad_ident_ros {node}' in text
+    for spec in NODES[node].SPECS:
+        assert f'\n  {spec.name} (default ' in text and spec.description in text
+
+
+def await_nodes(graph, names):
+    graph.spin_until(lambda: set(names) <= set(graph.probe.get_node_names()), f'nodes {names}')
+
+
+def await_no_nodes(graph, names):
+    graph.spin_until(lambda: not set(names) & set(graph.probe.get_node_names()),
+                     f'the end of the nodes {names}')
+
+
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM] * 3)
+def test_signals_end_the_nodes_soon_and_well(graph, processes, tmp_path, number):
+    """While they are at it: a flight, its recording, and a fit that does not end."""
+    path = write_experiment(tmp_path / 'yaw.yaml', {'psi': (60.0, {'U4': 0.01})})
+    progress = graph.listen(String, 'identifier/progress', 10)
+    statistics = graph.listen(String, 'recorder/statistics', latched())
+    started = {
+        'identifier': processes.start('identifier', ENDLESS),
+        'recorder': processes.start('recorder', {'output': str(tmp_path), 'window_samples': 50}),
+        'simulator': processes.start('simulator', {'experiment': path})}
+    graph.spin_until(lambda: statistics and statistics.data()[-1]['joined'] > 50, 'the flight')
+    # One window of the four that the fit of the whole experiment would need: it is the only one.
+    graph.spin_until(lambda: progress, 'the fit')
+    for node, process in started.items():
+        code, seconds = process.stop(number)
+        assert code == 0, f'{node}: {process.errors()}'
+        assert seconds < 2.0
+        assert 'Traceback' not in process.errors() and 'RCLError' not in process.errors()
+
+
+@pytest.mark.parametrize('node', NODES)
+def test_a_signal_at_any_time_of_the_start_ends_the_node(graph, processes, node):
+    """As soon as the node is there, before it has done anything."""
+    process = processes.start(node)
+    await_nodes(graph, [node])
+    code, seconds = process.stop(signal.SIGTERM)
+    assert code == 0, process.errors()
+    assert seconds < 2.0
+
+
+def test_a_killed_identifier_starts_again_and_gets_the_records(graph, processes):
+    json = graph.listen(String, 'parameters_json', latched())
+    publisher = graph.advertise(Float64MultiArray, 'record', latched(16), listeners=0)
+    for record in flights():
+        publisher.publish(record_message(record))
+    first = processes.start('identifier', {'method': 'ls'})
+    graph.spin_until(lambda: len(json) == 1, 'the result')
+    first.kill()
+    processes.start('identifier', {'method': 'pso'})
+    graph.spin_until(lambda: len(json) == 2, 'the result of the second')
+    assert [list(data['methods']) for data in json.data()] == [['ls'], ['pso']]
+
+
+def test_a_killed_simulator_starts_again(graph, processes, tmp_path):
+    """The cut flight becomes a record of its own; the experiment that follows is fitted."""
+    path = write_experiment(tmp_path / 'two.yaml', {'psi': (2.0, {'U4': 0.05}),
+                                                    'z': (2.0, {'U1': 1.0})})
+    json, _, records = graph.results()
+    statistics = graph.listen(String, 'recorder/statistics', latched())
+    processes.start('recorder')
+    processes.start('identifier', {'method': 'ls'})
+    first = processes.start('simulator', {'experiment': path})
+    graph.spin_until(lambda: statistics and statistics.data()[-1]['joined'] >= 50, 'a flight')
+    first.kill()
+    processes.start('simulator', {'experiment': path, 'real_time_factor': 0.0})
+    graph.spin_until(lambda: json, 'the result', 2 * DEADLINE)
+    cut, *whole = records.records()
+    assert 50 <= len(cut) < 201 and cut.info['dropped'] == 201 - len(cut)
+    assert [len(record) for record in whole] == [201, 201]
+    data = json.data()[0]
+    assert len({info['session'] for info in data['records']}) == 1
+    assert data['dropped_samples'] == 0
+    assert data['methods']['ls']['outputs']['z']['K'] == pytest.approx(1 / 0.65, rel=1e-3)
+
+
+def test_a_child_that_cannot_write_its_log_folder_still_runs(graph, domain, tmp_path):
+    """No HOME and no ROS_LOG_DIR, as in a container or a service."""
+    own = Processes(domain, tmp_path)
+    for name in ('ROS_LOG_DIR', 'ROS_HOME', 'HOME'):
+        own.environment.pop(name, None)
+    try:
+        process = own.start('recorder')
+        await_nodes(graph, ['recorder'])
+        assert process.stop()[0] == 0, process.errors()
+    finally:
+        own.close()

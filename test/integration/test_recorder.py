@@ -1,0 +1,279 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Node recorder: joining, counting, windows; what it writes is in test_recording.py."""
+
+import math
+
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from graph import sample, STREAMS, Vehicle, write_experiment
+import numpy as np
+import pytest
+from std_msgs.msg import Float64MultiArray, String
+
+from quad_ident_ros.data.topics import RunNotice
+from quad_ident_ros.nodes.qos import BEST_EFFORT, latched, STREAM
+from quad_ident_ros.nodes.recorder import Recorder
+from quad_ident_ros.nodes.simulator import Simulator
+
+SECOND = 10 ** 9
+PERIOD = 10 ** 7
+
+
+@pytest.fixture
+def graph(fast_graph):
+    """Run on the executor that the recorder has as a process."""
+    return fast_graph
+
+
+def listen(graph):
+    return (graph.listen(Float64MultiArray, 'record', latched(16)),
+            graph.listen(String, 'recorder/statistics', latched()))
+
+
+def await_counts(graph, statistics, **expected):
+    """Wait until the published account has the expected counts, and return it."""
+    def news():
+        return statistics and {name: statistics.data()[-1][name] for name in expected} == expected
+
+    try:
+        graph.spin_until(news)
+    except pytest.fail.Exception:
+        pytest.fail(f'expected {expected}, have {statistics.data()[-1]}')
+    return statistics.data()[-1]
+
+
+def await_joined(graph, recorder, count):
+    graph.spin_until(lambda: recorder.counts.joined >= count, f'{count} joined samples')
+    assert recorder.counts.joined == count
+
+
+def problems(account):
+    names = ('dropped', 'late', 'duplicated', 'out_of_order', 'nan', 'lost', 'incompatible_qos',
+             'restarts', 'missing')
+    return {name: account[name] for name in names if account[name]}
+
+
+def stamps_of(record):
+    return record.info['start_ns'] + np.rint(record.t * 1e9).astype(np.int64)
+
+
+def test_topics_are_joined_by_stamp(graph):
+    recorder = graph.start(Recorder)
+    records, statistics = listen(graph)
+    vehicle = Vehicle(graph)
+    # Each topic by itself, one after the other: only stamps tell what belongs together.
+    stamps = [SECOND + k * PERIOD for k in range(50)]
+    for topic in STREAMS:
+        for k, stamp in enumerate(stamps):
+            vehicle.send(stamp, 0.001 * k, [topic])
+    await_joined(graph, recorder, 50)
+    assert not records
+    response = graph.trigger('recorder/flush')
+    assert (response.success, response.message) == (True, 'published a record of 50 samples')
+    graph.spin_until(lambda: records, 'the record')
+    [record] = records.records()
+    np.testing.assert_array_equal(stamps_of(record), stamps)
+    value = 0.001 * np.arange(50)
+    for name, factor in {'phi': 1, 'theta': 2, 'psi': 3, 'pz': 4, 'px': 5, 'py': 6, 'vx': 7,
+                         'wz': 8, 'u1': 9, 'u4': 10}.items():
+        np.testing.assert_array_equal(record.columns[name], factor * value)
+    assert (record.info['dropped'], record.info['problems']) == (0, {})
+    account = await_counts(graph, statistics, joined=50, records=1)
+    assert account['received'] == dict.fromkeys(STREAMS, 50)
+    assert problems(account) == {}
+
+
+def test_flush_without_samples_says_so(graph):
+    graph.start(Recorder)
+    response = graph.trigger('recorder/flush')
+    assert not response.success
+    assert response.message == 'there are fewer than two samples to publish'
+
+
+def test_what_is_wrong_is_counted_and_published(graph):
+    recorder = graph.start(Recorder)
+    records, statistics = listen(graph)
+    diagnostics = graph.listen(DiagnosticArray, '/diagnostics')
+    vehicle = Vehicle(graph)
+    for k in range(200):
+        stamp, topics = SECOND + k * PERIOD, list(STREAMS)
+        if k == 30:    # one topic lacks a sample, and delivers it when it is too late
+            topics.remove('altitude')
+        if k == 80:
+            await_joined(graph, recorder, 79)
+            vehicle.send(SECOND + 30 * PERIOD, topics=['altitude'])
+        if k == 100:   # a sample that nobody delivers
+            continue
+        if k == 110:   # two samples in the wrong order on one topic
+            vehicle.send(stamp + PERIOD, topics=['twist'])
+        if k == 111:
+            topics.remove('twist')
+        if k == 130:   # twice
+            vehicle.send(stamp, topics=['pose', 'input'])
+        vehicle.send(stamp, math.nan if k == 150 else 0.001 * k, topics)
+    await_joined(graph, recorder, 200 - 3)
+    assert graph.trigger('recorder/flush').success
+    account = await_counts(graph, statistics, joined=197, records=1)
+    # not a number: five messages of one sample
+    assert problems(account) == {'dropped': 1, 'late': 1, 'duplicated': 2, 'out_of_order': 2,
+                                 'nan': 5, 'missing': 3}
+    assert account['received'] == {**dict.fromkeys(STREAMS, 199), 'pose': 200, 'input': 200}
+    graph.spin_until(lambda: records, 'the record')
+    [record] = records.records()
+    assert len(record) == 197
+    missing = set(range(200)) - set(((stamps_of(record) - SECOND) // PERIOD).tolist())
+    assert missing == {30, 100, 150}
+    assert record.info['dropped'] == 3
+    assert record.info['problems']['nan'] == 5
+    status = graph.spin_until(
+        lambda: [m.status[0] for m in diagnostics if m.status[0].level == DiagnosticStatus.WARN],
+        'a warning')[-1]
+    assert status.name == 'recorder' and '5 nan' in status.message
+
+
+@pytest.mark.parametrize('parameters', [{'window_samples': 40},
+                                        {'window_seconds': 39 * 0.01}])
+def test_a_window_is_complete_when_it_is_full(graph, parameters):
+    recorder = graph.start(Recorder, parameters)
+    records, _ = listen(graph)
+    stamps = Vehicle(graph).fly(100)
+    await_joined(graph, recorder, 100)
+    graph.spin_until(lambda: len(records) == 2, 'two records')
+    assert [stamps_of(record).tolist() for record in records.records()] == [stamps[:40],
+                                                                           stamps[40:80]]
+    graph.trigger('recorder/flush')
+    graph.spin_until(lambda: len(records) == 3, 'the rest')
+    assert stamps_of(records.records()[2]).tolist() == stamps[80:]
+
+
+def test_windows_overlap(graph):
+    recorder = graph.start(Recorder, {'window_samples': 40, 'overlap': 0.75})
+    records, _ = listen(graph)
+    stamps = Vehicle(graph).fly(100)
+    await_joined(graph, recorder, 100)
+    graph.spin_until(lambda: len(records) == 7, 'the records')
+    assert [stamps_of(record).tolist() for record in records.records()] == [
+        stamps[k:k + 40] for k in range(0, 61, 10)]
+
+
+def test_only_some_topics(graph):
+    recorder = graph.start(Recorder, {'topics': ['input', 'altitude']})
+    records, _ = listen(graph)
+    stamps = Vehicle(graph, ('input', 'altitude')).fly(30)
+    await_joined(graph, recorder, 30)
+    graph.trigger('recorder/flush')
+    graph.spin_until(lambda: records, 'the record')
+    [record] = records.records()
+    assert sorted(record.columns) == ['pz', 'u1', 'u2', 'u3', 'u4']
+    assert stamps_of(record).tolist() == stamps
+
+
+def test_a_best_effort_publisher_is_heard(graph):
+    recorder = graph.start(Recorder)
+    records, statistics = listen(graph)
+    publishers = {name: graph.probe.create_publisher(
+        kind, name, BEST_EFFORT if name == 'altitude' else STREAM)
+        for name, kind in STREAMS.items()}
+    account = await_counts(graph, statistics, incompatible_qos=1)
+    assert problems(account) == {'incompatible_qos': 1}
+    for publisher in publishers.values():
+        graph.await_listeners(publisher)
+    for k in range(50):
+        for name, publisher in publishers.items():
+            publisher.publish(sample(name, SECOND + k * PERIOD, 0.1 * k))
+        graph.executor.spin_once(timeout_sec=0.01)
+    await_joined(graph, recorder, 50)
+    graph.trigger('recorder/flush')
+    graph.spin_until(lambda: records, 'the record')
+    np.testing.assert_array_equal(records.records()[0].columns['pz'], 4 * 0.1 * np.arange(50))
+
+
+def test_a_clock_that_begins_anew_begins_a_record(graph):
+    recorder = graph.start(Recorder)
+    records, statistics = listen(graph)
+    vehicle = Vehicle(graph)
+    first = vehicle.fly(60, first=100 * SECOND)
+    second = vehicle.fly(80, first=0)
+    await_joined(graph, recorder, 140)
+    graph.spin_until(lambda: records, 'the first record')
+    graph.trigger('recorder/flush')
+    graph.spin_until(lambda: len(records) == 2, 'the second record')
+    assert [stamps_of(record).tolist() for record in records.records()] == [first, second]
+    account = await_counts(graph, statistics, records=2)
+    assert problems(account) == {'restarts': 1}
+
+
+def test_a_simulated_clock_begins_anew_with_a_new_simulator(graph, tmp_path):
+    """The same experiment again, with the same stamps, by a simulator that was started again."""
+    path = write_experiment(tmp_path / 'yaw.yaml', {'psi': (3.0, {'U4': 0.01})})
+    recorder = graph.start(Recorder)
+    records, statistics = listen(graph)
+    parameters = {'experiment': path, 'publish_clock': True, 'real_time_factor': 0.0}
+    first = graph.start(Simulator, parameters)
+    graph.spin_until(lambda: len(records) == 1, 'the first flight')
+    graph.stop(first)
+    graph.start(Simulator, parameters)
+    graph.spin_until(lambda: len(records) == 2, 'the second flight')
+    for record in records.records():
+        assert record.info['start_ns'] == 0 and len(record) == 301
+        assert record.info['starts_at_rest'] and record.info['dropped'] == 0
+    assert problems(await_counts(graph, statistics, records=2)) == {'restarts': 1}
+    assert recorder.counts.joined == 602
+
+
+def announce(graph, start, count, **info):
+    publisher = graph.advertise(String, 'run', latched(32))
+    notice = RunNotice(start, start + (count - 1) * PERIOD, count, info)
+    publisher.publish(String(data=notice.to_json()))
+    return publisher
+
+
+def test_an_announced_run_is_a_record_with_its_provenance(graph):
+    graph.start(Recorder)
+    records, _ = listen(graph)
+    announce(graph, SECOND, 50, name='one', starts_at_rest=True, run_index=0)
+    Vehicle(graph).fly(70)
+    graph.spin_until(lambda: records, 'the record')
+    [record] = records.records()
+    assert len(record) == 50
+    assert record.info['name'] == 'one' and record.info['starts_at_rest'] is True
+
+
+def test_a_run_whose_publishers_are_gone_is_over(graph):
+    graph.start(Recorder)
+    records, statistics = listen(graph)
+    announcement = announce(graph, SECOND, 100, name='cut')
+    vehicle = Vehicle(graph)
+    vehicle.fly(60)
+    vehicle.send(SECOND + 60 * PERIOD, topics=['attitude'])
+    await_counts(graph, statistics, joined=60)
+    for publisher in [announcement, *vehicle.publishers.values()]:
+        graph.probe.destroy_publisher(publisher)
+    graph.spin_until(lambda: records, 'the record')
+    [record] = records.records()
+    assert (len(record), record.info['dropped'], record.info['name']) == (60, 40, 'cut')
+    assert problems(await_counts(graph, statistics, records=1)) == {'dropped': 1, 'missing': 40}
+
+
+@pytest.mark.parametrize('text', ['', 'nonsense', '{"start_ns": 1}', '[]', '{"start_ns": 0, '
+                                  '"stop_ns": Infinity, "samples": 1, "info": {}}'])
+def test_a_malformed_notice_does_no_harm(graph, text):
+    recorder = graph.start(Recorder)
+    records, _ = listen(graph)
+    graph.advertise(String, 'run', latched(32)).publish(String(data=text))
+    Vehicle(graph).fly(30)
+    await_joined(graph, recorder, 30)
+    assert graph.trigger('recorder/flush').success
+    graph.spin_until(lambda: records, 'the record')
+    assert 'name' not in records.records()[0].info
+
+
+def test_records_are_there_for_those_who_come_late(graph):
+    recorder = graph.start(Recorder, {'window_samples': 10})
+    Vehicle(graph).fly(200)
+    await_joined(graph, recorder, 200)
+    records, statistics = listen(graph)
+    graph.spin_until(lambda: len(records) == 16 and statistics, 'the latched records')
+    starts = [record.info['start_ns'] for record in records.records()]
+    assert starts == [SECOND + k * 10 * PERIOD for k in range(4, 20)]   # the newest 16
+    assert await_counts(graph, statistics, records=20)['buffered'] == 0

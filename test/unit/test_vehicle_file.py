@@ -1,0 +1,205 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Vehicle files: those that ship, and what is said of bad ones."""
+
+import copy
+
+from hypothesis import example, given, HealthCheck, settings
+from hypothesis import strategies as st
+import numpy as np
+import pytest
+import yaml
+
+from quad_ident_ros import resources
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.model.vehicle import load_vehicle, vehicle_from_mapping
+
+FAST = settings(deadline=None, max_examples=200,
+                suppress_health_check=[HealthCheck.function_scoped_fixture])
+PAPER = resources.read_yaml(resources.find('vehicles', 'paper_quadrotor'))
+
+
+def changed(**values):
+    data = copy.deepcopy(PAPER)
+    for key, value in values.items():
+        if value is None:
+            del data[key]
+        else:
+            data[key] = value
+    return data
+
+
+def refused(data):
+    """Return the message with which a mapping is refused: one line that begins with its file."""
+    with pytest.raises(InputError) as error:
+        vehicle_from_mapping(data, 'v.yaml')
+    message = str(error.value)
+    assert message.startswith('v.yaml: ') and '\n' not in message and len(message) < 300
+    return message
+
+
+def test_the_paper_s_vehicle_is_table_1():
+    vehicle = load_vehicle('paper_quadrotor')
+    assert (vehicle.mass, vehicle.gravity) == (0.65, 9.806)
+    assert vehicle.inertia == (7.5e-3, 7.5e-3, 1.3e-3)
+    assert vehicle.rotational_drag == vehicle.linear_drag == (5.567e-4, 5.567e-4, 6.354e-4)
+    assert (vehicle.thrust_coefficient, vehicle.torque_coefficient) == (2.9842e-5, 3.232e-6)
+    assert vehicle.rotor_inertia == 2.8385e-5
+    assert vehicle.arm_length == pytest.approx(0.23)
+    assert np.allclose(vehicle.hover_input, [0.65 * 9.806, 0, 0, 0])
+    corrected = load_vehicle('paper_quadrotor_izz_corrected')
+    assert corrected.inertia == (7.5e-3, 7.5e-3, 1.3e-2)
+    assert corrected.rotors == vehicle.rotors
+
+
+@pytest.mark.parametrize('name', resources.names('vehicles'))
+def test_every_shipped_vehicle_loads_by_name_and_by_path(name):
+    vehicle = load_vehicle(name)
+    assert vehicle.name == name
+    assert load_vehicle(resources.config_dir() / 'vehicles' / f'{name}.yaml') == vehicle
+
+
+def test_what_may_be_left_out_is_zero_or_unlimited():
+    vehicle = vehicle_from_mapping(changed(rotor_inertia=None, rotor_radius=None, speed_min=None,
+                                           linear_drag=None, rotational_drag=None,
+                                           speed_max=None), 'v.yaml')
+    assert vehicle.rotor_inertia == vehicle.speed_min == 0.0
+    assert vehicle.linear_drag == vehicle.rotational_drag == (0.0, 0.0, 0.0)
+    assert vehicle.speed_max == float('inf')
+
+
+def test_numbers_that_yaml_takes_for_text_are_numbers():
+    # YAML 1.1 wants a dot in 1e-3.
+    data = yaml.safe_load('{a: 1e-3}')
+    assert data['a'] == '1e-3'
+    assert vehicle_from_mapping(changed(mass='1e-3'), 'v.yaml').mass == 1e-3
+
+
+@pytest.mark.parametrize(('values', 'words'), [
+    ({'mas': 0.6}, "'mas' is not known here; did you mean 'mass'?"),
+    ({'linear_darg': [0, 0, 0]}, "did you mean 'linear_drag'?"),
+    ({'colour': 'red'}, 'known are gravity, inertia'),
+    ({'mass': None}, "'mass' is missing"), ({'rotors': None}, "'rotors' is missing"),
+    ({'mass': 0}, 'mass: 0 is out of range, expected > 0'),
+    ({'mass': -1.5}, 'mass: -1.5 is out of range'),
+    ({'mass': float('nan')}, 'mass: expected a finite number, got nan'),
+    ({'mass': 'heavy'}, "mass: expected a number, got 'heavy'"),
+    ({'mass': True}, 'mass: expected a number, got True'),
+    ({'mass': 10 ** 400}, 'mass: expected a finite number'),
+    ({'mass': [0.65]}, 'mass: expected a number, got [0.65]'),
+    ({'inertia': [1, 2]}, 'inertia: expected a list of 3 numbers, got [1, 2]'),
+    ({'inertia': 0.01}, 'inertia: expected a list of 3 numbers, got 0.01'),
+    ({'inertia': [1e-3, 0, 1e-3]}, 'inertia[1]: 0 is out of range'),
+    ({'linear_drag': [0, 0, -1]}, 'linear_drag[2]: -1 is out of range, expected >= 0'),
+    ({'speed_min': 1000}, 'speed_max must be greater than speed_min'),
+    ({'rotors': []}, 'rotors: expected a list'), ({'rotors': 4}, 'rotors: expected a list'),
+    ({'rotors': [3]}, 'rotors[0]: expected `key: value` lines, got 3'),
+    ({'rotors': [{'position': [0.1, 0, 0]}]}, "rotors[0]: 'spin' is missing"),
+    ({'rotors': [{'position': [0.1, 0, 0], 'spin': 2}]}, 'spin: 2 is not one of 1, -1'),
+    ({'rotors': [{'position': [0.1, 0, 0], 'spin': True}]}, 'spin: True is not one of 1, -1'),
+    ({'rotors': [{'position': [0.1, 0], 'spin': 1}]}, 'position: expected a list of 3 numbers'),
+    ({'rotors': [{'position': [0.1, 0, 'x'], 'spin': 1}]}, 'position[2]: expected a number'),
+    ({'rotors': [{'position': [0, 0, 0.1], 'spin': 1}]}, 'all of them lie on the z axis'),
+    ({'name': []}, 'name: expected a name'), ({'name': 'a\nb'}, 'name: expected a name'),
+    ({'name': '../x'}, 'name: expected a name'),
+], ids=str)
+def test_bad_values_are_refused_with_key_and_reason(values, words):
+    assert words in refused(changed(**values))
+
+
+@pytest.mark.parametrize('data', [None, 3, 'text', [], [{'mass': 1}]])
+def test_what_is_no_mapping_is_refused(data):
+    assert 'expected `key: value` lines' in refused(data)
+
+
+def test_a_file_that_is_not_there_and_a_name_that_is_not_known():
+    with pytest.raises(InputError, match='/no/such.yaml: there is no such file'):
+        load_vehicle('/no/such.yaml')
+    with pytest.raises(InputError, match="'quad' is not among the vehicles .*paper_quadrotor"):
+        load_vehicle('quad')
+
+
+@pytest.mark.parametrize('name', ['~nobody-of-that-name/v.yaml', 'x' * 300, 'x' * 300 + '.yaml',
+                                  'a\0b.yaml', '', '.', '/', '..', None, 7],
+                         ids=lambda name: repr(name)[:12])
+def test_no_name_is_an_error_of_another_kind(name):
+    with pytest.raises(InputError):
+        load_vehicle(name)
+
+
+@pytest.mark.parametrize(('content', 'words'), [
+    (b'mass: [1', 'line 1: is not YAML'), (b'a: b: c', 'line 1: is not YAML'),
+    (b'\xff\xfe\x00mass', 'is not'), (b'', 'expected `key: value` lines'),
+    (b'- 1', 'expected `key: value` lines'), (b'mass: 2001-99-99', 'cannot be read'),
+    (b'mass: 0b_', 'cannot be read'), (b'[' * 5000, 'cannot be read'),
+    (b'mass: !!int ""', 'cannot be read'), (b'mass: !!python/object:os.system 1', 'is not YAML'),
+    (b'mass: 2001-01-01', "'name' is missing"),
+], ids=lambda value: repr(value)[:24])
+def test_what_is_no_vehicle_file_is_refused_with_the_file(tmp_path, content, words):
+    path = tmp_path / 'v.yaml'
+    path.write_bytes(content)
+    with pytest.raises(InputError) as error:
+        load_vehicle(path)
+    message = str(error.value)
+    assert message.startswith(str(path)) and words in message and '\n' not in message
+
+
+def test_a_folder_is_no_file(tmp_path):
+    (tmp_path / 'v.yaml').mkdir()
+    with pytest.raises(InputError, match='there is no such file'):
+        load_vehicle(tmp_path / 'v.yaml')
+
+
+def test_messages_stay_short_whatever_the_value(tmp_path):
+    # Nine levels of nine aliases would print as 4e8 words.
+    bomb = 'a: &a0 [x, x, x, x, x, x, x, x, x]\n' + ''.join(
+        f'b{k}: &a{k} [{", ".join([f"*a{k - 1}"] * 9)}]\n' for k in range(1, 10))
+    path = tmp_path / 'v.yaml'
+    path.write_text(bomb + 'mass: *a9\nname: x\n' + ''.join(
+        f'{key}: {value}\n' for key, value in PAPER.items() if key not in ('name', 'mass')))
+    with pytest.raises(InputError) as error:
+        load_vehicle(path)
+    assert len(str(error.value)) < 400
+    data = yaml.safe_load(bomb)
+    assert len(refused(changed(mass=data['b9']))) < 300
+
+
+scalars = (st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=8)
+           | st.dates() | st.sampled_from([10 ** 400, -10 ** 400, 1e308, 5e-324, '1e999']))
+anything = st.recursive(scalars, lambda inner: st.lists(inner, max_size=4)
+                        | st.dictionaries(scalars, inner, max_size=3), max_leaves=8)
+
+
+@FAST
+@given(st.lists(st.tuples(st.sampled_from([*PAPER, 'position', 'spin', 'new']), anything),
+                min_size=1, max_size=3))
+def test_any_value_gives_a_vehicle_or_an_input_error(changes):
+    data = copy.deepcopy(PAPER)
+    for key, value in changes:
+        target = data['rotors'][1] if key in ('position', 'spin') else data
+        if isinstance(target, dict):
+            target[key] = value
+        if not isinstance(data['rotors'], list) or len(data['rotors']) < 2:
+            break
+    try:
+        vehicle = vehicle_from_mapping(data, 'v.yaml')
+    except InputError as error:
+        assert '\n' not in str(error) and len(str(error)) < 400
+    else:
+        assert np.isfinite([vehicle.mass, *vehicle.inertia, vehicle.arm_length]).all()
+
+
+@FAST
+@given(st.text(max_size=60) | anything.map(lambda value: yaml.safe_dump(value)))
+@example('? [a]\n: 1')
+@example('<<: 3')
+@example('a: &a {b: *a}')
+@example('mass: !!float ""')
+@example('mass: 1:99:99')
+@example('mass: 190:20:30.15e400')
+def test_any_file_gives_a_vehicle_or_an_input_error(tmp_path, content):
+    path = tmp_path / 'v.yaml'
+    path.write_text(content, encoding='utf-8', errors='surrogatepass')
+    with pytest.raises(InputError) as error:
+        load_vehicle(path)
+    assert '\n' not in str(error.value) and len(str(error.value)) < 500
