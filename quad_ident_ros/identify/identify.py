@@ -116,7 +116,8 @@ def _search(method, objective, space, output, settings, random, on_progress):
     if not np.isfinite(search.best_cost):
         return _finish(objective.signal, output, None, search.spent, [OVERFLOW])
     mean, half = space.mean_and_half(search.best[None])
-    return _finish(objective.signal, output, objective.fit(mean[0], half[0]), search.spent)
+    fitted = space.settle(objective, objective.fit(mean[0], half[0]))
+    return _finish(objective.signal, output, fitted, search.spent)
 
 
 def _joint(method, objectives, spaces, settings, random, on_progress):

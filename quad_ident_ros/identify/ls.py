@@ -9,7 +9,6 @@ input allows that.
 """
 
 import numpy as np
-from scipy.optimize import minimize_scalar
 
 from quad_ident_ros.identify.objective import Objective
 from quad_ident_ros.identify.transfer import Discrete, printed_parameters, to_continuous
@@ -42,11 +41,10 @@ def least_squares_fit(objective, space):
     if abs(half) < EQUAL * (abs(mean) + 1 / signal.t[-1]):
         half = 0.0
     fitted = Objective(signal, (model.gain, model.gain)).fit(mean, half)
-    if half < 0:
-        double = _double_real(objective, mean)
-        if not fitted.cost * space.complex_penalty < double.cost:
-            return double, [*remarks, 'the estimated poles were complex: refitted with a double '
-                                      'real pole']
+    settled = space.settle(objective, fitted)
+    if settled is not fitted:
+        return settled, [*remarks, 'the estimated poles were complex: refitted with a double '
+                                   'real pole']
     if not np.isfinite(fitted.cost):
         return None, ['the estimated model diverges over the record']
     return fitted, remarks
@@ -96,11 +94,3 @@ def printed_estimate(u, y, period):
     matrix = np.column_stack([-y[:-2], -y[1:-1], u[:-2], u[1:-1]])
     a0, a1, b0, b1 = np.linalg.lstsq(matrix, y[2:], rcond=None)[0]
     return printed_parameters(a0, a1, b0, b1, period)
-
-
-def _double_real(objective, guess):
-    """Return the best fit with a = b near a guess."""
-    size = abs(guess) + 1 / objective.signal.t[-1]
-    found = minimize_scalar(lambda mean: objective.of_poles([2 * mean], [mean ** 2])[0][0],
-                            bounds=(guess - 3 * size, guess + 3 * size), method='bounded')
-    return objective.fit(found.x, 0.0)

@@ -17,94 +17,83 @@ from quad_ident_ros.identify.transfer import SecondOrder, zoh
 
 
 @compiled
-def _solve(matrix, vector, count, out):
-    """Solve the leading, positive definite system by Cholesky on scaled columns."""
-    scale = np.empty(3)
-    low = np.zeros((3, 3))
-    for i in range(count):
-        scale[i] = 1.0 / np.sqrt(matrix[i, i]) if matrix[i, i] > 0.0 else 0.0
-    for i in range(count):
-        for j in range(i + 1):
-            total = matrix[i, j] * scale[i] * scale[j]
-            if i == j:
-                # A column that the others nearly span gets a share near zero, not infinity.
-                total += 1e-14
-            for k in range(j):
-                total -= low[i, k] * low[j, k]
-            low[i, j] = np.sqrt(max(total, 1e-14)) if i == j else total / low[j, j]
-    for i in range(count):
-        total = vector[i] * scale[i]
-        for k in range(i):
-            total -= low[i, k] * out[k]
-        out[i] = total / low[i, i]
-    for i in range(count - 1, -1, -1):
-        total = out[i]
-        for k in range(i + 1, count):
-            total -= low[k, i] * out[k]
-        out[i] = total / low[i, i]
-    for i in range(count):
-        out[i] *= scale[i]
-
-
-@compiled
-def _project(c1, c0, period, u, y, free, gain_low, gain_high, costs, linear):
-    """
-    Write, per candidate, the squared error with gain and initial state at their best.
-
-    linear (n, 3) gets gain, initial output and initial rate (0 unless `free`).
-    """
-    matrix = np.zeros((3, 3))
-    vector = np.zeros(3)
-    x = np.zeros(3)
-    count = 3 if free else 1
+def _project_gain(c1, c0, period, u, y, gain_low, gain_high, costs, linear):
+    """Write, per candidate, the squared error from rest with the gain at its best."""
     power = 0.0
     for k in range(y.size):
         power += y[k] * y[k]
     for n in range(c1.size):
         p11, p12, p21, p22, g1, g2 = zoh(c1[n], c0[n], period)
-        matrix[:] = 0.0
-        vector[:] = 0.0
-        f, fv, e, ev, h, hv = 0.0, 0.0, 1.0, 0.0, 0.0, 1.0
+        f, fv, ff, fy = 0.0, 0.0, 0.0, 0.0
         for k in range(y.size):
-            matrix[0, 0] += f * f
-            vector[0] += f * y[k]
+            ff += f * f
+            fy += f * y[k]
             f, fv = p11 * f + p12 * fv + g1 * u[k], p21 * f + p22 * fv + g2 * u[k]
-        if free:
-            f, fv = 0.0, 0.0
-            for k in range(y.size):
-                matrix[1, 0] += e * f
-                matrix[2, 0] += h * f
-                matrix[1, 1] += e * e
-                matrix[2, 1] += h * e
-                matrix[2, 2] += h * h
-                vector[1] += e * y[k]
-                vector[2] += h * y[k]
-                f, fv = p11 * f + p12 * fv + g1 * u[k], p21 * f + p22 * fv + g2 * u[k]
-                e, ev = p11 * e + p12 * ev, p21 * e + p22 * ev
-                h, hv = p11 * h + p12 * hv, p21 * h + p22 * hv
-        x[:] = 0.0
-        _solve(matrix, vector, count, x)
-        gain = min(max(x[0], gain_low), gain_high)
-        if gain != x[0]:
-            x[0] = gain
-            if free:
-                shifted = np.empty(3)
-                inner = np.zeros((3, 3))
-                rest = np.zeros(3)
-                for i in range(2):
-                    shifted[i] = vector[i + 1] - gain * matrix[i + 1, 0]
-                    for j in range(i + 1):
-                        inner[i, j] = matrix[i + 1, j + 1]
-                _solve(inner, shifted, 2, rest)
-                x[1], x[2] = rest[0], rest[1]
-        total = power
-        for i in range(count):
-            total -= 2.0 * x[i] * vector[i]
-            for j in range(i + 1):
-                total += (1.0 if i == j else 2.0) * x[i] * x[j] * matrix[i, j]
-            linear[n, i] = x[i]
+        gain = min(max(fy / ff if ff > 0.0 else 0.0, gain_low), gain_high)
+        total = power - 2.0 * gain * fy + gain * gain * ff
+        linear[n, 0] = gain
         # An unstable candidate may overflow: it is the worst of all, not a number to compare.
         costs[n] = max(total, 0.0) if total < np.inf else np.inf
+
+
+@compiled
+def _project_all(c1, c0, period, u, y, gain_low, gain_high, costs, linear):
+    """
+    Write, per candidate, the squared error with gain and initial state at their best.
+
+    linear (n, 3) gets gain, initial output and initial rate. The columns are made orthogonal in
+    turn (modified Gram-Schmidt): under an unstable pole they grow alike, and normal equations
+    would lose twice the digits.
+    """
+    columns = np.empty((3, y.size))
+    rest = np.empty(y.size)
+    upper = np.zeros((3, 3))
+    projection = np.zeros(3)
+    for n in range(c1.size):
+        p11, p12, p21, p22, g1, g2 = zoh(c1[n], c0[n], period)
+        f, fv, e, ev, h, hv = 0.0, 0.0, 1.0, 0.0, 0.0, 1.0
+        # The gain comes last, so that its bounds are met by one more division.
+        for k in range(y.size):
+            columns[0, k], columns[1, k], columns[2, k] = e, h, f
+            f, fv = p11 * f + p12 * fv + g1 * u[k], p21 * f + p22 * fv + g2 * u[k]
+            e, ev = p11 * e + p12 * ev, p21 * e + p22 * ev
+            h, hv = p11 * h + p12 * hv, p21 * h + p22 * hv
+        rest[:] = y
+        for i in range(3):
+            before = 0.0
+            for j in range(i):
+                before += upper[j, i] ** 2
+            norm = 0.0
+            for k in range(y.size):
+                norm += columns[i, k] ** 2
+            # What is left of a column that the others span is rounding: it gets no share.
+            used = norm > 1e-20 * before and norm > 0.0
+            upper[i, i] = np.sqrt(norm) if used else 0.0
+            for k in range(y.size):
+                columns[i, k] = columns[i, k] / upper[i, i] if used else 0.0
+            for j in range(i + 1, 3):
+                upper[i, j] = 0.0
+                for k in range(y.size):
+                    upper[i, j] += columns[i, k] * columns[j, k]
+                for k in range(y.size):
+                    columns[j, k] -= upper[i, j] * columns[i, k]
+            projection[i] = 0.0
+            for k in range(y.size):
+                projection[i] += columns[i, k] * rest[k]
+            if i == 2:
+                gain = projection[2] / upper[2, 2] if used else 0.0
+                gain = min(max(gain, gain_low), gain_high)
+                projection[2] = gain * upper[2, 2]
+            for k in range(y.size):
+                rest[k] -= projection[i] * columns[i, k]
+        total = 0.0
+        for k in range(y.size):
+            total += rest[k] * rest[k]
+        rate = ((projection[1] - upper[1, 2] * gain) / upper[1, 1]) if upper[1, 1] > 0.0 else 0.0
+        start = ((projection[0] - upper[0, 1] * rate - upper[0, 2] * gain) / upper[0, 0]
+                 if upper[0, 0] > 0.0 else 0.0)
+        linear[n, 0], linear[n, 1], linear[n, 2] = gain, start, rate
+        costs[n] = total if total < np.inf else np.inf
 
 
 @compiled
@@ -152,8 +141,9 @@ class Objective:
         """
         c1, c0 = np.ascontiguousarray(c1, float), np.ascontiguousarray(c0, float)
         costs, linear = np.empty(len(c1)), np.zeros((len(c1), 3))
-        _project(c1, c0, self.signal.period, self.signal.u, self.signal.y,
-                 not self.signal.at_rest, *map(float, self.gain_bounds), costs, linear)
+        project = _project_gain if self.signal.at_rest else _project_all
+        project(c1, c0, self.signal.period, self.signal.u, self.signal.y,
+                *map(float, self.gain_bounds), costs, linear)
         return costs * self.weight, linear
 
     def of_models(self, gain, c1, c0):

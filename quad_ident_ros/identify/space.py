@@ -11,7 +11,7 @@ bounds that come from the data (docs/paper.md).
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import minimize
+from scipy.optimize import minimize, minimize_scalar
 
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.identify.objective import Objective
@@ -60,6 +60,13 @@ class Space:
         mean, half = self.mean_and_half(points)
         costs, _ = objective.of_poles(2 * mean, mean ** 2 - half * np.abs(half))
         return np.where(half < 0, costs * self.complex_penalty, costs)
+
+    def settle(self, objective, fitted):
+        """Return a Fitted, with a double real pole where its pair does not earn its place."""
+        if fitted.model.form != 'complex':
+            return fitted
+        double = _fit_equal_poles(objective, fitted.model.c1 / 2)
+        return fitted if fitted.cost * self.complex_penalty < double.cost else double
 
 
 def find_space(objective, poles='auto', pole_bounds=None, gain_bounds=None):
@@ -152,3 +159,11 @@ def _gain(objective, mean, half):
 def literal_space(poles='auto'):
     """Return the box [0, 200] taken at its word, for gain and poles."""
     return Space((0.0, SIZE), (0.0, SIZE), COMPLEX_PENALTY[poles])
+
+
+def _fit_equal_poles(objective, guess):
+    """Return the best fit with a = b near a guess."""
+    size = abs(guess) + 1 / objective.signal.t[-1]
+    found = minimize_scalar(lambda mean: objective.of_poles([2 * mean], [mean ** 2])[0][0],
+                            bounds=(guess - 3 * size, guess + 3 * size), method='bounded')
+    return objective.fit(found.x, 0.0)

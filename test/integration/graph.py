@@ -199,11 +199,13 @@ class Process:
             self.kill()
             pytest.fail(f'{self.node} did not end within {seconds:g} s:\n{self.errors()}')
 
-    def stop(self, number=signal.SIGINT):
-        """Send a signal and return exit code and the seconds that it took to end."""
-        sent = time.monotonic()
+    def send(self, number):
         self._popen.send_signal(number)
-        return self.wait(), time.monotonic() - sent
+
+    def stop(self):
+        """Interrupt the node as Ctrl-C does and return its exit code."""
+        self.send(signal.SIGINT)
+        return self.wait()
 
     def kill(self):
         self._popen.kill()

@@ -112,7 +112,7 @@ def test_a_recorder_that_was_killed_goes_on_in_a_new_folder(graph, processes, tm
     folder = tmp_path / 'flights/recording_2'
     graph.spin_until(lambda: heard.data()[-1]['recording'] == str(folder)
                      and heard.data()[-1]['joined'] > 10, 'the recorder again')
-    assert again.stop()[0] == 0
+    assert again.stop() == 0
     [first], [second] = read_bag(folder.with_name('recording_1') / 'bag'), read_bag(folder / 'bag')
     # The announcement of the run is there for it, and it does not take its start for the run's.
     assert first.info['run'] == second.info['run'] == 'psi'
@@ -143,7 +143,7 @@ def test_output_that_cannot_be_written_is_said_once(fast_graph, processes, tmp_p
     graph.spin_until(lambda: diagnostics, 'diagnostics')
     assert diagnostics[-1].status[0].level == DiagnosticStatus.ERROR
     assert diagnostics[-1].status[0].message == account['disk_error']
-    assert process.stop()[0] == 0
+    assert process.stop() == 0
     errors = [line for line in process.errors().splitlines() if 'ERROR' in line]
     assert len(errors) == 1 and account['disk_error'] in errors[0]
     assert 'Traceback' not in process.errors()
@@ -168,7 +168,7 @@ def test_a_disk_that_fills_up_ends_the_recording_only(fast_graph, processes, tmp
     account = statistics.data()[-1]
     assert account['recording'] is None
     assert account['disk_error'].startswith(f'{folder}: recording stopped: File too large')
-    assert process.stop()[0] == 0
+    assert process.stop() == 0
     assert len([line for line in process.errors().splitlines() if 'ERROR' in line]) == 1
     assert 'Traceback' not in process.errors()
     # What was written before is a whole bag and a whole CSV file.

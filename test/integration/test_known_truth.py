@@ -121,7 +121,7 @@ def test_known_truth_as_three_processes(graph, processes, tmp_path):
     data = results.check(expected)
     assert data['dropped_samples'] == 0
     graph.spin_until(lambda: len(results.records) == 4, 'four records')
-    assert [node.stop()[0] for node in nodes] == [0, 0, 0], nodes[0].errors()
+    assert [node.stop() for node in nodes] == [0, 0, 0], nodes[0].errors()
     for node in nodes:
         assert 'Traceback' not in node.errors()
 
