@@ -15,7 +15,7 @@ from quad_ident_ros.identify.objective import Fitted, Objective
 from quad_ident_ros.identify.result import Identification, MethodFit, OutputFit
 from quad_ident_ros.identify.search import Search, SwarmSettings
 from quad_ident_ros.identify.signals import OUTPUTS, signals
-from quad_ident_ros.identify.space import find_space, literal_space, SIZE
+from quad_ident_ros.identify.space import find_space, literal_space, REFITTED, SIZE
 from quad_ident_ros.identify.transfer import response, SecondOrder
 from quad_ident_ros.identify.uncertainty import standard_errors
 
@@ -116,8 +116,10 @@ def _search(method, objective, space, output, settings, random, on_progress):
     if not np.isfinite(search.best_cost):
         return _finish(objective.signal, output, None, search.spent, [OVERFLOW])
     mean, half = space.mean_and_half(search.best[None])
-    fitted = space.settle(objective, objective.fit(mean[0], half[0]))
-    return _finish(objective.signal, output, fitted, search.spent)
+    found = objective.fit(mean[0], half[0])
+    fitted = space.settle(objective, found)
+    return _finish(objective.signal, output, fitted, search.spent,
+                   [] if fitted is found else [REFITTED])
 
 
 def _joint(method, objectives, spaces, settings, random, on_progress):

@@ -11,6 +11,7 @@ input allows that.
 import numpy as np
 
 from quad_ident_ros.identify.objective import Objective
+from quad_ident_ros.identify.space import REFITTED
 from quad_ident_ros.identify.transfer import Discrete, printed_parameters, to_continuous
 
 THINNED = 40   # samples that thinning leaves, at least
@@ -43,8 +44,7 @@ def least_squares_fit(objective, space):
     fitted = Objective(signal, (model.gain, model.gain)).fit(mean, half)
     settled = space.settle(objective, fitted)
     if settled is not fitted:
-        return settled, [*remarks, 'the estimated poles were complex: refitted with a double '
-                                   'real pole']
+        return settled, [*remarks, REFITTED]
     if not np.isfinite(fitted.cost):
         return None, ['the estimated model diverges over the record']
     return fitted, remarks

@@ -3,7 +3,7 @@
 """Known truths through simulator, recorder and identifier, in one process and in three."""
 
 
-from graph import DEADLINE
+from graph import DEADLINE, STREAMS
 import numpy as np
 import pytest
 from std_msgs.msg import Float64MultiArray, String
@@ -17,7 +17,7 @@ from quad_ident_ros.identify.methods import METHODS
 from quad_ident_ros.identify.result import parameter_table
 from quad_ident_ros.identify.signals import OUTPUTS
 from quad_ident_ros.nodes.identifier import Identifier
-from quad_ident_ros.nodes.qos import latched
+from quad_ident_ros.nodes.qos import latched, LOSSLESS
 from quad_ident_ros.nodes.recorder import Recorder
 from quad_ident_ros.nodes.simulator import Simulator
 
@@ -37,10 +37,10 @@ def table_of(message):
                      for i in range(rows.size)])
 
 
-def by_library(name='hover_single_axis', noise=None):
-    experiment = load_experiment(name)
+def by_library(noise=None, **settings):
+    experiment = load_experiment('hover_single_axis')
     records = [fly(experiment, run, noise=noise, seed=SEED).record for run in experiment.runs]
-    return identify(records, Settings(seed=SEED))
+    return identify(records, Settings(seed=SEED, **settings))
 
 
 class Results:
@@ -67,8 +67,8 @@ class Results:
         return data
 
 
-def check_physics(table):
-    for row, name in zip(table, OUTPUTS, strict=True):
+def check_physics(table, outputs=OUTPUTS):
+    for row, name in zip(table, outputs, strict=True):
         assert row[0] == pytest.approx(GAINS[name], rel=TOLERANCE[name])
         assert row[1] >= row[2]
 
@@ -180,3 +180,43 @@ def test_a_result_is_there_for_those_who_come_late(graph):
     graph.spin_until(lambda: json and best and each and len(records) == 4, 'the latched results')
     assert json[0] == early[0]
     np.testing.assert_array_equal(table_of(best[0]), table_of(each[0]))
+
+
+@pytest.mark.parametrize('lossy', [('attitude',), tuple(STREAMS)], ids=['one topic', 'all topics'])
+def test_lost_messages_are_told_and_do_not_matter(graph, lossy):
+    """A relay drops every tenth message: the record says so, and the fit bridges the gaps."""
+    every = 10
+
+    def relay(topic):
+        count = 0
+
+        def forward(message):
+            nonlocal count
+            count += 1
+            if count % every:
+                publisher.publish(message)
+
+        publisher = graph.probe.create_publisher(STREAMS[topic], topic, LOSSLESS)
+        graph.probe.create_subscription(STREAMS[topic], f'raw/{topic}', forward, LOSSLESS)
+
+    recorder = graph.start(Recorder)
+    graph.start(Identifier, {'method': 'ls'})
+    json, best, records = graph.results()
+    for topic in lossy:
+        relay(topic)
+    words = [word for topic in lossy for word in ('-r', f'{topic}:=raw/{topic}')]
+    graph.start(Simulator, {'real_time_factor': 0.0}, arguments=words)
+    graph.spin_until(lambda: json and best and len(records) == 4, 'the result', 2 * DEADLINE)
+    lost = 4 * 501 // every
+    assert recorder.counts.joined == 4 * 501 - lost
+    assert recorder.counts.problems() == {'missing': lost, **(
+        {'dropped': lost} if len(lossy) == 1 else {})}
+    assert [record.info['dropped'] for record in records.records()] == [50] * 4
+    data = json.data()[0]
+    assert data['dropped_samples'] == lost
+    assert data['samples'] == dict.fromkeys(OUTPUTS, 501)    # filled in
+    assert len(data['remarks']) == 4 and 'filled by interpolation' in data['remarks'][0]
+    whole = by_library(methods=('ls',)).methods['ls']
+    table, expected = table_of(best[0]), parameter_table(whole)
+    np.testing.assert_allclose(table[:, 0], expected[:, 0], rtol=0.02)
+    check_physics(table[[0, 1, 3]], ('phi', 'theta', 'z'))
