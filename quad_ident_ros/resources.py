@@ -42,12 +42,13 @@ def find(kind, name_or_path):
     if os.sep in text or text.endswith(('.yaml', '.yml')):
         path = _existing(text)
         if path is None:
-            raise InputError(f'{text}: there is no such file')
+            said = text if text.isprintable() and len(text) < 300 else schema.shown(text)
+            raise InputError(f'{said}: there is no such file')
         return path
     shipped = _existing(config_dir() / kind / f'{text}.yaml')
     if shipped is not None:
         return shipped
-    raise InputError(f'{text!r} is not among the {kind} ({", ".join(names(kind))}); '
+    raise InputError(f'{schema.shown(text)} is not among the {kind} ({", ".join(names(kind))}); '
                      'give one of these or the path of a .yaml file')
 
 

@@ -95,6 +95,10 @@ class Joiner:
         parts[topic] = values
         return self._ready(self._given_up)
 
+    def has_reached(self, stamp_ns):
+        """Whether each topic has delivered this stamp or a later one."""
+        return all(stamp >= stamp_ns for _, stamp in self._last.values())
+
     def drain(self):
         """Return the rows that are complete, giving up those that are not."""
         return self._ready(lambda key, parts: True)

@@ -18,7 +18,7 @@ THINNED = 40   # samples that thinning leaves, at least
 
 # Poles closer than this share of their size, or of 1 / the record's length, count as equal:
 # rounding splits a double root by the square root of what it does to the coefficients.
-EQUAL = 1e-6
+EQUAL = 1e-5
 
 
 def least_squares_fit(objective, space):

@@ -104,8 +104,22 @@ def _even_grid(t, inputs, measured):
     if missing > MISSING_SHARE * len(grid):
         raise InputError(f'{missing} of {len(grid)} samples are missing; at most '
                          f'{MISSING_SHARE:.0%} can be filled: record again with a deeper queue')
-    held = np.searchsorted(t, grid + GRID_TOLERANCE * period, side='right') - 1
     remark = (f'sample times are uneven ({steps.min():.4g} to {steps.max():.4g} s): resampled to '
               f'{period:.4g} s, {max(missing, 0)} samples filled by interpolation')
     columns = [np.interp(grid, t, column) for column in measured.T]
-    return grid, inputs[held], np.column_stack(columns), [remark]
+    return grid, _mean_inputs(t, inputs, grid), np.column_stack(columns), [remark]
+
+
+def _mean_inputs(t, inputs, grid):
+    """
+    Return the means of held inputs over the steps of a grid, (M, k).
+
+    A change between two grid times would act up to a period late if the grid's inputs were looked
+    up; the mean keeps its impulse.
+    """
+    change = inputs - inputs[0]
+    area = np.concatenate([np.zeros((1, inputs.shape[1])),
+                           np.cumsum(change[:-1] * np.diff(t)[:, None], axis=0)])
+    at_grid = np.column_stack([np.interp(grid, t, column) for column in area.T])
+    means = np.diff(at_grid, axis=0) / np.diff(grid)[:, None]
+    return inputs[0] + np.concatenate([means, change[-1:]])

@@ -29,7 +29,8 @@ REFINING_STEPS = 60     # each by so many evaluations: enough for bounds, too fe
 # How much larger the squared error of a complex pair counts, by the parameter `poles`. With
 # `auto` a pair is taken only where it at least halves the rms error of the best real poles: the
 # paper's model has real a and b, and the pair's a and b are no numbers to publish.
-REFITTED = 'the poles found were complex, without halving the error: refitted with a double real pole'
+REFITTED = ('the poles found were complex, without halving the error: refitted with a double '
+            'real pole')
 COMPLEX_PENALTY = {'real': np.inf, 'auto': 4.0, 'any': 1.0}
 
 

@@ -27,14 +27,16 @@ from quad_ident_ros.data.topics import (
 )
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.nodes import process
+from quad_ident_ros.nodes.losses import Losses
 from quad_ident_ros.nodes.messages import diagnostics_message, ERROR, OK, record_message, WARN
 from quad_ident_ros.nodes.parameters import help_text, NodeParameters, ParameterSpec
 from quad_ident_ros.nodes.qos import BEST_EFFORT, latched, LOSSLESS
 
 FLUSH_PERIOD = 0.5   # s; a kill -9 loses at most this much of a recording
+QUIET = 0.5          # s after the last message when the middleware is asked what it lost
 ACKNOWLEDGED = 10    # rows after which the publishers are told how far the joining is
-GONE = 2.0           # s after the last message when nobody publishes any more, and
-IDLE = 15.0          # s when somebody does, after which what is incomplete is given up; lost
+GONE = 2.0           # s after the last message when nothing more is to come, and
+IDLE = 15.0          # s when something may, after which what is incomplete is given up; lost
                      # messages are sent again every 3 s
 KEPT_RECORDS = 16    # records that a late identifier still gets
 
@@ -85,6 +87,7 @@ class Recorder(Node):
             parameters['window_samples'], parameters['window_seconds'], parameters['overlap']))
         self._records = 0
         self._last_message = None
+        self._announced = None
         self._steady = Clock(clock_type=ClockType.STEADY_TIME)
         self._recording = None
         self._disk_error = None
@@ -95,6 +98,7 @@ class Recorder(Node):
         self._unacknowledged = 0
         self._diagnostics = self.create_publisher(DiagnosticArray, '/diagnostics', 10)
         self._subscriptions_by_topic = {}
+        self._losses = {}
         self._refused = []
         for name in self._topics:
             self._subscribe(name, LOSSLESS)
@@ -119,6 +123,8 @@ class Recorder(Node):
         if self._recording is not None:
             self._on_disk(self._recording.close)
         self._report()
+        for losses in self._losses.values():
+            losses.close()
 
     def _open_recording(self, names):
         self._recording = Recording(self._config['output'], names)
@@ -131,28 +137,20 @@ class Recorder(Node):
         def on_message(raw):
             self._on_message(topic, kind, raw)
 
-        count_refused = self._event_counter('incompatible_qos')
+        refused = 0
 
         def on_incompatible(event):
-            count_refused(event)
+            # total_count_change lacks what was before the executor knew the subscription.
+            nonlocal refused
+            self.counts.incompatible_qos += event.total_count - refused
+            refused = event.total_count
             self._refused.append(name)
 
-        self._subscriptions_by_topic[name] = self.create_subscription(
+        subscription = self.create_subscription(
             kind, name, on_message, quality, raw=True,
-            event_callbacks=SubscriptionEventCallbacks(
-                message_lost=self._event_counter('lost'), incompatible_qos=on_incompatible))
-
-    def _event_counter(self, name):
-        """Return a callback that adds the events of a subscription to a count."""
-        seen = 0
-
-        def count(event):
-            # total_count_change lacks what was before the executor knew the subscription.
-            nonlocal seen
-            setattr(self.counts, name, getattr(self.counts, name) + event.total_count - seen)
-            seen = event.total_count
-
-        return count
+            event_callbacks=SubscriptionEventCallbacks(incompatible_qos=on_incompatible))
+        self._subscriptions_by_topic[name] = subscription
+        self._losses[name] = Losses(subscription)
 
     def _on_message(self, topic, kind, raw):
         self._last_message = self._steady.now().nanoseconds
@@ -176,6 +174,7 @@ class Recorder(Node):
         except InputError as error:
             self.get_logger().error(str(error), throttle_duration_sec=10.0)
             return
+        self._announced = notice.stop_ns
         if self._recording is not None:
             self._recording.add_run(notice)
         self._publish(self._buffer.add_run(notice))
@@ -214,6 +213,8 @@ class Recorder(Node):
 
     def _on_flush_timer(self):
         now = self._steady.now().nanoseconds
+        if self._last_message is None or now - self._last_message > QUIET * 1e9:
+            self.counts.lost += sum(losses.count_new() for losses in self._losses.values())
         if self._last_message is not None and now - self._last_message > self._patience() * 1e9:
             self._last_message = None
             self._keep(self._joiner.drain())
@@ -224,6 +225,8 @@ class Recorder(Node):
         self._adapt()
 
     def _patience(self):
+        if self._announced is not None and self._joiner.has_reached(self._announced):
+            return GONE
         alive = any(self.count_publishers(subscription.topic_name)
                     for subscription in self._subscriptions_by_topic.values())
         return IDLE if alive else GONE
@@ -232,6 +235,7 @@ class Recorder(Node):
         """Take what is offered where a publisher offers best effort only."""
         while self._refused:
             name = self._refused.pop()
+            self._losses[name].close()
             self.destroy_subscription(self._subscriptions_by_topic[name])
             self._subscribe(name, BEST_EFFORT)
             self.get_logger().warning(f'{name} is offered as best effort: messages may be lost, '

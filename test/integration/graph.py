@@ -32,6 +32,8 @@ from std_srvs.srv import Trigger
 import yaml
 
 import quad_ident_ros
+from quad_ident_ros.data.record import FlightRecord
+from quad_ident_ros.experiment import fly, load_experiment
 from quad_ident_ros.nodes.messages import record_from_message
 from quad_ident_ros.nodes.qos import latched, LOSSLESS
 
@@ -39,6 +41,9 @@ DEADLINE = 20.0   # s that anything may take before a test fails
 
 STREAMS = {'attitude': Vector3Stamped, 'altitude': PointStamped, 'pose': PoseStamped,
            'twist': TwistStamped, 'input': WrenchStamped}
+
+# An identifier with a budget that no test waits for.
+ENDLESS = {'method': 'pso', 'evaluations': 100_000_000}
 
 
 class Heard(list):
@@ -311,3 +316,15 @@ class Vehicle:
         for k, stamp in enumerate(stamps):
             self.send(stamp, 0.001 * k)
         return stamps
+
+
+def flights(name='hover_single_axis', session=1, **changes):
+    """Return the records of an experiment as a recorder would publish them."""
+    experiment = load_experiment(name)
+    records = []
+    for k, run in enumerate(experiment.runs):
+        record = fly(experiment, run).record
+        info = {**record.info, 'session': session, 'run_index': k,
+                'run_count': len(experiment.runs), 'dropped': 0, **changes}
+        records.append(FlightRecord(record.t, record.columns, info))
+    return records

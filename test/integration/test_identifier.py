@@ -8,14 +8,13 @@ import threading
 import time
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
-from graph import Graph, Vehicle, write_experiment
+from graph import ENDLESS, flights, Graph, Vehicle
 import numpy as np
 import pytest
 from rcl_interfaces.srv import GetParameters, ListParameters
 from std_msgs.msg import Float64MultiArray, MultiArrayDimension, String
 
 from quad_ident_ros.data.record import FlightRecord
-from quad_ident_ros.experiment import fly, load_experiment
 from quad_ident_ros.identify.identify import identify, Settings
 from quad_ident_ros.identify.methods import METHODS
 from quad_ident_ros.identify.result import parameter_table
@@ -23,21 +22,6 @@ from quad_ident_ros.nodes.identifier import Identifier
 from quad_ident_ros.nodes.messages import record_message
 from quad_ident_ros.nodes.qos import latched
 from quad_ident_ros.nodes.recorder import Recorder
-
-# A budget that no test waits for.
-ENDLESS = {'method': 'pso', 'evaluations': 100_000_000}
-
-
-def flights(name='hover_single_axis', session=1, **changes):
-    """Return the records of an experiment as a recorder would publish them."""
-    experiment = load_experiment(name)
-    records = []
-    for k, run in enumerate(experiment.runs):
-        record = fly(experiment, run).record
-        info = {**record.info, 'session': session, 'run_index': k,
-                'run_count': len(experiment.runs), 'dropped': 0, **changes}
-        records.append(FlightRecord(record.t, record.columns, info))
-    return records
 
 
 def publish(publisher, records):

@@ -6,7 +6,7 @@ import os
 import signal
 import time
 
-from graph import DEADLINE, Processes, write_experiment
+from graph import DEADLINE, ENDLESS, flights, Processes, write_experiment
 import pytest
 from std_msgs.msg import Float64MultiArray, String
 import yaml
@@ -14,7 +14,6 @@ import yaml
 from quad_ident_ros.nodes import identifier, recorder, simulator
 from quad_ident_ros.nodes.messages import record_message
 from quad_ident_ros.nodes.qos import latched
-from test_identifier import ENDLESS, flights
 
 NODES = {'simulator': simulator, 'recorder': recorder, 'identifier': identifier}
 

@@ -164,6 +164,13 @@ def test_drain_gives_up_what_is_incomplete():
     assert joiner.counts.late == 1
 
 
+def test_it_tells_how_far_all_topics_are():
+    joiner = Joiner('ab')
+    assert not joiner.has_reached(0)
+    feed(joiner, [('a', 100), ('b', 80)])
+    assert joiner.has_reached(80 * MS) and not joiner.has_reached(90 * MS)
+
+
 def test_the_cost_does_not_grow_with_what_waits():
     """A topic that is far ahead and one that has lost a message: no work per waiting row."""
     joiner = Joiner('ab')

@@ -1,0 +1,250 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""From a record to what is identified: trim, start, grid, gaps, and which outputs are excited."""
+
+import numpy as np
+import pytest
+
+from quad_ident_ros.data.record import FlightRecord
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.identify.identify import identify, Settings
+from quad_ident_ros.identify.signals import INPUT_OF, OUTPUTS, signals
+from quad_ident_ros.identify.transfer import response, SecondOrder
+from quad_ident_ros.model.attitude import quaternion_from_euler
+
+PERIOD = 0.01
+HOVER = (6.3739, 0.0, 0.0, 0.0)
+TRUTH = SecondOrder.from_poles(3.5, 2.0, 0.5)
+
+
+def record(t=None, steps=(1.0, 0.1, 0.2, 0.3), info=None, trim=HOVER, **columns):
+    """Return a record in which U1..U4 step by so much over hover at 1 s."""
+    t = np.arange(501) * PERIOD if t is None else t
+    late = t - t[0] >= 1.0 - 1e-9
+    data = {f'u{i + 1}': trim[i] + steps[i] * late for i in range(4)}
+    # Smooth motions that differ from output to output; altitude about 10 m.
+    motion = np.where(late, (t - t[0] - 1.0) ** 2, 0.0)
+    data.update(phi=0.1 * motion, theta=0.2 * motion, psi=0.3 * motion, pz=10.0 + motion)
+    data.update(columns)
+    return FlightRecord(t, data, {'trim': list(trim), 'starts_at_rest': True} if info is None
+                        else info)
+
+
+def of(found, name):
+    return {signal.output: signal for signal in found}[name]
+
+
+def test_each_output_goes_with_its_input():
+    found, remarks = signals(record())
+    assert [signal.output for signal in found] == list(OUTPUTS) and remarks == []
+    for signal, size in zip(found, (0.1, 0.2, 0.3, 1.0), strict=True):
+        assert signal.u[0] == 0 and signal.u[-1] == pytest.approx(size)
+        assert signal.y[0] == 0 and signal.y[-1] == pytest.approx(size * 16.0)
+        assert signal.period == pytest.approx(PERIOD) and signal.t[0] == 0.0
+        assert len(signal.t) == len(signal.u) == len(signal.y) == 501
+    assert INPUT_OF == {'phi': 'U2', 'theta': 'U3', 'psi': 'U4', 'z': 'U1'}
+
+
+def test_outputs_whose_input_is_at_trim_are_left_out():
+    found, _ = signals(record(steps=(0.0, 0.1, 0.0, 1e-12)))
+    assert [signal.output for signal in found] == ['phi']
+
+
+def test_an_input_that_moves_only_at_the_last_sample_excites_nothing():
+    u = np.zeros(501)
+    u[-1] = 5.0
+    assert signals(record(steps=(0, 0, 0, 0), u2=u))[0] == []
+
+
+def test_outputs_asked_for_or_recorded_are_the_only_ones():
+    assert [s.output for s in signals(record(), outputs=('z', 'phi'))[0]] == ['phi', 'z']
+    flight = record(info={'trim': list(HOVER), 'outputs': ['psi'], 'starts_at_rest': True})
+    assert [s.output for s in signals(flight)[0]] == ['psi']
+
+
+def test_nothing_excited_is_an_error_that_says_what_to_do():
+    with pytest.raises(InputError, match='nothing to identify: excite U1..U4, or state the trim'):
+        identify([record(steps=(0, 0, 0, 0))])
+
+
+def test_inputs_count_from_the_trim_of_the_record_or_the_one_stated():
+    flight = record()
+    assert of(signals(flight)[0], 'z').u[0] == 0.0
+    stated, remarks = signals(flight, trim=(5.0, 0.0, 0.0, 0.0))
+    assert of(stated, 'z').u[0] == pytest.approx(HOVER[0] - 5.0) and remarks == []
+
+
+def test_a_missing_trim_is_the_first_sample_and_a_remark():
+    found, remarks = signals(record(info={}))
+    assert of(found, 'z').u[0] == 0.0 and of(found, 'z').u[-1] == pytest.approx(1.0)
+    assert len(remarks) == 1 and 'no trim' in remarks[0] and 'first sample' in remarks[0]
+    # The remark goes on into the result.
+    result = identify([record(info={}, steps=(0, 0.1, 0, 0))], Settings(methods=('ls',)))
+    assert any('no trim' in remark for remark in result.remarks)
+
+
+def test_outputs_count_from_the_known_start_at_rest_and_else_from_the_first_sample():
+    noisy = record().columns['pz'] + 0.5
+    known = record(pz=noisy, info={'trim': list(HOVER), 'starts_at_rest': True,
+                                   'initial': {'z': 10.0}})
+    assert of(signals(known)[0], 'z').y[0] == pytest.approx(0.5)
+    assert of(signals(known, initial_state='free')[0], 'z').y[0] == 0.0
+    unknown = record(pz=noisy)
+    assert of(signals(unknown)[0], 'z').y[0] == 0.0
+
+
+def test_rest_is_assumed_where_the_record_or_the_caller_says_so():
+    flight, silent = record(), record(info={'trim': list(HOVER)})
+    assert all(s.at_rest for s in signals(flight)[0])
+    assert not any(s.at_rest for s in signals(silent)[0])
+    assert not any(s.at_rest for s in signals(flight, initial_state='free')[0])
+    assert all(s.at_rest for s in signals(silent, initial_state='rest')[0])
+
+
+def test_angles_come_from_the_quaternion_where_they_are_not_recorded():
+    t = np.arange(501) * PERIOD
+    # Several turns of yaw: unwrapped, whatever the sign of the quaternion.
+    psi = 4.0 * t
+    quaternion = quaternion_from_euler(np.column_stack([0 * t, 0 * t, psi]))
+    quaternion *= np.where(np.arange(501) % 2, 1, -1)[:, None]
+    with_angles = record(psi=psi)
+    columns = {name: values for name, values in with_angles.columns.items()
+               if name not in ('phi', 'theta', 'psi')}
+    columns.update(zip(('qw', 'qx', 'qy', 'qz'), quaternion.T, strict=True))
+    found, _ = signals(FlightRecord(t, columns, with_angles.info))
+    assert np.abs(of(found, 'psi').y - psi).max() < 1e-9
+
+
+@pytest.mark.parametrize('missing', ['u1', 'u3', 'pz', 'phi'])
+def test_a_missing_column_is_named(missing):
+    flight = record()
+    columns = {name: values for name, values in flight.columns.items() if name != missing}
+    with pytest.raises(InputError, match=missing if missing != 'phi' else 'no attitude'):
+        signals(FlightRecord(flight.t, columns, flight.info))
+
+
+# The grid.
+
+def test_any_start_and_a_steady_clock_are_taken_as_they_are():
+    # Stamps in 2026 are multiples of 2e-7 s in a double, 2e-5 of a period.
+    t = 1.79e9 + np.arange(501) * PERIOD
+    found, remarks = signals(record(t))
+    assert remarks == []
+    assert found[0].t[-1] == pytest.approx(5.0, abs=1e-6)
+    assert (found[0].y == signals(record(t))[0][0].y).all()
+
+
+def test_a_clock_that_is_off_is_no_uneven_clock():
+    found, remarks = signals(record(np.arange(501) * PERIOD * 1.01))
+    assert remarks == [] and found[0].period == pytest.approx(1.01 * PERIOD)
+
+
+def test_a_clock_that_changes_its_pace_is_uneven():
+    # Each step is within 0.1 % of a period of the next, but the times leave the grid by 5 %.
+    steps = PERIOD * np.where(np.arange(500) < 250, 0.9996, 1.0004)
+    _, remarks = signals(record(np.concatenate([[0.0], np.cumsum(steps)])))
+    assert any('uneven' in remark for remark in remarks)
+
+
+def uneven(seed=0, jitter=0.3, drop=0.05):
+    """Return 5 s of sample times at 100 Hz with jitter and with some missing."""
+    random = np.random.default_rng(seed)
+    t = np.arange(501) * PERIOD + random.uniform(-jitter, jitter, 501) * PERIOD
+    keep = random.random(501) > drop
+    keep[[0, 1, -1]] = True
+    t[0] = 0.0
+    return t[keep]
+
+
+def fine_truth(t, u_of_t):
+    """Return what the true system, under a held input, does at any times."""
+    fine = np.arange(50_001) * 1e-4
+    y = response(TRUTH, u_of_t(fine), 1e-4)
+    return np.interp(t, fine, y)
+
+
+def staircase(t):
+    return 0.1 * np.random.default_rng(4).choice([-1.0, 1.0], 20)[np.minimum(
+        (np.asarray(t) / 0.25 + 1e-9).astype(int), 19)]
+
+
+def held(t, u):
+    """Return the input that a record means: u[k] from t[k] until t[k+1]."""
+    return lambda at: u[np.searchsorted(t, at + 1e-12, side='right') - 1]
+
+
+@pytest.mark.parametrize('seed', range(5))
+def test_uneven_times_are_resampled_with_a_remark(seed):
+    t = uneven(seed)
+    u = staircase(t)
+    true_y = held(t, u)
+    flight = record(t, steps=(0, 0, 0, 0), phi=fine_truth(t, true_y), u2=u)
+    found, remarks = signals(flight)
+    assert len(remarks) == 1 and 'resampled' in remarks[0] and 'filled' in remarks[0]
+    signal = found[0]
+    assert np.abs(np.diff(signal.t) - signal.period).max() < 1e-12
+    # Nothing is invented after the last sample.
+    assert signal.t[-1] <= t[-1] + 1e-5
+    # Straight lines between samples miss curves by h^2 / 8 of their curvature, which is K u at
+    # first and at most twice that where the input turns over.
+    curvature = 2 * TRUTH.gain * 0.1
+    miss = np.abs(signal.y - fine_truth(signal.t, true_y)).max()
+    assert miss < curvature * np.diff(t).max() ** 2 / 8
+    # The input keeps its impulse from sample to sample, so the fit is within 5e-4 as measured.
+    model = identify([flight], Settings(methods=('pso_cs',))).methods['pso_cs'].outputs['phi'].model
+    assert model.gain == pytest.approx(TRUTH.gain, rel=2e-3)
+    assert model.c1 == pytest.approx(TRUTH.c1, rel=2e-3)
+    assert model.c0 == pytest.approx(TRUTH.c0, rel=2e-3)
+
+
+def test_resampled_inputs_keep_their_impulse():
+    t = uneven(7)
+    u = staircase(t)
+    signal = signals(record(t, steps=(0, 0, 0, 0), u2=u))[0][0]
+    given = np.concatenate([[0.0], np.cumsum(u[:-1] * np.diff(t))])
+    kept = np.concatenate([[0.0], np.cumsum(signal.u[:-1] * signal.period)])
+    assert np.allclose(kept, np.interp(signal.t, t, given), atol=1e-14)
+
+
+def test_missing_samples_are_filled_and_counted():
+    t = np.delete(np.arange(501) * PERIOD, [100, 101, 102, 300])
+    found, remarks = signals(record(t))
+    assert len(found[0].t) == 501
+    assert '4 samples filled' in remarks[0]
+    # Straight lines between samples: of a parabola that is (0.04 s)^2 / 8 of its curvature.
+    assert np.abs(of(found, 'z').y - record().columns['pz'] + 10).max() < 2 * 0.04 ** 2 / 8 + 1e-9
+
+
+def test_a_gap_is_refused_with_its_place_and_length():
+    t = np.delete(np.arange(501) * PERIOD, np.arange(200, 220))
+    with pytest.raises(InputError, match=r'gap of 0.21 s after t = 1.99 s \(21 periods'):
+        signals(record(t))
+    # Ten periods may be bridged.
+    assert signals(record(np.delete(np.arange(501) * PERIOD, np.arange(200, 209))))[0]
+
+
+def test_too_many_missing_samples_are_refused_with_their_count():
+    keep = np.random.default_rng(0).random(501) > 0.3
+    keep[[0, -1]] = True
+    with pytest.raises(InputError, match='of 501 samples are missing; at most 20% can be filled'):
+        signals(record((np.arange(501) * PERIOD)[keep]))
+
+
+def test_a_record_that_is_too_short_is_refused():
+    with pytest.raises(InputError, match='7 samples; at least 8'):
+        signals(record(np.arange(7) * PERIOD))
+    t = np.arange(8) * 0.5
+    assert signals(record(t))[0]
+
+
+@pytest.mark.parametrize('value', [1e60, -1e200])
+def test_values_beyond_computing_are_refused(value):
+    phi = record().columns['phi'].copy()
+    phi[-1] = value
+    with pytest.raises(InputError, match='nothing can be computed'):
+        signals(record(phi=phi))
+
+
+def test_times_in_the_wrong_unit_are_refused():
+    with pytest.raises(InputError, match='check the unit of t'):
+        signals(record(np.arange(501) * 1e10))

@@ -1,0 +1,130 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Standard errors against the scatter of repeated experiments."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+from scipy.optimize import minimize
+
+from quad_ident_ros.excitation import excite
+from quad_ident_ros.identify.objective import Objective
+from quad_ident_ros.identify.signals import Signal
+from quad_ident_ros.identify.transfer import response, SecondOrder
+from quad_ident_ros.identify.uncertainty import standard_errors
+
+PERIOD = 0.02
+T = np.arange(301) * PERIOD
+PRBS = excite('u', {'type': 'prbs', 'amplitude': 0.1, 'clock': 0.2}, T)
+STEP = excite('u', {'type': 'step', 'amplitude': 0.1}, T)
+DRAWS = 200
+KEYS = ('K', 'a', 'b', 'c1', 'c0')
+SYSTEMS = {
+    'real': SecondOrder.from_poles(3.5, 3.0, 0.5),
+    'integrating': SecondOrder.from_poles(3.5, 3.0, 0.0),
+    'unstable': SecondOrder.from_poles(2.0, 1.5, -0.3),
+    'complex': SecondOrder.from_half_difference(5.0, 0.4, -2.0),
+}
+
+
+def measured(model, noise, seed, u=PRBS, at_rest=True):
+    y = response(model, u, PERIOD, (0.0, 0.0) if at_rest else (0.05, 0.02))
+    y = y + noise * np.ptp(y) * np.random.default_rng(seed).normal(size=len(y))
+    return Signal('phi', T, u, y, PERIOD, at_rest)
+
+
+def optimum(signal, near):
+    """Return the best fit near a model, independently of the methods under test."""
+    objective = Objective(signal)
+    mean, half = near.c1 / 2, (near.a - near.b) / 2
+    half = -half.imag if near.form == 'complex' else half
+    found = minimize(lambda p: objective.of_poles([2 * p[0]], [p[0] ** 2 - p[1] * abs(p[1])])[0][0],
+                     [mean, half], method='Nelder-Mead', options={
+                         'xatol': 1e-7, 'fatol': 1e-16, 'initial_simplex':
+                         [[mean, half], [mean + 0.05, half], [mean, half + 0.05 * np.sign(half)]]})
+    return objective.fit(*found.x)
+
+
+@cache
+def draws(system, noise, at_rest=True):
+    """Return the estimates and the standard errors said with them, (draws, 5) each."""
+    truth = SYSTEMS[system]
+    found, said = [], []
+    for seed in range(DRAWS):
+        signal = measured(truth, noise, seed, at_rest=at_rest)
+        fitted = optimum(signal, truth)
+        model = fitted.model
+        assert model.form == truth.form
+        ab = (model.a.real, model.a.imag) if model.form == 'complex' else (model.a, model.b)
+        found.append([model.gain, *ab, model.c1, model.c0])
+        said.append([standard_errors(signal, fitted)[key] for key in KEYS])
+    return np.array(found), np.array(said, float)
+
+
+@pytest.mark.parametrize(('system', 'at_rest'), [
+    ('real', True), ('integrating', True), ('unstable', True), ('complex', True), ('real', False),
+    ('integrating', False)])
+def test_standard_errors_are_the_scatter(system, at_rest):
+    # 200 draws know their scatter to 5 %: three times that, for five numbers at once. Noise of
+    # 0.3 % of the range keeps the model linear about its optimum.
+    found, said = draws(system, 0.003, at_rest)
+    scatter = found.std(axis=0, ddof=1)
+    ratio = np.sqrt(np.mean(said ** 2, axis=0)) / scatter
+    assert np.abs(ratio - 1).max() < 0.17, dict(zip(KEYS, ratio, strict=True))
+
+
+@pytest.mark.parametrize('system', ['real', 'complex'])
+def test_estimates_lie_about_the_truth(system):
+    found, _ = draws(system, 0.003)
+    truth = SYSTEMS[system]
+    ab = (truth.a.real, truth.a.imag) if truth.form == 'complex' else (truth.a, truth.b)
+    off = found.mean(axis=0) - [truth.gain, *ab, truth.c1, truth.c0]
+    # The mean of 200 is known to 7 % of the scatter; 4 times that.
+    assert (np.abs(off) < 4 * found.std(axis=0) / np.sqrt(DRAWS)).all()
+
+
+def test_standard_errors_grow_with_the_noise_and_shrink_with_the_data():
+    truth = SYSTEMS['real']
+    def error(noise, repeat=1):
+        u = np.tile(PRBS, repeat)
+        t = np.arange(len(u)) * PERIOD
+        y = response(truth, u, PERIOD)
+        y = y + noise * np.random.default_rng(1).normal(size=len(y))
+        signal = Signal('phi', t, u, y, PERIOD, True)
+        return standard_errors(signal, optimum(signal, truth))['K']
+    one = error(1e-3)
+    assert error(4e-3) == pytest.approx(4 * one, rel=0.1)
+    # Four times the data, half the error, roughly: one realisation of the noise.
+    assert error(1e-3, 4) == pytest.approx(one / 2, rel=0.3)
+
+
+def test_a_perfect_fit_has_errors_of_rounding_only():
+    truth = SYSTEMS['real']
+    signal = measured(truth, 0.0, 0)
+    fitted = Objective(signal).fit(truth.c1 / 2, (truth.a - truth.b) / 2)
+    assert all(0 <= value < 1e-9 for value in standard_errors(signal, fitted).values())
+
+
+def test_equal_poles_have_errors_of_their_sum_and_product_only():
+    truth = SecondOrder.from_poles(3.5, 0.8, 0.8)
+    signal = measured(truth, 0.01, 0)
+    said = standard_errors(signal, Objective(signal).fit(0.8, 0.0))
+    assert said['a'] is None and said['b'] is None
+    assert said['K'] > 0 and said['c1'] > 0 and said['c0'] > 0
+
+
+def test_near_equal_poles_have_large_errors_of_their_own():
+    signal = measured(SecondOrder.from_poles(3.5, 0.8, 0.8), 0.01, 0)
+    said = standard_errors(signal, Objective(signal).fit(0.8, 0.01))
+    assert said['a'] > 10 * 0.02 and said['c1'] < 0.5
+
+
+def test_what_the_data_do_not_determine_has_no_error():
+    # No output at all: the gain is zero and the poles are anything.
+    nothing = Signal('phi', T, PRBS, np.zeros(301), PERIOD, True)
+    said = standard_errors(nothing, Objective(nothing).fit(1.0, 0.5))
+    assert set(said.values()) == {None}
+    # Fewer samples than numbers to find.
+    short = Signal('phi', T[:3], PRBS[:3], np.array([0.0, 1e-4, 4e-4]), PERIOD, True)
+    assert set(standard_errors(short, Objective(short).fit(1.0, 0.5)).values()) == {None}
