@@ -19,7 +19,7 @@ from quad_ident_ros.identify.space import find_space, literal_space, REFITTED, S
 from quad_ident_ros.identify.transfer import response, SecondOrder
 from quad_ident_ros.identify.uncertainty import standard_errors
 
-OVERFLOW = 'no model within the bounds stays finite over the record'
+OVERFLOW = 'no model was found that stays finite over the record'
 
 
 @dataclass(frozen=True)
@@ -159,11 +159,14 @@ def _joint(method, objectives, spaces, settings, random, on_progress):
 
 def _finish(signal, output, fitted, evaluations, remarks=()):
     """Return the OutputFit of a Fitted model, or of none."""
+    if fitted is not None:
+        model = fitted.model
+        fit = response(model, signal.u, signal.period, fitted.initial)
+        if not (np.isfinite(fit).all() and np.isfinite(fitted.cost)):
+            fitted, remarks = None, [OVERFLOW]
     if fitted is None:
         return OutputFit(output, None, (0.0, 0.0), None, np.inf, dict.fromkeys(UNITS),
                          dict.fromkeys(('K', 'a', 'b', 'c1', 'c0')), evaluations, tuple(remarks))
-    model = fitted.model
-    fit = response(model, signal.u, signal.period, fitted.initial)
     deviations = standard_errors(signal, fitted)
     if model.form == 'real' and deviations['a'] and deviations['a'] > model.a - model.b:
         remarks = (*remarks, 'a and b are closer than their errors: the data determine only '

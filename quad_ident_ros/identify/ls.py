@@ -4,8 +4,8 @@
 Least squares on the recurring equation: the paper's section 5, with the formulas put right.
 
 It is exact on data of the model's class without noise; noise in y enters both sides of eq. (31)
-and biases the poles, the more the faster the sampling. Therefore the record is thinned where its
-input allows that.
+and biases the poles, the more the faster the sampling. Therefore the record is thinned, where its
+input allows that, by the factor that fits best.
 """
 
 import numpy as np
@@ -14,7 +14,7 @@ from quad_ident_ros.identify.objective import Objective
 from quad_ident_ros.identify.space import REFITTED
 from quad_ident_ros.identify.transfer import Discrete, printed_parameters, to_continuous
 
-THINNED = 40   # samples that thinning leaves, at least
+THINNED = 20   # samples that thinning leaves, at least
 
 # Poles closer than this share of their size, or of 1 / the record's length, count as equal:
 # rounding splits a double root by the square root of what it does to the coefficients.
@@ -25,39 +25,44 @@ def least_squares_fit(objective, space):
     """
     Return the Fitted model of the LS method and remarks, or None and the reason it failed.
 
-    A complex pair is kept by the rule of the parameter `poles` (see space.COMPLEX_PENALTY), and
-    otherwise refitted with a double real pole.
+    Of the records thinned by several factors, the one whose model fits best has the say. A complex
+    pair is kept by the rule of the parameter `poles` (see space.COMPLEX_PENALTY), and otherwise
+    refitted with real poles.
     """
     signal = objective.signal
-    factor = thinning(signal)
+    candidates = []
+    for factor in thinnings(signal):
+        model = to_continuous(estimate(signal.u[::factor], signal.y[::factor],
+                                       signal.period * factor))
+        if model is not None and np.isfinite([model.gain, model.c1, model.c0]).all():
+            fitted = _fit_of(signal, model)
+            if np.isfinite(fitted.cost):
+                candidates.append((fitted, factor))
+    if not candidates:
+        return None, ['the estimated roots belong to no continuous model that stays finite over '
+                      'the record']
+    fitted, factor = min(candidates, key=lambda entry: entry[0].cost)
     remarks = [f'thinned to every {factor}th sample'] if factor > 1 else []
-    model = to_continuous(estimate(signal.u[::factor], signal.y[::factor],
-                                   signal.period * factor))
-    if model is None:
-        return None, ['the estimated roots are not positive: no continuous model has them '
-                      '(noise does this to the recurring equation)']
+    settled = space.settle(objective, fitted)
+    return settled, remarks if settled is fitted else [*remarks, REFITTED]
+
+
+def _fit_of(signal, model):
+    """Return the Fitted of a model, its gain kept."""
     mean = model.c1 / 2
     half = (model.a - model.b) / 2
     half = -half.imag if model.form == 'complex' else half
     if abs(half) < EQUAL * (abs(mean) + 1 / signal.t[-1]):
         half = 0.0
-    fitted = Objective(signal, (model.gain, model.gain)).fit(mean, half)
-    settled = space.settle(objective, fitted)
-    if settled is not fitted:
-        return settled, [*remarks, REFITTED]
-    if not np.isfinite(fitted.cost):
-        return None, ['the estimated model diverges over the record']
-    return fitted, remarks
+    return Objective(signal, (model.gain, model.gain)).fit(mean, half)
 
 
-def thinning(signal):
-    """Return the largest factor that leaves THINNED samples and a held input between them."""
+def thinnings(signal):
+    """Return factors by which a record can be thinned with a held input, 1 to N / THINNED."""
     longest = max(1, (len(signal.u) - 1) // THINNED)
     changes = np.flatnonzero(np.diff(signal.u[:-1])) + 1
-    for factor in range(longest, 1, -1):
-        if not (changes % factor).any():
-            return factor
-    return 1
+    factors = {longest, *(longest // 2 ** k for k in range(1, longest.bit_length()))}
+    return sorted(factor for factor in factors if not (changes % factor).any())
 
 
 def regression(u, y):

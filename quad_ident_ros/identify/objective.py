@@ -13,7 +13,7 @@ import numpy as np
 
 from quad_ident_ros.compiled import compiled
 from quad_ident_ros.identify.signals import LARGEST, Signal
-from quad_ident_ros.identify.transfer import SecondOrder, zoh
+from quad_ident_ros.identify.transfer import response, SecondOrder, zoh
 
 
 @compiled
@@ -155,7 +155,12 @@ class Objective:
 
     def fit(self, mean, half):
         """Return the Fitted of poles mean +- half (see SecondOrder.from_half_difference)."""
-        costs, linear = self.of_poles(np.array([2 * mean]),
-                                      np.array([mean ** 2 - half * abs(half)]))
+        _, linear = self.of_poles(np.array([2 * mean]), np.array([mean ** 2 - half * abs(half)]))
         model = SecondOrder.from_half_difference(linear[0, 0], mean, half)
-        return Fitted(model, (float(linear[0, 1]), float(linear[0, 2])), float(costs[0]))
+        initial = (float(linear[0, 1]), float(linear[0, 2]))
+        # The cost of what is handed out, which under a very unstable pole is not quite what the
+        # projection has: an initial state's last digit grows with it.
+        error = self.signal.y - response(model, self.signal.u, self.signal.period, initial)
+        with np.errstate(over='ignore', invalid='ignore'):
+            cost = float(np.sum(error ** 2)) * self.weight
+        return Fitted(model, initial, cost if cost < np.inf else np.inf)

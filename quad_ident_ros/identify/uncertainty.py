@@ -16,9 +16,19 @@ def standard_errors(signal, fitted):
 
     From the information matrix of the response with respect to (K, c1, c0) and, where it is free,
     the initial state, for residuals taken as white (L. Ljung, System Identification, 1999, sec.
-    9.4). At equal poles a and b by themselves have no standard error, c1 and c0 do; of a complex
+    9.4). The distance to the optimum, by one Gauss-Newton step, is included.
+
+    At equal poles a and b by themselves have no standard error, c1 and c0 do; of a complex
     pair the errors are those of its real and imaginary part.
     """
+    # Models that grow beyond all numbers over the record have no errors to speak of.
+    with np.errstate(over='ignore', invalid='ignore'):
+        found = _standard_errors(signal, fitted)
+    return {key: float(value) if value is not None and np.isfinite(value) else None
+            for key, value in found.items()}
+
+
+def _standard_errors(signal, fitted):
     model, nothing = fitted.model, dict.fromkeys(('K', 'a', 'b', 'c1', 'c0'))
     u, period = signal.u, signal.period
     duration = signal.t[-1] + period
@@ -41,11 +51,18 @@ def standard_errors(signal, fitted):
     if not (norms > 1e-100).all():
         return nothing
     information = (jacobian / norms).T @ (jacobian / norms)
-    if np.linalg.cond(information) > WORST_CONDITION:
+    if not (np.isfinite(information).all()
+            and np.linalg.cond(information) <= WORST_CONDITION):
         return nothing
     variance = residual @ residual / freedom
     factor = scale[:count] / norms
-    covariance = variance * np.linalg.inv(information) * np.outer(factor, factor)
+    inverse = np.linalg.inv(information)
+    covariance = variance * inverse * np.outer(factor, factor)
+    # A search may stop short of the optimum: the step that is left counts as an error too. It
+    # does not where it leads to a complex pair that real poles were preferred to.
+    step = inverse @ ((jacobian / norms).T @ residual) * factor
+    if model.form == 'complex' or (model.c1 + step[1]) ** 2 / 4 >= model.c0 + step[2]:
+        covariance = covariance + np.outer(step, step)
     of = np.sqrt(np.maximum(np.diag(covariance), 0.0))
     result = {**nothing, 'K': of[0], 'c1': of[1], 'c0': of[2]}
     root = np.sqrt(complex(model.c1 ** 2 / 4 - model.c0))
@@ -59,7 +76,7 @@ def standard_errors(signal, fitted):
         else:
             result['a'] = _size(gradient.real, block)
             result['b'] = _size(np.array([1.0, 0.0]) - gradient.real, block)
-    return {key: None if value is None else float(value) for key, value in result.items()}
+    return result
 
 
 def _size(gradient, covariance):

@@ -213,9 +213,10 @@ class Recorder(Node):
 
     def _on_flush_timer(self):
         now = self._steady.now().nanoseconds
-        if self._last_message is None or now - self._last_message > QUIET * 1e9:
+        silence = now - self._last_message if self._last_message is not None else 0
+        if silence > QUIET * 1e9:
             self.counts.lost += sum(losses.count_new() for losses in self._losses.values())
-        if self._last_message is not None and now - self._last_message > self._patience() * 1e9:
+        if silence > self._patience() * 1e9:
             self._last_message = None
             self._keep(self._joiner.drain())
             if self._buffer.in_run:

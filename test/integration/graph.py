@@ -304,7 +304,7 @@ class Vehicle:
 
     def __init__(self, graph, topics=tuple(STREAMS), quality=LOSSLESS):
         self.publishers = {name: graph.advertise(STREAMS[name], name, quality)
-                            for name in topics}
+                           for name in topics}
 
     def send(self, stamp, value=0.0, topics=None):
         for name in topics or self.publishers:

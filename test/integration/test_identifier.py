@@ -111,8 +111,7 @@ def test_mode_continuous_fits_each_window(graph, tmp_path):
     recorder = graph.start(Recorder, {'topics': ['attitude', 'altitude', 'input'],
                                       'window_samples': 200, 'overlap': 0.5})
     vehicle = Vehicle(graph, ('attitude', 'altitude', 'input'))
-    for k in range(400):
-        # z = 0.5 t^2 under a doublet would do; what counts is that each window has an input.
+    for k in range(400):    # no flight that could be, but an input in each window
         vehicle.send(10 ** 9 + k * 10 ** 7, np.sin(0.05 * k))
         graph.executor.spin_once(timeout_sec=0.0)
     graph.spin_until(lambda: recorder.counts.joined == 400, 'the flight')
@@ -207,7 +206,8 @@ def test_a_fit_can_be_cancelled(bench, hover):
     bench.feed(hover)
     bench.await_progress()
     bench.await_status(DiagnosticStatus.OK, 'fitting')
-    assert bench.graph.trigger('identifier/identify').message == 'a fit is running; another follows'
+    response = bench.graph.trigger('identifier/identify')
+    assert (response.success, response.message) == (True, 'a fit is running; another follows')
     response = bench.graph.trigger('identifier/cancel')
     assert (response.success, response.message) == (True, 'cancelled')
     bench.await_status(DiagnosticStatus.WARN, 'the fit was cancelled')
@@ -226,7 +226,8 @@ def test_a_fit_that_was_asked_for_during_another_follows(bench, hover):
     bench.feed(hover)
     bench.await_progress()
     assert bench.graph.set_parameter('identifier', 'seed', 2).successful
-    assert bench.graph.trigger('identifier/identify').message == 'a fit is running; another follows'
+    response = bench.graph.trigger('identifier/identify')
+    assert (response.success, response.message) == (True, 'a fit is running; another follows')
     bench.await_results(2)
     assert [data['settings']['seed'] for data in bench.json.data()] == [1, 2]
 
@@ -268,8 +269,7 @@ def test_services_are_answered_during_a_fit(domain, graph, processes, hover):
     for name, seconds in took.items():
         print(f'{name}: median {1e3 * np.median(seconds):.2f} ms, '
               f'99 % {1e3 * np.quantile(seconds, 0.99):.1f} ms, max {1e3 * max(seconds):.1f} ms')
-        assert np.median(seconds) < 0.05
-        assert np.quantile(seconds, 0.9) < 0.05
+        assert np.quantile(seconds, 0.95) < 0.05
 
 
 def test_what_is_not_excited_is_no_number_and_a_warning(bench, hover):

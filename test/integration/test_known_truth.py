@@ -3,6 +3,7 @@
 """Known truths through simulator, recorder and identifier, in one process and in three."""
 
 
+from diagnostic_msgs.msg import DiagnosticArray
 from graph import DEADLINE, STREAMS
 import numpy as np
 import pytest
@@ -163,6 +164,22 @@ def test_two_vehicles_at_once_do_not_mix(graph):
     assert tables['blue'][2, 0] == pytest.approx(89.24, rel=0.02)
     np.testing.assert_allclose(tables['red'][[0, 1, 3]], tables['blue'][[0, 1, 3]], rtol=1e-6,
                                atol=1e-8)
+
+
+def test_simulated_time_in_all_nodes(graph):
+    """The clock stands still after the flight: nobody may wait for it then."""
+    graph.start(Recorder, {'use_sim_time': True})
+    graph.start(Identifier, {'use_sim_time': True, 'method': 'ls'})
+    json, best, records = graph.results()
+    diagnostics = graph.listen(DiagnosticArray, '/diagnostics')
+    graph.start(Simulator, {'publish_clock': True, 'real_time_factor': 0.0})
+    graph.spin_until(lambda: json and best and len(records) == 4, 'the result')
+    data = json.data()[0]
+    assert [info['start_ns'] for info in data['records']] == [k * 51 * 10 ** 8 for k in range(4)]
+    assert data['dropped_samples'] == 0
+    check_physics(table_of(best[0])[[0, 1, 3]], ('phi', 'theta', 'z'))
+    # Stamps are simulated ones, none later than the end of the flight.
+    assert max(message.header.stamp.sec for message in diagnostics) <= 21
 
 
 def test_a_result_is_there_for_those_who_come_late(graph):

@@ -69,7 +69,7 @@ def test_a_parameter_file_for_others_is_refused(processes, tmp_path):
                                          'it is for /identifer')
 
 
-@pytest.mark.parametrize('key', ['/quad/identifier', '/**', '/**/identifier'])
+@pytest.mark.parametrize('key', ['/quad/identifier', '/**/identifier'])
 def test_a_parameter_file_is_used(graph, processes, tmp_path, key):
     path = tmp_path / 'parameters.yaml'
     path.write_text(yaml.safe_dump({key: {'ros__parameters': {

@@ -8,6 +8,7 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from graph import sample, STREAMS, Vehicle, write_experiment
 import numpy as np
 import pytest
+from rclpy.qos import HistoryPolicy, QoSProfile, ReliabilityPolicy
 from std_msgs.msg import Float64MultiArray, String
 
 from quad_ident_ros.data.topics import RunNotice
@@ -186,6 +187,44 @@ def test_a_best_effort_publisher_is_heard(graph):
     graph.trigger('recorder/flush')
     graph.spin_until(lambda: records, 'the record')
     np.testing.assert_array_equal(records.records()[0].columns['pz'], 4 * 0.1 * np.arange(50))
+
+
+def test_what_the_middleware_lost_is_counted(graph, processes):
+    """
+    A publisher that keeps one message only overruns a recorder in another process.
+
+    As a callback of the executor, the count hung the recorder in one of 20 such floods.
+    """
+    processes.start('recorder', {'topics': ['altitude']})
+    _, statistics = listen(graph)
+    quality = QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1,
+                         reliability=ReliabilityPolicy.RELIABLE)
+    publisher = graph.advertise(STREAMS['altitude'], 'altitude', quality)
+    message, sent = sample('altitude', SECOND), 0
+
+    def send():
+        nonlocal sent
+        sent += 1
+        message.header.stamp.sec, message.header.stamp.nanosec = divmod(sent * PERIOD, SECOND)
+        publisher.publish(message)
+
+    def told(name):
+        account = statistics.data()[-1]
+        return account[name] if name == 'lost' else account['received']['altitude']
+
+    # It may be a while until the recorder has found the publisher, too.
+    graph.spin_until(lambda: send() or (statistics and told('received')), 'the first message')
+    seen = len(statistics) + 1
+    graph.spin_until(lambda: len(statistics) > seen and statistics[-1] == statistics[-2], 'quiet')
+    before = sent - told('received') - told('lost')
+    while not told('lost'):    # a fast machine may keep up, as far as it goes
+        for _ in range(5000):
+            send()
+        graph.spin_until(lambda: told('received') + told('lost') + before == sent,
+                         'all messages in the account')
+    assert graph.trigger('recorder/flush').success
+    account = await_counts(graph, statistics, records=1)
+    assert account['missing'] == account['lost']
 
 
 def test_a_clock_that_begins_anew_begins_a_record(graph):

@@ -10,7 +10,7 @@ import pytest
 from quad_ident_ros.data.csv import write_csv
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.excitation import excite, EXCITATIONS
+from quad_ident_ros.excitation import EXCITATIONS, excite
 
 FAST = settings(deadline=None, max_examples=60)
 PERIOD = 0.01

@@ -16,7 +16,7 @@ from quad_ident_ros.errors import InputError
 from quad_ident_ros.experiment import check_noise, fly, load_experiment, NOISE_UNITS
 from quad_ident_ros.model.attitude import quaternion_from_euler
 
-FAST = settings(deadline=None, max_examples=200,
+FAST = settings(deadline=None, max_examples=120,
                 suppress_health_check=[HealthCheck.function_scoped_fixture])
 HOVER = load_experiment('hover_single_axis')
 # Which columns each channel of noise is added to.

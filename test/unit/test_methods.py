@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""The swarm methods on systems that are known: what they find, and how sure they are to find it."""
+"""The swarm methods on systems that are known: what they find, and how surely."""
 
 import functools
 
@@ -126,7 +126,8 @@ def test_more_budget_is_not_worse(method):
     medians = []
     for budget in (200, 800, 3200):
         swarm = with_budget(Settings(), budget).swarm
-        medians.append(np.median([fit(flight, method, seed, swarm=swarm).cost for seed in range(12)]))
+        medians.append(np.median([fit(flight, method, seed, swarm=swarm).cost
+                                  for seed in range(12)]))
     assert (np.diff(medians) < 0).all()
 
 

@@ -24,7 +24,7 @@ def test_a_perfect_fit_has_no_error_and_100_percent():
 
 
 def test_a_constant_error_is_the_closed_form():
-    # e = 0.5 on [0, 4]: 2, 1, 4 and 2; of a range of 1 that is 50 %. Trapezoids of lines are exact.
+    # e = 0.5 on [0, 4]: 2, 1, 4 and 2; of a range of 1 it is 50 %. Trapezoids of lines are exact.
     found = errors(T, RAMP, RAMP - 0.5)
     assert found['iae'] == pytest.approx(2.0, rel=1e-12)
     assert found['ise'] == pytest.approx(1.0, rel=1e-12)
@@ -77,7 +77,7 @@ steps = st.floats(1e-3, 10.0)
 def test_inequalities_of_the_errata(drawn):
     # Errata section 4. They hold for trapezoid sums as for integrals, being sums with positive
     # weights w: Cauchy and Schwarz for IAE^2 <= T ISE, and t <= T for the next two. In
-    # ITAE^2 <= (sum w t) ITSE the sum is the integral of t, T^2 / 2, which trapezoids give exactly.
+    # ITAE^2 <= (sum w t) ITSE the sum is the integral of t, T^2 / 2, exact by trapezoids.
     y, fitted, gaps, start = drawn
     t = start + np.concatenate([[0.0], np.cumsum(gaps)])
     duration = t[-1] - t[0]

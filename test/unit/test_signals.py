@@ -191,7 +191,8 @@ def test_uneven_times_are_resampled_with_a_remark(seed):
     miss = np.abs(signal.y - fine_truth(signal.t, true_y)).max()
     assert miss < curvature * np.diff(t).max() ** 2 / 8
     # The input keeps its impulse from sample to sample, so the fit is within 5e-4 as measured.
-    model = identify([flight], Settings(methods=('pso_cs',))).methods['pso_cs'].outputs['phi'].model
+    result = identify([flight], Settings(methods=('pso_cs',)))
+    model = result.methods['pso_cs'].outputs['phi'].model
     assert model.gain == pytest.approx(TRUTH.gain, rel=2e-3)
     assert model.c1 == pytest.approx(TRUTH.c1, rel=2e-3)
     assert model.c0 == pytest.approx(TRUTH.c0, rel=2e-3)

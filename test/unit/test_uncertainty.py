@@ -39,10 +39,13 @@ def optimum(signal, near):
     objective = Objective(signal)
     mean, half = near.c1 / 2, (near.a - near.b) / 2
     half = -half.imag if near.form == 'complex' else half
-    found = minimize(lambda p: objective.of_poles([2 * p[0]], [p[0] ** 2 - p[1] * abs(p[1])])[0][0],
-                     [mean, half], method='Nelder-Mead', options={
-                         'xatol': 1e-7, 'fatol': 1e-16, 'initial_simplex':
-                         [[mean, half], [mean + 0.05, half], [mean, half + 0.05 * np.sign(half)]]})
+    simplex = [[mean, half], [mean + 0.05, half], [mean, half + 0.05 * np.sign(half)]]
+
+    def cost(point):
+        return objective.of_poles([2 * point[0]], [point[0] ** 2 - point[1] * abs(point[1])])[0][0]
+
+    found = minimize(cost, simplex[0], method='Nelder-Mead', options={
+        'xatol': 1e-7, 'fatol': 1e-16, 'initial_simplex': simplex})
     return objective.fit(*found.x)
 
 

@@ -14,7 +14,7 @@ from quad_ident_ros import resources
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.vehicle import load_vehicle, vehicle_from_mapping
 
-FAST = settings(deadline=None, max_examples=200,
+FAST = settings(deadline=None, max_examples=120,
                 suppress_health_check=[HealthCheck.function_scoped_fixture])
 PAPER = resources.read_yaml(resources.find('vehicles', 'paper_quadrotor'))
 
