@@ -27,8 +27,7 @@ setup(
     description='Online identification of quadrotors on ROS 2',
     long_description=(
         'ROS 2 nodes and a command line that simulate a quadrotor, record its flight, identify '
-        'the parameters of its model with their uncertainty and explain what is left of the gap '
-        'between model and flight.'
+        'the parameters of second-order models of it, with their standard errors.'
     ),
     long_description_content_type='text/plain',
     author='quad_ident_ros contributors',
@@ -60,7 +59,7 @@ setup(
         'matplotlib>=3.6',
         'PyYAML>=6',
         'rich>=13',
-        'rosbags>=0.11',
+        'rosbags>=0.11.9,<0.12',
     ],
     extras_require={'test': ['pytest>=7.4', 'hypothesis>=6.80', 'ruff>=0.4']},
     zip_safe=True,

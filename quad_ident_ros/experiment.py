@@ -10,12 +10,12 @@ from quad_ident_ros import __version__, resources, schema
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.excitation import excite
+from quad_ident_ros.identify.signals import OUTPUTS
 from quad_ident_ros.model import attitude, mixing
 from quad_ident_ros.model.simulate import LONGEST_STEP, MODELS, omega_r_of, simulate
 from quad_ident_ros.model.vehicle import load_vehicle, Vehicle
 
 INPUTS = ('U1', 'U2', 'U3', 'U4')
-OUTPUTS = ('phi', 'theta', 'psi', 'z')
 NOISE_UNITS = {'attitude': 'rad', 'altitude': 'm', 'position': 'm', 'velocity': 'm/s',
                'rate': 'rad/s'}
 
@@ -137,11 +137,12 @@ def check_noise(where, noise):
     return {name: schema.number(f'{where}: {name}', value, 0.0) for name, value in noise.items()}
 
 
-def fly(experiment, run, *, noise=None, seed=0):
+def fly(experiment, run, *, noise=None, seed=0, on_progress=lambda share: None):
     """
     Simulate one run of an experiment and measure it.
 
-    Args: noise: standard deviations that replace the experiment's; seed of the noise.
+    Args: noise: standard deviations that replace the experiment's; seed of the noise;
+    on_progress as in simulate.
     Returns a Simulation whose record carries its provenance in `info`: the same seed gives the
     same bytes.
     """
@@ -160,7 +161,7 @@ def fly(experiment, run, *, noise=None, seed=0):
                          experiment.omega_r_sign)
     flight = simulate(experiment.vehicle, experiment.model, inputs, experiment.period,
                       omega_r=omega_r, altitude=experiment.altitude, step=experiment.step,
-                      info=info)
+                      info=info, on_progress=on_progress)
     # Each run has a stream of its own, so that a run's noise does not depend on the others.
     stream = np.random.default_rng([seed, experiment.runs.index(run)])
     info = {**info, 'status': flight.status, 'end_time': flight.end_time}

@@ -2,9 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """`quad_ident warm-up`: compile the inner loops, so that the first real start need not."""
 
-from quad_ident_ros.experiment import fly, load_experiment
-from quad_ident_ros.identify.identify import identify, Settings
-from quad_ident_ros.identify.search import SwarmSettings
+from quad_ident_ros.warm_up import warm_up
 
 
 def add(commands):
@@ -14,9 +12,5 @@ def add(commands):
 
 
 def run(options):
-    """Fly and identify small flights with the smallest effort, in every way that is compiled."""
-    experiment = load_experiment('small_angle')
-    records = [fly(experiment, run).record for run in experiment.runs]
-    least = SwarmSettings(population=4, generations=1)
-    for choice in ({}, {'search': 'joint'}, {'initial_state': 'free'}):
-        identify(records, Settings(swarm=least, **choice))
+    """Compile what is not compiled yet."""
+    warm_up()

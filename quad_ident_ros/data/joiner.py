@@ -74,6 +74,9 @@ class Joiner:
         """
         counts = self.counts
         counts.received[topic] += 1
+        if stamp_ns < 0:
+            counts.out_of_order += 1
+            return []
         key = self._place(topic, stamp_ns)
         counts.restarts = max(era for era, _ in self._last.values())
         parts = self._pending.get(key)

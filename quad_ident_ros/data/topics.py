@@ -117,6 +117,9 @@ class RunNotice:
             data = json.loads(text)
             notice = cls(int(data['start_ns']), int(data['stop_ns']), int(data['samples']),
                          dict(data['info']))
+            if not (0 <= notice.start_ns <= notice.stop_ns < 2 ** 63
+                    and isinstance(notice.info.get('name', ''), str)):
+                raise ValueError
         except (ValueError, KeyError, TypeError, OverflowError, RecursionError):
             raise InputError(f'topic {RUN_TOPIC}: {text[:60]!r} announces no run; expected JSON '
                              'with start_ns, stop_ns, samples and info') from None

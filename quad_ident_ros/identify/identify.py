@@ -181,7 +181,8 @@ def _described(settings, spaces):
     return {'methods': list(settings.methods), 'seed': settings.seed, 'search': settings.search,
             'box': settings.box, 'poles': settings.poles, 'initial_state': settings.initial_state,
             'swarm': swarm,
-            'bounds': {name: {'poles': list(space.poles), 'gain': list(space.gain)}
+            'bounds': {name: {'poles': list(space.poles), 'gain': list(space.gain),
+                              'evaluations': space.evaluations}
                        for name, space in spaces.items()}}
 
 

@@ -7,6 +7,7 @@ import math
 
 import numpy as np
 
+from quad_ident_ros.identify import metrics
 from quad_ident_ros.identify.signals import GAIN_UNITS, INPUT_OF, OUTPUT_UNITS, OUTPUTS
 from quad_ident_ros.identify.transfer import response, SecondOrder
 
@@ -103,8 +104,10 @@ def _method(fit):
 
 def _output(fit):
     model = fit.model
+    unit = OUTPUT_UNITS[fit.output]
     units = {'K': GAIN_UNITS[fit.output], 'a': '1/s', 'b': '1/s', 'c1': '1/s', 'c0': '1/s^2',
-             'output': OUTPUT_UNITS[fit.output]}
+             'output': unit, **{key: text.replace('unit', unit)
+                               for key, text in metrics.UNITS.items()}}
     data = {'input': INPUT_OF[fit.output], 'units': units, 'cost': fit.cost,
             'errors': fit.errors, 'standard_errors': fit.standard_errors,
             'evaluations': fit.evaluations, 'remarks': list(fit.remarks),

@@ -15,6 +15,7 @@ GAIN_UNITS = {'phi': 'rad/s^2/N', 'theta': 'rad/s^2/N', 'psi': 'rad/s^2/(N m)', 
 
 # Sample times off the grid by less than this share of a period count as on it.
 GRID_TOLERANCE = 1e-3
+FEWEST = 8          # samples that a record needs
 LONGEST_GAP = 10    # periods that interpolation may bridge
 LARGEST = 1e50      # of inputs and outputs
 LARGEST_PERIOD = 1e9    # s between samples; 1 / LARGEST_PERIOD is the shortest
@@ -48,12 +49,14 @@ def signals(record, *, trim=None, outputs=None, initial_state='auto'):
     Returns (list of Signal, list of str). Raises InputError for missing columns, too few samples
     or gaps that cannot be bridged.
     """
-    if len(record) < 8:
-        raise InputError(f'the record has {len(record)} samples; at least 8 are needed')
+    if len(record) < FEWEST:
+        raise InputError(f'the record has {len(record)} samples; at least {FEWEST} are needed')
     inputs = record.inputs()
     measured = np.column_stack([record.euler(), record.stack('pz')])
     _check_size(record.t, inputs, measured)
     t, inputs, measured, remarks = _even_grid(record.t, inputs, measured)
+    if record.info.get('truncated'):
+        remarks.append('the last line of the file has no line end and was left out')
     at_rest = bool(record.info.get('starts_at_rest')) if initial_state == 'auto' \
         else initial_state == 'rest'
     if trim is None:
@@ -63,7 +66,14 @@ def signals(record, *, trim=None, outputs=None, initial_state='auto'):
         remarks.append('the record says no trim: inputs count from their first sample')
     deviation = inputs - np.asarray(trim, float)
     known = record.info.get('initial', {}) if at_rest else {}
-    start = [known.get(name, measured[0, i]) for i, name in enumerate(OUTPUTS)]
+    # At rest, all samples up to the first excited one, which acts after it, show the level.
+    still = 1
+    if at_rest:
+        still += int(np.argmax((np.abs(deviation) > 0).any(axis=1)))
+        if not known and still == 1:
+            remarks.append('the level at rest is taken from one sample, whose noise enters the '
+                           'fit; an initial state that is free is estimated')
+    start = [known.get(name, measured[:still, i].mean()) for i, name in enumerate(OUTPUTS)]
     wanted = outputs or record.info.get('outputs') or OUTPUTS
     found = []
     for i, name in enumerate(OUTPUTS):

@@ -3,7 +3,7 @@
 """
 The search space: how a point of the paper's box [0, 200]^D stands for model parameters.
 
-The paper's Table 2 has K from -9981 to -9.7 and poles of 1e-4, which a literal box [0, 200]
+The paper's Table 2 has K from -9973 to -9.7 and poles of 1e-4, which a literal box [0, 200]
 cannot hold; the box is therefore read as scaled coordinates, p = low + (high - low) X / 200, with
 bounds that come from the data (docs/paper.md).
 """

@@ -16,6 +16,8 @@ MODELS = {'newton_euler': equations.NEWTON_EULER, 'paper': equations.PRINTED}
 # by test/unit/test_golden.py: the printed equations are stiff and chaotic, the derived are not.
 LONGEST_STEP = {'newton_euler': 1e-4, 'paper': 1e-5}
 
+STEPS_AT_ONCE = 1_000_000   # integrated before a signal or a cancel can act: about 0.3 s
+
 RATE_LIMIT = 1e6  # rad/s; beyond it a run counts as diverged
 MOST_STEPS = 10 ** 9    # of the integration: some minutes
 
@@ -29,13 +31,15 @@ class Simulation:
     end_time: float
 
 
-def simulate(vehicle, model, inputs, period, *, omega_r=0.0, altitude=0.0, step=None, info=None):
+def simulate(vehicle, model, inputs, period, *, omega_r=0.0, altitude=0.0, step=None, info=None,
+             on_progress=lambda share: None):
     """
     Fly the vehicle from rest, level, under inputs that are held between samples.
 
     Args: model 'newton_euler' or 'paper'; inputs (N, 4) U1..U4 in N, N, N, N m; period s between
     samples; omega_r rad/s, a number or (N,); altitude m at the start; step s, the longest
-    integration step (LONGEST_STEP[model] if None); info is kept with the record.
+    integration step (LONGEST_STEP[model] if None); info is kept with the record; on_progress is
+    called now and then with the share done, and what it raises ends the simulation.
     Returns a Simulation whose record has N rows, or fewer where the run diverged.
     Raises InputError where it diverged within the first sample, or where the inputs are no
     numbers.
@@ -59,8 +63,18 @@ def simulate(vehicle, model, inputs, period, *, omega_r=0.0, altitude=0.0, step=
         x[6] = 1.0
     states = np.empty((len(inputs), x.size))
     speeds = np.array(np.broadcast_to(np.asarray(omega_r, float), (len(inputs),)), order='C')
-    count, end = equations.rk4(number, x, inputs, speeds, equations.parameter_vector(vehicle),
-                               period, substeps, RATE_LIMIT, states)
+    parameters = equations.parameter_vector(vehicle)
+    rows = max(1, STEPS_AT_ONCE // substeps)
+    first = 0
+    while first < len(inputs) - 1:
+        on_progress(first / len(inputs))
+        part = slice(first, first + rows + 1)
+        done, time = equations.rk4(number, x, inputs[part], speeds[part], parameters, period,
+                                   substeps, RATE_LIMIT, states[part])
+        count, end = first + done, first * period + time
+        if done < len(inputs[part]):
+            break
+        first += rows
     if count < 2:
         raise InputError(f'the {model} model diverges at t = {end:.6g} s, before the second '
                          f'sample: shorten the sample period ({period:g} s) or the inputs')

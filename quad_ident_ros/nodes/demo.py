@@ -70,11 +70,14 @@ def run_demo(options, on_progress):
         'recorder': {'output': str(output)},
         'identifier': {'seed': options.seed},
         'simulator': {'experiment': os.path.abspath(options.experiment)
-                      if os.path.exists(options.experiment) else options.experiment,
+                      if os.path.isfile(options.experiment) else options.experiment,
                       'real_time_factor': float(options.real_time_factor),
                       'seed': options.seed, **noise}}
+    # The nodes must not outlive a demo that is told to end or whose terminal is closed.
+    for number in (signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, _end)
     with holder:
-        processes = {name: _start(name, parameters, output, environment)
+        processes = {name: _start(name, parameters, output, environment, holder)
                      for name, parameters in nodes.items()}
         try:
             watcher = _Watcher(len(experiment.runs), on_progress)
@@ -91,13 +94,20 @@ def run_demo(options, on_progress):
                    watcher.statistics['missing'])
 
 
-def _start(name, parameters, output, environment):
-    words = [word for key, value in parameters.items() for word in ('-p', f'{key}:={value}')]
+def _end(number, _):
+    raise SystemExit(128 + number)
+
+
+def _start(name, parameters, output, environment, holder):
+    # As JSON, a text is a text to YAML too, whatever is in it.
+    words = [word for key, value in parameters.items()
+             for word in ('-p', f'{key}:={json.dumps(value)}')]
     with open(output / 'log' / f'{name}.txt', 'w', encoding='utf-8') as log:
         return subprocess.Popen(
             [sys.executable, '-m', f'quad_ident_ros.nodes.{name}', '--ros-args', *words],
             stdout=log, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL, env=environment,
-            start_new_session=True)
+            start_new_session=True,
+            pass_fds=[holder.fileno()])   # a domain is taken as long as a node lives on it
 
 
 class _Watcher:

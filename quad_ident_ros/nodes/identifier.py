@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Node `identifier`: fits K/((s+a)(s+b)) to the records of the recorder."""
 
+from datetime import datetime, timezone
 import json
 import sys
 import threading
@@ -9,6 +10,7 @@ import time
 import traceback
 
 from diagnostic_msgs.msg import DiagnosticArray
+import numpy as np
 from rclpy.node import Node
 from std_msgs.msg import Float64MultiArray, String
 from std_srvs.srv import Trigger
@@ -19,7 +21,7 @@ from quad_ident_ros.identify.levy import levy_sigma
 from quad_ident_ros.identify.methods import METHODS
 from quad_ident_ros.identify.result import as_data, parameter_table
 from quad_ident_ros.identify.search import Cancelled, SwarmSettings
-from quad_ident_ros.identify.signals import OUTPUTS
+from quad_ident_ros.identify.signals import FEWEST, OUTPUTS
 from quad_ident_ros.identify.space import COMPLEX_PENALTY
 from quad_ident_ros.nodes import process
 from quad_ident_ros.nodes.messages import (
@@ -32,6 +34,7 @@ from quad_ident_ros.nodes.messages import (
 )
 from quad_ident_ros.nodes.parameters import help_text, NodeParameters, ParameterSpec
 from quad_ident_ros.nodes.qos import latched
+from quad_ident_ros.warm_up import warm_up
 
 PROGRESS_PERIOD = 0.1   # s between two messages on ~/progress
 
@@ -121,7 +124,7 @@ class Identifier(Node):
         self._cancelled = threading.Event()
         self._outcome = None
         self._status = (OK, 'waiting for a record', {})
-        # The guard condition is the one thing of a node that another thread may touch.
+        # The fit's thread wakes the executor by this, and does no more than that and publish.
         self._finished = self.create_guard_condition(self._on_finished)
         self.create_timer(1.0, self._report)
         self.create_subscription(Float64MultiArray, 'record', self._on_record, latched(16))
@@ -138,13 +141,20 @@ class Identifier(Node):
         except InputError as error:
             self.get_logger().error(str(error))
             return
+        if len(record) < FEWEST:
+            self.get_logger().warning(f'a record of {len(record)} samples is left aside: at least '
+                                      f'{FEWEST} are needed')
+            return
         info = record.info
         session = info.get('session')
         if session != self._session:
             self._records, self._session = {}, session
         run = info.get('run_index', 0)
-        self._records.pop(run, None)   # the newest comes last, and has the say
-        self._records[run] = record
+        before = self._records.pop(run, None)
+        # The newest has the say, but for the parts of one announced run: there the longest has.
+        part = 'run_index' in info and self._config['mode'] == 'once'
+        longer = before is not None and part and len(before) >= len(record)
+        self._records[run] = before if longer else record
         complete = len(self._records) >= info.get('run_count', 1)
         if self._config['mode'] == 'continuous':
             self._start()
@@ -235,11 +245,14 @@ class Identifier(Node):
             self._start()
 
     def _publish(self, result):
-        for name, fit in result.methods.items():
-            self._each[name].publish(parameter_message(parameter_table(fit)))
+        for name, publisher in self._each.items():
+            # A method that was not run says so, instead of leaving an older result latched.
+            fit = result.methods.get(name)
+            table = np.full((4, 3), np.nan) if fit is None else parameter_table(fit)
+            publisher.publish(parameter_message(table))
         best = result.methods[result.best]
         self._best.publish(parameter_message(parameter_table(best)))
-        data = as_data(result)
+        data = {**as_data(result), 'time': datetime.now(timezone.utc).isoformat()}
         self._json.publish(String(data=json.dumps(data)))
         self._progress.publish(String(data=json.dumps(
             {'method': result.best, 'output': '', 'fraction': 1.0})))
@@ -300,7 +313,7 @@ def _end_of(record, seconds):
 
 def main(args=None):
     """Run the node; returns the exit code."""
-    return process.run(Identifier, HELP, args)
+    return process.run(Identifier, HELP, args, before=warm_up)
 
 
 if __name__ == '__main__':

@@ -22,13 +22,14 @@ except ImportError:   # early releases of Jazzy
     FastExecutor = SingleThreadedExecutor
 
 
-def run(node_class, help_page, args=None, executor_class=SingleThreadedExecutor):
+def run(node_class, help_page, args=None, executor_class=SingleThreadedExecutor,
+        before=lambda: None):
     """
     Run a node until it is told to stop and return the exit code.
 
     Args: node_class: called without arguments, its `close()` is called at the end; help_page:
-    printed for --help; args: the command line, by default that of the process. Bad input gives
-    one line on standard error and exit code 2.
+    printed for --help; args: the command line, by default that of the process; before: called
+    before the node is made. Bad input gives one line on standard error and exit code 2.
     """
     name = node_class.__name__.lower()
     args = [name, *(sys.argv[1:] if args is None else args)]
@@ -40,6 +41,7 @@ def run(node_class, help_page, args=None, executor_class=SingleThreadedExecutor)
         if plain:
             raise InputError(f'{plain[0]!r} is no option here: parameters are given as '
                              '--ros-args -p NAME:=VALUE; --help lists them')
+        before()
         return _run(node_class, args, executor_class)
     except InputError as error:
         print(f'{name}: error: {error}', file=sys.stderr)

@@ -3,6 +3,7 @@
 """Node `simulator`: flies an experiment and publishes what a vehicle would."""
 
 import sys
+import threading
 
 from geometry_msgs.msg import (
     PointStamped,
@@ -28,7 +29,8 @@ from quad_ident_ros.nodes.parameters import help_text, NodeParameters, Parameter
 from quad_ident_ros.nodes.qos import latched, LOSSLESS, STREAM
 
 WORLD_FRAME, BODY_FRAME = 'world', 'base_link'
-SETTLING = 0.5      # s without a change of the subscriptions before the first run starts
+SETTLING = 0.5      # s without a change of the subscriptions before the first run starts,
+SETTLING_PARTLY = 5.0   # and where some of the five topics have none: discovery takes up to 3 s
 RUN_GAP = 10        # sample periods between the stamps of two runs
 BATCH = 20          # samples published before the executor has its turn
 AHEAD = 60          # samples that a recorder may be behind at full speed
@@ -104,9 +106,9 @@ class Simulator(Node):
         self._joined_until = 0
         self._news = 0
         self._messages = _Messages()
-        self._flight = None
         self._queue = []
         self._timer = None
+        self._worker = None
         self._epoch = 0
         self._session = 0
         self._waiting = None
@@ -120,7 +122,6 @@ class Simulator(Node):
         self._stop_timer()
         self._queue = list(experiment.runs)
         self._experiment = experiment
-        self._flight = None
         self.done = False
         self._seen = (None, None)
         if self._config['wait_for_subscribers']:
@@ -166,13 +167,17 @@ class Simulator(Node):
         if self._timer is not None:
             self.destroy_timer(self._timer)
             self._timer = None
+        if self._worker is not None:
+            self._worker.cancel()
+            self._worker = None
 
     def _await_subscribers(self):
         now = self._steady.now()
         counts = tuple(stream.get_subscription_count() for stream in self._streams)
         if counts != self._seen[0]:
             self._seen = (counts, now.nanoseconds)
-        settled = any(counts) and now.nanoseconds - self._seen[1] >= SETTLING * 1e9
+        patience = SETTLING if all(counts) else SETTLING_PARTLY
+        settled = any(counts) and now.nanoseconds - self._seen[1] >= patience * 1e9
         # A clock that comes from outside stands at zero until its first message.
         if settled and self._pace.now().nanoseconds > 0:
             self._begin()
@@ -191,7 +196,24 @@ class Simulator(Node):
             self.get_logger().info(f'{self._experiment.name}: done')
             return
         run = self._queue.pop(0)
-        self._fly(run)
+        values = self._config.values()
+        noise = {channel: values[f'noise.{channel}'] for channel in NOISE_UNITS
+                 if values[f'noise.{channel}'] >= 0}
+        self._worker = _Worker(self._experiment, run, {**self._experiment.noise, **noise},
+                               values['seed'])
+        self._timer = self.create_timer(0.002, lambda: self._await_flight(run),
+                                        clock=self._steady)
+
+    def _await_flight(self, run):
+        worker = self._worker
+        if worker.is_alive():
+            return
+        self._stop_timer()
+        if isinstance(worker.outcome, InputError):
+            self.get_logger().error(f'{run.name}: {worker.outcome}')
+            self._next_run()
+            return
+        self._announce(run, worker.outcome)
         self._started = self._pace.now().nanoseconds
         self._news = self._steady.now().nanoseconds
         self._sent = 0
@@ -201,19 +223,14 @@ class Simulator(Node):
         self._timer = self.create_timer(min(max(period, 0.001), 0.05) if self._factor else 0.0005,
                                         self._publish_due, clock=self._pace)
 
-    def _fly(self, run):
+    def _announce(self, run, flight):
         experiment = self._experiment
-        values = self._config.values()
-        noise = {channel: values[f'noise.{channel}'] for channel in NOISE_UNITS
-                 if values[f'noise.{channel}'] >= 0}
-        flight = fly(experiment, run, noise={**experiment.noise, **noise}, seed=values['seed'])
         problem = flight.record.info['infeasible']
         if problem:
             self.get_logger().warning(f'{run.name}: {problem}')
         if flight.status != 'complete':
             self.get_logger().warning(f'{run.name}: the model diverged at t = '
                                       f'{flight.end_time:.6g} s')
-        self._flight = flight
         self._stamps = self._epoch + np.rint(flight.record.t * 1e9).astype(np.int64)
         self._samples = _samples(flight.record)
         period = round(experiment.period * 1e9)
@@ -278,6 +295,40 @@ class Simulator(Node):
         elif now - self._waiting > STALLED * 1e9:
             self.get_logger().warning(f'waiting for a subscriber of {publisher.topic_name} that '
                                       'does not keep up', throttle_duration_sec=STALLED)
+
+
+class _Cancelled(Exception):
+    pass
+
+
+class _Worker(threading.Thread):
+    """Flies a run beside the executor; outcome is a Simulation or an InputError."""
+
+    def __init__(self, *flight):
+        super().__init__()
+        self._flight, self._cancelled = flight, threading.Event()
+        self.outcome = None
+        self.start()
+
+    def run(self):
+        """Fly."""
+        experiment, run, noise, seed = self._flight
+        try:
+            self.outcome = fly(experiment, run, noise=noise, seed=seed,
+                               on_progress=self._on_progress)
+        except InputError as error:
+            self.outcome = error
+        except _Cancelled:
+            pass
+
+    def cancel(self):
+        """End the flight soon, and wait until it has ended."""
+        self._cancelled.set()
+        self.join()
+
+    def _on_progress(self, _):
+        if self._cancelled.is_set():
+            raise _Cancelled
 
 
 def _samples(record):

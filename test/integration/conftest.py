@@ -19,14 +19,20 @@ def pytest_collection_modifyitems(items):
 
 
 @pytest.fixture(scope='session')
-def domain(tmp_path_factory):
-    """Claim a ROS domain and hold it to the end of the session."""
+def claim(tmp_path_factory):
+    """Claim a ROS domain and hold it to the end of the session; give its number and holder."""
     number, holder = claim_domain()
     with holder, pytest.MonkeyPatch.context() as patch:
         patch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
         patch.setenv('ROS_LOG_DIR', str(tmp_path_factory.mktemp('ros_log')))
         patch.delenv('ROS_LOCALHOST_ONLY', raising=False)
-        yield number
+        yield number, holder
+
+
+@pytest.fixture(scope='session')
+def domain(claim):
+    """Give the number of the claimed ROS domain."""
+    return claim[0]
 
 
 @pytest.fixture
@@ -46,8 +52,8 @@ def fast_graph(domain):
 
 
 @pytest.fixture
-def processes(domain, tmp_path):
+def processes(claim, tmp_path):
     """Start nodes as processes; those that are left at the end are killed."""
-    processes = Processes(domain, tmp_path)
+    processes = Processes(*claim, tmp_path)
     yield processes
     processes.close()

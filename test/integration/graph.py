@@ -175,7 +175,7 @@ class Graph:
 class Process:
     """A node as a process of its own, with its output in two files."""
 
-    def __init__(self, node, words, environment, folder, shell=''):
+    def __init__(self, node, words, environment, folder, holder, shell=''):
         self.node = node
         self.log = folder / f'{node}.err'
         self.printed = folder / f'{node}.out'
@@ -185,7 +185,8 @@ class Process:
         with open(self.log, 'wb') as errors, open(self.printed, 'wb') as output:
             self._popen = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=output,
                                            stderr=errors, env=environment,
-                                           start_new_session=True)
+                                           start_new_session=True,
+                                           pass_fds=[holder.fileno()])
 
     def errors(self):
         return self.log.read_text('utf-8', 'replace')
@@ -218,10 +219,10 @@ class Process:
 
 
 class Processes:
-    """Nodes as processes on the tests' domain."""
+    """Nodes as processes on the tests' domain, which stays claimed as long as one of them runs."""
 
-    def __init__(self, domain, folder):
-        self._folder = folder
+    def __init__(self, domain, holder, folder):
+        self._holder, self._folder = holder, folder
         self._all = []
         root = str(Path(quad_ident_ros.__file__).resolve().parents[1])
         path = os.pathsep.join(filter(None, [root, os.environ.get('PYTHONPATH', '')]))
@@ -236,7 +237,8 @@ class Processes:
     def run(self, node, *words, shell='', **environment):
         folder = self._folder / f'process_{len(self._all)}'
         folder.mkdir()
-        process = Process(node, words, {**self.environment, **environment}, folder, shell)
+        process = Process(node, words, {**self.environment, **environment}, folder,
+                          self._holder, shell)
         self._all.append(process)
         return process
 

@@ -4,14 +4,16 @@
 
 import os
 import signal
+import subprocess
 import time
 
-from graph import DEADLINE, ENDLESS, flights, Processes, write_experiment
+from graph import DEADLINE, ENDLESS, flights, write_experiment
 import pytest
 from std_msgs.msg import Float64MultiArray, String
 import yaml
 
 from quad_ident_ros.nodes import identifier, recorder, simulator
+from quad_ident_ros.nodes.domain import claim_domain
 from quad_ident_ros.nodes.messages import record_message
 from quad_ident_ros.nodes.qos import latched
 
@@ -181,14 +183,25 @@ def test_a_killed_simulator_starts_again(graph, processes, tmp_path):
     assert data['methods']['ls']['outputs']['z']['K'] == pytest.approx(1 / 0.65, rel=1e-3)
 
 
-def test_a_child_that_cannot_write_its_log_folder_still_runs(graph, domain, tmp_path):
+def test_a_process_without_a_home_runs(graph, processes):
     """No HOME and no ROS_LOG_DIR, as in a container or a service."""
-    own = Processes(domain, tmp_path)
     for name in ('ROS_LOG_DIR', 'ROS_HOME', 'HOME'):
-        own.environment.pop(name, None)
+        processes.environment.pop(name, None)
+    process = processes.start('recorder')
+    await_nodes(graph, ['recorder'])
+    assert process.stop() == 0, process.errors()
+
+
+def test_a_domain_is_taken_as_long_as_a_node_lives_on_it():
+    """Even where whoever started the node was killed."""
+    number, holder = claim_domain()
+    child = subprocess.Popen(['sleep', '60'], pass_fds=[holder.fileno()])
     try:
-        process = own.start('recorder')
-        await_nodes(graph, ['recorder'])
-        assert process.stop() == 0, process.errors()
+        holder.close()
+        other, second = claim_domain()
+        second.close()
+        assert other != number
+        assert 1 <= number <= 100 and 1 <= other <= 100
     finally:
-        own.close()
+        child.kill()
+        child.wait()
