@@ -19,6 +19,8 @@ from quad_ident_ros.identify.space import find_space, literal_space, REFITTED, S
 from quad_ident_ros.identify.transfer import response, SecondOrder
 from quad_ident_ros.identify.uncertainty import standard_errors
 
+FIRST_SAMPLE = ('the level at rest is taken from the first sample, whose noise enters the fit: '
+                'an initial state that is free is estimated')
 OVERFLOW = 'no model was found that stays finite over the record'
 
 
@@ -57,11 +59,14 @@ def collect(records, settings):
         pairs, said = signals(record, trim=settings.trim, initial_state=settings.initial_state)
         found.update({pair.output: pair for pair in pairs})
         remarks += said
+        if settings.initial_state == 'rest' and 'initial' not in record.info:
+            remarks.append(FIRST_SAMPLE)
     if not found:
         raise InputError('no input deviates from its trim in these data, so there is nothing to '
                          'identify: excite U1..U4, or state the trim (hover: the '
                          'weight on U1)')
-    return {name: found[name] for name in OUTPUTS if name in found}, remarks
+    return ({name: found[name] for name in OUTPUTS if name in found},
+            list(dict.fromkeys(remarks)))
 
 
 def identify(records, settings=None, *, on_progress=lambda method, output, share: None):

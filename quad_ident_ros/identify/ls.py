@@ -58,11 +58,15 @@ def _fit_of(signal, model):
 
 
 def thinnings(signal):
-    """Return factors by which a record can be thinned with a held input, 1 to N / THINNED."""
+    """Return factors, from large to 1, by which a record can be thinned with a held input."""
     longest = max(1, (len(signal.u) - 1) // THINNED)
     changes = np.flatnonzero(np.diff(signal.u[:-1])) + 1
-    factors = {longest, *(longest // 2 ** k for k in range(1, longest.bit_length()))}
-    return sorted(factor for factor in factors if not (changes % factor).any())
+    factors, wanted = [], longest
+    for factor in range(longest, 0, -1):
+        if factor <= wanted and not (changes % factor).any():
+            factors.append(factor)
+            wanted = factor // 2
+    return factors if factors[-1] == 1 else [*factors, 1]
 
 
 def regression(u, y):

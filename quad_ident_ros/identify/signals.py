@@ -66,14 +66,7 @@ def signals(record, *, trim=None, outputs=None, initial_state='auto'):
         remarks.append('the record says no trim: inputs count from their first sample')
     deviation = inputs - np.asarray(trim, float)
     known = record.info.get('initial', {}) if at_rest else {}
-    # At rest, all samples up to the first excited one, which acts after it, show the level.
-    still = 1
-    if at_rest:
-        still += int(np.argmax((np.abs(deviation) > 0).any(axis=1)))
-        if not known and still == 1:
-            remarks.append('the level at rest is taken from one sample, whose noise enters the '
-                           'fit; an initial state that is free is estimated')
-    start = [known.get(name, measured[:still, i].mean()) for i, name in enumerate(OUTPUTS)]
+    start = [known.get(name, measured[0, i]) for i, name in enumerate(OUTPUTS)]
     wanted = outputs or record.info.get('outputs') or OUTPUTS
     found = []
     for i, name in enumerate(OUTPUTS):

@@ -86,7 +86,7 @@ def find_space(objective, poles='auto', pole_bounds=None, gain_bounds=None):
     """
     for name, bounds in (('pole_bounds', pole_bounds), ('gain_bounds', gain_bounds)):
         if bounds is not None and not (np.isfinite(bounds).all() and bounds[0] < bounds[1]):
-            raise InputError(f'{name}: expected two finite numbers, the lower first, got '
+            raise InputError(f'{name}: the lower bound must be below the upper, both finite, got '
                              f'[{bounds[0]:g}, {bounds[1]:g}]')
     penalty = COMPLEX_PENALTY[poles]
     duration = objective.signal.t[-1] + objective.signal.period
