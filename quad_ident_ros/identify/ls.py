@@ -91,7 +91,7 @@ def estimate(u, y, period):
     solution = np.linalg.lstsq(matrix / scale, target, rcond=None)[0] / scale
     root_sum, root_product = solution[:2]
     b0, b1 = (0.0, solution[2]) if len(solution) == 3 else solution[2:]
-    return Discrete(root_sum, root_sum ** 2 - 4 * root_product, b0, b1, period)
+    return Discrete.from_steps(root_sum, root_product, b0, b1, period)
 
 
 def printed_estimate(u, y, period):

@@ -142,11 +142,13 @@ class Discrete:
     """
     y(k+2) = -a0 y(k) - a1 y(k+1) + b0 u(k) + b1 u(k+1), eq. (31), at a sample period in s.
 
-    Kept are the sum s and the squared difference d of 1 - z over the two roots z, not a0 and a1:
-    near z = 1, where fast sampling puts every root, a0 and a1 have lost the digits that the way
-    back needs.
+    Beside a0 and a1, the product and minus the sum of the roots z, it keeps the sum of 1 - z and
+    the squared difference of the roots: near z = 1, where fast sampling puts them, a0 and a1 have
+    lost the digits that the way back needs, and near z = 0 the others have.
     """
 
+    a0: float
+    a1: float
     root_sum: float
     root_difference: float
     b0: float
@@ -163,17 +165,13 @@ class Discrete:
         difference = a1 * a1 - 4.0 * a0
         if abs(difference) < 8 * np.finfo(float).eps * a1 * a1:
             difference = 0.0
-        return cls(2.0 + a1, difference, b0, b1, period)
+        return cls(a0, a1, 2.0 + a1, difference, b0, b1, period)
 
-    @property
-    def a0(self):
-        """Product of the roots."""
-        return ((2.0 - self.root_sum) ** 2 - self.root_difference) / 4.0
-
-    @property
-    def a1(self):
-        """Minus the sum of the roots."""
-        return self.root_sum - 2.0
+    @classmethod
+    def from_steps(cls, root_sum, root_product, b0, b1, period):
+        """Return the discrete model whose roots z have these sum and product of 1 - z."""
+        return cls(1.0 - root_sum + root_product, root_sum - 2.0, root_sum,
+                   root_sum ** 2 - 4.0 * root_product, b0, b1, period)
 
 
 def to_discrete(model, period):
@@ -190,13 +188,15 @@ def to_discrete(model, period):
         # s = 2 (1 - e cos) without the cancellation at small angles.
         root_sum = 2.0 * (-math.expm1(-mean * period) + 2.0 * decay * half_sine ** 2)
         difference = -(2.0 * decay * math.sin(turn)) ** 2
+        a1 = -2.0 * decay * math.cos(turn)
     else:
         root_sum = -math.expm1(-model.a * period) - math.expm1(-model.b * period)
         difference = (math.exp(-model.b * period)
                       * math.expm1((model.b - model.a) * period)) ** 2
+        a1 = -math.exp(-model.a * period) - math.exp(-model.b * period)
     _, p12, _, p22, g1, g2 = zoh(model.c1, model.c0, period)
-    return Discrete(root_sum, difference, model.gain * (p12 * g2 - p22 * g1), model.gain * g1,
-                    period)
+    return Discrete(math.exp(-model.c1 * period), a1, root_sum, difference,
+                    model.gain * (p12 * g2 - p22 * g1), model.gain * g1, period)
 
 
 def to_continuous(discrete):
@@ -208,17 +208,24 @@ def to_continuous(discrete):
     """
     s, d, period = discrete.root_sum, discrete.root_difference, discrete.period
     if d < 0:
-        # -ln(z)/T of z = 1 - (s + j sqrt(-d))/2, its real part from |z|^2 - 1 for slow poles.
-        a = complex(-0.5 * math.log1p((s * s - d) / 4 - s),
-                    math.atan2(math.sqrt(-d), 2.0 - s)) / period
+        # ln z = ln |z| + j arg z, where |z|^2 is a0.
+        a = complex(-0.5 * _log_root(discrete.a0, s - (s * s - d) / 4),
+                    math.atan2(math.sqrt(-d), -discrete.a1)) / period
         b = a.conjugate()
     else:
-        slow, fast = (s - math.sqrt(d)) / 2, (s + math.sqrt(d)) / 2
-        if fast >= 1.0:
+        slow = (math.sqrt(d) - discrete.a1) / 2
+        if slow <= 0.0 or discrete.a0 <= 0.0:
             return None
-        a, b = -math.log1p(-fast) / period, -math.log1p(-slow) / period
+        fast = discrete.a0 / slow
+        b = -_log_root(slow, (s - math.sqrt(d)) / 2) / period
+        a = -_log_root(fast, (s + math.sqrt(d)) / 2) / period
     gain = (discrete.b0 + discrete.b1) / (_hold(a, period) * _hold(b, period)).real
     return SecondOrder(gain, a, b)
+
+
+def _log_root(root, step):
+    """Return the logarithm of a root z, known as z and as 1 - z, from the sharper of the two."""
+    return math.log1p(-step) if step < 0.5 else math.log(root)
 
 
 def _hold(c, period):

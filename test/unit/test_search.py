@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from quad_ident_ros.identify.cs import abandon
 from quad_ident_ros.identify.methods import METHODS
 from quad_ident_ros.identify.search import Cancelled, Search, SwarmSettings
 from quad_ident_ros.identify.space import SIZE
@@ -209,15 +210,26 @@ def test_printed_replacement_moves_the_worst_quarter_each_time():
         assert any(bowl(after)[k] > bowl(before)[k] for k in worst)
 
 
-@pytest.mark.parametrize('abandon', [0.25, 0.6])
+@pytest.mark.parametrize('replacement', ['standard', 'printed'])
+def test_replaced_eggs_have_the_costs_of_where_they_are(replacement):
+    found = Search(bowl, 2, replace(PAPER, replacement=replacement), np.random.default_rng(0))
+    nests, costs = found.start()
+    for _ in range(5):
+        before = nests.copy()
+        abandon(found, nests, costs)
+        assert (nests != before).any()
+        assert (costs == bowl(nests)).all()
+
+
+@pytest.mark.parametrize('share', [0.25, 0.6])
 @pytest.mark.parametrize('name', ['cs', 'pso_cs'])
-def test_a_host_finds_the_share_pa_of_the_eggs_and_keeps_the_better(name, abandon):
+def test_a_host_finds_the_share_pa_of_the_eggs_and_keeps_the_better(name, share):
     cost = Recorder(bowl)
-    search(name, cost, dimension=3, abandon=abandon, generations=2)
+    search(name, cost, dimension=3, abandon=share, generations=2)
     start, flown, replaced, again, _ = cost.batches
     nests = np.where((bowl(flown) < bowl(start))[:, None], flown, start)
     # Of 600 coordinates, 2 % one sigma; a nest paired with itself does not move.
-    assert np.mean(replaced != nests) == pytest.approx(abandon, abs=0.08)
+    assert np.mean(replaced != nests) == pytest.approx(share, abs=0.08)
     kept = np.where((bowl(replaced) < bowl(nests))[:, None], replaced, nests)
     if name == 'cs':    # the next flight begins there: half of the steps are below 0.1 of 200
         assert np.median(np.abs(again - kept)) < 0.3

@@ -109,6 +109,20 @@ def test_a_perfect_fit_has_errors_of_rounding_only():
     assert all(0 <= value < 1e-9 for value in standard_errors(signal, fitted).values())
 
 
+@pytest.mark.parametrize('share', [0.98, 1.01, 1.05])
+def test_a_fit_beside_the_optimum_says_how_far(share):
+    # Without noise all that is wrong with a fit is that its search stopped short: one step of
+    # Gauss and Newton tells, to a fifth, how far.
+    truth = SYSTEMS['real']
+    signal = measured(truth, 0.0, 0)
+    fitted = Objective(signal).fit(share * truth.c1 / 2, (truth.a - truth.b) / 2)
+    said = standard_errors(signal, fitted)
+    for key, true, found in (('K', truth.gain, fitted.model.gain),
+                             ('c1', truth.c1, fitted.model.c1),
+                             ('c0', truth.c0, fitted.model.c0)):
+        assert said[key] == pytest.approx(abs(found - true), rel=0.2), key
+
+
 def test_equal_poles_have_errors_of_their_sum_and_product_only():
     truth = SecondOrder.from_poles(3.5, 0.8, 0.8)
     signal = measured(truth, 0.01, 0)
