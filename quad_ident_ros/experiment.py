@@ -101,7 +101,8 @@ def load_experiment(name_or_path, vehicle=None):
     runs = data['runs']
     if not isinstance(runs, list) or not runs:
         raise InputError(f'{where}: runs: expected a list of runs')
-    runs = tuple(_run(f'{where}: runs[{i}]', run, period) for i, run in enumerate(runs))
+    runs = tuple(_run(f'{where}: runs[{i}]', run, period, path.parent)
+                 for i, run in enumerate(runs))
     if len({run.name for run in runs}) != len(runs):
         raise InputError(f'{where}: runs: two runs have the same name')
     return Experiment(
@@ -116,7 +117,7 @@ def load_experiment(name_or_path, vehicle=None):
         step=step, noise=check_noise(f'{where}: noise', data.get('noise', {})))
 
 
-def _run(where, data, period):
+def _run(where, data, period, folder):
     schema.check_keys(where, data, ('name', 'duration', 'inputs', 'outputs'),
                       ('name', 'duration', 'inputs', 'outputs'))
     schema.check_keys(f'{where}: inputs', data['inputs'], INPUTS)
@@ -127,8 +128,15 @@ def _run(where, data, period):
     if not isinstance(data['outputs'], list) or not data['outputs']:
         raise InputError(f'{where}: outputs: expected a list of {", ".join(OUTPUTS)}')
     outputs = tuple(schema.choice(f'{where}: outputs', name, OUTPUTS) for name in data['outputs'])
-    return Run(schema.name(f'{where}: name', data['name']), duration, dict(data['inputs']),
-               outputs)
+    inputs = {name: _located(spec, folder) for name, spec in data['inputs'].items()}
+    return Run(schema.name(f'{where}: name', data['name']), duration, inputs, outputs)
+
+
+def _located(spec, folder):
+    """Return a spec whose relative file counts from the folder of the experiment file."""
+    if isinstance(spec, dict) and isinstance(spec.get('file'), str):
+        return {**spec, 'file': str(folder / spec['file'])}
+    return spec
 
 
 def check_noise(where, noise):

@@ -21,6 +21,7 @@ from quad_ident_ros.identify.uncertainty import standard_errors
 
 FIRST_SAMPLE = ('the level at rest is taken from the first sample, whose noise enters the fit: '
                 'an initial state that is free is estimated')
+UNDETERMINED = 'these data do not determine K, a and b: the information matrix is singular'
 OVERFLOW = 'no model was found that stays finite over the record'
 
 
@@ -111,6 +112,8 @@ def identify(records, settings=None, *, on_progress=lambda method, output, share
 
 def _direct(method, objective, space, output):
     fitted, remarks = method.direct(objective, space)
+    if np.isfinite(objective.gain_bounds).all():
+        remarks = [*remarks, 'bounds are for the searches: this method knows none']
     return _finish(objective.signal, output, fitted, 0, remarks)
 
 
@@ -173,6 +176,8 @@ def _finish(signal, output, fitted, evaluations, remarks=()):
         return OutputFit(output, None, (0.0, 0.0), None, np.inf, dict.fromkeys(UNITS),
                          dict.fromkeys(('K', 'a', 'b', 'c1', 'c0')), evaluations, tuple(remarks))
     deviations = standard_errors(signal, fitted)
+    if deviations['K'] is None:
+        remarks = (*remarks, UNDETERMINED)
     if model.form == 'real' and deviations['a'] and deviations['a'] > model.a - model.b:
         remarks = (*remarks, 'a and b are closer than their errors: the data determine only '
                              f'a + b = {model.c1:.4g} ± {deviations["c1"]:.1g} and '
