@@ -42,7 +42,7 @@ def least_squares_fit(objective, space):
         return None, ['the estimated roots belong to no continuous model that stays finite over '
                       'the record']
     fitted, factor = min(candidates, key=lambda entry: entry[0].cost)
-    remarks = [f'thinned to every {factor}th sample'] if factor > 1 else []
+    remarks = [f'thinned to one sample in {factor}'] if factor > 1 else []
     settled = space.settle(objective, fitted)
     return settled, remarks if settled is fitted else [*remarks, REFITTED]
 

@@ -38,8 +38,8 @@ def table_of(message):
                      for i in range(rows.size)])
 
 
-def by_library(noise=None, **settings):
-    experiment = load_experiment('hover_single_axis')
+def by_library(noise=None, vehicle=None, **settings):
+    experiment = load_experiment('hover_single_axis', vehicle)
     records = [fly(experiment, run, noise=noise, seed=SEED).record for run in experiment.runs]
     return identify(records, Settings(seed=SEED, **settings))
 
@@ -159,9 +159,10 @@ def test_two_vehicles_at_once_do_not_mix(graph):
         assert {info['vehicle'] for info in data['records']} == {vehicle}
         assert data['samples'] == dict.fromkeys(OUTPUTS, 501)
         assert data['dropped_samples'] == 0
+        expected = by_library(vehicle=vehicle, methods=('ls',)).methods['ls']
+        np.testing.assert_allclose(tables[name], parameter_table(expected), rtol=1e-6, atol=1e-8)
     # They differ in Izz by a factor of ten, and in nothing else.
-    assert tables['red'][2, 0] == pytest.approx(1208.8, rel=0.01)
-    assert tables['blue'][2, 0] == pytest.approx(89.24, rel=0.02)
+    assert tables['red'][2, 0] > 5 * tables['blue'][2, 0]
     np.testing.assert_allclose(tables['red'][[0, 1, 3]], tables['blue'][[0, 1, 3]], rtol=1e-6,
                                atol=1e-8)
 
@@ -232,7 +233,7 @@ def test_lost_messages_are_told_and_do_not_matter(graph, lossy):
     data = json.data()[0]
     assert data['dropped_samples'] == lost
     assert data['samples'] == dict.fromkeys(OUTPUTS, 501)    # filled in
-    assert len(data['remarks']) == 4 and 'filled by interpolation' in data['remarks'][0]
+    assert [remark for remark in data['remarks'] if '50 samples filled by' in remark]
     whole = by_library(methods=('ls',)).methods['ls']
     table, expected = table_of(best[0]), parameter_table(whole)
     np.testing.assert_allclose(table[:, 0], expected[:, 0], rtol=0.02)

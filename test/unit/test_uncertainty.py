@@ -111,8 +111,8 @@ def test_a_perfect_fit_has_errors_of_rounding_only():
 
 @pytest.mark.parametrize('share', [0.98, 1.01, 1.05])
 def test_a_fit_beside_the_optimum_says_how_far(share):
-    # Without noise all that is wrong with a fit is that its search stopped short: one step of
-    # Gauss and Newton tells, to a fifth, how far.
+    # Without noise all that is wrong with a fit is that its search stopped short. One step of
+    # Gauss and Newton tells how far, and the misfit counts as noise beside it: 1 to 1.5 times.
     truth = SYSTEMS['real']
     signal = measured(truth, 0.0, 0)
     fitted = Objective(signal).fit(share * truth.c1 / 2, (truth.a - truth.b) / 2)
@@ -120,7 +120,7 @@ def test_a_fit_beside_the_optimum_says_how_far(share):
     for key, true, found in (('K', truth.gain, fitted.model.gain),
                              ('c1', truth.c1, fitted.model.c1),
                              ('c0', truth.c0, fitted.model.c0)):
-        assert said[key] == pytest.approx(abs(found - true), rel=0.2), key
+        assert 0.9 < said[key] / abs(found - true) < 1.6, key
 
 
 def test_equal_poles_have_errors_of_their_sum_and_product_only():
