@@ -4,7 +4,9 @@
 
 import sys
 
-from quad_ident_ros.cli.main import main
-
 if __name__ == '__main__':
-    sys.exit(main())
+    try:
+        from quad_ident_ros.cli.main import main
+        sys.exit(main())
+    except KeyboardInterrupt:   # while the libraries are still being loaded
+        sys.exit(130)

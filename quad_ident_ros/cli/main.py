@@ -40,15 +40,23 @@ def main(args=None):
     if options.command is None:
         top.print_help()
         return 0
+    # A screen that knows no plus-minus sign gets a question mark, not an end of the program.
+    for stream in (sys.stdout, sys.stderr):
+        if hasattr(stream, 'reconfigure'):
+            stream.reconfigure(errors='replace')
     try:
         return options.run(options) or 0
     except InputError as error:
         print(f'quad_ident {options.command}: error: {error}', file=sys.stderr)
         return 2
+    except OSError as error:
+        if isinstance(error, BrokenPipeError):
+            # Whoever read our output has enough of it; say nothing when Python closes it.
+            sys.stdout = None
+            return 141
+        print(f'quad_ident {options.command}: error: {error.filename or "output"}: '
+              f'{error.strerror}', file=sys.stderr)
+        return 2
     except KeyboardInterrupt:
         print(f'quad_ident {options.command}: interrupted', file=sys.stderr)
         return 130
-    except BrokenPipeError:
-        # Whoever read our output has enough of it; say nothing when Python closes it.
-        sys.stdout = None
-        return 141

@@ -50,6 +50,10 @@ class RecordBuffer:
         if self._run is not None and self._run.start_ns == notice.start_ns:
             if notice == self._run:
                 return []
+            if notice.cuts_short(self._run):
+                self._run = notice
+                over = bool(self._rows) and self._rows[-1][0] >= notice.stop_ns
+                return self._end_run() if over else []
             # The same time again: the clock begins anew, and what is here is from before.
             done = self.complete(run_over=True)
             self._run, self._accounted = notice, 0
@@ -70,11 +74,15 @@ class RecordBuffer:
                 self._run, self._accounted = run, 0
             self._rows.append(row)
             if run is not None and stamp >= run.stop_ns:
-                done += self.complete(run_over=True)
-                self._runs.remove(run)
-                self._run, self._accounted = None, 0
+                done += self._end_run()
             elif self._full():
                 done += self.complete(self.limits.overlap)
+        return done
+
+    def _end_run(self):
+        done = self.complete(run_over=True)
+        self._runs.remove(self._run)
+        self._run, self._accounted = None, 0
         return done
 
     @property

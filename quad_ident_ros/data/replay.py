@@ -3,6 +3,7 @@
 """Flight records from a bag that the recorder, or `ros2 bag record`, has written."""
 
 from contextlib import suppress
+from pathlib import Path
 
 from quad_ident_ros.data.bag import read_bag_messages
 from quad_ident_ros.data.buffer import Limits, RecordBuffer
@@ -36,6 +37,8 @@ def read_bag(path):
     Raises InputError for a path that is no bag, or a bag with none of the topics of a flight or
     with those of several vehicles.
     """
+    if (Path(path) / 'bag' / 'metadata.yaml').exists():   # a recording of the recorder
+        path = Path(path) / 'bag'
     messages, spaces = [], set()
     for topic, _, message in read_bag_messages(path, _FlightTopics()):
         space, _, name = topic.rpartition('/')

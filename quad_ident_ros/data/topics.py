@@ -125,6 +125,11 @@ class RunNotice:
                              'with start_ns, stop_ns, samples and info') from None
         return notice
 
+    def cuts_short(self, other):
+        """Tell whether this is the other run, ended before its time."""
+        return (self.info.get('session') == other.info.get('session')
+                and self.start_ns == other.start_ns and self.stop_ns < other.stop_ns)
+
 
 def run_at(runs, stamp):
     """Return the notice of the run that a stamp (ns) belongs to, or None."""

@@ -21,6 +21,7 @@ from quad_ident_ros.identify.uncertainty import standard_errors
 
 FIRST_SAMPLE = ('the level at rest is taken from the first sample, whose noise enters the fit: '
                 'an initial state that is free is estimated')
+POOR = 50.0   # fit %
 UNDETERMINED = 'these data do not determine K, a and b: the information matrix is singular'
 OVERFLOW = 'no model was found that stays finite over the record'
 
@@ -64,8 +65,8 @@ def collect(records, settings):
             remarks.append(FIRST_SAMPLE)
     if not found:
         raise InputError('no input deviates from its trim in these data, so there is nothing to '
-                         'identify: excite U1..U4, or state the trim (hover: the '
-                         'weight on U1)')
+                         'identify: excite U1..U4, or state the trim (the option '
+                         '--trim hover, or the parameter trim)')
     return ({name: found[name] for name in OUTPUTS if name in found},
             list(dict.fromkeys(remarks)))
 
@@ -182,8 +183,12 @@ def _finish(signal, output, fitted, evaluations, remarks=()):
         remarks = (*remarks, 'a and b are closer than their errors: the data determine only '
                              f'a + b = {model.c1:.4g} ± {deviations["c1"]:.1g} and '
                              f'a b = {model.c0:.4g} ± {deviations["c0"]:.1g}')
+    found = errors(signal.t, signal.y, fit)
+    if not found['fit_percent'] > POOR:
+        remarks = (*remarks, 'the model explains little of the response (fit '
+                             f'{found["fit_percent"]:.0f} %)')
     return OutputFit(output, model, fitted.initial, fit, fitted.cost,
-                     errors(signal.t, signal.y, fit), deviations, evaluations, tuple(remarks))
+                     found, deviations, evaluations, tuple(remarks))
 
 
 def _described(settings, spaces):

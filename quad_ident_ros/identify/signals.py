@@ -51,10 +51,12 @@ def signals(record, *, trim=None, outputs=None, initial_state='auto'):
     """
     if len(record) < FEWEST:
         raise InputError(f'the record has {len(record)} samples; at least {FEWEST} are needed')
-    inputs = record.inputs()
-    measured = np.column_stack([record.euler(), record.stack('pz')])
+    inputs, measured, there = _columns(record)
     _check_size(record.t, inputs, measured)
     t, inputs, measured, remarks = _even_grid(record.t, inputs, measured)
+    if np.abs(np.diff(measured[:, :3], axis=0)).max() > np.pi:
+        measured[:, :3] = np.unwrap(measured[:, :3], axis=0)
+        remarks.append('the angles jump by more than half a turn: they were unwrapped')
     if record.info.get('truncated'):
         remarks.append('the last line of the file has no line end and was left out')
     at_rest = bool(record.info.get('starts_at_rest')) if initial_state == 'auto' \
@@ -69,12 +71,17 @@ def signals(record, *, trim=None, outputs=None, initial_state='auto'):
     start = [known.get(name, measured[0, i]) for i, name in enumerate(OUTPUTS)]
     wanted = outputs or record.info.get('outputs') or OUTPUTS
     found = []
-    for i, name in enumerate(OUTPUTS):
+    for name in there:
+        i = OUTPUTS.index(name)
         u = deviation[:, int(INPUT_OF[name][1]) - 1]
         # The last input acts after the last sample, so it excites nothing.
-        if name in wanted and np.abs(u[:-1]).max() > 1e-9 * (1 + np.abs(trim).max()):
+        if name not in wanted or np.abs(u[:-1]).max() <= 1e-9 * (1 + np.abs(trim).max()):
+            continue
+        if np.ptp(measured[:, i]) > 0:
             found.append(Signal(name, t - t[0], np.ascontiguousarray(u),
                                 measured[:, i] - start[i], float(t[1] - t[0]), at_rest))
+        else:
+            remarks.append(f'{name} does not move: there is nothing to identify in it')
     return found, remarks
 
 
@@ -89,6 +96,27 @@ def _check_size(t, inputs, measured):
         raise InputError(f'the samples are {steps.min():.3g} to {steps.max():.3g} s apart; '
                          f'expected {1 / LARGEST_PERIOD:g} to {LARGEST_PERIOD:g} s: check the '
                          'unit of t')
+
+
+def _columns(record):
+    """
+    Return inputs (N, 4), outputs (N, 4), and the names of the outputs that can be identified.
+
+    Those that are not recorded, or whose input is not, are zero. Raises InputError where none is.
+    """
+    recorded = {f'U{i}': record.has(f'u{i}') for i in range(1, 5)}
+    euler = record.has('phi', 'theta', 'psi') or record.has('qw', 'qx', 'qy', 'qz')
+    there = [name for name in OUTPUTS
+             if recorded[INPUT_OF[name]] and (record.has('pz') if name == 'z' else euler)]
+    if not there:
+        record.inputs()
+        record.euler()
+        raise InputError('the record has no output together with its input: roll needs u2, pitch '
+                         'u3, yaw u4, and altitude pz with u1')
+    none = np.zeros(len(record))
+    inputs = np.column_stack([record.columns.get(f'u{i}', none) for i in range(1, 5)])
+    angles = record.euler() if euler else np.zeros((len(record), 3))
+    return inputs, np.column_stack([angles, record.columns.get('pz', none)]), there
 
 
 def _even_grid(t, inputs, measured):

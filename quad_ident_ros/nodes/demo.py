@@ -22,6 +22,7 @@ from quad_ident_ros.identify.identify import collect, Settings
 from quad_ident_ros.identify.result import from_data, Identification
 from quad_ident_ros.nodes.domain import claim_domain
 from quad_ident_ros.nodes.messages import record_from_message
+from quad_ident_ros.nodes.process import PARENT
 from quad_ident_ros.nodes.qos import latched
 
 PATIENCE = 60.0      # s without any news after which the demo gives up
@@ -60,7 +61,8 @@ def run_demo(options, on_progress):
         raise InputError(f'{output}: cannot be written: {error.strerror}') from None
     domain, holder = claim_domain()
     environment = {
-        **os.environ, 'ROS_DOMAIN_ID': str(domain), 'ROS_LOG_DIR': str(output / 'log'),
+        **os.environ, PARENT: str(os.getpid()), 'ROS_DOMAIN_ID': str(domain),
+        'ROS_LOG_DIR': str(output / 'log'),
         'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST',
         'PYTHONPATH': os.pathsep.join(
             [str(Path(__file__).resolve().parents[2]), os.environ.get('PYTHONPATH', '')]).strip(
@@ -89,7 +91,8 @@ def run_demo(options, on_progress):
         raise InputError(f'{failed[0]} ended with exit code {codes[failed[0]]}: '
                          f'{_last_line(output, failed[0])}')
     pairs, _ = collect(watcher.records, Settings())
-    return Outcome(from_data(watcher.result, pairs), watcher.statistics['recording'],
+    recording = Path(options.output) / Path(watcher.statistics['recording']).name
+    return Outcome(from_data(watcher.result, pairs), str(recording),
                    time.monotonic() - started, watcher.statistics['joined'],
                    watcher.statistics['missing'])
 

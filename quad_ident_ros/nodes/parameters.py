@@ -60,6 +60,8 @@ class ParameterSpec:
     def check(self, value):
         """Raise InputError where the value is not allowed."""
         where = f'parameter {self.name}'
+        if value is None:
+            raise InputError(f'{where}: expected a value, got an empty list or nothing')
         if isinstance(self.default, float | int) and not isinstance(self.default, bool):
             low, high = self.limits or (-float('inf'), float('inf'))
             schema.number(where, value, low, high)

@@ -9,6 +9,7 @@ import sys
 import tempfile
 
 import rclpy
+from rclpy.exceptions import ParameterException
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import remove_ros_args
@@ -20,6 +21,8 @@ try:
     from rclpy.experimental.events_executor import EventsExecutor as FastExecutor
 except ImportError:   # early releases of Jazzy
     FastExecutor = SingleThreadedExecutor
+
+PARENT = 'QUAD_IDENT_PARENT'   # a process whose death ends the node
 
 
 def run(node_class, help_page, args=None, executor_class=SingleThreadedExecutor,
@@ -69,11 +72,14 @@ def _run(node_class, args, executor_class):
         raise InputError(f'the ROS arguments cannot be used: {_first_line(error)}') from None
     node = executor = None
     try:
-        node = node_class()
+        try:
+            node = node_class()
+        except ParameterException as error:
+            raise InputError(f'a parameter cannot be used: {_first_line(error)}') from None
         _check_parameter_files(args, node)
         executor = executor_class()
         executor.add_node(node)
-        while not stop:
+        while not stop and _wanted():
             executor.spin_once(timeout_sec=0.1)
     finally:
         if node is not None:
@@ -87,6 +93,12 @@ def _run(node_class, args, executor_class):
         for number, handler in previous.items():
             signal.signal(number, handler)
     return 0
+
+
+def _wanted():
+    """Return whether whoever started the node, and said so, still lives."""
+    parent = os.environ.get(PARENT)
+    return parent is None or parent == str(os.getppid())
 
 
 def _ensure_log_folder():

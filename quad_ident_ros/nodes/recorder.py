@@ -38,6 +38,7 @@ ACKNOWLEDGED = 10    # rows after which the publishers are told how far the join
 GONE = 2.0           # s after the last message when nothing more is to come, and
 IDLE = 15.0          # s when something may, after which what is incomplete is given up; lost
                      # messages are sent again every 3 s
+NO_ROW = 2.0         # s with messages but without a joined row, after which that is said
 KEPT_RECORDS = 16    # records that a late identifier still gets
 
 SPECS = (
@@ -87,10 +88,13 @@ class Recorder(Node):
             parameters['window_samples'], parameters['window_seconds'], parameters['overlap']))
         self._records = 0
         self._last_message = None
+        self._last_row = None
+        self._heard = dict.fromkeys(self._topics, 0)
         self._announced = None
         self._steady = Clock(clock_type=ClockType.STEADY_TIME)
         self._recording = None
         self._disk_error = None
+        self._trouble = None
         self._record_publisher = self.create_publisher(Float64MultiArray, 'record',
                                                        latched(KEPT_RECORDS))
         self._statistics = self.create_publisher(String, '~/statistics', latched())
@@ -181,6 +185,7 @@ class Recorder(Node):
 
     def _keep(self, rows):
         if rows:
+            self._last_row = self._steady.now().nanoseconds
             self._unacknowledged += len(rows)
             if self._unacknowledged >= ACKNOWLEDGED:
                 self._unacknowledged = 0
@@ -208,7 +213,7 @@ class Recorder(Node):
         self._publish(records)
         response.success = bool(records)
         response.message = (f'published a record of {len(records[0])} samples' if records
-                            else 'there are fewer than two samples to publish')
+                            else self._trouble or 'there are fewer than two samples to publish')
         return response
 
     def _on_flush_timer(self):
@@ -258,7 +263,28 @@ class Recorder(Node):
                 except OSError:
                     pass   # it has been said
 
+    def _look_for_trouble(self):
+        """Say why no rows come while messages do."""
+        received = self.counts.received
+        news = {name: received[name] - self._heard[name] for name in self._topics}
+        self._heard = dict(received)
+        now = self._steady.now().nanoseconds
+        if self._last_row is None and any(news.values()):
+            self._last_row = now   # the first messages: rows may take their time from here
+        if not any(news.values()):
+            return
+        silence = (now - self._last_row) * 1e-9
+        if silence < NO_ROW:
+            self._trouble = None
+            return
+        silent = [name for name in self._topics if not news[name]]
+        why = (f'nothing comes on {", ".join(silent)} (the parameter topics leaves topics out)'
+               if silent else 'the stamps of the topics are never equal')
+        self._trouble = f'no sample has been joined for {silence:.0f} s: {why}'
+        self.get_logger().warning(self._trouble, throttle_duration_sec=10.0)
+
     def _report(self):
+        self._look_for_trouble()
         folder = str(self._recording.folder) if self._recording else None
         data = {**vars(self.counts), 'records': self._records, 'buffered': len(self._buffer),
                 'recording': folder, 'disk_error': self._disk_error}
@@ -268,6 +294,8 @@ class Recorder(Node):
         if problems:
             level = WARN
             text += ', ' + ', '.join(f'{count} {name}' for name, count in problems.items())
+        if self._trouble:
+            level, text = WARN, self._trouble
         if self._disk_error:
             level, text = ERROR, self._disk_error
         self._diagnostics.publish(diagnostics_message(self, level, text, data))

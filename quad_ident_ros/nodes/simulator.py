@@ -109,6 +109,7 @@ class Simulator(Node):
         self._queue = []
         self._timer = None
         self._worker = None
+        self._notice = None
         self._epoch = 0
         self._session = 0
         self._waiting = None
@@ -120,6 +121,7 @@ class Simulator(Node):
         """Begin the experiment anew, with the parameters as they are now."""
         experiment = self._load(self._config.values())
         self._stop_timer()
+        self._cut_short()
         self._queue = list(experiment.runs)
         self._experiment = experiment
         self.done = False
@@ -135,6 +137,7 @@ class Simulator(Node):
     def close(self):
         """Stop publishing."""
         self._stop_timer()
+        self._cut_short()
 
     def _validate(self, values):
         self._load(values)
@@ -158,10 +161,22 @@ class Simulator(Node):
     def _on_stop(self, _, response):
         flying = self._timer is not None
         self._stop_timer()
+        self._cut_short()
         self.done = True
         response.success = True
         response.message = 'stopped' if flying else 'nothing was flying'
         return response
+
+    def _cut_short(self):
+        """Announce anew, as it was, a run that ends before its time."""
+        if self._notice is not None and self._sent:
+            notice = self._notice
+            info = {**notice.info, 'status': 'stopped', 'end_time': self._sent
+                    * self._experiment.period}
+            self._run_publisher.publish(String(data=RunNotice(
+                notice.start_ns, int(self._stamps[self._sent - 1]), self._sent, info).to_json()))
+            self.get_logger().info(f'{info["run"]}: stopped after {self._sent} samples')
+        self._notice = None
 
     def _stop_timer(self):
         if self._timer is not None:
@@ -181,6 +196,8 @@ class Simulator(Node):
         # A clock that comes from outside stands at zero until its first message.
         if settled and self._pace.now().nanoseconds > 0:
             self._begin()
+        elif settled:
+            self.get_logger().info('waiting for /clock', throttle_duration_sec=5.0)
 
     def _begin(self):
         # Simulated time goes on where an experiment before it ended: stamps never go back.
@@ -239,8 +256,9 @@ class Simulator(Node):
         info = {**flight.record.info, 'session': self._session, 'run_index': index,
                 'run_count': len(experiment.runs)}
         notice = RunNotice(int(self._stamps[0]), int(self._stamps[-1]), len(self._stamps), info)
+        self._notice = notice
         self._run_publisher.publish(String(data=notice.to_json()))
-        self.get_logger().info(f'{run.name}: {len(self._stamps)} samples, {flight.status}')
+        self.get_logger().info(f'{run.name}: flying {len(self._stamps)} samples')
 
     def _publish_due(self):
         due = len(self._stamps)
@@ -253,6 +271,7 @@ class Simulator(Node):
             if not self._publish_sample():
                 return
         if self._sent == len(self._stamps):
+            self._notice = None
             self._next_run()
 
     def _allowed(self):

@@ -23,6 +23,8 @@ def save_responses(identification, path, title):
 
     Raises InputError where the file cannot be written.
     """
+    if not Path(path).suffix:
+        raise InputError(f'{path}: the name of a picture ends in .png, .svg or .pdf')
     matplotlib.use('Agg')
     import matplotlib.pyplot as plt
 

@@ -79,10 +79,9 @@ def fits_of(system, inputs, poles):
 
 
 @pytest.mark.parametrize(('system', 'inputs', 'poles'), [
-    ('stable', 'step', 'auto'), ('stable', 'prbs', 'auto'), ('integrating', 'step', 'auto'),
+    ('stable', 'prbs', 'auto'), ('integrating', 'step', 'auto'),
     ('double_integrator', 'prbs', 'auto'), ('unstable', 'step', 'auto'),
-    ('unstable', 'recorded', 'auto'), ('equal', 'step', 'auto'), ('complex', 'step', 'any'),
-    ('complex', 'recorded', 'any')])
+    ('unstable', 'recorded', 'auto'), ('equal', 'step', 'auto'), ('complex', 'recorded', 'any')])
 @pytest.mark.parametrize('method', SWARMS)
 def test_known_truths_are_found_over_20_seeds(system, inputs, poles, method):
     truth = SYSTEMS[system]
