@@ -127,8 +127,9 @@ class RunNotice:
 
     def cuts_short(self, other):
         """Tell whether this is the other run, ended before its time."""
-        return (self.info.get('session') == other.info.get('session')
-                and self.start_ns == other.start_ns and self.stop_ns < other.stop_ns)
+        return (self.info.get('status') == 'stopped' and self.start_ns == other.start_ns
+                and self.info.get('session') == other.info.get('session')
+                and self.stop_ns < other.stop_ns)
 
 
 def run_at(runs, stamp):

@@ -109,8 +109,10 @@ def _columns(record):
     there = [name for name in OUTPUTS
              if recorded[INPUT_OF[name]] and (record.has('pz') if name == 'z' else euler)]
     if not there:
-        record.inputs()
-        record.euler()
+        if not any(recorded.values()):
+            record.inputs()
+        if not euler and not record.has('pz'):
+            record.euler()
         raise InputError('the record has no output together with its input: roll needs u2, pitch '
                          'u3, yaw u4, and altitude pz with u1')
     none = np.zeros(len(record))

@@ -115,12 +115,41 @@ def test_angles_come_from_the_quaternion_where_they_are_not_recorded():
     assert np.abs(of(found, 'psi').y - psi).max() < 1e-9
 
 
-@pytest.mark.parametrize('missing', ['u1', 'u3', 'pz', 'phi'])
-def test_a_missing_column_is_named(missing):
+def without(*missing):
     flight = record()
-    columns = {name: values for name, values in flight.columns.items() if name != missing}
-    with pytest.raises(InputError, match=missing if missing != 'phi' else 'no attitude'):
-        signals(FlightRecord(flight.t, columns, flight.info))
+    columns = {name: values for name, values in flight.columns.items() if name not in missing}
+    return FlightRecord(flight.t, columns, flight.info)
+
+
+@pytest.mark.parametrize(('missing', 'left_out'), [
+    ('u1', {'z'}), ('u3', {'theta'}), ('pz', {'z'}), ('phi', {'phi', 'theta', 'psi'})])
+def test_outputs_that_are_not_recorded_with_their_input_are_left_out(missing, left_out):
+    everything = {signal.output for signal in signals(record())[0]}
+    assert {signal.output for signal in signals(without(missing))[0]} == everything - left_out
+
+
+def test_a_record_without_any_output_and_its_input_is_refused():
+    with pytest.raises(InputError, match='no column u1'):
+        signals(without('u1', 'u2', 'u3', 'u4'))
+    with pytest.raises(InputError, match='no attitude'):
+        signals(without('phi', 'pz'))
+    with pytest.raises(InputError, match='no output together with its input'):
+        signals(without('u2', 'u3', 'u4', 'pz'))
+
+
+def test_wrapped_angles_are_unwrapped_and_that_is_said():
+    t = record().t
+    psi = 3.0 * t
+    plain, wrapped = record(psi=psi), record(psi=(psi + np.pi) % (2 * np.pi) - np.pi)
+    found, remarks = signals(wrapped)
+    np.testing.assert_allclose(of(found, 'psi').y, of(signals(plain)[0], 'psi').y, atol=1e-9)
+    assert any('unwrapped' in remark for remark in remarks)
+
+
+def test_an_output_that_does_not_move_is_left_out_and_named():
+    found, remarks = signals(record(phi=np.zeros(len(record().t))))
+    assert 'phi' not in {signal.output for signal in found}
+    assert any(remark.startswith('phi does not move') for remark in remarks)
 
 
 # The grid.
