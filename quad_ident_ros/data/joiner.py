@@ -125,6 +125,10 @@ class Joiner:
             return era, stamp
         if stamp > last:
             self._before[topic] = None
+        newest = max(reached for reached, _ in self._last.values())
+        if (newest, stamp) in self._pending and (era, stamp) not in self._pending:
+            # Its clock did not go back, but the others' did, to where it is.
+            era = newest
         return self._move(topic, (era, stamp))
 
     def _move(self, topic, key):

@@ -35,6 +35,7 @@ import quad_ident_ros
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.experiment import fly, load_experiment
 from quad_ident_ros.nodes.messages import record_from_message
+from quad_ident_ros.nodes.process import PARENT
 from quad_ident_ros.nodes.qos import latched, LOSSLESS
 
 DEADLINE = 20.0   # s that anything may take before a test fails
@@ -226,7 +227,9 @@ class Processes:
         self._all = []
         root = str(Path(quad_ident_ros.__file__).resolve().parents[1])
         path = os.pathsep.join(filter(None, [root, os.environ.get('PYTHONPATH', '')]))
-        self.environment = {**os.environ, 'ROS_DOMAIN_ID': str(domain), 'PYTHONPATH': path}
+        # They end with the tests, however those end.
+        self.environment = {**os.environ, 'ROS_DOMAIN_ID': str(domain), 'PYTHONPATH': path,
+                            PARENT: str(os.getpid())}
 
     def start(self, node, parameters=None, arguments=(), shell='', **environment):
         """Start a node; arguments are ROS arguments, shell is run before it."""

@@ -15,6 +15,7 @@ import yaml
 from quad_ident_ros.nodes import identifier, recorder, simulator
 from quad_ident_ros.nodes.domain import claim_domain
 from quad_ident_ros.nodes.messages import record_message
+from quad_ident_ros.nodes.process import PARENT
 from quad_ident_ros.nodes.qos import latched
 
 NODES = {'simulator': simulator, 'recorder': recorder, 'identifier': identifier}
@@ -190,6 +191,15 @@ def test_a_process_without_a_home_runs(graph, processes):
     process = processes.start('recorder')
     await_nodes(graph, ['recorder'])
     assert process.stop() == 0, process.errors()
+
+
+def test_a_node_ends_with_the_process_that_it_belongs_to(graph, processes):
+    """So that none is left where a demo or a test is killed."""
+    keeper = subprocess.Popen(['sleep', '60'])
+    process = processes.start('recorder', **{PARENT: str(keeper.pid)})
+    keeper.kill()
+    keeper.wait()
+    assert process.wait() == 0
 
 
 def test_a_domain_is_taken_as_long_as_a_node_lives_on_it():

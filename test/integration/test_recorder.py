@@ -147,6 +147,28 @@ def test_a_window_is_complete_when_it_is_full(graph, parameters):
     assert stamps_of(records.records()[2]).tolist() == stamps[80:]
 
 
+@pytest.mark.parametrize('topics, shift, said', [
+    (('attitude', 'input'), 0, 'nothing comes on altitude, pose, twist'),
+    (tuple(STREAMS), 1, 'the stamps of the topics are never equal')])
+def test_it_says_why_messages_do_not_become_samples(graph, topics, shift, said):
+    graph.start(Recorder)
+    diagnostics = graph.listen(DiagnosticArray, '/diagnostics')
+    vehicle = Vehicle(graph, topics, STREAM)
+    stamp = SECOND
+
+    def trouble():
+        nonlocal stamp
+        stamp += PERIOD
+        for k, topic in enumerate(topics):
+            vehicle.send(stamp + k * shift, topics=[topic])
+        return diagnostics and said in diagnostics[-1].status[0].message
+
+    graph.spin_until(trouble, said)
+    assert diagnostics[-1].status[0].level == DiagnosticStatus.WARN
+    response = graph.trigger('recorder/flush')
+    assert not response.success and said in response.message
+
+
 def test_windows_overlap(graph):
     recorder = graph.start(Recorder, {'window_samples': 40, 'overlap': 0.75})
     records, _ = listen(graph)

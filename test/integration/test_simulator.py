@@ -145,6 +145,8 @@ def test_full_speed_waits_for_a_slow_subscriber(domain, fast_graph, processes, t
     try:
         slow = sleeper.listen(STREAMS['attitude'], 'attitude')
         recorder = graph.start(Recorder, {'topics': ['attitude', 'input']})
+        for name in ('altitude', 'pose', 'twist'):
+            graph.listen(STREAMS[name], name, 1)
         processes.start('simulator', {'experiment': path, 'real_time_factor': 0.0})
         # It does not even look until the simulator has stopped to wait for it.
         received = 0
@@ -165,7 +167,7 @@ def test_full_speed_waits_for_a_slow_subscriber(domain, fast_graph, processes, t
 def test_pace(graph, tmp_path, factor):
     seconds = 0.6 * factor
     path = write_experiment(tmp_path / 'paced.yaml', {'psi': (seconds, {'U4': 0.01})})
-    heard = graph.listen(STREAMS['input'], 'input')
+    heard = listen(graph)['input']
     graph.start(Simulator, {'experiment': path, 'real_time_factor': factor})
     count = round(seconds * 100) + 1
     graph.spin_until(lambda: len(heard) >= count, 'the run')
@@ -181,7 +183,7 @@ def test_pace(graph, tmp_path, factor):
 
 def test_published_clock_is_the_time_of_the_samples(graph, short):
     clock, runs = graph.listen(Clock, '/clock', 1000), notices(graph)
-    heard = graph.listen(STREAMS['attitude'], 'attitude')
+    heard = listen(graph)['attitude']
     simulator = graph.start(Simulator, {'experiment': short, 'publish_clock': True,
                                         'real_time_factor': 10.0})
     graph.spin_until(lambda: simulator.done and len(heard) == 102 and len(clock) == 102, 'the end')
@@ -266,13 +268,19 @@ def test_start_and_stop(graph, short):
     assert 3 <= count < 51
     graph.spin_for(0.2)
     assert len(heard['input']) == count
+    # The run is announced anew as what it was.
+    graph.spin_until(lambda: len(runs) == 2, 'the notice of the end')
+    whole, cut = runs.data()
+    assert (whole['samples'], whole['info']['status']) == (51, 'complete')
+    assert (cut['samples'], cut['info']['status']) == (count, 'stopped')
+    assert cut['start_ns'] == whole['start_ns'] == stamps_of(heard['input'])[0]
+    assert cut['stop_ns'] == stamps_of(heard['input'])[-1]
     # It begins with the first run again, later than what was published before.
     assert graph.trigger('simulator/start').success
-    graph.spin_until(lambda: len(runs) == 2, 'the run again')
-    first, second = runs.data()
-    assert [run['info']['run'] for run in (first, second)] == ['all', 'all']
-    assert second['start_ns'] > first['stop_ns']
-    assert second['info']['session'] == second['start_ns']
+    graph.spin_until(lambda: len(runs) == 3, 'the run again')
+    again = runs.data()[2]
+    assert again['info']['run'] == whole['info']['run'] == 'all'
+    assert again['info']['session'] == again['start_ns'] > whole['stop_ns']
     await_samples(graph, heard, count + 102)
 
 
@@ -338,6 +346,21 @@ def test_inputs_without_rotor_speeds_are_said_to_be_so(graph, tmp_path, short):
     assert feasible.data()[0]['info']['infeasible'] is None
     graph.spin_until(lambda: [log for log in logs if problem in log.msg], 'a warning')
     assert next(log for log in logs if problem in log.msg).level == Log.WARN
+
+
+def test_a_run_that_cannot_be_flown_is_left_out(graph, tmp_path):
+    """The speeds of rotors that no rotor speeds give: known only when the run is flown."""
+    path = write_experiment(tmp_path / 'mixed.yaml', {'psi': (0.1, {'U4': 1.0}),
+                                                      'z': (0.1, {'U1': 0.5})},
+                            omega_r='from_rotors')
+    runs, logs = notices(graph), graph.listen(Log, '/rosout', latched(100))
+    simulator = graph.start(Simulator, {'experiment': path, 'real_time_factor': 0.0,
+                                        'wait_for_subscribers': False})
+    graph.spin_until(lambda: simulator.done and runs, 'the end')
+    assert [run['info']['run'] for run in runs.data()] == ['z']
+    graph.spin_until(lambda: [log for log in logs if 'needs feasible inputs' in log.msg],
+                     'the error')
+    assert next(log for log in logs if 'feasible' in log.msg).level == Log.ERROR
 
 
 def test_waits_for_subscribers_only_if_told_to(graph, short):

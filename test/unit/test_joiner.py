@@ -178,3 +178,14 @@ def test_the_cost_does_not_grow_with_what_waits():
     rows = feed(joiner, [('b', 10 * k) for k in range(15000) if k % 10])
     assert len(rows) + joiner.counts.dropped >= 14900
     assert joiner.counts.dropped >= 1490
+
+
+def test_topics_meet_again_after_the_clock_of_one_alone_went_back():
+    joiner = Joiner(['a', 'b'])
+    for second in (10, 11, 5, 6):    # a's clock goes back, b is not there yet
+        joiner.add('a', second * 10 ** 9, (1.0,))
+    rows = []
+    for second in range(20, 60):
+        rows += joiner.add('a', second * 10 ** 9, (1.0,))
+        rows += joiner.add('b', second * 10 ** 9, (2.0,))
+    assert [stamp // 10 ** 9 for stamp, _ in rows][-3:] == [57, 58, 59]

@@ -117,6 +117,17 @@ def test_round_trip_is_within_1e_9(drawn):
     assert abs(found.b - model.b) <= 1e-9 * largest
 
 
+@pytest.mark.parametrize('slow', [0.5, 0.0, -0.5])
+@pytest.mark.parametrize('fast', [9.0, 20.0, 50.0, 300.0])
+def test_a_pole_that_is_gone_within_a_sample_comes_back_too(fast, slow):
+    # In samples of 0.01 s; beyond e^-700 there is no number for its root.
+    model = SecondOrder.from_poles(3.0, fast / 0.01, slow)
+    found = to_continuous(to_discrete(model, 0.01))
+    assert found.a == pytest.approx(model.a, rel=1e-9)
+    assert found.b == pytest.approx(slow, abs=1e-9)
+    assert found.gain == pytest.approx(3.0, rel=1e-9)
+
+
 @FAST
 @given(models())
 def test_round_trip_keeps_the_form_and_the_order(drawn):
