@@ -23,7 +23,7 @@ def multisine(t, amplitude=1.0, low=0.1, high=5.0, count=10):
     high = schema.number('high', high, low)
     count = schema.integer('count', count, 1)
     if count > MOST:
-        raise InputError(f'count: {count} is out of range, expected 1 to {MOST}')
+        raise InputError(f'count: {schema.shown(count)} is out of range, expected 1 to {MOST}')
     nyquist = 0.5 / (t[1] - t[0])
     if high >= nyquist:
         raise InputError(f'high: {high:g} Hz is not below half the sample rate, {nyquist:g} Hz')

@@ -23,7 +23,7 @@ def prbs(t, amplitude=1.0, clock=0.1, order=9, seed=0):
                          f'{t[1] - t[0]:g} s')
     order = schema.integer('order', order, 2)
     if order > 20:
-        raise InputError(f'order: {order} is out of range, expected 2 to 20')
+        raise InputError(f'order: {schema.shown(order)} is out of range, expected 2 to 20')
     seed = schema.integer('seed', seed, 0)
     period = 2 ** order - 1
     state = np.unpackbits(np.array([seed % period + 1], '>u4').view(np.uint8))[-order:]

@@ -129,8 +129,7 @@ class Simulator(Node):
         if self._config['wait_for_subscribers']:
             self.get_logger().info(f'{experiment.name}: waiting for subscribers '
                                    '(wait_for_subscribers:=false starts without)')
-            self._timer = self.create_timer(0.02, self._await_subscribers,
-                                            clock=self._steady)
+            self._schedule(0.02, self._await_subscribers, self._steady)
         else:
             self._begin()
 
@@ -178,6 +177,15 @@ class Simulator(Node):
             self.get_logger().info(f'{info["run"]}: stopped after {self._sent} samples')
         self._notice = None
 
+    def _schedule(self, period, callback, clock):
+        """Call back every so many seconds until the next _schedule or _stop_timer."""
+        def on_timer():
+            # An executor may still call a timer that it had ready when it was destroyed.
+            if self._timer is timer:
+                callback()
+
+        timer = self._timer = self.create_timer(period, on_timer, clock=clock)
+
     def _stop_timer(self):
         if self._timer is not None:
             self.destroy_timer(self._timer)
@@ -218,8 +226,7 @@ class Simulator(Node):
                  if values[f'noise.{channel}'] >= 0}
         self._worker = _Worker(self._experiment, run, {**self._experiment.noise, **noise},
                                values['seed'])
-        self._timer = self.create_timer(0.002, lambda: self._await_flight(run),
-                                        clock=self._steady)
+        self._schedule(0.002, lambda: self._await_flight(run), self._steady)
 
     def _await_flight(self, run):
         worker = self._worker
@@ -237,8 +244,8 @@ class Simulator(Node):
         self._part = 0
         period = self._experiment.period / self._factor if self._factor else 0.0
         # A timer per sample would set the pace by its own lateness; it only asks what is due.
-        self._timer = self.create_timer(min(max(period, 0.001), 0.05) if self._factor else 0.0005,
-                                        self._publish_due, clock=self._pace)
+        self._schedule(min(max(period, 0.001), 0.05) if self._factor else 0.0005,
+                       self._publish_due, self._pace)
 
     def _announce(self, run, flight):
         experiment = self._experiment

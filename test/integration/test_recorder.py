@@ -3,6 +3,7 @@
 """Node recorder: joining, counting, windows; what it writes is in test_recording.py."""
 
 import math
+import time
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from graph import sample, STREAMS, Vehicle, write_experiment
@@ -154,13 +155,14 @@ def test_it_says_why_messages_do_not_become_samples(graph, topics, shift, said):
     graph.start(Recorder)
     diagnostics = graph.listen(DiagnosticArray, '/diagnostics')
     vehicle = Vehicle(graph, topics, STREAM)
-    stamp = SECOND
+    started, sent = time.monotonic(), 0
 
     def trouble():
-        nonlocal stamp
-        stamp += PERIOD
-        for k, topic in enumerate(topics):
-            vehicle.send(stamp + k * shift, topics=[topic])
+        nonlocal sent
+        while sent < 50 * (time.monotonic() - started):    # 50 samples/s
+            sent += 1
+            for k, topic in enumerate(topics):
+                vehicle.send(SECOND + sent * PERIOD + k * shift, topics=[topic])
         return diagnostics and said in diagnostics[-1].status[0].message
 
     graph.spin_until(trouble, said)
