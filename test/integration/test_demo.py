@@ -3,8 +3,11 @@
 """The demo: the whole chain as a user starts it."""
 
 import json
+from pathlib import Path
+import signal
 import subprocess
 import sys
+import time
 
 import numpy as np
 import pytest
@@ -62,3 +65,36 @@ def test_the_recording_holds_the_flights(demo):
 def test_the_picture_is_there(demo):
     folder, _ = demo
     assert (folder / 'responses.png').read_bytes().startswith(b'\x89PNG')
+
+
+def _processes_with(text):
+    found = []
+    for command in Path('/proc').glob('[0-9]*/cmdline'):
+        try:
+            if text.encode() in command.read_bytes():
+                found.append(command)
+        except OSError:
+            pass    # it ended meanwhile
+    return found
+
+
+def _await(predicate, what, deadline=30.0):
+    end = time.monotonic() + deadline
+    while not predicate():
+        assert time.monotonic() < end, f'after {deadline:g} s still waiting for {what}'
+        time.sleep(0.05)
+
+
+@pytest.mark.parametrize('number', [signal.SIGTERM, signal.SIGHUP, signal.SIGKILL])
+def test_no_node_outlives_the_demo(tmp_path, number):
+    folder = str(tmp_path / 'here')
+    demo = subprocess.Popen([sys.executable, '-m', 'quad_ident_ros', 'demo', '-o', folder,
+                             '--real-time-factor', '0.1'], stderr=subprocess.DEVNULL)
+    try:
+        _await(lambda: (Path(folder) / 'recording_1' / 'flight_1.csv').exists(), 'the flight')
+        demo.send_signal(number)
+        assert demo.wait(20) != 0
+        _await(lambda: not _processes_with(folder), 'the nodes to end')
+    finally:
+        demo.kill()
+        demo.wait()

@@ -1,0 +1,71 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What a recorder and a simulator say of flights that do not go as they should."""
+
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from graph import Vehicle, write_experiment
+import pytest
+from std_msgs.msg import Float64MultiArray
+
+from quad_ident_ros.nodes.qos import latched
+from quad_ident_ros.nodes.recorder import Recorder
+from quad_ident_ros.nodes.simulator import Simulator
+
+
+def _fly_until_it_is_said(graph, vehicle, send, text):
+    """Publish every 20 ms until the recorder's diagnostics hold a text; return that status."""
+    heard = graph.listen(DiagnosticArray, '/diagnostics', 10)
+    found = []
+
+    def said():
+        send(vehicle)
+        found.extend(status for message in heard for status in message.status
+                     if text in status.message)
+        return found
+
+    graph.spin_until(said, f'the diagnostics to say {text!r}')
+    return found[0]
+
+
+def test_a_topic_that_is_silent_is_named(graph):
+    graph.start(Recorder)
+    vehicle = Vehicle(graph, ('attitude', 'altitude', 'pose', 'input'))
+    stamps = iter(range(10 ** 9, 10 ** 12, 10 ** 7))
+    status = _fly_until_it_is_said(graph, vehicle, lambda v: v.send(next(stamps)), 'twist')
+    assert status.level == DiagnosticStatus.WARN
+    # The same answer for who asks for what there is.
+    response = graph.trigger('recorder/flush')
+    assert not response.success
+    assert 'nothing comes on twist' in response.message
+
+
+def test_stamps_that_never_meet_are_told(graph):
+    graph.start(Recorder, {'topics': ['attitude', 'input']})
+    vehicle = Vehicle(graph, ('attitude', 'input'))
+    stamps = iter(range(10 ** 9, 10 ** 12, 10 ** 7))
+
+    def send(vehicle):
+        stamp = next(stamps)
+        vehicle.send(stamp, topics=['attitude'])
+        vehicle.send(stamp + 3_000_000, topics=['input'])
+
+    _fly_until_it_is_said(graph, vehicle, send, 'stamps of the topics are never equal')
+
+
+@pytest.mark.parametrize('end', ['~/stop', 'the node ends'])
+def test_a_flight_that_is_cut_short_is_recorded_as_short_as_it_was(graph, tmp_path, end):
+    path = write_experiment(tmp_path / 'long.yaml', {'psi': (30.0, {'U4': 0.01})})
+    records = graph.listen(Float64MultiArray, 'record', latched(16))
+    recorder = graph.start(Recorder)
+    simulator = graph.start(Simulator, {'experiment': path})
+    graph.spin_until(lambda: recorder.counts.joined >= 40, 'a part of the flight')
+    if end == '~/stop':
+        graph.trigger('simulator/stop')
+    else:
+        simulator.close()
+    graph.spin_until(lambda: records, 'the record')
+    [record] = records.records()
+    assert record.info['status'] == 'stopped'
+    assert 40 <= len(record) < 1000
+    assert record.info['dropped'] == 0
+    assert record.info['end_time'] == pytest.approx(0.01 * len(record))
