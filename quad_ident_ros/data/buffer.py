@@ -86,9 +86,9 @@ class RecordBuffer:
         return done
 
     @property
-    def in_run(self):
-        """Whether an announced run is under way."""
-        return self._run is not None
+    def run_name(self):
+        """Name of the announced run that is under way, or None."""
+        return self._run and self._run.info.get('name', 'unnamed')
 
     def complete(self, overlap=0.0, run_over=False):
         """

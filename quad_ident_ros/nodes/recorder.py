@@ -224,7 +224,7 @@ class Recorder(Node):
         if silence > self._patience() * 1e9:
             self._last_message = None
             self._keep(self._joiner.drain())
-            if self._buffer.in_run:
+            if self._buffer.run_name:
                 self._publish(self._buffer.complete(run_over=True))
         if self._recording is not None:
             self._on_disk(self._recording.flush)
@@ -287,6 +287,7 @@ class Recorder(Node):
         self._look_for_trouble()
         folder = str(self._recording.folder) if self._recording else None
         data = {**vars(self.counts), 'records': self._records, 'buffered': len(self._buffer),
+                'run': self._buffer.run_name,
                 'recording': folder, 'disk_error': self._disk_error}
         self._statistics.publish(String(data=json.dumps(data)))
         problems = self.counts.problems()

@@ -106,12 +106,14 @@ def test_a_recorder_that_was_killed_goes_on_in_a_new_folder(graph, processes, tm
     recorder = processes.start('recorder', {'output': str(tmp_path / 'flights')})
     await_recorder(graph)
     graph.start(Simulator, {'experiment': path, 'real_time_factor': 1.0})
-    graph.spin_until(lambda: heard and heard.data()[-1]['joined'] > 100, 'samples')
+    graph.spin_until(lambda: heard and heard.data()[-1]['joined'] > 100
+                     and heard.data()[-1]['run'], 'samples')
     recorder.kill()
     again = processes.start('recorder', {'output': str(tmp_path / 'flights')})
     folder = tmp_path / 'flights/recording_2'
     graph.spin_until(lambda: heard.data()[-1]['recording'] == str(folder)
-                     and heard.data()[-1]['joined'] > 10, 'the recorder again')
+                     and heard.data()[-1]['joined'] > 10 and heard.data()[-1]['run'],
+                     'the recorder again, in the run')
     assert again.stop() == 0
     [first], [second] = read_bag(folder.with_name('recording_1') / 'bag'), read_bag(folder / 'bag')
     # The announcement of the run is there for it, and it does not take its start for the run's.

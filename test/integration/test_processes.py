@@ -121,7 +121,7 @@ def check_end(started, number):
     for node, process in started.items():
         assert process.wait() == 0, f'{node}: {process.errors()}'
         assert 'Traceback' not in process.errors() and 'RCLError' not in process.errors()
-    assert time.monotonic() - sent < 2.0
+    assert time.monotonic() - sent < 10.0
 
 
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM, signal.SIGINT,

@@ -72,14 +72,14 @@ def test_a_run_ends_with_its_last_sample():
     assert [times(record) for record in records] == [list(range(1000, 2010, 10))]
     assert records[0].info == {'name': 'one', 'starts_at_rest': True, 'initial': {'z': 1.0},
                                'trim': [0.0] * 4, 'start_ns': 1000 * MS, 'dropped': 0}
-    assert len(window) == 10 and not window.in_run
+    assert len(window) == 10 and not window.run_name
 
 
 def test_the_next_run_ends_one_without_its_last_samples():
     window = buffer()
     window.add_run(notice(0, 1000, name='one'))
     assert window.add_rows(rows(0, 900)) == []
-    assert window.in_run
+    assert window.run_name
     window.add_run(notice(2000, 3000, name='two'))
     [record] = window.add_rows(rows(2000, 2010))
     assert (record.info['name'], record.info['dropped']) == ('one', 11)
