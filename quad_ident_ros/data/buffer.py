@@ -88,7 +88,7 @@ class RecordBuffer:
     @property
     def run_name(self):
         """Name of the announced run that is under way, or None."""
-        return self._run and self._run.info.get('name', 'unnamed')
+        return self._run and (self._run.info.get('name') or 'unnamed')
 
     def complete(self, overlap=0.0, run_over=False):
         """

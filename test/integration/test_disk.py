@@ -44,6 +44,7 @@ def test_bag_and_csv_hold_what_was_published(fast_graph, tmp_path):
     graph.spin_until(lambda: len(records) == 2 and all(len(m) == 302 for m in heard.values()),
                      'the flights')
     folder = tmp_path / 'flights/recording_1'
+    graph.spin_until(lambda: statistics, 'the account')
     assert statistics.data()[-1]['recording'] == str(folder)
     graph.stop(recorder)
     assert sorted(path.name for path in folder.iterdir()) == ['bag', 'flight_1.csv',
@@ -80,10 +81,12 @@ def test_kill_9_loses_at_most_the_last_second(graph, processes, tmp_path, second
     """Compare the newest stamp on the wire with the newest on disk."""
     path = write_experiment(tmp_path / 'long.yaml', {'psi': (60.0, {'U4': 0.001})})
     wire = graph.listen(STREAMS['attitude'], 'attitude')
+    account = graph.listen(String, 'recorder/statistics', latched())
     recorder = processes.start('recorder', {'output': str(tmp_path / 'flights')})
     await_recorder(graph)
     graph.start(Simulator, {'experiment': path, 'real_time_factor': 1.0})
-    graph.spin_until(lambda: len(wire) > 100 * seconds, 'a part of the flight')
+    graph.spin_until(lambda: len(wire) > 100 * seconds and account
+                     and account.data()[-1]['run'], 'a part of the flight')
     recorder.kill()
     newest = stamps_of(wire)[-1]
     folder = tmp_path / 'flights/recording_1'
@@ -165,7 +168,8 @@ def test_a_disk_that_fills_up_ends_the_recording_only(fast_graph, processes, tmp
     graph.spin_until(lambda: records, 'the record')
     [record] = records.records()
     assert len(record) == 3001 and record.info['dropped'] == 0
-    graph.spin_until(lambda: statistics.data()[-1]['records'] == 1, 'the account')
+    graph.spin_until(lambda: statistics and statistics.data()[-1]['records'] == 1,
+                     'the account')
     folder = tmp_path / 'flights/recording_1'
     account = statistics.data()[-1]
     assert account['recording'] is None

@@ -195,7 +195,8 @@ def test_progress_rises_to_one(bench, hover):
     bench = bench({'evaluations': 40_000, 'method': 'all'})
     bench.feed(hover)
     bench.await_results(1)
-    bench.graph.spin_until(lambda: bench.progress.data()[-1]['fraction'] == 1.0, 'the end')
+    bench.graph.spin_until(
+        lambda: bench.progress and bench.progress.data()[-1]['fraction'] == 1.0, 'the end')
     news = bench.progress.data()
     shares = [entry['fraction'] for entry in news]
     assert len(shares) >= 5

@@ -75,6 +75,13 @@ def test_a_run_ends_with_its_last_sample():
     assert len(window) == 10 and not window.run_name
 
 
+def test_a_run_without_a_name_is_one_all_the_same():
+    window = buffer()
+    window.add_run(notice(0, 1000, name=''))
+    window.add_rows(rows(0, 900))
+    assert window.run_name == 'unnamed'
+
+
 def test_the_next_run_ends_one_without_its_last_samples():
     window = buffer()
     window.add_run(notice(0, 1000, name='one'))
