@@ -23,12 +23,11 @@ from std_srvs.srv import Trigger
 from quad_ident_ros.data.topics import JOINED_TOPIC, RUN_TOPIC, RunNotice
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.experiment import fly, load_experiment, NOISE_UNITS
-from quad_ident_ros.model.attitude import rotation_matrix
 from quad_ident_ros.nodes import process
 from quad_ident_ros.nodes.parameters import help_text, NodeParameters, ParameterSpec
 from quad_ident_ros.nodes.qos import latched, LOSSLESS, STREAM
+from quad_ident_ros.nodes.samples import SampleMessages, samples_of
 
-WORLD_FRAME, BODY_FRAME = 'world', 'base_link'
 SETTLING = 0.5      # s without a change of the subscriptions before the first run starts,
 SETTLING_PARTLY = 5.0   # and where some of the five topics have none: discovery takes up to 3 s
 RUN_GAP = 10        # sample periods between the stamps of two runs
@@ -105,7 +104,7 @@ class Simulator(Node):
         self._joined = self.create_subscription(UInt64, JOINED_TOPIC, self._on_joined, 10)
         self._joined_until = 0
         self._news = 0
-        self._messages = _Messages()
+        self._messages = SampleMessages()
         self._queue = []
         self._timer = None
         self._worker = None
@@ -256,7 +255,7 @@ class Simulator(Node):
             self.get_logger().warning(f'{run.name}: the model diverged at t = '
                                       f'{flight.end_time:.6g} s')
         self._stamps = self._epoch + np.rint(flight.record.t * 1e9).astype(np.int64)
-        self._samples = _samples(flight.record)
+        self._samples = samples_of(flight.record)
         period = round(experiment.period * 1e9)
         self._epoch = int(self._stamps[-1]) + RUN_GAP * period
         index = len(experiment.runs) - len(self._queue) - 1
@@ -355,48 +354,6 @@ class _Worker(threading.Thread):
     def _on_progress(self, _):
         if self._cancelled.is_set():
             raise _Cancelled
-
-
-def _samples(record):
-    """Return the rows that the messages take: plain floats, fast to assign."""
-    world = record.stack('vx', 'vy', 'vz')
-    quaternion = record.stack('qw', 'qx', 'qy', 'qz')
-    body = np.einsum('nji,nj->ni', rotation_matrix(quaternion), world)
-    return np.hstack([record.euler(), record.stack('px', 'py', 'pz'), quaternion, body,
-                      record.stack('wx', 'wy', 'wz'), record.inputs()]).tolist()
-
-
-class _Messages:
-    """The messages of one sample, made once and filled for each."""
-
-    def __init__(self):
-        self.attitude, self.altitude, self.pose = Vector3Stamped(), PointStamped(), PoseStamped()
-        self.twist, self.input, self.clock = TwistStamped(), WrenchStamped(), ClockMessage()
-        for message in (self.attitude, self.altitude, self.pose):
-            message.header.frame_id = WORLD_FRAME
-        for message in (self.twist, self.input):
-            message.header.frame_id = BODY_FRAME
-
-    def fill(self, stamp_ns, row):
-        """Write a stamp (ns) and a row of _samples into the messages."""
-        seconds, nanoseconds = divmod(stamp_ns, 1_000_000_000)
-        for message in (self.attitude, self.altitude, self.pose, self.twist, self.input):
-            message.header.stamp.sec = seconds
-            message.header.stamp.nanosec = nanoseconds
-        self.clock.clock.sec, self.clock.clock.nanosec = seconds, nanoseconds
-        vector, point, pose = self.attitude.vector, self.altitude.point, self.pose.pose
-        vector.x, vector.y, vector.z = row[0:3]
-        pose.position.x, pose.position.y, pose.position.z = row[3:6]
-        point.z = row[5]
-        orientation = pose.orientation
-        orientation.w, orientation.x, orientation.y, orientation.z = row[6:10]
-        twist = self.twist.twist
-        twist.linear.x, twist.linear.y, twist.linear.z = row[10:13]
-        twist.angular.x, twist.angular.y, twist.angular.z = row[13:16]
-        wrench = self.input.wrench
-        wrench.force.z = row[16]
-        wrench.torque.x, wrench.torque.y, wrench.torque.z = row[17:20]
-        return self
 
 
 def main(args=None):
