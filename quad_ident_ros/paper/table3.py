@@ -113,13 +113,3 @@ def nrmse_of_table_2():
             error = measured - step_response(*model)
             found[output][method] = float(100 * np.sqrt(np.mean(error ** 2)) / np.ptp(measured))
     return found
-
-
-def shortest_durations():
-    """
-    Return the least duration, s, that IAE and ISE of Table 3 allow as integrals, by output, method.
-
-    IAE^2 <= T ISE holds for any error over a time T (Cauchy and Schwarz).
-    """
-    return {output: {method: row[0] ** 2 / row[1] for method, row in rows.items()}
-            for output, rows in TABLE_3.items()}
