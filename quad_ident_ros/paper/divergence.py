@@ -23,12 +23,14 @@ class Case:
     """
     A run of the printed equations, and how it ended.
 
-    expected: time of divergence, s, or None where it is not known; source says from where;
-    status and end_time as in Simulation; derived: the status of the derived equations there.
+    duration: s to be flown; expected: time of divergence, s, or None where it is not known; source
+    says from where; status and end_time as in Simulation; derived: the status of the derived
+    equations under the same inputs.
     """
 
     label: str
     vehicle: str
+    duration: float
     expected: float | None
     source: str
     status: str
@@ -87,5 +89,5 @@ def _case(experiment, label, expected, source):
     # The equations derived right, under the same inputs for as long as these lasted.
     derived = replace(experiment, model='newton_euler', step=None,
                       runs=(replace(run, duration=min(run.duration, SHORT)),))
-    return Case(label, experiment.vehicle.name, expected, source, flight.status,
+    return Case(label, experiment.vehicle.name, run.duration, expected, source, flight.status,
                 flight.end_time, fly(derived, derived.runs[0]).status)

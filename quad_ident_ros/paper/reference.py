@@ -40,7 +40,7 @@ def blow_up(moment, inertia, drag):
     """
     Return the time (s) at which friction that pushes on has made the rate infinite.
 
-    From w' = (M + K w^2)/I: w = sqrt(M/K) tan(t sqrt(M K)/I), which ends at a quarter turn. Args as
-    in turned, all positive.
+    From w' = (M + K w^2)/I: w = sqrt(M/K) tan(t sqrt(M K)/I), which ends at a quarter turn. Args
+    as in turned, all positive.
     """
     return float(np.pi / 2 * inertia / np.sqrt(moment * drag))

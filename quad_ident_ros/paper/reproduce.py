@@ -6,10 +6,9 @@ from dataclasses import dataclass
 
 from quad_ident_ros import __version__
 from quad_ident_ros.identify.result import as_data as identification_data
-from quad_ident_ros.identify.result import clean
-from quad_ident_ros.paper import divergence, printed_ls, table3
+from quad_ident_ros.identify.result import clean, Identification
+from quad_ident_ros.paper import divergence, printed_ls, table2, table3
 from quad_ident_ros.paper.presets import load_preset
-from quad_ident_ros.paper.printed import TABLE_2
 from quad_ident_ros.paper.ranking import rank
 from quad_ident_ros.paper.study import EFFORTS, steps, study
 from quad_ident_ros.warm_up import warm_up
@@ -21,7 +20,7 @@ class Reproduction:
     What was computed: presets and studies by name, and the rest as in the modules named.
 
     printed_fits: PrintedFits by preset; cells: table3.Cells; trips: printed_ls.RoundTrips; cases:
-    divergence.Cases.
+    divergence.Cases; printed: Table 2 as an Identification of the responses of Table 3.
     """
 
     seeds: int
@@ -31,6 +30,7 @@ class Reproduction:
     cells: list
     trips: list
     cases: list
+    printed: Identification
 
 
 def reproduce(names, seeds, on_progress=lambda text, share: None):
@@ -62,7 +62,8 @@ def reproduce(names, seeds, on_progress=lambda text, share: None):
     fits = {name: [printed_ls.printed_fit(signal) for signal in found.signals.values()]
             for name, found in studies.items()}
     return Reproduction(seeds, presets, studies, fits, table3.table_3(),
-                        printed_ls.round_trips(), cases)
+                        printed_ls.round_trips(), cases,
+                        table2.printed_identification())
 
 
 def as_data(reproduction, claims):
@@ -71,7 +72,7 @@ def as_data(reproduction, claims):
         'schema': 'quad_ident/paper/1', 'version': __version__, 'seeds': reproduction.seeds,
         'claims': [vars(claim) for claim in claims],
         'presets': {name: _preset(reproduction, name) for name in reproduction.presets},
-        'table_2': TABLE_2, 'nrmse_percent_of_table_2': table3.nrmse_of_table_2(),
+        'table_2': identification_data(reproduction.printed),
         'table_3': [{**vars(cell), 'ratio': cell.ratio, 'agrees': cell.agrees,
                      'listed': cell.listed} for cell in reproduction.cells],
         'round_trips': [{**vars(trip), 'printed_restores': trip.printed_restores,

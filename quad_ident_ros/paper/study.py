@@ -21,7 +21,7 @@ EQUAL_BUDGET = SwarmSettings.population * (1 + 2 * SwarmSettings.generations)
 
 @dataclass(frozen=True)
 class Effort:
-    """How to search: 'per_output' or 'joint', and the budget of a search in evaluations or None."""
+    """How to search: 'per_output' or 'joint', with how many evaluations (None: generations)."""
 
     name: str
     label: str
@@ -59,6 +59,10 @@ class Study:
         return np.array([fit.cost if output is None else fit.outputs[output].cost
                          for fit in self.fits[effort][method]])
 
+    def nrmse(self, effort, method):
+        """Return the rms over the outputs of their NRMSE (n,), %, by seed or alone."""
+        return 100 * np.sqrt(2 * self.costs(effort, method) / len(self.signals))
+
     def pick(self, rank, effort='per_output'):
         """
         Return the Identification of the 'median' or 'worst' seed, per method and output, by cost.
@@ -70,18 +74,22 @@ class Study:
             outputs = {}
             for output in self.signals:
                 ordered = sorted((fit.outputs[output] for fit in fits), key=lambda fit: fit.cost)
-                k = (len(ordered) - 1) // 2 if rank == 'median' else len(ordered) - 1
-                outputs[output] = ordered[k]
+                outputs[output] = middle(ordered) if rank == 'median' else ordered[-1]
             methods[name] = MethodFit(name, outputs, float(np.median([f.seconds for f in fits])))
         return Identification(methods, self.signals, self.settings, self.remarks, self.provenance)
+
+
+def middle(ordered):
+    """Return the median of sorted values: of an even count, the lower of the two in the middle."""
+    return ordered[(len(ordered) - 1) // 2]
 
 
 def study(records, seeds, on_progress=lambda: None):
     """
     Fit records by all methods with each effort, and return the Study.
 
-    Args: records: FlightRecords from rest; seeds: count of seeds, from 0; on_progress: called after
-    each of steps(seeds). The poles are real, as in the paper.
+    Args: records: FlightRecords from rest; seeds: count of seeds, from 0; on_progress: called
+    steps(seeds) times. The poles are real, as in the paper.
     """
     first = identify(records, Settings(methods=DIRECT, poles='real'))
     on_progress()

@@ -101,15 +101,3 @@ def table_3(exchanged=EXCHANGED):
             cells += [Cell(output, method, name, value, sums[name] / POWERS[name])
                       for name, value in zip(ERRORS, printed, strict=True)]
     return cells
-
-
-def nrmse_of_table_2():
-    """Return the rms error over range, %, of each model of Table 2, by output and method."""
-    found = {}
-    for output in OUTPUTS:
-        measured = step_response(*RESPONSES[output])
-        found[output] = {}
-        for method, model in TABLE_2[output].items():
-            error = measured - step_response(*model)
-            found[output][method] = float(100 * np.sqrt(np.mean(error ** 2)) / np.ptp(measured))
-    return found
