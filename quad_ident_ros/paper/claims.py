@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the paper claims, and what of it holds by the numbers of a reproduction."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -22,38 +22,47 @@ OURS = 'vp'         # the project's own method, where it is among METHODS
 
 @dataclass(frozen=True)
 class Claim:
-    """A claim: short text, where the paper makes it, its verdict, and the numbers that say so."""
+    """
+    A claim: short text, where the paper makes it, its verdict, and the numbers that say so.
+
+    score: in how many cases it is so, or the number that decides.
+    """
 
     text: str
     where: str
     verdict: str
+    score: str
     numbers: str
 
 
 def claims(reproduction):
     """Return the Claims that the experiments of a Reproduction can say something about."""
-    found = [_model_class(reproduction), _equations(reproduction), _duration(reproduction),
-             _inputs(reproduction), _box(), _table_2(reproduction), _table_3(reproduction),
-             _smallest_in_table_3(reproduction)]
-    found += _rankings(reproduction)
-    found += [_ls_formulas(reproduction), _time(reproduction), _ours(reproduction)]
-    return [claim for claim in found if claim is not None]
+    found = [_equations(reproduction), _duration(reproduction), _box(), _table_3(reproduction),
+             _smallest_in_table_3(), _ls_formulas(reproduction)]
+    names = [name for name in reproduction.presets if name.startswith('paper_unit_steps')]
+    if names:
+        found = [_model_class(reproduction, names), _inputs(reproduction, names),
+                 _table_2(reproduction, names), *found]
+    found += [*_rankings(reproduction), _time(reproduction)]
+    return [*found, _ours(reproduction)] if OURS in METHODS else found
 
 
-def _all_verdict(good, total):
-    """Return the verdict of a claim that one counterexample refutes."""
-    return HOLDS if good == total else FAILS
+def _claim(text, where, good, total, numbers, refutable=False):
+    """Return the Claim of what is so in `good` of `total` cases; refutable: by a single one."""
+    part = FAILS if refutable or not good else IN_PART
+    return Claim(text, where, HOLDS if good == total else part, f'{good} of {total}', numbers)
 
 
-def _share_verdict(good, total):
-    """Return the verdict of a claim that is true in `good` of `total` cases."""
-    if good == total:
-        return HOLDS
-    return IN_PART if good else FAILS
-
-
-def _unit_steps(reproduction):
-    return [name for name in reproduction.presets if name.startswith('paper_unit_steps')]
+def _model_class(reproduction, names):
+    best = {name: {output: _best_nrmse(reproduction.studies[name], output) for output in OUTPUTS}
+            for name in names}
+    good = sum(value < GOOD for values in best.values() for value in values.values())
+    texts = [f'{_short(name)}: '
+             + ', '.join(f'{output} {value:.2g} %' for output, value in values.items())
+             for name, values in best.items()]
+    return _claim('Models K/((s+a)(s+b)) represent the responses to unit steps', 'sections 3, 7',
+                  good, len(names) * len(OUTPUTS),
+                  f'Best NRMSE of any method, to be below {GOOD:g} %. {"; ".join(texts)}')
 
 
 def _best_nrmse(study, output):
@@ -63,93 +72,81 @@ def _best_nrmse(study, output):
     return min(found, default=np.inf)
 
 
-def _model_class(reproduction):
-    names = _unit_steps(reproduction)
-    if not names:
-        return None
-    best = {name: {output: _best_nrmse(reproduction.studies[name], output) for output in OUTPUTS}
-            for name in names}
-    good = sum(value < GOOD for values in best.values() for value in values.values())
-    texts = [f'{name.removeprefix("paper_unit_steps_")}: '
-             + ', '.join(f'{output} {value:.2g} %' for output, value in values.items())
-             for name, values in best.items()]
-    return Claim('Four models K/((s+a)(s+b)) represent the responses to unit steps',
-                 'sections 3, 7', _share_verdict(good, len(names) * len(OUTPUTS)),
-                 f'best NRMSE of any method, below {GOOD:g} % for {good} of '
-                 f'{len(names) * len(OUTPUTS)}: {"; ".join(texts)}')
+def _short(name):
+    return name.removeprefix('paper_unit_steps_')
 
 
-def _equations(reproduction):
-    cases = reproduction.cases
-    wrong = [case for case in cases if case.status != case.derived]
-    return Claim('Equations (13)-(18) are the motion of eqs. (1)-(12)', 'section 2',
-                 _all_verdict(len(cases) - len(wrong), len(cases)),
-                 f'{len(wrong)} of {len(cases)} runs of the printed equations diverge, where the '
-                 'equations derived from (1)-(12) do not')
+def _inputs(reproduction, names):
+    problems = [reproduction.presets[name].infeasible for name in names]
+    return _claim('U1 = U2 = U3 = U4 = 1 is an input of this quadrotor', 'section 3',
+                  problems.count(None), len(problems),
+                  problems[0] or 'rotor speeds exist that give it')
 
 
-def _duration(reproduction):
-    long = [case for case in reproduction.cases if case.duration == DURATION]
-    lasting = sum(case.status == 'complete' for case in long)
-    times = ', '.join(f'{case.end_time:.3g} s' for case in long)
-    return Claim(f'Equations (13)-(18) under unit steps have responses over {DURATION:g} s',
-                 'section 6',
-                 _share_verdict(lasting, len(long)),
-                 f'the printed equations last {DURATION:g} s in {lasting} of {len(long)} step '
-                 f'sizes; they end at {times}')
-
-
-def _inputs(reproduction):
-    problems = [reproduction.presets[name].infeasible for name in _unit_steps(reproduction)]
-    if not problems:
-        return None
-    return Claim('U1 = U2 = U3 = U4 = 1 is an input of this quadrotor', 'section 3',
-                 _share_verdict(problems.count(None), len(problems)),
-                 problems[0] or 'rotor speeds exist that give it')
-
-
-def _box():
-    values = [value for models in TABLE_2.values() for model in models.values()
-              for value in model]
-    inside = sum(BOX[0] <= value <= BOX[1] for value in values)
-    return Claim(f'The search space [{BOX[0]:g}, {BOX[1]:g}] contains all solutions',
-                 'section 4.4', _all_verdict(inside, len(values)),
-                 f'{inside} of the {len(values)} values of Table 2 lie in it')
-
-
-def _table_2(reproduction):
-    names = _unit_steps(reproduction)
-    if not names:
-        return None
+def _table_2(reproduction, names):
     near, texts = set(), []
     for name in names:
         study = reproduction.studies[name].pick('median')
         best = [min((fits.outputs[output] for fits in study.methods.values()),
                     key=lambda fit: fit.cost) for output in study.signals]
-        for fit in best:
-            wanted = TABLE_2[fit.output]['pso_cs'][0]
-            if fit.model and abs(fit.model.gain / wanted - 1) <= NEAR:
-                near.add(fit.output)
-        texts.append(f'{name.removeprefix("paper_unit_steps_")}: '
-                     + ', '.join(f'{fit.output} {fit.model.gain:.4g}' for fit in best
-                                 if fit.model))
+        best = [fit for fit in best if fit.model]
+        near |= {fit.output for fit in best
+                 if abs(fit.model.gain / TABLE_2[fit.output]['pso_cs'][0] - 1) <= NEAR}
+        texts.append(f'{_short(name)}: '
+                     + ', '.join(f'{fit.output} {fit.model.gain:.4g}' for fit in best))
     printed = ', '.join(f'{output} {TABLE_2[output]["pso_cs"][0]:.4g}' for output in OUTPUTS)
-    which = f' ({", ".join(sorted(near))})' if near else ''
-    return Claim('The gains of Table 2 are those of this quadrotor under unit steps', 'Table 2',
-                 _share_verdict(len(near), len(OUTPUTS)),
-                 f'{len(near)} of {len(OUTPUTS)} outputs{which} within {NEAR:.0%} of PSO-CS '
-                 f'in any experiment. Printed K: {printed}. Found: {"; ".join(texts)}')
+    which = f'{", ".join(sorted(near))}: ' if near else ''
+    return _claim('The gains of Table 2 are those of this quadrotor under unit steps', 'Table 2',
+                  len(near), len(OUTPUTS),
+                  f'{which}K within {NEAR:.0%} of that of PSO-CS in any experiment. Printed: '
+                  f'{printed}. Found by the best method: {"; ".join(texts)}')
+
+
+def _equations(reproduction):
+    cases = reproduction.cases
+    wrong = sum(case.status != case.derived for case in cases)
+    return _claim('Equations (13)-(18) are the motion of eqs. (1)-(12)', 'section 2',
+                  len(cases) - wrong, len(cases),
+                  f'{wrong} of {len(cases)} runs of the printed equations diverge, where the '
+                  'equations derived from (1)-(12) do not', refutable=True)
+
+
+def _duration(reproduction):
+    long = [case for case in reproduction.cases if case.duration == DURATION]
+    times = ', '.join(f'{case.end_time:.3g} s' for case in long)
+    return _claim(f'Equations (13)-(18) under unit steps have responses over {DURATION:g} s',
+                  'section 6', sum(case.status == 'complete' for case in long), len(long),
+                  f'With three sizes of the integration step they end at {times}')
+
+
+def _box():
+    values = [value for models in TABLE_2.values() for model in models.values()
+              for value in model]
+    return _claim(f'The search space [{BOX[0]:g}, {BOX[1]:g}] contains all solutions',
+                  'section 4.4', sum(BOX[0] <= value <= BOX[1] for value in values), len(values),
+                  'Values of Table 2 that lie in it', refutable=True)
 
 
 def _table_3(reproduction):
     cells = reproduction.cells
-    good = sum(cell.agrees for cell in cells)
     as_labelled = sum(cell.agrees for cell in table_3(exchanged=()))
-    return Claim('Table 3 gives the errors of the models of Table 2', 'Table 3',
-                 _share_verdict(good, len(cells)),
-                 f'{good} of {len(cells)} cells within {TOLERANCE:.0%} when PSO and PSO-CS are '
-                 f'exchanged for {" and ".join(EXCHANGED)}, {as_labelled} as labelled; as plain '
-                 'sums without powers of ten, not as integrals')
+    return _claim('Table 3 gives the errors of the models of Table 2', 'Table 3',
+                  sum(cell.agrees for cell in cells), len(cells),
+                  f'Cells within {TOLERANCE:.0%}, as plain sums without powers of ten, not as '
+                  f'integrals, and with PSO and PSO-CS exchanged for {" and ".join(EXCHANGED)}; '
+                  f'as labelled {as_labelled}')
+
+
+def _smallest_in_table_3():
+    printed = _smallest({(output, method, error): value for output in OUTPUTS
+                         for method, row in TABLE_3[output].items()
+                         for error, value in zip(ERRORS, row, strict=True)})
+    computed = _smallest({(cell.output, cell.method, cell.error): cell.computed
+                          for cell in table_3(exchanged=())})
+    total = len(OUTPUTS) * len(ERRORS)
+    return _claim('All errors are smallest with PSO-CS', 'section 6, Table 3', computed, total,
+                  f'By the models that Table 2 calls PSO-CS; {printed} of {total} as Table 3 '
+                  'prints the errors', refutable=True)
 
 
 def _smallest(table):
@@ -158,23 +155,8 @@ def _smallest(table):
                for output in OUTPUTS for error in ERRORS)
 
 
-def _smallest_in_table_3(reproduction):
-    total = len(OUTPUTS) * len(ERRORS)
-    printed = _smallest({(output, method, error): value for output in OUTPUTS
-                         for method, row in TABLE_3[output].items()
-                         for error, value in zip(ERRORS, row, strict=True)})
-    computed = _smallest({(cell.output, cell.method, cell.error): cell.computed
-                          for cell in table_3(exchanged=())})
-    return Claim('All errors are smallest with PSO-CS', 'section 6, Table 3',
-                 _all_verdict(computed, total),
-                 f'{printed} of {total} errors as Table 3 prints them, {computed} of {total} by '
-                 'the models that Table 2 calls PSO-CS')
-
-
 def _rankings(reproduction):
     """Return the claims on which method is better than which."""
-    if not reproduction.studies:
-        return []
     budgets = {'at 20 generations': ('per_output', 'joint'),
                'at equal evaluations': ('per_output_equal', 'joint_equal')}
     found = []
@@ -183,9 +165,9 @@ def _rankings(reproduction):
         found += [_versus(reproduction, f'{text}, {label}', 'sections 6, 7', pairs, efforts)
                   for label, efforts in budgets.items()]
     worst = tuple((method, 'ls') for method in SWARMS)
-    for effort, label in (('per_output', 'gain solved for, one search per output'),
-                          ('joint', 'one search over 12 parameters')):
-        found.append(_versus(reproduction, f'LS is worse than PSO, CS and PSO-CS ({label})',
+    for effort, label in (('per_output', 'one search per output'),
+                          ('joint', 'one search for all outputs')):
+        found.append(_versus(reproduction, f'LS is worse than PSO, CS and PSO-CS, {label}',
                              'section 6', worst, (effort,)))
     return found
 
@@ -197,55 +179,52 @@ def _versus(reproduction, text, where, pairs, efforts):
                for effort in efforts for pair in pairs]
     better = sum(entry.verdict == 'better' for _, _, entry in entries)
     worse = sum(entry.verdict == 'worse' for _, _, entry in entries)
-    verdict = _share_verdict(better, len(entries))
-    if not better and not worse:
-        verdict = OPEN
-    shares = []
+    texts = []
     for effort in efforts:
-        values = [entry.probability for _, found, entry in entries if found == effort]
-        shares.append(f'{effort.replace("_equal", "").replace("_", " ")} {min(values):.0%} to '
-                      f'{max(values):.0%}')
-    return Claim(text, where, verdict,
-                 f'so in {better}, the opposite in {worse}, undecided in '
-                 f'{len(entries) - better - worse} of {len(entries)} comparisons at 95 %; '
-                 f'probability by experiment: {"; ".join(shares)}')
+        shares = {}
+        for name, used, entry in entries:
+            if used == effort:
+                shares.setdefault(name, []).append(f'{entry.probability:.0%}')
+        kind = effort.removesuffix('_equal').replace('_', ' ')
+        texts.append(f'{kind}: ' + ', '.join(f'{_short(name)} {"/".join(values)}'
+                                             for name, values in shares.items()))
+    pair = '/'.join(f'{METHODS[first].label} before {METHODS[second].label}'
+                    for first, second in pairs)
+    claim = _claim(text, where, better, len(entries),
+                   f'The opposite in {worse}, undecided in {len(entries) - better - worse}. '
+                   f'Probability of {pair}: {"; ".join(texts)}')
+    return claim if better or worse else replace(claim, verdict=OPEN)
 
 
 def _ls_formulas(reproduction):
     trips = reproduction.trips
-    printed = sum(trip.printed_restores for trip in trips)
-    right = sum(trip.right_restores for trip in trips)
-    return Claim('Equations (36), (37) lead from K, a, b to a0, a1, b0, b1 and back', 'section 5',
-                 _share_verdict(printed, len(trips)),
-                 f'{printed} of the {len(trips)} models of Table 2 come back as printed, {right} '
-                 'with the formulas put right')
+    return _claim('Equations (36), (37) lead from K, a, b to a0, a1, b0, b1 and back', 'section 5',
+                  sum(trip.printed_restores for trip in trips), len(trips),
+                  'Models of Table 2 that come back; with the formulas put right '
+                  f'{sum(trip.right_restores for trip in trips)} of {len(trips)}')
 
 
 def _time(reproduction):
-    if not reproduction.studies:
-        return None
     spent, seconds = {}, {}
     for name in ('pso', 'pso_cs'):
         fits = [fit for study in reproduction.studies.values()
                 for fit in study.fits['per_output'][name]]
-        spent[name] = np.mean([fit.evaluations for fit in fits])
-        seconds[name] = np.sum([fit.seconds for fit in fits])
+        spent[name] = sum(fit.evaluations for fit in fits)
+        seconds[name] = sum(fit.seconds for fit in fits)
     ratio = seconds['pso_cs'] / seconds['pso']
     return Claim('PSO-CS takes more time than PSO', 'sections 6, 7',
-                 HOLDS if ratio > 1 else FAILS,
-                 f'{ratio:.1f} times (printed: {CPU_SECONDS["pso_cs"] / CPU_SECONDS["pso"]:.2f}), '
-                 f'for {spent["pso_cs"] / spent["pso"]:.2f} times the evaluations')
+                 HOLDS if ratio > 1 else FAILS, f'{ratio:.1f} times',
+                 f'For {spent["pso_cs"] / spent["pso"]:.2f} times the evaluations; printed: '
+                 f'{CPU_SECONDS["pso_cs"] / CPU_SECONDS["pso"]:.2f} times the time')
 
 
 def _ours(reproduction):
-    if OURS not in METHODS or not reproduction.studies:
-        return None
     rivals = [between(study, effort, OURS, method)
               for study in reproduction.studies.values() for effort in study.fits
               for method in PAPERS]
     worse = sum(entry.verdict == 'worse' for entry in rivals)
     better = sum(entry.verdict == 'better' for entry in rivals)
-    return Claim(f'No method of the paper is better than {METHODS[OURS].label}', 'this project',
-                 _share_verdict(len(rivals) - worse, len(rivals)),
-                 f'{METHODS[OURS].label} is better in {better}, equal or undecided in '
-                 f'{len(rivals) - better - worse}, worse in {worse} of {len(rivals)} comparisons')
+    return _claim(f'No method of the paper is better than {METHODS[OURS].label}', 'this project',
+                  len(rivals) - worse, len(rivals),
+                  f'{METHODS[OURS].label} is better in {better}, equal or undecided in '
+                  f'{len(rivals) - better - worse}')

@@ -76,15 +76,15 @@ def _contents(reproduction):
 def _conclusions(claims):
     rows = [[Markup(f'<td class="prose">{markup(claim.text)}<br>'
                     f'{tag("span", claim.where, "second")}</td>'),
-             tag('span', claim.verdict, f'tag {KINDS[claim.verdict]}'),
+             tag('span', claim.verdict, f'tag {KINDS[claim.verdict]}'), claim.score,
              Markup(f'<td class="prose">{markup(claim.numbers)}</td>')] for claim in claims]
     return join([
         _heading('conclusions', 'Conclusions'),
-        tag('p', 'What is claimed for all cases holds when it is so in all of them, in part when '
-                 'in some; a claim that one case refutes does not hold. One method counts as '
-                 'better than another where the 95 % interval of the probability that it ends '
-                 'below leaves out one half.'),
-        table(['claim', 'verdict', 'the numbers'], rows, ('text', 'text', 'text'))])
+        tag('p', 'A claim holds when it is so in all cases, in part when in some, unless one '
+                 'case refutes it. One method is better than another where the 95 % interval of '
+                 'the probability that it ends below the other lies above one half.'),
+        table(['the paper claims', 'verdict', 'so in', 'the numbers'], rows,
+              ('text', 'text', 'text', 'text'))])
 
 
 def _preset(reproduction, name, pictures):

@@ -65,12 +65,11 @@ def save_spread(panels, path, title, quantity):
     Raises InputError where the file cannot be written.
     """
     plt = _pyplot(path)
-    spread = [values for methods in panels.values() for values in methods.values()
-              if len(values) > 1]
-    shown = np.concatenate(spread or [values for methods in panels.values()
-                                      for values in methods.values()])
-    shown = shown[np.isfinite(shown)]
-    bottom = shown.min() / 10
+    everything = [values for methods in panels.values() for values in methods.values()]
+    spread = np.concatenate([values for values in everything if len(values) > 1] or everything)
+    everything, spread = (values[np.isfinite(values)]
+                          for values in (np.concatenate(everything), spread))
+    bottom = max(everything.min() / 1.5, spread.min() / 10)
     figure, axes = plt.subplots(1, len(panels), figsize=(3.2 * len(panels) + 0.4, 3.3), dpi=130,
                                 sharey=True, squeeze=False, layout='constrained')
     for axis, (label, methods) in zip(axes[0], panels.items(), strict=True):
@@ -89,10 +88,10 @@ def save_spread(panels, path, title, quantity):
             axis.plot([place - 0.36, place + 0.36], [median, median], color=color, linewidth=2)
         axis.set_xticks(range(len(methods)), [METHODS[name].label for name in methods])
         axis.set_xlim(-0.6, len(methods) - 0.4)
-        axis.set_ylim(bottom=bottom)
         axis.set_title(label, fontsize='medium')
         axis.grid(axis='y', color='0.92')
         axis.spines[['top', 'right']].set_visible(False)
+    axes[0, 0].set_ylim(bottom, 1.5 * everything.max())
     axes[0, 0].set_ylabel(quantity)
     figure.suptitle(title)
     _save(plt, figure, path)
