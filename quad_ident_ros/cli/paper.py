@@ -6,9 +6,15 @@ import argparse
 from pathlib import Path
 import time
 
+from quad_ident_ros.cli.identify import progress_bar
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.paper import page
+from quad_ident_ros.paper.claims import claims as claims_of
 from quad_ident_ros.paper.presets import PRESETS
+from quad_ident_ros.paper.reproduce import as_data, reproduce
+from quad_ident_ros.paper.summary import conclusions_table, errors_table
 from quad_ident_ros.report.data import write_json
+from quad_ident_ros.report.table import console
 
 
 def add(commands):
@@ -35,16 +41,11 @@ def add(commands):
 
 def run(options):
     """Reproduce the paper, write page, data and pictures, and show the conclusions."""
-    from quad_ident_ros.cli.identify import progress_bar
-    from quad_ident_ros.paper import page
-    from quad_ident_ros.paper.claims import claims as claims_of
-    from quad_ident_ros.paper.reproduce import as_data, reproduce
-
     if options.seeds < 1:
         raise InputError(f'--seeds: expected at least 1, got {options.seeds}')
     names = tuple(dict.fromkeys(options.preset or PRESETS))
     folder = Path(options.output)
-    # Before a minute of work: a folder that cannot be written is said now.
+    # Before a minute of work, not after it: a folder that cannot be made.
     folder.mkdir(parents=True, exist_ok=True)
     began = time.perf_counter()
     with progress_bar() as bar:
@@ -69,8 +70,6 @@ def run(options):
 
 def show(reproduction, claims):
     """Print the errors of all methods and the verdicts."""
-    from quad_ident_ros.paper.summary import conclusions_table, errors_table
-    from quad_ident_ros.report.table import console
     screen = console()
     screen.print(errors_table(reproduction))
     screen.print(conclusions_table(claims))

@@ -10,13 +10,14 @@ from quad_ident_ros.identify.methods import METHODS
 from quad_ident_ros.identify.signals import OUTPUTS
 from quad_ident_ros.paper.printed import BOX, CPU_SECONDS, DURATION, ERRORS, TABLE_2, TABLE_3
 from quad_ident_ros.paper.ranking import between
-from quad_ident_ros.paper.study import PAPERS, SWARMS
+from quad_ident_ros.paper.study import EFFORTS, PAPERS, SWARMS
 from quad_ident_ros.paper.table3 import EXCHANGED, table_3, TOLERANCE
 
 HOLDS, IN_PART, FAILS, OPEN = 'holds', 'holds in part', 'does not hold', 'undecided'
 
 GOOD = 1.0          # % of range: a model whose NRMSE is below describes its response
 NEAR = 0.1          # relative difference up to which a gain counts as that of Table 2
+FEW = 4             # cases that are named one by one
 OURS = 'vp'         # the project's own method, where it is among METHODS
 
 
@@ -98,8 +99,8 @@ def _table_2(reproduction, names):
     which = f'{", ".join(sorted(near))}: ' if near else ''
     return _claim('The gains of Table 2 are those of this quadrotor under unit steps', 'Table 2',
                   len(near), len(OUTPUTS),
-                  f'{which}K within {NEAR:.0%} of that of PSO-CS in any experiment. Printed: '
-                  f'{printed}. Found by the best method: {"; ".join(texts)}')
+                  f'{which}K within {100 * NEAR:.0f} % of that of PSO-CS in any experiment. '
+                  f'Printed: {printed}. Found by the best method: {"; ".join(texts)}')
 
 
 def _equations(reproduction):
@@ -132,9 +133,9 @@ def _table_3(reproduction):
     as_labelled = sum(cell.agrees for cell in table_3(exchanged=()))
     return _claim('Table 3 gives the errors of the models of Table 2', 'Table 3',
                   sum(cell.agrees for cell in cells), len(cells),
-                  f'Cells within {TOLERANCE:.0%}, as plain sums without powers of ten, not as '
-                  f'integrals, and with PSO and PSO-CS exchanged for {" and ".join(EXCHANGED)}; '
-                  f'as labelled {as_labelled}')
+                  f'Cells within {100 * TOLERANCE:.0f} %, as plain sums without powers of ten, '
+                  f'not as integrals, and with PSO and PSO-CS exchanged for '
+                  f'{" and ".join(EXCHANGED)}; as labelled {as_labelled}')
 
 
 def _smallest_in_table_3():
@@ -179,21 +180,23 @@ def _versus(reproduction, text, where, pairs, efforts):
                for effort in efforts for pair in pairs]
     better = sum(entry.verdict == 'better' for _, _, entry in entries)
     worse = sum(entry.verdict == 'worse' for _, _, entry in entries)
-    texts = []
+    shares = []
     for effort in efforts:
-        shares = {}
-        for name, used, entry in entries:
-            if used == effort:
-                shares.setdefault(name, []).append(f'{entry.probability:.0%}')
-        kind = effort.removesuffix('_equal').replace('_', ' ')
-        texts.append(f'{kind}: ' + ', '.join(f'{_short(name)} {"/".join(values)}'
-                                             for name, values in shares.items()))
-    pair = '/'.join(f'{METHODS[first].label} before {METHODS[second].label}'
-                    for first, second in pairs)
+        values = [100 * entry.probability for _, used, entry in entries if used == effort]
+        shares.append(f'{_kind(effort)} {min(values):.0f} to {max(values):.0f} %')
+    against = '; '.join(f'{_short(name)}, {_kind(effort)}: {METHODS[entry.first].label} before '
+                        f'{METHODS[entry.second].label} {100 * entry.probability:.0f} %'
+                        for name, effort, entry in entries if entry.verdict == 'worse')
     claim = _claim(text, where, better, len(entries),
                    f'The opposite in {worse}, undecided in {len(entries) - better - worse}. '
-                   f'Probability of {pair}: {"; ".join(texts)}')
+                   f'Probabilities: {"; ".join(shares)}'
+                   + (f'. The opposite: {against}' if 0 < worse <= FEW else ''))
+    claim = replace(claim, score=claim.score + (f', opposite in {worse}' if worse else ''))
     return claim if better or worse else replace(claim, verdict=OPEN)
+
+
+def _kind(effort):
+    return EFFORTS[effort].search.replace('_', ' ')
 
 
 def _ls_formulas(reproduction):

@@ -51,7 +51,7 @@ def _single_axis():
     for name, size, vehicle in plan:
         experiment = replace(load_experiment('hover_single_axis', vehicle), model='paper')
         run = Run('case', SHORT, {name: {'type': 'step', 'amplitude': size}}, (AXES[name],))
-        known, expected, source = experiment.vehicle, None, 'friction slows the turn: none'
+        known, expected, source = experiment.vehicle, None, 'friction that slows'
         # In print the friction of yaw feeds energy in, that of roll and pitch for negative rates.
         if name == 'U4' or size < 0:
             axis = int(name[1]) - 2
@@ -72,14 +72,14 @@ def _unit_steps():
     found = [_case(other, 'unit steps', 0.871, 'adaptive integrator')]
     for speed in ROTORS:
         known = (0.128, 'adaptive integrator') if speed == ROTORS[0] else \
-            (None, 'stiff without bound: the time is that of our step')
+            (None, 'stiff: depends on the step')
         found.append(_case(replace(experiment, omega_r=speed),
                            f'unit steps, Ωr = {speed:g} rad/s', *known))
     long = replace(experiment, runs=(replace(experiment.runs[0], duration=DURATION),))
     for step in (1e-5, 1e-4, 1e-3):
         found.append(_case(replace(long, step=step),
                            f'unit steps for {DURATION:.0f} s, integrated at {step:g} s', None,
-                           'chaotic: the time is that of the step'))
+                           'chaotic: depends on the step'))
     return found
 
 

@@ -41,13 +41,6 @@ class Comparison:
             return 'better'
         return 'worse' if self.high < 0.5 else 'undecided'
 
-    def of(self, name):
-        """Return the Comparison seen from one of the two methods."""
-        if name == self.first:
-            return self
-        return Comparison(self.second, self.first, self.count - self.wins, self.count,
-                          1.0 - self.high, 1.0 - self.low)
-
 
 def wilson(wins, count):
     """Return the 95 % interval of a probability (E. B. Wilson, J. Am. Stat. Assoc. 22, 1927)."""

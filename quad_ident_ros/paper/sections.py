@@ -23,11 +23,11 @@ def number(value, digits=4):
     return f'{value:.{digits}g}'.replace('-', '−')
 
 
-def both(median, worst):
-    """Return a cell with the worst beneath the median, where the two are not one."""
-    if worst is None:
-        return markup(median)
-    return join([markup(median), Markup('<br>'), tag('span', worst, 'second')], '')
+def both(upper, lower):
+    """Return a cell of two lines, or of one where there is no lower."""
+    if lower is None:
+        return markup(upper)
+    return join([markup(upper), Markup('<br>'), tag('span', lower, 'second')], '')
 
 
 def fits(study):
@@ -72,9 +72,9 @@ def effort(study):
                      number(1e3 * fit.seconds, 3), number(middle(ordered), 3),
                      number(ordered[-1], 3) if name in SWARMS else NONE])
     return table(['method', 'evaluations', 'time, ms', 'NRMSE, % (median)', 'NRMSE, % (worst)'],
-                 rows, (), 'All four outputs together, one search per output, the '
-                 f"paper's generations. Bounds of the searches: {bounds} evaluations more, once "
-                 'for all methods.')
+                 rows, (), 'All outputs together (their NRMSE is the rms of that of each), one '
+                 "search per output, the paper's generations. Bounds of the searches: "
+                 f'{bounds} evaluations more, once for all methods.')
 
 
 def references(preset):
@@ -83,7 +83,7 @@ def references(preset):
              number(entry.computed, 10), number(abs(entry.computed - entry.expected), 2),
              entry.source] for entry in preset.references]
     return table(['output', 't, s', 'must be', 'computed', 'difference', 'known from'], rows,
-                 ('text', '', '', '', '', 'text'), 'The simulation against what is known of it')
+                 ('text', '', '', '', '', 'text'))
 
 
 def truth(preset):
@@ -118,7 +118,7 @@ def ranking_by_output(study, name):
 
 def _probability(entry):
     kind = {'better': 'yes', 'worse': 'no', 'undecided': ''}[entry.verdict]
-    share = f'{entry.probability:.0%}'
+    share = f'{100 * entry.probability:.0f} %'
     if entry.count > 1:
         share += f' [{100 * entry.low:.0f}, {100 * entry.high:.0f}]'
     return Markup(f'<td class="{kind}">{share}</td>')
@@ -165,7 +165,7 @@ def table_3(cells):
     """Return Table 3 as printed beside the sums that Table 2 gives."""
     head = ['output', 'method']
     for name in ERRORS:
-        head += [f'{name.upper()} printed', 'computed', 'ratio']
+        head += [name.upper(), 'ratio']
     rows, line = [], {}
     for cell in cells:
         line.setdefault((cell.output, cell.method), []).append(cell)
@@ -173,10 +173,11 @@ def table_3(cells):
         row = [NAMES[output] if method == 'pso' else '', METHODS[method].label]
         for cell in found:
             kind = '' if cell.agrees else 'warn'
-            row += [number(cell.printed, 5), number(cell.computed, 5),
-                    Markup(f'<td class="{kind}">{number(cell.ratio, 4)}</td>')]
+            row += [both(number(cell.printed, 5), number(cell.computed, 5)),
+                    Markup(f'<td class="{kind}">{cell.ratio:.3f}</td>')]
         rows.append(row)
-    return table(head, rows, ('text', 'text') + ('',) * (3 * len(ERRORS)))
+    return table(head, rows, ('text', 'text') + ('',) * (2 * len(ERRORS)),
+                 'Printed and, in grey beneath, computed; ratio: computed over printed')
 
 
 def ls_printed(reproduction):

@@ -23,6 +23,7 @@ th, td { padding: .18rem .7rem; text-align: right; vertical-align: top; white-sp
 th { border-bottom: 1px solid #999; font-weight: 600; }
 tr.first td { border-top: 1px solid #ddd; }
 .text { text-align: left; } td.prose { text-align: left; white-space: normal; min-width: 14rem; }
+table.dense { font-size: .86em; } .dense th, .dense td { padding: .15rem .42rem; }
 .second { color: #777; } .warn { background: #fdeccb; } .best { font-weight: 700; }
 .tag { padding: .05rem .5rem; border-radius: .7rem; white-space: nowrap; background: #eee; }
 .yes { background: #d5efdc; } .part { background: #fdeccb; } .no { background: #f8d4d0; }
@@ -31,6 +32,9 @@ figcaption { color: #555; }
 details { margin: .4rem 0 1.2rem; } summary { cursor: pointer; color: #0b5a9a; }
 code { background: #f3f3f3; padding: 0 .25rem; }
 """
+
+
+MANY = 7    # columns
 
 
 class Markup(str):
@@ -59,7 +63,7 @@ def table(head, rows, kinds=(), caption=''):
 
     Args: head: titles of the columns; rows: lists of cells, each text or Markup, or a td element
     of its own; kinds: class of each column, by default 'text' for the first and numbers after it.
-    A row whose first cell is not empty begins a group.
+    A row whose first cell is not empty begins a group. A table of many columns is set smaller.
     """
     kinds = tuple(kinds) or ('text',) + ('',) * (len(head) - 1)
     titles = join((tag('th', title, kind and 'text')
@@ -71,7 +75,8 @@ def table(head, rows, kinds=(), caption=''):
                      '')
         lines.append(tag('tr', cells, 'first' if row[0] != '' else ''))
     top = tag('caption', caption) if caption else Markup()
-    return Markup(f'<div class="wide"><table>{top}<thead><tr>{titles}</tr></thead>\n<tbody>'
+    size = ' class="dense"' if len(head) > MANY else ''
+    return Markup(f'<div class="wide"><table{size}>{top}<thead><tr>{titles}</tr></thead>\n<tbody>'
                   f'{join(lines)}</tbody></table></div>')
 
 
