@@ -83,7 +83,7 @@ def _conclusions(claims):
         tag('p', 'A claim holds when it is so in all cases, in part when in some, unless one '
                  'case refutes it. One method is better than another where the 95 % interval of '
                  'the probability that it ends below the other lies above one half.'),
-        table(['the paper claims', 'verdict', 'so in', 'the numbers'], rows,
+        table(['claim', 'verdict', 'so in', 'the numbers'], rows,
               ('text', 'text', 'text', 'text'))])
 
 

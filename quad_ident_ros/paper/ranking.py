@@ -6,11 +6,12 @@ from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
+from scipy.stats import beta
 
 # Costs closer than this share count as equal, and so do costs below the rounding of a response.
 SAME = 1e-6
 ROUNDING = 1e-20
-Z = 1.959963984540054   # of a two-sided 95 % interval
+OUTSIDE = 0.05          # what an interval leaves out, half on each side
 
 
 @dataclass(frozen=True)
@@ -42,12 +43,18 @@ class Comparison:
         return 'worse' if self.high < 0.5 else 'undecided'
 
 
-def wilson(wins, count):
-    """Return the 95 % interval of a probability (E. B. Wilson, J. Am. Stat. Assoc. 22, 1927)."""
-    share, z2 = wins / count, Z ** 2 / count
-    middle = (share + z2 / 2) / (1 + z2)
-    half = Z * np.sqrt(share * (1 - share) / count + z2 / (4 * count)) / (1 + z2)
-    return float(max(middle - half, 0.0)), float(min(middle + half, 1.0))
+def interval(wins, count):
+    """Return the exact 95 % interval of a probability (Clopper, Pearson, Biometrika 26, 1934)."""
+    low = beta.ppf(OUTSIDE / 2, wins, count - wins + 1) if wins > 0 else 0.0
+    high = beta.ppf(1 - OUTSIDE / 2, wins + 1, count - wins) if wins < count else 1.0
+    return float(low), float(high)
+
+
+def same(one, two):
+    """Tell which costs (n,) count as equal; those beyond all numbers, of no model, do as well."""
+    one, two = np.maximum(one, ROUNDING), np.maximum(two, ROUNDING)
+    with np.errstate(invalid='ignore'):
+        return (one == two) | (np.abs(one - two) <= SAME * np.minimum(one, two))
 
 
 def compare(first, second, first_costs, second_costs):
@@ -56,15 +63,11 @@ def compare(first, second, first_costs, second_costs):
 
     Args: their names; costs (n,) by seed, or (1,) of a method without random numbers.
     """
-    one, two = np.broadcast_arrays(np.maximum(first_costs, ROUNDING),
-                                   np.maximum(second_costs, ROUNDING))
-    # Two that found no model, with costs beyond all numbers, are equal as well.
-    with np.errstate(invalid='ignore'):
-        tie = (one == two) | (np.abs(one - two) <= SAME * np.minimum(one, two))
-    wins = float(np.sum(np.where(tie, 0.5, one < two)))
+    one, two = np.broadcast_arrays(first_costs, second_costs)
+    wins = float(np.sum(np.where(same(one, two), 0.5, one < two)))
     if len(first_costs) == len(second_costs) == 1:
         return Comparison(first, second, wins, 1, wins, wins)
-    return Comparison(first, second, wins, len(one), *wilson(wins, len(one)))
+    return Comparison(first, second, wins, len(one), *interval(wins, len(one)))
 
 
 def rank(study, effort, output=None):

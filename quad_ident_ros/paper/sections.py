@@ -8,8 +8,8 @@ from quad_ident_ros.identify.methods import METHODS
 from quad_ident_ros.identify.signals import GAIN_UNITS, OUTPUT_UNITS, OUTPUTS
 from quad_ident_ros.model.vehicle import load_vehicle
 from quad_ident_ros.paper.printed import ERRORS, TABLE_2
-from quad_ident_ros.paper.ranking import rank
-from quad_ident_ros.paper.study import DIRECT, EFFORTS, middle, SWARMS
+from quad_ident_ros.paper.ranking import rank, same
+from quad_ident_ros.paper.study import EFFORTS, middle, SWARMS
 from quad_ident_ros.report.html import join, Markup, markup, table, tag
 from quad_ident_ros.report.picture import NAMES
 
@@ -36,20 +36,21 @@ def fits(study):
     rows = []
     for output in study.signals:
         found = {name: fit.outputs[output] for name, fit in median.methods.items()}
-        best = min(found, key=lambda name: found[name].cost)
+        best = min(fit.cost for fit in found.values())
         for place, (name, fit) in enumerate(found.items()):
             other = worst.methods[name].outputs[output] if name in SWARMS else None
             label = METHODS[name].label
             cells = [both(one, None if other is None else two)
                      for one, two in zip(_fit(fit), _fit(other or fit), strict=True)]
             rows.append([f'{NAMES[output]}' if place == 0 else '',
-                         tag('span', label, 'best') if name == best else label, *cells])
+                         tag('span', label, 'best') if same(fit.cost, best) else label, *cells])
     units = ', '.join(f'{output} in {OUTPUT_UNITS[output]}, its K in {GAIN_UNITS[output]}'
                       for output in study.signals)
     return table(['output', 'method', 'K', 'a, 1/s', 'b, 1/s', 'IAE', 'ISE', 'ITAE', 'ITSE',
                   'NRMSE, %'], rows, ('text', 'text') + ('',) * 8,
-                 f'The run of median cost and, in grey beneath, the worst run; bold: the smallest '
-                 f'median cost. IAE to ITSE are integrals over time. Units: {units}.')
+                 'The run of median cost and, in grey beneath, the worst run; bold: the smallest '
+                 'median cost, or equal to it. IAE to ITSE are integrals over time. Units: '
+                 f'{units}.')
 
 
 def _fit(fit):
@@ -68,7 +69,7 @@ def effort(study):
     rows = []
     for name, fit in median.methods.items():
         ordered = sorted(study.nrmse('per_output', name))
-        rows.append([METHODS[name].label, NONE if name in DIRECT else str(fit.evaluations),
+        rows.append([METHODS[name].label, str(fit.evaluations) if fit.evaluations else NONE,
                      number(1e3 * fit.seconds, 3), number(middle(ordered), 3),
                      number(ordered[-1], 3) if name in SWARMS else NONE])
     return table(['method', 'evaluations', 'time, ms', 'NRMSE, % (median)', 'NRMSE, % (worst)'],

@@ -30,7 +30,7 @@ def errors_table(reproduction):
 def conclusions_table(claims):
     """Return a rich Table: what the paper claims, and what of it holds."""
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1), header_style='bold')
-    table.add_column('the paper claims', no_wrap=True)
+    table.add_column('claim', no_wrap=True)
     table.add_column('verdict', no_wrap=True)
     table.add_column('so in', no_wrap=True)
     for claim in claims:

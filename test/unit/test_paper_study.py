@@ -8,13 +8,14 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from scipy.stats import binom
 
 from quad_ident_ros.identify.identify import identify, Settings, with_budget
 from quad_ident_ros.identify.methods import METHODS
 from quad_ident_ros.identify.signals import OUTPUTS
 from quad_ident_ros.paper.claims import claims, FAILS, HOLDS, IN_PART, OPEN
 from quad_ident_ros.paper.presets import load_preset
-from quad_ident_ros.paper.ranking import between, compare, rank, wilson
+from quad_ident_ros.paper.ranking import between, compare, interval, rank
 from quad_ident_ros.paper.reproduce import as_data, reproduce
 from quad_ident_ros.paper.study import DIRECT, EFFORTS, EQUAL_BUDGET, middle, steps, study, SWARMS
 
@@ -84,13 +85,19 @@ def test_the_total_error_is_the_rms_of_the_outputs(table_3_study):
         np.square(each))))
 
 
-@pytest.mark.parametrize(('wins', 'count', 'low', 'high'), [
-    # Newcombe 1998, Statistics in Medicine 17, table I.
-    (81, 263, 0.2553, 0.3662), (15, 148, 0.0624, 0.1605), (0, 20, 0.0, 0.1611),
-    (1, 29, 0.0061, 0.1718)])
-def test_wilson_interval(wins, count, low, high):
-    assert wilson(wins, count) == pytest.approx((low, high), abs=5e-5)
-    assert wilson(count - wins, count) == pytest.approx((1 - high, 1 - low), abs=5e-5)
+@pytest.mark.parametrize(('wins', 'count'), [(81, 263), (1, 29), (10, 20), (19, 20)])
+def test_interval_leaves_out_as_much_on_each_side(wins, count):
+    low, high = interval(wins, count)
+    assert binom.sf(wins - 1, count, low) == pytest.approx(0.025)
+    assert binom.cdf(wins, count, high) == pytest.approx(0.025)
+    assert interval(count - wins, count) == pytest.approx((1 - high, 1 - low))
+
+
+def test_interval_of_all_and_none():
+    assert interval(0, 20) == pytest.approx((0.0, 1 - 0.025 ** (1 / 20)))
+    assert interval(20, 20) == pytest.approx((0.025 ** (1 / 20), 1.0))
+    # Five of five do not show at 95 % that a method is better, six do.
+    assert interval(5, 5)[0] < 0.5 < interval(6, 6)[0]
 
 
 def test_comparison_counts_seed_by_seed():
