@@ -25,13 +25,14 @@ def add(commands):
         description='Reproduce the paper: fit all methods to its experiments over many seeds, '
                     'compute its Table 3 from\nits Table 2, fly its equations as printed, and say '
                     'which of its claims hold. Writes paper.html,\npaper.json and the pictures.',
-        epilog='presets:\n' + ''.join(f'  {name}\n' for name in PRESETS)
+        epilog='presets, the last of which is no flight but the responses that Table 3 implies:\n' + ''.join(f'  {name}\n' for name in PRESETS)
         + '\nAll of them with 20 seeds take about a minute. A quick look:\n'
-          '  quad_ident paper --seeds 3 --preset hover_single_axis')
+          '  quad_ident paper --seeds 6 --preset hover_single_axis')
     parser.add_argument('--preset', action='append', choices=tuple(PRESETS), metavar='NAME',
                         help='an experiment to reproduce, may be repeated (default: all)')
     parser.add_argument('--seeds', type=int, default=20, metavar='N',
-                        help='seeds of the searches: 0 to N - 1 (default 20)')
+                        help='seeds of the searches: 0 to N - 1 (default 20; fewer than 6 decide '
+                             'nothing about which is better)')
     parser.add_argument('-o', '--output', default='quad_ident_paper', metavar='FOLDER',
                         help='where everything goes (default: quad_ident_paper)')
     parser.add_argument('--json', metavar='FILE',

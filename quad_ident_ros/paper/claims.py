@@ -87,7 +87,7 @@ def _inputs(reproduction, names):
 def _table_2(reproduction, names):
     near, texts = set(), []
     for name in names:
-        study = reproduction.studies[name].pick('median')
+        study = reproduction.studies[name].pick('median', 'per_output')
         best = [min((fits.outputs[output] for fits in study.methods.values()),
                     key=lambda fit: fit.cost) for output in study.signals]
         best = [fit for fit in best if fit.model]

@@ -35,7 +35,8 @@ def save_pictures(reproduction, folder):
                    "Figures 4-7: the responses that Table 3 implies, and Table 2's models")
     for name, study in reproduction.studies.items():
         paths[name] = folder / f'responses_{name}.png'
-        save_responses(study.pick('median'), paths[name], f'{name}: responses and fits')
+        save_responses(study.pick('median', 'per_output'), paths[name],
+                       f'{name}: responses and fits')
         paths[f'{name}/ranking'] = folder / f'ranking_{name}.png'
         save_spread({effort.label: {method: study.nrmse(key, method)
                                     for method in study.fits[key]}
@@ -95,7 +96,9 @@ def _preset(reproduction, name, pictures):
     parts += [tag('p', f'Note: {remark}.') for remark in study.remarks]
     parts += [figure(pictures[name], f'Figures 4 to 7 for {name}: measured, fitted, and their '
                                      'difference (the run of median cost of each method)'),
-              sections.effort(study), sections.fits(study)]
+              sections.spent(study, 'per_output'), sections.fits(study, 'per_output'),
+              details('The same with one search over all 12 parameters, as in the paper',
+                      join([sections.spent(study, 'joint'), sections.fits(study, 'joint')]))]
     if preset.references:
         parts += [tag('h3', 'The simulation against what is known of it'),
                   sections.references(preset)]

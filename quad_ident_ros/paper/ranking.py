@@ -70,7 +70,7 @@ def compare(first, second, first_costs, second_costs):
     return Comparison(first, second, wins, len(one), *interval(wins, len(one)))
 
 
-def rank(study, effort, output=None):
+def comparisons(study, effort, output=None):
     """Return the Comparisons of all pairs of methods of a Study, by F of one output or of all."""
     costs = {name: study.costs(effort, name, output) for name in study.fits[effort]}
     return [compare(first, second, costs[first], costs[second])

@@ -9,7 +9,7 @@ from quad_ident_ros.identify.result import as_data as identification_data
 from quad_ident_ros.identify.result import clean, Identification
 from quad_ident_ros.paper import divergence, printed_ls, table2, table3
 from quad_ident_ros.paper.presets import load_preset
-from quad_ident_ros.paper.ranking import rank
+from quad_ident_ros.paper.ranking import comparisons
 from quad_ident_ros.paper.study import EFFORTS, steps, study
 from quad_ident_ros.warm_up import warm_up
 
@@ -85,13 +85,13 @@ def _preset(reproduction, name):
     outputs = (None, *found.signals)
     ranking = {effort: {output or 'all': [{**vars(entry), 'probability': entry.probability,
                                            'verdict': entry.verdict}
-                                          for entry in rank(found, effort, output)]
+                                          for entry in comparisons(found, effort, output)]
                         for output in outputs} for effort in EFFORTS}
     return {
         'title': preset.title, 'duration': preset.duration, 'infeasible': preset.infeasible,
         'references': [vars(entry) for entry in preset.references], 'truth': preset.truth,
-        'median': identification_data(found.pick('median')),
-        'worst': identification_data(found.pick('worst')),
+        **{rank: {effort: identification_data(found.pick(rank, effort)) for effort in EFFORTS}
+           for rank in ('median', 'worst')},
         'costs': {effort: {method: {output or 'all': found.costs(effort, method, output).tolist()
                                     for output in outputs} for method in fits}
                   for effort, fits in found.fits.items()},

@@ -8,7 +8,7 @@ from quad_ident_ros.identify.methods import METHODS
 from quad_ident_ros.identify.signals import GAIN_UNITS, OUTPUT_UNITS, OUTPUTS
 from quad_ident_ros.model.vehicle import load_vehicle
 from quad_ident_ros.paper.printed import ERRORS, TABLE_2
-from quad_ident_ros.paper.ranking import rank, same
+from quad_ident_ros.paper.ranking import comparisons, same
 from quad_ident_ros.paper.study import EFFORTS, middle, SWARMS
 from quad_ident_ros.report.html import join, Markup, markup, table, tag
 from quad_ident_ros.report.picture import NAMES
@@ -30,9 +30,9 @@ def both(upper, lower):
     return join([markup(upper), Markup('<br>'), tag('span', lower, 'second')], '')
 
 
-def fits(study):
+def fits(study, effort):
     """Return the table of K, a, b and the errors of all methods: Tables 2 and 3 of a preset."""
-    median, worst = study.pick('median'), study.pick('worst')
+    median, worst = study.pick('median', effort), study.pick('worst', effort)
     rows = []
     for output in study.signals:
         found = {name: fit.outputs[output] for name, fit in median.methods.items()}
@@ -62,20 +62,20 @@ def _fit(fit):
             number(fit.errors['nrmse_percent'], 3)]
 
 
-def effort(study):
+def spent(study, effort):
     """Return the table of evaluations, time and the total error of all methods."""
-    median = study.pick('median')
+    median = study.pick('median', effort)
     bounds = sum(entry['evaluations'] for entry in study.settings['bounds'].values())
     rows = []
     for name, fit in median.methods.items():
-        ordered = sorted(study.nrmse('per_output', name))
+        ordered = sorted(study.nrmse(effort, name))
         rows.append([METHODS[name].label, str(fit.evaluations) if fit.evaluations else NONE,
                      number(1e3 * fit.seconds, 3), number(middle(ordered), 3),
                      number(ordered[-1], 3) if name in SWARMS else NONE])
     return table(['method', 'evaluations', 'time, ms', 'NRMSE, % (median)', 'NRMSE, % (worst)'],
-                 rows, (), 'All outputs together (their NRMSE is the rms of that of each), one '
-                 "search per output, the paper's generations. Bounds of the searches: "
-                 f'{bounds} evaluations more, once for all methods.')
+                 rows, (), f'All outputs together, {EFFORTS[effort].label}; their NRMSE is the '
+                 'rms of that of each, an evaluation is that of one output. To find the bounds '
+                 f'took {bounds} evaluations more, once for all methods.')
 
 
 def references(preset):
@@ -97,7 +97,7 @@ def truth(preset):
 def ranking(study):
     """Return the table of who is better than whom, for each effort, over the seeds."""
     head = ['first', 'second', *(entry.label for entry in EFFORTS.values())]
-    columns = [rank(study, name) for name in EFFORTS]
+    columns = [comparisons(study, name) for name in EFFORTS]
     rows = [[METHODS[row[0].first].label, METHODS[row[0].second].label,
              *(_probability(entry) for entry in row)]
             for row in zip(*columns, strict=True)]
@@ -109,7 +109,7 @@ def ranking(study):
 
 def ranking_by_output(study, name):
     """Return the table of who is better than whom, for each output, of one effort."""
-    columns = [rank(study, name, output) for output in study.signals]
+    columns = [comparisons(study, name, output) for output in study.signals]
     rows = [[METHODS[row[0].first].label, METHODS[row[0].second].label,
              *(_probability(entry) for entry in row)]
             for row in zip(*columns, strict=True)]
@@ -185,7 +185,7 @@ def ls_printed(reproduction):
     """Return LS by the printed formulas beside LS by the right ones."""
     rows = []
     for name, found in reproduction.printed_fits.items():
-        right = reproduction.studies[name].pick('median').methods['ls'].outputs
+        right = reproduction.studies[name].pick('median', 'per_output').methods['ls'].outputs
         for place, fit in enumerate(found):
             cells = [_complex(value) for value in fit.parameters or (None,) * 3]
             rows.append([name if place == 0 else '', fit.output, *cells,

@@ -63,7 +63,7 @@ class Study:
         """Return the rms over the outputs of their NRMSE (n,), %, by seed or alone."""
         return 100 * np.sqrt(2 * self.costs(effort, method) / len(self.signals))
 
-    def pick(self, rank, effort='per_output'):
+    def pick(self, rank, effort):
         """
         Return the Identification of the 'median' or 'worst' seed, per method and output, by cost.
 

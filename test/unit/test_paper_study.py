@@ -15,7 +15,7 @@ from quad_ident_ros.identify.methods import METHODS
 from quad_ident_ros.identify.signals import OUTPUTS
 from quad_ident_ros.paper.claims import claims, FAILS, HOLDS, IN_PART, OPEN
 from quad_ident_ros.paper.presets import load_preset
-from quad_ident_ros.paper.ranking import between, compare, interval, rank
+from quad_ident_ros.paper.ranking import between, compare, comparisons, interval
 from quad_ident_ros.paper.reproduce import as_data, reproduce
 from quad_ident_ros.paper.study import DIRECT, EFFORTS, EQUAL_BUDGET, middle, steps, study, SWARMS
 
@@ -69,7 +69,8 @@ def test_the_same_seeds_give_the_same_costs(table_3_study):
 
 
 def test_median_and_worst_are_runs_of_their_output(table_3_study):
-    median, worst = table_3_study.pick('median'), table_3_study.pick('worst')
+    median, worst = (table_3_study.pick(rank, 'per_output')
+                     for rank in ('median', 'worst'))
     for name in METHODS:
         for output in OUTPUTS:
             costs = table_3_study.costs('per_output', name, output)
@@ -120,8 +121,9 @@ def test_ties_and_failures_are_compared_too(first, second, probability):
 
 
 def test_ranks_cover_each_pair_once(table_3_study):
-    pairs = {frozenset((entry.first, entry.second)) for entry in rank(table_3_study, 'joint')}
-    assert len(pairs) == len(rank(table_3_study, 'joint')) == len(METHODS) * (len(METHODS) - 1) / 2
+    entries = comparisons(table_3_study, 'joint')
+    pairs = {frozenset((entry.first, entry.second)) for entry in entries}
+    assert len(pairs) == len(entries) == len(METHODS) * (len(METHODS) - 1) / 2
     entry = between(table_3_study, 'joint', 'ls', 'cs')
     assert (entry.probability, entry.count) == (1.0, SEEDS)
 
@@ -190,7 +192,7 @@ def test_data_is_json_and_has_everything(reproduction):
     assert data['seeds'] == SEEDS and len(data['table_3']) == 64
     assert len(data['claims']) == len(claims(reproduction))
     preset = data['presets']['paper_table3']
-    assert set(preset['median']['methods']) == set(METHODS)
+    assert set(preset['median']['joint']['methods']) == set(METHODS)
     assert len(preset['costs']['joint']['cs']['phi']) == SEEDS
     assert preset['truth']['psi'] == [-9981.93, 0.0, 0.0]
     assert {entry['first'] for entry in preset['ranking']['per_output']['all']} <= set(METHODS)
