@@ -14,13 +14,15 @@ from quad_ident_ros.report.html import join, Markup, markup, table, tag
 from quad_ident_ros.report.picture import NAMES
 
 NONE = '–'
+LARGE = 1e6     # from here on numbers are written with a power of ten
 
 
 def number(value, digits=4):
     """Return a number as text; a dash for none."""
     if value is None or not math.isfinite(value):
         return NONE
-    return f'{value:.{digits}g}'.replace('-', '−')
+    whole = 10 ** digits <= abs(value) < LARGE
+    return (f'{value:.0f}' if whole else f'{value:.{digits}g}').replace('-', '−')
 
 
 def both(upper, lower):
@@ -73,9 +75,9 @@ def spent(study, effort):
                      number(1e3 * fit.seconds, 3), number(middle(ordered), 3),
                      number(ordered[-1], 3) if name in SWARMS else NONE])
     return table(['method', 'evaluations', 'time, ms', 'NRMSE, % (median)', 'NRMSE, % (worst)'],
-                 rows, (), f'All outputs together, {EFFORTS[effort].label}; their NRMSE is the '
-                 'rms of that of each, an evaluation is that of one output. To find the bounds '
-                 f'took {bounds} evaluations more, once for all methods.')
+                 rows, (), f'Searched {EFFORTS[effort].label}. NRMSE is the rms over the outputs, '
+                 'evaluations are those of all outputs. To find the bounds took '
+                 f'{bounds} evaluations more, once for all methods.')
 
 
 def references(preset):
