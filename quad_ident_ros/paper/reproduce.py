@@ -72,7 +72,10 @@ def as_data(reproduction, claims):
         'schema': 'quad_ident/paper/1', 'version': __version__, 'seeds': reproduction.seeds,
         'claims': [vars(claim) for claim in claims],
         'presets': {name: _preset(reproduction, name) for name in reproduction.presets},
-        'table_2': identification_data(reproduction.printed),
+        'table_2': {method: {output: {'K': fit.model.gain, 'a': fit.model.a, 'b': fit.model.b,
+                                      'nrmse_percent': fit.errors['nrmse_percent']}
+                             for output, fit in fits.outputs.items()}
+                    for method, fits in reproduction.printed.methods.items()},
         'table_3': [{**vars(cell), 'ratio': cell.ratio, 'agrees': cell.agrees,
                      'listed': cell.listed} for cell in reproduction.cells],
         'round_trips': [{**vars(trip), 'printed_restores': trip.printed_restores,
