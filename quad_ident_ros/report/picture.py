@@ -5,6 +5,7 @@
 from pathlib import Path
 
 import matplotlib
+from matplotlib.ticker import NullFormatter, StrMethodFormatter
 import numpy as np
 
 from quad_ident_ros.errors import InputError
@@ -60,14 +61,14 @@ def save_spread(panels, path, title, quantity):
     """
     Save a picture of how values spread, by panel and method: a dot each, a line at the median.
 
-    Args: panels: title -> name of a method -> values (n,), positive; quantity: what they are.
+    Args: panels: title -> name of a method -> values (n,), 0 or above; quantity: what they are.
     What lies more than a decade below all that spread is shown at the lower edge, with its value.
     Raises InputError where the file cannot be written.
     """
     plt = _pyplot(path)
     everything = [values for methods in panels.values() for values in methods.values()]
     spread = np.concatenate([values for values in everything if len(values) > 1] or everything)
-    everything, spread = (values[np.isfinite(values)]
+    everything, spread = (values[np.isfinite(values) & (values > 0)]
                           for values in (np.concatenate(everything), spread))
     bottom = max(everything.min() / 1.5, spread.min() / 10)
     figure, axes = plt.subplots(1, len(panels), figsize=(3.2 * len(panels) + 0.4, 3.3), dpi=130,
@@ -92,6 +93,9 @@ def save_spread(panels, path, title, quantity):
         axis.grid(axis='y', color='0.92')
         axis.spines[['top', 'right']].set_visible(False)
     axes[0, 0].set_ylim(bottom, 1.5 * everything.max())
+    plain, narrow = StrMethodFormatter('{x:g}'), everything.max() < 5 * bottom
+    axes[0, 0].yaxis.set_major_formatter(plain)
+    axes[0, 0].yaxis.set_minor_formatter(plain if narrow else NullFormatter())
     axes[0, 0].set_ylabel(quantity)
     figure.suptitle(title)
     _save(plt, figure, path)

@@ -7,11 +7,13 @@ from html.parser import HTMLParser
 import io
 import json
 
+import numpy as np
 import pytest
 
 from quad_ident_ros.cli.main import main
 from quad_ident_ros.identify.methods import METHODS
 from quad_ident_ros.report.html import Markup, markup, table, tag
+from quad_ident_ros.report.picture import save_spread
 
 VOID = ('meta', 'br', 'img')
 PRESETS = ['paper_unit_steps_newton_euler', 'paper_table3']
@@ -116,6 +118,13 @@ def test_bad_input_gets_one_line_before_any_work(arguments, tmp_path, capsys):
     said = capsys.readouterr().err.strip()
     assert said.startswith('quad_ident paper: error: ') and '\n' not in said
     assert list(tmp_path.iterdir()) == [file]
+
+
+def test_failures_and_exact_fits_have_a_place_in_the_picture(tmp_path):
+    path = tmp_path / 'spread.png'
+    save_spread({'some': {'pso': np.array([1.0, np.inf, 0.0]), 'ls': np.array([0.0])},
+                 'none': {'pso': np.full(3, np.inf), 'ls': np.array([np.inf])}}, path, 'x', 'y')
+    assert path.read_bytes().startswith(b'\x89PNG')
 
 
 def test_text_is_escaped_and_markup_is_not():
