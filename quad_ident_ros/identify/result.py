@@ -86,7 +86,7 @@ def parameter_table(fit):
 
 def as_data(identification):
     """Return an Identification as JSON-able data: numbers that are none become None."""
-    return _clean({
+    return clean({
         'schema': 'quad_ident/identification/1',
         'best': identification.best,
         'methods': {name: _method(fit) for name, fit in identification.methods.items()},
@@ -122,13 +122,16 @@ def _output(fit):
     return {**data, 'a': model.a, 'b': model.b}
 
 
-def _clean(value):
+def clean(value):
+    """Return a value as JSON-able data: numbers that are none become None."""
     if isinstance(value, dict):
-        return {str(key): _clean(entry) for key, entry in value.items()}
+        return {str(key): clean(entry) for key, entry in value.items()}
     if isinstance(value, list | tuple):
-        return [_clean(entry) for entry in value]
+        return [clean(entry) for entry in value]
     if isinstance(value, np.generic):
         value = value.item()
+    if isinstance(value, complex):
+        return {'real': clean(value.real), 'imaginary': clean(value.imag)}
     if isinstance(value, float) and not math.isfinite(value):
         return None
     return value

@@ -45,7 +45,8 @@ def signals(record, *, trim=None, outputs=None, initial_state='auto'):
     Args: trim: inputs U1..U4 from which deviations count, by default the record's own
     (`info['trim']`) or else the first sample's; outputs: names to identify, by default the
     record's own or all; initial_state 'rest', 'free' or 'auto' (rest where the record says that
-    it starts so).
+    it starts so). Angles that jump by more than half a turn are unwrapped, unless the record says
+    (`info['unwrapped']`) that they turn so fast.
     Returns (list of Signal, list of str). Raises InputError for missing columns, too few samples
     or gaps that cannot be bridged.
     """
@@ -54,7 +55,8 @@ def signals(record, *, trim=None, outputs=None, initial_state='auto'):
     inputs, measured, there = _columns(record)
     _check_size(record.t, inputs, measured)
     t, inputs, measured, remarks = _even_grid(record.t, inputs, measured)
-    if np.abs(np.diff(measured[:, :3], axis=0)).max() > np.pi:
+    jumps = np.abs(np.diff(measured[:, :3], axis=0)).max() > np.pi
+    if jumps and not record.info.get('unwrapped'):
         measured[:, :3] = np.unwrap(measured[:, :3], axis=0)
         remarks.append('the angles jump by more than half a turn: they were unwrapped')
     if record.info.get('truncated'):

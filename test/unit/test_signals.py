@@ -146,6 +146,13 @@ def test_wrapped_angles_are_unwrapped_and_that_is_said():
     assert any('unwrapped' in remark for remark in remarks)
 
 
+def test_angles_that_turn_fast_stay_as_they_are_where_the_record_says_so():
+    info = {'trim': list(HOVER), 'starts_at_rest': True, 'unwrapped': True}
+    found, remarks = signals(record(psi=500.0 * record().t, info=info))
+    np.testing.assert_allclose(of(found, 'psi').y, 500.0 * record().t)
+    assert not any('unwrapped' in remark for remark in remarks)
+
+
 def test_an_output_that_does_not_move_is_left_out_and_named():
     found, remarks = signals(record(phi=np.zeros(len(record().t))))
     assert 'phi' not in {signal.output for signal in found}
