@@ -7,6 +7,7 @@ from quad_ident_ros.identify.objective import Objective
 from quad_ident_ros.identify.result import Identification, MethodFit, OutputFit
 from quad_ident_ros.identify.signals import signals
 from quad_ident_ros.identify.transfer import response, SecondOrder
+from quad_ident_ros.identify.uncertainty import KEYS, Uncertainty
 from quad_ident_ros.paper.presets import load_preset
 from quad_ident_ros.paper.printed import TABLE_2
 
@@ -27,4 +28,4 @@ def _fit(signal, parameters):
     cost = Objective(signal).of_models([model.gain], [model.c1], [model.c0])[0]
     return OutputFit(signal.output, model, (0.0, 0.0), fitted, float(cost),
                      errors(signal.t, signal.y, fitted),
-                     dict.fromkeys(('K', 'a', 'b', 'c1', 'c0')), 0)
+                     Uncertainty(dict.fromkeys(KEYS)), 0)
