@@ -32,7 +32,7 @@ REFUSED = {
         ({'output': 3}, 'parameter output: expected text, got 3'),
     ],
     'identifier': [
-        ({'method': 'simplex'}, "'simplex' is not one of all, pso, cs, pso_cs, ls"),
+        ({'method': 'simplex'}, "'simplex' is not one of all, pso, cs, pso_cs, ls, vp"),
         ({'seed': 1.5}, 'parameter seed: expected a whole number from 0 to'),
         ({'lambda': 2.0}, 'lambda'),
         ({'pole_bounds': [2.0, 1.0]}, 'pole_bounds: the lower bound must be below the upper'),
