@@ -41,7 +41,7 @@ TURN_RATIO = 1.3
 DECAYS = (0.02, 0.15, 0.6)
 STARTS, MINIMA = 3, 2   # candidates of each kind that are followed down, minima of the grid
 ROUGHLY, FULLY = 1e-2, 1e-8   # squared distance to the optimum, in standard errors, of a descent
-THINNED = 2048     # samples of a long record that are enough for that
+THINNED = 1024     # samples of a long record that are enough for that
 
 
 def vp(signal, poles='auto', near=None):
