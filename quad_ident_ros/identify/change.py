@@ -6,7 +6,8 @@ Whether a vehicle changed within a window: a payload picked up, a rotor that wea
 One model for the whole window is compared with one before and another after each of a few
 instants, by the Bayesian information criterion (the generalised likelihood ratio of A. S. Willsky
 and H. L. Jones, IEEE Trans. Automatic Control 21(1), 1976). The better description must also have
-parameters that differ by more than their errors.
+parameters that differ by more than their errors. Where the model leaves dynamics out, two models
+are always better than one: what they are better by in the windows before is the measure then.
 """
 
 from dataclasses import dataclass, replace
@@ -20,7 +21,8 @@ from quad_ident_ros.identify.vp import residual_of, vp
 PLACES = 12          # instants within a window that are tried
 FINER = 5            # steps in which an instant that was found is narrowed down
 SHORTEST = 40        # samples that a part needs
-STRONG = 20.0        # advantage of two models that counts as evidence
+STRONG = 20.0        # advantage of two models that counts as evidence,
+UNUSUAL = 3.0        # and as how many times what it was before
 BEYOND_NOISE = 4.0   # standard errors by which a parameter has moved
 WATCHED = ('K', 'c1', 'c0', 'disturbance')
 
@@ -42,17 +44,21 @@ class Change:
     stamp_ns: int | None = None
 
 
-def find_change(signal, fitted):
-    """Return the Change within a signal that one Fitted describes for the whole, or None."""
+def find_change(signal, fitted, usual=0.0):
+    """
+    Return the Change within a signal, or None, and the advantage of two models over one.
+
+    Args: fitted: the Fitted of the whole; usual: the advantage in windows without a change.
+    """
     samples = len(signal.y)
     if samples < 2 * SHORTEST:
-        return None
+        return None, 0.0
     one = residual_of(signal, fitted)[signal.measured]
     latest = samples - SHORTEST
     places = np.unique(np.linspace(SHORTEST, latest, PLACES).astype(int))
     best = _best_place(signal, places, fitted.model)
     if best is None:
-        return None
+        return None, 0.0
     before, after, place = best
     two = np.concatenate([residual_of(*part)[part[0].measured] for part in (before, after)])
     count = independent_count(two)
@@ -60,13 +66,14 @@ def find_change(signal, fitted):
     extra = 3 + after[0].unknowns + 1
     better = max(one @ one, 1e-300) / max(two @ two, 1e-300)
     advantage = float(count * np.log(better) - extra * np.log(count))
-    if advantage < STRONG:
-        return None
+    if advantage < max(STRONG, UNUSUAL * usual):
+        return None, advantage
     gap = places[1] - places[0]
     near = np.linspace(max(place - gap, SHORTEST), min(place + gap, latest), 2 * FINER + 1)
     before, after, place = _best_place(signal, np.unique(near.astype(int)), fitted.model)
     moved = _moved(before, after)
-    return Change(signal.output, float(signal.t[place]), advantage, moved) if moved else None
+    return (Change(signal.output, float(signal.t[place]), advantage, moved) if moved else None,
+            advantage)
 
 
 def _best_place(signal, places, model):
@@ -100,6 +107,9 @@ def _power(*parts):
 
 def _moved(before, after):
     """Return the parameters that differ by more than their noise, with both values."""
+    # Residuals that hang together count as fewer, and the errors as larger.
+    samples = np.concatenate([residual_of(*part)[part[0].measured] for part in (before, after)])
+    inflation = np.sqrt(len(samples) / independent_count(samples))
     values, errors = [], []
     for part, fitted in (before, after):
         model = fitted.model
@@ -112,6 +122,6 @@ def _moved(before, after):
         spread = [error[name] for error in errors]
         if None in spread:
             continue
-        if abs(values[1][name] - values[0][name]) > BEYOND_NOISE * np.hypot(*spread):
+        if abs(values[1][name] - values[0][name]) > BEYOND_NOISE * inflation * np.hypot(*spread):
             moved[name] = (values[0][name], values[1][name])
     return moved

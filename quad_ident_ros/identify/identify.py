@@ -17,10 +17,9 @@ from quad_ident_ros.identify.residuals import examine
 from quad_ident_ros.identify.result import Identification, MethodFit, OutputFit
 from quad_ident_ros.identify.search import Search, SwarmSettings
 from quad_ident_ros.identify.signals import OUTPUTS, signals
-from quad_ident_ros.identify.space import find_space, literal_space, SIZE
+from quad_ident_ros.identify.space import find_space, literal_space, no_space, SIZE
 from quad_ident_ros.identify.transfer import response, SecondOrder
 from quad_ident_ros.identify.uncertainty import KEYS, Uncertainty, uncertainty
-from quad_ident_ros.identify.vp import REFITTED
 
 FIRST_SAMPLE = ('search joint: the level at rest is taken from the first sample, whose noise '
                 'enters the fit')
@@ -37,7 +36,7 @@ class Settings:
 
     methods: names in METHODS; seed of the searches; search 'per_output' (gain solved for, the
     default) or 'joint' (the paper's literal 12 dimensions in one search); box 'scaled' or
-    'literal' (see space); poles 'auto', 'real' or 'any' (see space.COMPLEX_PENALTY);
+    'literal' (see space); poles 'auto', 'real' or 'any' (see vp.COMPLEX_PENALTY);
     pole_bounds, gain_bounds: (low, high) or None for bounds from the data; initial_state 'auto',
     'rest' or 'free'; trim: U1..U4 or None for the record's; compare_orders: whether `vp` also
     looks at models of other orders (see order.alternatives).
@@ -97,12 +96,15 @@ def identify(records, settings=None, *, on_progress=lambda method, output, share
         pairs = {name: replace(signal, level_known=True) for name, signal in pairs.items()}
     objectives, spaces = {}, {}
     for name, signal in pairs.items():
-        if settings.box == 'literal':
+        searching = any(METHODS[method].search for method in settings.methods)
+        if not searching:
+            space = no_space(settings.poles, (near or {}).get(name))
+        elif settings.box == 'literal':
             space = literal_space(settings.poles)
         else:
             space = find_space(Objective(signal), settings.poles, settings.pole_bounds,
                                settings.gain_bounds, (near or {}).get(name))
-        limited = settings.gain_bounds is not None or settings.box == 'literal'
+        limited = searching and (settings.gain_bounds is not None or settings.box == 'literal')
         objectives[name] = Objective(signal, space.gain) if limited else Objective(signal)
         spaces[name] = space
     results = {}
@@ -161,10 +163,7 @@ def _search(method, objective, space, output, settings, random, on_progress):
     if not np.isfinite(search.best_cost):
         return _finish(objective.signal, output, None, search.spent, [OVERFLOW])
     mean, half = space.mean_and_half(search.best[None])
-    found = objective.fit(mean[0], half[0])
-    fitted = space.settle(objective, found)
-    return _finish(objective.signal, output, fitted, search.spent,
-                   [] if fitted is found else [REFITTED])
+    return _finish(objective.signal, output, objective.fit(mean[0], half[0]), search.spent)
 
 
 def _joint(method, objectives, spaces, settings, random, on_progress):
@@ -210,7 +209,7 @@ def _finish(signal, output, fitted, evaluations, remarks=()):
     sure = uncertainty(signal, fitted)
     tests = examine(signal, signal.y - fit, fitted.noise)
     found = errors(signal.t[signal.measured], signal.y[signal.measured], fit[signal.measured])
-    findings = list(_said(model, sure, tests, 1 / (signal.t[-1] + signal.period)))
+    findings = list(_said(model, sure, tests))
     if not found['fit_percent'] > POOR:
         findings.append('the model explains little of the response (fit '
                         f'{found["fit_percent"]:.0f} %)')
@@ -219,7 +218,7 @@ def _finish(signal, output, fitted, evaluations, remarks=()):
                      fitted.least_cost)
 
 
-def _said(model, sure, tests, slowest):
+def _said(model, sure, tests):
     """Return what must be said about how sure a model is."""
     if sure.errors['K'] is None:
         yield UNDETERMINED
@@ -234,8 +233,7 @@ def _said(model, sure, tests, slowest):
               and not (mixed and name in 'ab')]
     if unsure:
         yield (f'not identifiable from this record: {", ".join(unsure)}; the standard error is '
-               f'above half of the number, or of what the record can tell from zero, '
-               f'{slowest:.2g} 1/s')
+               'above half of the number, or of what the record can tell from zero')
     if tests.depends_on_input:
         yield ('the input is still in the residuals: the model leaves out dynamics, and the '
                'standard errors count the noise alone')

@@ -12,8 +12,9 @@ import numpy as np
 
 from quad_ident_ros.identify.objective import Objective
 from quad_ident_ros.identify.transfer import Discrete, printed_parameters, to_continuous
-from quad_ident_ros.identify.vp import REFITTED
 
+DOUBLED = ('the poles found were complex, without halving the error: taken as a double pole at '
+           'their real part')
 THINNED = 20   # samples that thinning leaves, at least
 
 # Poles closer than this share of their size, or of 1 / the record's length, count as equal:
@@ -26,8 +27,8 @@ def least_squares_fit(objective, space):
     Return the Fitted of the LS method, or None, no evaluations, and remarks or why it failed.
 
     Of the records thinned by several factors, the one whose model fits best has the say. A complex
-    pair is kept by the rule of the parameter `poles` (see space.COMPLEX_PENALTY), and otherwise
-    refitted with real poles.
+    pair is kept by the rule of the parameter `poles` (see vp.COMPLEX_PENALTY), and otherwise taken
+    as a double pole at its real part, with the gain fitted anew.
     """
     signal = objective.signal
     candidates = []
@@ -43,8 +44,13 @@ def least_squares_fit(objective, space):
             'the estimated roots belong to no continuous model that stays finite over the record']
     fitted, factor = min(candidates, key=lambda entry: entry[0].cost)
     remarks = [f'thinned to one sample in {factor}'] if factor > 1 else []
-    settled = space.settle(objective, fitted)
-    return settled, 0, remarks if settled is fitted else [*remarks, REFITTED]
+    if fitted.model.form != 'complex':
+        return fitted, 0, remarks
+    # Its own double pole, not a better model from elsewhere: this is what LS found.
+    double = objective.fit(fitted.model.c1 / 2, 0.0)
+    if fitted.cost * space.complex_penalty < double.cost:
+        return fitted, 0, remarks
+    return double, 0, [*remarks, DOUBLED]
 
 
 def _fit_of(signal, model):

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Identification from window to window of a flight that goes on."""
 
+from collections import deque
 from dataclasses import replace
 
 from quad_ident_ros.errors import InputError
@@ -9,7 +10,10 @@ from quad_ident_ros.identify.change import find_change, SHORTEST
 from quad_ident_ros.identify.identify import identify
 from quad_ident_ros.identify.vp import vp
 
-AFRESH = 20   # windows after which the search begins without the last model
+AFRESH = 20     # windows after which the search begins without the last model
+USUAL = 100     # windows whose advantage of two models is the usual one,
+RECENT = 60     # but for the last, in which a change may be coming up
+SETTLED = 20    # windows after which it is known
 
 
 class Tracker:
@@ -24,6 +28,7 @@ class Tracker:
         self._near = {}
         self._windows = 0
         self._since_ns = None
+        self._advantages = {}
 
     def update(self, records, settings, **options):
         """
@@ -40,7 +45,7 @@ class Tracker:
         changes = self._changes(result, settings)
         if changes:
             self._since_ns = max(change.stamp_ns for change in changes)
-            self._near = {}
+            self._near, self._advantages = {}, {}
             try:
                 result = self._identify(records, settings, options)
             except InputError:   # too little after the change: the window as a whole has to do
@@ -62,11 +67,20 @@ class Tracker:
         first = int((age < -1e3).sum())   # stamps are doubles of seconds: 1 us is the same time
         return record if len(record) - first < SHORTEST else record.starting(first)
 
+    def _model(self, result, output):
+        """Return a model near the best one of an output: that of VP where it has one."""
+        fit = result.methods.get('vp', result.methods[result.best]).outputs[output]
+        return fit.model or self._near.get(output)
+
     def _changes(self, result, settings):
         found = []
         for output, signal in result.signals.items():
-            change = find_change(signal, vp(signal, settings.poles, self._near.get(output)))
-            if change is not None and signal.start_ns is not None:
+            past = self._advantages.setdefault(output, deque(maxlen=USUAL + RECENT))
+            known = list(past)[:-RECENT]
+            fitted = vp(signal, settings.poles, self._model(result, output))
+            change, advantage = find_change(signal, fitted, max(known, default=0.0))
+            past.append(advantage)
+            if change is not None and len(known) >= SETTLED and signal.start_ns is not None:
                 found.append(replace(
                     change, stamp_ns=signal.start_ns + round(change.time * 1e9)))
         return found

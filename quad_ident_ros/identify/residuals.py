@@ -112,8 +112,16 @@ def _filtered(noise, values, measured):
 def _autocovariances(residual, measured, lags):
     """Return the autocovariances at lags 0..lags, from the measured samples."""
     values = np.where(measured, residual, 0.0)
-    count = np.count_nonzero(measured)
-    return np.array([values[lag:] @ values[:len(values) - lag] / count
+    count, pairs = np.count_nonzero(measured), _pairs(measured, lags)
+    # Missing samples thin out the pairs; without any this is the usual estimate, over the count.
+    share = (count - np.arange(lags + 1)) / np.maximum(pairs, 1)
+    return share / count * [values[lag:] @ values[:len(values) - lag]
+                            for lag in range(lags + 1)]
+
+
+def _pairs(measured, lags):
+    """Return how many pairs of samples at lags 0..lags were both measured."""
+    return np.array([np.count_nonzero(measured[lag:] & measured[:len(measured) - lag])
                      for lag in range(lags + 1)])
 
 
@@ -121,8 +129,10 @@ def _whiteness(residual, measured, fitted):
     count = np.count_nonzero(measured)
     lags = min(LAGS, count // 5)
     covariances = _autocovariances(residual, measured, lags)
+    pairs, spaces = _pairs(measured, lags)[1:], count - np.arange(1, lags + 1)
     correlations = covariances[1:] / covariances[0]
-    statistic = count * (count + 2) * np.sum(correlations ** 2 / (count - np.arange(1, lags + 1)))
+    # Of n pairs a correlation has the variance 1/n: with samples missing more than 1/count.
+    statistic = count * (count + 2) * np.sum(correlations ** 2 / spaces * pairs / spaces)
     return float(chi2.sf(statistic, max(1, lags - fitted)))
 
 

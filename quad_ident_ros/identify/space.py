@@ -74,16 +74,6 @@ class Space:
         return (self.gain[0] <= model.gain <= self.gain[1]
                 and self.poles[0] <= mean - reach and mean + reach <= self.poles[1])
 
-    def settle(self, objective, fitted):
-        """Return a Fitted, with real poles where its complex pair does not earn its place."""
-        if fitted.model.form != 'complex':
-            return fitted
-        real, _ = best_poles(objective.signal, np.inf)
-        if not self.holds(real.model):
-            a, b = np.clip((real.model.a, real.model.b), *self.poles)
-            real = objective.fit((a + b) / 2, (a - b) / 2)
-        return fitted if fitted.cost * self.complex_penalty < real.cost else real
-
 
 def find_space(objective, poles='auto', pole_bounds=None, gain_bounds=None, near=None):
     """
@@ -121,3 +111,7 @@ def literal_space(poles='auto'):
     """Return the box [0, 200] taken at its word, for gain and poles."""
     return Space((0.0, SIZE), (0.0, SIZE), COMPLEX_PENALTY[poles])
 
+
+def no_space(poles='auto', near=None):
+    """Return the space of methods that search in none."""
+    return Space((-np.inf, np.inf), (-np.inf, np.inf), COMPLEX_PENALTY[poles], near=near)

@@ -57,7 +57,7 @@ def uncertainty(signal, fitted):
     errors.update(zip(names, spread, strict=True))
     duration = signal.t[-1] + signal.period
     sizes = {'K': abs(fitted.model.gain), 'c1': max(abs(fitted.model.c1), 1 / duration),
-             'c0': max(abs(fitted.model.c0), 1 / duration ** 2),
+             'c0': max(abs(fitted.model.c0), max(abs(fitted.model.c1), 1 / duration) / duration),
              'a': max(abs(fitted.model.a), 1 / duration),
              'b': max(abs(fitted.model.b), 1 / duration)}
     # Of equal poles the record tells the sum and the product, not the one and the other.
@@ -134,7 +134,7 @@ def _covariance(signal, fitted):
 def _pole_gradient(model):
     """Return the names of three numbers, and their derivatives (3, 3) by K, c1 and c0."""
     root = np.sqrt(complex(model.c1 ** 2 / 4 - model.c0))
-    if abs(root) <= 1e-9 * abs(model.c1) or root == 0:
+    if model.form == 'equal' or abs(root) <= 1e-9 * abs(model.c1):
         return ('K', 'c1', 'c0'), np.eye(3)
     if model.form == 'complex':
         size = abs(root)

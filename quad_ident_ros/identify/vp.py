@@ -31,7 +31,6 @@ COMPLEX_PENALTY = {'real': np.inf, 'auto': 4.0, 'any': 1.0}
 
 NOISE_ROUNDS = 3   # of noise model and fit in turn
 COLOURED = 'the noise is coloured: it was modelled, and the fit is the most likely one for it'
-REFITTED = 'the poles found were complex, without halving the error: refitted with real poles'
 
 # The grid, in pole x record length: real poles from growing ones to one per sample, and pairs by
 # frequency and by the ratio of decay to frequency.
