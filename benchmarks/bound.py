@@ -3,7 +3,7 @@
 """
 Exact responses with their derivatives, and the Cramer-Rao bound that follows from them.
 
-Nothing here comes from the library that is measured: response and derivatives are the states of
+No formula here comes from the library that is measured: response and derivatives are the states of
 one linear system, y'' + c1 y' + c0 y = u and its derivatives by c1 and c0, whose exact discrete
 form under a held input is a matrix exponential (C. Van Loan, IEEE Trans. Autom. Control 23(3),
 1978).
@@ -11,9 +11,10 @@ form under a held input is a matrix exponential (C. Van Loan, IEEE Trans. Autom.
 
 from dataclasses import dataclass
 
-import numba
 import numpy as np
 from scipy.linalg import expm
+
+from quad_ident_ros.compiled import compiled
 
 # Derivatives of y, each with what drives its equation: pairs of factor and state, where state 2 i
 # is the i-th derivative and 2 i + 1 its rate. 0: y, 1: by c1, 2: by c0, 3: twice by c1, 4: by
@@ -44,7 +45,7 @@ def derivatives(c1, c0, u, period, count=FIRST):
     return out
 
 
-@numba.njit(cache=True)
+@compiled
 def _run(phi, gamma, u, out):
     size = len(gamma)
     state, new = np.zeros(size), np.zeros(size)

@@ -11,17 +11,16 @@ import time
 from benchmarks.tables import markdown, number
 
 TASKS = ('import', 'vp', 'PSO-CS')
-LATER = 3       # starts of which the last counts: the first fills the cache of the disk
 
 
 def run(size, bar):
     """Return the results as Markdown; size: a Size; bar: makes progress bars."""
-    with tempfile.TemporaryDirectory() as folder, bar('starts', 1 + LATER) as advance:
-        first = _start(folder)
-        advance()
-        for _ in range(LATER):
-            later = _start(folder)
+    with tempfile.TemporaryDirectory() as folder, bar('starts', 2) as advance:
+        starts = []
+        for _ in range(2):
+            starts.append(_start(folder))
             advance()
+    first, later = starts
     rows = [(name, number(one), number(other))
             for name, one, other in zip(TASKS, first, later, strict=True)]
     rows.append(('together', number(sum(first)), number(sum(later))))
