@@ -11,6 +11,7 @@ from benchmarks.tables import markdown, number, targets
 VP = '`vp`'
 CLOSE = 0.01            # of the best cost
 EQUAL = 1e-6            # of the best cost: where the same optimum is meant
+TOO_SLOW = ('scipy least_squares, lsim', 'SIPPY OE')    # a minute and more per draw
 SHORT, LONG = 5_000, 50_000
 FIRST_CALL = 200        # evaluations of a first call that is not measured
 POPULATIONS = ('pyswarms PSO', 'scipy differential_evolution', 'pycma CMA-ES')
@@ -46,8 +47,8 @@ def run(size, bar):
 
 def _contenders(samples):
     direct = [*peers_direct.LEAST_SQUARES, *peers_direct.SIPPY]
-    if samples == LONG:     # a response by lsim alone takes a second
-        direct = [entry for entry in direct if entry[1] is not peers_direct.by_lsim]
+    if samples == LONG:
+        direct = [entry for entry in direct if entry[0] not in TOO_SLOW]
     return [Contender(VP, ours.fit_vp),
             *(Contender(label, searching(search, ours.BUDGET), searching(search, FIRST_CALL))
               for label, search in peers.PEERS if label in POPULATIONS),

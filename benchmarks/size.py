@@ -18,10 +18,10 @@ class Size:
 
     draws: int = 30
     share_draws: int = 200
-    seconds: float = 20.0
+    seconds: float = 10.0
     long_runs: int = 3
     long_budget: int = 100_000
-    long_seconds: float = 30.0
+    long_seconds: float = 20.0
     largest: int = 5_000_000
     accuracy_draws: int = 200
 
