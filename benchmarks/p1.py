@@ -52,8 +52,8 @@ def run(size, bar):
          _against(swarm, pyswarms),
          not pyswarms.seconds or (swarm.milliseconds < pyswarms.milliseconds
                                   and swarm.ratio < pyswarms.ratio))]
-    head = ('method', 'CPU, ms', 'over vp', 'over PSO-CS', 'evaluations', 'J/J_ML stable',
-            'unstable', 'RMSE/CRB stable', 'unstable', f'to {CLOSE:.0%} of the best cost')
+    head = ('method', 'CPU, ms', 'over vp', 'over PSO-CS', 'evaluations', 'J/J_ML, stable',
+            'unstable', 'RMSE/CRB, stable', 'unstable', f'to {100 * CLOSE:.0f} % of the best cost')
     return f'{targets(goals)}\n\n{markdown(head, rows)}'
 
 

@@ -33,7 +33,7 @@ def run(size, bar):
         rows = [_row(label, score, scores[VP]) for label, score in scores.items()]
         parts.append(f'{problem.title}:\n\n' + markdown(
             ('method', 'draws', 'CPU, ms', 'over vp', 'evaluations', 'J/J_ML',
-             f'draws within {CLOSE:.0%}', 'RMSE/CRB'), rows))
+             f'draws within {100 * CLOSE:.0f} %', 'RMSE/CRB'), rows))
         if samples == LONG:
             goals += [
                 (f'`vp`, {excitation}, {samples:,} samples, CPU time', '≤ 25 ms',

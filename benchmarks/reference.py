@@ -72,7 +72,7 @@ def _descend(signal, point, model_of):
             break
         gained = cost - new
         point, error, cost = point + step, signal.y - y, new
-        damping /= 30
+        damping = max(damping / 30, 1e-12)
         if gained <= DONE * cost:
             break
     return point, _weight(signal) * cost
