@@ -9,22 +9,24 @@ from quad_ident_ros.identify.objective import Objective
 from quad_ident_ros.identify.pso_cs import pso_cs
 from quad_ident_ros.identify.search import Search, SwarmSettings
 from quad_ident_ros.identify.space import SIZE, Space
-from quad_ident_ros.identify.uncertainty import standard_errors
-from quad_ident_ros.identify.vp import vp
+from quad_ident_ros.identify.uncertainty import uncertainty
+from quad_ident_ros.identify.vp import best_poles, COMPLEX_PENALTY, vp
 
 BUDGET = 8200    # evaluations of CS and PSO-CS with the paper's settings
 SPACE = Space(POLE_BOUNDS, GAIN_BOUNDS, np.inf)
 
 
 def fit_vp(signals, seed):
-    """Return K, c1, c0 (outputs, 3) by vp, and no count of evaluations: it takes no budget."""
-    return np.array([_coefficients(vp(signal)) for signal in signals]), None
+    """Return K, c1, c0 (outputs, 3) by vp with its defaults, and the evaluations of F it took."""
+    found = [best_poles(signal, COMPLEX_PENALTY['auto']) for signal in signals]
+    return (np.array([_coefficients(fitted) for fitted, _ in found]),
+            sum(spent for _, spent in found) / len(found))
 
 
 def fit_vp_any(signal):
     """Return the model of vp with poles of any kind, and its standard errors."""
     fitted = vp(signal, poles='any')
-    return fitted.model, standard_errors(signal, fitted)
+    return fitted.model, uncertainty(signal, fitted).errors
 
 
 def fit_pso_cs(signals, seed):

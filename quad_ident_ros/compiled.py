@@ -5,13 +5,19 @@
 import numba
 
 
-def compiled(function):
+def compiled(function=None, *, fused=False, reordered=False):
     """
     Compile a numerical function, without the interpreter's lock and with an on-disk cache.
 
-    Where no folder can be written the function is compiled again at each start.
+    fused lets a product and a sum be one operation, reordered lets sums be taken in another order,
+    for kernels that the processor then does several elements at a time of. Not a number and
+    infinity keep their meaning. Where no folder can be written the function is compiled again at
+    each start.
     """
+    if function is None:
+        return lambda function: compiled(function, fused=fused, reordered=reordered)
+    flags = {name for name, wanted in (('contract', fused), ('reassoc', reordered)) if wanted}
     try:
-        return numba.njit(cache=True, nogil=True)(function)
+        return numba.njit(cache=True, nogil=True, fastmath=flags)(function)
     except RuntimeError:
-        return numba.njit(nogil=True)(function)
+        return numba.njit(nogil=True, fastmath=flags)(function)

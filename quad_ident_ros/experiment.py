@@ -162,7 +162,8 @@ def fly(experiment, run, *, noise=None, seed=0, on_progress=lambda share: None):
         'model': experiment.model, 'vehicle': experiment.vehicle.name,
         'outputs': list(run.outputs), 'trim': experiment.trim_input().tolist(),
         'initial': {'phi': 0.0, 'theta': 0.0, 'psi': 0.0, 'z': experiment.altitude},
-        'starts_at_rest': True, 'infeasible': experiment.infeasible(run), 'noise': dict(noise),
+        'starts_at_rest': True, 'unwrapped': True, 'infeasible': experiment.infeasible(run),
+        'noise': dict(noise),
         'seed': seed, 'step': experiment.step or LONGEST_STEP[experiment.model],
         'version': __version__}
     omega_r = omega_r_of(experiment.omega_r, experiment.vehicle, inputs, t,

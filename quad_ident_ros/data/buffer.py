@@ -6,11 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from quad_ident_ros.data.record import FlightRecord
+from quad_ident_ros.data.record import FIRST_SAMPLE_INFO, FlightRecord
 from quad_ident_ros.data.topics import record_columns, run_at
-
-# What holds for a run only from its first sample on.
-FIRST_SAMPLE_INFO = ('starts_at_rest', 'initial')
 
 
 @dataclass(frozen=True)

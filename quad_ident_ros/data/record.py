@@ -66,6 +66,10 @@ def find_fault(t, columns):
     return None
 
 
+# What holds for a record only from its first sample on.
+FIRST_SAMPLE_INFO = ('starts_at_rest', 'initial')
+
+
 @dataclass(frozen=True, eq=False)
 class FlightRecord:
     """
@@ -146,7 +150,17 @@ class FlightRecord:
 
     def last(self, seconds):
         """Return the record of the samples of the last seconds (s); all where it is shorter."""
-        return self.slice(int(np.searchsorted(self.t, self.t[-1] - seconds)))
+        return self.starting(int(np.searchsorted(self.t, self.t[-1] - seconds)))
+
+    def starting(self, first):
+        """Return the record from a sample on, which beyond the first does not begin at rest."""
+        if first == 0:
+            return self
+        part, shift = self.slice(first), self.t[first] - self.t[0]
+        info = {key: value for key, value in self.info.items() if key not in FIRST_SAMPLE_INFO}
+        if 'start_ns' in info:
+            info['start_ns'] = int(info['start_ns'] + round(shift * 1e9))
+        return FlightRecord(part.t, part.columns, info)
 
     def period(self):
         """Return the median time between samples, s."""

@@ -4,23 +4,28 @@
 
 import numpy as np
 
-from quad_ident_ros.identify.levy import levy_steps
+from quad_ident_ros.identify.levy import levy_sigma
+from quad_ident_ros.identify.moves import exchange, fly, shuffle
 from quad_ident_ros.identify.space import SIZE
 
 
 def cs(search):
     """Minimise by cuckoo search; two evaluations per nest and generation."""
+    hatch(search, 0.0)
+
+
+def hatch(search, pull):
+    """Minimise by Levy flights with a pull to the best, up to that share, and abandoned nests."""
+    settings, random = search.settings, search.random
+    sigma = levy_sigma(settings.levy_lambda, settings.levy)
     nests, costs = search.start()
+    new = np.empty_like(nests)
     while search.going():
-        search.keep_better(nests, costs, nests + flight(search, nests.shape))
+        fly(nests, search.best, random.standard_normal((2, *nests.shape)),
+            random.random((2, *nests.shape)), sigma, settings.levy_lambda, settings.step_size,
+            pull, SIZE, new)
+        search.keep_better(nests, costs, new)
         abandon(search, nests, costs)
-
-
-def flight(search, shape):
-    """Return the steps of eq. (27), alpha times Levy, for all nests."""
-    settings = search.settings
-    return settings.step_size * levy_steps(search.random, settings.levy_lambda, shape,
-                                           settings.levy)
 
 
 def abandon(search, nests, costs):
@@ -32,14 +37,16 @@ def abandon(search, nests, costs):
     or worse.
     """
     settings, random = search.settings, search.random
-    j, k = random.permutation(len(nests)), random.permutation(len(nests))
-    difference = nests[j] - nests[k]
+    orders = np.empty((2, len(nests)), np.int64)
+    shuffle(random.random(orders.shape), orders)
     if settings.replacement == 'standard':
-        found = random.uniform(size=nests.shape) < settings.abandon
-        step = random.uniform(size=nests.shape) * found * difference
-        search.keep_better(nests, costs, nests + step)
+        new = np.empty_like(nests)
+        found, shares = random.random((2, *nests.shape))
+        exchange(nests, found, shares, orders, settings.abandon, SIZE, new)
+        search.keep_better(nests, costs, new)
         return
+    difference = nests[orders[0]] - nests[orders[1]]
     worst = np.argsort(costs)[len(costs) - int(settings.abandon * len(costs)):]
-    step = (settings.abandon - random.uniform(size=nests.shape)) * difference
+    step = (settings.abandon - random.random(nests.shape)) * difference
     nests[worst] = np.clip(nests[worst] + step[worst], 0.0, SIZE)
     costs[worst] = search.evaluate(nests[worst])

@@ -12,16 +12,20 @@ from quad_ident_ros.errors import InputError
 from quad_ident_ros.identify.methods import METHODS
 from quad_ident_ros.identify.metrics import errors, UNITS
 from quad_ident_ros.identify.objective import Fitted, Objective
+from quad_ident_ros.identify.order import alternatives
+from quad_ident_ros.identify.residuals import examine
 from quad_ident_ros.identify.result import Identification, MethodFit, OutputFit
 from quad_ident_ros.identify.search import Search, SwarmSettings
 from quad_ident_ros.identify.signals import OUTPUTS, signals
-from quad_ident_ros.identify.space import find_space, literal_space, REFITTED, SIZE
+from quad_ident_ros.identify.space import find_space, literal_space, SIZE
 from quad_ident_ros.identify.transfer import response, SecondOrder
-from quad_ident_ros.identify.uncertainty import standard_errors
+from quad_ident_ros.identify.uncertainty import KEYS, Uncertainty, uncertainty
+from quad_ident_ros.identify.vp import REFITTED
 
-FIRST_SAMPLE = ('the level at rest is taken from the first sample, whose noise enters the fit: '
-                'an initial state that is free is estimated')
+FIRST_SAMPLE = ('search joint: the level at rest is taken from the first sample, whose noise '
+                'enters the fit')
 POOR = 50.0   # fit %
+FEWEST_FOR_ORDERS = 30   # samples
 UNDETERMINED = 'these data do not determine K, a and b: the information matrix is singular'
 OVERFLOW = 'no model was found that stays finite over the record'
 
@@ -35,7 +39,8 @@ class Settings:
     default) or 'joint' (the paper's literal 12 dimensions in one search); box 'scaled' or
     'literal' (see space); poles 'auto', 'real' or 'any' (see space.COMPLEX_PENALTY);
     pole_bounds, gain_bounds: (low, high) or None for bounds from the data; initial_state 'auto',
-    'rest' or 'free'; trim: U1..U4 or None for the record's.
+    'rest' or 'free'; trim: U1..U4 or None for the record's; compare_orders: whether `vp` also
+    looks at models of other orders (see order.alternatives).
     """
 
     methods: tuple = tuple(METHODS)
@@ -48,6 +53,7 @@ class Settings:
     gain_bounds: tuple | None = None
     initial_state: str = 'auto'
     trim: tuple | None = None
+    compare_orders: bool = True
 
 
 def collect(records, settings):
@@ -61,8 +67,6 @@ def collect(records, settings):
         pairs, said = signals(record, trim=settings.trim, initial_state=settings.initial_state)
         found.update({pair.output: pair for pair in pairs})
         remarks += said
-        if settings.initial_state == 'rest' and 'initial' not in record.info:
-            remarks.append(FIRST_SAMPLE)
     if not found:
         raise InputError('no input deviates from its trim in these data, so there is nothing to '
                          'identify: excite U1..U4, or state the trim (the option '
@@ -71,24 +75,33 @@ def collect(records, settings):
             list(dict.fromkeys(remarks)))
 
 
-def identify(records, settings=None, *, on_progress=lambda method, output, share: None):
+def identify(records, settings=None, *, on_progress=lambda method, output, share: None, near=None):
     """
     Fit K/((s+a)(s+b)) to each excited output of flight records by each method.
 
     Args: records: FlightRecords, for instance one per axis; settings: Settings;
     on_progress: called with method, output and the share done (0 to 1) of that fit; what it
-    raises (search.Cancelled) ends the identification.
+    raises (search.Cancelled) ends the identification; near: models by output near which the best
+    ones are expected.
     Returns an Identification. The same records, settings and seed give the same numbers.
     Raises InputError for data that cannot be identified.
     """
     settings = settings or Settings()
     pairs, remarks = collect(records, settings)
+    if settings.search == 'joint':
+        if not all(signal.at_rest for signal in pairs.values()):
+            raise InputError('search: joint needs records that start at rest (it does not '
+                             'estimate initial states); use per_output, or initial_state rest')
+        if not all(signal.level_known for signal in pairs.values()):
+            remarks.append(FIRST_SAMPLE)
+        pairs = {name: replace(signal, level_known=True) for name, signal in pairs.items()}
     objectives, spaces = {}, {}
     for name, signal in pairs.items():
-        space = find_space(Objective(signal), settings.poles, settings.pole_bounds,
-                           settings.gain_bounds)
         if settings.box == 'literal':
             space = literal_space(settings.poles)
+        else:
+            space = find_space(Objective(signal), settings.poles, settings.pole_bounds,
+                               settings.gain_bounds, (near or {}).get(name))
         limited = settings.gain_bounds is not None or settings.box == 'literal'
         objectives[name] = Objective(signal, space.gain) if limited else Objective(signal)
         spaces[name] = space
@@ -100,6 +113,8 @@ def identify(records, settings=None, *, on_progress=lambda method, output, share
         if method.direct:
             fits = {output: _direct(method, objectives[output], spaces[output], output)
                     for output in pairs}
+            if method.name == 'vp' and settings.compare_orders:
+                fits = {output: _with_orders(fit, pairs[output]) for output, fit in fits.items()}
         elif settings.search == 'joint':
             fits = _joint(method, objectives, spaces, settings, random, on_progress)
         else:
@@ -112,10 +127,31 @@ def identify(records, settings=None, *, on_progress=lambda method, output, share
 
 
 def _direct(method, objective, space, output):
-    fitted, remarks = method.direct(objective, space)
-    if np.isfinite(objective.gain_bounds).all():
-        remarks = [*remarks, 'bounds are for the searches: this method knows none']
-    return _finish(objective.signal, output, fitted, 0, remarks)
+    fitted, spent, remarks = method.direct(objective, space)
+    if fitted is not None and not space.holds(fitted.model):
+        remarks = [*remarks, 'beyond the bounds: those are for the searches, this method has none']
+    return _finish(objective.signal, output, fitted, spent, remarks)
+
+
+def _with_orders(fit, signal):
+    """Return the OutputFit with what other orders give, and a word where one is better."""
+    if fit.model is None or signal.samples < FEWEST_FOR_ORDERS:
+        return fit
+    found = alternatives(signal, fit.model)
+    return replace(fit, orders=found, findings=(*fit.findings, *(
+        said for said in map(_said_of_order, found) if said)))
+
+
+def _said_of_order(other):
+    if not other.is_better:
+        return None
+    if other.name == 'first order':
+        return (f'K/(s+a) with a = {other.denominator[0]:.4g} describes the record as well, with '
+                'one number less')
+    if other.name == 'double integrator':
+        return 'K/s^2 describes the record as well: its poles cannot be told from zero'
+    return ('a third pole fits significantly better: the rms error falls to '
+            f'{other.nrmse_percent:.3g} % of the range')
 
 
 def _search(method, objective, space, output, settings, random, on_progress):
@@ -132,11 +168,6 @@ def _search(method, objective, space, output, settings, random, on_progress):
 
 
 def _joint(method, objectives, spaces, settings, random, on_progress):
-    for signal in (objective.signal for objective in objectives.values()):
-        if not signal.at_rest:
-            raise InputError('search: joint needs records that start at rest (it does not '
-                             'estimate initial states); use per_output, or initial_state rest')
-
     def models(points, output, space):
         i = 3 * list(objectives).index(output)
         low = np.array([space.gain[0], space.poles[0], space.poles[0]])
@@ -170,25 +201,47 @@ def _finish(signal, output, fitted, evaluations, remarks=()):
     """Return the OutputFit of a Fitted model, or of none."""
     if fitted is not None:
         model = fitted.model
-        fit = response(model, signal.u, signal.period, fitted.initial)
+        fit = response(model, signal.u, signal.period, fitted.initial, fitted.disturbance)
         if not (np.isfinite(fit).all() and np.isfinite(fitted.cost)):
             fitted, remarks = None, [OVERFLOW]
     if fitted is None:
         return OutputFit(output, None, (0.0, 0.0), None, np.inf, dict.fromkeys(UNITS),
-                         dict.fromkeys(('K', 'a', 'b', 'c1', 'c0')), evaluations, tuple(remarks))
-    deviations = standard_errors(signal, fitted)
-    if deviations['K'] is None:
-        remarks = (*remarks, UNDETERMINED)
-    if model.form == 'real' and deviations['a'] and deviations['a'] > model.a - model.b:
-        remarks = (*remarks, 'a and b are closer than their errors: the data determine only '
-                             f'a + b = {model.c1:.4g} ± {deviations["c1"]:.1g} and '
-                             f'a b = {model.c0:.4g} ± {deviations["c0"]:.1g}')
-    found = errors(signal.t, signal.y, fit)
+                         Uncertainty(dict.fromkeys(KEYS)), evaluations, tuple(remarks))
+    sure = uncertainty(signal, fitted)
+    tests = examine(signal, signal.y - fit, fitted.noise)
+    found = errors(signal.t[signal.measured], signal.y[signal.measured], fit[signal.measured])
+    findings = list(_said(model, sure, tests, 1 / (signal.t[-1] + signal.period)))
     if not found['fit_percent'] > POOR:
-        remarks = (*remarks, 'the model explains little of the response (fit '
-                             f'{found["fit_percent"]:.0f} %)')
-    return OutputFit(output, model, fitted.initial, fit, fitted.cost,
-                     found, deviations, evaluations, tuple(remarks))
+        findings.append('the model explains little of the response (fit '
+                        f'{found["fit_percent"]:.0f} %)')
+    return OutputFit(output, model, fitted.initial, fit, fitted.cost, found, sure, evaluations,
+                     tuple(remarks), tuple(findings), fitted.disturbance, tests,
+                     fitted.least_cost)
+
+
+def _said(model, sure, tests, slowest):
+    """Return what must be said about how sure a model is."""
+    if sure.errors['K'] is None:
+        yield UNDETERMINED
+    # Of two poles that are closer than their errors only the sum and the product are known.
+    apart = model.form == 'real' and sure.errors['a']
+    mixed = model.form == 'equal' or apart and apart > model.a - model.b
+    if mixed and sure.errors['c1'] is not None:
+        yield ('a and b are closer than their errors: the data determine only '
+               f'a + b = {model.c1:.4g} ± {sure.errors["c1"]:.1g} and '
+               f'a b = {model.c0:.4g} ± {sure.errors["c0"]:.1g}')
+    unsure = [name for name in sure.unidentifiable if sure.errors[name] is not None
+              and not (mixed and name in 'ab')]
+    if unsure:
+        yield (f'not identifiable from this record: {", ".join(unsure)}; the standard error is '
+               f'above half of the number, or of what the record can tell from zero, '
+               f'{slowest:.2g} 1/s')
+    if tests.depends_on_input:
+        yield ('the input is still in the residuals: the model leaves out dynamics, and the '
+               'standard errors count the noise alone')
+    elif tests.is_coloured:
+        yield ('the residuals are not white, by coloured noise or by dynamics left out: the '
+               'standard errors are too small')
 
 
 def _described(settings, spaces):

@@ -1,10 +1,8 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Levy-distributed steps by Mantegna's algorithm: the paper's eqs. (25), (26)."""
+"""The spread of Levy-distributed steps by Mantegna's algorithm: the paper's eqs. (25), (26)."""
 
 from math import gamma, pi, sin
-
-import numpy as np
 
 from quad_ident_ros.errors import InputError
 
@@ -23,10 +21,3 @@ def levy_sigma(exponent, form='mantegna'):
               / (gamma((1 + exponent) / 2) * exponent * 2 ** ((exponent - 1) / 2)))
     sigma = braces ** (1 / exponent)
     return sigma ** 0.5 if form == 'printed' else sigma
-
-
-def levy_steps(random, exponent, shape, form='mantegna'):
-    """Return Levy-distributed steps of the given shape: S = u / |v|^(1/lambda)."""
-    u = random.normal(0.0, levy_sigma(exponent, form), shape)
-    v = random.standard_normal(shape)
-    return u / np.abs(v) ** (1 / exponent)

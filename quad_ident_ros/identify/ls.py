@@ -11,8 +11,8 @@ input allows that, by the factor that fits best.
 import numpy as np
 
 from quad_ident_ros.identify.objective import Objective
-from quad_ident_ros.identify.space import REFITTED
 from quad_ident_ros.identify.transfer import Discrete, printed_parameters, to_continuous
+from quad_ident_ros.identify.vp import REFITTED
 
 THINNED = 20   # samples that thinning leaves, at least
 
@@ -23,7 +23,7 @@ EQUAL = 1e-5
 
 def least_squares_fit(objective, space):
     """
-    Return the Fitted model of the LS method and remarks, or None and the reason it failed.
+    Return the Fitted of the LS method, or None, no evaluations, and remarks or why it failed.
 
     Of the records thinned by several factors, the one whose model fits best has the say. A complex
     pair is kept by the rule of the parameter `poles` (see space.COMPLEX_PENALTY), and otherwise
@@ -39,12 +39,12 @@ def least_squares_fit(objective, space):
             if np.isfinite(fitted.cost):
                 candidates.append((fitted, factor))
     if not candidates:
-        return None, ['the estimated roots belong to no continuous model that stays finite over '
-                      'the record']
+        return None, 0, [
+            'the estimated roots belong to no continuous model that stays finite over the record']
     fitted, factor = min(candidates, key=lambda entry: entry[0].cost)
     remarks = [f'thinned to one sample in {factor}'] if factor > 1 else []
     settled = space.settle(objective, fitted)
-    return settled, remarks if settled is fitted else [*remarks, REFITTED]
+    return settled, 0, remarks if settled is fitted else [*remarks, REFITTED]
 
 
 def _fit_of(signal, model):

@@ -9,6 +9,7 @@ from quad_ident_ros.identify.cs import cs
 from quad_ident_ros.identify.ls import least_squares_fit
 from quad_ident_ros.identify.pso import pso
 from quad_ident_ros.identify.pso_cs import pso_cs
+from quad_ident_ros.identify.vp import vp_fit
 
 
 @dataclass(frozen=True)
@@ -17,7 +18,8 @@ class Method:
     A way to fit a model.
 
     search: a function of a Search that minimises its cost, for methods that try candidates;
-    direct: a function of (objective, space) that returns (Fitted or None, remarks), for others.
+    direct: a function of (objective, space) that returns a Fitted or None, the evaluations of the
+    cost, and remarks, for others.
     """
 
     name: str
@@ -31,4 +33,5 @@ METHODS = {method.name: method for method in (
     Method('cs', 'CS', search=cs),
     Method('pso_cs', 'PSO-CS', search=pso_cs),
     Method('ls', 'LS', direct=least_squares_fit),
+    Method('vp', 'VP', direct=vp_fit),
 )}

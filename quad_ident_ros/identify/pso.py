@@ -4,6 +4,7 @@
 
 import numpy as np
 
+from quad_ident_ros.identify.moves import keep_better, swarm
 from quad_ident_ros.identify.space import SIZE
 
 
@@ -20,14 +21,6 @@ def pso(search):
     best, best_costs = x.copy(), costs.copy()
     velocity = np.zeros_like(x)
     while search.going():
-        own, common = _pull(random, settings.c1, x.shape), _pull(random, settings.c2, x.shape)
-        velocity = (settings.inertia * velocity + own * (best - x)
-                    + common * (search.best - x))
-        x = np.clip(x + velocity, 0.0, SIZE)
-        costs = search.evaluate(x)
-        better = costs < best_costs
-        best[better], best_costs[better] = x[better], costs[better]
-
-
-def _pull(random, strength, shape):
-    return random.uniform(0.0, 1.0, shape) * random.uniform(0.0, strength, shape)
+        swarm(x, velocity, best, search.best, random.random((4, *x.shape)), settings.inertia,
+              settings.c1, settings.c2, SIZE)
+        keep_better(best, best_costs, x, search.evaluate(x))

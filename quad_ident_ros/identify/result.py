@@ -8,8 +8,11 @@ import math
 import numpy as np
 
 from quad_ident_ros.identify import metrics
+from quad_ident_ros.identify.order import Alternative
+from quad_ident_ros.identify.residuals import ResidualTests
 from quad_ident_ros.identify.signals import GAIN_UNITS, INPUT_OF, OUTPUT_UNITS, OUTPUTS
 from quad_ident_ros.identify.transfer import response, SecondOrder
+from quad_ident_ros.identify.uncertainty import Uncertainty
 
 
 @dataclass(frozen=True)
@@ -18,7 +21,10 @@ class OutputFit:
     The fit of one output by one method.
 
     model is None where the method found none; response (N,) is the fitted output; cost is F;
-    errors as in metrics.errors; standard_errors as in uncertainty.standard_errors.
+    errors as in metrics.errors; remarks tell how the model was found, findings what it says of
+    itself and the data; disturbance is a constant beside K u; least_cost the cost of the
+    least-squares fit, where the model is the most likely one for coloured noise instead; orders
+    what models of other orders give (see order.Alternative).
     """
 
     output: str
@@ -27,9 +33,24 @@ class OutputFit:
     response: np.ndarray | None
     cost: float
     errors: dict
-    standard_errors: dict
+    uncertainty: Uncertainty
     evaluations: int
     remarks: tuple = ()
+    findings: tuple = ()
+    disturbance: float = 0.0
+    residuals: ResidualTests = ResidualTests(None, None)
+    least_cost: float | None = None
+    orders: tuple = ()
+
+    @property
+    def standard_errors(self):
+        """Standard errors by name, None where there is none."""
+        return self.uncertainty.errors
+
+    @property
+    def rank(self):
+        """F by which methods are compared: coloured noise makes the best model none of least F."""
+        return self.cost if self.least_cost is None else min(self.cost, self.least_cost)
 
 
 @dataclass(frozen=True)
@@ -53,18 +74,32 @@ class MethodFit:
 
 @dataclass(frozen=True)
 class Identification:
-    """The results of all methods on one set of signals; signals maps output to Signal."""
+    """
+    The results of all methods on one set of signals.
+
+    signals maps output to Signal; changes are those of the vehicle that a tracker found.
+    """
 
     methods: dict
     signals: dict
     settings: dict
     remarks: tuple = ()
     provenance: dict = field(default_factory=dict)
+    changes: tuple = ()
 
     @property
     def best(self):
-        """Name of the method with the smallest cost."""
-        return min(self.methods, key=lambda name: self.methods[name].cost)
+        """Name of the method with the smallest cost (see OutputFit.rank)."""
+        return self._least(lambda method: sum(fit.rank for fit in method.outputs.values()))
+
+    def best_of(self, output):
+        """Return the name of the method that is best for one output."""
+        return self._least(lambda method: method.outputs[output].rank)
+
+    def _least(self, cost):
+        # Methods that reach the same optimum differ by rounding: of those the last one has it.
+        return min(reversed(self.methods),
+                   key=lambda name: float(f'{cost(self.methods[name]):.8g}'))
 
 
 def parameter_table(fit):
@@ -84,9 +119,22 @@ def parameter_table(fit):
     return table
 
 
+def error_table(fit):
+    """Return the standard errors of parameter_table (4, 3); not a number where there is none."""
+    table = np.full((4, 3), np.nan)
+    for i, name in enumerate(OUTPUTS):
+        model = fit.outputs[name].model if name in fit.outputs else None
+        if model is not None and model.form != 'complex':
+            table[i] = [np.nan if fit.outputs[name].standard_errors[key] is None
+                        else fit.outputs[name].standard_errors[key] for key in ('K', 'a', 'b')]
+        elif model is not None and fit.outputs[name].standard_errors['K'] is not None:
+            table[i, 0] = fit.outputs[name].standard_errors['K']
+    return table
+
+
 def as_data(identification):
     """Return an Identification as JSON-able data: numbers that are none become None."""
-    return _clean({
+    return clean({
         'schema': 'quad_ident/identification/1',
         'best': identification.best,
         'methods': {name: _method(fit) for name, fit in identification.methods.items()},
@@ -94,6 +142,7 @@ def as_data(identification):
         'period': {name: signal.period for name, signal in identification.signals.items()},
         'settings': identification.settings,
         'remarks': list(identification.remarks),
+        'changes': [vars(change) for change in identification.changes],
         **identification.provenance})
 
 
@@ -110,8 +159,18 @@ def _output(fit):
                                for key, text in metrics.UNITS.items()}}
     data = {'input': INPUT_OF[fit.output], 'units': units, 'cost': fit.cost,
             'errors': fit.errors, 'standard_errors': fit.standard_errors,
+            'correlations': _correlations(fit.uncertainty),
+            'not_identifiable': list(fit.uncertainty.unidentifiable),
+            'residuals': {'white_p': fit.residuals.white,
+                          'independent_of_input_p': fit.residuals.independent,
+                          'noise_model': list(fit.residuals.noise)},
+            'least_cost': fit.least_cost,
+            'orders': [{**vars(other), 'denominator': list(other.denominator),
+                        'is_better': other.is_better} for other in fit.orders],
             'evaluations': fit.evaluations, 'remarks': list(fit.remarks),
-            'initial': list(fit.initial), 'form': None, 'stability': None}
+            'findings': list(fit.findings),
+            'initial': list(fit.initial), 'disturbance': fit.disturbance,
+            'form': None, 'stability': None}
     if model is None:
         return {**data, 'K': None, 'a': None, 'b': None, 'c1': None, 'c0': None}
     data.update(form=model.form, stability=model.stability, K=model.gain, c1=model.c1,
@@ -122,13 +181,22 @@ def _output(fit):
     return {**data, 'a': model.a, 'b': model.b}
 
 
-def _clean(value):
+def _correlations(sure):
+    if sure.correlations is None:
+        return None
+    return {'names': list(sure.names), 'matrix': sure.correlations.tolist()}
+
+
+def clean(value):
+    """Return a value as JSON-able data: numbers that are none become None."""
     if isinstance(value, dict):
-        return {str(key): _clean(entry) for key, entry in value.items()}
+        return {str(key): clean(entry) for key, entry in value.items()}
     if isinstance(value, list | tuple):
-        return [_clean(entry) for entry in value]
+        return [clean(entry) for entry in value]
     if isinstance(value, np.generic):
         value = value.item()
+    if isinstance(value, complex):
+        return {'real': clean(value.real), 'imaginary': clean(value.imag)}
     if isinstance(value, float) and not math.isfinite(value):
         return None
     return value
@@ -146,7 +214,7 @@ def from_data(data, signals):
         outputs = {output: _output_from(output, fit, signals[output])
                    for output, fit in method['outputs'].items()}
         methods[name] = MethodFit(name, outputs, method['seconds'])
-    known = ('schema', 'best', 'methods', 'samples', 'period', 'settings', 'remarks')
+    known = ('schema', 'best', 'methods', 'samples', 'period', 'settings', 'remarks', 'changes')
     provenance = {key: value for key, value in data.items() if key not in known}
     return Identification(methods, signals, data['settings'], tuple(data['remarks']), provenance)
 
@@ -159,7 +227,19 @@ def _output_from(output, data, signal):
     elif data['form']:
         model = SecondOrder(data['K'], data['a'], data['b'])
     if model is not None:
-        fitted = response(model, signal.u, signal.period, data['initial'])
+        fitted = response(model, signal.u, signal.period, data['initial'], data['disturbance'])
+    correlations = data['correlations'] or {'names': (), 'matrix': None}
+    matrix = correlations['matrix']
+    sure = Uncertainty(data['standard_errors'], tuple(correlations['names']),
+                       None if matrix is None else np.array(matrix),
+                       tuple(data['not_identifiable']))
+    tests = ResidualTests(data['residuals']['white_p'],
+                          data['residuals']['independent_of_input_p'],
+                          tuple(data['residuals']['noise_model']))
     return OutputFit(output, model, tuple(data['initial']), fitted,
                      math.inf if data['cost'] is None else data['cost'], data['errors'],
-                     data['standard_errors'], data['evaluations'], tuple(data['remarks']))
+                     sure, data['evaluations'], tuple(data['remarks']), tuple(data['findings']),
+                     data['disturbance'],
+                     tests, data['least_cost'], tuple(
+                         Alternative(other['name'], other['nrmse_percent'], other['advantage'],
+                                     tuple(other['denominator'])) for other in data['orders']))

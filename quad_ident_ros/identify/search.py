@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from quad_ident_ros.identify.moves import keep_better
 from quad_ident_ros.identify.space import SIZE
 
 
@@ -78,12 +79,15 @@ class Search:
 
     def evaluate(self, points):
         """Return the costs (n,) of points (n, D); infinite for those beyond the budget."""
-        costs = np.full(len(points), np.inf)
-        allowed = len(points)
-        if self.settings.evaluations:
-            allowed = min(allowed, self.settings.evaluations - self.spent)
+        budget, allowed = self.settings.evaluations, len(points)
+        if budget and self.spent + allowed > budget:
+            allowed = budget - self.spent
+            costs = np.full(len(points), np.inf)
+            if allowed > 0:
+                costs[:allowed] = self._cost(points[:allowed])
+        else:
+            costs = self._cost(points)
         if allowed > 0:
-            costs[:allowed] = self._cost(points[:allowed])
             self.spent += allowed
             k = int(np.argmin(costs))
             # The first point is kept even where no cost is finite, so that there is always one.
@@ -93,7 +97,4 @@ class Search:
 
     def keep_better(self, points, costs, new):
         """Replace, in place, the points that their new positions improve."""
-        new = np.clip(new, 0.0, SIZE)
-        new_costs = self.evaluate(new)
-        better = new_costs < costs
-        points[better], costs[better] = new[better], new_costs[better]
+        keep_better(points, costs, new, self.evaluate(new))

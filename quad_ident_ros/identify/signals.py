@@ -27,7 +27,8 @@ class Signal:
     """
     One input-output pair on an even grid: deviations u (N,) from trim and y (N,) from the start.
 
-    at_rest tells that the vehicle was at rest, at y = 0, at the first sample.
+    at_rest tells that the vehicle was at rest at the first sample, at y = 0 where level_known;
+    measured (N,) which samples of y there are, by default all; start_ns is the stamp of the first.
     """
 
     output: str
@@ -36,6 +37,32 @@ class Signal:
     y: np.ndarray
     period: float
     at_rest: bool
+    level_known: bool = True
+    measured: np.ndarray | None = None
+    start_ns: int | None = None
+
+    def __post_init__(self):
+        """Take all samples as measured where nothing else is said."""
+        if self.measured is None:
+            object.__setattr__(self, 'measured', np.ones(len(self.y), bool))
+
+    @property
+    def samples(self):
+        """How many samples of y were measured."""
+        return int(np.count_nonzero(self.measured))
+
+    @property
+    def unknowns(self):
+        """
+        How many numbers beside the model the response depends on.
+
+        0 none, 1 the level at rest, 2 initial output and rate, 3 a constant disturbance too: where
+        y is zero, in a record that begins anywhere, nothing is in balance.
+        """
+        if self.at_rest:
+            return 0 if self.level_known else 1
+        # Under an input that never changes a disturbance and the gain are one number.
+        return 2 if np.all(self.u[:-1] == self.u[0]) else 3
 
 
 def signals(record, *, trim=None, outputs=None, initial_state='auto'):
@@ -45,7 +72,8 @@ def signals(record, *, trim=None, outputs=None, initial_state='auto'):
     Args: trim: inputs U1..U4 from which deviations count, by default the record's own
     (`info['trim']`) or else the first sample's; outputs: names to identify, by default the
     record's own or all; initial_state 'rest', 'free' or 'auto' (rest where the record says that
-    it starts so).
+    it starts so). Angles that jump by more than half a turn are unwrapped, unless the record says
+    (`info['unwrapped']`) that they turn so fast.
     Returns (list of Signal, list of str). Raises InputError for missing columns, too few samples
     or gaps that cannot be bridged.
     """
@@ -53,8 +81,9 @@ def signals(record, *, trim=None, outputs=None, initial_state='auto'):
         raise InputError(f'the record has {len(record)} samples; at least {FEWEST} are needed')
     inputs, measured, there = _columns(record)
     _check_size(record.t, inputs, measured)
-    t, inputs, measured, remarks = _even_grid(record.t, inputs, measured)
-    if np.abs(np.diff(measured[:, :3], axis=0)).max() > np.pi:
+    t, inputs, measured, there_at, remarks = _even_grid(record.t, inputs, measured)
+    jumps = np.abs(np.diff(measured[:, :3], axis=0)).max() > np.pi
+    if jumps and not record.info.get('unwrapped'):
         measured[:, :3] = np.unwrap(measured[:, :3], axis=0)
         remarks.append('the angles jump by more than half a turn: they were unwrapped')
     if record.info.get('truncated'):
@@ -79,7 +108,9 @@ def signals(record, *, trim=None, outputs=None, initial_state='auto'):
             continue
         if np.ptp(measured[:, i]) > 0:
             found.append(Signal(name, t - t[0], np.ascontiguousarray(u),
-                                measured[:, i] - start[i], float(t[1] - t[0]), at_rest))
+                                measured[:, i] - start[i], float(t[1] - t[0]), at_rest,
+                                level_known=name in known, measured=there_at,
+                                start_ns=record.info.get('start_ns')))
         else:
             remarks.append(f'{name} does not move: there is nothing to identify in it')
     return found, remarks
@@ -122,25 +153,37 @@ def _columns(record):
 
 
 def _even_grid(t, inputs, measured):
+    """Return times, inputs and outputs on an even grid, where they were measured, and remarks."""
     steps = np.diff(t)
     period = float(np.median(steps))
-    grid = t[0] + (t[-1] - t[0]) / (len(t) - 1) * np.arange(len(t))
-    if np.abs(t - grid).max() <= GRID_TOLERANCE * period:
-        return grid, inputs, measured, []
-    if steps.max() > LONGEST_GAP * period:
+    place = np.concatenate([[0], np.cumsum(np.maximum(1, np.round(steps / period)))]).astype(int)
+    grid = t[0] + (t[-1] - t[0]) / place[-1] * np.arange(place[-1] + 1)
+    fits = np.abs(t - grid[place]).max() <= GRID_TOLERANCE * period
+    if fits and len(grid) == len(t):
+        return grid, inputs, measured, np.ones(len(t), bool), []
+    if steps.max() > (LONGEST_GAP + 0.5) * period:
         k = int(np.argmax(steps))
         raise InputError(f'the record has a gap of {steps[k]:.3g} s after t = {t[k]:.6g} s '
                          f'({steps[k] / period:.0f} periods; at most {LONGEST_GAP} can be '
                          'bridged): identify the parts before and after it by themselves')
-    grid = np.arange(t[0], t[-1] + GRID_TOLERANCE * period, period)
+    if not fits:
+        grid = np.arange(t[0], t[-1] + GRID_TOLERANCE * period, period)
     missing = len(grid) - len(t)
     if missing > MISSING_SHARE * len(grid):
         raise InputError(f'{missing} of {len(grid)} samples are missing; at most '
                          f'{MISSING_SHARE:.0%} can be filled: record again with a deeper queue')
+    columns = np.column_stack([np.interp(grid, t, column) for column in measured.T])
+    there = np.ones(len(grid), bool)
+    if fits:
+        there[:] = False
+        there[place] = True
+        held = np.repeat(np.arange(len(t)), np.diff(place, append=place[-1] + 1))
+        return grid, inputs[held], columns, there, [
+            f'{missing} of {len(grid)} samples are missing: the fit goes without them, with the '
+            'input taken as held']
     remark = (f'sample times are uneven ({steps.min():.4g} to {steps.max():.4g} s): resampled to '
               f'{period:.4g} s, {max(missing, 0)} samples filled by interpolation')
-    columns = [np.interp(grid, t, column) for column in measured.T]
-    return grid, _mean_inputs(t, inputs, grid), np.column_stack(columns), [remark]
+    return grid, _mean_inputs(t, inputs, grid), columns, there, [remark]
 
 
 def _mean_inputs(t, inputs, grid):

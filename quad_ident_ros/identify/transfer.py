@@ -16,7 +16,8 @@ import numpy as np
 
 from quad_ident_ros.compiled import compiled
 
-SERIES_TERMS = 20
+SERIES_TERMS = 14
+INVERSES = 1.0 / np.arange(1, SERIES_TERMS + 2)
 
 
 @dataclass(frozen=True)
@@ -94,10 +95,11 @@ def zoh(c1, c0, period):
     factor = 1.0
     impulse, integral = 0.0, 0.0
     for n in range(SERIES_TERMS):
-        impulse += current * factor / (n + 1)
-        integral += current * factor / ((n + 1) * (n + 2))
+        factor *= INVERSES[n]
+        impulse += current * factor
+        integral += current * factor * INVERSES[n + 1]
         previous, current = current, c1 * current - c0 * previous
-        factor *= -h / (n + 1)
+        factor *= -h
     p12 = h * impulse
     g1 = h * h * integral
     # From the differential equation: y' of the step response is the impulse response, and
@@ -124,16 +126,17 @@ def _respond(c1, c0, period, u, y0, v0, out):
         y, v = p11 * y + p12 * v + g1 * u[k], p21 * y + p22 * v + g2 * u[k]
 
 
-def response(model, u, period, initial=(0.0, 0.0)):
+def response(model, u, period, initial=(0.0, 0.0), disturbance=0.0):
     """
     Return the exact response of the model to an input held between samples, (N,).
 
-    Args: u (N,); period s between samples; initial: output and its rate at the first sample.
+    Args: u (N,); period s between samples; initial: output and its rate at the first sample;
+    disturbance: a constant that y'' has beside K u.
     """
     u = np.ascontiguousarray(u, float)
     out = np.empty_like(u)
-    _respond(model.c1, model.c0, period, model.gain * u, float(initial[0]), float(initial[1]),
-             out)
+    _respond(model.c1, model.c0, period, model.gain * u + disturbance, float(initial[0]),
+             float(initial[1]), out)
     return out
 
 

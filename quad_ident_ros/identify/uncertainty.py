@@ -1,94 +1,144 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Standard errors of a fitted model."""
+"""How sure a fitted model is: standard errors, correlations, and what the data do not tell."""
+
+from dataclasses import dataclass
 
 import numpy as np
 
-from quad_ident_ros.identify.transfer import response
+from quad_ident_ros.identify.descent import solve_linear
+from quad_ident_ros.identify.residuals import whitened
+from quad_ident_ros.identify.tangent import factorise, WIDTH
 
-# Beyond this condition of the scaled information matrix its inverse is rounding, not knowledge.
-WORST_CONDITION = 1e13
+# Beyond this condition of the scaled factor its inverse is rounding, not knowledge.
+WORST_CONDITION = 1e8
+# A number is not identifiable where its standard error exceeds this share of its size, which for
+# a pole is at least 1 / the record's length: a slower one is an integrator to this record.
+TOO_UNSURE = 0.5
+KEYS = ('K', 'a', 'b', 'c1', 'c0')
 
 
-def standard_errors(signal, fitted):
+@dataclass(frozen=True)
+class Uncertainty:
     """
-    Return the standard errors of K, a, b, c1 = a + b and c0 = a b, each None where there is none.
+    What the information matrix of a fit says, for residuals that its noise model makes white.
 
-    From the information matrix of the response with respect to (K, c1, c0) and, where it is free,
-    the initial state, for residuals taken as white (L. Ljung, System Identification, 1999, sec.
-    9.4). The distance to the optimum, by one Gauss-Newton step, is included.
+    errors: standard errors of K, a, b, c1 = a + b and c0 = a b, None where there is none: at
+    equal poles a and b by themselves have none, of a complex pair they are those of its real and
+    imaginary part. correlations (3, 3) of `names`, or None. unidentifiable: names of what the
+    record does not tell.
+    """
 
-    At equal poles a and b by themselves have no standard error, c1 and c0 do; of a complex
-    pair the errors are those of its real and imaginary part.
+    errors: dict
+    names: tuple = ()
+    correlations: np.ndarray | None = None
+    unidentifiable: tuple = ()
+
+
+def uncertainty(signal, fitted):
+    """
+    Return the Uncertainty of a fit.
+
+    From the information matrix of the response with respect to (K, c1, c0), with the unknowns of
+    the signal projected out (L. Ljung, System Identification, 1999, sec. 9.4). The distance to
+    the optimum, by one Gauss-Newton step, is included.
     """
     # Models that grow beyond all numbers over the record have no errors to speak of.
-    with np.errstate(over='ignore', invalid='ignore'):
-        found = _standard_errors(signal, fitted)
-    return {key: float(value) if value is not None and np.isfinite(value) else None
-            for key, value in found.items()}
+    with np.errstate(all='ignore'):
+        covariance = _covariance(whitened(signal, fitted.noise), fitted)
+    nothing = dict.fromkeys(KEYS)
+    if covariance is None:
+        return Uncertainty(nothing, unidentifiable=('K', 'c1', 'c0'))
+    errors = {**nothing, **dict(zip(('K', 'c1', 'c0'), np.sqrt(np.diag(covariance)),
+                                    strict=True))}
+    names, gradient = _pole_gradient(fitted.model)
+    full = gradient @ covariance @ gradient.T
+    spread = np.sqrt(np.diag(full))
+    errors.update(zip(names, spread, strict=True))
+    duration = signal.t[-1] + signal.period
+    sizes = {'K': abs(fitted.model.gain), 'c1': max(abs(fitted.model.c1), 1 / duration),
+             'c0': max(abs(fitted.model.c0), 1 / duration ** 2),
+             'a': max(abs(fitted.model.a), 1 / duration),
+             'b': max(abs(fitted.model.b), 1 / duration)}
+    unsure = tuple(key for key in KEYS
+                   if errors[key] is not None and not errors[key] < TOO_UNSURE * sizes[key])
+    return Uncertainty({key: None if value is None else float(value)
+                        for key, value in errors.items()},
+                       names, full / np.outer(spread, spread) if spread.all() else None, unsure)
 
 
-def _standard_errors(signal, fitted):
-    model, nothing = fitted.model, dict.fromkeys(('K', 'a', 'b', 'c1', 'c0'))
-    u, period = signal.u, signal.period
-    duration = signal.t[-1] + period
-    point = np.array([model.gain, model.c1, model.c0, *fitted.initial])
-    scale = np.array([abs(model.gain) or 1.0, 1 / duration, 1 / duration ** 2, 1.0,
-                      1 / duration])
-    count = 3 if signal.at_rest else 5
-    columns = []
-    for i in range(count):
-        shift = np.zeros(5)
-        shift[i] = 1e-4 * scale[i]
-        columns.append((_respond(point + shift, u, period) - _respond(point - shift, u, period))
-                       / 2e-4)
-    jacobian = np.column_stack(columns)
-    residual = signal.y - _respond(point, u, period)
-    freedom = len(residual) - count
-    if freedom < 1 or not np.isfinite(jacobian).all():
-        return nothing
-    norms = np.linalg.norm(jacobian, axis=0)
-    if not (norms > 1e-100).all():
-        return nothing
-    information = (jacobian / norms).T @ (jacobian / norms)
-    if not (np.isfinite(information).all()
-            and np.linalg.cond(information) <= WORST_CONDITION):
-        return nothing
-    variance = residual @ residual / freedom
-    factor = scale[:count] / norms
-    inverse = np.linalg.inv(information)
-    covariance = variance * inverse * np.outer(factor, factor)
+def disturbance_error(signal, fitted):
+    """Return the standard error of a fitted disturbance, or None where none was estimated."""
+    if signal.unknowns < 3:
+        return None
+    factor, variance = _factor(signal, fitted)
+    if factor is None:
+        return None
+    width = signal.unknowns + 3
+    size = np.linalg.norm(factor[:width, :width], axis=0)
+    with np.errstate(all='ignore'):
+        if not np.linalg.cond(factor[:width, :width] / size) <= WORST_CONDITION:
+            return None
+    row = np.linalg.inv(factor[:width, :width] / size)[2] / size[2]
+    return float(np.sqrt(variance * row @ row))
+
+
+def _factor(signal, fitted):
+    """Return the factor of the fit linearised at a model and the variance, or None, None."""
+    model, last = fitted.model, signal.unknowns + 3
+    freedom = signal.samples - last
+    if freedom < 1:
+        return None, None
+    factor = np.zeros((WIDTH, WIDTH))
+    linear = np.array([model.gain, *fitted.initial, fitted.disturbance])
+    point = (signal.period, signal.u, signal.y, signal.measured, signal.unknowns, factor)
+    if fitted.noise:
+        # The state of the filtered signal is another one.
+        linear[1:] = 0.0
+        factorise(model.c1, model.c0, linear, *point)
+        solve_linear(factor, signal.unknowns, 0.0, 0.0, linear.copy(), linear)
+        linear[0] = model.gain
+    factorise(model.c1, model.c0, linear, *point)
+    if not np.isfinite(factor).all():
+        return None, None
+    rest = factor[last - 2:last + 1, last]
+    return factor, rest @ rest / freedom
+
+
+def _covariance(signal, fitted):
+    """Return the covariance (3, 3) of K, c1 and c0, or None where the data do not bear it."""
+    model, first = fitted.model, signal.unknowns
+    factor, variance = _factor(signal, fitted)
+    if factor is None:
+        return None
+    # The unknowns come first: what is left below them is what K, c1 and c0 explain beside them.
+    columns = slice(first, first + 3)
+    root, rest = factor[columns, columns], factor[columns, first + 3]
+    whole = np.linalg.norm(factor[:, columns], axis=0)
+    if not (whole > 1e-100).all():
+        return None
+    scaled = root / whole
+    if not np.linalg.cond(scaled) <= WORST_CONDITION:
+        return None
+    inverse = np.linalg.inv(scaled) / whole[:, None]
+    covariance = variance * inverse @ inverse.T
     # A search may stop short of the optimum: the step that is left counts as an error too. It
     # does not where it leads to a complex pair that real poles were preferred to.
-    step = inverse @ ((jacobian / norms).T @ residual) * factor
+    step = inverse @ rest
     if model.form == 'complex' or (model.c1 + step[1]) ** 2 / 4 >= model.c0 + step[2]:
         covariance = covariance + np.outer(step, step)
-    of = np.sqrt(np.maximum(np.diag(covariance), 0.0))
-    result = {**nothing, 'K': of[0], 'c1': of[1], 'c0': of[2]}
+    return covariance if np.isfinite(covariance).all() else None
+
+
+def _pole_gradient(model):
+    """Return the names of three numbers, and their derivatives (3, 3) by K, c1 and c0."""
     root = np.sqrt(complex(model.c1 ** 2 / 4 - model.c0))
-    if abs(root) > 1e-9 * abs(model.c1):
-        # d(a)/d(c1, c0) for a = c1/2 + root; a complex pair gives the parts of a.
-        gradient = np.array([0.5 + model.c1 / (4 * root), -0.5 / root])
-        block = covariance[1:3, 1:3]
-        if model.form == 'complex':
-            result['a'] = 0.5 * of[1]
-            result['b'] = _size(np.array([model.c1 / (4 * abs(root)), -0.5 / abs(root)]), block)
-        else:
-            result['a'] = _size(gradient.real, block)
-            result['b'] = _size(np.array([1.0, 0.0]) - gradient.real, block)
-    return result
-
-
-def _size(gradient, covariance):
-    return np.sqrt(max(gradient @ covariance @ gradient, 0.0))
-
-
-def _respond(point, u, period):
-    return response(_Coefficients(*point[:3]), u, period, point[3:])
-
-
-class _Coefficients:
-    """A model given by gain, c1 and c0 alone: all that its response needs."""
-
-    def __init__(self, gain, c1, c0):
-        self.gain, self.c1, self.c0 = gain, c1, c0
+    if abs(root) <= 1e-9 * abs(model.c1) or root == 0:
+        return ('K', 'c1', 'c0'), np.eye(3)
+    if model.form == 'complex':
+        size = abs(root)
+        return ('K', 'a', 'b'), np.array([[1.0, 0.0, 0.0], [0.0, 0.5, 0.0],
+                                          [0.0, -model.c1 / (4 * size), 0.5 / size]])
+    share, slope = model.c1 / (4 * root.real), 0.5 / root.real
+    return ('K', 'a', 'b'), np.array([[1.0, 0.0, 0.0], [0.0, 0.5 + share, -slope],
+                                      [0.0, 0.5 - share, slope]])

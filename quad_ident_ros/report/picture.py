@@ -5,6 +5,8 @@
 from pathlib import Path
 
 import matplotlib
+from matplotlib.ticker import NullFormatter, StrMethodFormatter
+import numpy as np
 
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.identify.methods import METHODS
@@ -23,11 +25,7 @@ def save_responses(identification, path, title):
 
     Raises InputError where the file cannot be written.
     """
-    if not Path(path).suffix:
-        raise InputError(f'{path}: the name of a picture ends in .png, .svg or .pdf')
-    matplotlib.use('Agg')
-    import matplotlib.pyplot as plt
-
+    plt = _pyplot(path)
     signals = identification.signals
     figure, axes = plt.subplots(2, len(signals), figsize=(3.2 * len(signals) + 0.4, 5.2), dpi=130,
                                 sharex='col', squeeze=False, layout='constrained',
@@ -56,6 +54,64 @@ def save_responses(identification, path, title):
             axis.spines[['top', 'right']].set_visible(False)
     axes[0, 0].legend(frameon=False)
     figure.suptitle(title)
+    _save(plt, figure, path)
+
+
+def save_spread(panels, path, title, quantity):
+    """
+    Save a picture of how values spread, by panel and method: a dot each, a line at the median.
+
+    Args: panels: title -> name of a method -> values (n,), 0 or above; quantity: what they are.
+    What lies more than a decade below all that spread is shown at the lower edge, with its value.
+    Raises InputError where the file cannot be written.
+    """
+    plt = _pyplot(path)
+    everything = [values for methods in panels.values() for values in methods.values()]
+    spread = np.concatenate([values for values in everything if len(values) > 1] or everything)
+    everything, spread = (values[np.isfinite(values) & (values > 0)]
+                          for values in (np.concatenate(everything), spread))
+    bottom = max(everything.min() / 1.5, spread.min() / 10)
+    figure, axes = plt.subplots(1, len(panels), figsize=(3.2 * len(panels) + 0.4, 3.3), dpi=130,
+                                sharey=True, squeeze=False, layout='constrained')
+    for axis, (label, methods) in zip(axes[0], panels.items(), strict=True):
+        axis.set_yscale('log')
+        for place, ((_, values), (color, _)) in enumerate(zip(methods.items(), STYLES,
+                                                              strict=False)):
+            median = np.median(values)
+            if len(values) == 1 and median < bottom:
+                axis.plot(place, bottom, 'v', color=color, markersize=8, clip_on=False)
+                axis.annotate(f'{median:.0e}', (place, bottom), xytext=(0, 8), ha='center',
+                              textcoords='offset points', color=color, fontsize='small')
+                continue
+            across = np.linspace(-0.22, 0.22, len(values)) if len(values) > 1 else [0.0]
+            axis.plot(place + np.asarray(across), values, 'o', color=color, markersize=3.5,
+                      alpha=0.55, markeredgewidth=0)
+            axis.plot([place - 0.36, place + 0.36], [median, median], color=color, linewidth=2)
+        axis.set_xticks(range(len(methods)), [METHODS[name].label for name in methods])
+        axis.set_xlim(-0.6, len(methods) - 0.4)
+        axis.set_title(label, fontsize='medium')
+        axis.grid(axis='y', color='0.92')
+        axis.spines[['top', 'right']].set_visible(False)
+    axes[0, 0].set_ylim(bottom, 1.5 * everything.max())
+    plain, narrow = StrMethodFormatter('{x:g}'), everything.max() < 5 * bottom
+    axes[0, 0].yaxis.set_major_formatter(plain)
+    axes[0, 0].yaxis.set_minor_formatter(plain if narrow else NullFormatter())
+    axes[0, 0].set_ylabel(quantity)
+    figure.suptitle(title)
+    _save(plt, figure, path)
+
+
+def _pyplot(path):
+    """Return pyplot for files; raises InputError where a path says no kind of picture."""
+    if not Path(path).suffix:
+        raise InputError(f'{path}: the name of a picture ends in .png, .svg or .pdf')
+    matplotlib.use('Agg')
+    import matplotlib.pyplot as plt
+
+    return plt
+
+
+def _save(plt, figure, path):
     try:
         Path(path).parent.mkdir(parents=True, exist_ok=True)
         figure.savefig(path)

@@ -28,7 +28,7 @@ def identification_table(identification):
         table.add_column(name, justify='right', no_wrap=True)
     for output in identification.signals:
         fits = {name: method.outputs[output] for name, method in identification.methods.items()}
-        best = min(fits, key=lambda name: fits[name].cost)
+        best = identification.best_of(output)
         for number, (name, fit) in enumerate(fits.items()):
             table.add_row(output if number == 0 else '', METHODS[name].label, *_cells(fit),
                           style='bold' if name == best else None,
@@ -44,12 +44,22 @@ def legend(identification):
 
 
 def notes(identification):
-    """Return the remarks on data and fits as lines of text, without repeats."""
-    lines = list(identification.remarks)
+    """
+    Return the remarks on data and fits as lines of text.
+
+    How each method found its model; what is to be known of a model, of the best one only.
+    """
+    who = {}
     for name, method in identification.methods.items():
         for output, fit in method.outputs.items():
-            lines += [f'{METHODS[name].label}, {output}: {remark}' for remark in fit.remarks]
-    return list(dict.fromkeys(lines))
+            for remark in fit.remarks:
+                who.setdefault((METHODS[name].label, remark), []).append(output)
+    for output in identification.signals:
+        name = identification.best_of(output)
+        for finding in identification.methods[name].outputs[output].findings:
+            who.setdefault((METHODS[name].label, finding), []).append(output)
+    return [*identification.remarks, *(f'{label}, {", ".join(outputs)}: {text}'
+                                       for (label, text), outputs in who.items())]
 
 
 def _cells(fit):

@@ -32,7 +32,7 @@ REFUSED = {
         ({'output': 3}, 'parameter output: expected text, got 3'),
     ],
     'identifier': [
-        ({'method': 'simplex'}, "'simplex' is not one of all, pso, cs, pso_cs, ls"),
+        ({'method': 'simplex'}, "'simplex' is not one of all, pso, cs, pso_cs, ls, vp"),
         ({'seed': 1.5}, 'parameter seed: expected a whole number from 0 to'),
         ({'lambda': 2.0}, 'lambda'),
         ({'pole_bounds': [2.0, 1.0]}, 'pole_bounds: the lower bound must be below the upper'),
@@ -174,7 +174,7 @@ def test_a_killed_simulator_starts_again(graph, processes, tmp_path):
     graph.spin_until(lambda: statistics and statistics.data()[-1]['joined'] >= 50, 'a flight')
     first.kill()
     processes.start('simulator', {'experiment': path, 'real_time_factor': 0.0})
-    graph.spin_until(lambda: json, 'the result', 2 * DEADLINE)
+    graph.spin_until(lambda: json and len(records) == 3, 'records and result', 2 * DEADLINE)
     cut, *whole = records.records()
     assert 50 <= len(cut) < 201 and cut.info['dropped'] == 201 - len(cut)
     assert [len(record) for record in whole] == [201, 201]

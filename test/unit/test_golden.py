@@ -15,18 +15,17 @@ import pytest
 
 from quad_ident_ros.model.simulate import LONGEST_STEP, simulate
 from quad_ident_ros.model.vehicle import load_vehicle
+from quad_ident_ros.paper.reference import UNIT_STEPS as UNIT_STEPS_REFERENCE
 
 VEHICLE = load_vehicle('paper_quadrotor')
 CORRECTED = load_vehicle('paper_quadrotor_izz_corrected')
 UNIT_STEPS = np.ones((501, 4))
 PERIOD = 0.01
 
-DERIVED = {'phi': .3487337538, 'theta': .0694080022, 'psi': 197.9126925, 'pz': -104.3602190,
+PRINTED = UNIT_STEPS_REFERENCE['paper']
+DERIVED = {**dict(zip(('phi', 'theta', 'psi', 'pz'), UNIT_STEPS_REFERENCE['newton_euler'][5.0],
+                      strict=True)),
            'wx': .2580319709, 'wy': -.1637832567, 'wz': 39.67129658, 'vz': -41.67683269}
-PRINTED = {0.05: (.054383418, .02768125, 1.1663499, -.010334457),
-           0.1: (-7.3300893, -16.395710, -4.0092130, -.041856193),
-           1.0: (-6.63003, -17.278757, -3981.276, -4.795288),
-           5.0: (-6.264577, -17.278726, -14367.37, -121.83080)}
 
 
 def printed_errors(step, t):

@@ -10,13 +10,15 @@ from scipy import stats
 from scipy.integrate import trapezoid
 
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.identify.levy import levy_sigma, levy_steps
+from quad_ident_ros.identify.levy import levy_sigma
+from quad_ident_ros.identify.moves import levy_step
 
 COUNT = 400_000
 
 
 def draw(exponent=1.5, form='mantegna', seed=0, count=COUNT):
-    return levy_steps(np.random.default_rng(seed), exponent, count, form)
+    u, v = np.random.default_rng(seed).standard_normal((2, count))
+    return levy_step(u, v, levy_sigma(exponent, form), exponent)
 
 
 def distribution(s, exponent, sigma):
@@ -93,10 +95,3 @@ def test_steps_are_symmetric_and_independent():
     assert np.mean(steps > 0) == pytest.approx(0.5, abs=4 * 0.5 / np.sqrt(COUNT))
     signs = np.sign(steps)
     assert abs(np.mean(signs[1:] * signs[:-1])) < 4 / np.sqrt(COUNT)
-
-
-def test_steps_have_the_shape_asked_for_and_the_seed_s_values():
-    shape = (7, 3)
-    one, same, other = (levy_steps(np.random.default_rng(seed), 1.5, shape) for seed in (1, 1, 2))
-    assert one.shape == shape
-    assert (one == same).all() and (one != other).all()

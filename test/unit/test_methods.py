@@ -164,8 +164,9 @@ def test_every_method_gets_the_same_count_of_evaluations(budget):
 
 def test_evaluations_of_the_paper_s_settings():
     result = identify([record(SYSTEMS['stable'], INPUTS['step'])])
-    assert {name: method.evaluations for name, method in result.methods.items()} == {
-        'pso': 4200, 'cs': 8200, 'pso_cs': 8200, 'ls': 0}
+    spent = {name: method.evaluations for name, method in result.methods.items()}
+    assert 0 < spent.pop('vp') < 1000
+    assert spent == {'pso': 4200, 'cs': 8200, 'pso_cs': 8200, 'ls': 0}
 
 
 def test_the_best_method_is_the_one_of_the_smallest_cost():

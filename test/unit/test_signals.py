@@ -146,6 +146,13 @@ def test_wrapped_angles_are_unwrapped_and_that_is_said():
     assert any('unwrapped' in remark for remark in remarks)
 
 
+def test_angles_that_turn_fast_stay_as_they_are_where_the_record_says_so():
+    info = {'trim': list(HOVER), 'starts_at_rest': True, 'unwrapped': True}
+    found, remarks = signals(record(psi=500.0 * record().t, info=info))
+    np.testing.assert_allclose(of(found, 'psi').y, 500.0 * record().t)
+    assert not any('unwrapped' in remark for remark in remarks)
+
+
 def test_an_output_that_does_not_move_is_left_out_and_named():
     found, remarks = signals(record(phi=np.zeros(len(record().t))))
     assert 'phi' not in {signal.output for signal in found}
@@ -236,13 +243,16 @@ def test_resampled_inputs_keep_their_impulse():
     assert np.allclose(kept, np.interp(signal.t, t, given), atol=1e-14)
 
 
-def test_missing_samples_are_filled_and_counted():
+def test_missing_samples_are_counted_and_left_out_of_the_fit():
     t = np.delete(np.arange(501) * PERIOD, [100, 101, 102, 300])
     found, remarks = signals(record(t))
-    assert len(found[0].t) == 501
-    assert '4 samples filled' in remarks[0]
-    # Straight lines between samples: of a parabola that is (0.04 s)^2 / 8 of its curvature.
-    assert np.abs(of(found, 'z').y - record().columns['pz'] + 10).max() < 2 * 0.04 ** 2 / 8 + 1e-9
+    signal = of(found, 'z')
+    assert len(signal.t) == len(signal.y) == 501
+    assert list(np.flatnonzero(~signal.measured)) == [100, 101, 102, 300]
+    assert signal.samples == 497
+    assert '4 of 501 samples are missing' in remarks[0]
+    there = signal.measured
+    np.testing.assert_array_equal(signal.y[there], record().columns['pz'][there] - 10)
 
 
 def test_a_gap_is_refused_with_its_place_and_length():

@@ -12,7 +12,7 @@ from quad_ident_ros.excitation import excite
 from quad_ident_ros.identify.objective import Objective
 from quad_ident_ros.identify.signals import Signal
 from quad_ident_ros.identify.transfer import response, SecondOrder
-from quad_ident_ros.identify.uncertainty import standard_errors
+from quad_ident_ros.identify.uncertainty import uncertainty
 
 PERIOD = 0.02
 T = np.arange(301) * PERIOD
@@ -61,7 +61,7 @@ def draws(system, noise, at_rest=True):
         assert model.form == truth.form
         ab = (model.a.real, model.a.imag) if model.form == 'complex' else (model.a, model.b)
         found.append([model.gain, *ab, model.c1, model.c0])
-        said.append([standard_errors(signal, fitted)[key] for key in KEYS])
+        said.append([uncertainty(signal, fitted).errors[key] for key in KEYS])
     return np.array(found), np.array(said, float)
 
 
@@ -95,7 +95,7 @@ def test_standard_errors_grow_with_the_noise_and_shrink_with_the_data():
         y = response(truth, u, PERIOD)
         y = y + noise * np.random.default_rng(1).normal(size=len(y))
         signal = Signal('phi', t, u, y, PERIOD, True)
-        return standard_errors(signal, optimum(signal, truth))['K']
+        return uncertainty(signal, optimum(signal, truth)).errors['K']
     one = error(1e-3)
     assert error(4e-3) == pytest.approx(4 * one, rel=0.1)
     # Four times the data, half the error, roughly: one realisation of the noise.
@@ -106,7 +106,7 @@ def test_a_perfect_fit_has_errors_of_rounding_only():
     truth = SYSTEMS['real']
     signal = measured(truth, 0.0, 0)
     fitted = Objective(signal).fit(truth.c1 / 2, (truth.a - truth.b) / 2)
-    assert all(0 <= value < 1e-9 for value in standard_errors(signal, fitted).values())
+    assert all(0 <= value < 1e-9 for value in uncertainty(signal, fitted).errors.values())
 
 
 @pytest.mark.parametrize('share', [0.98, 1.01, 1.05])
@@ -116,7 +116,7 @@ def test_a_fit_beside_the_optimum_says_how_far(share):
     truth = SYSTEMS['real']
     signal = measured(truth, 0.0, 0)
     fitted = Objective(signal).fit(share * truth.c1 / 2, (truth.a - truth.b) / 2)
-    said = standard_errors(signal, fitted)
+    said = uncertainty(signal, fitted).errors
     for key, true, found in (('K', truth.gain, fitted.model.gain),
                              ('c1', truth.c1, fitted.model.c1),
                              ('c0', truth.c0, fitted.model.c0)):
@@ -126,22 +126,22 @@ def test_a_fit_beside_the_optimum_says_how_far(share):
 def test_equal_poles_have_errors_of_their_sum_and_product_only():
     truth = SecondOrder.from_poles(3.5, 0.8, 0.8)
     signal = measured(truth, 0.01, 0)
-    said = standard_errors(signal, Objective(signal).fit(0.8, 0.0))
+    said = uncertainty(signal, Objective(signal).fit(0.8, 0.0)).errors
     assert said['a'] is None and said['b'] is None
     assert said['K'] > 0 and said['c1'] > 0 and said['c0'] > 0
 
 
 def test_near_equal_poles_have_large_errors_of_their_own():
     signal = measured(SecondOrder.from_poles(3.5, 0.8, 0.8), 0.01, 0)
-    said = standard_errors(signal, Objective(signal).fit(0.8, 0.01))
+    said = uncertainty(signal, Objective(signal).fit(0.8, 0.01)).errors
     assert said['a'] > 10 * 0.02 and said['c1'] < 0.5
 
 
 def test_what_the_data_do_not_determine_has_no_error():
     # No output at all: the gain is zero and the poles are anything.
     nothing = Signal('phi', T, PRBS, np.zeros(301), PERIOD, True)
-    said = standard_errors(nothing, Objective(nothing).fit(1.0, 0.5))
+    said = uncertainty(nothing, Objective(nothing).fit(1.0, 0.5)).errors
     assert set(said.values()) == {None}
     # Fewer samples than numbers to find.
     short = Signal('phi', T[:3], PRBS[:3], np.array([0.0, 1e-4, 4e-4]), PERIOD, True)
-    assert set(standard_errors(short, Objective(short).fit(1.0, 0.5)).values()) == {None}
+    assert set(uncertainty(short, Objective(short).fit(1.0, 0.5)).errors.values()) == {None}

@@ -1,0 +1,144 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What a fit leaves of a response: whether it is white, and whether the input is still in it."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.linalg import solve_toeplitz
+from scipy.signal import lfilter
+from scipy.stats import chi2, f
+
+FEWEST = 50            # residuals that a test needs
+LAGS = 20              # of the test of whiteness
+INPUT_LAGS = 8         # of the test of independence, spread evenly on a logarithmic scale
+LONGEST_MEMORY = 10    # order of a noise model at most
+SIGNIFICANT = 0.01     # probability below which a test has found something
+
+
+ENOUGH_CHANGES = 5     # of an input that tell the dynamics left out from coloured noise
+
+
+@dataclass(frozen=True)
+class ResidualTests:
+    """
+    Tests of the residuals; the probabilities are None for records too short to tell.
+
+    white: probability of autocorrelations as large as these, were the noise white (G. M. Ljung
+    and G. E. P. Box, Biometrika 65, 1978). independent: probability of as much of them being
+    explained by the input's past, were there nothing of it left (an F-test on lagged inputs).
+    noise: coefficients n1.. of the model e(k) + n1 e(k-1) + .. = white for which the fit allowed.
+    """
+
+    white: float | None
+    independent: float | None
+    noise: tuple = ()
+
+    @property
+    def is_coloured(self):
+        """Whether the residuals are not white."""
+        return self.white is not None and self.white < SIGNIFICANT
+
+    @property
+    def depends_on_input(self):
+        """Whether the residuals contain what the model left of the input's effect."""
+        return self.independent is not None and self.independent < SIGNIFICANT
+
+
+def examine(signal, residual, noise=()):
+    """Return the ResidualTests of residuals (N,) of a Signal; noise: see ResidualTests."""
+    if signal.samples < FEWEST or not np.any(residual):
+        return ResidualTests(None, None, tuple(noise))
+    residual, measured = _filtered(noise, residual, signal.measured)
+    u, _ = _filtered(noise, signal.u, signal.measured)
+    white = _whiteness(residual, measured, len(noise))
+    memory = noise_model(residual, measured) if white < SIGNIFICANT else ()
+    residual, measured = _filtered(memory, residual, measured)
+    u, _ = _filtered(memory, u, measured)
+    return ResidualTests(white, _independence(u, residual, measured), tuple(noise))
+
+
+def noise_model(residual, measured):
+    """
+    Return the coefficients n1.. of the autoregression that residuals follow, () for white ones.
+
+    Yule-Walker estimates (P. J. Brockwell and R. A. Davis, Time Series, 1991, sec. 8.1) of the
+    order with the least Bayesian information criterion.
+    """
+    covariances = _autocovariances(residual, measured, LONGEST_MEMORY)
+    count = np.count_nonzero(measured)
+    best, chosen = count * np.log(covariances[0]), ()
+    for order in range(1, LONGEST_MEMORY + 1):
+        weights = solve_toeplitz(covariances[:order], covariances[1:order + 1])
+        variance = covariances[0] - weights @ covariances[1:order + 1]
+        if not variance > 0:
+            break
+        criterion = count * np.log(variance) + order * np.log(count)
+        if criterion < best:
+            best, chosen = criterion, tuple(-weights)
+    return chosen
+
+
+def can_tell_noise(signal):
+    """Return whether the input tells the noise from dynamics left out: a step alone does not."""
+    return np.count_nonzero(np.diff(signal.u[:-1])) >= ENOUGH_CHANGES
+
+
+def whitened(signal, noise):
+    """
+    Return the Signal in which noise of a model is white: u and y through the same filter.
+
+    The first samples, which the filter knows the past of only in part, and those after missing
+    ones count as not measured.
+    """
+    if not noise:
+        return signal
+    y, measured = _filtered(noise, signal.y, signal.measured)
+    u, _ = _filtered(noise, signal.u, signal.measured)
+    return replace(signal, u=u, y=y, measured=measured)
+
+
+def _filtered(noise, values, measured):
+    """Return values through the filter of a noise model, and where the result is known."""
+    if not noise:
+        return values, measured
+    known = measured.copy()
+    for lag in range(1, len(noise) + 1):
+        known[lag:] &= measured[:-lag]
+        known[lag - 1] = False
+    return lfilter([1.0, *noise], [1.0], values), known
+
+
+def _autocovariances(residual, measured, lags):
+    """Return the autocovariances at lags 0..lags, from the measured samples."""
+    values = np.where(measured, residual, 0.0)
+    count = np.count_nonzero(measured)
+    return np.array([values[lag:] @ values[:len(values) - lag] / count
+                     for lag in range(lags + 1)])
+
+
+def _whiteness(residual, measured, fitted):
+    count = np.count_nonzero(measured)
+    lags = min(LAGS, count // 5)
+    covariances = _autocovariances(residual, measured, lags)
+    correlations = covariances[1:] / covariances[0]
+    statistic = count * (count + 2) * np.sum(correlations ** 2 / (count - np.arange(1, lags + 1)))
+    return float(chi2.sf(statistic, max(1, lags - fitted)))
+
+
+def _independence(u, residual, measured):
+    longest = len(u) // 4
+    lags = np.unique(np.round(np.concatenate([[0], np.geomspace(1, longest, INPUT_LAGS - 1)])
+                              ).astype(int))
+    columns = np.column_stack([np.concatenate([np.zeros(lag), u[:len(u) - lag]])
+                               for lag in lags])[measured]
+    values = residual[measured]
+    scale = np.linalg.norm(columns, axis=0)
+    columns = columns[:, scale > 0] / scale[scale > 0]
+    solution, _, rank, _ = np.linalg.lstsq(columns, values, rcond=1e-10)
+    explained = float(np.sum((columns @ solution) ** 2))
+    freedom = len(values) - rank
+    if rank == 0 or freedom < 1:
+        return 1.0
+    rest = float(values @ values) - explained
+    return float(f.sf(explained / rank / (rest / freedom), rank, freedom)) if rest > 0 else 0.0

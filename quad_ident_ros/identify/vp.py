@@ -1,0 +1,239 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Variable projection with the exact zero-order hold: the best K/((s+a)(s+b)) without a start value.
+
+Gain and unknowns are solved for, so that two numbers are left: the coefficients c1 = a + b and
+c0 = a b, in which real poles and complex pairs are one smooth plane. A coarse grid of them gives
+starts, from which descent.descend goes down; of a long record, on a thinned one first.
+"""
+
+from dataclasses import replace
+from functools import lru_cache
+
+import numpy as np
+
+from quad_ident_ros.compiled import compiled
+from quad_ident_ros.identify.descent import descend
+from quad_ident_ros.identify.objective import Objective, project_all, project_gain
+from quad_ident_ros.identify.residuals import (
+    can_tell_noise,
+    examine,
+    noise_model,
+    whitened,
+)
+from quad_ident_ros.identify.transfer import response, SecondOrder
+
+# How much larger the squared error of a complex pair counts, by the parameter `poles`. With
+# `auto` a pair is taken only where it at least halves the rms error of the best real poles: the
+# paper's model has real a and b, and the pair's a and b are no numbers to publish.
+COMPLEX_PENALTY = {'real': np.inf, 'auto': 4.0, 'any': 1.0}
+
+NOISE_ROUNDS = 3   # of noise model and fit in turn
+COLOURED = 'the noise is coloured: it was modelled, and the fit is the most likely one for it'
+REFITTED = 'the poles found were complex, without halving the error: refitted with real poles'
+
+# The grid, in pole x record length: real poles from growing ones to one per sample, and pairs by
+# frequency and by the ratio of decay to frequency.
+GROWING = (-12.0, -9.5, -7.5, -6.0, -4.5, -3.5, -2.5, -1.5, -0.7, 0.0)
+REAL_RATIO = 3.0
+TURN_RATIO = 1.3
+DECAYS = (0.02, 0.15, 0.6)
+STARTS, MINIMA = 3, 2   # candidates of each kind that are followed down, minima of the grid
+ROUGHLY, FULLY = 1e-2, 1e-8   # squared distance to the optimum, in standard errors, of a descent
+THINNED = 2048     # samples of a long record that are enough for that
+
+
+def vp(signal, poles='auto', near=None):
+    """
+    Return the Fitted of least cost.
+
+    Args: signal: a Signal; poles, a key of COMPLEX_PENALTY: whether pairs are allowed; near: a
+    model to start from instead of the grid, for instance that of the window before. The cost
+    is infinite where no model stays finite over the record. Source: errata section 7; Golub and
+    Pereyra, Inverse Problems 19(2), 2003.
+    """
+    return best_poles(signal, COMPLEX_PENALTY[poles], near)[0]
+
+
+def best_poles(signal, penalty, near=None):
+    """Return the Fitted of `vp` for a penalty on pairs, and the evaluations of F that it took."""
+    pairs = bool(np.isfinite(penalty))
+    if near is not None:
+        fitted, spent = _down_from(near, signal)
+        if fitted is not None:
+            return fitted, spent
+    best, spent = _best(signal, pairs)
+    if pairs and penalty > 1.0 and best.model.form == 'complex':
+        real, more = _best(signal, False)
+        return (best if best.cost * penalty < real.cost else real), spent + more
+    return best, spent
+
+
+def vp_fit(objective, space):
+    """
+    Return the Fitted of `vp`, or None, the evaluations of F, and remarks: see methods.Method.
+
+    Where the residuals are coloured and the input is not in them, the noise is modelled and the
+    most likely model is fitted instead, which is the better one then (generalised least squares
+    with an autoregression; L. Ljung, System Identification, 1999, sec. 7.4 and 10.3).
+    """
+    signal = objective.signal
+    fitted, spent = best_poles(signal, space.complex_penalty, space.near)
+    if not np.isfinite(fitted.cost):
+        return None, spent, []
+    least, noise = fitted.cost, ()
+    for _ in range(NOISE_ROUNDS if can_tell_noise(signal) else 0):
+        residual = residual_of(signal, fitted)
+        tests = examine(signal, residual)
+        if not tests.is_coloured or tests.depends_on_input:
+            break
+        noise = noise_model(residual, signal.measured)
+        better, more = _refined(objective, fitted, whitened(signal, noise))
+        spent += more
+        if better is None:
+            noise = ()
+            break
+        fitted = better
+    if not noise:
+        return fitted, spent, []
+    return replace(fitted, noise=noise, least_cost=least), spent, [COLOURED]
+
+
+def residual_of(signal, fitted):
+    """Return what a fit leaves of the output of a signal, (N,)."""
+    return signal.y - response(fitted.model, signal.u, signal.period, fitted.initial,
+                               fitted.disturbance)
+
+
+def _refined(objective, fitted, signal):
+    """Return the Fitted near another that a filtered signal asks for, or None; evaluations."""
+    found, spent = _down_from(fitted.model, signal)
+    if found is None:
+        return None, spent
+    model = found.model
+    found = Objective(objective.signal, (model.gain, model.gain)).fit(
+        *mean_and_half(model.c1, model.c0))
+    return (found if np.isfinite(found.cost) else None), spent
+
+
+def _down_from(model, signal):
+    """Return the best Fitted near a model, with poles of its kind, or None; evaluations."""
+    linear = np.zeros(4)
+    c1, c0, cost, spent = descend(model.c1, model.c0, model.form != 'complex', signal.period,
+                                  signal.u, signal.y, signal.measured, signal.unknowns, FULLY,
+                                  linear)
+    if not cost < np.inf:
+        return None, spent
+    found = SecondOrder.from_half_difference(linear[0], *mean_and_half(c1, c0))
+    return Objective(signal).fitted(found, linear), spent
+
+
+def _best(signal, pairs):
+    """Return the best Fitted with real poles, or pairs too, and the evaluations spent."""
+    linear = np.zeros(4)
+    c1, c0, spent = _search(*_thin(signal), *_grid(len(signal.y), pairs), signal.period, signal.u,
+                            signal.y, signal.measured, signal.unknowns, linear)
+    model = SecondOrder.from_half_difference(linear[0], *mean_and_half(c1, c0))
+    return Objective(signal).fitted(model, linear), spent
+
+
+def mean_and_half(c1, c0):
+    """Return the mean and the signed half-difference of the poles with sum c1 and product c0."""
+    root = c1 * c1 / 4 - c0
+    # At the edge of real poles rounding leaves a root of a size that means none.
+    half = 0.0 if abs(root) <= 1e-14 * c1 * c1 else np.sign(root) * np.sqrt(abs(root))
+    return c1 / 2, half
+
+
+def _thin(signal):
+    """Return period, input, output and what of it is measured of a record that is not too long."""
+    factor = -(-len(signal.y) // THINNED)
+    if factor == 1:
+        return signal.period, signal.u, signal.y, signal.measured
+    blocks = len(signal.y) // factor
+    u = signal.u[:blocks * factor].reshape(blocks, factor).mean(axis=1)
+    return (signal.period * factor, u, *(
+        np.ascontiguousarray(values[:blocks * factor:factor])
+        for values in (signal.y, signal.measured)))
+
+
+@compiled
+def _search(thin_period, thin_u, thin_y, thin_measured, real_count, neighbours, c1, c0, period, u,
+            y, measured, unknowns, linear):
+    """Return c1, c0 of the best of what the best candidates lead to, and the evaluations."""
+    scale = 1.0 / (thin_u.size * thin_period)
+    c1, c0 = c1 * scale, c0 * scale * scale
+    costs, found = np.empty(c1.size), np.zeros((c1.size, 4))
+    if unknowns == 0:
+        project_gain(c1, c0, thin_period, thin_u, thin_y, thin_measured, -np.inf, np.inf, costs,
+                     found)
+    else:
+        project_all(c1, c0, thin_period, thin_u, thin_y, thin_measured, unknowns, -np.inf, np.inf,
+                    costs, found)
+    spent = c1.size
+    real = real_count == c1.size
+    best = 0.0, 0.0, np.inf
+    for first, last in ((0, real_count), (real_count, c1.size)):
+        for attempt in range(STARTS):
+            i = _lowest(costs, neighbours, first, last, attempt < MINIMA)
+            if i < 0:
+                continue
+            here = descend(c1[i], c0[i], real, thin_period, thin_u, thin_y, thin_measured,
+                           unknowns, ROUGHLY, found[i])
+            spent += here[3]
+            # Nothing is lower than what was followed: its neighbours stay out, it does not return.
+            costs[i] = -np.inf
+            if here[2] < best[2]:
+                best = here[0], here[1], here[2]
+    here = descend(best[0], best[1], real, period, u, y, measured, unknowns, FULLY, linear)
+    return here[0], here[1], spent + here[3]
+
+
+@compiled
+def _lowest(costs, neighbours, first, last, minimum):
+    """Return the candidate of least cost, if wanted that no neighbour undercuts, or -1."""
+    lowest = -1
+    for i in range(first, last):
+        if not -np.inf < costs[i] < np.inf or (lowest >= 0 and costs[i] >= costs[lowest]):
+            continue
+        undercut = False
+        for j in neighbours[i]:
+            undercut = undercut or costs[j] < costs[i]
+        if not (minimum and undercut):
+            lowest = i
+    return lowest
+
+
+@lru_cache
+def _grid(samples, pairs):
+    """
+    Return the candidates for a record of a length T.
+
+    How many of them are real, their neighbours (n, 8) in the grid, c1 x T and c0 x T^2 (n,); pairs
+    follow where they are wanted.
+    """
+    steps = int(np.log(samples) / np.log(REAL_RATIO)) + 1
+    poles = np.array([*GROWING, *REAL_RATIO ** np.arange(steps)])
+    upper = np.triu_indices(len(poles))
+    index = np.zeros((len(poles), len(poles)), int)
+    index[upper] = np.arange(len(upper[0]))
+    index = np.maximum(index, index.T)   # a, b and b, a are one candidate
+    real = _neighbours(index)[upper]
+    a, b = poles[upper[0]], poles[upper[1]]
+    if not pairs:
+        return len(a), real, a + b, a * b
+    count = int(np.log(np.pi * samples) / np.log(TURN_RATIO)) + 1
+    decay, turn = np.meshgrid(DECAYS, TURN_RATIO ** np.arange(count))
+    index = len(a) + np.arange(decay.size).reshape(decay.shape)
+    return (len(a), np.concatenate([real, _neighbours(index).reshape(-1, 8)]),
+            np.concatenate([a + b, (2 * decay * turn).ravel()]),
+            np.concatenate([a * b, ((1 + decay ** 2) * turn ** 2).ravel()]))
+
+
+def _neighbours(index):
+    """Return the eight neighbours (rows, columns, 8) of a grid's entries; themselves at edges."""
+    padded = np.pad(index, 1, mode='edge')
+    rows, columns = index.shape
+    return np.stack([padded[i:i + rows, j:j + columns] for i in range(3) for j in range(3)
+                     if (i, j) != (1, 1)], axis=-1)

@@ -1,0 +1,131 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Identification from window to window: warm starts, and changes of the vehicle."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+from quad_ident_ros.data.record import FlightRecord
+from quad_ident_ros.identify.change import find_change
+from quad_ident_ros.identify.identify import identify, Settings
+from quad_ident_ros.identify.online import Tracker
+from quad_ident_ros.identify.signals import Signal
+from quad_ident_ros.identify.vp import vp
+
+PERIOD, WINDOW, STRIDE = 0.01, 500, 5     # 20 windows a second
+MASS, PAYLOAD, GRAVITY, DRAG = 0.65, 0.2, 9.806, 6.354e-4
+PICKED_UP = 12.0
+SETTINGS = Settings(methods=('vp',), initial_state='free')
+
+
+@cache
+def climb(payload, noise=0.005, seed=0, length=20.0):
+    """
+    Return a flight record in z under a controller with steps, with a payload from PICKED_UP on.
+
+    m z'' = U1 - m g - k z', each sample's held input integrated in 20 steps.
+    """
+    random = np.random.default_rng(seed)
+    count = round(length / PERIOD)
+    t = np.arange(count) * PERIOD
+    z, rate, target = 0.0, 0.0, 0.0
+    heights, thrusts = np.empty(count), np.empty(count)
+    for k in range(count):
+        mass = MASS + (payload if t[k] >= PICKED_UP else 0.0)
+        if k % 30 == 0:
+            target = random.choice([-1.0, 1.0])
+        thrust = MASS * GRAVITY + target - 4.0 * z - 3.0 * rate
+        heights[k], thrusts[k] = z, thrust
+        for _ in range(20):
+            rate += ((thrust - DRAG * rate) / mass - GRAVITY) * PERIOD / 20
+            z += rate * PERIOD / 20
+    heights = heights + noise * random.normal(size=count)
+    zero = np.zeros(count)
+    return FlightRecord(t, {'phi': zero, 'theta': zero, 'psi': zero, 'pz': heights,
+                            'u1': thrusts, 'u2': zero, 'u3': zero, 'u4': zero},
+                        {'trim': [MASS * GRAVITY, 0.0, 0.0, 0.0], 'start_ns': 10 ** 12})
+
+
+def windows(flight):
+    """Return the sliding windows of a flight as the recorder publishes them, and their ends."""
+    for end in range(WINDOW, len(flight), STRIDE):
+        yield flight.starting(end - WINDOW).slice(0, WINDOW), flight.t[end - 1]
+
+
+@cache
+def tracked(payload, noise=0.005, seed=0):
+    """Return (end of window, Identification) of all windows of a flight."""
+    tracker = Tracker()
+    return [(end, tracker.update([window], SETTINGS))
+            for window, end in windows(climb(payload, noise, seed))]
+
+
+@pytest.mark.parametrize('seed', range(5))
+def test_a_payload_picked_up_in_flight_is_found_within_2_s(seed):
+    results = tracked(PAYLOAD, seed=seed)
+    assert not [end for end, result in results if result.changes and end < PICKED_UP]
+    end, result = next((end, result) for end, result in results if result.changes)
+    assert end - PICKED_UP < 2.0
+    [change] = result.changes
+    assert change.output == 'z' and change.moved
+    when = (change.stamp_ns - 10 ** 12) * 1e-9
+    assert abs(when - PICKED_UP) < 0.6
+
+
+@pytest.mark.parametrize('seed', range(5))
+def test_after_the_change_the_parameters_are_those_of_the_vehicle_as_it_is(seed):
+    results = tracked(PAYLOAD, seed=seed)
+    before = [result.methods['vp'].outputs['z'] for end, result in results if end < PICKED_UP]
+    for fit in before[:: 20]:
+        assert fit.model.gain == pytest.approx(1 / MASS, rel=0.1)
+    _, last = results[-1]
+    fit = last.methods['vp'].outputs['z']
+    assert fit.model.gain == pytest.approx(1 / (MASS + PAYLOAD), rel=0.05)
+    # The payload's weight is what the trim does not carry.
+    assert fit.disturbance == pytest.approx(
+        MASS * GRAVITY / (MASS + PAYLOAD) - GRAVITY, rel=0.2)
+
+
+@pytest.mark.parametrize('noise', [0.001, 0.01])
+@pytest.mark.parametrize('seed', range(3))
+def test_a_vehicle_that_stays_as_it_is_shows_no_change(noise, seed):
+    assert not [end for end, result in tracked(0.0, noise, seed) if result.changes]
+
+
+def test_windows_are_fitted_as_well_as_from_scratch():
+    worse = 0
+    flight = climb(0.0)
+    tracker = Tracker()
+    for number, (window, _) in enumerate(windows(flight)):
+        warm = tracker.update([window], SETTINGS).methods['vp'].outputs['z']
+        if number % 10 == 0:
+            cold = identify([window], SETTINGS).methods['vp'].outputs['z']
+            worse += warm.cost > cold.cost * 1.001
+    assert worse == 0
+
+
+def test_other_methods_are_tracked_too():
+    flight = climb(PAYLOAD)
+    tracker = Tracker()
+    settings = Settings(methods=('ls',), initial_state='free')
+    found = [result for window, end in windows(flight) if end > 11.5
+             for result in [tracker.update([window], settings)] if result.changes]
+    assert found and all(list(result.methods) == ['ls'] for result in found)
+
+
+def test_a_window_that_does_not_say_when_it_begins_is_taken_whole():
+    flight = climb(PAYLOAD)
+    [window] = [window for window, end in windows(flight) if end == pytest.approx(14.04)]
+    info = {key: value for key, value in window.info.items() if key != 'start_ns'}
+    result = Tracker().update([FlightRecord(window.t, window.columns, info)], SETTINGS)
+    assert result.changes == () and len(result.signals['z'].y) == WINDOW
+
+
+def test_a_part_too_short_to_tell_shows_no_change():
+    t = np.arange(60) * PERIOD
+    u = np.sign(np.sin(20 * t))
+    y = np.cumsum(np.cumsum(u)) * 1e-4
+    short = Signal('z', t, u, y, PERIOD, False)
+    assert find_change(short, vp(short)) is None
