@@ -48,7 +48,7 @@ def _fast(folder, seconds):
 def _apart(folder, seconds):
     with Launched(folder) as launched:
         for name in VEHICLES:
-            launched.start('recorder', {}, name=f'recorder/{name}',
+            launched.start('recorder', {}, name=f'recorder_{name}',
                            arguments=['-r', f'__ns:=/{name}'])
         load.start_many(launched, 'simulator', load.simulator(folder, 0.01, seconds), VEHICLES)
         return load.fly(launched, VEHICLES, seconds), [], ''
@@ -102,7 +102,7 @@ def _rows(case, found):
               sum(vehicle.lost for vehicle in found.vehicles))
     shares = {}
     for name, share in found.shares.items():
-        shares.setdefault(name.partition('/')[0], []).append(share)
+        shares.setdefault(name.partition('_')[0], []).append(share)
     rows = []
     for kind, all_shares in shares.items():
         label = f'{len(all_shares)} × {kind}' if len(all_shares) > 1 else kind
