@@ -13,6 +13,7 @@ from quad_ident_ros.nodes.launched import Launched
 
 VEHICLES = tuple(f'uav{index}' for index in range(1, 11))
 WINDOW, OVERLAP = 500, 0.99
+PERIOD, FAST = 0.01, 0.001      # s
 UPDATES = 20.0      # results per second
 CALL = 2.0          # ms, median
 
@@ -38,7 +39,7 @@ def _fast(folder, seconds):
     with Launched(folder) as launched:
         launched.start('recorder', {'output': str(folder), 'window_samples': 10_000_000})
         launched.start('identifier', {'method': 'vp'})
-        launched.start('simulator', load.simulator(folder, 0.001, seconds))
+        launched.start('simulator', load.simulator(folder, FAST, seconds))
         found = load.fly(launched, [''], seconds)
     whole = load.is_whole(folder / 'recording_1' / 'bag', found.vehicles[0].run)
     return found, [('the bag: each stamp of each topic', 'once, in order',
@@ -50,14 +51,14 @@ def _apart(folder, seconds):
         for name in VEHICLES:
             launched.start('recorder', {}, name=f'recorder_{name}',
                            arguments=['-r', f'__ns:=/{name}'])
-        load.start_many(launched, 'simulator', load.simulator(folder, 0.01, seconds), VEHICLES)
+        load.start_many(launched, 'simulator', load.simulator(folder, PERIOD, seconds), VEHICLES)
         return load.fly(launched, VEHICLES, seconds), [], ''
 
 
 def _together(folder, seconds):
     with Launched(folder) as launched:
         load.start_many(launched, 'recorder', {}, VEHICLES)
-        load.start_many(launched, 'simulator', load.simulator(folder, 0.01, seconds), VEHICLES)
+        load.start_many(launched, 'simulator', load.simulator(folder, PERIOD, seconds), VEHICLES)
         return load.fly(launched, VEHICLES, seconds), [], ''
 
 
@@ -66,13 +67,11 @@ def _continuous(folder, seconds):
     with Launched(folder) as launched:
         launched.start('recorder', {'window_samples': WINDOW, 'overlap': OVERLAP})
         launched.start('identifier', {'method': 'vp', 'mode': 'continuous'})
-        launched.start('simulator', load.simulator(folder, 0.01, seconds))
+        launched.start('simulator', load.simulator(folder, PERIOD, seconds))
         found = load.fly(launched, [''], seconds, answers)
-    # A window's length after the start the first result is due.
-    begin = found.begin + WINDOW * 0.01 + 0.5
-    updates = answers.results(begin, found.end) / (found.end - begin)
+    updates = answers.rate()
     delays = 1e3 * np.array(answers.delays())
-    busy = 1e3 * np.array(answers.calls(begin, found.end))
+    busy = 1e3 * np.array(answers.calls(found.begin + WINDOW * PERIOD, found.end))
     idle = 1e3 * np.array(answers.calls(found.end + 0.5, np.inf))
     times = markdown(('continuous, ms', 'count', 'median', '95 %', 'largest'), [
         (name, len(values), *(number(np.quantile(values, share)) for share in (0.5, 0.95, 1)))
@@ -96,8 +95,7 @@ def _rows(case, found):
     """Return a row for each kind of process; the first has the counts."""
     samples = sum(vehicle.run.samples for vehicle in found.vehicles)
     recorded = sum(vehicle.account['joined'] for vehicle in found.vehicles)
-    topics = len(found.vehicles[0].account['received'])
-    rate = samples * topics / (found.end - found.begin)
+    rate = sum(vehicle.rate for vehicle in found.vehicles)
     counts = (f'{rate:,.0f}', f'{samples:,}', f'{recorded:,}',
               sum(vehicle.lost for vehicle in found.vehicles))
     shares = {}

@@ -15,6 +15,8 @@ from std_msgs.msg import Float64MultiArray, String
 import yaml
 
 from quad_ident_ros.data.bag import read_bag_messages
+from quad_ident_ros.data.csv import write_csv
+from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.data.topics import FLIGHT_TOPICS, RunNotice, stamp_ns
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.nodes.messages import record_from_message
@@ -24,22 +26,32 @@ PATIENCE = 30.0      # s beyond the flight after which something is wrong
 LAST_ACCOUNT = 3.0   # s after the last record in which recorders say what the middleware lost
 BETWEEN_CALLS = 0.037   # s from a request to the next
 
-# Small enough to stay near hover for a minute, and exciting all four outputs at once.
-INPUTS = {'U1': 0.3, 'U2': 0.003, 'U3': 0.003, 'U4': 0.002}
-NOISE = {'noise.attitude': 0.002, 'noise.altitude': 0.005}
+AMPLITUDES = (0.5, 0.003, 0.003, 0.001)    # of U1..U4, N and N m: a tilt costs no lift
+NOISE = {'noise.attitude': 0.0002, 'noise.altitude': 0.005}
 
 
 def simulator(folder, period, seconds):
-    """Return the parameters of a simulator of a flight with all inputs at work."""
-    path = Path(folder) / 'flight.yaml'
-    inputs = {name: {'type': 'prbs', 'amplitude': amplitude, 'clock': 0.1, 'seed': 50 * index}
-              for index, (name, amplitude) in enumerate(INPUTS.items())}
-    path.write_text(yaml.safe_dump({
+    """
+    Return the parameters of a simulator of one flight with all four inputs at work.
+
+    Cosines, at whose end no rate is left over: nothing but its own inputs holds the vehicle.
+    """
+    folder = Path(folder)
+    t = period * np.arange(round(seconds / period) + 1)
+    inputs = {f'u{channel}': amplitude * np.mean(
+        [np.cos(2 * np.pi * frequency * (t + period / 2))
+         for frequency in np.geomspace(0.3, 2.5, 6) + 0.03 * channel], axis=0)
+        for channel, amplitude in enumerate(AMPLITUDES, 1)}
+    write_csv(folder / 'inputs.csv', FlightRecord(t, inputs))
+    (folder / 'flight.yaml').write_text(yaml.safe_dump({
         'name': 'flight', 'model': 'newton_euler', 'vehicle': 'paper_quadrotor',
         'period': period, 'trim': 'hover', 'altitude': 10.0,
-        'runs': [{'name': 'flight', 'duration': seconds, 'inputs': inputs,
+        'runs': [{'name': 'flight', 'duration': seconds,
+                  'inputs': {name.upper(): {'type': 'recorded', 'column': name,
+                                            'file': str(folder / 'inputs.csv')}
+                             for name in inputs},
                   'outputs': ['phi', 'theta', 'psi', 'z']}]}), encoding='utf-8')
-    return {'experiment': str(path), **NOISE}
+    return {'experiment': str(folder / 'flight.yaml'), **NOISE}
 
 
 def start_many(launched, node, parameters, namespaces):
@@ -50,16 +62,17 @@ def start_many(launched, node, parameters, namespaces):
 
 @dataclass
 class Vehicle:
-    """What was heard of a vehicle: its run, the stamps (ns) of its records, the last account."""
+    """
+    What was heard of a vehicle: its run, the stamps (ns) of its records, the last account.
+
+    began, landed: when the run and the record with its last sample were heard of, s.
+    """
 
     run: RunNotice | None = None
     stamps: list = field(default_factory=list)
     account: dict = field(default_factory=dict)
-
-    @property
-    def has_landed(self):
-        """Whether the last sample of the run is in a record."""
-        return bool(self.stamps) and self.stamps[-1][-1] >= self.run.stop_ns
+    began: float | None = None
+    landed: float | None = None
 
     @property
     def lacking(self):
@@ -71,6 +84,11 @@ class Vehicle:
         """Messages that were published and not received, over all topics."""
         received = self.account['received'].values()
         return self.run.samples * len(received) - sum(received)
+
+    @property
+    def rate(self):
+        """Messages per second that were received, over all topics."""
+        return sum(self.account['received'].values()) / (self.landed - self.began)
 
 
 def even_stamps(run):
@@ -113,9 +131,9 @@ def fly(launched, namespaces, seconds, listen=lambda node: None):
         flights = vehicles.values()
         spin_until(lambda: all(vehicle.run for vehicle in flights), PATIENCE)
         begin, before = time.monotonic(), _cpu_seconds(launched)
-        spin_until(lambda: any(vehicle.has_landed for vehicle in flights), seconds + PATIENCE)
+        spin_until(lambda: any(vehicle.landed for vehicle in flights), seconds + PATIENCE)
         end, after = time.monotonic(), _cpu_seconds(launched)
-        spin_until(lambda: all(vehicle.has_landed for vehicle in flights), PATIENCE)
+        spin_until(lambda: all(vehicle.landed for vehicle in flights), PATIENCE)
         last = time.monotonic() + LAST_ACCOUNT
         spin_until(lambda: time.monotonic() > last, PATIENCE)
     shares = {name: (after[name] - before[name]) / (end - begin) for name in before}
@@ -124,12 +142,14 @@ def fly(launched, namespaces, seconds, listen=lambda node: None):
 
 def _listen(node, name, vehicle):
     def on_run(message):
-        vehicle.run = RunNotice.from_json(message.data)
+        vehicle.run, vehicle.began = RunNotice.from_json(message.data), time.monotonic()
 
     def on_record(message):
         record = record_from_message(message)
         vehicle.stamps.append(record.info['start_ns']
                               + np.rint(record.t * 1e9).astype(np.int64))
+        if vehicle.landed is None and vehicle.stamps[-1][-1] >= vehicle.run.stop_ns:
+            vehicle.landed = time.monotonic()
 
     def on_account(message):
         vehicle.account = json.loads(message.data)
@@ -173,9 +193,10 @@ class Answers:
             found.append(time_published - self._arrived[_milliseconds(newest)])
         return found
 
-    def results(self, begin, end):
-        """Return how many results came between two times."""
-        return sum(begin <= time_published <= end for time_published, _ in self._published)
+    def rate(self):
+        """Return how many results came per second."""
+        first, last = self._published[0][0], self._published[-1][0]
+        return (len(self._published) - 1) / (last - first)
 
     def calls(self, begin, end):
         """Return how long the calls took that were made between two times, s."""

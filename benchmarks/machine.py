@@ -36,11 +36,11 @@ def peak_flops():
     return 2.0 * SIZE ** 3 / min(timed(np.matmul, a, b)[1] for _ in range(10))
 
 
-def described(packages):
-    """Return what the numbers of a run depend on, in one line."""
+def described(packages, used):
+    """Return what the numbers of a run depend on, in one line; used: how many cores."""
     versions = [f'{name} {found}' for name in packages if (found := version_of(name))]
-    return (f'{datetime.date.today():%Y-%m-%d}; {_processor()}, {os.cpu_count()} cores, one used; '
-            f'Python {platform.python_version()}, {", ".join(versions)}')
+    return (f'{datetime.date.today():%Y-%m-%d}; {_processor()}, {os.cpu_count()} cores, '
+            f'{used} used; Python {platform.python_version()}, {", ".join(versions)}')
 
 
 def version_of(package):
