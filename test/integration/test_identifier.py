@@ -192,7 +192,7 @@ def test_identify_without_records_says_so(bench):
 
 
 def test_progress_rises_to_one(bench, hover):
-    bench = bench({'evaluations': 40_000, 'method': 'all'})
+    bench = bench({'evaluations': 1_000_000, 'method': 'all'})
     bench.feed(hover)
     bench.await_results(1)
     bench.graph.spin_until(
