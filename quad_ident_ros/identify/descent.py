@@ -47,6 +47,15 @@ def cost_of(factor, unknowns):
 
 
 @compiled
+def _tells_gain(factor, unknowns):
+    """Return whether the response differs from what the unknowns alone explain."""
+    size = 0.0
+    for j in range(unknowns + 1):
+        size += factor[j, unknowns] ** 2
+    return factor[unknowns, unknowns] ** 2 > EMPTY ** 2 * size
+
+
+@compiled
 def _pole_step(factor, unknowns, damping, edge, c1):
     """
     Return the step of c1 and c0 and what it is expected to save, all from the factor.
@@ -126,7 +135,7 @@ def descend(c1, c0, real, period, u, y, measured, unknowns, arrived, linear):
             solve_linear(best, unknowns, new1 - c1, new0 - c0, linear, tried)
             factorise(new1, new0, tried, period, u, y, measured, unknowns, trial)
             spent += 1
-            accepted = cost_of(trial, unknowns) < cost
+            accepted = cost_of(trial, unknowns) < cost and _tells_gain(trial, unknowns)
         if accepted:
             c1, c0 = new1, new0
             cost = cost_of(trial, unknowns)

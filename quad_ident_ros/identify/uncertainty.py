@@ -48,7 +48,7 @@ def uncertainty(signal, fitted):
         covariance = _covariance(whitened(signal, fitted.noise), fitted)
     nothing = dict.fromkeys(KEYS)
     if covariance is None:
-        return Uncertainty(nothing, unidentifiable=('K', 'c1', 'c0'))
+        return Uncertainty(nothing, unidentifiable=KEYS)
     errors = {**nothing, **dict(zip(('K', 'c1', 'c0'), np.sqrt(np.diag(covariance)),
                                     strict=True))}
     names, gradient = _pole_gradient(fitted.model)
@@ -60,8 +60,9 @@ def uncertainty(signal, fitted):
              'c0': max(abs(fitted.model.c0), 1 / duration ** 2),
              'a': max(abs(fitted.model.a), 1 / duration),
              'b': max(abs(fitted.model.b), 1 / duration)}
-    unsure = tuple(key for key in KEYS
-                   if errors[key] is not None and not errors[key] < TOO_UNSURE * sizes[key])
+    # Of equal poles the record tells the sum and the product, not the one and the other.
+    unsure = tuple(key for key in KEYS if errors[key] is None
+                   or not errors[key] < TOO_UNSURE * sizes[key])
     return Uncertainty({key: None if value is None else float(value)
                         for key, value in errors.items()},
                        names, full / np.outer(spread, spread) if spread.all() else None, unsure)

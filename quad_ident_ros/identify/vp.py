@@ -41,7 +41,7 @@ TURN_RATIO = 1.3
 DECAYS = (0.02, 0.15, 0.6)
 STARTS, MINIMA = 3, 2   # candidates of each kind that are followed down, minima of the grid
 ROUGHLY, FULLY = 1e-2, 1e-8   # squared distance to the optimum, in standard errors, of a descent
-THINNED = 2048     # samples of a long record that are enough for that
+THINNED = 1024     # samples of a long record that are enough for that
 
 
 def vp(signal, poles='auto', near=None):
@@ -131,11 +131,17 @@ def _down_from(model, signal):
 
 def _best(signal, pairs):
     """Return the best Fitted with real poles, or pairs too, and the evaluations spent."""
+    unknowns, whole = signal.unknowns, (signal.period, signal.u, signal.y, signal.measured)
+    starts = [_start(*part, *_grid(len(part[1]), pairs), unknowns) for part in _parts(signal)]
+    spent = sum(start[2] for start in starts)
+    c1, c0 = np.array([start[:2] for start in starts]).T
+    if len(starts) > 1:
+        best = np.argmin(Objective(signal).of_poles(c1, c0)[0])
+        c1, c0, spent = c1[[best]], c0[[best]], spent + len(starts)
     linear = np.zeros(4)
-    c1, c0, spent = _search(*_thin(signal), *_grid(len(signal.y), pairs), signal.period, signal.u,
-                            signal.y, signal.measured, signal.unknowns, linear)
+    c1, c0, _, more = descend(c1[0], c0[0], not pairs, *whole, unknowns, FULLY, linear)
     model = SecondOrder.from_half_difference(linear[0], *mean_and_half(c1, c0))
-    return Objective(signal).fitted(model, linear), spent
+    return Objective(signal).fitted(model, linear), spent + more
 
 
 def mean_and_half(c1, c0):
@@ -146,31 +152,37 @@ def mean_and_half(c1, c0):
     return c1 / 2, half
 
 
-def _thin(signal):
-    """Return period, input, output and what of it is measured of a record that is not too long."""
+def _parts(signal):
+    """
+    Return period, input, output and what of it is measured of records not too long to start from.
+
+    Of a long record these are two: the whole, thinned, for poles that are slow, and a piece as it
+    is, for those that are fast.
+    """
     factor = -(-len(signal.y) // THINNED)
     if factor == 1:
-        return signal.period, signal.u, signal.y, signal.measured
+        return [(signal.period, signal.u, signal.y, signal.measured)]
     blocks = len(signal.y) // factor
-    u = signal.u[:blocks * factor].reshape(blocks, factor).mean(axis=1)
-    return (signal.period * factor, u, *(
+    u = signal.u[:blocks * factor].reshape(blocks, factor)
+    thinned = (signal.period * factor, u.mean(axis=1), *(
         np.ascontiguousarray(values[:blocks * factor:factor])
         for values in (signal.y, signal.measured)))
+    # A record that begins at rest is still at rest where its input first moves.
+    first = int(np.argmax(signal.u != signal.u[0])) if signal.u[0] == 0 else 0
+    piece = slice(first, first + THINNED)
+    return [thinned, (signal.period, signal.u[piece], signal.y[piece], signal.measured[piece])]
 
 
 @compiled
-def _search(thin_period, thin_u, thin_y, thin_measured, real_count, neighbours, c1, c0, period, u,
-            y, measured, unknowns, linear):
+def _start(period, u, y, measured, real_count, neighbours, c1, c0, unknowns):
     """Return c1, c0 of the best of what the best candidates lead to, and the evaluations."""
-    scale = 1.0 / (thin_u.size * thin_period)
+    scale = 1.0 / (u.size * period)
     c1, c0 = c1 * scale, c0 * scale * scale
     costs, found = np.empty(c1.size), np.zeros((c1.size, 4))
     if unknowns == 0:
-        project_gain(c1, c0, thin_period, thin_u, thin_y, thin_measured, -np.inf, np.inf, costs,
-                     found)
+        project_gain(c1, c0, period, u, y, measured, -np.inf, np.inf, costs, found)
     else:
-        project_all(c1, c0, thin_period, thin_u, thin_y, thin_measured, unknowns, -np.inf, np.inf,
-                    costs, found)
+        project_all(c1, c0, period, u, y, measured, unknowns, -np.inf, np.inf, costs, found)
     spent = c1.size
     real = real_count == c1.size
     best = 0.0, 0.0, np.inf
@@ -179,15 +191,14 @@ def _search(thin_period, thin_u, thin_y, thin_measured, real_count, neighbours, 
             i = _lowest(costs, neighbours, first, last, attempt < MINIMA)
             if i < 0:
                 continue
-            here = descend(c1[i], c0[i], real, thin_period, thin_u, thin_y, thin_measured,
-                           unknowns, ROUGHLY, found[i])
+            here = descend(c1[i], c0[i], real, period, u, y, measured, unknowns, ROUGHLY,
+                           found[i])
             spent += here[3]
-            # Nothing is lower than what was followed: its neighbours stay out, it does not return.
+            # Nothing is lower than what was followed: its neighbours stay out.
             costs[i] = -np.inf
             if here[2] < best[2]:
                 best = here[0], here[1], here[2]
-    here = descend(best[0], best[1], real, period, u, y, measured, unknowns, FULLY, linear)
-    return here[0], here[1], spent + here[3]
+    return best[0], best[1], spent
 
 
 @compiled

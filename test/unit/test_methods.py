@@ -6,26 +6,19 @@ import functools
 
 import numpy as np
 import pytest
+from systems import SYSTEMS
 
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.excitation import excite
 from quad_ident_ros.identify.identify import identify, Settings, with_budget
 from quad_ident_ros.identify.methods import METHODS
-from quad_ident_ros.identify.transfer import response, SecondOrder
+from quad_ident_ros.identify.transfer import response
 
 T = np.arange(501) * 0.01
 DURATION = 5.0
 SEEDS = range(20)
 SWARMS = ('pso', 'cs', 'pso_cs')
 
-SYSTEMS = {
-    'stable': SecondOrder.from_poles(3.5, 2.0, 0.5),
-    'integrating': SecondOrder.from_poles(3.5, 2.0, 0.0),
-    'double_integrator': SecondOrder.from_poles(30.0, 0.0, 0.0),
-    'unstable': SecondOrder.from_poles(-2.0, 1.0, -0.4),
-    'equal': SecondOrder.from_poles(3.5, 0.8, 0.8),
-    'complex': SecondOrder.from_half_difference(5.0, 0.5, -3.0),
-}
 INPUTS = {
     'step': excite('u', {'type': 'step', 'amplitude': 0.1}, T),
     'prbs': excite('u', {'type': 'prbs', 'amplitude': 0.1}, T),

@@ -12,14 +12,13 @@ from quad_ident_ros.excitation import excite
 from quad_ident_ros.identify.objective import Objective
 from quad_ident_ros.identify.signals import Signal
 from quad_ident_ros.identify.transfer import response, SecondOrder
-from quad_ident_ros.identify.uncertainty import uncertainty
+from quad_ident_ros.identify.uncertainty import disturbance_error, KEYS, uncertainty
 
 PERIOD = 0.02
 T = np.arange(301) * PERIOD
 PRBS = excite('u', {'type': 'prbs', 'amplitude': 0.1, 'clock': 0.2}, T)
 STEP = excite('u', {'type': 'step', 'amplitude': 0.1}, T)
 DRAWS = 200
-KEYS = ('K', 'a', 'b', 'c1', 'c0')
 SYSTEMS = {
     'real': SecondOrder.from_poles(3.5, 3.0, 0.5),
     'integrating': SecondOrder.from_poles(3.5, 3.0, 0.0),
@@ -145,3 +144,51 @@ def test_what_the_data_do_not_determine_has_no_error():
     # Fewer samples than numbers to find.
     short = Signal('phi', T[:3], PRBS[:3], np.array([0.0, 1e-4, 4e-4]), PERIOD, True)
     assert set(uncertainty(short, Objective(short).fit(1.0, 0.5)).errors.values()) == {None}
+
+
+def told(truth, u=STEP, noise=0.01):
+    signal = measured(truth, noise, 1, u)
+    return uncertainty(signal, optimum(signal, truth))
+
+
+def test_what_a_record_does_not_tell_is_named():
+    assert told(SYSTEMS['real'], PRBS).unidentifiable == ()
+    # Poles hundreds of times slower than the record: an integrator to it, and that is told.
+    slow = told(SecondOrder.from_poles(1.5, 0.02, 0.01))
+    assert {'a', 'b'} & set(slow.unidentifiable) and 'K' not in slow.unidentifiable
+    # Noise as large as the response.
+    assert 'K' in told(SYSTEMS['real'], noise=3.0).unidentifiable
+    nothing = Signal('phi', T, PRBS, np.zeros(301), PERIOD, True)
+    assert set(uncertainty(nothing, Objective(nothing).fit(1.0, 0.5)).unidentifiable) == set(KEYS)
+
+
+def test_correlations_are_those_of_the_draws():
+    found, _ = draws('real', 0.003)
+    signal = measured(SYSTEMS['real'], 0.003, 0)
+    said = uncertainty(signal, optimum(signal, SYSTEMS['real']))
+    assert said.names == ('K', 'a', 'b')
+    np.testing.assert_allclose(np.diag(said.correlations), 1.0)
+    # 200 draws know a correlation to 0.07 at most.
+    np.testing.assert_allclose(said.correlations, np.corrcoef(found[:, :3].T), atol=0.2)
+
+
+def test_equal_poles_have_correlations_of_their_sum_and_product():
+    signal = measured(SecondOrder.from_poles(3.5, 0.8, 0.8), 0.01, 0)
+    said = uncertainty(signal, Objective(signal).fit(0.8, 0.0))
+    assert said.names == ('K', 'c1', 'c0') and said.unidentifiable == ('a', 'b')
+
+
+def test_a_disturbance_has_the_error_of_its_scatter():
+    truth = SYSTEMS['real']
+    found, said = [], []
+    for seed in range(100):
+        y = response(truth, PRBS, PERIOD, (0.05, 0.02), 0.1)
+        y = y + 0.01 * np.ptp(y) * np.random.default_rng(seed).normal(size=len(y))
+        signal = Signal('phi', T, PRBS, y, PERIOD, False)
+        fitted = optimum(signal, truth)
+        found.append(fitted.disturbance)
+        said.append(disturbance_error(signal, fitted))
+    assert np.mean(found) == pytest.approx(0.1, abs=4 * np.std(found) / 10)
+    assert np.mean(said) / np.std(found) == pytest.approx(1.0, abs=0.22)
+    at_rest = measured(truth, 0.01, 0)
+    assert disturbance_error(at_rest, optimum(at_rest, truth)) is None

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from systems import SYSTEMS as COMMON
 
 from quad_ident_ros.excitation import excite
 from quad_ident_ros.identify.objective import Objective
@@ -17,15 +18,7 @@ from quad_ident_ros.identify.vp import COMPLEX_PENALTY, vp, vp_fit
 
 PERIOD = 0.01
 T = np.arange(501) * PERIOD
-SYSTEMS = {
-    'stable': SecondOrder.from_poles(3.5, 2.0, 0.5),
-    'integrating': SecondOrder.from_poles(3.5, 2.0, 0.0),
-    'double_integrator': SecondOrder.from_poles(30.0, 0.0, 0.0),
-    'unstable': SecondOrder.from_poles(-2.0, 1.0, -0.4),
-    'equal': SecondOrder.from_poles(3.5, 0.8, 0.8),
-    'complex': SecondOrder.from_half_difference(5.0, 0.5, -3.0),
-    'fast_and_slow': SecondOrder.from_poles(900.0, 60.0, 0.1),
-}
+SYSTEMS = {**COMMON, 'fast_and_slow': SecondOrder.from_poles(900.0, 60.0, 0.1)}
 KINDS = ('step', 'prbs', 'multisine', 'chirp', 'doublet')
 
 
