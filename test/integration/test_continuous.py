@@ -60,7 +60,7 @@ def end_of(data):
     return data['records'][0]['start_ns'] + round((samples - 1) * period * 1e9)
 
 
-def test_a_payload_picked_up_in_flight_is_found_within_2_s_of_its_stamp(graph):
+def test_a_payload_picked_up_in_flight_is_found_within_2_s_of_its_stamp(graph, capfd):
     online = Online(graph)
     online.fly(climb(PAYLOAD), PICKED_UP - 6.0, PICKED_UP + 2.0)
     results = online.json.data()
@@ -74,7 +74,12 @@ def test_a_payload_picked_up_in_flight_is_found_within_2_s_of_its_stamp(graph):
     assert end_of(found[0]) - PICKED_UP_NS < 2e9
     assert change['output'] == 'z' and change['moved']
     assert abs(change['stamp_ns'] - PICKED_UP_NS) < 0.6e9
-    # What is published next to it is the vehicle as it is from then on.
+    # The log tells of each change, and now and then that all is well.
+    log = capfd.readouterr().err
+    assert log.count(' changed at ') == len(found)
+    for line in ('[recorder]: record ', '[identifier]: best method vp'):
+        assert 0 < log.count(line) < len(results) / 2
+    # From then on it is the vehicle as it is that is identified.
     last = results[-1]
     assert last['records'][0]['start_ns'] == pytest.approx(change['stamp_ns'], abs=1e4)
 
