@@ -11,17 +11,18 @@ from benchmarks import load
 from benchmarks.tables import markdown, number, targets
 from quad_ident_ros.nodes.launched import Launched
 
-VEHICLES = tuple(f'uav{index}' for index in range(1, 11))
+VEHICLES = tuple(f'/uav{index}' for index in range(1, 11))
 WINDOW, OVERLAP = 500, 0.99
 PERIOD, FAST = 0.01, 0.001      # s
+PLAIN = {'identifier': {'method': 'vp'}, 'recorder': {}}    # the slowest to start is the first
 UPDATES = 20.0      # results per second
 CALL = 2.0          # ms, median
 
 
 def run(size, bar):
     """Return the results as Markdown; size: a Size; bar: makes progress bars."""
-    cases = {'1 kHz, to disk': _fast, '10 vehicles, 10 recorder processes': _apart,
-             '10 vehicles, one recorder process': _together, 'continuous, 100 Hz': _continuous}
+    cases = {'1 kHz, to disk': _fast, '10 vehicles, 30 processes': _apart,
+             '10 vehicles, 3 processes': _together, 'continuous, 100 Hz': _continuous}
     rows, goals, times = [], [], ''
     with bar(f'flights of {size.flight:g} s', len(cases)) as advance:
         for case, measure in cases.items():
@@ -48,17 +49,20 @@ def _fast(folder, seconds):
 
 def _apart(folder, seconds):
     with Launched(folder) as launched:
-        for name in VEHICLES:
-            launched.start('recorder', {}, name=f'recorder_{name}',
-                           arguments=['-r', f'__ns:=/{name}'])
-        load.start_many(launched, 'simulator', load.simulator(folder, PERIOD, seconds), VEHICLES)
+        parameters = {**PLAIN, 'simulator': load.simulator(folder, PERIOD, seconds)}
+        for node, values in parameters.items():
+            for name in VEHICLES:
+                launched.start(node, values, name=f'{node}_{name[1:]}',
+                               arguments=['-r', f'__ns:={name}'])
         return load.fly(launched, VEHICLES, seconds), [], ''
 
 
 def _together(folder, seconds):
     with Launched(folder) as launched:
-        load.start_many(launched, 'recorder', {}, VEHICLES)
-        load.start_many(launched, 'simulator', load.simulator(folder, PERIOD, seconds), VEHICLES)
+        parameters = {**PLAIN, 'simulator': load.simulator(folder, PERIOD, seconds)}
+        for node, values in parameters.items():
+            launched.start(node, values, name=f'{len(VEHICLES)} {node}s',
+                           module='benchmarks.host', arguments=['--', node, *VEHICLES])
         return load.fly(launched, VEHICLES, seconds), [], ''
 
 

@@ -6,6 +6,7 @@ import signal
 import sys
 
 import rclpy
+from rclpy.executors import SingleThreadedExecutor
 from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import remove_ros_args
 
@@ -14,7 +15,9 @@ from quad_ident_ros.nodes.process import FastExecutor, is_wanted
 from quad_ident_ros.nodes.recorder import Recorder
 from quad_ident_ros.nodes.simulator import Simulator
 
-NODES = {'simulator': Simulator, 'recorder': Recorder, 'identifier': Identifier}
+# Each on the executor that it has when it is alone.
+NODES = {'simulator': (Simulator, FastExecutor), 'recorder': (Recorder, FastExecutor),
+         'identifier': (Identifier, SingleThreadedExecutor)}
 
 
 def main(args):
@@ -24,8 +27,9 @@ def main(args):
         signal.signal(number, lambda *_: stop.append(True))
     rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
     _, kind, *namespaces = remove_ros_args(args)
-    nodes = [NODES[kind](namespace=namespace) for namespace in namespaces]
-    executor = FastExecutor()
+    node_class, executor_class = NODES[kind]
+    nodes = [node_class(namespace=namespace) for namespace in namespaces]
+    executor = executor_class()
     for node in nodes:
         executor.add_node(node)
     while not stop and is_wanted():

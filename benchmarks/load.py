@@ -12,6 +12,7 @@ from geometry_msgs.msg import Vector3Stamped
 import numpy as np
 from rcl_interfaces.srv import GetParameters
 from std_msgs.msg import Float64MultiArray, String
+from std_srvs.srv import Trigger
 import yaml
 
 from quad_ident_ros.data.bag import read_bag_messages
@@ -22,7 +23,7 @@ from quad_ident_ros.errors import InputError
 from quad_ident_ros.nodes.messages import record_from_message
 from quad_ident_ros.nodes.qos import latched, STREAM
 
-PATIENCE = 30.0      # s beyond the flight after which something is wrong
+PATIENCE = 120.0     # s beyond the flight after which something is wrong
 LAST_ACCOUNT = 3.0   # s after the last record in which recorders say what the middleware lost
 BETWEEN_CALLS = 0.037   # s from a request to the next
 
@@ -51,13 +52,7 @@ def simulator(folder, period, seconds):
                                             'file': str(folder / 'inputs.csv')}
                              for name in inputs},
                   'outputs': ['phi', 'theta', 'psi', 'z']}]}), encoding='utf-8')
-    return {'experiment': str(folder / 'flight.yaml'), **NOISE}
-
-
-def start_many(launched, node, parameters, namespaces):
-    """Start nodes in namespaces of their own that share one process."""
-    launched.start(node, parameters, name=f'{len(namespaces)} {node}s', module='benchmarks.host',
-                   arguments=['--', node, *namespaces])
+    return {'experiment': str(folder / 'flight.yaml'), 'autostart': False, **NOISE}
 
 
 @dataclass
@@ -111,8 +106,8 @@ def fly(launched, namespaces, seconds, listen=lambda node: None):
     """
     Watch the launched nodes fly and return a Load.
 
-    Args: namespaces of the vehicles, '' for none; seconds that a flight takes; listen: called
-    with the node that watches.
+    Args: namespaces of the vehicles, '' or with a slash first; seconds that a flight takes;
+    listen: called with the node that watches.
     """
     vehicles = {name: Vehicle() for name in namespaces}
     with launched.watcher('bench') as (node, executor):
@@ -129,6 +124,12 @@ def fly(launched, namespaces, seconds, listen=lambda node: None):
                     raise InputError(f'after {patience:g} s still waiting for the flights')
 
         flights = vehicles.values()
+        starts = [node.create_client(Trigger, f'{name}/simulator/start') for name in namespaces]
+        spin_until(lambda: all(client.service_is_ready() for client in starts) and all(
+            vehicle.account and node.count_publishers(f'{name}/parameters_json')
+            for name, vehicle in vehicles.items()), PATIENCE)
+        for client in starts:
+            client.call_async(Trigger.Request())
         spin_until(lambda: all(vehicle.run for vehicle in flights), PATIENCE)
         begin, before = time.monotonic(), _cpu_seconds(launched)
         spin_until(lambda: any(vehicle.landed for vehicle in flights), seconds + PATIENCE)
@@ -154,10 +155,9 @@ def _listen(node, name, vehicle):
     def on_account(message):
         vehicle.account = json.loads(message.data)
 
-    prefix = f'{name}/' if name else ''
-    node.create_subscription(String, f'{prefix}run', on_run, latched(32))
-    node.create_subscription(Float64MultiArray, f'{prefix}record', on_record, latched(16))
-    node.create_subscription(String, f'{prefix}recorder/statistics', on_account, latched())
+    node.create_subscription(String, f'{name}/run', on_run, latched(32))
+    node.create_subscription(Float64MultiArray, f'{name}/record', on_record, latched(16))
+    node.create_subscription(String, f'{name}/recorder/statistics', on_account, latched())
 
 
 def is_whole(bag, run):
