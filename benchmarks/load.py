@@ -131,9 +131,9 @@ def fly(launched, namespaces, seconds, listen=lambda node: None):
         for client in starts:
             client.call_async(Trigger.Request())
         spin_until(lambda: all(vehicle.run for vehicle in flights), PATIENCE)
-        begin, before = time.monotonic(), _cpu_seconds(launched)
+        begin, before = time.monotonic(), cpu_seconds(launched)
         spin_until(lambda: any(vehicle.landed for vehicle in flights), seconds + PATIENCE)
-        end, after = time.monotonic(), _cpu_seconds(launched)
+        end, after = time.monotonic(), cpu_seconds(launched)
         spin_until(lambda: all(vehicle.landed for vehicle in flights), PATIENCE)
         last = time.monotonic() + LAST_ACCOUNT
         spin_until(lambda: time.monotonic() > last, PATIENCE)
@@ -223,7 +223,7 @@ def _milliseconds(seconds):
     return round(1e3 * seconds)
 
 
-def _cpu_seconds(launched):
+def cpu_seconds(launched):
     """Return the CPU time of each process so far, s, with that of its threads."""
     ticks = os.sysconf('SC_CLK_TCK')
     found = {}
