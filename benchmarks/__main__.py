@@ -53,15 +53,15 @@ def main(arguments=None):
 
     for name in options.sections or [name for name in SECTIONS if name not in APART]:
         run = importlib.import_module(f'benchmarks.{name}').run
-        found = run(QUICK if options.quick else Size(), bar)
-        text = f'{found}\n\nMeasured: {described(PACKAGES, "all" if whole else "one")}.'
-        print(f'\n## {name}\n\n{text}\n', flush=True)
-        if not options.quick:
-            try:
+        try:
+            found = run(QUICK if options.quick else Size(), bar)
+            text = f'{found}\n\nMeasured: {described(PACKAGES, "all" if whole else "one")}.'
+            print(f'\n## {name}\n\n{text}\n', flush=True)
+            if not options.quick:
                 keep(SECTIONS[name], name, text)
-            except InputError as error:
-                screen.print(f'error: {error}', markup=False)
-                return 2
+        except InputError as error:
+            screen.print(f'error: {error}', markup=False)
+            return 2
     return 0
 
 
