@@ -18,6 +18,7 @@ from quad_ident_ros.identify.signals import Signal
 SAMPLES = (500, 5_000, 50_000, 500_000, 5_000_000)
 TOTAL = 500_000      # samples over which the time of a short record is averaged
 MOST_COPIES = 3.0
+FIRST_CALL = 5_000   # samples of a first call that is not measured
 
 
 def run(size, bar):
@@ -63,9 +64,8 @@ def _memory(signal):
 def _measure(path):
     """Print the bytes by which a fit of the data in a file raises this process's memory."""
     u, y = np.load(path)
-    t = PERIOD * np.arange(len(u))
-    ours.fit_vp([Signal('phi', t[:500], u[:500].copy(), y[:500].copy(), PERIOD, True)], 0)
-    signal = Signal('phi', t, u, y, PERIOD, True)
+    ours.fit_vp([p2(FIRST_CALL, 'PRBS', 20).draw(0)[0]], 0)     # loads the program
+    signal = Signal('phi', PERIOD * np.arange(len(u)), u, y, PERIOD, True)
     before = _status('VmRSS')
     Path('/proc/self/clear_refs').write_text('5', encoding='ascii')    # forgets the peak
     ours.fit_vp([signal], 0)

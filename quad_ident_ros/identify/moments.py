@@ -8,8 +8,6 @@ sums of f f and f y. All candidates of a block advance together, several samples
 that the processor does several candidates in one operation and keeps their state in registers.
 """
 
-import math
-
 import numpy as np
 
 from quad_ident_ros.compiled import compiled
@@ -95,10 +93,10 @@ def moments(c1, c0, period, u, y, measured, ff, fy):
         count = min(BLOCK, c1.size - first)
         for i in range(count):
             a1, a0 = c1[first + i], c0[first + i]
-            _, p12, _, _, g1, _ = zoh(a1, a0, period)
+            p11, p12, p21, p22, g1, _ = zoh(a1, a0, period)
             ones[i] = g1 * (a0 * g1 + a1 * p12) + p12 * p12
             slip[i] = a0 * ones[i]
-            keep[i] = math.exp(-a1 * period)
+            keep[i] = p11 * p22 - p12 * p21
             late[i] = g1
             early[i] = ones[i] - g1
             push[i] = ones[i] * u[0]

@@ -175,16 +175,22 @@ class Objective:
         disturbance), so these are solved for, not searched (variable projection; Golub and
         Pereyra, SIAM J. Numer. Anal. 10(2), 1973).
         """
-        signal = self.signal
         c1, c0 = np.ascontiguousarray(c1, float), np.ascontiguousarray(c0, float)
         costs, linear = np.empty(len(c1)), np.zeros((len(c1), 4))
-        data = (c1, c0, signal.period, signal.u, signal.y, signal.measured)
+        project, data = self._projection
+        project(c1, c0, *data, costs, linear)
+        costs *= self.weight
+        return costs, linear
+
+    @cached_property
+    def _projection(self):
+        """The function that projects gain and unknowns out, and its data: they never change."""
+        signal = self.signal
+        data = (signal.period, signal.u, signal.y, signal.measured)
         bounds = (float(self.gain_bounds[0]), float(self.gain_bounds[1]))
         if signal.unknowns == 0:
-            project_gain(*data, *bounds, costs, linear)
-        else:
-            project_all(*data, signal.unknowns, *bounds, costs, linear)
-        return costs * self.weight, linear
+            return project_gain, (*data, *bounds)
+        return project_all, (*data, signal.unknowns, *bounds)
 
     def of_models(self, gain, c1, c0):
         """Return F (n,) of models with given gains, from rest."""

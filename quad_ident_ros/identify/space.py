@@ -64,7 +64,9 @@ class Space:
         """Return F (n,) of points (n, 2), with complex pairs penalised."""
         c1, c0, weights = np.empty((3, len(points)))
         _read(points, *self.poles, self.complex_penalty, c1, c0, weights)
-        return objective.of_poles(c1, c0)[0] * weights
+        costs, _ = objective.of_poles(c1, c0)
+        costs *= weights
+        return costs
 
     def holds(self, model):
         """Tell whether gain and poles of a model lie within the bounds."""

@@ -16,7 +16,8 @@ import numpy as np
 
 from quad_ident_ros.compiled import compiled
 
-SERIES_TERMS = 14
+SERIES_TERMS = 14                 # for poles x step up to 0.25,
+SLOW, SLOW_TERMS = 0.05, 10       # and for slow poles fewer
 INVERSES = 1.0 / np.arange(1, SERIES_TERMS + 2)
 
 
@@ -94,7 +95,7 @@ def zoh(c1, c0, period):
     previous, current = 0.0, 1.0
     factor = 1.0
     impulse, integral = 0.0, 0.0
-    for n in range(SERIES_TERMS):
+    for n in range(SERIES_TERMS if size * h > SLOW else SLOW_TERMS):
         factor *= INVERSES[n]
         impulse += current * factor
         integral += current * factor * INVERSES[n + 1]
