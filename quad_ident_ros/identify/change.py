@@ -68,7 +68,7 @@ def find_change(signal, fitted, usual=0.0):
     advantage = float(count * np.log(better) - extra * np.log(count))
     if advantage < max(STRONG, UNUSUAL * usual):
         return None, advantage
-    gap = places[1] - places[0]
+    gap = -(-(latest - SHORTEST) // (PLACES - 1))
     near = np.linspace(max(place - gap, SHORTEST), min(place + gap, latest), 2 * FINER + 1)
     before, after, place = _best_place(signal, np.unique(near.astype(int)), fitted.model)
     moved = _moved(before, after)

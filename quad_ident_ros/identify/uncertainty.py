@@ -133,13 +133,13 @@ def _covariance(signal, fitted):
 
 def _pole_gradient(model):
     """Return the names of three numbers, and their derivatives (3, 3) by K, c1 and c0."""
-    root = np.sqrt(complex(model.c1 ** 2 / 4 - model.c0))
+    root = (model.a - model.b) / 2    # c1^2 / 4 - c0 would round to nothing, or below
     if model.form == 'equal' or abs(root) <= 1e-9 * abs(model.c1):
         return ('K', 'c1', 'c0'), np.eye(3)
     if model.form == 'complex':
         size = abs(root)
         return ('K', 'a', 'b'), np.array([[1.0, 0.0, 0.0], [0.0, 0.5, 0.0],
                                           [0.0, -model.c1 / (4 * size), 0.5 / size]])
-    share, slope = model.c1 / (4 * root.real), 0.5 / root.real
+    share, slope = model.c1 / (4 * root), 0.5 / root
     return ('K', 'a', 'b'), np.array([[1.0, 0.0, 0.0], [0.0, 0.5 + share, -slope],
                                       [0.0, 0.5 - share, slope]])

@@ -7,26 +7,19 @@ import json
 import os
 from pathlib import Path
 import signal
-import subprocess
-import sys
 import time
 
-import rclpy
-from rclpy.executors import SingleThreadedExecutor
-from rclpy.signals import SignalHandlerOptions
 from std_msgs.msg import Float64MultiArray, String
 
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.experiment import load_experiment
 from quad_ident_ros.identify.identify import collect, Settings
 from quad_ident_ros.identify.result import from_data, Identification
-from quad_ident_ros.nodes.domain import claim_domain
+from quad_ident_ros.nodes.launched import Launched
 from quad_ident_ros.nodes.messages import record_from_message
-from quad_ident_ros.nodes.process import PARENT
 from quad_ident_ros.nodes.qos import latched
 
 PATIENCE = 60.0      # s without any news after which the demo gives up
-STOPPING = 10.0      # s that a node has to end after it was told to
 
 # What a motion capture system leaves: 2 mrad and 5 mm.
 NOISE = {'attitude': 0.002, 'altitude': 0.005}
@@ -59,14 +52,6 @@ def run_demo(options, on_progress):
         (output / 'log').mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InputError(f'{output}: cannot be written: {error.strerror}') from None
-    domain, holder = claim_domain()
-    environment = {
-        **os.environ, PARENT: str(os.getpid()), 'ROS_DOMAIN_ID': str(domain),
-        'ROS_LOG_DIR': str(output / 'log'),
-        'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST',
-        'PYTHONPATH': os.pathsep.join(
-            [str(Path(__file__).resolve().parents[2]), os.environ.get('PYTHONPATH', '')]).strip(
-                os.pathsep)}
     noise = {f'noise.{channel}': value for channel, value in NOISE.items()}
     nodes = {
         'recorder': {'output': str(output)},
@@ -78,18 +63,11 @@ def run_demo(options, on_progress):
     # The nodes must not outlive a demo that is told to end or whose terminal is closed.
     for number in (signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, _end)
-    with holder:
-        processes = {name: _start(name, parameters, output, environment, holder)
-                     for name, parameters in nodes.items()}
-        try:
-            watcher = _Watcher(len(experiment.runs), on_progress)
-            _watch(watcher, processes, output, domain, environment)
-        finally:
-            codes = _stop(processes)
-    failed = [name for name, code in codes.items() if code != 0]
-    if failed:
-        raise InputError(f'{failed[0]} ended with exit code {codes[failed[0]]}: '
-                         f'{_last_line(output, failed[0])}')
+    watcher = _Watcher(len(experiment.runs), on_progress)
+    with Launched(output / 'log') as launched:
+        for name, parameters in nodes.items():
+            launched.start(name, parameters)
+        _watch(watcher, launched, output / 'log')
     pairs, _ = collect(watcher.records, Settings())
     recording = Path(options.output) / Path(watcher.statistics['recording']).name
     return Outcome(from_data(watcher.result, pairs), str(recording),
@@ -99,18 +77,6 @@ def run_demo(options, on_progress):
 
 def _end(number, _):
     raise SystemExit(128 + number)
-
-
-def _start(name, parameters, output, environment, holder):
-    # As JSON, a text is a text to YAML too, whatever is in it.
-    words = [word for key, value in parameters.items()
-             for word in ('-p', f'{key}:={json.dumps(value)}')]
-    with open(output / 'log' / f'{name}.txt', 'w', encoding='utf-8') as log:
-        return subprocess.Popen(
-            [sys.executable, '-m', f'quad_ident_ros.nodes.{name}', '--ros-args', *words],
-            stdout=log, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL, env=environment,
-            start_new_session=True,
-            pass_fds=[holder.fileno()])   # a domain is taken as long as a node lives on it
 
 
 class _Watcher:
@@ -160,48 +126,15 @@ class _Watcher:
         self._tell('identified', 1.0)
 
 
-def _watch(watcher, processes, output, domain, environment):
-    os.environ.setdefault('ROS_LOG_DIR', environment['ROS_LOG_DIR'])
-    os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
-    context = rclpy.Context()
-    rclpy.init(context=context, domain_id=domain, signal_handler_options=SignalHandlerOptions.NO)
-    node = rclpy.create_node('demo', context=context)
-    executor = SingleThreadedExecutor(context=context)
-    executor.add_node(node)
-    try:
+def _watch(watcher, launched, logs):
+    with launched.watcher('demo') as (node, executor):
         watcher.subscribe(node)
         news, since = -1, time.monotonic()
         while not watcher.done:
             executor.spin_once(timeout_sec=0.1)
-            for name, process in processes.items():
-                if process.poll() is not None:
-                    raise InputError(f'{name} ended early: {_last_line(output, name)}')
+            launched.check()
             if watcher.news != news:
                 news, since = watcher.news, time.monotonic()
             elif time.monotonic() - since > PATIENCE:
                 raise InputError(f'nothing has happened for {PATIENCE:g} s; the logs are in '
-                                 f'{output / "log"}')
-    finally:
-        executor.shutdown()
-        node.destroy_node()
-        context.try_shutdown()
-
-
-def _stop(processes):
-    """End the processes and return their exit codes."""
-    for process in processes.values():
-        process.send_signal(signal.SIGINT)
-    codes = {}
-    for name, process in processes.items():
-        try:
-            codes[name] = process.wait(STOPPING)
-        except subprocess.TimeoutExpired:
-            process.kill()
-            codes[name] = process.wait()
-    return codes
-
-
-def _last_line(output, name):
-    path = output / 'log' / f'{name}.txt'
-    lines = [line for line in path.read_text(encoding='utf-8').splitlines() if line.strip()]
-    return f'{lines[-1].strip() if lines else "it said nothing"} (log: {path})'
+                                 f'{logs}')

@@ -39,6 +39,7 @@ from quad_ident_ros.nodes.qos import latched
 from quad_ident_ros.warm_up import warm_up
 
 PROGRESS_PERIOD = 0.1   # s between two messages on ~/progress
+NEWS = 10.0             # s between two lines of log on results without a change
 
 _SWARM = SwarmSettings()
 SPECS = (
@@ -286,8 +287,10 @@ class Identifier(Node):
                          'dropped_samples': data['dropped_samples'],
                          **{f'fit_percent/{name}': fit.errors['fit_percent']
                             for name, fit in best.outputs.items()}})
-        if not result.changes:
+        if self._config['mode'] == 'once':
             self.get_logger().info(text)
+        elif not result.changes:
+            self.get_logger().info(text, throttle_duration_sec=NEWS)
 
     def _report(self):
         # A trigger that is lost, as was seen once in some thousand fits, delays a result at most.

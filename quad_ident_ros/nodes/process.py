@@ -79,7 +79,7 @@ def _run(node_class, args, executor_class):
         _check_parameter_files(args, node)
         executor = executor_class()
         executor.add_node(node)
-        while not stop and _wanted():
+        while not stop and is_wanted():
             executor.spin_once(timeout_sec=0.1)
     finally:
         if node is not None:
@@ -95,7 +95,7 @@ def _run(node_class, args, executor_class):
     return 0
 
 
-def _wanted():
+def is_wanted():
     """Return whether whoever started the node, and said so, still lives."""
     parent = os.environ.get(PARENT)
     return parent is None or parent == str(os.getppid())

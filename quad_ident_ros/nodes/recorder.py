@@ -40,6 +40,7 @@ IDLE = 15.0          # s when something may, after which what is incomplete is g
                      # messages are sent again every 3 s
 NO_ROW = 2.0         # s with messages but without a joined row, after which that is said
 KEPT_RECORDS = 16    # records that a late identifier still gets
+NEWS = 10.0          # s between two lines of log on windows that slide
 
 SPECS = (
     ParameterSpec('topics', tuple(FLIGHT_TOPICS), 'Topics that a row needs.',
@@ -201,9 +202,13 @@ class Recorder(Node):
             info = {**record.info, 'problems': self.counts.problems()}
             self._record_publisher.publish(record_message(
                 type(record)(record.t, record.columns, info)))
-            self.get_logger().info(f'record {self._records}: {len(record)} samples'
-                                   f'{" of " + info["name"] if "name" in info else ""}, '
-                                   f'{record.info["dropped"]} missing')
+            text = (f'record {self._records}: {len(record)} samples'
+                    f'{" of " + info["name"] if "name" in info else ""}, '
+                    f'{record.info["dropped"]} missing')
+            if self._config['overlap']:
+                self.get_logger().info(text, throttle_duration_sec=NEWS)
+            else:
+                self.get_logger().info(text)
         if records:
             self._report()
 

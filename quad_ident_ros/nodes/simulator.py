@@ -128,7 +128,7 @@ class Simulator(Node):
         if self._config['wait_for_subscribers']:
             self.get_logger().info(f'{experiment.name}: waiting for subscribers '
                                    '(wait_for_subscribers:=false starts without)')
-            self._schedule(0.02, self._await_subscribers, self._steady)
+            self._schedule(0.02, self._await_subscribers)
         else:
             self._begin()
 
@@ -176,14 +176,14 @@ class Simulator(Node):
             self.get_logger().info(f'{info["run"]}: stopped after {self._sent} samples')
         self._notice = None
 
-    def _schedule(self, period, callback, clock):
+    def _schedule(self, period, callback):
         """Call back every so many seconds until the next _schedule or _stop_timer."""
         def on_timer():
             # An executor may still call a timer that it had ready when it was destroyed.
             if self._timer is timer:
                 callback()
 
-        timer = self._timer = self.create_timer(period, on_timer, clock=clock)
+        timer = self._timer = self.create_timer(period, on_timer, clock=self._steady)
 
     def _stop_timer(self):
         if self._timer is not None:
@@ -225,7 +225,7 @@ class Simulator(Node):
                  if values[f'noise.{channel}'] >= 0}
         self._worker = _Worker(self._experiment, run, {**self._experiment.noise, **noise},
                                values['seed'])
-        self._schedule(0.002, lambda: self._await_flight(run), self._steady)
+        self._schedule(0.002, lambda: self._await_flight(run))
 
     def _await_flight(self, run):
         worker = self._worker
@@ -244,7 +244,7 @@ class Simulator(Node):
         period = self._experiment.period / self._factor if self._factor else 0.0
         # A timer per sample would set the pace by its own lateness; it only asks what is due.
         self._schedule(min(max(period, 0.001), 0.05) if self._factor else 0.0005,
-                       self._publish_due, self._pace)
+                       self._publish_due)
 
     def _announce(self, run, flight):
         experiment = self._experiment
@@ -358,7 +358,7 @@ class _Worker(threading.Thread):
 
 def main(args=None):
     """Run the node; returns the exit code."""
-    return process.run(Simulator, HELP, args)
+    return process.run(Simulator, HELP, args, process.FastExecutor)
 
 
 if __name__ == '__main__':

@@ -5,47 +5,18 @@
 from functools import cache
 
 import numpy as np
+from payload import climb, GRAVITY, MASS, PAYLOAD, PERIOD, PICKED_UP, START_NS
 import pytest
 
 from quad_ident_ros.data.record import FlightRecord
-from quad_ident_ros.identify.change import find_change
+from quad_ident_ros.identify.change import find_change, SHORTEST
 from quad_ident_ros.identify.identify import identify, Settings
 from quad_ident_ros.identify.online import Tracker
 from quad_ident_ros.identify.signals import Signal
 from quad_ident_ros.identify.vp import vp
 
-PERIOD, WINDOW, STRIDE = 0.01, 500, 5     # 20 windows a second
-MASS, PAYLOAD, GRAVITY, DRAG = 0.65, 0.2, 9.806, 6.354e-4
-PICKED_UP = 12.0
+WINDOW, STRIDE = 500, 5     # 20 windows a second
 SETTINGS = Settings(methods=('vp',), initial_state='free')
-
-
-@cache
-def climb(payload, noise=0.005, seed=0, length=20.0):
-    """
-    Return a flight record in z under a controller with steps, with a payload from PICKED_UP on.
-
-    m z'' = U1 - m g - k z', each sample's held input integrated in 20 steps.
-    """
-    random = np.random.default_rng(seed)
-    count = round(length / PERIOD)
-    t = np.arange(count) * PERIOD
-    z, rate, target = 0.0, 0.0, 0.0
-    heights, thrusts = np.empty(count), np.empty(count)
-    for k in range(count):
-        mass = MASS + (payload if t[k] >= PICKED_UP else 0.0)
-        if k % 30 == 0:
-            target = random.choice([-1.0, 1.0])
-        thrust = MASS * GRAVITY + target - 4.0 * z - 3.0 * rate
-        heights[k], thrusts[k] = z, thrust
-        for _ in range(20):
-            rate += ((thrust - DRAG * rate) / mass - GRAVITY) * PERIOD / 20
-            z += rate * PERIOD / 20
-    heights = heights + noise * random.normal(size=count)
-    zero = np.zeros(count)
-    return FlightRecord(t, {'phi': zero, 'theta': zero, 'psi': zero, 'pz': heights,
-                            'u1': thrusts, 'u2': zero, 'u3': zero, 'u4': zero},
-                        {'trim': [MASS * GRAVITY, 0.0, 0.0, 0.0], 'start_ns': 10 ** 12})
 
 
 def windows(flight):
@@ -70,7 +41,7 @@ def test_a_payload_picked_up_in_flight_is_found_within_2_s(seed):
     assert end - PICKED_UP < 2.0
     [change] = result.changes
     assert change.output == 'z' and change.moved
-    when = (change.stamp_ns - 10 ** 12) * 1e-9
+    when = (change.stamp_ns - START_NS) * 1e-9
     assert abs(when - PICKED_UP) < 0.6
 
 
@@ -121,6 +92,19 @@ def test_a_window_that_does_not_say_when_it_begins_is_taken_whole():
     info = {key: value for key, value in window.info.items() if key != 'start_ns'}
     result = Tracker().update([FlightRecord(window.t, window.columns, info)], SETTINGS)
     assert result.changes == () and len(result.signals['z'].y) == WINDOW
+
+
+@pytest.mark.parametrize('samples', [2 * SHORTEST, 2 * SHORTEST + 1, 2 * SHORTEST + 7])
+def test_a_change_is_found_in_the_shortest_window_that_can_show_one(samples):
+    t = np.arange(samples) * PERIOD
+    middle = samples // 2
+    u = np.sign(np.sin(20 * t))
+    gain = np.where(np.arange(samples) < middle, 1.0, 5.0)
+    y = np.cumsum(np.cumsum(gain * u)) * 1e-4
+    y = y + 1e-5 * np.random.default_rng(0).normal(size=samples)
+    short = Signal('z', t, u, y, PERIOD, False)
+    change = find_change(short, vp(short))
+    assert change.moved and abs(change.time - t[middle]) < 5 * PERIOD
 
 
 def test_a_part_too_short_to_tell_shows_no_change():

@@ -130,6 +130,14 @@ def test_equal_poles_have_errors_of_their_sum_and_product_only():
     assert said['K'] > 0 and said['c1'] > 0 and said['c0'] > 0
 
 
+# For these the power of a libm is less than the product.
+@pytest.mark.parametrize('pole', [0.8060503826503107, 0.7386248821229299, 0.015277629569711923])
+def test_equal_poles_are_equal_whatever_their_sum_and_product_round_to(pole):
+    signal = measured(SecondOrder.from_poles(3.5, 0.8, 0.8), 0.01, 0)
+    said = uncertainty(signal, Objective(signal).fit(pole, 0.0)).errors
+    assert said['a'] is None and said['b'] is None and said['c1'] > 0
+
+
 def test_near_equal_poles_have_large_errors_of_their_own():
     signal = measured(SecondOrder.from_poles(3.5, 0.8, 0.8), 0.01, 0)
     said = uncertainty(signal, Objective(signal).fit(0.8, 0.01)).errors

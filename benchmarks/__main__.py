@@ -1,0 +1,69 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Run the benchmarks: `./run bench [SECTION ...] [--quick]`."""
+
+import argparse
+import contextlib
+import importlib
+import sys
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+from benchmarks.machine import described, take_one_core
+from benchmarks.size import QUICK, Size
+from benchmarks.tables import keep
+from quad_ident_ros.errors import InputError
+
+# The document that keeps the results of each section, which is a module of the same name.
+SECTIONS = {'p1': 'performance.md', 'p2': 'performance.md', 'scaling': 'performance.md',
+            'limit': 'performance.md', 'start': 'performance.md', 'accuracy': 'accuracy.md',
+            'graph': 'performance.md'}
+APART = ('accuracy', 'graph')     # only where they are asked for
+PACKAGES = ('numpy', 'scipy', 'numba', 'pyswarms', 'mealpy', 'nevergrad', 'cma', 'pymoo',
+            'sippy-unipi', 'ros-jazzy-rclpy')
+
+
+def main(arguments=None):
+    """Run the sections that are asked for, print their tables and keep them in docs/."""
+    parser = argparse.ArgumentParser(prog='./run bench', description=__doc__)
+    parser.add_argument('sections', nargs='*', metavar='SECTION',
+                        help=f'one of {", ".join(SECTIONS)}; by default all but '
+                        f'{" and ".join(APART)}')
+    parser.add_argument('--quick', action='store_true',
+                        help='few draws, to see that it works: prints and keeps nothing')
+    options = parser.parse_args(arguments)
+    for name in options.sections:
+        if name not in SECTIONS:
+            parser.error(f'{name}: no such section, expected one of {", ".join(SECTIONS)}')
+    # The nodes run in .venv, on all cores; see ../run.
+    whole = options.sections == ['graph']
+    if not whole:
+        if 'graph' in options.sections:
+            parser.error('graph: name it by itself, it needs ROS 2 and no other library')
+        take_one_core()
+    screen = Console(stderr=True)
+
+    @contextlib.contextmanager
+    def bar(title, total):
+        with Progress(TextColumn('{task.description}'), BarColumn(), TimeElapsedColumn(),
+                      console=screen) as progress:
+            task = progress.add_task(title, total=total)
+            yield lambda: progress.advance(task)
+
+    for name in options.sections or [name for name in SECTIONS if name not in APART]:
+        run = importlib.import_module(f'benchmarks.{name}').run
+        try:
+            found = run(QUICK if options.quick else Size(), bar)
+            text = f'{found}\n\nMeasured: {described(PACKAGES, "all" if whole else "one")}.'
+            print(f'\n## {name}\n\n{text}\n', flush=True)
+            if not options.quick:
+                keep(SECTIONS[name], name, text)
+        except InputError as error:
+            screen.print(f'error: {error}', markup=False)
+            return 2
+    return 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())

@@ -1,0 +1,32 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""How much is measured."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Size:
+    """
+    How much is measured.
+
+    draws: of the noise on P1; share_draws: on P2, for the share of fits at the optimum; seconds:
+    CPU time after which a slow method gets no further draw; long_runs, long_budget,
+    long_seconds: searches for the best cost, their evaluations and CPU time; largest: samples of
+    the longest record; accuracy_draws: per scenario of the accuracy study, and ten times that, to
+    tell chance from fault; flight: s of each flight through the nodes.
+    """
+
+    draws: int = 30
+    share_draws: int = 200
+    seconds: float = 10.0
+    long_runs: int = 3
+    long_budget: int = 100_000
+    long_seconds: float = 20.0
+    largest: int = 5_000_000
+    accuracy_draws: tuple = (200, 2000)
+    flight: float = 60.0
+
+
+QUICK = Size(draws=3, share_draws=4, seconds=1.0, long_runs=1, long_budget=20_000,
+             long_seconds=2.0, largest=50_000, accuracy_draws=(10, 20), flight=8.0)

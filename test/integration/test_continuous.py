@@ -1,0 +1,98 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Continuous mode through recorder and identifier: a payload picked up in flight."""
+
+from graph import STREAMS
+import numpy as np
+from payload import climb, GRAVITY, MASS, PAYLOAD, PERIOD, PICKED_UP, START_NS
+import pytest
+from std_msgs.msg import Bool, Float64MultiArray
+
+from quad_ident_ros.nodes.identifier import Identifier
+from quad_ident_ros.nodes.qos import latched
+from quad_ident_ros.nodes.recorder import Recorder
+
+TOPICS = ('altitude', 'input')
+WINDOW, STRIDE = 500, 5     # 20 windows per second
+PICKED_UP_NS = START_NS + round(PICKED_UP * 1e9)
+
+
+class Online:
+    """A recorder and an identifier in continuous mode, fed with a flight, and what they say."""
+
+    def __init__(self, graph):
+        self.graph = graph
+        self.json, self.parameters, _ = graph.results()
+        self.errors = graph.listen(Float64MultiArray, 'standard_errors', latched())
+        self.changed = graph.listen(Bool, 'changed', latched())
+        graph.start(Recorder, {'topics': list(TOPICS), 'window_samples': WINDOW,
+                               'overlap': 1 - STRIDE / WINDOW})
+        graph.start(Identifier, {'method': 'vp', 'mode': 'continuous', 'initial_state': 'free',
+                                 'trim': [MASS * GRAVITY, 0.0, 0.0, 0.0]})
+        self.publishers = {name: graph.advertise(STREAMS[name], name) for name in TOPICS}
+
+    def fly(self, flight, begin, end):
+        """Publish a flight from begin to end (s), each window when the last has its result."""
+        count = 0
+        for k in range(round(begin / PERIOD), round(end / PERIOD)):
+            self._publish(flight, k)
+            count += 1
+            if count >= WINDOW and count % STRIDE == 0:
+                windows = (count - WINDOW) // STRIDE + 1
+                self.graph.spin_until(lambda expected=windows: all(
+                    len(heard) == expected for heard in (self.json, self.parameters, self.errors,
+                                                         self.changed)), f'result {windows}')
+
+    def _publish(self, flight, k):
+        altitude, thrust = (STREAMS[name]() for name in TOPICS)
+        for message in (altitude, thrust):
+            message.header.stamp.sec, message.header.stamp.nanosec = divmod(
+                START_NS + round(k * PERIOD * 1e9), 10 ** 9)
+        altitude.point.z = float(flight.columns['pz'][k])
+        thrust.wrench.force.z = float(flight.columns['u1'][k])
+        for name, message in zip(TOPICS, (altitude, thrust), strict=True):
+            self.publishers[name].publish(message)
+
+
+def end_of(data):
+    """Return the stamp of the newest sample of a result, ns."""
+    samples, period = data['samples']['z'], data['period']['z']
+    return data['records'][0]['start_ns'] + round((samples - 1) * period * 1e9)
+
+
+def test_a_payload_picked_up_in_flight_is_found_within_2_s_of_its_stamp(graph, capfd):
+    online = Online(graph)
+    online.fly(climb(PAYLOAD), PICKED_UP - 6.0, PICKED_UP + 2.0)
+    results = online.json.data()
+    ends = np.array([end_of(data) for data in results])
+    # Each window has a result: they follow one another at 20 per second of flight.
+    np.testing.assert_allclose(np.diff(ends), STRIDE * PERIOD * 1e9, atol=2)
+    found = [data for data in results if data['changes']]
+    assert [message.data for message in online.changed] == [data in found for data in results]
+    assert not [data for data in found if end_of(data) < PICKED_UP_NS]
+    [change] = found[0]['changes']
+    assert end_of(found[0]) - PICKED_UP_NS < 2e9
+    assert change['output'] == 'z' and change['moved']
+    assert abs(change['stamp_ns'] - PICKED_UP_NS) < 0.6e9
+    # The log tells of each change, and now and then that all is well.
+    log = capfd.readouterr().err
+    assert log.count(' changed at ') == len(found)
+    for line in ('[recorder]: record ', '[identifier]: best method vp'):
+        assert 0 < log.count(line) < len(results) / 2
+    # From then on it is the vehicle as it is that is identified.
+    last = results[-1]
+    assert last['records'][0]['start_ns'] == pytest.approx(change['stamp_ns'], abs=1e4)
+
+
+def test_results_come_with_standard_errors(graph):
+    online = Online(graph)
+    online.fly(climb(0.0), 0.0, 6.0)
+    assert not any(message.data for message in online.changed)
+    for data, parameters, errors in zip(online.json.data(), online.parameters, online.errors,
+                                        strict=True):
+        fit = data['methods']['vp']['outputs']['z']
+        table, spread = (np.reshape(message.data, (4, 3)) for message in (parameters, errors))
+        assert errors.layout.dim[0].label == 'phi,theta,psi,z'
+        assert np.isnan(spread[:3]).all() and np.isnan(table[:3]).all()
+        assert spread[3, 0] == fit['standard_errors']['K'] > 0
+        assert abs(table[3, 0] - 1 / MASS) < 4 * spread[3, 0]

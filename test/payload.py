@@ -1,0 +1,42 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""A vehicle that picks up a payload in flight, simulated."""
+
+from functools import cache
+
+import numpy as np
+
+from quad_ident_ros.data.record import FlightRecord
+
+PERIOD = 0.01
+MASS, PAYLOAD, GRAVITY, DRAG = 0.65, 0.2, 9.806, 6.354e-4
+PICKED_UP = 12.0       # s
+START_NS = 10 ** 12
+
+
+@cache
+def climb(payload, noise=0.005, seed=0, length=20.0):
+    """
+    Return a flight record in z under a controller with steps, with a payload from PICKED_UP on.
+
+    m z'' = U1 - m g - k z', each sample's held input integrated in 20 steps.
+    """
+    random = np.random.default_rng(seed)
+    count = round(length / PERIOD)
+    t = np.arange(count) * PERIOD
+    z, rate, target = 0.0, 0.0, 0.0
+    heights, thrusts = np.empty(count), np.empty(count)
+    for k in range(count):
+        mass = MASS + (payload if t[k] >= PICKED_UP else 0.0)
+        if k % 30 == 0:
+            target = random.choice([-1.0, 1.0])
+        thrust = MASS * GRAVITY + target - 4.0 * z - 3.0 * rate
+        heights[k], thrusts[k] = z, thrust
+        for _ in range(20):
+            rate += ((thrust - DRAG * rate) / mass - GRAVITY) * PERIOD / 20
+            z += rate * PERIOD / 20
+    heights = heights + noise * random.normal(size=count)
+    zero = np.zeros(count)
+    return FlightRecord(t, {'phi': zero, 'theta': zero, 'psi': zero, 'pz': heights,
+                            'u1': thrusts, 'u2': zero, 'u3': zero, 'u4': zero},
+                        {'trim': [MASS * GRAVITY, 0.0, 0.0, 0.0], 'start_ns': START_NS})
