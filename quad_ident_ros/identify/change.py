@@ -70,8 +70,9 @@ def find_change(signal, fitted, usual=0.0):
         return None, advantage
     gap = -(-(latest - SHORTEST) // (PLACES - 1))
     near = np.linspace(max(place - gap, SHORTEST), min(place + gap, latest), 2 * FINER + 1)
-    before, after, place = _best_place(signal, np.unique(near.astype(int)), fitted.model)
-    moved = _moved(before, after)
+    *parts, place = _best_place(signal, np.unique(near.astype(int)), fitted.model)
+    # What it became may be far from what it was: searched for, not stepped to.
+    moved = _moved(*((part, vp(part)) for part, _ in parts))
     return (Change(signal.output, float(signal.t[place]), advantage, moved) if moved else None,
             advantage)
 

