@@ -9,12 +9,14 @@ input allows that, by the factor that fits best.
 """
 
 import numpy as np
+from scipy.optimize import minimize_scalar
 
 from quad_ident_ros.identify.objective import Objective
 from quad_ident_ros.identify.transfer import Discrete, printed_parameters, to_continuous
 
-DOUBLED = ('the poles found were complex, without halving the error: taken as a double pole at '
-           'their real part')
+DOUBLED = ('the poles found were complex, without halving the error: refitted with the best '
+           'double pole near their real part')
+WORST = 1e100  # stands for costs beyond all numbers
 THINNED = 20   # samples that thinning leaves, at least
 
 # Poles closer than this share of their size, or of 1 / the record's length, count as equal:
@@ -27,8 +29,8 @@ def least_squares_fit(objective, space):
     Return the Fitted of the LS method, or None, no evaluations, and remarks or why it failed.
 
     Of the records thinned by several factors, the one whose model fits best has the say. A complex
-    pair is kept by the rule of the parameter `poles` (see vp.COMPLEX_PENALTY), and otherwise taken
-    as a double pole at its real part, with the gain fitted anew.
+    pair is kept by the rule of the parameter `poles` (see vp.COMPLEX_PENALTY), and otherwise
+    refitted with the best double pole near its real part (errata section 2).
     """
     signal = objective.signal
     candidates = []
@@ -46,11 +48,21 @@ def least_squares_fit(objective, space):
     remarks = [f'thinned to one sample in {factor}'] if factor > 1 else []
     if fitted.model.form != 'complex':
         return fitted, 0, remarks
-    # Its own double pole, not a better model from elsewhere: this is what LS found.
-    double = objective.fit(fitted.model.c1 / 2, 0.0)
+    double = _double_pole(objective, fitted.model.c1 / 2)
     if fitted.cost * space.complex_penalty < double.cost:
         return fitted, 0, remarks
     return double, 0, [*remarks, DOUBLED]
+
+
+def _double_pole(objective, guess):
+    """Return the best fit with a = b near a guess."""
+    size = abs(guess) + 1 / objective.signal.t[-1]
+
+    def cost(mean):
+        return min(objective.of_poles([2 * mean], [mean ** 2])[0][0], WORST)
+
+    found = minimize_scalar(cost, bounds=(guess - 3 * size, guess + 3 * size), method='bounded')
+    return objective.fit(found.x, 0.0)
 
 
 def _fit_of(signal, model):

@@ -52,7 +52,18 @@ def fits(study, effort):
                   'NRMSE, %'], rows, ('text', 'text') + ('',) * 8,
                  'The run of median cost and, in grey beneath, the worst run; bold: the smallest '
                  'median cost, or equal to it. IAE to ITSE are integrals over time. Units: '
-                 f'{units}.')
+                 f'{units}.' + _remarks(median))
+
+
+def _remarks(identification):
+    """Return how models were found, where there is something to say of it."""
+    who = {}
+    for name, fit in identification.methods.items():
+        for output, entry in fit.outputs.items():
+            for remark in entry.remarks:
+                who.setdefault((METHODS[name].label, remark), []).append(NAMES[output])
+    return ''.join(f' {label}, {", ".join(outputs)}: {remark}.'
+                   for (label, remark), outputs in who.items())
 
 
 def _fit(fit):

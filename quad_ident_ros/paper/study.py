@@ -91,7 +91,9 @@ def study(records, seeds, on_progress=lambda: None):
     Args: records: FlightRecords from rest; seeds: count of seeds, from 0; on_progress: called
     steps(seeds) times. The poles are real, as in the paper.
     """
-    first = identify(records, Settings(methods=DIRECT, poles='real', compare_orders=False))
+    # One evaluation of a search is enough to learn its bounds.
+    first = identify(records, with_budget(Settings(
+        methods=(SWARMS[0], *DIRECT), poles='real', compare_orders=False), 1))
     on_progress()
     direct = {name: (first.methods[name],) for name in DIRECT}
     fits = {}

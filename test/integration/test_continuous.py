@@ -62,7 +62,7 @@ def end_of(data):
 
 def test_a_payload_picked_up_in_flight_is_found_within_2_s_of_its_stamp(graph, capfd):
     online = Online(graph)
-    online.fly(climb(PAYLOAD), PICKED_UP - 6.0, PICKED_UP + 2.0)
+    online.fly(climb(PAYLOAD), PICKED_UP - 11.0, PICKED_UP + 2.0)
     results = online.json.data()
     ends = np.array([end_of(data) for data in results])
     # Each window has a result: they follow one another at 20 per second of flight.
@@ -73,7 +73,7 @@ def test_a_payload_picked_up_in_flight_is_found_within_2_s_of_its_stamp(graph, c
     [change] = found[0]['changes']
     assert end_of(found[0]) - PICKED_UP_NS < 2e9
     assert change['output'] == 'z' and change['moved']
-    assert abs(change['stamp_ns'] - PICKED_UP_NS) < 0.6e9
+    assert abs(change['stamp_ns'] - PICKED_UP_NS) < 1e9
     # The log tells of each change, and now and then that all is well.
     log = capfd.readouterr().err
     assert log.count(' changed at ') == len(found)
