@@ -76,7 +76,7 @@ def test_a_parameter_file_for_others_is_refused(processes, tmp_path):
 def test_a_parameter_file_is_used(graph, processes, tmp_path, key):
     path = tmp_path / 'parameters.yaml'
     path.write_text(yaml.safe_dump({key: {'ros__parameters': {
-        'method': 'ls', 'seed': 4, 'pole_bounds': [-1.0, 12.0]}}}))
+        'method': 'pso', 'seed': 4, 'pole_bounds': [-1.0, 12.0]}}}))
     json = graph.listen(String, '/quad/parameters_json', latched())
     process = processes.start('identifier', arguments=['--params-file', str(path),
                                                        '-r', '__ns:=/quad'])
@@ -85,7 +85,7 @@ def test_a_parameter_file_is_used(graph, processes, tmp_path, key):
         publisher.publish(record_message(record))
     graph.spin_until(lambda: json, 'the result')
     settings = json.data()[0]['settings']
-    assert (settings['methods'], settings['seed']) == (['ls'], 4)
+    assert (settings['methods'], settings['seed']) == (['pso'], 4)
     assert settings['bounds']['psi']['poles'] == [-1.0, 12.0]
     assert process.stop() == 0
 
