@@ -26,7 +26,7 @@ def parser():
     top = argparse.ArgumentParser(
         prog='quad_ident', epilog=EPILOG, formatter_class=argparse.RawDescriptionHelpFormatter,
         description='Identify a quadrotor online: fit K/((s+a)(s+b)) to roll, pitch, yaw and '
-                    'altitude by PSO, CS, PSO-CS and LS.')
+                    'altitude by PSO, CS, PSO-CS, LS and VP.')
     top.add_argument('--version', action='version', version=__version__)
     commands = top.add_subparsers(dest='command', metavar='COMMAND')
     for command in COMMANDS:

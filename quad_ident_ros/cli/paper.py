@@ -27,7 +27,7 @@ def add(commands):
                     'which of its claims hold. Writes paper.html,\npaper.json and the pictures.',
         epilog='presets, the last of which is no flight but the responses that Table 3 implies:\n'
         + ''.join(f'  {name}\n' for name in PRESETS)
-        + '\nAll of them with 20 seeds take about a minute. A quick look:\n'
+        + '\nAll of them with 20 seeds take half a minute. A quick look:\n'
           '  quad_ident paper --seeds 6 --preset hover_single_axis')
     parser.add_argument('--preset', action='append', choices=tuple(PRESETS), metavar='NAME',
                         help='an experiment to reproduce, may be repeated (default: all)')
@@ -45,6 +45,8 @@ def run(options):
     """Reproduce the paper, write page, data and pictures, and show the conclusions."""
     if options.seeds < 1:
         raise InputError(f'--seeds: expected at least 1, got {options.seeds}')
+    if not options.output:
+        raise InputError('--output: expected the name of a folder, got nothing')
     names = tuple(dict.fromkeys(options.preset or PRESETS))
     folder = Path(options.output)
     # Before a minute of work, not after it: a folder that cannot be made.

@@ -17,7 +17,7 @@ from quad_ident_ros.identify.residuals import examine
 from quad_ident_ros.identify.result import Identification, MethodFit, OutputFit
 from quad_ident_ros.identify.search import Search, SwarmSettings
 from quad_ident_ros.identify.signals import OUTPUTS, signals
-from quad_ident_ros.identify.space import find_space, literal_space, no_space, SIZE
+from quad_ident_ros.identify.space import check_bounds, find_space, literal_space, no_space, SIZE
 from quad_ident_ros.identify.transfer import response, SecondOrder
 from quad_ident_ros.identify.uncertainty import KEYS, Uncertainty, uncertainty
 
@@ -66,6 +66,9 @@ def collect(records, settings):
         pairs, said = signals(record, trim=settings.trim, initial_state=settings.initial_state)
         found.update({pair.output: pair for pair in pairs})
         remarks += said
+    still = [remark for remark in remarks if 'does not move' in remark]
+    if not found and still:
+        raise InputError('; '.join(dict.fromkeys(still)))
     if not found:
         raise InputError('no input deviates from its trim in these data, so there is nothing to '
                          'identify: excite U1..U4, or state the trim (the option '
@@ -86,6 +89,7 @@ def identify(records, settings=None, *, on_progress=lambda method, output, share
     Raises InputError for data that cannot be identified.
     """
     settings = settings or Settings()
+    check_bounds(settings.pole_bounds, settings.gain_bounds)
     pairs, remarks = collect(records, settings)
     if settings.search == 'joint':
         if not all(signal.at_rest for signal in pairs.values()):

@@ -75,6 +75,14 @@ class Space:
                 and self.poles[0] <= mean - reach and mean + reach <= self.poles[1])
 
 
+def check_bounds(pole_bounds, gain_bounds):
+    """Raise InputError for bounds, (low, high) or None, that hold nothing."""
+    for name, bounds in (('pole_bounds', pole_bounds), ('gain_bounds', gain_bounds)):
+        if bounds is not None and not (np.isfinite(bounds).all() and bounds[0] < bounds[1]):
+            raise InputError(f'{name}: the lower bound must be below the upper, both finite, got '
+                             f'[{bounds[0]:g}, {bounds[1]:g}]')
+
+
 def find_space(objective, poles='auto', pole_bounds=None, gain_bounds=None, near=None):
     """
     Return the search space of an output, from the data where bounds are not given.
@@ -83,10 +91,7 @@ def find_space(objective, poles='auto', pole_bounds=None, gain_bounds=None, near
     [-2.5, 2.5] / T (errata section 3). Args: poles, a key of COMPLEX_PENALTY; pole_bounds
     (low, high) 1/s; gain_bounds (low, high); near as in Space. Raises InputError for empty bounds.
     """
-    for name, bounds in (('pole_bounds', pole_bounds), ('gain_bounds', gain_bounds)):
-        if bounds is not None and not (np.isfinite(bounds).all() and bounds[0] < bounds[1]):
-            raise InputError(f'{name}: the lower bound must be below the upper, both finite, got '
-                             f'[{bounds[0]:g}, {bounds[1]:g}]')
+    check_bounds(pole_bounds, gain_bounds)
     penalty = COMPLEX_PENALTY[poles]
     duration = objective.signal.t[-1] + objective.signal.period
     spent = 0

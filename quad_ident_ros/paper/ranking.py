@@ -8,6 +8,8 @@ from itertools import combinations
 import numpy as np
 from scipy.stats import beta
 
+from quad_ident_ros.paper.study import SWARMS
+
 # Costs closer than this share count as equal, and so do costs below the rounding of a response.
 SAME = 1e-6
 ROUNDING = 1e-20
@@ -65,7 +67,7 @@ def compare(first, second, first_costs, second_costs):
     """
     one, two = np.broadcast_arrays(first_costs, second_costs)
     wins = float(np.sum(np.where(same(one, two), 0.5, one < two)))
-    if len(first_costs) == len(second_costs) == 1:
+    if not {first, second} & set(SWARMS) and len(one) == 1:
         return Comparison(first, second, wins, 1, wins, wins)
     return Comparison(first, second, wins, len(one), *interval(wins, len(one)))
 

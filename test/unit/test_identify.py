@@ -278,3 +278,15 @@ def test_any_record_gives_a_result_or_an_input_error(drawn, at_rest, poles, sear
         for method in result.methods.values():
             fit = method.outputs['phi']
             assert fit.model is None or np.isfinite(fit.response).all()
+
+
+def test_an_output_that_does_not_move_is_the_reason_that_is_given():
+    with pytest.raises(InputError, match='phi does not move'):
+        identify([record({'outputs': ['phi']}, phi=np.full(501, 0.5), u2=np.full(501, 0.1))])
+
+
+@pytest.mark.parametrize('method', ['ls', 'vp'])
+def test_bounds_are_checked_for_methods_that_have_no_use_for_them(method):
+    with pytest.raises(InputError, match='pole_bounds: the lower bound must be below'):
+        identify([record(phi=second_order())],
+                 Settings(methods=(method,), pole_bounds=(2.0, -1.0)))

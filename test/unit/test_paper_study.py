@@ -196,3 +196,8 @@ def test_data_is_json_and_has_everything(reproduction):
     assert len(preset['costs']['joint']['cs']['phi']) == SEEDS
     assert preset['truth']['psi'] == [-9981.93, 0.0, 0.0]
     assert {entry['first'] for entry in preset['ranking']['per_output']['all']} <= set(METHODS)
+
+
+def test_one_seed_decides_nothing_between_methods_that_draw_numbers():
+    assert compare('pso', 'cs', np.array([1.0]), np.array([2.0])).verdict == 'undecided'
+    assert compare('ls', 'vp', np.array([2.0]), np.array([1.0])).verdict == 'worse'
