@@ -18,7 +18,7 @@ from quad_ident_ros.errors import InputError
 from quad_ident_ros.nodes.domain import claim_domain
 from quad_ident_ros.nodes.process import PARENT
 
-STOPPING = 10.0      # s that a node has to end after it was told to
+STOPPING = 30.0      # s that a node has to end after it was told to, beside many others
 
 
 class Launched:
