@@ -48,7 +48,7 @@ class Launched:
         with self._holder:
             codes = self._stop()
         for name, code in codes.items():
-            if code != 0 and kind is None:
+            if code not in (0, -signal.SIGALRM) and kind is None:    # see process.run
                 raise InputError(f'{name} ended with exit code {code}: {self._last_line(name)}')
 
     def start(self, node, parameters, *, module=None, name=None, arguments=()):

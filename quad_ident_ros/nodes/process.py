@@ -22,6 +22,7 @@ try:
 except ImportError:   # early releases of Jazzy
     FastExecutor = SingleThreadedExecutor
 
+LETTING_GO = 5       # s that the middleware has to take a node down
 PARENT = 'QUAD_IDENT_PARENT'   # a process whose death ends the node
 
 
@@ -32,7 +33,8 @@ def run(node_class, help_page, args=None, executor_class=SingleThreadedExecutor,
 
     Args: node_class: called without arguments, its `close()` is called at the end; help_page:
     printed for --help; args: the command line, by default that of the process; before: called
-    before the node is made. Bad input gives one line on standard error and exit code 2.
+    before the node is made. Bad input gives one line on standard error and exit code 2. Where the
+    middleware does not let go of a closed node, SIGALRM ends the process.
     """
     name = node_class.__name__.lower()
     args = [name, *(sys.argv[1:] if args is None else args)]
@@ -84,12 +86,17 @@ def _run(node_class, args, executor_class):
     finally:
         if node is not None:
             node.close()
+        # FastDDS can deadlock when peers leave at once (its issue 6502), with the interpreter
+        # locked. All is saved and said by now, so the alarm's default may end the process.
+        signal.signal(signal.SIGALRM, signal.SIG_DFL)
+        signal.alarm(LETTING_GO)
         if executor is not None:
             executor.remove_node(node)
             executor.shutdown()
         if node is not None:
             node.destroy_node()
         rclpy.try_shutdown()
+        signal.alarm(0)
         for number, handler in previous.items():
             signal.signal(number, handler)
     return 0

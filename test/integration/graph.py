@@ -149,11 +149,8 @@ class Graph:
     def call(self, kind, name, request=None, deadline=DEADLINE):
         """Call a service and return its response."""
         client = self.probe.create_client(kind, name)
-        try:
-            self.spin_until(client.service_is_ready, f'service {name}', deadline)
-            return self.answer(client, request or kind.Request(), deadline)
-        finally:
-            self.probe.destroy_client(client)
+        self.spin_until(client.service_is_ready, f'service {name}', deadline)
+        return self.answer(client, request or kind.Request(), deadline)
 
     def answer(self, client, request, deadline=DEADLINE):
         """Ask a service that is ready, again where no answer comes, and return its response.

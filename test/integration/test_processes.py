@@ -5,6 +5,7 @@
 import os
 import signal
 import subprocess
+import sys
 import time
 
 from graph import DEADLINE, ENDLESS, flights, write_experiment
@@ -200,6 +201,36 @@ def test_a_node_ends_with_the_process_that_it_belongs_to(graph, processes):
     keeper.kill()
     keeper.wait()
     assert process.wait() == 0
+
+
+# A middleware that does not let go, and holds the interpreter as rclpy does while it is asked to.
+STUCK = """
+import ctypes, sys
+from rclpy.node import Node
+from quad_ident_ros.nodes.process import run
+
+class Stuck(Node):
+    def __init__(self):
+        super().__init__('stuck')
+        print('up', flush=True)
+
+    def close(self):
+        print('closed', flush=True)
+
+    def destroy_node(self):
+        ctypes.PyDLL(None).sleep(600)
+
+sys.exit(run(Stuck, '', ['--ros-args']))
+"""
+
+
+def test_a_node_that_the_middleware_holds_ends_all_the_same(processes):
+    with subprocess.Popen([sys.executable, '-c', STUCK], stdout=subprocess.PIPE, text=True,
+                          env=processes.environment) as process:
+        assert process.stdout.readline() == 'up\n'
+        process.send_signal(signal.SIGINT)
+        assert process.stdout.readline() == 'closed\n'
+        assert process.wait(DEADLINE) == -signal.SIGALRM
 
 
 def test_a_domain_is_taken_as_long_as_a_node_lives_on_it():
