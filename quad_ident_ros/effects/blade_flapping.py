@@ -1,0 +1,28 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Pitching and rolling moments that grow with air velocity."""
+
+from quad_ident_ros.compiled import compiled
+from quad_ident_ros.effects.base import Effect, Parameter
+from quad_ident_ros.model.situation import HOVER_SPEEDS, MX, MY, SPEED, UX, UY
+
+
+@compiled(fused=True, inlined=True)
+def wrench(p, k, s, rotors):
+    """Add the moment of each rotor."""
+    for j in range(rotors.shape[0]):
+        for i in range(s.shape[1]):
+            share = p[k, i] * rotors[j, SPEED, i] / s[HOVER_SPEEDS, i]
+            s[MX, i] -= share * rotors[j, UY, i]
+            s[MY, i] += share * rotors[j, UX, i]
+
+
+EFFECT = Effect(
+    name='blade_flapping', title='flapping of the blades',
+    parameters=(Parameter('coefficient', 'kg m/s', -5.0, 5.0, 0.05,
+                          'moment of all rotors per air velocity across body z, at hover speed'),),
+    source='moment -c (speed / sum of hover speeds) v x z at each rotor; Pounds, Mahony, Corke, '
+           'Control Engineering Practice 18, 2010',
+    excitation='horizontal flight at different speeds',
+    confused_with=('com_offset', 'rotor_drag'),
+    wrench=wrench)

@@ -1,0 +1,30 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Thrust depends on the axial and the horizontal air velocity of the rotor."""
+
+from quad_ident_ros.compiled import compiled
+from quad_ident_ros.effects.base import Effect, Parameter
+from quad_ident_ros.model.situation import HOVER_SPEEDS, HZ, SPEED, UX, UY, UZ
+
+
+@compiled(fused=True, inlined=True)
+def wrench(p, k, s, rotors):
+    """Change the thrust of each rotor."""
+    for j in range(rotors.shape[0]):
+        for i in range(s.shape[1]):
+            x, y, z = rotors[j, UX, i], rotors[j, UY, i], rotors[j, UZ, i]
+            rotors[j, HZ, i] += (p[k + 1, i] * (x * x + y * y) / rotors.shape[0]
+                                 - p[k, i] * rotors[j, SPEED, i] / s[HOVER_SPEEDS, i] * z)
+
+
+EFFECT = Effect(
+    name='inflow', title='inflow and translational lift',
+    parameters=(Parameter('axial', 'kg/s', 0.0, 5.0, 0.1, 'thrust of all rotors lost per velocity '
+                          'along body z, at hover speed'),
+                Parameter('translational', 'kg/m', 0.0, 1.0, 0.01, 'thrust of all rotors won per '
+                          'square of the velocity across body z')),
+    source='first-order change of blade-element and momentum thrust with the inflow, and '
+           'translational lift; Mahony, Kumar, Corke 2012; Svacha et al., ICUAS 2017',
+    excitation='climbs and descents; fast horizontal flight for the second parameter',
+    confused_with=('body_drag', 'thrust_scale'),
+    wrench=wrench)

@@ -1,0 +1,114 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Every effect by name, and the vector that holds the parameters of all of them.
+
+The order of EFFECTS is the order in which they act.
+"""
+
+import numpy as np
+
+from quad_ident_ros import schema
+from quad_ident_ros.compiled import compiled
+from quad_ident_ros.effects import (
+    actuation_delay,
+    attitude_misalignment,
+    battery_sag,
+    blade_flapping,
+    body_drag,
+    com_offset,
+    ground_effect,
+    gyro_bias,
+    inertia_mismatch,
+    inflow,
+    mass_offset,
+    motor_lag,
+    rotor_drag,
+    rotor_fault,
+    rotor_gyro,
+    thrust_scale,
+    wind,
+)
+
+EFFECTS = {module.EFFECT.name: module.EFFECT for module in (
+    motor_lag, actuation_delay, rotor_drag, body_drag, wind, inflow, ground_effect, battery_sag,
+    thrust_scale, mass_offset, inertia_mismatch, com_offset, rotor_fault, rotor_gyro,
+    blade_flapping, attitude_misalignment, gyro_bias)}
+
+PARAMETERS = tuple((effect.name, parameter) for effect in EFFECTS.values()
+                   for parameter in effect.parameters)
+NULL = np.array([parameter.null for _, parameter in PARAMETERS])
+SLICES = {}
+for _position, (_effect, _) in enumerate(PARAMETERS):
+    _first = SLICES.get(_effect, slice(_position, _position)).start
+    SLICES[_effect] = slice(_first, _position + 1)
+
+
+def bounds(vehicle):
+    """Return the lower and upper bounds and the usual sizes of all parameters, (3, P), SI."""
+    table = np.array([[parameter.lower, parameter.upper, parameter.size]
+                      for _, parameter in PARAMETERS])
+    return table.T * [parameter.scale(vehicle) for _, parameter in PARAMETERS]
+
+
+def vector(effects, vehicle, where='effects'):
+    """
+    Return the parameter vector (P,) of {effect: {parameter: value}}; absent ones have no effect.
+
+    Raises InputError for an unknown effect or parameter and for a value out of bounds.
+    """
+    theta = NULL.copy()
+    low, high, _ = bounds(vehicle)
+    schema.check_keys(where, effects, EFFECTS)
+    for name, values in effects.items():
+        effect = EFFECTS[name]
+        known = [parameter.name for parameter in effect.parameters]
+        schema.check_keys(f'{where}: {name}', values, known)
+        for key, value in values.items():
+            k = known.index(key)
+            place = SLICES[name].start + k
+            theta[place] = schema.number(f'{where}: {name}: {key}', value, low[place], high[place])
+    return theta
+
+
+def mapping(theta):
+    """Return {effect: {parameter: value}} of what in a parameter vector (P,) is not null."""
+    effects = {}
+    for value, null, (effect, parameter) in zip(theta, NULL, PARAMETERS, strict=True):
+        if value != null:
+            effects.setdefault(effect, {})[parameter.name] = float(value)
+    return effects
+
+
+def _chain(hook):
+    """Return one compiled function that does what all effects do at a hook, one after another."""
+    def first_then(function, place, rest):
+        if hook in BEFORE:
+            @compiled(inlined=True)
+            def both(theta, s):
+                function(theta, place, s)
+                rest(theta, s)
+        else:
+            @compiled(inlined=True)
+            def both(theta, s, rotors):
+                function(theta, place, s, rotors)
+                rest(theta, s, rotors)
+        return both
+
+    if hook in BEFORE:
+        @compiled(inlined=True)
+        def chain(_theta, _s):
+            pass
+    else:
+        @compiled(inlined=True)
+        def chain(_theta, _s, _rotors):
+            pass
+    for name, effect in reversed(EFFECTS.items()):
+        function = getattr(effect, hook)
+        if function is not None:
+            chain = first_then(function, SLICES[name].start, chain)
+    return chain
+
+
+BEFORE = ('body', 'air')    # hooks that act before the flight, and know nothing of the rotors
+BODY, AIR, THRUST, WRENCH = (_chain(hook) for hook in ('body', 'air', 'thrust', 'wrench'))

@@ -1,0 +1,28 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""In-plane force on each rotor, linear in its air velocity and in its speed."""
+
+from quad_ident_ros.compiled import compiled
+from quad_ident_ros.effects.base import Effect, Parameter
+from quad_ident_ros.model.situation import HOVER_SPEEDS, HX, HY, SPEED, UX, UY
+
+
+@compiled(fused=True, inlined=True)
+def wrench(p, k, s, rotors):
+    """Take the drag from the force of each rotor."""
+    for j in range(rotors.shape[0]):
+        for i in range(s.shape[1]):
+            share = p[k, i] * rotors[j, SPEED, i] / s[HOVER_SPEEDS, i]
+            rotors[j, HX, i] -= share * rotors[j, UX, i]
+            rotors[j, HY, i] -= share * rotors[j, UY, i]
+
+
+EFFECT = Effect(
+    name='rotor_drag', title='drag of the rotors',
+    parameters=(Parameter('coefficient', 'kg/s', 0.0, 5.0, 0.1,
+                          'in-plane force of all rotors per air velocity at hover speed'),),
+    source='force -c (speed / sum of hover speeds) v at each rotor: blade drag and induced drag, '
+           'Martin and Salaun, ICRA 2010; Kai et al., IFAC 2017; Faessler et al., RA-L 2018',
+    excitation='horizontal flight at different speeds',
+    confused_with=('body_drag', 'wind', 'attitude_misalignment'),
+    wrench=wrench)

@@ -1,0 +1,29 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""One rotor gives less thrust than the others."""
+
+from quad_ident_ros.compiled import compiled
+from quad_ident_ros.effects.base import Effect, Parameter
+from quad_ident_ros.model.situation import GAIN
+
+MOST_ROTORS = 8
+
+
+@compiled(fused=True, inlined=True)
+def thrust(p, k, _, rotors):
+    """Lower the thrust of each rotor by its loss."""
+    for j in range(rotors.shape[0]):
+        for i in range(rotors.shape[2]):
+            rotors[j, GAIN, i] *= 1.0 - p[k + j, i]
+
+
+EFFECT = Effect(
+    name='rotor_fault', title='weak rotor',
+    parameters=tuple(Parameter(f'loss_{j}', '1', -0.2, 1.0, 0.1,
+                               f'share of the thrust that rotor {j} lacks')
+                     for j in range(1, MOST_ROTORS + 1)),
+    source="loss of effectiveness of one rotor, thrust (1 - loss); e.g. Mueller and D'Andrea, "
+           'ICRA 2014',
+    excitation='any flight',
+    confused_with=('com_offset',),
+    thrust=thrust, per_rotor=True)

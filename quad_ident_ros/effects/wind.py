@@ -1,0 +1,26 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Steady wind."""
+
+from quad_ident_ros.compiled import compiled
+from quad_ident_ros.effects.base import Effect, Parameter
+from quad_ident_ros.model.situation import WIND_X, WIND_Y, WIND_Z
+
+
+@compiled(fused=True, inlined=True)
+def air(p, k, s):
+    """Set the wind."""
+    for i in range(s.shape[1]):
+        s[WIND_X, i] = p[k, i]
+        s[WIND_Y, i] = p[k + 1, i]
+        s[WIND_Z, i] = p[k + 2, i]
+
+
+EFFECT = Effect(
+    name='wind', title='steady wind',
+    parameters=tuple(Parameter(axis, 'm/s', -20.0, 20.0, 1.0,
+                               f'velocity of the air along world {axis}') for axis in 'xyz'),
+    source='air velocity = velocity - wind, in everything that depends on it',
+    excitation='flight in several directions or headings; it acts through drag, known or found',
+    confused_with=('attitude_misalignment', 'rotor_drag', 'body_drag'),
+    air=air)

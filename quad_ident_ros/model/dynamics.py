@@ -1,0 +1,87 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The vehicle model with effects, as functions of flights: rollouts and what they record."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.model.actuators import actuated
+from quad_ident_ros.model.rigid_body import INPUT, rotor_table, STATE, vehicle_vector
+from quad_ident_ros.model.rollout import roll_out, roll_out_one
+from quad_ident_ros.model.sensors import recorded, underlying
+
+STATES = ('px', 'py', 'pz', 'vx', 'vy', 'vz', 'qw', 'qx', 'qy', 'qz', 'wx', 'wy', 'wz')
+LONGEST_STEP = 0.01     # s, of the integration: errors of about 1e-6 of what happens in it
+
+
+@dataclass(frozen=True, eq=False)
+class Course:
+    """
+    What is given along a flight.
+
+    t (N,) s; commands (N, n) rad/s, the rotors', each held to the next sample; volt_drop (N,) V
+    below the voltage of reference.
+    """
+
+    t: np.ndarray
+    commands: np.ndarray
+    volt_drop: np.ndarray
+
+
+def course_of(record, vehicle, reference_voltage=None):
+    """
+    Return the Course of a flight record.
+
+    Args: reference_voltage V at which the vehicle file holds; without it, or without the column
+    vbat, the voltage is taken not to fall. Raises InputError without the commands of all rotors.
+    """
+    commands = record.stack(*(f'cmd{j}' for j in range(1, len(vehicle.rotors) + 1)))
+    drop = np.zeros(len(record))
+    if reference_voltage is not None and record.has('vbat'):
+        drop = reference_voltage - record.columns['vbat']
+    return Course(np.ascontiguousarray(record.t), np.ascontiguousarray(commands), drop)
+
+
+def states_of(record):
+    """Return the recorded states, (N, 13), quaternions of unit length; InputError where none."""
+    states = record.stack(*STATES)
+    norm = np.linalg.norm(states[:, 6:10], axis=1, keepdims=True)
+    if not (norm > 0.5).all():
+        raise InputError(f'sample {int(np.argmin(norm))}: the quaternion qw, qx, qy, qz has the '
+                         f'length {float(norm.min()):g}, expected 1')
+    states[:, 6:10] /= norm
+    return states
+
+
+def predict(vehicle, thetas, course, starts, first, count, which=None):
+    """
+    Return what rollouts along a flight would record, (B, count + 1, 13).
+
+    Args: thetas (T, P) parameter sets; starts (B, 13) recorded states at the samples first (B,);
+    count: samples to go; which (B,) the set of each rollout, by default the first for all.
+    """
+    thetas = np.atleast_2d(np.asarray(thetas, float))
+    which = np.zeros(len(starts), np.int64) if which is None else np.asarray(which, np.int64)
+    first = np.asarray(first, np.int64)
+    followed, speeds = actuated(course.t, course.commands, thetas)
+    inputs = np.zeros((len(course.t), INPUT))
+    inputs[:, 5] = course.volt_drop
+    x0 = _by_set(underlying, thetas, which, np.asarray(starts, float))
+    substeps = max(1, int(np.ceil(np.median(np.diff(course.t)) / LONGEST_STEP - 1e-6)))
+    out = np.empty((len(x0), count + 1, STATE))
+    kernel = roll_out if len(x0) > 1 else roll_out_one
+    kernel(vehicle_vector(vehicle), rotor_table(vehicle), np.ascontiguousarray(thetas), which,
+           np.ascontiguousarray(x0), course.t, followed, speeds, inputs, first, count, substeps,
+           out)
+    return _by_set(recorded, thetas, which, out)
+
+
+def _by_set(function, thetas, which, states):
+    """Apply a function of a parameter set and states to the rollouts of each set."""
+    for k, theta in enumerate(thetas):
+        mine = which == k
+        if mine.any():
+            states[mine] = function(theta, states[mine])
+    return states

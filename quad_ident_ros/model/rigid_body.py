@@ -1,0 +1,217 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+The equations of motion of a multirotor with all effects, many rollouts side by side.
+
+Vehicle vector: mass, Ix, Iy, Iz, gravity, thrust and torque coefficient, rotor radius, linear drag
+(3), rotational drag (3), 1 where the linear drag acts along world axes, sum of the hover speeds.
+"""
+
+import math
+
+import numpy as np
+
+from quad_ident_ros.compiled import compiled
+from quad_ident_ros.effects.registry import AIR, BODY, THRUST, WRENCH
+from quad_ident_ros.model.situation import (
+    AX,
+    AY,
+    AZ,
+    COM_X,
+    COM_Y,
+    COM_Z,
+    FX,
+    FY,
+    FZ,
+    GAIN,
+    HEIGHT,
+    HOVER_SPEEDS,
+    HX,
+    HY,
+    HZ,
+    IX,
+    IY,
+    IZ,
+    MASS,
+    MX,
+    MY,
+    MZ,
+    PX,
+    PZ,
+    R00,
+    R01,
+    R02,
+    R10,
+    R11,
+    R12,
+    R20,
+    R21,
+    R22,
+    RADIUS,
+    RX,
+    RY,
+    RZ,
+    SPEED,
+    SPEEDS,
+    SPINS,
+    UX,
+    UY,
+    UZ,
+    VX,
+    VY,
+    VZ,
+    WIND_X,
+    WIND_Y,
+    WIND_Z,
+    WX,
+    WY,
+    WZ,
+)
+
+STATE = 13      # position, velocity (world), quaternion (body to world), rate (body)
+INPUT = 6       # besides the rotors: force z, moment x, y, z (body), spin sum, volt drop
+
+
+def vehicle_vector(vehicle, drag_in_world=False):
+    """Return the constants of the equations of motion, (16,), in the order stated above."""
+    hover = math.sqrt(vehicle.mass * vehicle.gravity
+                      / (len(vehicle.rotors) * vehicle.thrust_coefficient))
+    return np.array([vehicle.mass, *vehicle.inertia, vehicle.gravity, vehicle.thrust_coefficient,
+                     vehicle.torque_coefficient, vehicle.rotor_radius, *vehicle.linear_drag,
+                     *vehicle.rotational_drag, float(drag_in_world),
+                     len(vehicle.rotors) * hover])
+
+
+def rotor_table(vehicle):
+    """Return the rotors' places (m) and spins, (n, 4)."""
+    return np.array([[*rotor.position, rotor.spin] for rotor in vehicle.rotors], float)
+
+
+@compiled(fused=True, inlined=True)
+def prepare(v, places, theta, s, rotors):
+    """Write what stays the same along a flight: mass, inertia, centre of mass, lever arms."""
+    for i in range(s.shape[1]):
+        s[MASS, i], s[IX, i], s[IY, i], s[IZ, i] = v[0], v[1], v[2], v[3]
+        s[COM_X, i] = s[COM_Y, i] = s[COM_Z, i] = 0.0
+        s[RADIUS, i], s[HOVER_SPEEDS, i] = v[7], v[15]
+        s[WIND_X, i] = s[WIND_Y, i] = s[WIND_Z, i] = 0.0
+    BODY(theta, s)
+    AIR(theta, s)
+    for j in range(places.shape[0]):
+        for i in range(s.shape[1]):
+            rotors[j, RX, i] = places[j, 0] - s[COM_X, i]
+            rotors[j, RY, i] = places[j, 1] - s[COM_Y, i]
+            rotors[j, RZ, i] = places[j, 2] - s[COM_Z, i]
+
+
+@compiled(fused=True, inlined=True)
+def _place(x, v, s):
+    """Write position, velocity, rotation, rate and air velocity of the states x (13, LANES)."""
+    for i in range(s.shape[1]):
+        for k in range(6):
+            s[PX + k, i] = x[k, i]
+        w, a, b, c = x[6, i], x[7, i], x[8, i], x[9, i]
+        s[R00, i] = 1.0 - 2.0 * (b * b + c * c)
+        s[R01, i] = 2.0 * (a * b - w * c)
+        s[R02, i] = 2.0 * (a * c + w * b)
+        s[R10, i] = 2.0 * (a * b + w * c)
+        s[R11, i] = 1.0 - 2.0 * (a * a + c * c)
+        s[R12, i] = 2.0 * (b * c - w * a)
+        s[R20, i] = 2.0 * (a * c - w * b)
+        s[R21, i] = 2.0 * (b * c + w * a)
+        s[R22, i] = 1.0 - 2.0 * (a * a + b * b)
+        s[WX, i], s[WY, i], s[WZ, i] = x[10, i], x[11, i], x[12, i]
+    for i in range(s.shape[1]):
+        dx, dy = s[VX, i] - s[WIND_X, i], s[VY, i] - s[WIND_Y, i]
+        dz = s[VZ, i] - s[WIND_Z, i]
+        s[AX, i] = s[R00, i] * dx + s[R10, i] * dy + s[R20, i] * dz
+        s[AY, i] = s[R01, i] * dx + s[R11, i] * dy + s[R21, i] * dz
+        s[AZ, i] = s[R02, i] * dx + s[R12, i] * dy + s[R22, i] * dz
+
+
+@compiled(fused=True, inlined=True)
+def _rotors(s, rotors, places):
+    """Write the rotors' air velocities and heights, and the sums of their speeds."""
+    for i in range(s.shape[1]):
+        s[SPEEDS, i] = 0.0
+    for j in range(rotors.shape[0]):
+        spin = places[j, 3]
+        for i in range(s.shape[1]):
+            x, y, z = rotors[j, RX, i], rotors[j, RY, i], rotors[j, RZ, i]
+            rotors[j, UX, i] = s[AX, i] + s[WY, i] * z - s[WZ, i] * y
+            rotors[j, UY, i] = s[AY, i] + s[WZ, i] * x - s[WX, i] * z
+            rotors[j, UZ, i] = s[AZ, i] + s[WX, i] * y - s[WY, i] * x
+            rotors[j, HEIGHT, i] = (s[PZ, i] + s[R20, i] * x + s[R21, i] * y + s[R22, i] * z)
+            rotors[j, GAIN, i] = 1.0
+            s[SPEEDS, i] += rotors[j, SPEED, i]
+            s[SPINS, i] += spin * rotors[j, SPEED, i]
+
+
+@compiled(fused=True, inlined=True)
+def wrench(v, places, theta, s, rotors):
+    """Write force and moment (body) on the centre of mass, without gravity."""
+    _rotors(s, rotors, places)
+    THRUST(theta, s, rotors)
+    for j in range(rotors.shape[0]):
+        for i in range(s.shape[1]):
+            rotors[j, HX, i] = rotors[j, HY, i] = 0.0
+            rotors[j, HZ, i] = v[5] * rotors[j, SPEED, i] ** 2 * rotors[j, GAIN, i]
+    WRENCH(theta, s, rotors)
+    for j in range(rotors.shape[0]):
+        spin = places[j, 3] * v[6]
+        for i in range(s.shape[1]):
+            x, y, z = rotors[j, RX, i], rotors[j, RY, i], rotors[j, RZ, i]
+            hx, hy, hz = rotors[j, HX, i], rotors[j, HY, i], rotors[j, HZ, i]
+            s[FX, i] += hx
+            s[FY, i] += hy
+            s[FZ, i] += hz
+            s[MX, i] += y * hz - z * hy
+            s[MY, i] += z * hx - x * hz
+            s[MZ, i] += x * hy - y * hx + spin * rotors[j, SPEED, i] ** 2
+
+
+@compiled(fused=True, inlined=True)
+def derivative(x, u, v, places, theta, s, rotors, dx):
+    """
+    Write the derivative of the states x (13, LANES) into dx; the rotors' speeds are in `rotors`.
+
+    Newton-Euler with a quaternion and the body rate, so that there is no singular attitude.
+    u (INPUT, LANES) what acts besides the rotors.
+    """
+    _place(x, v, s)
+    world = v[14] != 0.0
+    for i in range(s.shape[1]):
+        s[FX, i] = s[FY, i] = s[FZ, i] = 0.0
+        if not world:
+            s[FX, i] = -v[8] * s[AX, i]
+            s[FY, i] = -v[9] * s[AY, i]
+            s[FZ, i] = -v[10] * s[AZ, i]
+        s[FZ, i] += u[0, i]
+        wx, wy, wz = s[WX, i], s[WY, i], s[WZ, i]
+        s[MX, i] = u[1, i] - v[11] * wx * abs(wx)
+        s[MY, i] = u[2, i] - v[12] * wy * abs(wy)
+        s[MZ, i] = u[3, i] - v[13] * wz * abs(wz)
+        s[SPINS, i] = u[4, i]
+    wrench(v, places, theta, s, rotors)
+    for i in range(s.shape[1]):
+        mass = s[MASS, i]
+        fx, fy, fz = s[FX, i] / mass, s[FY, i] / mass, s[FZ, i] / mass
+        for k in range(3):
+            dx[k, i] = s[VX + k, i]
+        dx[3, i] = s[R00, i] * fx + s[R01, i] * fy + s[R02, i] * fz
+        dx[4, i] = s[R10, i] * fx + s[R11, i] * fy + s[R12, i] * fz
+        dx[5, i] = s[R20, i] * fx + s[R21, i] * fy + s[R22, i] * fz - v[4]
+        if world:
+            dx[3, i] -= v[8] * (s[VX, i] - s[WIND_X, i]) / mass
+            dx[4, i] -= v[9] * (s[VY, i] - s[WIND_Y, i]) / mass
+            dx[5, i] -= v[10] * (s[VZ, i] - s[WIND_Z, i]) / mass
+        w, a, b, c = x[6, i], x[7, i], x[8, i], x[9, i]
+        wx, wy, wz = s[WX, i], s[WY, i], s[WZ, i]
+        dx[6, i] = 0.5 * (-a * wx - b * wy - c * wz)
+        dx[7, i] = 0.5 * (w * wx + b * wz - c * wy)
+        dx[8, i] = 0.5 * (w * wy - a * wz + c * wx)
+        dx[9, i] = 0.5 * (w * wz + a * wy - b * wx)
+        ix, iy, iz = s[IX, i], s[IY, i], s[IZ, i]
+        dx[10, i] = (s[MX, i] + (iy - iz) * wy * wz) / ix
+        dx[11, i] = (s[MY, i] + (iz - ix) * wz * wx) / iy
+        dx[12, i] = (s[MZ, i] + (ix - iy) * wx * wy) / iz

@@ -1,0 +1,131 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Integration of many rollouts at once, from given states, along recorded or planned commands."""
+
+import math
+
+import numpy as np
+
+from quad_ident_ros.compiled import compiled
+from quad_ident_ros.effects.registry import SLICES
+from quad_ident_ros.model.rigid_body import derivative, INPUT, prepare, STATE
+from quad_ident_ros.model.situation import ROTOR_ROWS, ROWS, SPEED, SPIN_UP, TIME, VOLT_DROP
+
+LAG = SLICES['motor_lag'].start
+
+
+@compiled(fused=True, inlined=True)
+def _set_speeds(share, speed, command, places, period_rate, s, rotors):
+    """Set the speeds that lie between `speed` and `command`; share (LANES,) is what is left."""
+    for i in range(s.shape[1]):
+        s[SPIN_UP, i] = 0.0
+    for j in range(rotors.shape[0]):
+        for i in range(s.shape[1]):
+            gap = (speed[j, i] - command[j, i]) * share[i]
+            rotors[j, SPEED, i] = command[j, i] + gap
+            s[SPIN_UP, i] -= places[j, 3] * gap * period_rate[i]
+
+
+@compiled(fused=True, inlined=True)
+def _step(x, h, u, v, places, theta, speed, command, lag, s, rotors, work):
+    """Advance the states x (13, LANES) by h (LANES,) s; speed becomes that at the end."""
+    k, y, total, half, full, rate, none = (work[0], work[1], work[2], work[3, 0], work[3, 1],
+                                           work[3, 2], work[3, 3])
+    for i in range(s.shape[1]):
+        rate[i] = 1.0 / lag[i] if lag[i] > 0.0 else 0.0
+        half[i] = math.exp(-0.5 * h[i] * rate[i]) if lag[i] > 0.0 else 0.0
+        full[i] = half[i] * half[i]
+        none[i] = 1.0 if lag[i] > 0.0 else 0.0
+        s[VOLT_DROP, i] = u[5, i]
+    _set_speeds(none, speed, command, places, rate, s, rotors)
+    derivative(x, u, v, places, theta, s, rotors, k)
+    for n in range(STATE):
+        for i in range(s.shape[1]):
+            total[n, i] = k[n, i]
+            y[n, i] = x[n, i] + 0.5 * h[i] * k[n, i]
+    for i in range(s.shape[1]):
+        s[TIME, i] += 0.5 * h[i]
+    _set_speeds(half, speed, command, places, rate, s, rotors)
+    derivative(y, u, v, places, theta, s, rotors, k)
+    for n in range(STATE):
+        for i in range(s.shape[1]):
+            total[n, i] += 2.0 * k[n, i]
+            y[n, i] = x[n, i] + 0.5 * h[i] * k[n, i]
+    derivative(y, u, v, places, theta, s, rotors, k)
+    for n in range(STATE):
+        for i in range(s.shape[1]):
+            total[n, i] += 2.0 * k[n, i]
+            y[n, i] = x[n, i] + h[i] * k[n, i]
+    for i in range(s.shape[1]):
+        s[TIME, i] += 0.5 * h[i]
+    _set_speeds(full, speed, command, places, rate, s, rotors)
+    derivative(y, u, v, places, theta, s, rotors, k)
+    for n in range(STATE):
+        for i in range(s.shape[1]):
+            x[n, i] += h[i] / 6.0 * (total[n, i] + k[n, i])
+    for i in range(s.shape[1]):
+        norm = 1.0 / math.sqrt(x[6, i] ** 2 + x[7, i] ** 2 + x[8, i] ** 2 + x[9, i] ** 2)
+        for n in range(6, 10):
+            x[n, i] *= norm
+    for j in range(rotors.shape[0]):
+        for i in range(s.shape[1]):
+            speed[j, i] = rotors[j, SPEED, i]
+
+
+def _kernel(lanes):
+    """Return the integrator that does so many rollouts side by side."""
+    @compiled(fused=True)
+    def roll_out(v, places, thetas, which, x0, t, commands, speeds, inputs, first, count, substeps,
+                 out):
+        """
+        Integrate rollouts by Runge-Kutta and write their states into out (B, count + 1, 13).
+
+        Args: v, places: see rigid_body; thetas (T, P) parameter sets; which (B,) the set of each
+        rollout; x0 (B, 13) states at the start; t (N,) s; commands, speeds (T, N, n) rad/s, what
+        the rotors follow from a sample on, and how fast they turn at it; inputs (N, INPUT), what
+        else acts; first (B,) the sample at which a rollout starts; count of samples; substeps per
+        sample.
+        """
+        rotor_count = places.shape[0]
+        x = np.empty((STATE, lanes))
+        work = np.empty((4, STATE, lanes))
+        s = np.zeros((ROWS, lanes))
+        rotors = np.zeros((rotor_count, ROTOR_ROWS, lanes))
+        theta = np.empty((thetas.shape[1], lanes))
+        u = np.zeros((INPUT, lanes))
+        speed = np.empty((rotor_count, lanes))
+        command = np.empty((rotor_count, lanes))
+        h = np.empty(lanes)
+        batch = x0.shape[0]
+        for begin in range(0, batch, lanes):
+            for i in range(lanes):
+                b = min(begin + i, batch - 1)
+                for n in range(STATE):
+                    x[n, i] = x0[b, n]
+                    out[b, 0, n] = x0[b, n]
+                for n in range(thetas.shape[1]):
+                    theta[n, i] = thetas[which[b], n]
+                for j in range(rotor_count):
+                    speed[j, i] = speeds[which[b], first[b], j]
+            prepare(v, places, theta, s, rotors)
+            for k in range(count):
+                for i in range(lanes):
+                    b = min(begin + i, batch - 1)
+                    row = first[b] + k
+                    s[TIME, i] = t[row]
+                    h[i] = (t[row + 1] - t[row]) / substeps
+                    for j in range(rotor_count):
+                        command[j, i] = commands[which[b], row, j]
+                    for n in range(INPUT):
+                        u[n, i] = inputs[row, n]
+                for _ in range(substeps):
+                    _step(x, h, u, v, places, theta, speed, command, theta[LAG], s, rotors, work)
+                for i in range(min(lanes, batch - begin)):
+                    for n in range(STATE):
+                        out[begin + i, k + 1, n] = x[n, i]
+
+    return roll_out
+
+
+roll_out = _kernel(32)
+roll_out_one = _kernel(1)

@@ -1,0 +1,26 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+What the parts of the vehicle model see of one another: rows of a table, one column per lane.
+
+A lane is one rollout of the batch. `s` (ROWS, LANES) holds the vehicle, the rows named here;
+`rotors` (n, ROTOR_ROWS, LANES) holds each rotor. SI units, world ENU, body FLU.
+"""
+
+
+# State: position and velocity (of the centre of mass, world), rotation matrix body to world by
+# rows, body rate.
+(PX, PY, PZ, VX, VY, VZ, R00, R01, R02, R10, R11, R12, R20, R21, R22, WX, WY, WZ,
+ # What acts on the centre of mass, besides the rotors: force and moment, body.
+ FX, FY, FZ, MX, MY, MZ,
+ # Velocity of the vehicle against the air, body; wind, world.
+ AX, AY, AZ, WIND_X, WIND_Y, WIND_Z,
+ # Sums over the rotors: speed, spin * speed, and the rate of change of the latter.
+ SPEEDS, SPINS, SPIN_UP,
+ # Constants of the vehicle and of its flight.
+ MASS, IX, IY, IZ, COM_X, COM_Y, COM_Z, HOVER_SPEEDS, RADIUS, TIME, VOLT_DROP,
+ ROWS) = range(45)
+
+# A rotor: speed; its velocity against the air, body; factor on its thrust; its force, body; its
+# place from the centre of mass, body; its height over ground.
+(SPEED, UX, UY, UZ, GAIN, HX, HY, HZ, RX, RY, RZ, HEIGHT, ROTOR_ROWS) = range(13)
