@@ -27,7 +27,7 @@ def _set_speeds(share, speed, command, places, period_rate, s, rotors):
 
 
 @compiled(fused=True, inlined=True)
-def _step(x, h, u, v, places, theta, speed, command, lag, s, rotors, work):
+def step(x, h, u, v, places, theta, speed, command, lag, s, rotors, work):
     """Advance the states x (13, LANES) by h (LANES,) s; speed becomes that at the end."""
     k, y, total, half, full, rate, none = (work[0], work[1], work[2], work[3, 0], work[3, 1],
                                            work[3, 2], work[3, 3])
@@ -119,7 +119,7 @@ def _kernel(lanes):
                     for n in range(INPUT):
                         u[n, i] = inputs[row, n]
                 for _ in range(substeps):
-                    _step(x, h, u, v, places, theta, speed, command, theta[LAG], s, rotors, work)
+                    step(x, h, u, v, places, theta, speed, command, theta[LAG], s, rotors, work)
                 for i in range(min(lanes, batch - begin)):
                     for n in range(STATE):
                         out[begin + i, k + 1, n] = x[n, i]
