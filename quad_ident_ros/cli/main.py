@@ -6,15 +6,16 @@ import argparse
 import sys
 
 from quad_ident_ros import __version__
-from quad_ident_ros.cli import demo, identify, node, paper, simulate, warm_up
+from quad_ident_ros.cli import demo, fly, identify, node, paper, simulate, warm_up
 from quad_ident_ros.errors import InputError
 
-COMMANDS = (demo, simulate, identify, paper, node, warm_up)
+COMMANDS = (demo, simulate, fly, identify, paper, node, warm_up)
 
 EPILOG = """\
 examples:
   quad_ident demo                                  simulate, record and identify on ROS 2
   quad_ident simulate hover_single_axis -o flights make flight records without ROS
+  quad_ident fly figure8 --vehicle paper_quadrotor --effect rotor_drag:coefficient=0.1 -o F.csv
   quad_ident identify flights/*.csv --trim hover --initial-state rest
   quad_ident paper                                 reproduce the paper and check its claims
   quad_ident node identifier --ros-args -p method:=pso_cs
