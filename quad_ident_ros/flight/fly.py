@@ -22,7 +22,7 @@ FALL = 0.015            # V/s at hover power: some four minutes of flight with f
 LONGEST_STEP = 0.0025   # s, of the integration
 SETTLING = 8.0          # s of hover before the record, in which the integrals find the trim
 RATES = (50.0, 2000.0)  # Hz
-SHORTEST, LONGEST = 2.0, 3600.0     # s
+SHORTEST, LONGEST = 5.0, 3600.0     # s
 
 
 def fly_closed_loop(vehicle, effects, trajectory, *, duration=30.0, rate=100.0, seed=0,
