@@ -41,7 +41,7 @@ def course_of(record, vehicle, reference_voltage=None):
     drop = np.zeros(len(record))
     if reference_voltage is not None and record.has('vbat'):
         drop = reference_voltage - record.columns['vbat']
-    return Course(np.ascontiguousarray(record.t), np.ascontiguousarray(commands), drop)
+    return Course(record.t - record.t[0], np.ascontiguousarray(commands), drop)
 
 
 def states_of(record):
@@ -55,12 +55,13 @@ def states_of(record):
     return states
 
 
-def predict(vehicle, thetas, course, starts, first, count, which=None):
+def predict(vehicle, thetas, course, starts, first, count, which=None, constants=None):
     """
     Return what rollouts along a flight would record, (B, count + 1, 13).
 
     Args: thetas (T, P) parameter sets; starts (B, 13) recorded states at the samples first (B,);
-    count: samples to go; which (B,) the set of each rollout, by default the first for all.
+    count: samples to go; which (B,) the set of each rollout, by default the first for all;
+    constants (T, 16) of rigid_body that replace the vehicle's.
     """
     thetas = np.atleast_2d(np.asarray(thetas, float))
     which = np.zeros(len(starts), np.int64) if which is None else np.asarray(which, np.int64)
@@ -72,7 +73,9 @@ def predict(vehicle, thetas, course, starts, first, count, which=None):
     substeps = max(1, int(np.ceil(np.median(np.diff(course.t)) / LONGEST_STEP - 1e-6)))
     out = np.empty((len(x0), count + 1, STATE))
     kernel = roll_out if len(x0) > 1 else roll_out_one
-    kernel(vehicle_vector(vehicle), rotor_table(vehicle), np.ascontiguousarray(thetas), which,
+    if constants is None:
+        constants = np.tile(vehicle_vector(vehicle), (len(thetas), 1))
+    kernel(np.ascontiguousarray(constants), rotor_table(vehicle), np.ascontiguousarray(thetas), which,
            np.ascontiguousarray(x0), course.t, followed, speeds, inputs, first, count, substeps,
            out)
     return _by_set(recorded, thetas, which, out)

@@ -75,16 +75,16 @@ def _step(x, h, u, v, places, theta, speed, command, lag, s, rotors, work):
 def _kernel(lanes):
     """Return the integrator that does so many rollouts side by side."""
     @compiled(fused=True)
-    def roll_out(v, places, thetas, which, x0, t, commands, speeds, inputs, first, count, substeps,
+    def roll_out(vehicles, places, thetas, which, x0, t, commands, speeds, inputs, first, count, substeps,
                  out):
         """
         Integrate rollouts by Runge-Kutta and write their states into out (B, count + 1, 13).
 
-        Args: v, places: see rigid_body; thetas (T, P) parameter sets; which (B,) the set of each
-        rollout; x0 (B, 13) states at the start; t (N,) s; commands, speeds (T, N, n) rad/s, what
-        the rotors follow from a sample on, and how fast they turn at it; inputs (N, INPUT), what
-        else acts; first (B,) the sample at which a rollout starts; count of samples; substeps per
-        sample.
+        Args: vehicles (T, 16), places: see rigid_body; thetas (T, P) parameter sets; which (B,)
+        the set of each rollout; x0 (B, 13) states at the start; t (N,) s; commands, speeds
+        (T, N, n) rad/s, what the rotors follow from a sample on, and how fast they turn at it;
+        inputs (N, INPUT), what else acts; first (B,) the sample at which a rollout starts; count
+        of samples; substeps per sample.
         """
         rotor_count = places.shape[0]
         x = np.empty((STATE, lanes))
@@ -92,6 +92,7 @@ def _kernel(lanes):
         s = np.zeros((ROWS, lanes))
         rotors = np.zeros((rotor_count, ROTOR_ROWS, lanes))
         theta = np.empty((thetas.shape[1], lanes))
+        v = np.empty((vehicles.shape[1], lanes))
         u = np.zeros((INPUT, lanes))
         speed = np.empty((rotor_count, lanes))
         command = np.empty((rotor_count, lanes))
@@ -103,6 +104,8 @@ def _kernel(lanes):
                 for n in range(STATE):
                     x[n, i] = x0[b, n]
                     out[b, 0, n] = x0[b, n]
+                for n in range(v.shape[0]):
+                    v[n, i] = vehicles[which[b], n]
                 for n in range(thetas.shape[1]):
                     theta[n, i] = thetas[which[b], n]
                 for j in range(rotor_count):
