@@ -75,9 +75,9 @@ def predict(vehicle, thetas, course, starts, first, count, which=None, constants
     kernel = roll_out if len(x0) > 1 else roll_out_one
     if constants is None:
         constants = np.tile(vehicle_vector(vehicle), (len(thetas), 1))
-    kernel(np.ascontiguousarray(constants), rotor_table(vehicle), np.ascontiguousarray(thetas), which,
-           np.ascontiguousarray(x0), course.t, followed, speeds, inputs, first, count, substeps,
-           out)
+    kernel(np.ascontiguousarray(constants), rotor_table(vehicle), np.ascontiguousarray(thetas),
+           which, np.ascontiguousarray(x0), course.t, followed, speeds, inputs, first, count,
+           substeps, out)
     return _by_set(recorded, thetas, which, out)
 
 

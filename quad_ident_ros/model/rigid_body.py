@@ -3,8 +3,9 @@
 """
 The equations of motion of a multirotor with all effects, many rollouts side by side.
 
-Vehicle vector, (16,) or (16, LANES): mass, Ix, Iy, Iz, gravity, thrust and torque coefficient, rotor radius, linear drag
-(3), rotational drag (3), 1 where the linear drag acts along world axes, sum of the hover speeds.
+Vehicle vector, (16,) or (16, LANES): mass, Ix, Iy, Iz, gravity, thrust and torque coefficient,
+rotor radius, linear drag (3), rotational drag (3), 1 where the linear drag acts along world axes,
+sum of the hover speeds.
 """
 
 import math
