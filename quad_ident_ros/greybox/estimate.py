@@ -102,8 +102,8 @@ def estimate(flights, vehicle, z, columns, *, noise=None, starts=None, iteration
     """
     columns = list(columns)
     lower, upper, size = limits(vehicle)
-    starts = starts or [flight.states[flight.first] for flight in flights]
     known, z = noise, np.array(z, float)
+    starts = starts or settled(flights, vehicle, z, noise)
     raws = [errors_along(flight, vehicle, z, start)
             for flight, start in zip(flights, starts, strict=True)]
     noise = known or [quick_noise(raw) for raw in raws]
@@ -131,6 +131,17 @@ def estimate(flights, vehicle, z, columns, *, noise=None, starts=None, iteration
             converged = True
             break
     return Estimate(z, columns, covariance, noise, starts, normal, raws, free, converged)
+
+
+def settled(flights, vehicle, z, noise=None):
+    """Return the initial states (B, 13) per flight that fit best at z, all samples alike."""
+    found = []
+    for k, flight in enumerate(flights):
+        starts = flight.states[flight.first]
+        sigma = noise[k] if noise else quick_noise(errors_along(flight, vehicle, z, starts))
+        found.append(new_starts(linearise(flight, vehicle, z, starts, [], sigma, False), starts,
+                                np.zeros(0)))
+    return found
 
 
 def bounded_step(normal, now, lower, upper, size):

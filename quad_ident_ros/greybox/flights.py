@@ -11,6 +11,7 @@ from quad_ident_ros.model.dynamics import Course, course_of, states_of
 
 RATE = 125.0        # Hz, the fastest that is looked at: more rows add cost, hardly information
 SEGMENT = 0.5       # s of a rollout
+WARM = 0.25         # s of commands before a rollout, from which the speeds of its rotors follow
 GAP = 1.6           # usual periods between two samples that no rollout crosses
 
 
@@ -46,7 +47,7 @@ def flight_of(record, vehicle, *, reference_voltage=None, segment=SEGMENT, every
         period *= skip
     count = max(2, round(segment / period))
     step = count if every is None else max(1, round(every / period))
-    first = _starts(course.t, period, count, step)
+    first = _starts(course.t, period, count, step, round(WARM / period))
     name = record.info.get('name', 'flight')
     if not len(first):
         raise InputError(f'{name}: {course.t[-1]:.3g} s without a gap-free stretch of '
@@ -72,9 +73,9 @@ def _thinned(course, states, skip):
         states[:rows:skip]
 
 
-def _starts(t, period, count, step):
-    """Return the samples from which `count` more follow without a gap."""
+def _starts(t, period, count, step, warm):
+    """Return the samples that `warm` others precede and `count` follow without a gap."""
     gaps = np.flatnonzero(np.diff(t) > GAP * period)
     edges = np.concatenate([[0], gaps + 1, [len(t)]])
-    return np.concatenate([np.arange(a, b - count, step) for a, b in
+    return np.concatenate([np.arange(a + warm, b - count, step) for a, b in
                            zip(edges[:-1], edges[1:], strict=True)]).astype(np.int64)
