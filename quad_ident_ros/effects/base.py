@@ -25,9 +25,10 @@ class Parameter:
     def scale(self, vehicle):
         """Return the vehicle's own measure of this parameter's unit: its mass, arm or inertia."""
         mass, arm = vehicle.mass, vehicle.arm_length
+        weight = mass * vehicle.gravity
         return {'kg': mass, 'kg/s': mass, 'kg/m': mass, 'kg m/s': mass * arm, 'm': arm,
                 'kg m^2': vehicle.inertia[0],
-                'N': mass * vehicle.gravity, 'N m': mass * vehicle.gravity * arm}.get(self.unit, 1.0)
+                'N': weight, 'N m': weight * arm}.get(self.unit, 1.0)
 
 
 @dataclass(frozen=True)
