@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The vehicle file: the nominal vehicle, what is known of it beforehand."""
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 
 import numpy as np
 
@@ -24,7 +24,8 @@ class Vehicle:
     A rigid multirotor; SI units, body frame x forward, y left, z up.
 
     inertia (3,) kg m^2; thrust_coefficient N/(rad/s)^2; torque_coefficient N m/(rad/s)^2;
-    linear_drag (3,) N/(m/s); rotational_drag (3,) N m/(rad/s)^2; speeds rad/s.
+    linear_drag (3,) N/(m/s); rotational_drag (3,) N m/(rad/s)^2; speeds rad/s; effects that it
+    has beside the nominal model, {effect: {parameter: value}}, see effects.registry.
     """
 
     name: str
@@ -40,6 +41,7 @@ class Vehicle:
     rotational_drag: tuple = (0.0, 0.0, 0.0)
     speed_min: float = 0.0
     speed_max: float = float('inf')
+    effects: dict = field(default_factory=dict, hash=False)
 
     @property
     def arm_length(self):
