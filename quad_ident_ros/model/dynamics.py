@@ -21,8 +21,8 @@ class Course:
     """
     What is given along a flight.
 
-    t (N,) s; commands (N, n) rad/s, the rotors', each held to the next sample; volt_drop (N,) V
-    below the voltage of reference.
+    t (N,) s from its start; commands (N, n) rad/s, the rotors', each held to the next sample;
+    volt_drop (N,) V below the voltage of reference.
     """
 
     t: np.ndarray
@@ -41,7 +41,7 @@ def course_of(record, vehicle, reference_voltage=None):
     drop = np.zeros(len(record))
     if reference_voltage is not None and record.has('vbat'):
         drop = reference_voltage - record.columns['vbat']
-    return Course(np.ascontiguousarray(record.t), np.ascontiguousarray(commands), drop)
+    return Course(record.t - record.t[0], np.ascontiguousarray(commands), drop)
 
 
 def states_of(record):
