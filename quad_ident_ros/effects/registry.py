@@ -66,6 +66,8 @@ def vector(effects, vehicle, where='effects'):
     for name, values in effects.items():
         effect = EFFECTS[name]
         known = [parameter.name for parameter in effect.parameters]
+        if effect.per_rotor:
+            known = known[:len(vehicle.rotors)]
         schema.check_keys(f'{where}: {name}', values, known)
         for key, value in values.items():
             k = known.index(key)

@@ -21,8 +21,8 @@ class Course:
     """
     What is given along a flight.
 
-    t (N,) s; commands (N, n) rad/s, the rotors', each held to the next sample; volt_drop (N,) V
-    below the voltage of reference.
+    t (N,) s from its start; commands (N, n) rad/s, the rotors', each held to the next sample;
+    volt_drop (N,) V below the voltage of reference.
     """
 
     t: np.ndarray
@@ -69,7 +69,7 @@ def predict(vehicle, thetas, course, starts, first, count, which=None, constants
     followed, speeds = actuated(course.t, course.commands, thetas)
     inputs = np.zeros((len(course.t), INPUT))
     inputs[:, 5] = course.volt_drop
-    x0 = _by_set(underlying, thetas, which, np.asarray(starts, float))
+    x0 = _by_set(underlying, thetas, which, np.array(starts, float))
     substeps = max(1, int(np.ceil(np.median(np.diff(course.t)) / LONGEST_STEP - 1e-6)))
     out = np.empty((len(x0), count + 1, STATE))
     kernel = roll_out if len(x0) > 1 else roll_out_one

@@ -49,15 +49,20 @@ from quad_ident_ros.model.situation import (
     R21,
     R22,
     RADIUS,
+    ROTOR_ROWS,
+    ROWS,
     RX,
     RY,
     RZ,
     SPEED,
     SPEEDS,
+    SPIN_UP,
     SPINS,
+    TIME,
     UX,
     UY,
     UZ,
+    VOLT_DROP,
     VX,
     VY,
     VZ,
@@ -215,3 +220,31 @@ def derivative(x, u, v, places, theta, s, rotors, dx):
         dx[10, i] = (s[MX, i] + (iy - iz) * wy * wz) / ix
         dx[11, i] = (s[MY, i] + (iz - ix) * wz * wx) / iy
         dx[12, i] = (s[MZ, i] + (ix - iy) * wx * wy) / iz
+
+
+@compiled(fused=True)
+def derivatives(v, places, theta, t, states, speeds, accelerations, inputs, out):
+    """
+    Write the derivatives of given states, each by itself, into out (N, 13).
+
+    Args: v (16, 1), places: the vehicle; theta (P,); t (N,) s; states (N, 13) of the centre of mass;
+    speeds (N, n) rad/s of the rotors and accelerations (N, n) rad/s^2; inputs (N, INPUT).
+    """
+    x, dx = np.empty((STATE, 1)), np.empty((STATE, 1))
+    s, rotors = np.zeros((ROWS, 1)), np.zeros((places.shape[0], ROTOR_ROWS, 1))
+    parameters, u = np.empty((len(theta), 1)), np.empty((INPUT, 1))
+    for k in range(len(theta)):
+        parameters[k, 0] = theta[k]
+    prepare(v, places, parameters, s, rotors)
+    for n in range(len(t)):
+        for k in range(STATE):
+            x[k, 0] = states[n, k]
+        for k in range(INPUT):
+            u[k, 0] = inputs[n, k]
+        s[TIME, 0], s[VOLT_DROP, 0], s[SPIN_UP, 0] = t[n], inputs[n, 5], 0.0
+        for j in range(places.shape[0]):
+            rotors[j, SPEED, 0] = speeds[n, j]
+            s[SPIN_UP, 0] += places[j, 3] * accelerations[n, j]
+        derivative(x, u, v, places, parameters, s, rotors, dx)
+        for k in range(STATE):
+            out[n, k] = dx[k, 0]

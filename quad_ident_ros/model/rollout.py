@@ -15,37 +15,32 @@ LAG = SLICES['motor_lag'].start
 
 
 @compiled(fused=True, inlined=True)
-def _turn(h, places, speed, command, lag, s, rotors, left):
-    """
-    Set the speeds of the rotors for a step, and write into `speed` those at its end.
-
-    The root of the mean square over the step stands for a speed that nears its command: it gives
-    the mean thrust exactly, and unlike the speed at the ends it has no jump where the lag goes to
-    zero, so that a lag can be found from there.
-    """
+def _set_speeds(share, speed, command, places, period_rate, s, rotors):
+    """Set the speeds that lie between `speed` and `command`; share (LANES,) is what is left."""
     for i in range(s.shape[1]):
         s[SPIN_UP, i] = 0.0
-        left[i] = math.exp(-h[i] / lag[i]) if lag[i] > 0.0 else 0.0
     for j in range(rotors.shape[0]):
         for i in range(s.shape[1]):
-            goal = command[j, i]
-            gap = speed[j, i] - goal
-            share = lag[i] / h[i] * (1.0 - left[i])
-            square = 0.5 * share * (1.0 + left[i])
-            rotors[j, SPEED, i] = math.sqrt(
-                goal * goal + gap * (2.0 * goal * share + gap * square))
-            speed[j, i] = goal + gap * left[i]
-            if lag[i] > 0.0:
-                s[SPIN_UP, i] += places[j, 3] * gap * (left[i] - 1.0) / h[i]
+            gap = (speed[j, i] - command[j, i]) * share[i]
+            rotors[j, SPEED, i] = command[j, i] + gap
+            s[SPIN_UP, i] -= places[j, 3] * gap * period_rate[i]
 
 
 @compiled(fused=True, inlined=True)
 def step(x, h, u, v, places, theta, speed, command, lag, s, rotors, work):
     """Advance the states x (13, LANES) by h (LANES,) s; speed becomes that at the end."""
-    k, y, total = work[0], work[1], work[2]
+    k, y, total, half, full, rate, begin = (work[0], work[1], work[2], work[3, 0], work[3, 1],
+                                            work[3, 2], work[3, 3])
     for i in range(s.shape[1]):
+        rate[i] = 1.0 / lag[i] if lag[i] > 0.0 else 0.0
+        half[i] = math.exp(-0.5 * h[i] * rate[i]) if lag[i] > 0.0 else 0.0
+        full[i] = half[i] * half[i]
+        # 1 but for terms of fourth order, so that the mean over the step, as the integration
+        # weighs it, is that of the exponential however short the lag is beside the step.
+        begin[i] = (6.0 * (1.0 - full[i]) / (h[i] * rate[i]) - 4.0 * half[i] - full[i]
+                    if lag[i] > 0.0 else 0.0)
         s[VOLT_DROP, i] = u[5, i]
-    _turn(h, places, speed, command, lag, s, rotors, work[3, 0])
+    _set_speeds(begin, speed, command, places, rate, s, rotors)
     derivative(x, u, v, places, theta, s, rotors, k)
     for n in range(STATE):
         for i in range(s.shape[1]):
@@ -53,6 +48,7 @@ def step(x, h, u, v, places, theta, speed, command, lag, s, rotors, work):
             y[n, i] = x[n, i] + 0.5 * h[i] * k[n, i]
     for i in range(s.shape[1]):
         s[TIME, i] += 0.5 * h[i]
+    _set_speeds(half, speed, command, places, rate, s, rotors)
     derivative(y, u, v, places, theta, s, rotors, k)
     for n in range(STATE):
         for i in range(s.shape[1]):
@@ -65,6 +61,7 @@ def step(x, h, u, v, places, theta, speed, command, lag, s, rotors, work):
             y[n, i] = x[n, i] + h[i] * k[n, i]
     for i in range(s.shape[1]):
         s[TIME, i] += 0.5 * h[i]
+    _set_speeds(full, speed, command, places, rate, s, rotors)
     derivative(y, u, v, places, theta, s, rotors, k)
     for n in range(STATE):
         for i in range(s.shape[1]):
@@ -73,6 +70,9 @@ def step(x, h, u, v, places, theta, speed, command, lag, s, rotors, work):
         norm = 1.0 / math.sqrt(x[6, i] ** 2 + x[7, i] ** 2 + x[8, i] ** 2 + x[9, i] ** 2)
         for n in range(6, 10):
             x[n, i] *= norm
+    for j in range(rotors.shape[0]):
+        for i in range(s.shape[1]):
+            speed[j, i] = rotors[j, SPEED, i]
 
 
 def _kernel(lanes):
