@@ -35,8 +35,8 @@ def _accelerations(vehicle, theta, course, states):
     inputs = np.zeros((len(course.t), INPUT))
     inputs[:, 5] = course.volt_drop
     change = np.empty_like(states)
-    derivatives(vehicle_vector(vehicle)[:, None], rotor_table(vehicle), theta, course.t, states, speeds,
-                rising, inputs, change)
+    derivatives(vehicle_vector(vehicle)[:, None], rotor_table(vehicle), theta, course.t, states,
+                speeds, rising, inputs, change)
     arm = -theta[SLICES['com_offset']]
     rate, turning = states[:, 10:], change[:, 10:]
     swing = np.cross(turning, arm) + np.cross(rate, np.cross(rate, arm))

@@ -227,8 +227,8 @@ def derivatives(v, places, theta, t, states, speeds, accelerations, inputs, out)
     """
     Write the derivatives of given states, each by itself, into out (N, 13).
 
-    Args: v (16, 1), places: the vehicle; theta (P,); t (N,) s; states (N, 13) of the centre of mass;
-    speeds (N, n) rad/s of the rotors and accelerations (N, n) rad/s^2; inputs (N, INPUT).
+    Args: v (16, 1), places: the vehicle; theta (P,); t (N,) s; states (N, 13) of the centre of
+    mass; speeds (N, n) rad/s of the rotors and accelerations (N, n) rad/s^2; inputs (N, INPUT).
     """
     x, dx = np.empty((STATE, 1)), np.empty((STATE, 1))
     s, rotors = np.zeros((ROWS, 1)), np.zeros((places.shape[0], ROTOR_ROWS, 1))

@@ -25,8 +25,8 @@ def derivative(vehicle, state, inputs=(0, 0, 0, 0), omega_r=0.0):
     """Return the derivative (13,) of a state (13,)."""
     constants, theta, rows = parts(vehicle, inputs, omega_r, 1)
     out, none = np.empty((1, 13)), np.empty((1, 0))
-    derivatives(constants, NO_ROTORS, theta, np.zeros(1), np.array([state], float), none, none,
-                rows, out)
+    derivatives(constants[:, None], NO_ROTORS, theta, np.zeros(1), np.array([state], float), none,
+                none, rows, out)
     return out[0]
 
 
@@ -35,6 +35,6 @@ def move(vehicle, state, t, substeps, omega_r=0.0):
     constants, theta, rows = parts(vehicle, (0, 0, 0, 0), omega_r, len(t))
     out, none = np.empty((1, len(t), 13)), np.empty((1, len(t), 0))
     one = np.zeros(1, np.int64)
-    roll_out_one(constants, NO_ROTORS, theta[None], one, np.array([state], float), t, none, none,
-                 rows, one, len(t) - 1, substeps, out)
+    roll_out_one(constants[None], NO_ROTORS, theta[None], one, np.array([state], float), t, none,
+                 none, rows, one, len(t) - 1, substeps, out)
     return out[0]

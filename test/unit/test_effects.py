@@ -52,7 +52,7 @@ def test_an_effect_says_what_it_is(name):
 def test_bounds_go_with_the_size_of_the_vehicle():
     small = replace(BARE, mass=BARE.mass / 10, inertia=tuple(np.array(BARE.inertia) / 10))
     units = [parameter.unit for _, parameter in PARAMETERS]
-    ratio = [10 if 'kg' in unit else 1 for unit in units]
+    ratio = [10 if 'kg' in unit or 'N' in unit else 1 for unit in units]
     assert np.allclose(bounds(BARE), bounds(small) * ratio, rtol=1e-12, atol=0)
 
 
