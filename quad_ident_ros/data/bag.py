@@ -10,6 +10,7 @@ import shutil
 
 from rosbags.highlevel import AnyReader
 from rosbags.interfaces import (
+    Nodetype,
     Qos,
     QosDurability,
     QosHistory,
@@ -33,6 +34,24 @@ _QOS = Qos(QosHistory.KEEP_ALL, 0, QosReliability.RELIABLE, QosDurability.VOLATI
 @cache
 def _typestore():
     return get_typestore(Stores.ROS2_JAZZY)
+
+
+def serialize(msgtype, fields):
+    """Return the serialized message of a type of ROS 2 Jazzy, given its fields as nested dicts."""
+    return bytes(_typestore().serialize_cdr(_message(msgtype, fields), msgtype))
+
+
+def _message(msgtype, fields):
+    store = _typestore()
+    values = {}
+    for name, (node, kind) in store.fielddefs[msgtype][1]:
+        if node == Nodetype.NAME:
+            values[name] = _message(kind, fields[name])
+        elif node == Nodetype.SEQUENCE and kind[0][0] == Nodetype.NAME:
+            values[name] = [_message(kind[0][1], entry) for entry in fields[name]]
+        else:
+            values[name] = fields[name]
+    return store.types[msgtype](**values)
 
 
 class BagWriter:

@@ -61,6 +61,10 @@ FLIGHT_TOPICS = {topic.name: topic for topic in (
 RUN_TOPIC = 'run'
 RUN_TYPE = 'std_msgs/msg/String'
 
+# A whole record in one message, number for number, as `quad_ident convert` writes it.
+EXACT_TOPIC = 'flight_record'
+ARRAY_TYPE = 'std_msgs/msg/Float64MultiArray'
+
 # The stamp (ns) up to which a recorder has joined: what lets a simulator run as fast as it keeps
 # up. The middleware's own acknowledgements come every 3 s only.
 JOINED_TOPIC = 'joined_until'
