@@ -171,7 +171,7 @@ def read_bag_messages(path, topics=None):
             for connection, stamp, data in reader.messages(wanted) if wanted else ():
                 yield connection.topic, stamp, reader.deserialize(data, connection.msgtype)
     except Exception as error:  # a damaged bag makes the reader raise anything
-        reason = ' '.join(str(error).split()) or type(error).__name__
+        reason = ' '.join(str(error).split())[:200] or type(error).__name__
         raise InputError(f'{path}: this bag cannot be read ({reason}); check it with: ros2 bag '
                          'info FOLDER, or record it again') from error
 

@@ -11,6 +11,7 @@ from quad_ident_ros.data.bag import read_bag_messages
 from quad_ident_ros.data.mapping import Actuators, rotor_speeds
 from quad_ident_ros.data.record import FlightRecord, QUATERNION
 from quad_ident_ros.data.streams import HELD, INTERPOLATED, join, SLOW, Stream
+from quad_ident_ros.data.topics import OTHER_SHAPE, stamp_ns
 from quad_ident_ros.errors import InputError
 
 BODY_VELOCITY = ('body_vx', 'body_vy', 'body_vz')
@@ -77,31 +78,37 @@ def _stream(path, role, source, messages, mapping, vehicle):
         raise InputError(f'{where}: there is no such topic in this bag, or nothing on it; see '
                          'what there is with: ros2 bag info')
     kind = messages[0][1].__msgtype__
-    values = []
-    for number, (_, message) in enumerate(messages, 1):
+    values, stamps = [], []
+    for number, (received, message) in enumerate(messages, 1):
         try:
-            values.append(_READERS[role](message, kind, source))
+            values.append(tuple(map(float, _READERS[role](message, kind, source))))
+            stamps.append((_header_stamp(message), received))
         except _NoSuch as error:
             raise InputError(f'{where}, message {number}: {error}') from None
+        except OTHER_SHAPE:
+            raise InputError(f'{where}, message {number}: the bag defines {kind} otherwise than '
+                             'ROS 2 does; record it again') from None
     if len({len(row) for row in values}) > 1:
         number = next(k for k, row in enumerate(values) if len(row) != len(values[0]))
         raise InputError(f'{where}, message {number + 1}: {len(values[number])} values where the '
                          f'first has {len(values[0])}')
     table = np.array(values, float)
-    return Stream(f'topic {source.topic}', _stamps(messages),
+    return Stream(f'topic {source.topic}', _stamps(stamps),
                   _columns(where, role, source, table, mapping, vehicle),
                   {'commands': HELD, 'battery': SLOW}.get(role, INTERPOLATED))
 
 
-def _stamps(messages):
-    stamps = []
-    for _, message in messages:
-        stamp = getattr(getattr(message, 'header', None), 'stamp', None)
-        ns = stamp.sec * 1_000_000_000 + stamp.nanosec if stamp is not None else 0
-        if ns <= 0:
-            return np.array([received for received, _ in messages], np.int64)
-        stamps.append(ns)
-    return np.array(stamps, np.int64)
+def _header_stamp(message):
+    """Return the stamp in the header of a message, ns, or 0."""
+    return int(stamp_ns(message)) if hasattr(message, 'header') else 0
+
+
+def _stamps(stamps):
+    """Return the stamps (ns) of messages from (that of the header, time of receipt) of each."""
+    headers = [header for header, _ in stamps]
+    if min(headers) > 0 and max(headers) < 2 ** 63:
+        return np.array(headers, np.int64)
+    return np.array([received for _, received in stamps], np.int64)
 
 
 def _columns(where, role, source, table, mapping, vehicle):

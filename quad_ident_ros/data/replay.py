@@ -5,6 +5,8 @@
 from contextlib import suppress
 from pathlib import Path
 
+import numpy as np
+
 from quad_ident_ros.data.bag import read_bag_messages
 from quad_ident_ros.data.buffer import Limits, RecordBuffer
 from quad_ident_ros.data.joiner import Joiner
@@ -13,6 +15,7 @@ from quad_ident_ros.data.topics import (
     ARRAY_TYPE,
     EXACT_TOPIC,
     FLIGHT_TOPICS,
+    OTHER_SHAPE,
     raw_columns,
     RUN_TOPIC,
     RUN_TYPE,
@@ -72,10 +75,10 @@ def read_bag(path):
     records = []
     for space, name, message in messages:
         if name != RUN_TOPIC:
-            rows = joiner.add(name, stamp_ns(message), FLIGHT_TOPICS[name].values(message))
-            records += buffer.add_rows(rows)
+            records += buffer.add_rows(joiner.add(name, *_sample(path, name, message)))
         elif space in spaces:
-            with suppress(InputError):   # a flight needs no notice, and `run` is a common name
+            # A flight needs no notice, and `run` is a common name.
+            with suppress(InputError, *OTHER_SHAPE):
                 records += buffer.add_run(RunNotice.from_json(message.data))
     records += buffer.add_rows(joiner.drain())
     records += buffer.complete(run_over=True)
@@ -85,11 +88,21 @@ def read_bag(path):
             for record in records]
 
 
+def _sample(path, name, message):
+    """Return stamp (ns) and values of a message; InputError for one of another shape."""
+    try:
+        stamp = int(np.int64(stamp_ns(message)))
+        return stamp, tuple(map(float, FLIGHT_TOPICS[name].values(message)))
+    except OTHER_SHAPE:
+        raise InputError(f'{path}, topic {name}: the bag defines {_TYPES[name]} otherwise than '
+                         'ROS 2 does; record it again') from None
+
+
 def _exact(path, topic, message):
     where = f'{path}, topic {topic}'
     try:
         record = record_from_table(message, where)
-    except InputError as error:
+    except OTHER_SHAPE as error:   # InputError is a ValueError
         text = str(error)
         raise InputError(text if text.startswith(where) else f'{where}: {text}') from None
     return type(record)(record.t, record.columns, {**record.info, 'source': str(path)})

@@ -76,6 +76,10 @@ def stamp_ns(message):
     return stamp.sec * 1_000_000_000 + stamp.nanosec
 
 
+# What a message raises whose type has a name that we know and a definition that we do not.
+OTHER_SHAPE = (AttributeError, OverflowError, TypeError, ValueError)
+
+
 def raw_columns(topics):
     """Return the names of the raw columns that the topics carry together."""
     return tuple(column for name in topics for column in FLIGHT_TOPICS[name].columns)

@@ -56,6 +56,30 @@ def read_ulog(path, mapping=None, vehicle=None):
                                      'notes': notes})
 
 
+class _Content(io.BytesIO):
+    """
+    Bytes that may be read a few times over, and no more.
+
+    Where a log is damaged the parser looks for the next message by going back, at times for ever.
+    """
+
+    def __init__(self, data):
+        super().__init__(data)
+        self._left = 8 * len(data) + 100_000
+
+    def read(self, size=-1):
+        """Return the next bytes; _Damaged where they have been read too often."""
+        data = super().read(size)
+        self._left -= max(len(data), 16)
+        if self._left < 0:
+            raise _Damaged('it is damaged beyond what can be skipped')
+        return data
+
+
+class _Damaged(Exception):
+    """The parser does not get on."""
+
+
 class _Log(ULog):
     """A ULog that does not expand formats too large for any message."""
 
@@ -83,7 +107,7 @@ def _size(name, formats, depth):
 def _parse(path):
     try:
         with open(path, 'rb') as file:
-            content = io.BytesIO(file.read())
+            content = _Content(file.read())
     except OSError as error:
         raise InputError(f'{path}: cannot be read: {error.strerror}') from None
     try:
@@ -91,8 +115,8 @@ def _parse(path):
         with contextlib.redirect_stdout(io.StringIO()):
             return _Log(content, list(TOPICS))
     except Exception as error:  # a damaged log makes the parser raise anything
-        reason = ' '.join(str(error).split()) or type(error).__name__
-        raise InputError(f'{path}: this log cannot be read ({reason[:200]}); download it from '
+        reason = ' '.join(str(error).split())[:200] or type(error).__name__
+        raise InputError(f'{path}: this log cannot be read ({reason}); download it from '
                          'the vehicle again') from None
 
 
@@ -113,7 +137,8 @@ def _values(path, topic, data, names):
     if missing:
         raise InputError(f'{path}, topic {topic}: there is no field {missing[0]}; this is no log '
                          'of PX4 1.11 or later')
-    return np.stack([np.asarray(data[name], float) for name in names], axis=-1)
+    with np.errstate(invalid='ignore'):   # nan of a kind that signals
+        return np.stack([np.asarray(data[name], float) for name in names], axis=-1)
 
 
 def _stamps(path, topic, data):
@@ -180,10 +205,12 @@ def _specific_force(path, data):
 
 def _battery(path, data):
     topic = 'battery_status'
-    if data[topic] is None or len(data[topic]['timestamp']) < 2:
+    if data[topic] is None:
         return None
-    return _stream(path, topic, data[topic], ('vbat',),
-                   _values(path, topic, data[topic], ['voltage_v']), SLOW)
+    voltage = _values(path, topic, data[topic], ['voltage_v'])
+    if np.isfinite(voltage).sum() < 2:
+        return None   # a short log of a slow topic
+    return _stream(path, topic, data[topic], ('vbat',), voltage, SLOW)
 
 
 def _outputs(path, data, actuators, vehicle):
@@ -200,9 +227,7 @@ def _outputs(path, data, actuators, vehicle):
         return None
     found, field = data[topic], choices[topic]
     count = sum(name.startswith(f'{field}[') for name in found)
-    values = _values(path, topic, found, _indexed(field, count))
-    if not count:
-        raise InputError(f'{path}, topic {topic}: there is no field {field}[0]')
+    values = _values(path, topic, found, _indexed(field, max(count, 1)))
     if actuators is not None:
         values, name = rotor_speeds(f'{path}, topic {topic}', values, actuators, vehicle), 'cmd'
     else:
