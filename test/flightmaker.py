@@ -92,7 +92,7 @@ def flight(seconds=20.0, rate=100.0, noise=1.0, seed=0, start=0.0):
                             * random.normal(size=(len(t), 3))])
     q = multiply(q, turn / np.linalg.norm(turn, axis=-1, keepdims=True))
     gyro = rate_at(t) + noise * 0.02 * random.normal(size=(len(t), 3))
-    force = np.column_stack([np.zeros((len(t), 2)), thrust])
+    force = np.column_stack([np.zeros((len(t), 2)), thrust])   # just after the command
     force += noise * 0.1 * random.normal(size=force.shape)
     values.update(zip(('qw', 'qx', 'qy', 'qz'), q.T, strict=True))
     values.update(zip(('wx', 'wy', 'wz'), gyro.T, strict=True))
