@@ -11,7 +11,7 @@ from quad_ident_ros.data.bag import read_bag_messages
 from quad_ident_ros.data.mapping import Actuators, rotor_speeds
 from quad_ident_ros.data.record import FlightRecord, QUATERNION
 from quad_ident_ros.data.streams import HELD, INTERPOLATED, join, SLOW, Stream
-from quad_ident_ros.data.topics import OTHER_SHAPE, stamp_ns
+from quad_ident_ros.data.topics import not_unit, OTHER_SHAPE, stamp_ns
 from quad_ident_ros.errors import InputError
 
 BODY_VELOCITY = ('body_vx', 'body_vy', 'body_vz')
@@ -67,6 +67,7 @@ def _velocity_in_world(path, columns):
                              'say frame: world')
         body = np.stack([columns.pop(name) for name in BODY_VELOCITY], axis=-1)
         attitude = np.stack([columns[name] for name in QUATERNION], axis=-1)
+        attitude = attitude / np.linalg.norm(attitude, axis=-1, keepdims=True)
         columns.update(zip(('vx', 'vy', 'vz'), frames.rotate(attitude, body).T, strict=True))
     return columns
 
@@ -114,11 +115,10 @@ def _stamps(stamps):
 def _columns(where, role, source, table, mapping, vehicle):
     """Return the columns of a role from the rows of its messages."""
     if role == 'pose':
-        norm = np.linalg.norm(table[:, 3:], axis=-1)
-        bad = ~(norm > 1e-3) & np.isfinite(norm)
+        bad = not_unit(table[:, 3:])
         if bad.any():
-            raise InputError(f'{where}, message {int(np.argmax(bad)) + 1}: the quaternion is '
-                             'zero; record a pose with an attitude')
+            raise InputError(f'{where}, message {int(np.argmax(bad)) + 1}: the quaternion has not '
+                             'the length 1; record a pose with an attitude')
         attitude = frames.attitude(table[:, 3:], mapping.world, mapping.body)
         position = frames.world_vector(table[:, :3], mapping.world)
         return dict(zip(('px', 'py', 'pz', *QUATERNION),
@@ -170,7 +170,8 @@ def _field(message, kind, source):
             raise _NoSuch(f'{kind} has no field {name!r}; name one of: {known}')
         value = getattr(value, name)
     try:
-        numbers = np.atleast_1d(np.asarray(value, float))
+        with np.errstate(invalid='ignore'):   # nan of a kind that signals
+            numbers = np.atleast_1d(np.asarray(value, float))
     except (TypeError, ValueError):
         numbers = np.empty((0, 0))
     if numbers.ndim != 1 or not 1 <= len(numbers) <= 64:

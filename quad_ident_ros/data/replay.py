@@ -15,6 +15,7 @@ from quad_ident_ros.data.topics import (
     ARRAY_TYPE,
     EXACT_TOPIC,
     FLIGHT_TOPICS,
+    not_unit,
     OTHER_SHAPE,
     raw_columns,
     RUN_TOPIC,
@@ -71,31 +72,44 @@ def read_bag(path):
     if not topics:
         raise InputError(f'{path}: has none of the topics {", ".join(FLIGHT_TOPICS)}; for those '
                          'of others give a mapping file (--mapping)')
-    joiner, buffer = Joiner(topics), RecordBuffer(raw_columns(topics), UNBOUNDED)
-    records = []
-    for space, name, message in messages:
-        if name != RUN_TOPIC:
-            records += buffer.add_rows(joiner.add(name, *_sample(path, name, message)))
-        elif space in spaces:
-            # A flight needs no notice, and `run` is a common name.
-            with suppress(InputError, *OTHER_SHAPE):
-                records += buffer.add_run(RunNotice.from_json(message.data))
-    records += buffer.add_rows(joiner.drain())
-    records += buffer.complete(run_over=True)
+    samples = [(space, name, message if name == RUN_TOPIC else _sample(path, name, message))
+               for space, name, message in messages]
+    try:
+        records = _joined(topics, spaces, samples)
+    except InputError as error:
+        raise InputError(f'{path}: {error}') from None
     if not records:
         raise InputError(f'{path}: its topics share no stamps, so there is no flight in it')
     return [type(record)(record.t, record.columns, {**record.info, 'source': str(path)})
             for record in records]
 
 
+def _joined(topics, spaces, samples):
+    joiner, buffer = Joiner(topics), RecordBuffer(raw_columns(topics), UNBOUNDED)
+    records = []
+    for space, name, sample in samples:
+        if name != RUN_TOPIC:
+            records += buffer.add_rows(joiner.add(name, *sample))
+        elif space in spaces:
+            # A flight needs no notice, and `run` is a common name.
+            with suppress(InputError, *OTHER_SHAPE):
+                records += buffer.add_run(RunNotice.from_json(sample.data))
+    records += buffer.add_rows(joiner.drain())
+    return records + buffer.complete(run_over=True)
+
+
 def _sample(path, name, message):
     """Return stamp (ns) and values of a message; InputError for one of another shape."""
     try:
         stamp = int(np.int64(stamp_ns(message)))
-        return stamp, tuple(map(float, FLIGHT_TOPICS[name].values(message)))
+        values = tuple(map(float, FLIGHT_TOPICS[name].values(message)))
     except OTHER_SHAPE:
         raise InputError(f'{path}, topic {name}: the bag defines {_TYPES[name]} otherwise than '
                          'ROS 2 does; record it again') from None
+    if name == 'pose' and not_unit(values[3:]):
+        raise InputError(f'{path}, topic {name}, stamp {stamp} ns: the quaternion has not the '
+                         'length 1; record a pose with an attitude')
+    return stamp, values
 
 
 def _exact(path, topic, message):

@@ -80,6 +80,14 @@ def stamp_ns(message):
 OTHER_SHAPE = (AttributeError, OverflowError, TypeError, ValueError)
 
 
+def not_unit(quaternion):
+    """Return which quaternions (..., 4) are no attitude; those with nan are left to others."""
+    q = np.asarray(quaternion, float)
+    finite = np.isfinite(q).all(axis=-1)
+    length = np.linalg.norm(np.clip(q, -10.0, 10.0), axis=-1)
+    return finite & ~((length > 0.5) & (length < 2.0))
+
+
 def raw_columns(topics):
     """Return the names of the raw columns that the topics carry together."""
     return tuple(column for name in topics for column in FLIGHT_TOPICS[name].columns)
@@ -99,7 +107,8 @@ def record_columns(names, table):
     body = [columns.pop(name, None) for name in ('body_vx', 'body_vy', 'body_vz')]
     if body[0] is not None and 'qw' in columns:
         quaternion = np.stack([columns[name] for name in ('qw', 'qx', 'qy', 'qz')], axis=-1)
-        velocity = np.einsum('nij,jn->in', rotation_matrix(quaternion), np.stack(body))
+        with np.errstate(over='ignore', invalid='ignore'):   # the record refuses what comes of it
+            velocity = np.einsum('nij,jn->in', rotation_matrix(quaternion), np.stack(body))
         columns.update(zip(('vx', 'vy', 'vz'), velocity, strict=True))
     return columns
 

@@ -16,6 +16,7 @@ WINDOW = 4.0      # s, of one estimate
 REACH = 0.5       # s, the largest offset looked for
 LOCAL = 0.1       # s, how far a window may be from the whole
 SURE = 0.6        # correlation that an estimate needs
+SHAPE = 0.5       # correlation of the slopes, whose noise is larger
 MEMORY = 0.4      # s, over which errors may depend on one another
 SEVERAL = 4.0     # standard errors from which on an offset is one
 
@@ -68,12 +69,12 @@ def command_offset(record):
     if grid is None or not names or not record.has('ax', 'ay', 'az'):
         return None
     thrust = np.sum(grid.held(*names) ** 2, axis=1, keepdims=True)
-    return _offset(grid, _centred(grid, grid.smooth(grid.signal('az'))),
-                   _centred(grid, grid.smooth(thrust)))
+    return _offset(grid, grid.smooth(grid.signal('az')), grid.smooth(thrust))
 
 
-def _centred(grid, signal):
-    return signal - signal[grid.good].mean(axis=0)
+def _centred(signal):
+    """Return a signal (N, k) about its mean: a bias is no offset."""
+    return signal - signal.mean(axis=0)
 
 
 def _offset(grid, late, early):
@@ -104,9 +105,8 @@ def _whole_shift(late, early, good, shifts):
     for shift in shifts:
         other = index - shift
         inside = (other >= 0) & (other < len(early))
-        a, b = late[index[inside]], early[other[inside]]
-        scale = np.sqrt(np.sum(a ** 2) * np.sum(b ** 2))
-        sure = np.sum(a * b) / scale if scale > 0 else 0.0
+        a, b = _centred(late[index[inside]]), _centred(early[other[inside]])
+        sure = _alike(a, b)
         if sure > most:
             best, most = shift, sure
     return best
@@ -114,26 +114,36 @@ def _whole_shift(late, early, good, shifts):
 
 def _refined(grid, spline, late, part, start):
     """Return the offset and its standard error in a window (indices), or None."""
-    t, target = grid.t[part], late[part]
+    t, target = grid.t[part], _centred(late[part])
     offset = start
     for _ in range(8):
-        model, slope = spline(t - offset), -spline(t - offset, 1)
+        model, slope = _centred(spline(t - offset)), _centred(-spline(t - offset, 1))
         power = np.sum(model ** 2)
         if not power > 0:
             return None
         gain = np.sum(model * target) / power
-        slope = gain * slope
+        # What another gain explains as well, as along a ramp, says nothing of the offset.
+        slope = gain * (slope - model * np.sum(slope * model) / power)
         rest = target - gain * model
         curvature = np.sum(slope ** 2)
         step = np.sum(slope * rest) / curvature if curvature > 0 else np.inf
         offset += float(np.clip(step, -LOCAL / 4, LOCAL / 4)) if np.isfinite(step) else np.inf
         if not abs(offset - start) < LOCAL:
             return None
-    sure = np.sum(model * target) / np.sqrt(power * np.sum(target ** 2))
-    if sure < SURE:
+    if _alike(model, target) < SURE:
+        return None
+    # A ramp or noise has no shape that an offset would move: both must have the same.
+    other = _centred(np.gradient(late, grid.period, axis=0)[part])
+    other -= model * np.sum(other * model) / power
+    if _alike(-gain * slope, other) < SHAPE:
         return None
     score = np.sum(slope * rest, axis=1)
     return offset, np.sqrt(_long_run(score, round(MEMORY / grid.period))) / curvature
+
+
+def _alike(one, other):
+    scale = np.sqrt(np.sum(one ** 2) * np.sum(other ** 2))
+    return np.sum(one * other) / scale if scale > 0 else 0.0
 
 
 def _long_run(score, lags):

@@ -10,6 +10,7 @@ from quad_ident_ros.data.quality.series import correlation, explained, Grid
 from quad_ident_ros.data.record import QUATERNION
 
 SURE, BETTER = 0.7, 0.3   # correlation that an explanation needs, and its lead
+TURNED = 0.003            # share of its power by which a velocity in body axes is off at least
 
 
 def _reorder(q):
@@ -83,31 +84,43 @@ def world(record, vehicle):
     if grid is None:
         return []
     _, attitude = best_reading(grid)
-    if attitude is None or not record.has('ax', 'ay', 'az'):
+    if attitude is None:
         return _height(record)
+    if not record.has('ax', 'ay', 'az'):
+        return _motion(grid, attitude)
     force = grid.force()
     size = np.median(np.linalg.norm(force, axis=1))
     body_up = np.median(force[:, 2]) / size if size > 0 else 1.0
     world_up = np.median(rotate(attitude, force)[:, 2]) / size if size > 0 else 1.0
-    frd, ned = body_up < -0.5, world_up < -0.5
+    frd, ned = bool(body_up < -0.5), bool(world_up < -0.5)
     if frd or ned:
         what = ' and '.join(['the body axes are FRD'] * frd + ['the world axes are NED'] * ned)
         return [Finding('frame_ned' if ned else 'frame_frd', 'error',
                         'position, velocity, attitude, rate, specific force',
                         f'the specific force points down in flight: {what}',
                         'turn the world into ENU (x east, y north, z up) and the body into FLU')]
-    return _motion(grid, attitude) or _height(record)
+    return _motion(grid, attitude)
 
 
 def _motion(grid, attitude):
-    """Find velocities in NED beside an attitude in ENU."""
+    """Find velocities that change otherwise than attitude and specific force say."""
     if not grid.record.has('vx', 'vy', 'vz'):
-        return []
+        return _height(grid.record)
     speeding = grid.derivative(grid.signal('vx', 'vy', 'vz'))[grid.good]
     force = grid.acceleration(attitude)[grid.good]
-    if correlation(world_vector(speeding, 'NED'), force)[0] \
-            < max(SURE, correlation(speeding, force)[0] + BETTER):
-        return []
+    if not grid.record.has('ax', 'ay', 'az'):
+        # The thrust is then only known to lie along z of the body: what tells is its tilt.
+        speeding, force = speeding[:, :2], force[:, :2]
+    sure = correlation(speeding, force)[0]
+    if sure > SURE:
+        return []   # a height below zero is then no more than another origin
+    if sure < -SURE:
+        return [Finding('frame_ned', 'error', 'position, velocity, attitude, rate',
+                        'the thrust pushes down: the world axes are NED and those of the body FRD',
+                        'turn the world into ENU (x east, y north, z up) and the body into FLU')]
+    swapped = speeding[:, [1, 0]] if speeding.shape[1] == 2 else world_vector(speeding, 'NED')
+    if correlation(swapped, force)[0] < max(SURE, sure + BETTER):
+        return _height(grid.record)
     return [Finding('frame_ned', 'error', 'position, velocity',
                     'the velocity changes as the specific force says only where it is read as '
                     'NED', 'turn position and velocity into ENU (x east, y north, z up)')]
@@ -136,7 +149,7 @@ def velocity_in_body(record, vehicle):
     velocity = grid.signal('vx', 'vy', 'vz')
     missed = 1.0 - explained(moved, grid.smooth(velocity)[grid.good])
     turned = 1.0 - explained(moved, grid.smooth(rotate(attitude, velocity))[grid.good])
-    if turned > 0.1 or turned > 0.25 * missed:
+    if missed < TURNED or turned > 0.1 or turned > 0.25 * missed:
         return []
     return [Finding('velocity_in_body', 'error', 'vx, vy, vz',
                     'the position changes as the velocity says only where that is turned by the '

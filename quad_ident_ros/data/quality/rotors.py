@@ -7,6 +7,7 @@ from itertools import permutations, product
 import numpy as np
 
 from quad_ident_ros.data.export import numbered
+from quad_ident_ros.data.quality import frames
 from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.quality.series import Grid
 
@@ -27,6 +28,8 @@ def order_and_spin(record, vehicle):
     if (vehicle is None or grid is None or not record.has('wx', 'wy', 'wz')
             or not len(names) == len(vehicle.rotors) <= MOST_ROTORS):
         return []
+    if frames.quaternion(record, vehicle) or frames.world(record, vehicle):
+        return []   # rates about other axes: that is to be mended first
     rate = grid.smooth(grid.signal('wx', 'wy', 'wz'))
     inertia = np.array(vehicle.inertia)
     moment = inertia * np.gradient(rate, grid.period, axis=0) + np.cross(rate, inertia * rate)

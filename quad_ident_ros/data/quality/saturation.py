@@ -5,6 +5,7 @@
 import numpy as np
 
 from quad_ident_ros.data.export import numbered
+from quad_ident_ros.data.quality import units
 from quad_ident_ros.data.quality.finding import Finding
 
 NEAR = 0.002   # of the range of speeds
@@ -15,6 +16,8 @@ def speeds(record, vehicle):
     names = numbered(record, 'cmd')
     if vehicle is None or not names or not np.isfinite(vehicle.speed_max):
         return []
+    if units.speeds_in_rpm(record, vehicle):
+        return []   # that is to be mended first
     table = record.stack(*names)
     margin = NEAR * (vehicle.speed_max - vehicle.speed_min)
     found = []

@@ -83,8 +83,12 @@ class Grid:
     def rate_of(self, attitude):
         """Return the smoothed body rate of attitudes (N, 4), (N, 3) rad/s."""
         q = continuous(attitude)
-        turn = 2.0 * multiply(conjugate(q[:-2]), q[2:])[:, 1:] / (2 * self.period)
-        return self.smooth(np.vstack([turn[:1], turn, turn[-1:]]))
+        turn = multiply(conjugate(q[:-2]), q[2:])
+        length = np.linalg.norm(turn[:, 1:], axis=-1, keepdims=True)
+        angle = 2.0 * np.arctan2(length, turn[:, :1])
+        scale = np.divide(angle, length, out=np.full_like(length, 2.0), where=length > 1e-12)
+        rate = scale * turn[:, 1:] / (2 * self.period)
+        return self.smooth(np.vstack([rate[:1], rate, rate[-1:]]))
 
     def force(self):
         """

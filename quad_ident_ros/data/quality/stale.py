@@ -6,6 +6,7 @@ import numpy as np
 
 from quad_ident_ros.data.quality.finding import Finding
 
+JUMP = 0.2   # of the usual step: from rest a stream sets out slower
 STREAMS = {'position': ('px', 'py', 'pz'), 'attitude': ('qw', 'qx', 'qy', 'qz'),
            'rate': ('wx', 'wy', 'wz'), 'specific force': ('ax', 'ay', 'az')}
 
@@ -38,7 +39,7 @@ def _held(step):
     begins, ends = np.flatnonzero(np.diff(still) == 1), np.flatnonzero(np.diff(still) == -1)
     inside = (begins > 0) & (ends < len(step))
     begins, ends = begins[inside], ends[inside]
-    jump = step[ends] >= 0.5 * np.median(moving)
+    jump = step[ends] >= JUMP * np.median(moving)
     length = (ends - begins)[jump]
     if not len(length):
         return 0.0, 0, 0, 0
