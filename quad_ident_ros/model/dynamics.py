@@ -10,7 +10,7 @@ from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.actuators import actuated
 from quad_ident_ros.model.rigid_body import INPUT, rotor_table, STATE, vehicle_vector
 from quad_ident_ros.model.rollout import roll_out, roll_out_one
-from quad_ident_ros.model.sensors import recorded, underlying
+from quad_ident_ros.model.sensors import acts, recorded, underlying
 
 STATES = ('px', 'py', 'pz', 'vx', 'vy', 'vz', 'qw', 'qx', 'qy', 'qz', 'wx', 'wy', 'wz')
 LONGEST_STEP = 0.01     # s, of the integration: errors of about 1e-6 of what happens in it
@@ -69,7 +69,7 @@ def predict(vehicle, thetas, course, starts, first, count, which=None, constants
     followed, speeds = actuated(course.t, course.commands, thetas)
     inputs = np.zeros((len(course.t), INPUT))
     inputs[:, 5] = course.volt_drop
-    x0 = _by_set(underlying, thetas, which, np.asarray(starts, float))
+    x0 = _by_set(underlying, thetas, which, np.array(starts, float))
     substeps = max(1, int(np.ceil(np.median(np.diff(course.t)) / LONGEST_STEP - 1e-6)))
     out = np.empty((len(x0), count + 1, STATE))
     kernel = roll_out if len(x0) > 1 else roll_out_one
@@ -82,9 +82,9 @@ def predict(vehicle, thetas, course, starts, first, count, which=None, constants
 
 
 def _by_set(function, thetas, which, states):
-    """Apply a function of a parameter set and states to the rollouts of each set."""
+    """Apply a function of a parameter set and states, in place, to the rollouts of each set."""
     for k, theta in enumerate(thetas):
-        mine = which == k
-        if mine.any():
+        if acts(theta):
+            mine = which == k
             states[mine] = function(theta, states[mine])
     return states
