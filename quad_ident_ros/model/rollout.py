@@ -40,7 +40,7 @@ def _turn(h, places, speed, command, lag, s, rotors, left):
 
 
 @compiled(fused=True, inlined=True)
-def _step(x, h, u, v, places, theta, speed, command, lag, s, rotors, work):
+def step(x, h, u, v, places, theta, speed, command, lag, s, rotors, work):
     """Advance the states x (13, LANES) by h (LANES,) s; speed becomes that at the end."""
     k, y, total = work[0], work[1], work[2]
     for i in range(s.shape[1]):
@@ -125,7 +125,7 @@ def _kernel(lanes):
                     for n in range(INPUT):
                         u[n, i] = inputs[row, n]
                 for _ in range(substeps):
-                    _step(x, h, u, v, places, theta, speed, command, theta[LAG], s, rotors, work)
+                    step(x, h, u, v, places, theta, speed, command, theta[LAG], s, rotors, work)
                 for i in range(min(lanes, batch - begin)):
                     for n in range(STATE):
                         out[begin + i, k + 1, n] = x[n, i]

@@ -1,0 +1,93 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Flights with known truth: the vehicle model with effects, under control, along a trajectory."""
+
+import numpy as np
+
+from quad_ident_ros import schema
+from quad_ident_ros.data.record import FlightRecord
+from quad_ident_ros.effects.registry import SLICES, vector
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.flight.controller import gains_of, MEMORY, mixer_of
+from quad_ident_ros.flight.loop import close_loop
+from quad_ident_ros.flight.measure import CLEAN, errors_of, measured
+from quad_ident_ros.flight.trajectories import plan, scale_of
+from quad_ident_ros.model.attitude import quaternion_from_euler, rotation_matrix
+from quad_ident_ros.model.dynamics import STATES
+from quad_ident_ros.model.rigid_body import rotor_table, STATE, vehicle_vector
+from quad_ident_ros.model.sensors import recorded, turn
+
+FULL_VOLTAGE = 16.8     # V at the start of every flight: the voltage of reference
+FALL = 0.015            # V/s at hover power: some four minutes of flight with four cells
+LONGEST_STEP = 0.0025   # s, of the integration
+SETTLING = 8.0          # s of hover before the record, in which the integrals find the trim
+RATES = (50.0, 2000.0)  # Hz
+SHORTEST, LONGEST = 2.0, 3600.0     # s
+
+
+def fly_closed_loop(vehicle, effects, trajectory, *, duration=30.0, rate=100.0, seed=0,
+                    noise=CLEAN):
+    """
+    Return the FlightRecord of a closed-loop flight, in the columns of the record format.
+
+    The controller acts at the record's samples, and its commands are held between them. It knows
+    the nominal vehicle alone, and sees the recorded state with its noise, without delays. Before
+    the record the vehicle hovers until it is trimmed; at t = 0 the rotors follow the first
+    command. vbat begins at FULL_VOLTAGE and falls with the energy drawn, by FALL at hover.
+    Args: effects {effect: {parameter: value}} of the truth; trajectory: a name of TRAJECTORIES;
+    duration s; rate Hz; seed of trajectory and noise; noise: Sensors. Raises InputError for what
+    cannot be, and where the vehicle leaves its course.
+    """
+    duration = schema.number('duration (s)', duration, SHORTEST, LONGEST)
+    rate = schema.number('rate (Hz)', rate, *RATES)
+    seed = schema.integer('seed', seed, 0)
+    theta = vector(effects, vehicle)
+    course = plan(trajectory, vehicle, duration, seed)
+    t = np.arange(int(duration * rate + 1e-6) + 1) / rate
+    *places, yaw, yaw_rate = course(t)
+    wanted = np.concatenate([*places, yaw[:, None], yaw_rate[:, None]], axis=1)
+    errors = errors_of(noise, len(t), 1 / rate, seed)
+    states, commands, speeds, forces, drop = _flown(vehicle, theta, wanted, errors[:, :12], rate)
+    states = recorded(theta, states)
+    _check_course(vehicle, states, wanted, t)
+    states, forces, rows = measured(noise, t, states, forces, errors, seed)
+    rng = np.random.default_rng([seed, 4])
+    columns = dict(zip(STATES, states.T, strict=True))
+    columns |= {f'cmd{j}': column for j, column in enumerate(commands.T, 1)}
+    if noise.rotors:
+        speeds = speeds * (1 + noise.white.rotor * rng.standard_normal(speeds.shape))
+        columns |= {f'rotor{j}': column for j, column in enumerate(speeds.T, 1)}
+    columns |= dict(zip(('ax', 'ay', 'az'), forces.T, strict=True))
+    if noise.voltage:
+        columns['vbat'] = (FULL_VOLTAGE - drop
+                           + noise.white.voltage * rng.standard_normal(len(t)))
+    info = {'name': f'{vehicle.name}_{trajectory}_{seed}', 'vehicle': vehicle.name,
+            'trajectory': trajectory, 'seed': seed, 'effects': effects}
+    return FlightRecord(t[rows], {name: values[rows] for name, values in columns.items()}, info)
+
+
+def _flown(vehicle, theta, wanted, errors, rate):
+    """Return true states, commands, rotor speeds, forces and fall of the voltage by sample."""
+    tilt = rotation_matrix(turn(theta[SLICES['attitude_misalignment']]))
+    x, memory = np.zeros(STATE), np.zeros(MEMORY)
+    x[:3] = wanted[0, :3]
+    x[6:10] = quaternion_from_euler([0.0, 0.0, wanted[0, 12]])
+    still = np.tile(wanted[0], (int(SETTLING * rate), 1))
+    for phase, seen, clock in ((still, np.zeros((len(still), 12)), 0.0), (wanted, errors, 1.0)):
+        count, n = len(phase), len(vehicle.rotors)
+        out = (np.empty((count, STATE)), np.empty((count, n)), np.empty((count, n)),
+               np.empty((count, 3)), np.empty(count))
+        close_loop(vehicle_vector(vehicle), rotor_table(vehicle), theta[:, None].copy(), tilt,
+                   1 / rate, clock, clock * FALL, LONGEST_STEP, x, phase,
+                   np.ascontiguousarray(seen), gains_of(vehicle), mixer_of(vehicle), memory, *out)
+    return out
+
+
+def _check_course(vehicle, states, wanted, t):
+    """Raise InputError where the vehicle is away from its course by more than it spans."""
+    away = np.linalg.norm(states[:, :3] - wanted[:, :3], axis=1)
+    lost = ~(away < 2 * scale_of(vehicle, np.inf).length)
+    if lost.any():
+        raise InputError(f'vehicle {vehicle.name} leaves its course at t = '
+                         f'{t[int(np.argmax(lost))]:g} s: with these effects it cannot be flown; '
+                         'make them smaller, or the limits of the rotors wider')

@@ -1,0 +1,108 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The closed loop of plant and controller, compiled."""
+
+import numpy as np
+
+from quad_ident_ros.compiled import compiled
+from quad_ident_ros.effects.registry import SLICES
+from quad_ident_ros.flight.controller import control, SEEN
+from quad_ident_ros.model.rigid_body import derivative, INPUT, prepare, STATE
+from quad_ident_ros.model.rollout import step
+from quad_ident_ros.model.situation import (
+    COM_X,
+    FX,
+    HOVER_SPEEDS,
+    MASS,
+    ROTOR_ROWS,
+    ROWS,
+    SPEED,
+    TIME,
+)
+
+DELAY, LAG = SLICES['actuation_delay'].start, SLICES['motor_lag'].start
+BIAS = SLICES['gyro_bias'].start
+
+
+@compiled
+def _look(x, arm, tilt, bias, error, seen):
+    """Write what the controller sees (SEEN,) of the centre of mass's state x: model.sensors."""
+    w, a, b, c = x[6:10]
+    rotation = np.array([
+        [1.0 - 2.0 * (b * b + c * c), 2.0 * (a * b - w * c), 2.0 * (a * c + w * b)],
+        [2.0 * (a * b + w * c), 1.0 - 2.0 * (a * a + c * c), 2.0 * (b * c - w * a)],
+        [2.0 * (a * c - w * b), 2.0 * (b * c + w * a), 1.0 - 2.0 * (a * a + b * b)]])
+    seen[:3] = x[:3] - rotation @ arm + error[:3]
+    seen[3:6] = x[3:6] - rotation @ np.cross(x[10:13], arm) + error[3:6]
+    small = np.array([[1.0, -error[8], error[7]], [error[8], 1.0, -error[6]],
+                      [-error[7], error[6], 1.0]])
+    seen[6:15] = (rotation @ tilt @ small).ravel()
+    seen[15:18] = x[10:13] + bias + error[9:12]
+
+
+@compiled(fused=True)
+def close_loop(v, places, theta, tilt, dt, clock, fall, longest, x, wanted, errors, gains, mixer,
+               memory, states, commands, speeds, forces, drop):
+    """
+    Fly and write what is at each sample: true states (N, 13), commands and speeds (N, n) rad/s.
+
+    The controller acts at each sample, and its command is held to the next. forces (N, 3) m/s^2 is
+    the specific force at the body origin just after, drop (N,) V how far the voltage fell. Before
+    the first sample the first command is held. x (13,) is the state at the start and at the end.
+    Args: v, places: see rigid_body; theta (P, 1); tilt (3, 3) from body to attitude frame; dt s
+    between samples; clock 0 where the time of flight stands still; fall V/s at hover; longest s of
+    an integration step; wanted (N, WANTED), errors (N, 12), gains, mixer, memory: see controller.
+    """
+    count, n = len(wanted), len(places)
+    s, rotors = np.zeros((ROWS, 1)), np.zeros((n, ROTOR_ROWS, 1))
+    state, change, work = np.empty((STATE, 1)), np.empty((STATE, 1)), np.empty((4, STATE, 1))
+    u, h = np.zeros((INPUT, 1)), np.empty(1)
+    speed, command = np.empty((n, 1)), np.empty((n, 1))
+    seen, force, lever = np.empty(SEEN), np.empty(3), np.empty(3)
+    state[:, 0] = x
+    prepare(v, places, theta, s, rotors)
+    arm = s[COM_X:COM_X + 3, 0].copy()
+    bias = theta[BIAS:BIAS + 3, 0]
+    whole = int(np.floor(theta[DELAY, 0] / dt + 1e-9))
+    part = max(theta[DELAY, 0] / dt - whole, 0.0)
+    if part < 1e-9:
+        part = 0.0
+    energy = 0.0
+    for k in range(count):
+        states[k] = state[:, 0]
+        _look(state[:, 0], arm, tilt, bias, errors[k], seen)
+        control(seen, wanted[k], dt, gains, mixer, memory, commands[k])
+        if k == 0:
+            speed[:, 0] = commands[0]
+        drop[k] = fall * energy
+        u[5, 0] = drop[k]
+        s[TIME, 0] = clock * k * dt
+        # The command that acts changes within the sample where the delay is no multiple of it.
+        before = max(k - whole - (1 if part > 0.0 else 0), 0)
+        for j in range(n):
+            command[j, 0] = commands[before, j]
+            rotors[j, SPEED, 0] = speed[j, 0] if theta[LAG, 0] > 0.0 else command[j, 0]
+            speeds[k, j] = rotors[j, SPEED, 0]
+        derivative(state, u, v, places, theta, s, rotors, change)
+        for i in range(3):
+            force[i] = s[FX + i, 0] / s[MASS, 0]
+        rate = state[10:13, 0]
+        lever[:] = np.cross(change[10:13, 0], arm) + np.cross(rate, np.cross(rate, arm))
+        forces[k] = force - lever
+        power = 0.0
+        for j in range(n):
+            power += speeds[k, j] ** 3
+        energy += dt * power * n * n / s[HOVER_SPEEDS, 0] ** 3
+        for piece in range(2):
+            length = part * dt if piece == 0 else (1.0 - part) * dt
+            if length == 0.0:
+                continue
+            for j in range(n):
+                command[j, 0] = commands[before if piece == 0 else max(k - whole, 0), j]
+            pieces = int(np.ceil(length / longest - 1e-9))
+            h[0] = length / pieces
+            for _ in range(pieces):
+                step(state, h, u, v, places, theta, speed, command, theta[LAG], s, rotors, work)
+                if clock == 0.0:
+                    s[TIME, 0] = 0.0
+    x[:] = state[:, 0]
