@@ -7,7 +7,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.special import chdtri
 
-from quad_ident_ros.greybox.linear import errors_along, linear_of, new_starts, STEP, tangent_of
+from quad_ident_ros.greybox.linear import (
+    errors_along,
+    linear_of,
+    linearise,
+    new_starts,
+    STEP,
+    tangent_of,
+)
 from quad_ident_ros.greybox.noise import MAD, quick_noise, whole_noise
 from quad_ident_ros.greybox.parameters import limits
 
@@ -167,7 +174,7 @@ def _descend(flights, vehicle, z, columns, noise, starts, iterations, clock, don
             noise = [whole_noise(part, linear.freedom)
                      for part, linear in zip(aligned, linears, strict=True)]
         # In units of the noise, so that directions that are not determined do not count.
-        length = np.sqrt(max(step @ normal.information @ step, 0.0) / len(step))
+        length = np.sqrt(max(step @ normal.information @ step, 0.0) / max(len(step), 1))
         if share == 1.0 and length <= done:
             converged = True
             break
