@@ -18,9 +18,9 @@ import yaml
 from quad_ident_ros.data.bag import read_bag_messages
 from quad_ident_ros.data.csv import write_csv
 from quad_ident_ros.data.record import FlightRecord
+from quad_ident_ros.data.table import record_from_table
 from quad_ident_ros.data.topics import FLIGHT_TOPICS, RunNotice, stamp_ns
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.nodes.messages import record_from_message
 from quad_ident_ros.nodes.qos import latched, STREAM
 
 PATIENCE = 120.0     # s beyond the flight after which something is wrong
@@ -146,7 +146,7 @@ def _listen(node, name, vehicle):
         vehicle.run, vehicle.began = RunNotice.from_json(message.data), time.monotonic()
 
     def on_record(message):
-        record = record_from_message(message)
+        record = record_from_table(message)
         vehicle.stamps.append(record.info['start_ns']
                               + np.rint(record.t * 1e9).astype(np.int64))
         if vehicle.landed is None and vehicle.stamps[-1][-1] >= vehicle.run.stop_ns:

@@ -21,7 +21,7 @@ def main():
     matplotlib.use('Agg')
     import matplotlib.pyplot as plt
 
-    vehicle = load_vehicle('paper_quadrotor')
+    vehicle = load_vehicle('hummingbird')
     figure, panels = plt.subplots(3, 4, figsize=(11, 7.5), layout='constrained')
     for panel, name in zip(panels.flat, TRAJECTORIES, strict=False):
         record = fly_closed_loop(vehicle, EFFECTS, name, duration=DURATION, seed=SEED)

@@ -72,7 +72,7 @@ def run(options):
     """Fly, write the record and say what was flown."""
     schema.check_keys('--noise', {options.noise: None}, SENSORS)
     vehicle = load_vehicle(options.vehicle)
-    effects = effects_from(options.effect, getattr(vehicle, 'effects', {}))
+    effects = effects_from(options.effect, vehicle.effects)
     path = Path(options.output)
     if not path.name.endswith(('.csv', '.csv.gz')):
         raise InputError(f'--output {options.output}: expected the name of a .csv or .csv.gz file')

@@ -3,14 +3,12 @@
 """`quad_ident identify`: fit the four models to recorded flights."""
 
 import argparse
-from pathlib import Path
 import sys
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn
 
-from quad_ident_ros.data.csv import read_csv
-from quad_ident_ros.data.replay import read_bag
+from quad_ident_ros.data.load import load_all
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.identify.identify import identify, Settings, with_budget
 from quad_ident_ros.identify.methods import METHODS
@@ -32,7 +30,7 @@ def add(commands):
         epilog='A bag of our recorder knows its trim and that it starts at rest; for a CSV file '
                'say it:\n  quad_ident identify flight_1.csv --trim hover --initial-state rest')
     parser.add_argument('flights', nargs='+', metavar='FLIGHT',
-                        help='.csv, .csv.gz, the folder of a bag, or an .mcap file')
+                        help='.csv, .csv.gz, the folder of a bag, or an .mcap or .db3 file')
     parser.add_argument('--method', choices=('all', *METHODS), default='all')
     parser.add_argument('--seed', type=int, default=0, help='seed of the searches (default 0)')
     parser.add_argument('--evaluations', type=int, metavar='N',
@@ -76,7 +74,7 @@ def run(options):
         pole_bounds=options.pole_bounds, gain_bounds=options.gain_bounds,
         initial_state=options.initial_state, trim=trim)
     settings = with_budget(settings, options.evaluations)
-    records = [record for path in options.flights for record in load(path)]
+    records = [record for path in options.flights for record in load_all(path)]
     with progress_bar() as bar:
         task = bar.add_task('fitting', total=len(settings.methods))
 
@@ -91,13 +89,6 @@ def run(options):
         save_responses(result, options.picture, 'Measured and fitted responses')
     if options.json:
         write_json(options.json, as_data(result))
-
-
-def load(path):
-    """Return the flight records in a file or bag; raises InputError."""
-    if Path(path).is_dir() or str(path).endswith('.mcap'):
-        return read_bag(path)
-    return [read_csv(path)]
 
 
 def progress_bar():

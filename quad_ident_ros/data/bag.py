@@ -10,6 +10,7 @@ import shutil
 
 from rosbags.highlevel import AnyReader
 from rosbags.interfaces import (
+    Nodetype,
     Qos,
     QosDurability,
     QosHistory,
@@ -33,6 +34,24 @@ _QOS = Qos(QosHistory.KEEP_ALL, 0, QosReliability.RELIABLE, QosDurability.VOLATI
 @cache
 def _typestore():
     return get_typestore(Stores.ROS2_JAZZY)
+
+
+def serialize(msgtype, fields):
+    """Return the serialized message of a type of ROS 2 Jazzy, given its fields as nested dicts."""
+    return bytes(_typestore().serialize_cdr(_message(msgtype, fields), msgtype))
+
+
+def _message(msgtype, fields):
+    store = _typestore()
+    values = {}
+    for name, (node, kind) in store.fielddefs[msgtype][1]:
+        if node == Nodetype.NAME:
+            values[name] = _message(kind, fields[name])
+        elif node == Nodetype.SEQUENCE and kind[0][0] == Nodetype.NAME:
+            values[name] = [_message(kind[0][1], entry) for entry in fields[name]]
+        else:
+            values[name] = fields[name]
+    return store.types[msgtype](**values)
 
 
 class BagWriter:
@@ -152,7 +171,7 @@ def read_bag_messages(path, topics=None):
             for connection, stamp, data in reader.messages(wanted) if wanted else ():
                 yield connection.topic, stamp, reader.deserialize(data, connection.msgtype)
     except Exception as error:  # a damaged bag makes the reader raise anything
-        reason = ' '.join(str(error).split()) or type(error).__name__
+        reason = ' '.join(str(error).split())[:200] or type(error).__name__
         raise InputError(f'{path}: this bag cannot be read ({reason}); check it with: ros2 bag '
                          'info FOLDER, or record it again') from error
 

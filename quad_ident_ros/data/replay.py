@@ -1,15 +1,22 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Flight records from a bag that the recorder, or `ros2 bag record`, has written."""
+"""Flight records from a bag of the recorder, of `ros2 bag record` or of `quad_ident convert`."""
 
 from contextlib import suppress
 from pathlib import Path
 
+import numpy as np
+
 from quad_ident_ros.data.bag import read_bag_messages
 from quad_ident_ros.data.buffer import Limits, RecordBuffer
 from quad_ident_ros.data.joiner import Joiner
+from quad_ident_ros.data.table import record_from_table
 from quad_ident_ros.data.topics import (
+    ARRAY_TYPE,
+    EXACT_TOPIC,
     FLIGHT_TOPICS,
+    not_unit,
+    OTHER_SHAPE,
     raw_columns,
     RUN_TOPIC,
     RUN_TYPE,
@@ -23,24 +30,34 @@ UNBOUNDED = Limits(samples=2 ** 62, seconds=float('inf'))
 _TYPES = {RUN_TOPIC: RUN_TYPE, **{topic.name: topic.type for topic in FLIGHT_TOPICS.values()}}
 
 
-class _FlightTopics:
-    """The topics of a flight in any namespace: what else is in a bag is not even decoded."""
+class _Named:
+    """Topics of these names in any namespace: what else is in a bag is not even decoded."""
+
+    def __init__(self, names):
+        self._names = names
 
     def __contains__(self, topic):
-        return topic.rpartition('/')[2] in _TYPES
+        return topic.rpartition('/')[2] in self._names
 
 
 def read_bag(path):
     """
     Return the flight records in a bag, one per announced run, joined as the recorder does.
 
+    Where the bag holds whole records, as `quad_ident convert` writes them, it is these.
+
     Raises InputError for a path that is no bag, or a bag with none of the topics of a flight or
     with those of several vehicles.
     """
     if (Path(path) / 'bag' / 'metadata.yaml').exists():   # a recording of the recorder
         path = Path(path) / 'bag'
+    exact = [_exact(path, topic, message)
+             for topic, _, message in read_bag_messages(path, _Named((EXACT_TOPIC,)))
+             if message.__msgtype__ == ARRAY_TYPE]
+    if exact:
+        return exact
     messages, spaces = [], set()
-    for topic, _, message in read_bag_messages(path, _FlightTopics()):
+    for topic, _, message in read_bag_messages(path, _Named(_TYPES)):
         space, _, name = topic.rpartition('/')
         if message.__msgtype__ != _TYPES[name]:
             continue   # another program's
@@ -53,19 +70,53 @@ def read_bag(path):
     present = {name for _, name, _ in messages}
     topics = [name for name in FLIGHT_TOPICS if name in present]
     if not topics:
-        raise InputError(f'{path}: has none of the topics {", ".join(FLIGHT_TOPICS)}')
-    joiner, buffer = Joiner(topics), RecordBuffer(raw_columns(topics), UNBOUNDED)
-    records = []
-    for space, name, message in messages:
-        if name != RUN_TOPIC:
-            rows = joiner.add(name, stamp_ns(message), FLIGHT_TOPICS[name].values(message))
-            records += buffer.add_rows(rows)
-        elif space in spaces:
-            with suppress(InputError):   # a flight needs no notice, and `run` is a common name
-                records += buffer.add_run(RunNotice.from_json(message.data))
-    records += buffer.add_rows(joiner.drain())
-    records += buffer.complete(run_over=True)
+        raise InputError(f'{path}: has none of the topics {", ".join(FLIGHT_TOPICS)}; for those '
+                         'of others give a mapping file (--mapping)')
+    samples = [(space, name, message if name == RUN_TOPIC else _sample(path, name, message))
+               for space, name, message in messages]
+    try:
+        records = _joined(topics, spaces, samples)
+    except InputError as error:
+        raise InputError(f'{path}: {error}') from None
     if not records:
         raise InputError(f'{path}: its topics share no stamps, so there is no flight in it')
     return [type(record)(record.t, record.columns, {**record.info, 'source': str(path)})
             for record in records]
+
+
+def _joined(topics, spaces, samples):
+    joiner, buffer = Joiner(topics), RecordBuffer(raw_columns(topics), UNBOUNDED)
+    records = []
+    for space, name, sample in samples:
+        if name != RUN_TOPIC:
+            records += buffer.add_rows(joiner.add(name, *sample))
+        elif space in spaces:
+            # A flight needs no notice, and `run` is a common name.
+            with suppress(InputError, *OTHER_SHAPE):
+                records += buffer.add_run(RunNotice.from_json(sample.data))
+    records += buffer.add_rows(joiner.drain())
+    return records + buffer.complete(run_over=True)
+
+
+def _sample(path, name, message):
+    """Return stamp (ns) and values of a message; InputError for one of another shape."""
+    try:
+        stamp = int(np.int64(stamp_ns(message)))
+        values = tuple(map(float, FLIGHT_TOPICS[name].values(message)))
+    except OTHER_SHAPE:
+        raise InputError(f'{path}, topic {name}: the bag defines {_TYPES[name]} otherwise than '
+                         'ROS 2 does; record it again') from None
+    if name == 'pose' and not_unit(values[3:]):
+        raise InputError(f'{path}, topic {name}, stamp {stamp} ns: the quaternion has not the '
+                         'length 1; record a pose with an attitude')
+    return stamp, values
+
+
+def _exact(path, topic, message):
+    where = f'{path}, topic {topic}'
+    try:
+        record = record_from_table(message, where)
+    except OTHER_SHAPE as error:   # InputError is a ValueError
+        text = str(error)
+        raise InputError(text if text.startswith(where) else f'{where}: {text}') from None
+    return type(record)(record.t, record.columns, {**record.info, 'source': str(path)})

@@ -61,6 +61,10 @@ FLIGHT_TOPICS = {topic.name: topic for topic in (
 RUN_TOPIC = 'run'
 RUN_TYPE = 'std_msgs/msg/String'
 
+# A whole record in one message, number for number, as `quad_ident convert` writes it.
+EXACT_TOPIC = 'flight_record'
+ARRAY_TYPE = 'std_msgs/msg/Float64MultiArray'
+
 # The stamp (ns) up to which a recorder has joined: what lets a simulator run as fast as it keeps
 # up. The middleware's own acknowledgements come every 3 s only.
 JOINED_TOPIC = 'joined_until'
@@ -70,6 +74,18 @@ def stamp_ns(message):
     """Return the stamp of a message with a header, ns."""
     stamp = message.header.stamp
     return stamp.sec * 1_000_000_000 + stamp.nanosec
+
+
+# What a message raises whose type has a name that we know and a definition that we do not.
+OTHER_SHAPE = (AttributeError, OverflowError, TypeError, ValueError)
+
+
+def not_unit(quaternion):
+    """Return which quaternions (..., 4) are no attitude; those with nan are left to others."""
+    q = np.asarray(quaternion, float)
+    finite = np.isfinite(q).all(axis=-1)
+    length = np.linalg.norm(np.clip(q, -10.0, 10.0), axis=-1)
+    return finite & ~((length > 0.5) & (length < 2.0))
 
 
 def raw_columns(topics):
@@ -91,7 +107,8 @@ def record_columns(names, table):
     body = [columns.pop(name, None) for name in ('body_vx', 'body_vy', 'body_vz')]
     if body[0] is not None and 'qw' in columns:
         quaternion = np.stack([columns[name] for name in ('qw', 'qx', 'qy', 'qz')], axis=-1)
-        velocity = np.einsum('nij,jn->in', rotation_matrix(quaternion), np.stack(body))
+        with np.errstate(over='ignore', invalid='ignore'):   # the record refuses what comes of it
+            velocity = np.einsum('nij,jn->in', rotation_matrix(quaternion), np.stack(body))
         columns.update(zip(('vx', 'vy', 'vz'), velocity, strict=True))
     return columns
 

@@ -25,8 +25,10 @@ class Parameter:
     def scale(self, vehicle):
         """Return the vehicle's own measure of this parameter's unit: its mass, arm or inertia."""
         mass, arm = vehicle.mass, vehicle.arm_length
+        weight = mass * vehicle.gravity
         return {'kg': mass, 'kg/s': mass, 'kg/m': mass, 'kg m/s': mass * arm, 'm': arm,
-                'kg m^2': vehicle.inertia[0]}.get(self.unit, 1.0)
+                'kg m^2': vehicle.inertia[0],
+                'N': weight, 'N m': weight * arm}.get(self.unit, 1.0)
 
 
 @dataclass(frozen=True)
@@ -39,8 +41,8 @@ class Effect:
     or None (rows of the tables: model.situation; p (P, LANES) has its parameters from row k on):
     body(p, k, s): mass, inertia, centre of mass, before the flight; air(p, k, s): the wind;
     thrust(p, k, s, rotors): factors on the rotors' thrust; wrench(p, k, s, rotors): forces of
-    the rotors, forces and moments on the body. actuator: 'delay' or 'lag', where its parameter is one
-    of the actuators; sensor: 'attitude' or 'rate', where its parameters are those of a sensor;
+    the rotors, forces and moments on the body. actuator: 'delay' or 'lag', where its parameter is
+    one of the actuators; sensor: 'attitude' or 'rate', where its parameters are those of a sensor;
     per_rotor: each parameter belongs to one rotor, and one at a time is off.
     """
 

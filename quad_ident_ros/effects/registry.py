@@ -17,6 +17,7 @@ from quad_ident_ros.effects import (
     blade_flapping,
     body_drag,
     com_offset,
+    external_wrench,
     ground_effect,
     gyro_bias,
     inertia_mismatch,
@@ -34,8 +35,10 @@ EFFECTS = {module.EFFECT.name: module.EFFECT for module in (
     motor_lag, actuation_delay, rotor_drag, body_drag, wind, inflow, ground_effect, battery_sag,
     thrust_scale, mass_offset, inertia_mismatch, com_offset, rotor_fault, rotor_gyro,
     blade_flapping, attitude_misalignment, gyro_bias)}
+# Not a cause but a measure: the force and the moment that are lacking, whatever they come from.
+LACKING = external_wrench.EFFECT
 
-PARAMETERS = tuple((effect.name, parameter) for effect in EFFECTS.values()
+PARAMETERS = tuple((effect.name, parameter) for effect in (*EFFECTS.values(), LACKING)
                    for parameter in effect.parameters)
 NULL = np.array([parameter.null for _, parameter in PARAMETERS])
 SLICES = {}
@@ -63,6 +66,8 @@ def vector(effects, vehicle, where='effects'):
     for name, values in effects.items():
         effect = EFFECTS[name]
         known = [parameter.name for parameter in effect.parameters]
+        if effect.per_rotor:
+            known = known[:len(vehicle.rotors)]
         schema.check_keys(f'{where}: {name}', values, known)
         for key, value in values.items():
             k = known.index(key)
@@ -103,10 +108,10 @@ def _chain(hook):
         @compiled(inlined=True)
         def chain(_theta, _s, _rotors):
             pass
-    for name, effect in reversed(EFFECTS.items()):
+    for effect in (LACKING, *reversed(EFFECTS.values())):
         function = getattr(effect, hook)
         if function is not None:
-            chain = first_then(function, SLICES[name].start, chain)
+            chain = first_then(function, SLICES[effect.name].start, chain)
     return chain
 
 

@@ -12,7 +12,7 @@ MOST_ROTORS = 8
 @compiled(fused=True, inlined=True)
 def thrust(p, k, _, rotors):
     """Lower the thrust of each rotor by its loss."""
-    for j in range(rotors.shape[0]):
+    for j in range(min(rotors.shape[0], MOST_ROTORS)):
         for i in range(rotors.shape[2]):
             rotors[j, GAIN, i] *= 1.0 - p[k + j, i]
 

@@ -10,7 +10,7 @@ from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.actuators import actuated
 from quad_ident_ros.model.rigid_body import INPUT, rotor_table, STATE, vehicle_vector
 from quad_ident_ros.model.rollout import roll_out, roll_out_one
-from quad_ident_ros.model.sensors import recorded, underlying
+from quad_ident_ros.model.sensors import acts, recorded, underlying
 
 STATES = ('px', 'py', 'pz', 'vx', 'vy', 'vz', 'qw', 'qx', 'qy', 'qz', 'wx', 'wy', 'wz')
 LONGEST_STEP = 0.01     # s, of the integration: errors of about 1e-6 of what happens in it
@@ -21,8 +21,8 @@ class Course:
     """
     What is given along a flight.
 
-    t (N,) s; commands (N, n) rad/s, the rotors', each held to the next sample; volt_drop (N,) V
-    below the voltage of reference.
+    t (N,) s from its start; commands (N, n) rad/s, the rotors', each held to the next sample;
+    volt_drop (N,) V below the voltage of reference.
     """
 
     t: np.ndarray
@@ -41,7 +41,7 @@ def course_of(record, vehicle, reference_voltage=None):
     drop = np.zeros(len(record))
     if reference_voltage is not None and record.has('vbat'):
         drop = reference_voltage - record.columns['vbat']
-    return Course(np.ascontiguousarray(record.t), np.ascontiguousarray(commands), drop)
+    return Course(record.t - record.t[0], np.ascontiguousarray(commands), drop)
 
 
 def states_of(record):
@@ -55,12 +55,13 @@ def states_of(record):
     return states
 
 
-def predict(vehicle, thetas, course, starts, first, count, which=None):
+def predict(vehicle, thetas, course, starts, first, count, which=None, constants=None):
     """
     Return what rollouts along a flight would record, (B, count + 1, 13).
 
     Args: thetas (T, P) parameter sets; starts (B, 13) recorded states at the samples first (B,);
-    count: samples to go; which (B,) the set of each rollout, by default the first for all.
+    count: samples to go; which (B,) the set of each rollout, by default the first for all;
+    constants (T, 16) of rigid_body that replace the vehicle's.
     """
     thetas = np.atleast_2d(np.asarray(thetas, float))
     which = np.zeros(len(starts), np.int64) if which is None else np.asarray(which, np.int64)
@@ -68,20 +69,22 @@ def predict(vehicle, thetas, course, starts, first, count, which=None):
     followed, speeds = actuated(course.t, course.commands, thetas)
     inputs = np.zeros((len(course.t), INPUT))
     inputs[:, 5] = course.volt_drop
-    x0 = _by_set(underlying, thetas, which, np.asarray(starts, float))
+    x0 = _by_set(underlying, thetas, which, np.array(starts, float))
     substeps = max(1, int(np.ceil(np.median(np.diff(course.t)) / LONGEST_STEP - 1e-6)))
     out = np.empty((len(x0), count + 1, STATE))
     kernel = roll_out if len(x0) > 1 else roll_out_one
-    kernel(vehicle_vector(vehicle), rotor_table(vehicle), np.ascontiguousarray(thetas), which,
-           np.ascontiguousarray(x0), course.t, followed, speeds, inputs, first, count, substeps,
-           out)
+    if constants is None:
+        constants = np.tile(vehicle_vector(vehicle), (len(thetas), 1))
+    kernel(np.ascontiguousarray(constants), rotor_table(vehicle), np.ascontiguousarray(thetas),
+           which, np.ascontiguousarray(x0), course.t, followed, speeds, inputs, first, count,
+           substeps, out)
     return _by_set(recorded, thetas, which, out)
 
 
 def _by_set(function, thetas, which, states):
-    """Apply a function of a parameter set and states to the rollouts of each set."""
+    """Apply a function of a parameter set and states, in place, to the rollouts of each set."""
     for k, theta in enumerate(thetas):
-        mine = which == k
-        if mine.any():
+        if acts(theta):
+            mine = which == k
             states[mine] = function(theta, states[mine])
     return states

@@ -1,9 +1,10 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-The equations of motion: derived (newton_euler) and as the paper prints them (printed).
+The equations of motion as the paper prints them, and their integration.
 
-Parameter vector: Ix, Iy, Iz, Kfax, Kfay, Kfaz, Kftx, Kfty, Kftz, Jr, m, g, l.
+Parameter vector: Ix, Iy, Iz, Kfax, Kfay, Kfaz, Kftx, Kfty, Kftz, Jr, m, g, l. What follows from
+eqs. (1)-(12) is in rigid_body.
 """
 
 import math
@@ -12,42 +13,13 @@ import numpy as np
 
 from quad_ident_ros.compiled import compiled
 
-NEWTON_EULER, PRINTED = 0, 1
-STATE_SIZE = {NEWTON_EULER: 13, PRINTED: 12}
+STATE = 12      # position, velocity (world), Euler angles, Euler rates
 
 
 def parameter_vector(vehicle):
     """Return the constants of the equations of motion, (13,), in the order stated above."""
     return np.array([*vehicle.inertia, *vehicle.rotational_drag, *vehicle.linear_drag,
                      vehicle.rotor_inertia, vehicle.mass, vehicle.gravity, vehicle.arm_length])
-
-
-@compiled
-def newton_euler(x, u, omega_r, p, dx):
-    """
-    Write the derivative of the state into dx; the right form of the paper's eqs. (1)-(12).
-
-    State (13,): position and velocity in the world, quaternion body to world, body rate.
-    Friction is signed (K w|w|) and the body rate is a state of its own, so that there is no
-    singular attitude.
-    """
-    ix, iy, iz = p[0], p[1], p[2]
-    jr, m, g, arm = p[9], p[10], p[11], p[12]
-    w, a, b, c = x[6], x[7], x[8], x[9]
-    wx, wy, wz = x[10], x[11], x[12]
-    thrust = u[0] / m
-    for i in range(3):
-        dx[i] = x[3 + i]
-    dx[3] = 2 * (a * c + w * b) * thrust - p[6] * x[3] / m
-    dx[4] = 2 * (b * c - w * a) * thrust - p[7] * x[4] / m
-    dx[5] = (1 - 2 * (a * a + b * b)) * thrust - g - p[8] * x[5] / m
-    dx[6] = 0.5 * (-a * wx - b * wy - c * wz)
-    dx[7] = 0.5 * (w * wx + b * wz - c * wy)
-    dx[8] = 0.5 * (w * wy - a * wz + c * wx)
-    dx[9] = 0.5 * (w * wz + a * wy - b * wx)
-    dx[10] = (arm * u[1] + (iy - iz) * wy * wz - jr * omega_r * wy - p[3] * wx * abs(wx)) / ix
-    dx[11] = (arm * u[2] + (iz - ix) * wz * wx + jr * omega_r * wx - p[4] * wy * abs(wy)) / iy
-    dx[12] = (u[3] + (ix - iy) * wx * wy - p[5] * wz * abs(wz)) / iz
 
 
 @compiled
@@ -83,18 +55,9 @@ def printed(x, u, omega_r, p, dx):
 
 
 @compiled
-def derivative(model, x, u, omega_r, p, dx):
-    """Write the derivative of the state of the numbered model into dx."""
-    if model == NEWTON_EULER:
-        newton_euler(x, u, omega_r, p, dx)
-    else:
-        printed(x, u, omega_r, p, dx)
-
-
-@compiled
-def rk4(model, x, inputs, omega_r, p, period, substeps, rate_limit, out):
+def rk4(x, inputs, omega_r, p, period, substeps, rate_limit, out):
     """
-    Integrate by classical Runge-Kutta, writing the state at each sample into out (N, states).
+    Integrate by classical Runge-Kutta, writing the state at each sample into out (N, 12).
 
     Input row k (N, 4) is held from sample k to k + 1. Stops where a rate exceeds rate_limit
     (rad/s) or a state is no finite number. Returns the count of samples written and the time
@@ -108,22 +71,18 @@ def rk4(model, x, inputs, omega_r, p, period, substeps, rate_limit, out):
     for k in range(inputs.shape[0] - 1):
         u = inputs[k]
         for s in range(substeps):
-            derivative(model, x, u, omega_r[k], p, k1)
+            printed(x, u, omega_r[k], p, k1)
             for i in range(size):
                 y[i] = x[i] + 0.5 * h * k1[i]
-            derivative(model, y, u, omega_r[k], p, k2)
+            printed(y, u, omega_r[k], p, k2)
             for i in range(size):
                 y[i] = x[i] + 0.5 * h * k2[i]
-            derivative(model, y, u, omega_r[k], p, k3)
+            printed(y, u, omega_r[k], p, k3)
             for i in range(size):
                 y[i] = x[i] + h * k3[i]
-            derivative(model, y, u, omega_r[k], p, k4)
+            printed(y, u, omega_r[k], p, k4)
             for i in range(size):
                 x[i] += h / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i])
-            if model == NEWTON_EULER:
-                norm = math.sqrt(x[6] ** 2 + x[7] ** 2 + x[8] ** 2 + x[9] ** 2)
-                for i in range(6, 10):
-                    x[i] /= norm
             rate = max(abs(x[size - 3]), abs(x[size - 2]), abs(x[size - 1]))
             size_of_all = 0.0
             for i in range(size):

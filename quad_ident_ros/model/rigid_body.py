@@ -3,8 +3,9 @@
 """
 The equations of motion of a multirotor with all effects, many rollouts side by side.
 
-Vehicle vector: mass, Ix, Iy, Iz, gravity, thrust and torque coefficient, rotor radius, linear drag
-(3), rotational drag (3), 1 where the linear drag acts along world axes, sum of the hover speeds.
+Vehicle vector, (16,) or (16, LANES): mass, Ix, Iy, Iz, gravity, thrust and torque coefficient,
+rotor radius, linear drag (3), rotational drag (3), 1 where the linear drag acts along world axes,
+sum of the hover speeds.
 """
 
 import math
@@ -48,15 +49,20 @@ from quad_ident_ros.model.situation import (
     R21,
     R22,
     RADIUS,
+    ROTOR_ROWS,
+    ROWS,
     RX,
     RY,
     RZ,
     SPEED,
     SPEEDS,
+    SPIN_UP,
     SPINS,
+    TIME,
     UX,
     UY,
     UZ,
+    VOLT_DROP,
     VX,
     VY,
     VZ,
@@ -91,9 +97,9 @@ def rotor_table(vehicle):
 def prepare(v, places, theta, s, rotors):
     """Write what stays the same along a flight: mass, inertia, centre of mass, lever arms."""
     for i in range(s.shape[1]):
-        s[MASS, i], s[IX, i], s[IY, i], s[IZ, i] = v[0], v[1], v[2], v[3]
+        s[MASS, i], s[IX, i], s[IY, i], s[IZ, i] = v[0, i], v[1, i], v[2, i], v[3, i]
         s[COM_X, i] = s[COM_Y, i] = s[COM_Z, i] = 0.0
-        s[RADIUS, i], s[HOVER_SPEEDS, i] = v[7], v[15]
+        s[RADIUS, i], s[HOVER_SPEEDS, i] = v[7, i], v[15, i]
         s[WIND_X, i] = s[WIND_Y, i] = s[WIND_Z, i] = 0.0
     BODY(theta, s)
     AIR(theta, s)
@@ -155,10 +161,10 @@ def wrench(v, places, theta, s, rotors):
     for j in range(rotors.shape[0]):
         for i in range(s.shape[1]):
             rotors[j, HX, i] = rotors[j, HY, i] = 0.0
-            rotors[j, HZ, i] = v[5] * rotors[j, SPEED, i] ** 2 * rotors[j, GAIN, i]
+            rotors[j, HZ, i] = v[5, i] * rotors[j, SPEED, i] ** 2 * rotors[j, GAIN, i]
     WRENCH(theta, s, rotors)
     for j in range(rotors.shape[0]):
-        spin = places[j, 3] * v[6]
+        spin = places[j, 3]
         for i in range(s.shape[1]):
             x, y, z = rotors[j, RX, i], rotors[j, RY, i], rotors[j, RZ, i]
             hx, hy, hz = rotors[j, HX, i], rotors[j, HY, i], rotors[j, HZ, i]
@@ -167,7 +173,7 @@ def wrench(v, places, theta, s, rotors):
             s[FZ, i] += hz
             s[MX, i] += y * hz - z * hy
             s[MY, i] += z * hx - x * hz
-            s[MZ, i] += x * hy - y * hx + spin * rotors[j, SPEED, i] ** 2
+            s[MZ, i] += x * hy - y * hx + spin * v[6, i] * rotors[j, SPEED, i] ** 2
 
 
 @compiled(fused=True, inlined=True)
@@ -179,18 +185,17 @@ def derivative(x, u, v, places, theta, s, rotors, dx):
     u (INPUT, LANES) what acts besides the rotors.
     """
     _place(x, v, s)
-    world = v[14] != 0.0
     for i in range(s.shape[1]):
         s[FX, i] = s[FY, i] = s[FZ, i] = 0.0
-        if not world:
-            s[FX, i] = -v[8] * s[AX, i]
-            s[FY, i] = -v[9] * s[AY, i]
-            s[FZ, i] = -v[10] * s[AZ, i]
+        if v[14, i] == 0.0:
+            s[FX, i] = -v[8, i] * s[AX, i]
+            s[FY, i] = -v[9, i] * s[AY, i]
+            s[FZ, i] = -v[10, i] * s[AZ, i]
         s[FZ, i] += u[0, i]
         wx, wy, wz = s[WX, i], s[WY, i], s[WZ, i]
-        s[MX, i] = u[1, i] - v[11] * wx * abs(wx)
-        s[MY, i] = u[2, i] - v[12] * wy * abs(wy)
-        s[MZ, i] = u[3, i] - v[13] * wz * abs(wz)
+        s[MX, i] = u[1, i] - v[11, i] * wx * abs(wx)
+        s[MY, i] = u[2, i] - v[12, i] * wy * abs(wy)
+        s[MZ, i] = u[3, i] - v[13, i] * wz * abs(wz)
         s[SPINS, i] = u[4, i]
     wrench(v, places, theta, s, rotors)
     for i in range(s.shape[1]):
@@ -200,11 +205,11 @@ def derivative(x, u, v, places, theta, s, rotors, dx):
             dx[k, i] = s[VX + k, i]
         dx[3, i] = s[R00, i] * fx + s[R01, i] * fy + s[R02, i] * fz
         dx[4, i] = s[R10, i] * fx + s[R11, i] * fy + s[R12, i] * fz
-        dx[5, i] = s[R20, i] * fx + s[R21, i] * fy + s[R22, i] * fz - v[4]
-        if world:
-            dx[3, i] -= v[8] * (s[VX, i] - s[WIND_X, i]) / mass
-            dx[4, i] -= v[9] * (s[VY, i] - s[WIND_Y, i]) / mass
-            dx[5, i] -= v[10] * (s[VZ, i] - s[WIND_Z, i]) / mass
+        dx[5, i] = s[R20, i] * fx + s[R21, i] * fy + s[R22, i] * fz - v[4, i]
+        if v[14, i] != 0.0:
+            dx[3, i] -= v[8, i] * (s[VX, i] - s[WIND_X, i]) / mass
+            dx[4, i] -= v[9, i] * (s[VY, i] - s[WIND_Y, i]) / mass
+            dx[5, i] -= v[10, i] * (s[VZ, i] - s[WIND_Z, i]) / mass
         w, a, b, c = x[6, i], x[7, i], x[8, i], x[9, i]
         wx, wy, wz = s[WX, i], s[WY, i], s[WZ, i]
         dx[6, i] = 0.5 * (-a * wx - b * wy - c * wz)
@@ -215,3 +220,31 @@ def derivative(x, u, v, places, theta, s, rotors, dx):
         dx[10, i] = (s[MX, i] + (iy - iz) * wy * wz) / ix
         dx[11, i] = (s[MY, i] + (iz - ix) * wz * wx) / iy
         dx[12, i] = (s[MZ, i] + (ix - iy) * wx * wy) / iz
+
+
+@compiled(fused=True)
+def derivatives(v, places, theta, t, states, speeds, accelerations, inputs, out):
+    """
+    Write the derivatives of given states, each by itself, into out (N, 13).
+
+    Args: v (16, 1), places: the vehicle; theta (P,); t (N,) s; states (N, 13) of the centre of
+    mass; speeds (N, n) rad/s of the rotors and accelerations (N, n) rad/s^2; inputs (N, INPUT).
+    """
+    x, dx = np.empty((STATE, 1)), np.empty((STATE, 1))
+    s, rotors = np.zeros((ROWS, 1)), np.zeros((places.shape[0], ROTOR_ROWS, 1))
+    parameters, u = np.empty((len(theta), 1)), np.empty((INPUT, 1))
+    for k in range(len(theta)):
+        parameters[k, 0] = theta[k]
+    prepare(v, places, parameters, s, rotors)
+    for n in range(len(t)):
+        for k in range(STATE):
+            x[k, 0] = states[n, k]
+        for k in range(INPUT):
+            u[k, 0] = inputs[n, k]
+        s[TIME, 0], s[VOLT_DROP, 0], s[SPIN_UP, 0] = t[n], inputs[n, 5], 0.0
+        for j in range(places.shape[0]):
+            rotors[j, SPEED, 0] = speeds[n, j]
+            s[SPIN_UP, 0] += places[j, 3] * accelerations[n, j]
+        derivative(x, u, v, places, parameters, s, rotors, dx)
+        for k in range(STATE):
+            out[n, k] = dx[k, 0]

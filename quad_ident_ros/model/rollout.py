@@ -29,15 +29,18 @@ def _set_speeds(share, speed, command, places, period_rate, s, rotors):
 @compiled(fused=True, inlined=True)
 def step(x, h, u, v, places, theta, speed, command, lag, s, rotors, work):
     """Advance the states x (13, LANES) by h (LANES,) s; speed becomes that at the end."""
-    k, y, total, half, full, rate, none = (work[0], work[1], work[2], work[3, 0], work[3, 1],
-                                           work[3, 2], work[3, 3])
+    k, y, total, half, full, rate, begin = (work[0], work[1], work[2], work[3, 0], work[3, 1],
+                                            work[3, 2], work[3, 3])
     for i in range(s.shape[1]):
         rate[i] = 1.0 / lag[i] if lag[i] > 0.0 else 0.0
         half[i] = math.exp(-0.5 * h[i] * rate[i]) if lag[i] > 0.0 else 0.0
         full[i] = half[i] * half[i]
-        none[i] = 1.0 if lag[i] > 0.0 else 0.0
+        # 1 but for terms of fourth order, so that the mean over the step, as the integration
+        # weighs it, is that of the exponential however short the lag is beside the step.
+        begin[i] = (6.0 * (1.0 - full[i]) / (h[i] * rate[i]) - 4.0 * half[i] - full[i]
+                    if lag[i] > 0.0 else 0.0)
         s[VOLT_DROP, i] = u[5, i]
-    _set_speeds(none, speed, command, places, rate, s, rotors)
+    _set_speeds(begin, speed, command, places, rate, s, rotors)
     derivative(x, u, v, places, theta, s, rotors, k)
     for n in range(STATE):
         for i in range(s.shape[1]):
@@ -75,16 +78,16 @@ def step(x, h, u, v, places, theta, speed, command, lag, s, rotors, work):
 def _kernel(lanes):
     """Return the integrator that does so many rollouts side by side."""
     @compiled(fused=True)
-    def roll_out(v, places, thetas, which, x0, t, commands, speeds, inputs, first, count, substeps,
-                 out):
+    def roll_out(vehicles, places, thetas, which, x0, t, commands, speeds, inputs, first, count,
+                 substeps, out):
         """
         Integrate rollouts by Runge-Kutta and write their states into out (B, count + 1, 13).
 
-        Args: v, places: see rigid_body; thetas (T, P) parameter sets; which (B,) the set of each
-        rollout; x0 (B, 13) states at the start; t (N,) s; commands, speeds (T, N, n) rad/s, what
-        the rotors follow from a sample on, and how fast they turn at it; inputs (N, INPUT), what
-        else acts; first (B,) the sample at which a rollout starts; count of samples; substeps per
-        sample.
+        Args: vehicles (T, 16), places: see rigid_body; thetas (T, P) parameter sets; which (B,)
+        the set of each rollout; x0 (B, 13) states at the start; t (N,) s; commands, speeds
+        (T, N, n) rad/s, what the rotors follow from a sample on, and how fast they turn at it;
+        inputs (N, INPUT), what else acts; first (B,) the sample at which a rollout starts; count
+        of samples; substeps per sample.
         """
         rotor_count = places.shape[0]
         x = np.empty((STATE, lanes))
@@ -92,6 +95,7 @@ def _kernel(lanes):
         s = np.zeros((ROWS, lanes))
         rotors = np.zeros((rotor_count, ROTOR_ROWS, lanes))
         theta = np.empty((thetas.shape[1], lanes))
+        v = np.empty((vehicles.shape[1], lanes))
         u = np.zeros((INPUT, lanes))
         speed = np.empty((rotor_count, lanes))
         command = np.empty((rotor_count, lanes))
@@ -103,6 +107,8 @@ def _kernel(lanes):
                 for n in range(STATE):
                     x[n, i] = x0[b, n]
                     out[b, 0, n] = x0[b, n]
+                for n in range(v.shape[0]):
+                    v[n, i] = vehicles[which[b], n]
                 for n in range(thetas.shape[1]):
                     theta[n, i] = thetas[which[b], n]
                 for j in range(rotor_count):

@@ -7,19 +7,26 @@ from dataclasses import dataclass
 import numpy as np
 
 from quad_ident_ros.data.record import FlightRecord
+from quad_ident_ros.effects import registry
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model import attitude, equations, mixing
-
-MODELS = {'newton_euler': equations.NEWTON_EULER, 'paper': equations.PRINTED}
+from quad_ident_ros.model.actuators import actuated
+from quad_ident_ros.model.rigid_body import INPUT, rotor_table, STATE, vehicle_vector
+from quad_ident_ros.model.rollout import roll_out_one
+from quad_ident_ros.model.sensors import recorded
 
 # Longest integration step, s. The errors that they leave are stated in docs/paper.md and shown
 # by test/unit/test_golden.py: the printed equations are stiff and chaotic, the derived are not.
 LONGEST_STEP = {'newton_euler': 1e-4, 'paper': 1e-5}
 
-STEPS_AT_ONCE = 1_000_000   # integrated before a signal or a cancel can act: about 0.3 s
+STEPS_AT_ONCE = 1_000_000   # integrated before a signal or a cancel can act: about 0.5 s
 
 RATE_LIMIT = 1e6  # rad/s; beyond it a run counts as diverged
 MOST_STEPS = 10 ** 9    # of the integration: some minutes
+
+# Effects that act on U1..U4 as they are; all others act on rotors, which then give U1..U4.
+WITHOUT_ROTORS = ('body_drag', 'wind', 'mass_offset', 'inertia_mismatch',
+                  'attitude_misalignment', 'gyro_bias')
 
 
 @dataclass(frozen=True)
@@ -40,9 +47,11 @@ def simulate(vehicle, model, inputs, period, *, omega_r=0.0, altitude=0.0, step=
     samples; omega_r rad/s, a number or (N,); altitude m at the start; step s, the longest
     integration step (LONGEST_STEP[model] if None); info is kept with the record; on_progress is
     called now and then with the share done, and what it raises ends the simulation.
+    Effects of the vehicle that act on rotors have U1..U4 flown by rotor speeds, which are then
+    recorded as commands and take the place of omega_r.
     Returns a Simulation whose record has N rows, or fewer where the run diverged.
-    Raises InputError where it diverged within the first sample, or where the inputs are no
-    numbers.
+    Raises InputError where it diverged within the first sample, where the inputs are no numbers,
+    or where the effects need rotors that cannot give them.
     """
     # Copies: a read-only array would have the integrator compiled anew.
     inputs = np.array(inputs, float, order='C')
@@ -51,53 +60,127 @@ def simulate(vehicle, model, inputs, period, *, omega_r=0.0, altitude=0.0, step=
     if not np.isfinite(inputs).all():
         raise InputError(f'inputs: row {int(np.argmin(np.isfinite(inputs).all(axis=1)))} '
                          'holds a value that is no finite number')
-    number = MODELS[model]
     step = step or LONGEST_STEP[model]
     if period / step * len(inputs) > MOST_STEPS:
         raise InputError(f'{len(inputs)} samples of {period:g} s at a step of {step:g} s are more '
                          f'than {MOST_STEPS:.0e} steps: shorten the run or lengthen the step')
     substeps = max(1, int(np.ceil(period / step - 1e-9)))
-    x = np.zeros(equations.STATE_SIZE[number])
-    x[2] = altitude
-    if number == equations.NEWTON_EULER:
-        x[6] = 1.0
-    states = np.empty((len(inputs), x.size))
     speeds = np.array(np.broadcast_to(np.asarray(omega_r, float), (len(inputs),)), order='C')
-    parameters = equations.parameter_vector(vehicle)
-    rows = max(1, STEPS_AT_ONCE // substeps)
-    first = 0
-    while first < len(inputs) - 1:
-        on_progress(first / len(inputs))
-        part = slice(first, first + rows + 1)
-        done, time = equations.rk4(number, x, inputs[part], speeds[part], parameters, period,
-                                   substeps, RATE_LIMIT, states[part])
-        count, end = first + done, first * period + time
-        if done < len(inputs[part]):
-            break
-        first += rows
+    columns, end = MODELS[model](vehicle, inputs, speeds, period, substeps, altitude, on_progress)
+    count = len(columns['px'])
     if count < 2:
         raise InputError(f'the {model} model diverges at t = {end:.6g} s, before the second '
                          f'sample: shorten the sample period ({period:g} s) or the inputs')
-    columns = _columns(number, states[:count], inputs[:count])
     record = FlightRecord(np.arange(count) * period, columns, dict(info or {}))
     return Simulation(record, 'complete' if count == len(inputs) else 'diverged', float(end))
 
 
-def _columns(model, states, inputs):
-    if model == equations.NEWTON_EULER:
-        quaternion = states[:, 6:10]
-        euler = attitude.unwrap_euler(attitude.euler_from_quaternion(quaternion))
-        rate = states[:, 10:13]
-    else:
-        euler = states[:, 6:9]
-        quaternion = attitude.quaternion_from_euler(euler)
-        rate = attitude.body_rate(euler, states[:, 9:12])
-    table = np.hstack([states[:, :6], quaternion, rate, inputs, euler])
-    return dict(zip(STATE_COLUMNS, table.T, strict=True))
+def _newton_euler(vehicle, inputs, omega_r, period, substeps, altitude, on_progress):
+    """Fly the vehicle model with the vehicle's effects; linear drag is along world axes."""
+    t = np.arange(len(inputs)) * period
+    theta = registry.vector(vehicle.effects, vehicle)
+    commands, others = _acting(vehicle, theta, inputs, omega_r, t)
+    followed, speeds = actuated(t, commands, theta[None])
+    constants = vehicle_vector(vehicle, drag_in_world=True)[None]
+    places = rotor_table(vehicle)[:commands.shape[1]]
+    one = np.zeros(1, np.int64)
+
+    def advance(part, first, t, substeps):
+        """Integrate from the state part[0], at a sample, and write what comes after it."""
+        roll_out_one(constants, places, theta[None], one, part[:1].copy(), t, followed[:, first:],
+                     speeds[:, first:], others[first:], one, len(part) - 1, substeps, part[None])
+
+    states = np.zeros((len(t), STATE))
+    states[0, 2], states[0, 6] = altitude, 1.0
+    states[0, :3] += theta[registry.SLICES['com_offset']]
+    count, end = len(t), t[-1]
+    rows = max(1, STEPS_AT_ONCE // substeps)
+    for first in range(0, len(t) - 1, rows):
+        on_progress(first / len(t))
+        part = states[first:first + rows + 1]
+        advance(part, first, t[first:], substeps)
+        lost = _lost(part)
+        if lost.any():
+            count = first + int(np.argmax(lost))
+            # The step of this sample at which it is lost: by bisection, for it stays so.
+            kept, gone, step = 0, substeps, period / substeps
+            while gone - kept > 1:
+                half = (kept + gone) // 2
+                pair = states[[count - 1, count]]
+                advance(pair, count - 1, t[count - 1] + [0.0, half * step], half)
+                kept, gone = (kept, half) if _lost(pair)[1] else (half, gone)
+            end = t[count - 1] + gone * step
+            break
+    states = recorded(theta, states[:count])
+    euler = attitude.unwrap_euler(attitude.euler_from_quaternion(states[:, 6:10]))
+    columns = _columns(states[:, :6], states[:, 6:10], states[:, 10:], inputs[:count], euler)
+    columns |= {f'cmd{j}': values[:count] for j, values in enumerate(commands.T.copy(), 1)}
+    return columns, end
 
 
+def _acting(vehicle, theta, inputs, omega_r, t):
+    """
+    Return what acts: commands of the rotors (N, n), n = 0 where none are needed, and the rest.
+
+    Writes the inertia of the rotors into theta where they are to turn. Raises InputError.
+    """
+    others = np.zeros((len(t), INPUT))
+    gyro = registry.SLICES['rotor_gyro']
+    if omega_r.any() and not theta[gyro]:
+        theta[gyro] = vehicle.rotor_inertia
+    names = [name for name in registry.mapping(theta) if name not in WITHOUT_ROTORS
+             and name in vehicle.effects]
+    if names:
+        problem = mixing.infeasibility(vehicle, inputs, t)
+        if problem:
+            raise InputError(f'vehicle {vehicle.name}: its effects {", ".join(names)} act on '
+                             f'rotors, but {problem}')
+        return np.sqrt(np.maximum(mixing.squared_speeds(vehicle, inputs), 0.0)), others
+    arm = vehicle.arm_length
+    others[:, :4] = inputs * [1.0, arm, arm, 1.0]
+    # A rotor turns against its reaction torque: the errata's sign is the other one.
+    others[:, 4] = -omega_r
+    return np.empty((len(t), 0)), others
+
+
+def _lost(states):
+    """Say which states (N, 13) are beyond the limit of rates or no numbers, (N,)."""
+    within = (np.abs(states[:, 10:]) <= RATE_LIMIT).all(axis=1)
+    return ~(within & np.isfinite(states).all(axis=1))
+
+
+def _printed(vehicle, inputs, omega_r, period, substeps, altitude, on_progress):
+    """Fly the equations as the paper prints them."""
+    if vehicle.effects:
+        raise InputError(f'vehicle {vehicle.name}: the equations as printed know no effects; fly '
+                         'the model newton_euler, or take the effects out of the vehicle file')
+    x = np.zeros(equations.STATE)
+    x[2] = altitude
+    states = np.empty((len(inputs), equations.STATE))
+    parameters = equations.parameter_vector(vehicle)
+    rows = max(1, STEPS_AT_ONCE // substeps)
+    for first in range(0, len(inputs) - 1, rows):
+        on_progress(first / len(inputs))
+        part = slice(first, first + rows + 1)
+        done, time = equations.rk4(x, inputs[part], omega_r[part], parameters, period, substeps,
+                                   RATE_LIMIT, states[part])
+        if done < len(inputs[part]):
+            break
+    count, end = first + done, first * period + time
+    states = states[:count]
+    euler = states[:, 6:9]
+    return _columns(states[:, :6], attitude.quaternion_from_euler(euler),
+                    attitude.body_rate(euler, states[:, 9:]), inputs[:count], euler), end
+
+
+MODELS = {'newton_euler': _newton_euler, 'paper': _printed}
 STATE_COLUMNS = ('px', 'py', 'pz', 'vx', 'vy', 'vz', 'qw', 'qx', 'qy', 'qz', 'wx', 'wy', 'wz',
                  'u1', 'u2', 'u3', 'u4', 'phi', 'theta', 'psi')
+
+
+def _columns(*parts):
+    """Return the columns of a record of parts of the table of its state, (N, ...) each."""
+    return dict(zip(STATE_COLUMNS, np.hstack(parts).T, strict=True))
 
 
 def omega_r_of(setting, vehicle, inputs, t, sign=1):

@@ -1,12 +1,16 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""The vehicle file: the nominal vehicle, what is known of it beforehand."""
+"""The vehicle file: the nominal vehicle, what is known of it beforehand, and its effects."""
 
-from dataclasses import dataclass, fields
+from dataclasses import asdict, dataclass, field, fields, replace
+import math
+from pathlib import Path
 
 import numpy as np
+import yaml
 
 from quad_ident_ros import resources, schema
+from quad_ident_ros.effects import registry
 from quad_ident_ros.errors import InputError
 
 
@@ -24,7 +28,8 @@ class Vehicle:
     A rigid multirotor; SI units, body frame x forward, y left, z up.
 
     inertia (3,) kg m^2; thrust_coefficient N/(rad/s)^2; torque_coefficient N m/(rad/s)^2;
-    linear_drag (3,) N/(m/s); rotational_drag (3,) N m/(rad/s)^2; speeds rad/s.
+    linear_drag (3,) N/(m/s); rotational_drag (3,) N m/(rad/s)^2; speeds rad/s; effects that it
+    has beside the nominal model, {effect: {parameter: value}}, see effects.registry.
     """
 
     name: str
@@ -40,6 +45,7 @@ class Vehicle:
     rotational_drag: tuple = (0.0, 0.0, 0.0)
     speed_min: float = 0.0
     speed_max: float = float('inf')
+    effects: dict = field(default_factory=dict, hash=False)
 
     @property
     def arm_length(self):
@@ -87,7 +93,32 @@ def vehicle_from_mapping(data, where):
         raise InputError(f'{where}: rotors: all of them lie on the z axis; give their places')
     if vehicle.speed_max <= vehicle.speed_min:
         raise InputError(f'{where}: speed_max must be greater than speed_min')
+    if 'effects' in data:
+        theta = registry.vector(data['effects'], vehicle, f'{where}: effects')
+        vehicle = replace(vehicle, effects=registry.mapping(theta))
     return vehicle
+
+
+def vehicle_to_mapping(vehicle):
+    """Return the mapping of a vehicle file that describes the vehicle."""
+    data = {key: list(value) if isinstance(value, tuple) else value
+            for key, value in asdict(vehicle).items()}
+    data['rotors'] = [{'position': list(rotor.position), 'spin': rotor.spin}
+                      for rotor in vehicle.rotors]
+    if math.isinf(vehicle.speed_max):
+        del data['speed_max']
+    if not vehicle.effects:
+        del data['effects']
+    return data
+
+
+def write_vehicle(path, vehicle):
+    """Write a vehicle file that load_vehicle reads back as it was; raises InputError."""
+    text = yaml.safe_dump(vehicle_to_mapping(vehicle), sort_keys=False, default_flow_style=None)
+    try:
+        Path(path).write_text(text, encoding='utf-8')
+    except OSError as error:
+        raise InputError(f'{path}: cannot be written: {error.strerror}') from None
 
 
 def _rotor(where, data):

@@ -11,12 +11,12 @@ import time
 
 from std_msgs.msg import Float64MultiArray, String
 
+from quad_ident_ros.data.table import record_from_table
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.experiment import load_experiment
 from quad_ident_ros.identify.identify import collect, Settings
 from quad_ident_ros.identify.result import from_data, Identification
 from quad_ident_ros.nodes.launched import Launched
-from quad_ident_ros.nodes.messages import record_from_message
 from quad_ident_ros.nodes.qos import latched
 
 PATIENCE = 60.0      # s without any news after which the demo gives up
@@ -108,7 +108,7 @@ class _Watcher:
         self._tell(f'flying {info["run"]}', 0.1 + 0.5 * info['run_index'] / self._runs)
 
     def _on_record(self, message):
-        self.records.append(record_from_message(message))
+        self.records.append(record_from_table(message))
         self._tell(f'recorded {self.records[-1].info.get("run", "")}',
                    0.1 + 0.5 * len(self.records) / self._runs)
 

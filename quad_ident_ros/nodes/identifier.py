@@ -16,6 +16,7 @@ from rclpy.node import Node
 from std_msgs.msg import Bool, Float64MultiArray, String
 from std_srvs.srv import Trigger
 
+from quad_ident_ros.data.table import record_from_table
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.identify.identify import identify, Settings
 from quad_ident_ros.identify.levy import levy_sigma
@@ -31,7 +32,6 @@ from quad_ident_ros.nodes.messages import (
     ERROR,
     OK,
     parameter_message,
-    record_from_message,
     WARN,
 )
 from quad_ident_ros.nodes.parameters import help_text, NodeParameters, ParameterSpec
@@ -145,7 +145,7 @@ class Identifier(Node):
 
     def _on_record(self, message):
         try:
-            record = record_from_message(message)
+            record = record_from_table(message)
         except InputError as error:
             self.get_logger().error(str(error))
             return

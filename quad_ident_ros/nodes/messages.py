@@ -3,14 +3,12 @@
 """Messages that carry tables: flight records and fitted parameters, with labelled dimensions."""
 
 from array import array
-import json
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 import numpy as np
 from std_msgs.msg import Float64MultiArray, MultiArrayDimension
 
-from quad_ident_ros.data.record import FlightRecord
-from quad_ident_ros.errors import InputError
+from quad_ident_ros.data.table import record_table
 from quad_ident_ros.identify.signals import OUTPUTS
 
 PARAMETER_COLUMNS = ('K', 'a', 'b')
@@ -37,47 +35,9 @@ def parameter_message(table):
 
 
 def record_message(record):
-    """
-    Return the message of a flight record: samples x columns x 1.
-
-    The label of the second dimension names the columns, that of the third is the record's
-    provenance as JSON.
-    """
-    names = ['t', *record.columns]
-    table = record.stack(*names)[:, :, None]
-    return table_message(table, 'samples', ','.join(names), json.dumps(record.info))
-
-
-def record_from_message(message):
-    """Return the flight record of a message; raises InputError where it holds none."""
-    dims = message.layout.dim
-    if len(dims) != 3 or dims[0].size * dims[1].size != len(message.data):
-        raise InputError('topic record: expected a table samples x columns x 1 as the recorder '
-                         'publishes it')
-    names = dims[1].label.split(',')
-    if len(names) != dims[1].size:
-        raise InputError(f'topic record: {dims[1].size} columns but {len(names)} names')
-    if len(set(names)) != len(names):
-        raise InputError('topic record: a column is named twice')
-    table = np.reshape(message.data, (dims[0].size, dims[1].size))
-    columns = dict(zip(names, table.T.copy(), strict=True))
-    info = _info_from(dims[2].label)
-    if 't' not in columns:
-        raise InputError('topic record: there is no column t')
-    return FlightRecord(columns.pop('t'), columns, info)
-
-
-def _info_from(label):
-    try:
-        info = json.loads(label or '{}')
-    except (ValueError, RecursionError):
-        info = None
-    if not isinstance(info, dict):
-        raise InputError('topic record: the label of the third dimension is no JSON object')
-    for name in ('run_index', 'run_count'):
-        if not isinstance(info.get(name, 0), int):
-            raise InputError(f'topic record: {name} is no whole number')
-    return info
+    """Return the message of a flight record, as data.table lays it out."""
+    table, labels = record_table(record)
+    return table_message(table, *labels)
 
 
 def diagnostics_message(node, level, text, values):

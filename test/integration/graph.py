@@ -33,8 +33,8 @@ import yaml
 
 import quad_ident_ros
 from quad_ident_ros.data.record import FlightRecord
+from quad_ident_ros.data.table import record_from_table
 from quad_ident_ros.experiment import fly, load_experiment
-from quad_ident_ros.nodes.messages import record_from_message
 from quad_ident_ros.nodes.process import PARENT
 from quad_ident_ros.nodes.qos import latched, LOSSLESS
 
@@ -65,7 +65,7 @@ class Heard(list):
         return [json.loads(message.data) for message in self]
 
     def records(self):
-        return [record_from_message(message) for message in self]
+        return [record_from_table(message) for message in self]
 
 
 class Graph:

@@ -10,9 +10,10 @@ import pytest
 from std_msgs.msg import Float64MultiArray, MultiArrayDimension
 
 from quad_ident_ros.data.record import FlightRecord
+from quad_ident_ros.data.table import record_from_table
 from quad_ident_ros.data.topics import FLIGHT_TOPICS, raw_columns, record_columns
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.nodes.messages import parameter_message, record_from_message, record_message
+from quad_ident_ros.nodes.messages import parameter_message, record_message
 
 INFO = {'name': 'flight', 'run_index': 2, 'trim': [6.4, 0.0, 0.0, 0.0], 'infeasible': None}
 
@@ -53,7 +54,7 @@ def test_a_record_reads_back_as_it_was():
     assert [(d.label, d.size, d.stride) for d in sent.layout.dim[:2]] == [
         ('samples', 5, 20), ('t,u1,pz,extra', 4, 4)]
     assert (sent.layout.dim[2].size, sent.layout.dim[2].stride) == (1, 1)
-    read = record_from_message(sent)
+    read = record_from_table(sent)
     np.testing.assert_array_equal(read.t, flight().t)
     assert list(read.columns) == ['u1', 'pz', 'extra']
     for name, values in flight().columns.items():
@@ -62,7 +63,7 @@ def test_a_record_reads_back_as_it_was():
 
 
 def test_the_parts_of_the_helper_fit():
-    read = record_from_message(message())
+    read = record_from_table(message())
     np.testing.assert_array_equal(read.columns['pz'], [1.0, 2.0, 3.0])
     assert read.info == {}
 
@@ -89,7 +90,7 @@ def test_the_parts_of_the_helper_fit():
 ])
 def test_what_holds_no_record_is_refused(parts, said):
     with pytest.raises(InputError, match=said) as caught:
-        record_from_message(message(**parts))
+        record_from_table(message(**parts))
     assert len(str(caught.value).splitlines()) == 1
 
 

@@ -6,12 +6,13 @@ from dataclasses import replace
 
 from hypothesis import given, settings
 from hypothesis import strategies as st
+import motion
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.model import attitude, equations
+from quad_ident_ros.model import attitude
 from quad_ident_ros.model.simulate import LONGEST_STEP, MODELS, simulate
 from quad_ident_ros.model.vehicle import load_vehicle
 
@@ -39,10 +40,7 @@ def fly(inputs, model='newton_euler', vehicle=VEHICLE, **options):
 
 def derivative(state, inputs=(0, 0, 0, 0), omega_r=0.0, vehicle=VEHICLE):
     """Return the derivative of a newton_euler state (13,)."""
-    out = np.empty(13)
-    equations.newton_euler(np.asarray(state, float), np.asarray(inputs, float), omega_r,
-                           equations.parameter_vector(vehicle), out)
-    return out
+    return motion.derivative(vehicle, state, inputs, omega_r)
 
 
 def state(velocity=(0, 0, 0), euler=(0, 0, 0), rate=(0, 0, 0)):
@@ -52,12 +50,8 @@ def state(velocity=(0, 0, 0), euler=(0, 0, 0), rate=(0, 0, 0)):
 
 def turn_freely(rate, vehicle, omega_r=0.0, seconds=5.0, substeps=100):
     """Return quaternions and body rates of a flight without torque that begins with a rate."""
-    x = state(rate=rate)
-    out = np.empty((round(seconds / PERIOD) + 1, 13))
-    count, _ = equations.rk4(equations.NEWTON_EULER, x, np.zeros((len(out), 4)),
-                             np.full(len(out), omega_r), equations.parameter_vector(vehicle),
-                             PERIOD, substeps, 1e6, out)
-    assert count == len(out)
+    t = np.arange(round(seconds / PERIOD) + 1) * PERIOD
+    out = motion.move(vehicle, state(rate=rate), t, substeps, omega_r)
     return out[:, 6:10], out[:, 10:13]
 
 

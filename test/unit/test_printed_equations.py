@@ -11,6 +11,7 @@ from dataclasses import replace
 
 from hypothesis import given, settings
 from hypothesis import strategies as st
+import motion
 import numpy as np
 import pytest
 
@@ -45,12 +46,10 @@ def printed(euler, euler_rate, inputs=(0, 0, 0, 0), omega_r=0.0, vehicle=VEHICLE
 def derived(euler, euler_rate, inputs=(0, 0, 0, 0), omega_r=0.0, vehicle=VEHICLE,
             velocity=(0, 0, 0)):
     """Return the body and world accelerations of the same motion, from eqs. (1)-(12)."""
-    out = np.empty(13)
     rate = attitude.body_rate(np.array([euler], float), np.array([euler_rate], float))[0]
     state = np.concatenate([np.zeros(3), velocity,
                             attitude.quaternion_from_euler(np.array(euler, float)), rate])
-    equations.newton_euler(state, np.asarray(inputs, float), omega_r,
-                           equations.parameter_vector(vehicle), out)
+    out = motion.derivative(vehicle, state, inputs, omega_r)
     return out[10:], out[3:6]
 
 
@@ -213,11 +212,9 @@ def euler_acceleration(euler, euler_rate, vehicle):
     step = 1e-4
     rate = attitude.body_rate(np.array([euler]), np.array([euler_rate]))[0]
     x = np.concatenate([np.zeros(6), attitude.quaternion_from_euler(np.array(euler)), rate])
-    out = np.empty((3, 13))
     angles = []
     for direction in (-1, 0, 1):
-        equations.rk4(equations.NEWTON_EULER, x.copy(), np.zeros((3, 4)), np.zeros(3),
-                      equations.parameter_vector(vehicle), direction * step, 10, 1e6, out)
+        out = motion.move(vehicle, x, direction * step * np.arange(2), 10)
         angles.append(attitude.euler_from_quaternion(out[1, 6:10]))
     return (angles[0] - 2 * angles[1] + angles[2]) / step ** 2
 

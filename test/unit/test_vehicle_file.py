@@ -11,8 +11,17 @@ import pytest
 import yaml
 
 from quad_ident_ros import resources
+from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.model.vehicle import load_vehicle, vehicle_from_mapping
+from quad_ident_ros.model.mixing import infeasibility, squared_speeds
+from quad_ident_ros.model.vehicle import (
+    load_vehicle,
+    Rotor,
+    Vehicle,
+    vehicle_from_mapping,
+    vehicle_to_mapping,
+    write_vehicle,
+)
 
 FAST = settings(deadline=None, max_examples=120,
                 suppress_health_check=[HealthCheck.function_scoped_fixture])
@@ -59,6 +68,95 @@ def test_every_shipped_vehicle_loads_by_name_and_by_path(name):
     assert load_vehicle(resources.config_dir() / 'vehicles' / f'{name}.yaml') == vehicle
 
 
+@pytest.mark.parametrize(('name', 'mass', 'hover'), [
+    ('crazyflie', 0.027, (1500, 1530)), ('hummingbird', 0.5, (465, 470)),
+    ('iris', 1.5, (790, 796))])
+def test_shipped_quadrotors_are_balanced_and_fly(name, mass, hover):
+    # The speed at which each hovers is what its sources say or follows from them by hand.
+    vehicle = load_vehicle(name)
+    squared = squared_speeds(vehicle, [vehicle.hover_input])
+    assert vehicle.mass == mass
+    assert ((np.sqrt(squared) > hover[0]) & (np.sqrt(squared) < hover[1])).all()
+    assert infeasibility(vehicle, [vehicle.hover_input * 1.5], np.zeros(1)) is None
+    # An X: one rotor in each quadrant, of one sense along each diagonal.
+    quadrants = {(x > 0, y > 0): rotor.spin for rotor in vehicle.rotors
+                 for x, y, _ in [rotor.position]}
+    assert len(quadrants) == 4
+    assert quadrants[True, True] == quadrants[False, False] == -quadrants[True, False]
+    assert quadrants[True, False] == quadrants[False, True]
+
+
+def test_effects_are_read_and_null_ones_are_none():
+    vehicle = vehicle_from_mapping(changed(effects={
+        'rotor_drag': {'coefficient': '2e-1'}, 'wind': {'x': 3}, 'motor_lag': {'time_constant': 0},
+        'thrust_scale': {}}), 'v.yaml')
+    assert vehicle.effects == {'rotor_drag': {'coefficient': 0.2}, 'wind': {'x': 3.0}}
+    assert load_vehicle('paper_quadrotor').effects == {}
+
+
+@pytest.mark.parametrize(('effects', 'words'), [
+    ({'rotor_darg': {}}, "effects: 'rotor_darg' is not known here; did you mean 'rotor_drag'?"),
+    ({'rotor_drag': {'coeff': 1}}, "effects: rotor_drag: 'coeff' is not known here"),
+    ({'rotor_drag': 0.3}, 'effects: rotor_drag: expected `key: value` lines, got 0.3'),
+    ({'wind': {'x': 'strong'}}, "effects: wind: x: expected a number, got 'strong'"),
+    ({'wind': {'x': 400}}, 'effects: wind: x: 400 is out of range, expected >= -20 and <= 20'),
+    # In units of the vehicle's mass, 0.65 kg.
+    ({'mass_offset': {'mass': -0.5}}, 'mass: -0.5 is out of range, expected >= -0.39'),
+    ({'rotor_fault': {'loss_5': 0.1}}, "effects: rotor_fault: 'loss_5' is not known here"),
+    (['wind'], 'effects: expected `key: value` lines'), (None, 'effects: expected'),
+], ids=str)
+def test_bad_effects_are_refused(effects, words):
+    assert words in refused({**PAPER, 'effects': effects})
+
+
+positive = st.floats(1e-9, 1e9)
+triples = st.tuples(positive, positive, positive)
+
+
+@st.composite
+def vehicles(draw):
+    """Return any vehicle that a file can describe."""
+    lowest = draw(st.floats(0, 100))
+    count = draw(st.integers(1, 8))
+    place = st.floats(0.01, 10.0)
+    effects = {}
+    for name in draw(st.sets(st.sampled_from(sorted(EFFECTS)))):
+        parameter = EFFECTS[name].parameters[0]
+        effects[name] = {parameter.name: draw(st.floats(1.01, 1.9)) * 0.01 + parameter.null}
+    # Offsets of mass, place and inertia have bounds in units of the vehicle's own.
+    mass = draw(st.floats(0.1, 10))
+    return Vehicle(
+        draw(st.text(st.characters(categories=('L', 'N')), min_size=1, max_size=20)), mass,
+        (0.1, 0.1, 0.1), draw(positive), draw(positive), draw(positive),
+        tuple(Rotor((draw(place), draw(place), draw(place)), draw(st.sampled_from([1, -1])))
+              for _ in range(count)),
+        draw(positive), draw(positive), draw(triples), draw(triples), lowest,
+        draw(st.just(float('inf')) | st.floats(101, 1e6)),
+        {name: values for name, values in effects.items()
+         if name not in ('com_offset', 'inflow', 'body_drag', 'blade_flapping', 'rotor_gyro')})
+
+
+@FAST
+@given(vehicles())
+def test_a_written_vehicle_is_read_as_it_was(tmp_path, vehicle):
+    path = tmp_path / 'v.yaml'
+    write_vehicle(path, vehicle)
+    assert load_vehicle(path) == vehicle
+
+
+@pytest.mark.parametrize('name', resources.names('vehicles'))
+def test_the_mapping_of_a_vehicle_has_what_its_file_has(name):
+    data = resources.read_yaml(resources.find('vehicles', name))
+    written = vehicle_to_mapping(load_vehicle(name))
+    assert {key: written[key] for key in data if key != 'rotors'} == \
+        {key: data[key] for key in data if key != 'rotors'}
+
+
+def test_a_vehicle_that_cannot_be_written_is_said(tmp_path):
+    with pytest.raises(InputError, match='no/v.yaml: cannot be written: No such file'):
+        write_vehicle(tmp_path / 'no' / 'v.yaml', load_vehicle('paper_quadrotor'))
+
+
 def test_what_may_be_left_out_is_zero_or_unlimited():
     vehicle = vehicle_from_mapping(changed(rotor_inertia=None, rotor_radius=None, speed_min=None,
                                            linear_drag=None, rotational_drag=None,
@@ -78,7 +176,7 @@ def test_numbers_that_yaml_takes_for_text_are_numbers():
 @pytest.mark.parametrize(('values', 'words'), [
     ({'mas': 0.6}, "'mas' is not known here; did you mean 'mass'?"),
     ({'linear_darg': [0, 0, 0]}, "did you mean 'linear_drag'?"),
-    ({'colour': 'red'}, 'known are gravity, inertia'),
+    ({'colour': 'red'}, 'known are effects, gravity, inertia'),
     ({'mass': None}, "'mass' is missing"), ({'rotors': None}, "'rotors' is missing"),
     ({'mass': 0}, 'mass: 0 is out of range, expected > 0'),
     ({'mass': -1.5}, 'mass: -1.5 is out of range'),

@@ -1,0 +1,59 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""`quad_ident convert`: flight records from one format into another."""
+
+import argparse
+from pathlib import Path
+
+from quad_ident_ros.cli.options import flights_from
+from quad_ident_ros.data.export import save
+from quad_ident_ros.report.data import write_json
+
+
+def add(commands):
+    """Add the command to the parser."""
+    parser = commands.add_parser(
+        'convert', help='write a flight record in another format',
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        description='Read a flight (CSV, rosbag2, PX4 ULog) and write it as CSV or as a bag. '
+                    'Nothing is lost: every\ncolumn, known or not, reads back number for number. '
+                    'A bag with several flights makes several\nfiles, OUT_1, OUT_2, ...',
+        epilog='  quad_ident convert flight.csv.gz flight.mcap\n'
+               '  quad_ident convert recording_1/bag flights.csv\n'
+               '  quad_ident convert log_12.ulg out.csv --mapping px4.yaml --vehicle quad.yaml\n'
+               '  quad_ident convert others_bag flight.csv --mapping topics.yaml\n\n'
+               'docs/records.md describes the formats and the mapping file.')
+    parser.add_argument('flight', metavar='IN', help='.csv, .csv.gz, bag (folder, .mcap, .db3) '
+                        'or .ulg')
+    parser.add_argument('out', metavar='OUT', help='.csv, .csv.gz, .mcap, or without an ending: '
+                        'the new folder of a bag')
+    parser.add_argument('--mapping', metavar='FILE', help='which topics and outputs of other '
+                        "people's records mean what (YAML)")
+    parser.add_argument('--vehicle', help='vehicle name or file, for the speeds of its rotors')
+    parser.add_argument('--json', metavar='FILE', help='write what was done as data; - prints it')
+    parser.set_defaults(run=run)
+
+
+def run(options):
+    """Read the flights, write them, and say what was written."""
+    flights = flights_from(options.flight, options.mapping, options.vehicle)
+    out, done = Path(options.out), []
+    for number, record in enumerate(flights, 1):
+        path = out if len(flights) == 1 else _numbered(out, number)
+        path.parent.mkdir(parents=True, exist_ok=True)
+        save(path, record)
+        notes = list(record.info.get('notes', ()))
+        done.append({'file': str(path), 'samples': len(record),
+                     'columns': ['t', *record.columns], 'notes': notes})
+        if options.json != '-':
+            print(f'{path}: {len(record)} samples of {", ".join(["t", *record.columns])}')
+            for note in notes:
+                print(f'  note: {note}')
+    if options.json:
+        write_json(options.json, done)
+
+
+def _numbered(path, number):
+    """Return the path with _number before its ending."""
+    stem, dot, ending = path.name.partition('.')
+    return path.with_name(f'{stem}_{number}{dot}{ending}')

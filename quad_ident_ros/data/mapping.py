@@ -1,0 +1,166 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The mapping file: which topics and outputs of other people's records mean what."""
+
+from collections.abc import Mapping as Pairs
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from quad_ident_ros import resources, schema
+from quad_ident_ros.data.frames import BODIES, WORLDS
+from quad_ident_ros.errors import InputError
+
+ROLES = ('pose', 'velocity', 'rate', 'specific_force', 'commands', 'rotors', 'battery')
+"""What a topic can be read for."""
+
+KINDS = {'speed': None, 'rpm': None, 'pwm': (1000.0, 2000.0), 'normalised': (0.0, 1.0)}
+"""Kinds of actuator outputs, with the output at the lowest and at the full speed by default."""
+
+CURVES = ('linear', 'thrust')
+
+
+@dataclass(frozen=True)
+class Actuators:
+    """
+    How actuator outputs become rotor speeds.
+
+    order: for each rotor of the vehicle file the number of its output, from 1; empty: as they
+    come. kind: one of KINDS. minimum, maximum: outputs at the lowest and at the full speed.
+    speeds: these two in rad/s, or None for those of the vehicle. curve: linear, the speed is
+    linear in the output; thrust, its square is.
+    """
+
+    order: tuple = ()
+    kind: str = 'speed'
+    minimum: float = 0.0
+    maximum: float = 1.0
+    speeds: tuple = None
+    curve: str = 'linear'
+
+
+@dataclass(frozen=True)
+class Source:
+    """A topic to read for a role: its name, the field with the value, and the frame of it."""
+
+    topic: str
+    field: str = ''
+    frame: str = 'body'
+
+
+@dataclass(frozen=True)
+class Mapping:
+    """
+    The content of a mapping file.
+
+    topics: role -> Source; world and body: the frames of the record, ENU or NED, FLU or FRD;
+    instances: ULog topic -> the instance (multi_id) to read; actuators: Actuators or None.
+    """
+
+    topics: Pairs = field(default_factory=dict)
+    world: str = 'ENU'
+    body: str = 'FLU'
+    instances: Pairs = field(default_factory=dict)
+    actuators: Actuators = None
+
+
+def load_mapping(path):
+    """Return the Mapping of a file; raises InputError that names file and key."""
+    return mapping_from(resources.read_yaml(path), str(path))
+
+
+def mapping_from(data, where):
+    """Return the Mapping that the content of a mapping file describes; raises InputError."""
+    schema.check_keys(where, data, ('topics', 'world', 'body', 'instances', 'actuators'))
+    topics = data.get('topics', {})
+    schema.check_keys(f'{where}: topics', topics, ROLES)
+    instances = data.get('instances', {})
+    if not isinstance(instances, dict):
+        raise InputError(f'{where}: instances: expected `topic: number` lines, got '
+                         f'{schema.shown(instances)}')
+    return Mapping(
+        {role: _source(f'{where}: topics: {role}', role, entry)
+         for role, entry in topics.items()},
+        schema.choice(f'{where}: world', data.get('world', 'ENU'), WORLDS),
+        schema.choice(f'{where}: body', data.get('body', 'FLU'), BODIES),
+        {str(topic): schema.integer(f'{where}: instances: {topic}', number, 0)
+         for topic, number in instances.items()},
+        _actuators(f'{where}: actuators', data['actuators']) if 'actuators' in data else None)
+
+
+def rotor_speeds(where, outputs, actuators, vehicle):
+    """
+    Return rotor speeds in rad/s, (N, n), in the order of the vehicle file.
+
+    Below the minimum, and where an output is nan as PX4 writes for one that is off, a rotor
+    stands still; over the maximum it turns no faster.
+    Args: outputs (N, m); actuators Actuators; vehicle a Vehicle or None, for the speeds.
+    Raises InputError where the order names an output that is not there, or no speeds are known.
+    """
+    outputs = np.asarray(outputs, float)
+    count = outputs.shape[1]
+    order = actuators.order or tuple(range(1, (len(vehicle.rotors) if vehicle else count) + 1))
+    if max(order) > count:
+        raise InputError(f'{where}: actuators: order: there is no output {max(order)}, the record '
+                         f'has {count}; name outputs from 1 to {count}')
+    if vehicle is not None and len(order) != len(vehicle.rotors):
+        raise InputError(f'{where}: actuators: order: {len(order)} outputs for the '
+                         f'{len(vehicle.rotors)} rotors of {vehicle.name}; name one for each')
+    chosen = outputs[:, [number - 1 for number in order]]
+    if KINDS[actuators.kind] is None:
+        return chosen * (2 * np.pi / 60 if actuators.kind == 'rpm' else 1.0)
+    speeds = actuators.speeds
+    if speeds is None and vehicle is not None and np.isfinite(vehicle.speed_max):
+        speeds = vehicle.speed_min, vehicle.speed_max
+    if speeds is None:
+        raise InputError(f'{where}: actuators: the rotor speeds at minimum and maximum are not '
+                         'known; give speeds: [low, high] in rad/s, or a vehicle with them')
+    share = (chosen - actuators.minimum) / (actuators.maximum - actuators.minimum)
+    low, high = speeds
+    full = np.clip(share, 0.0, 1.0)
+    turning = (low + full * (high - low) if actuators.curve == 'linear'
+               else np.sqrt(low ** 2 + full * (high ** 2 - low ** 2)))
+    return np.where(share >= 0.0, turning, 0.0)
+
+
+def _source(where, role, entry):
+    known = {'velocity': ('topic', 'frame'), 'commands': ('topic', 'field'),
+             'rotors': ('topic', 'field'), 'battery': ('topic', 'field')}.get(role, ('topic',))
+    schema.check_keys(where, entry, known, ('topic',))
+    topic, path = entry['topic'], entry.get('field', '')
+    for key, value in (('topic', topic), ('field', path)):
+        if not isinstance(value, str) or not value.isprintable() or (key == 'topic' and not value):
+            raise InputError(f'{where}: {key}: expected a name, got {schema.shown(value)}')
+    frame = schema.choice(f'{where}: frame', entry.get('frame', 'body'), ('body', 'world'))
+    return Source(topic, path, frame)
+
+
+def _actuators(where, data):
+    schema.check_keys(where, data, ('order', 'kind', 'minimum', 'maximum', 'speeds', 'curve'),
+                      ('kind',))
+    kind = schema.choice(f'{where}: kind', data['kind'], tuple(KINDS))
+    low, high = KINDS[kind] or (0.0, 1.0)
+    if KINDS[kind] is None:
+        for key in ('minimum', 'maximum', 'speeds', 'curve'):
+            if key in data:
+                raise InputError(f'{where}: {key}: outputs of kind {kind} are rotor speeds '
+                                 'already; leave it out')
+    minimum = schema.number(f'{where}: minimum', data.get('minimum', low))
+    maximum = schema.number(f'{where}: maximum', data.get('maximum', high))
+    if maximum <= minimum:
+        raise InputError(f'{where}: maximum: {maximum:g} is not above the minimum, {minimum:g}')
+    order = data.get('order', [])
+    if not isinstance(order, list) or len(order) > 64 or ('order' in data and not order):
+        raise InputError(f'{where}: order: expected a list such as [1, 3, 2, 4], got '
+                         f'{schema.shown(order)}')
+    order = tuple(schema.integer(f'{where}: order[{k}]', number, 1)
+                  for k, number in enumerate(order))
+    if len(set(order)) != len(order):
+        raise InputError(f'{where}: order: {list(order)} names an output twice')
+    speeds = None
+    if 'speeds' in data:
+        speeds = schema.numbers(f'{where}: speeds', data['speeds'], 2, minimum=0.0)
+        if speeds[1] <= speeds[0]:
+            raise InputError(f'{where}: speeds: expected [low, high], got {list(speeds)}')
+    curve = schema.choice(f'{where}: curve', data.get('curve', 'linear'), CURVES)
+    return Actuators(order, kind, minimum, maximum, speeds, curve)

@@ -1,0 +1,40 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+The quality of a flight record: what is wrong with it, and how to mend it.
+
+One file per subject, each with checks (record, vehicle or None) -> findings, entered in CHECKS.
+"""
+
+from quad_ident_ros.data.quality import (
+    clock,
+    excitation,
+    frames,
+    rotors,
+    saturation,
+    stale,
+    timing,
+    units,
+)
+from quad_ident_ros.data.quality.clock import clock_offset, ClockOffset, command_offset
+from quad_ident_ros.data.quality.finding import Finding, SEVERITIES
+
+CHECKS = (timing.gaps, timing.duplicates, timing.reader_notes, stale.held, stale.marked,
+          units.rates_in_degrees, units.euler_in_degrees, units.force_in_g,
+          units.position_in_millimetres, units.speeds_in_rpm, frames.quaternion, frames.world,
+          frames.velocity_in_body, rotors.order_and_spin, clock.attitude, clock.commands,
+          saturation.speeds, excitation.axes)
+
+__all__ = ['CHECKS', 'clock_offset', 'ClockOffset', 'command_offset', 'Finding', 'findings',
+           'SEVERITIES']
+
+
+def findings(record, vehicle=None):
+    """
+    Return the Findings on a flight record, the gravest first.
+
+    Args: record FlightRecord; vehicle model.vehicle.Vehicle or None; without it nothing is said
+    of saturation, of the unit of rotor speeds, nor of the order and spin of the rotors.
+    """
+    found = [finding for check in CHECKS for finding in check(record, vehicle)]
+    return tuple(sorted(found, key=lambda finding: -SEVERITIES.index(finding.severity)))

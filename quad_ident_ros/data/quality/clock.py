@@ -1,0 +1,213 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Clock offset and drift between the streams of a record, with their uncertainty."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from quad_ident_ros.data.export import numbered
+from quad_ident_ros.data.quality.finding import Finding
+from quad_ident_ros.data.quality.frames import best_reading
+from quad_ident_ros.data.quality.series import Grid
+
+WINDOW = 4.0      # s, of one estimate
+REACH = 0.5       # s, the largest offset looked for
+LOCAL = 0.1       # s, how far a window may be from the whole
+SURE = 0.6        # correlation that an estimate needs
+SHAPE = 0.5       # correlation of the slopes, whose noise is larger
+MEMORY = 0.4      # s, over which errors may depend on one another
+SEVERAL = 4.0     # standard errors from which on an offset is one
+
+
+@dataclass(frozen=True, eq=False)
+class ClockOffset:
+    """
+    How much later one stream's stamps are than another's, for the same event.
+
+    offset (s) in the middle of the flight and std, its standard error; drift (s/s) and drift_std,
+    which is inf where the flight is too short for it; t, offsets and stds (n,) s: the estimates
+    along the flight that these come from.
+    """
+
+    offset: float
+    std: float
+    drift: float
+    drift_std: float
+    t: np.ndarray
+    offsets: np.ndarray
+    stds: np.ndarray
+
+
+def clock_offset(record):
+    """
+    Return the ClockOffset of the attitude against the gyro, or None where it cannot be told.
+
+    A positive offset: attitude (and position, which comes with it) is stamped late. The rate of
+    the attitude is compared with the gyro's in windows of 4 s: a whole-sample shift by
+    cross-correlation, refined by Gauss-Newton. The standard errors allow for errors that last up
+    to 0.4 s (Newey and West 1987, Econometrica 55).
+    """
+    grid = Grid.of(record)
+    if grid is None or not record.has('wx', 'wy', 'wz'):
+        return None
+    _, attitude = best_reading(grid)
+    if attitude is None:
+        return None
+    return _offset(grid, grid.rate_of(attitude), grid.smooth(grid.signal('wx', 'wy', 'wz')))
+
+
+def command_offset(record):
+    """
+    Return the ClockOffset of the accelerometer against the commands, or None.
+
+    Thrust, the sum of the squared commands, is compared with the specific force along z. The lag
+    of the motors is part of it.
+    """
+    grid, names = Grid.of(record), numbered(record, 'cmd')
+    if grid is None or not names or not record.has('ax', 'ay', 'az'):
+        return None
+    thrust = np.sum(grid.held(*names) ** 2, axis=1, keepdims=True)
+    return _offset(grid, grid.smooth(grid.signal('az')), grid.smooth(thrust))
+
+
+def _centred(signal):
+    """Return a signal (N, k) about its mean: a bias is no offset."""
+    return signal - signal.mean(axis=0)
+
+
+def _offset(grid, late, early):
+    """Return the ClockOffset of one signal (N, k) against another on a grid, or None."""
+    reach = round(REACH / grid.period)
+    whole = _whole_shift(late, early, grid.good, range(-reach, reach + 1))
+    if whole is None:
+        return None
+    spline = CubicSpline(grid.t, early)
+    width = round(WINDOW / grid.period)
+    count = max(1, int(grid.good.sum() // width))
+    found = []
+    for part in np.array_split(np.flatnonzero(grid.good), count):
+        estimate = _refined(grid, spline, late, part, whole * grid.period)
+        if estimate is not None:
+            found.append((grid.t[part].mean(), *estimate))
+    if not found:
+        return None
+    t, offsets, stds = np.array(found).T
+    middle = (grid.t[0] + grid.t[-1]) / 2
+    return ClockOffset(*_line(t - middle, offsets, stds), t, offsets, stds)
+
+
+def _whole_shift(late, early, good, shifts):
+    """Return the shift (samples) with the largest correlation, or None where it is small."""
+    index = np.flatnonzero(good)
+    best, most = None, SURE
+    for shift in shifts:
+        other = index - shift
+        inside = (other >= 0) & (other < len(early))
+        a, b = _centred(late[index[inside]]), _centred(early[other[inside]])
+        sure = _alike(a, b)
+        if sure > most:
+            best, most = shift, sure
+    return best
+
+
+def _refined(grid, spline, late, part, start):
+    """Return the offset and its standard error in a window (indices), or None."""
+    t, target = grid.t[part], _centred(late[part])
+    offset = start
+    for _ in range(8):
+        model, slope = _centred(spline(t - offset)), _centred(-spline(t - offset, 1))
+        power = np.sum(model ** 2)
+        if not power > 0:
+            return None
+        gain = np.sum(model * target) / power
+        # What another gain explains as well, as along a ramp, says nothing of the offset.
+        slope = gain * (slope - model * np.sum(slope * model) / power)
+        rest = target - gain * model
+        curvature = np.sum(slope ** 2)
+        step = np.sum(slope * rest) / curvature if curvature > 0 else np.inf
+        offset += float(np.clip(step, -LOCAL / 4, LOCAL / 4)) if np.isfinite(step) else np.inf
+        if not abs(offset - start) < LOCAL:
+            return None
+    if _alike(model, target) < SURE:
+        return None
+    # A ramp or noise has no shape that an offset would move: both must have the same.
+    other = _centred(np.gradient(late, grid.period, axis=0)[part])
+    other -= model * np.sum(other * model) / power
+    if _alike(-gain * slope, other) < SHAPE:
+        return None
+    score = np.sum(slope * rest, axis=1)
+    return offset, np.sqrt(_long_run(score, round(MEMORY / grid.period))) / curvature
+
+
+def _alike(one, other):
+    scale = np.sqrt(np.sum(one ** 2) * np.sum(other ** 2))
+    return np.sum(one * other) / scale if scale > 0 else 0.0
+
+
+def _long_run(score, lags):
+    """Return the variance of the sum of a dependent series (Bartlett weights)."""
+    total = np.sum(score ** 2)
+    for lag in range(1, min(lags, len(score) - 1) + 1):
+        total += 2 * (1 - lag / (lags + 1)) * np.sum(score[lag:] * score[:-lag])
+    return max(total, 0.1 * np.sum(score ** 2), 1e-30)
+
+
+def _line(t, offsets, stds):
+    """Return offset, std, drift, drift_std of a weighted straight line; scatter widens both."""
+    weight = 1.0 / stds ** 2
+    if len(t) < 3:
+        std = 1.0 / np.sqrt(weight.sum())
+        return float(np.sum(weight * offsets) * std ** 2), float(std), 0.0, np.inf
+    design = np.stack([np.ones(len(t)), t], axis=-1)
+    covariance = np.linalg.inv(design.T @ (weight[:, None] * design))
+    offset, drift = covariance @ (design.T @ (weight * offsets))
+    scatter = np.sum(weight * (offsets - offset - drift * t) ** 2) / (len(t) - 2)
+    std, drift_std = np.sqrt(np.diag(covariance) * max(scatter, 1.0))
+    return float(offset), float(std), float(drift), float(drift_std)
+
+
+def attitude(record, vehicle):
+    """Find an offset, a drift or a wandering between attitude and gyro."""
+    found = clock_offset(record)
+    if found is None:
+        return []
+    span = record.t[-1] - record.t[0]
+    where, result = 'attitude and position against gyro', []
+    if abs(found.offset) > max(SEVERAL * found.std, 0.002):
+        result.append(Finding(
+            'clock_offset', 'error' if abs(found.offset) > 0.1 else 'warning', where,
+            f'the attitude is stamped {1e3 * abs(found.offset):.1f} ± {1e3 * found.std:.1f} ms '
+            f'{"later" if found.offset > 0 else "earlier"} than the gyro',
+            f'move position, velocity and attitude by {-1e3 * found.offset:+.1f} ms'))
+    if abs(found.drift) > SEVERAL * found.drift_std and abs(found.drift) * span > 0.005:
+        result.append(Finding(
+            'clock_drift', 'warning', where,
+            f'the offset grows by {1e3 * found.drift:+.3f} ± {1e3 * found.drift_std:.3f} ms/s: '
+            'the clocks run at different rates',
+            'stamp both streams by one clock, or stretch the times of one'))
+    rest = found.offsets - found.offset - found.drift * (
+        found.t - (record.t[0] + record.t[-1]) / 2)
+    if len(rest) > 3 and np.sqrt(np.mean(rest ** 2)) > 0.004 \
+            and np.mean((rest / found.stds) ** 2) > SEVERAL:
+        result.append(Finding(
+            'clock_wander', 'warning', where,
+            f'the offset wanders by {1e3 * np.ptp(rest):.0f} ms along the flight: samples are '
+            'stamped on arrival', 'stamp samples where they are measured'))
+    return result
+
+
+def commands(record, vehicle):
+    """Find commands that act before they are given, or long after."""
+    found = command_offset(record)
+    if found is None:
+        return []
+    early = found.offset < -max(SEVERAL * found.std, 0.005)
+    if not early and found.offset < max(0.1, SEVERAL * found.std):
+        return []
+    return [Finding(
+        'command_offset', 'warning', 'commands against accelerometer',
+        f'the thrust follows the commands by {1e3 * found.offset:.1f} ± {1e3 * found.std:.1f} ms'
+        f'{", so before they are given" if early else ", more than motors take"}',
+        'stamp commands and accelerometer by one clock')]

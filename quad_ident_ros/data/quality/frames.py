@@ -1,0 +1,156 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Frames other than those of the flight record format, found by what must agree."""
+
+import numpy as np
+
+from quad_ident_ros.data.frames import body_vector, conjugate, rotate, world_vector
+from quad_ident_ros.data.quality.finding import Finding
+from quad_ident_ros.data.quality.series import correlation, explained, Grid
+from quad_ident_ros.data.record import QUATERNION
+
+SURE, BETTER = 0.7, 0.3   # correlation that an explanation needs, and its lead
+TURNED = 0.003            # share of its power by which a velocity in body axes is off at least
+
+
+def _reorder(q):
+    return q[:, [3, 0, 1, 2]]
+
+
+READINGS = {
+    'as it is': lambda q: q,
+    'x, y, z, w': _reorder,
+    'world to body': conjugate,
+    'x, y, z, w and world to body': lambda q: conjugate(_reorder(q)),
+}
+"""What the four quaternion columns may hold, and how to make body to world, w first, of it."""
+
+
+def readings(grid):
+    """Return reading -> (attitude (N, 4), correlation of its rate with the gyro's)."""
+    q = grid.attitude()
+    if q is None or not grid.record.has(*QUATERNION):
+        return {} if q is None else {'as it is': (q, 1.0)}
+    found = {}
+    gyro = (grid.smooth(grid.signal('wx', 'wy', 'wz'))[grid.good]
+            if grid.record.has('wx', 'wy', 'wz') else None)
+    for name, read in READINGS.items():
+        attitude = read(q)
+        sure = 1.0 if gyro is None else correlation(grid.rate_of(attitude)[grid.good], gyro)[0]
+        found[name] = attitude, sure
+        if gyro is None:
+            break
+    return found
+
+
+def best_reading(grid):
+    """Return (name, attitude) of the reading to go by: as it is, unless another is far better."""
+    found = readings(grid)
+    if not found:
+        return None, None
+    best = max(found, key=lambda name: found[name][1])
+    if found[best][1] < SURE or found[best][1] < found['as it is'][1] + BETTER:
+        best = 'as it is'
+    return best, found[best][0]
+
+
+def quaternion(record, vehicle):
+    """Find quaternions in another order or direction, and rates about other body axes."""
+    grid = Grid.of(record)
+    if grid is None or not record.has(*QUATERNION, 'wx', 'wy', 'wz'):
+        return []
+    name, attitude = best_reading(grid)
+    if attitude is None:
+        return []
+    if name != 'as it is':
+        code = {'x, y, z, w': 'quaternion_order', 'world to body': 'quaternion_inverse'}
+        return [Finding(
+            code.get(name, 'quaternion_order_and_inverse'), 'error', 'qw, qx, qy, qz',
+            f'the attitude turns as the gyro says only where the columns are read as {name}',
+            'write the quaternion body to world with the scalar first')]
+    rate = grid.rate_of(attitude)[grid.good]
+    gyro = grid.smooth(grid.signal('wx', 'wy', 'wz'))[grid.good]
+    other = correlation(body_vector(rate, 'FRD'), gyro)[0]
+    if other < SURE or other < correlation(rate, gyro)[0] + BETTER:
+        return []
+    return [Finding('frame_rate', 'error', 'wx, wy, wz',
+                    'attitude and gyro disagree in the sign of y and z: one of them is in FRD',
+                    'turn y and z of the one in FRD')]
+
+
+def world(record, vehicle):
+    """Find records in NED or FRD: the specific force points up in flight."""
+    grid = Grid.of(record)
+    if grid is None:
+        return []
+    _, attitude = best_reading(grid)
+    if attitude is None:
+        return _height(record)
+    if not record.has('ax', 'ay', 'az'):
+        return _motion(grid, attitude)
+    force = grid.force()
+    size = np.median(np.linalg.norm(force, axis=1))
+    body_up = np.median(force[:, 2]) / size if size > 0 else 1.0
+    world_up = np.median(rotate(attitude, force)[:, 2]) / size if size > 0 else 1.0
+    frd, ned = bool(body_up < -0.5), bool(world_up < -0.5)
+    if frd or ned:
+        what = ' and '.join(['the body axes are FRD'] * frd + ['the world axes are NED'] * ned)
+        return [Finding('frame_ned' if ned else 'frame_frd', 'error',
+                        'position, velocity, attitude, rate, specific force',
+                        f'the specific force points down in flight: {what}',
+                        'turn the world into ENU (x east, y north, z up) and the body into FLU')]
+    return _motion(grid, attitude)
+
+
+def _motion(grid, attitude):
+    """Find velocities that change otherwise than attitude and specific force say."""
+    if not grid.record.has('vx', 'vy', 'vz'):
+        return _height(grid.record)
+    speeding = grid.derivative(grid.signal('vx', 'vy', 'vz'))[grid.good]
+    force = grid.acceleration(attitude)[grid.good]
+    if not grid.record.has('ax', 'ay', 'az'):
+        # The thrust is then only known to lie along z of the body: what tells is its tilt.
+        speeding, force = speeding[:, :2], force[:, :2]
+    sure = correlation(speeding, force)[0]
+    if sure > SURE:
+        return []   # a height below zero is then no more than another origin
+    if sure < -SURE:
+        return [Finding('frame_ned', 'error', 'position, velocity, attitude, rate',
+                        'the thrust pushes down: the world axes are NED and those of the body FRD',
+                        'turn the world into ENU (x east, y north, z up) and the body into FLU')]
+    swapped = speeding[:, [1, 0]] if speeding.shape[1] == 2 else world_vector(speeding, 'NED')
+    if correlation(swapped, force)[0] < max(SURE, sure + BETTER):
+        return _height(grid.record)
+    return [Finding('frame_ned', 'error', 'position, velocity',
+                    'the velocity changes as the specific force says only where it is read as '
+                    'NED', 'turn position and velocity into ENU (x east, y north, z up)')]
+
+
+def _height(record):
+    if not record.has('pz'):
+        return []
+    height = float(np.median(record.columns['pz']))
+    if height > -0.3:
+        return []
+    return [Finding('frame_ned', 'warning', 'pz',
+                    f'the height is {height:.2f} m in the middle: below ground, or z is down',
+                    'turn NED into ENU, or count pz from the ground')]
+
+
+def velocity_in_body(record, vehicle):
+    """Find velocities in body axes: turned by the attitude they are what the position does."""
+    grid = Grid.of(record)
+    if grid is None or not record.has('px', 'py', 'pz', 'vx', 'vy', 'vz'):
+        return []
+    _, attitude = best_reading(grid)
+    if attitude is None:
+        return []
+    moved = grid.derivative(grid.signal('px', 'py', 'pz'))[grid.good]
+    velocity = grid.signal('vx', 'vy', 'vz')
+    missed = 1.0 - explained(moved, grid.smooth(velocity)[grid.good])
+    turned = 1.0 - explained(moved, grid.smooth(rotate(attitude, velocity))[grid.good])
+    if missed < TURNED or turned > 0.1 or turned > 0.25 * missed:
+        return []
+    return [Finding('velocity_in_body', 'error', 'vx, vy, vz',
+                    'the position changes as the velocity says only where that is turned by the '
+                    'attitude: it is in body axes', 'turn the velocity into the world')]

@@ -1,0 +1,98 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Order and spin of the rotors, found from what the commands do to the body."""
+
+from itertools import permutations, product
+
+import numpy as np
+
+from quad_ident_ros.data.export import numbered
+from quad_ident_ros.data.quality import frames
+from quad_ident_ros.data.quality.finding import Finding
+from quad_ident_ros.data.quality.series import Grid
+
+SURE, BETTER = 0.5, 0.3   # mean correlation that an explanation needs, and its lead
+LATEST = 0.08             # s, motors follow their commands within
+MOST_ROTORS = 6           # of which all orders are tried
+
+
+def order_and_spin(record, vehicle):
+    """
+    Find columns cmd1..N that are not in the vehicle file's order, and spins that are not as in it.
+
+    The moment on the body, I dw/dt + w x I w, is correlated with what the squared commands give
+    for each order (roll and pitch), then for each choice of spins (yaw).
+    """
+    names = numbered(record, 'cmd')
+    grid = Grid.of(record)
+    if (vehicle is None or grid is None or not record.has('wx', 'wy', 'wz')
+            or not len(names) == len(vehicle.rotors) <= MOST_ROTORS):
+        return []
+    if frames.quaternion(record, vehicle) or frames.world(record, vehicle):
+        return []   # rates about other axes: that is to be mended first
+    rate = grid.smooth(grid.signal('wx', 'wy', 'wz'))
+    inertia = np.array(vehicle.inertia)
+    moment = inertia * np.gradient(rate, grid.period, axis=0) + np.cross(rate, inertia * rate)
+    squared = grid.smooth(grid.held(*names) ** 2)
+    position = np.array([rotor.position for rotor in vehicle.rotors])
+    declared = tuple(range(len(names)))
+    lag, scores = max((_scores(grid, moment, squared, position, shift) for shift in
+                       range(round(LATEST / grid.period) + 1)),
+                      key=lambda entry: max(entry[1].values()))
+    best = max(scores, key=scores.get)
+    if scores[best] < SURE:
+        return []
+    if scores[best] > scores[declared] + BETTER:
+        return [Finding(
+            'rotor_order', 'error', f'cmd1 to cmd{len(names)}',
+            f'the commands turn the body as rotors {", ".join(str(k + 1) for k in best)} of '
+            f'{vehicle.name} would (correlation {scores[best]:.2f}, as they are '
+            f'{scores[declared]:.2f})',
+            'put the commands into the order of the vehicle file, or correct that')]
+    return _spin(grid, moment, squared, vehicle, lag)
+
+
+def _scores(grid, moment, squared, position, lag):
+    """Return lag and order -> mean correlation over roll and pitch."""
+    target, drive = _aligned(grid, moment[:, :2], squared, lag)
+    # Moments of thrust: y F about x, -x F about y.
+    arms = np.stack([position[:, 1], -position[:, 0]])
+    scores = {}
+    covariance, cross = drive.T @ drive, target.T @ drive
+    power = np.sum(target ** 2, axis=0)
+    for order in permutations(range(len(position))):
+        effect = arms[:, list(order)]
+        size = np.einsum('ai,ij,aj->a', effect, covariance, effect) * power
+        with np.errstate(invalid='ignore', divide='ignore'):
+            scores[order] = float(np.mean(np.nan_to_num(
+                np.einsum('ai,ai->a', effect, cross) / np.sqrt(size))))
+    return lag, scores
+
+
+def _spin(grid, moment, squared, vehicle, lag):
+    target, drive = _aligned(grid, moment[:, 2:], squared, lag)
+    spins = tuple(rotor.spin for rotor in vehicle.rotors)
+    power = np.sum(target ** 2)
+    scores = {}
+    for choice in product((1, -1), repeat=len(spins)):
+        torque = drive @ np.array(choice, float)
+        scale = np.sqrt(power * np.sum(torque ** 2))
+        scores[choice] = float(np.sum(target[:, 0] * torque) / scale) if scale > 0 else 0.0
+    best = max(scores, key=scores.get)
+    if scores[best] < SURE or scores[best] < scores[spins] + BETTER:
+        return []
+    return [Finding(
+        'rotor_spin', 'error', f'cmd1 to cmd{len(spins)}',
+        f'the commands yaw the body as spins {list(best)} would (correlation '
+        f'{scores[best]:.2f}), not as those of {vehicle.name}, {list(spins)} '
+        f'({scores[spins]:.2f})',
+        'correct the spins in the vehicle file (+1: the reaction torque on the body is about +z), '
+        'or the order of the commands')]
+
+
+def _aligned(grid, moment, squared, lag):
+    """Return moments and the commands lag samples before, both about their means."""
+    index = np.flatnonzero(grid.good)
+    index = index[index >= lag]
+    target, drive = moment[index], squared[index - lag]
+    return target - target.mean(axis=0), drive - drive.mean(axis=0)

@@ -1,0 +1,37 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Rotor speed commands at the limits of the vehicle."""
+
+import numpy as np
+
+from quad_ident_ros.data.export import numbered
+from quad_ident_ros.data.quality import units
+from quad_ident_ros.data.quality.finding import Finding
+
+NEAR = 0.002   # of the range of speeds
+
+
+def speeds(record, vehicle):
+    """Find commands at or beyond speed_min and speed_max."""
+    names = numbered(record, 'cmd')
+    if vehicle is None or not names or not np.isfinite(vehicle.speed_max):
+        return []
+    if units.speeds_in_rpm(record, vehicle):
+        return []   # that is to be mended first
+    table = record.stack(*names)
+    margin = NEAR * (vehicle.speed_max - vehicle.speed_min)
+    found = []
+    for limit, bad in (('speed_max', table >= vehicle.speed_max - margin),
+                       ('speed_min', table <= vehicle.speed_min + margin)):
+        rows = bad.any(axis=1)
+        if rows.any():
+            share = rows.mean()
+            worst = int(np.argmax(bad.sum(axis=0)))
+            found.append(Finding(
+                'saturation', 'info' if share < 0.01 else 'warning',
+                f'{names[worst]}, t = {record.t[int(np.argmax(rows))]:.3f} s',
+                f'{100 * share:.2f} % of the samples have a command at or beyond {limit} = '
+                f'{getattr(vehicle, limit):g} rad/s',
+                'leave these samples out of a fit, fly more gently, or correct the limit in the '
+                'vehicle file'))
+    return found

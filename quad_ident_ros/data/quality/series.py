@@ -1,0 +1,127 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Evenly sampled, smoothed signals of a flight record, that the checks compare."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from quad_ident_ros.data.frames import conjugate, continuous, multiply, rotate
+from quad_ident_ros.data.record import EULER, QUATERNION
+from quad_ident_ros.data.streams import slerp
+from quad_ident_ros.model.attitude import quaternion_from_euler
+
+GRAVITY = 9.81
+WIDTH = 0.2       # s, full width of the smoothing window
+GAP = 3.0         # median periods from which on a step in time is a gap
+MOST = 200_000    # samples that the checks look at
+
+
+@dataclass(frozen=True, eq=False)
+class Grid:
+    """
+    An even time base t (N,) s, its period s, and where it is free of gaps, good (N,) bool.
+
+    A view on the record; the functions below give its signals at t.
+    """
+
+    record: object
+    t: np.ndarray
+    period: float
+    good: np.ndarray
+
+    @classmethod
+    def of(cls, record):
+        """Return the grid of a record at its median period; None for a record under 1 s."""
+        period = record.period()
+        span = record.t[-1] - record.t[0]
+        if span < 1.0 or len(record) < 50 or period > 0.1:
+            return None
+        count = min(int(span / period) + 1, MOST)
+        t = record.t[0] + period * np.arange(count)
+        t = t[t <= record.t[-1]]
+        after = np.clip(np.searchsorted(record.t, t), 1, len(record) - 1)
+        wide = record.t[after] - record.t[after - 1] > GAP * period
+        bad = np.convolve(wide, np.ones(2 * round(WIDTH / period) + 1), 'same') > 0.5
+        edge = max(1, round(WIDTH / period))
+        good = ~bad
+        good[:edge] = good[-edge:] = False
+        return cls(record, t, period, good) if good.sum() >= 50 else None
+
+    def signal(self, *names):
+        """Return columns at t, (N, k)."""
+        return np.stack([np.interp(self.t, self.record.t, self.record.stack(name)[:, 0])
+                         for name in names], axis=-1)
+
+    def held(self, *names):
+        """Return columns at t, each held until its next sample, (N, k)."""
+        # A hundredth of a sample: rounding must not make it the command before.
+        index = np.searchsorted(self.record.t, self.t + 0.01 * self.period, side='right') - 1
+        return self.record.stack(*names)[index]
+
+    def attitude(self):
+        """Return the attitude at t, (N, 4), or None where there is none."""
+        if self.record.has(*QUATERNION):
+            q = self.record.stack(*QUATERNION)
+        elif self.record.has(*EULER):
+            q = quaternion_from_euler(self.record.stack(*EULER))
+        else:
+            return None
+        norm = np.linalg.norm(q, axis=-1, keepdims=True)
+        if norm.min() < 1e-3:
+            return None
+        return slerp(self.record.t, continuous(q / norm), self.t)
+
+    def smooth(self, signal):
+        """Return a signal (N, k) smoothed by a Hann window of WIDTH."""
+        return smooth(signal, self.period)
+
+    def derivative(self, signal):
+        """Return the smoothed derivative of a signal (N, k) by central differences."""
+        return self.smooth(np.gradient(signal, self.period, axis=0))
+
+    def rate_of(self, attitude):
+        """Return the smoothed body rate of attitudes (N, 4), (N, 3) rad/s."""
+        q = continuous(attitude)
+        turn = multiply(conjugate(q[:-2]), q[2:])
+        length = np.linalg.norm(turn[:, 1:], axis=-1, keepdims=True)
+        angle = 2.0 * np.arctan2(length, turn[:, :1])
+        scale = np.divide(angle, length, out=np.full_like(length, 2.0), where=length > 1e-12)
+        rate = scale * turn[:, 1:] / (2 * self.period)
+        return self.smooth(np.vstack([rate[:1], rate, rate[-1:]]))
+
+    def force(self):
+        """
+        Return the specific force in the body, (N, 3) m/s^2, smoothed.
+
+        Without an accelerometer it is taken as g along body z, as in gentle flight.
+        """
+        if self.record.has('ax', 'ay', 'az'):
+            return self.smooth(self.signal('ax', 'ay', 'az'))
+        return np.tile([0.0, 0.0, GRAVITY], (len(self.t), 1))
+
+    def acceleration(self, attitude):
+        """Return the acceleration in the world from attitude and specific force, (N, 3)."""
+        return rotate(attitude, self.force()) - np.array([0.0, 0.0, GRAVITY])
+
+
+def smooth(signal, period):
+    """Return a signal (N, k) smoothed by a Hann window of WIDTH seconds."""
+    half = max(1, round(WIDTH / 2 / period))
+    window = np.hanning(2 * half + 3)[1:-1]
+    window /= window.sum()
+    padded = np.pad(signal, ((half, half), (0, 0)), mode='edge')
+    return np.stack([np.convolve(column, window, 'valid') for column in padded.T], axis=-1)
+
+
+def explained(target, model):
+    """Return the share of a signal's power that another explains; 1 where they are equal."""
+    power = np.sum(target ** 2)
+    return 1.0 - np.sum((target - model) ** 2) / power if power > 0 else 0.0
+
+
+def correlation(one, other):
+    """Return the correlation over all axes about zero, and the slope of one on the other."""
+    product, square = np.sum(one * other), np.sum(other ** 2)
+    scale = np.sqrt(np.sum(one ** 2) * square)
+    return (product / scale, product / square) if scale > 0 else (0.0, 0.0)

@@ -1,0 +1,61 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Values that stand still while the vehicle moves."""
+
+import numpy as np
+
+from quad_ident_ros.data.quality.finding import Finding
+
+JUMP = 0.2   # of the usual step: from rest a stream sets out slower
+STREAMS = {'position': ('px', 'py', 'pz'), 'attitude': ('qw', 'qx', 'qy', 'qz'),
+           'rate': ('wx', 'wy', 'wz'), 'specific force': ('ax', 'ay', 'az')}
+
+
+def held(record, vehicle):
+    """Find samples of a stream that repeat the last one and then jump."""
+    found = []
+    for name, columns in STREAMS.items():
+        if not record.has(*columns):
+            continue
+        step = np.linalg.norm(np.diff(record.stack(*columns), axis=0), axis=1)
+        share, runs, longest, first = _held(step)
+        # One run of equal forces, then a jump, may be a step of the thrust without noise.
+        if share <= 0.01 and longest < 5 or (columns[0] == 'ax' and runs < 3):
+            continue
+        found.append(Finding(
+            'stale', 'warning', f'{name}, t = {record.t[first]:.3f} s',
+            f'{100 * share:.1f} % of the samples repeat the last one, up to {longest} in a row, '
+            'while the vehicle moves',
+            f'log the {name} at its own rate with its own stamps, or leave these samples out'))
+    return found
+
+
+def _held(step):
+    """Return share, number of runs, longest run and begin of the repeats that end in a jump."""
+    moving = step[step > 0]
+    if not len(moving):
+        return 0.0, 0, 0, 0
+    still = np.concatenate([[0], (step == 0).astype(int), [0]])
+    begins, ends = np.flatnonzero(np.diff(still) == 1), np.flatnonzero(np.diff(still) == -1)
+    inside = (begins > 0) & (ends < len(step))
+    begins, ends = begins[inside], ends[inside]
+    jump = step[ends] >= JUMP * np.median(moving)
+    length = (ends - begins)[jump]
+    if not len(length):
+        return 0.0, 0, 0, 0
+    return length.sum() / len(step), len(length), int(length.max()), int(begins[jump][0]) + 1
+
+
+def marked(record, vehicle):
+    """Pass on what a column `stale` says."""
+    if not record.has('stale'):
+        return []
+    stale = np.nan_to_num(record.columns['stale']) > 0.5
+    if not stale.any():
+        return []
+    share = stale.mean()
+    return [Finding('stale_marked', 'warning' if share > 0.05 else 'info',
+                    f't = {record.t[int(np.argmax(stale))]:.3f} s',
+                    f'the record marks {100 * share:.1f} % of its samples as stale: bridged '
+                    'over values that were lost',
+                    'give these samples no weight, or cut them out')]

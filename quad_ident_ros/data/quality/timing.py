@@ -1,0 +1,54 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Gaps and duplicates in time, and what the reader had to leave out."""
+
+import numpy as np
+
+from quad_ident_ros.data.quality.finding import Finding
+from quad_ident_ros.data.quality.series import GAP
+
+
+def gaps(record, vehicle):
+    """Find steps in time of over three median periods."""
+    steps, period = np.diff(record.t), record.period()
+    wide = np.flatnonzero(steps > GAP * period)
+    if not len(wide):
+        return []
+    longest = wide[np.argmax(steps[wide])]
+    missing = int(np.sum(np.round(steps[wide] / period) - 1))
+    share = missing / (missing + len(record))
+    return [Finding(
+        'gap', 'warning' if steps[longest] > 0.25 or share > 0.02 else 'info',
+        f't = {record.t[longest]:.3f} s',
+        f'{len(wide)} gaps, {missing} samples ({100 * share:.1f} %) are missing; the longest is '
+        f'{steps[longest]:.3f} s',
+        'predictions stop at gaps; record with a lossless transport, or cut the flight there')]
+
+
+def duplicates(record, vehicle):
+    """Find samples that repeat the one before in every column."""
+    table = np.stack(list(record.columns.values()), axis=-1) if record.columns else None
+    if table is None:
+        return []
+    same = np.all((table[1:] == table[:-1]) | (np.isnan(table[1:]) & np.isnan(table[:-1])),
+                  axis=1)
+    # All at rest, as in a simulation without noise, is no fault.
+    moving = np.median(np.any(table[1:] != table[:-1], axis=1)) > 0
+    if not same.any() or not moving or _at_rest(same):
+        return []
+    first = int(np.argmax(same)) + 1
+    return [Finding('duplicate', 'warning', f't = {record.t[first]:.3f} s',
+                    f'{int(same.sum())} samples repeat the one before in every column',
+                    'keep one sample of each; a recorder that polls writes them')]
+
+
+def _at_rest(same):
+    """Whether all repeats lie at the beginning or the end."""
+    changes = np.flatnonzero(~same)
+    return not same[changes[0]:changes[-1]].any()
+
+
+def reader_notes(record, vehicle):
+    """Pass on what the reader left out."""
+    return [Finding('reader', 'info', 'file', note, 'see to it where the flight is recorded')
+            for note in record.info.get('notes', ()) if isinstance(note, str)]

@@ -1,0 +1,127 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Units other than those of the flight record format."""
+
+import numpy as np
+
+from quad_ident_ros.data.export import numbered
+from quad_ident_ros.data.quality.finding import Finding
+from quad_ident_ros.data.quality.series import correlation, GRAVITY, Grid
+from quad_ident_ros.data.record import EULER, QUATERNION
+from quad_ident_ros.model.attitude import body_rate
+
+DEGREE = np.pi / 180
+RPM = 2 * np.pi / 60
+SURE = 0.7      # correlation from which on a slope is taken seriously
+NEAR = 1.35     # a slope is a unit's where it is within this factor
+
+
+def _is(slope, unit):
+    return unit / NEAR < slope < unit * NEAR
+
+
+def _rates(record):
+    """Return the body rate of the attitude and the measured one, or None."""
+    grid = Grid.of(record)
+    if grid is None or not record.has('wx', 'wy', 'wz'):
+        return None
+    attitude = grid.attitude()
+    if attitude is None:
+        return None
+    rate = grid.smooth(grid.signal('wx', 'wy', 'wz'))
+    return grid.rate_of(attitude)[grid.good], rate[grid.good]
+
+
+def rates_in_degrees(record, vehicle):
+    """Find a gyro in deg/s: its rates are 57.3 times those of the attitude."""
+    rates = _rates(record) if record.has(*QUATERNION) else None
+    if rates is None:
+        return []
+    sure, slope = correlation(rates[1], rates[0])
+    # The sign is a matter of frames, not of units.
+    if abs(sure) < SURE or not _is(abs(slope), 1 / DEGREE):
+        return []
+    return [Finding('rate_in_degrees', 'error', 'wx, wy, wz',
+                    f'the rates are {abs(slope):.1f} times those of the attitude: they are in '
+                    'deg/s', 'multiply wx, wy and wz by pi/180')]
+
+
+def euler_in_degrees(record, vehicle):
+    """Find phi, theta, psi in degrees: they turn 57.3 times as fast as the gyro says."""
+    grid = Grid.of(record)
+    if grid is None or not record.has(*EULER):
+        return []
+    euler = grid.signal(*EULER)
+    if record.has('wx', 'wy', 'wz'):
+        reference = grid.smooth(grid.signal('wx', 'wy', 'wz'))
+    elif record.has(*QUATERNION) and grid.attitude() is not None:
+        reference = grid.rate_of(grid.attitude())
+    else:
+        return []
+    rate = body_rate(euler * DEGREE, grid.derivative(euler))
+    sure, slope = correlation(rate[grid.good], reference[grid.good])
+    if abs(sure) < SURE or not _is(abs(slope), 1 / DEGREE):
+        return []
+    return [Finding('euler_in_degrees', 'error', 'phi, theta, psi',
+                    f'the angles turn {abs(slope):.1f} times as fast as the body: they are in '
+                    'degrees', 'multiply phi, theta and psi by pi/180')]
+
+
+def force_in_g(record, vehicle):
+    """Find an accelerometer in g: the mean of its magnitude is 1."""
+    if not record.has('ax', 'ay', 'az'):
+        return []
+    size = float(np.median(np.linalg.norm(record.stack('ax', 'ay', 'az'), axis=1)))
+    if not 0.6 < size < 1.6:
+        return []
+    return [Finding('force_in_g', 'error', 'ax, ay, az',
+                    f'the specific force is {size:.2f} m/s^2 in the middle, in flight it is '
+                    f'about {GRAVITY}: it is in g', 'multiply ax, ay and az by 9.80665')]
+
+
+def position_in_millimetres(record, vehicle):
+    """Find positions, or positions and velocities, in mm."""
+    grid = Grid.of(record)
+    if grid is None or not record.has('vx', 'vy', 'vz'):
+        return []
+    velocity, remedy = grid.smooth(grid.signal('vx', 'vy', 'vz')), []
+    if record.has('px', 'py', 'pz'):
+        moved = grid.derivative(grid.signal('px', 'py', 'pz'))
+        sure, slope = correlation(moved[grid.good], velocity[grid.good])
+        if sure > SURE and _is(slope, 1000.0):
+            remedy = ['px', 'py', 'pz']
+        elif sure > SURE and _is(slope, 0.001):
+            remedy = ['vx', 'vy', 'vz']
+    attitude = grid.attitude()
+    if not remedy and attitude is not None:
+        speeding = grid.derivative(grid.signal('vx', 'vy', 'vz'))[grid.good, :2]
+        force = grid.acceleration(attitude)[grid.good, :2]
+        sure, slope = correlation(speeding, force)
+        if abs(sure) > SURE and _is(abs(slope), 1000.0):
+            remedy = ['px', 'py', 'pz', 'vx', 'vy', 'vz']
+    if not remedy:
+        return []
+    names = ', '.join(remedy)
+    return [Finding('millimetres', 'error', names,
+                    f'{names} change {"1000 times as fast as the other columns say"}: they are '
+                    'in mm', f'divide {names} by 1000')]
+
+
+def speeds_in_rpm(record, vehicle):
+    """Find commands or rotor speeds in rpm: they are 9.55 times those that carry the vehicle."""
+    if vehicle is None:
+        return []
+    hover = np.sqrt(vehicle.mass * vehicle.gravity
+                    / (len(vehicle.rotors) * vehicle.thrust_coefficient))
+    found = []
+    for prefix in ('cmd', 'rotor'):
+        names = numbered(record, prefix)
+        if not names:
+            continue
+        usual = float(np.sqrt(np.mean(np.median(record.stack(*names), axis=0) ** 2)))
+        if _is(usual / hover, 1 / RPM):
+            found.append(Finding(
+                f'{prefix}_in_rpm', 'error', f'{names[0]} to {names[-1]}',
+                f'the speeds are {usual:.0f} in the middle where {hover:.0f} rad/s carry '
+                f'{vehicle.name}: they are in rpm', f'multiply {prefix}* by 2 pi/60'))
+    return found

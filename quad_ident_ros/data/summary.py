@@ -1,0 +1,65 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What is in a flight record, as data: columns, rates, ranges, excitation, findings."""
+
+from dataclasses import asdict
+
+import numpy as np
+
+from quad_ident_ros.data.quality import clock_offset, command_offset, findings
+from quad_ident_ros.data.quality.excitation import excitation
+from quad_ident_ros.data.quality.series import GAP
+from quad_ident_ros.data.record import unit
+
+UNITS = {'roll': 'rad/s', 'pitch': 'rad/s', 'yaw': 'rad/s', 'vertical': 'm/s^2',
+         'horizontal': 'm/s'}
+
+
+def summarise(record, vehicle=None):
+    """
+    Return what is in a record, JSON-able; arguments as those of data.quality.findings.
+
+    The rate of a column is that at which its value changes, so that a slow stream shows beside a
+    fast one.
+    """
+    steps = np.diff(record.t)
+    return {
+        'schema': 'quad_ident/info/1',
+        'source': record.info.get('source'),
+        'name': record.info.get('name'),
+        'time': {'samples': len(record), 'start_s': float(record.t[0]),
+                 'duration_s': float(record.t[-1] - record.t[0]),
+                 'rate_hz': 1.0 / record.period(),
+                 'period_s': {'shortest': float(steps.min()), 'median': record.period(),
+                              'longest': float(steps.max())},
+                 'gaps': int((steps > GAP * record.period()).sum())},
+        'columns': {name: _column(name, values, record.t)
+                    for name, values in record.columns.items()},
+        'excitation': {name: {'value': value, 'unit': UNITS[name]}
+                       for name, value in excitation(record).items()},
+        'clock': {'attitude_against_gyro': _clock(clock_offset(record)),
+                  'accelerometer_against_commands': _clock(command_offset(record))},
+        'findings': [asdict(finding) for finding in findings(record, vehicle)],
+    }
+
+
+def _column(name, values, t):
+    finite = values[np.isfinite(values)]
+    changes = int(np.count_nonzero(np.diff(values)))
+    some = {'unit': unit(name), 'missing': int(len(values) - len(finite)),
+            'changes_hz': changes / float(t[-1] - t[0])}
+    for key, function in (('minimum', np.min), ('mean', np.mean), ('maximum', np.max),
+                          ('std', np.std)):
+        with np.errstate(over='ignore', invalid='ignore'):
+            value = float(function(finite)) if len(finite) else None
+        some[key] = value if value is not None and np.isfinite(value) else None
+    return some
+
+
+def _clock(offset):
+    if offset is None:
+        return None
+    known = bool(np.isfinite(offset.drift_std))
+    return {'offset_s': offset.offset, 'std_s': offset.std,
+            'drift_s_per_s': offset.drift if known else None,
+            'drift_std_s_per_s': offset.drift_std if known else None}

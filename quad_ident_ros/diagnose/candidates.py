@@ -1,0 +1,40 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What may be named as a cause, and which columns of the parameter vector that frees."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from quad_ident_ros.effects.registry import EFFECTS, SLICES
+from quad_ident_ros.greybox.parameters import SPLIT
+
+VOLTAGE = 0.02      # V that the battery must fall for its voltage to tell anything
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """An effect, or for a weak rotor one of the rotors, and its columns."""
+
+    effect: str
+    label: str
+    columns: tuple
+
+
+def candidates(flights, vehicle, effects=None):
+    """Return the Candidates, in the order of the registry; effects: names, by default all."""
+    found = []
+    voltage = any(np.ptp(flight.course.volt_drop) > VOLTAGE for flight in flights)
+    for name, effect in EFFECTS.items():
+        if effects is not None and name not in effects:
+            continue
+        first = SPLIT + SLICES[name].start
+        columns = tuple(range(first, SPLIT + SLICES[name].stop))
+        if effect.per_rotor:
+            found += [Candidate(name, f'{name} {j + 1}', (first + j,))
+                      for j in range(len(vehicle.rotors))]
+        elif name == 'battery_sag':
+            found.append(Candidate(name, name, (first if voltage else first + 1,)))
+        else:
+            found.append(Candidate(name, name, columns))
+    return tuple(found)

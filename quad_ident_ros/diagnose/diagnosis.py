@@ -1,0 +1,209 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The diagnosis of flights: gap, where, which, how far, and what cannot be told."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from quad_ident_ros import __version__
+from quad_ident_ros.diagnose import gap as gaps
+from quad_ident_ros.diagnose import where
+from quad_ident_ros.diagnose.candidates import candidates
+from quad_ident_ros.diagnose.leftover import leftovers
+from quad_ident_ros.diagnose.select import select
+from quad_ident_ros.effects.registry import EFFECTS, mapping
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.greybox.errors import UNITS
+from quad_ident_ros.greybox.flights import flight_of, highest_voltage
+from quad_ident_ros.greybox.noise import quick_noise, whole_noise
+from quad_ident_ros.greybox.parameters import NAMES, nominal, SPLIT
+
+SCHEMA = 'quad_ident/diagnosis/1'
+LEAST = 0.1         # of the noise's gap that an effect must make somewhere to be named
+DOUBT = 0.12        # probability of another cause from which on it is not ruled out
+SURE = 0.88         # probability of a cause from which on it is named without doubt
+REMAINS = 0.4       # of the noise's gap that must be left over to speak of an unknown effect
+
+
+@dataclass(frozen=True, eq=False)
+class Diagnosis:
+    """
+    What was found, as data (`data`: the JSON of the project) and as objects to go on with.
+
+    selection: of the effects; z (Z,): the vehicle with those named; vehicle: the nominal one.
+    """
+
+    data: dict
+    selection: object
+    z: np.ndarray
+    vehicle: object
+
+    def effects(self):
+        """Return {effect: {parameter: value}} of the effects named."""
+        return mapping(self.z[SPLIT:])
+
+
+def diagnose(records, vehicle, *, hold_out=None, effects=None, on_progress=lambda share: None):
+    """
+    Return the Diagnosis of flight records against a nominal vehicle.
+
+    Args: hold_out: a record that takes no part in the fit or the choice, by default the last one
+    (the second half of a single one); effects: names that may be found, by default all;
+    on_progress is called with the share done.
+    Raises InputError where the records cannot bear a verdict.
+    """
+    for name in effects or ():
+        if name not in EFFECTS:
+            raise InputError(f'{name!r} is not among the effects: {", ".join(EFFECTS)}')
+    training, test = _split(list(records), hold_out)
+    voltage = highest_voltage([*training, test])
+    flights = [flight_of(record, vehicle, reference_voltage=voltage) for record in training]
+    causes = candidates(flights, vehicle, effects)
+    selection = select(flights, vehicle, causes, lambda share: on_progress(0.8 * share))
+    z0 = nominal(vehicle)
+    noise = np.median([quick_noise(raw) for raw in selection.best.estimate.left], axis=0)
+    whole = np.median([whole_noise(raw, 1.0 - 1.0 / raw.shape[1])
+                       for raw in selection.best.estimate.left], axis=0)
+    z, named, strength = _named(selection, training, vehicle, noise, voltage)
+    left = leftovers([where.lacking(record, vehicle, z, whole, voltage) for record in training])
+    lacks = [where.lacking(record, vehicle, z0, noise, voltage) for record in training]
+    on_progress(0.9)
+    far = _how_far(test, vehicle, z0, z, named, noise, voltage)
+    unknown = bool(left) and _remains(training, vehicle, z, noise, voltage) > REMAINS
+    doubts = _doubts(selection, named)
+    verdict = [cause.effect for cause in named]
+    if unknown:
+        verdict.append('unknown')
+    verdict = list(dict.fromkeys(verdict)) or ['none']
+    if doubts:
+        verdict = ['undetermined']
+    on_progress(1.0)
+    data = {
+        'schema': SCHEMA, 'version': __version__, 'vehicle': vehicle.name, 'verdict': verdict,
+        'ranking': _ranking(selection, causes, z, test, vehicle, voltage, strength),
+        'where': _where(lacks, vehicle), 'gap': far,
+        'unknown': [{'channel': one.channel, 'depends_on': one.depends_on,
+                     'share': one.share} for one in left] if unknown else None,
+        'undetermined': doubts or None,
+        'flights': [record.info.get('name') for record in training],
+        'held_out': test.info.get('name')}
+    return Diagnosis(data, selection, z, vehicle)
+
+
+def _split(records, hold_out):
+    if not records:
+        raise InputError('no flight to diagnose: name at least one flight record')
+    if hold_out is not None:
+        return records, hold_out
+    if len(records) > 1:
+        return records[:-1], records[-1]
+    record = records[0]
+    half = len(record) // 2
+    return [record.slice(0, half)], record.slice(half, len(record))
+
+
+def _named(selection, training, vehicle, noise, voltage):
+    """Return the vector with the causes that matter, those, and the strength of each."""
+    best = selection.best
+    z, strength = best.estimate.z, {}
+    z0 = nominal(vehicle)
+    record = training[0]
+    base = gaps.noise_gap(record, vehicle, z, noise, gaps.HEADLINE, voltage)
+    full = [gaps.ends(one, vehicle, z, gaps.HEADLINE, voltage) for one in training]
+    named, kept = [], z.copy()
+    for cause in best.causes:
+        without = z.copy()
+        without[list(cause.columns)] = z0[list(cause.columns)]
+        other = [gaps.ends(one, vehicle, without, gaps.HEADLINE, voltage) for one in training]
+        change = gaps.gap([gaps.Ends(a.errors - b.errors, a.t)
+                           for a, b in zip(other, full, strict=True)])
+        strength[cause] = max(change[name] / base[name] for name in base)
+        if strength[cause] >= LEAST:
+            named.append(cause)
+        else:
+            kept[list(cause.columns)] = z0[list(cause.columns)]
+    return kept, tuple(named), strength
+
+
+def _remains(training, vehicle, z, noise, voltage):
+    """Return what is left of the gap above the noise, over the noise, where it is largest."""
+    after = gaps.gap([gaps.ends(one, vehicle, z, gaps.HEADLINE, voltage) for one in training])
+    base = gaps.noise_gap(training[0], vehicle, z, noise, gaps.HEADLINE, voltage)
+    return max(np.sqrt(max(0.0, (after[name] / base[name]) ** 2 - 1.0)) for name in after)
+
+
+def _doubts(selection, named):
+    """Return the effects between which the flights cannot tell, or [] where they can."""
+    unsure = [cause for cause in named if selection.probability[cause] < SURE]
+    rivals = [cause for cause, value in selection.probability.items()
+              if cause not in named and value > DOUBT]
+    if not unsure or not rivals:
+        return []
+    return sorted({cause.effect for cause in (*unsure, *rivals)})
+
+
+def _how_far(test, vehicle, z0, z, named, noise, voltage):
+    """Return the gap on the held-out flight: before, after, noise, intervals, by horizon."""
+    out = {}
+    for horizon in gaps.HORIZONS:
+        before = gaps.ends(test, vehicle, z0, horizon, voltage)
+        after = gaps.ends(test, vehicle, z, horizon, voltage)
+        out[horizon] = {'before': gaps.gap([before]), 'after': gaps.gap([after]),
+                        'noise': gaps.noise_gap(test, vehicle, z, noise, horizon, voltage),
+                        'before_interval': gaps.interval([before]),
+                        'after_interval': gaps.interval([after])}
+    head = out[gaps.HEADLINE]
+    contributions = {}
+    for cause in named:
+        without = z.copy()
+        without[list(cause.columns)] = z0[list(cause.columns)]
+        contributions[cause.effect] = gaps.gap(
+            [gaps.ends(test, vehicle, without, gaps.HEADLINE, voltage)])
+    return {'horizon': gaps.HEADLINE, 'units': UNITS, **head,
+            'closed': gaps.closed(head['before']['velocity'], head['after']['velocity'],
+                                  head['noise']['velocity']),
+            'without': contributions,
+            'horizons': {str(horizon): values for horizon, values in out.items()}}
+
+
+def _ranking(selection, causes, z, test, vehicle, voltage, strength):
+    """Return every effect, the most probable first, with its parameters."""
+    z0 = nominal(vehicle)
+    errors = dict(zip(selection.best.estimate.columns, selection.best.estimate.errors,
+                      strict=True))
+    rows = {}
+    for cause in causes:
+        probability = selection.probability[cause]
+        if strength.get(cause, 1.0) < LEAST:
+            probability = min(probability, 0.02)
+        row = rows.setdefault(cause.effect, {'effect': cause.effect, 'probability': 0.0,
+                                             'parameters': {}, 'gap_after': None})
+        row['probability'] = min(1.0, row['probability'] + probability)
+        if cause in selection.best.causes and cause in strength:
+            parameters = EFFECTS[cause.effect].parameters
+            units = {parameter.name: parameter.unit for parameter in parameters}
+            for column in cause.columns:
+                name = NAMES[column].split('.')[1]
+                row['parameters'][name] = {'value': float(z[column]) if z[column] != z0[column]
+                                           else float(selection.best.estimate.z[column]),
+                                           'std': float(errors[column]), 'unit': units[name]}
+            alone = z0.copy()
+            alone[list(cause.columns)] = selection.best.estimate.z[list(cause.columns)]
+            row['gap_after'] = gaps.gap([gaps.ends(test, vehicle, alone, gaps.HEADLINE, voltage)])
+    return sorted(rows.values(), key=lambda row: -row['probability'])
+
+
+def _where(lacks, vehicle):
+    found = []
+    for channel, share in where.shares(lacks, vehicle).items():
+        text, inside = where.regime(lacks, channel)
+        low, high = where.band(lacks, channel)
+        values = np.concatenate([one.values for one in lacks])[:, where.CHANNELS.index(channel)]
+        errors = np.concatenate([one.errors for one in lacks])[:, where.CHANNELS.index(channel)]
+        found.append({'channel': channel, 'share': float(share), 'regime': text,
+                      'share_in_regime': inside, 'band': [low, high],
+                      'rms': float(np.sqrt(np.mean(values ** 2))),
+                      'noise_rms': float(np.sqrt(np.mean(errors ** 2))),
+                      'unit': 'N' if channel[0] == 'F' else 'N m'})
+    return sorted(found, key=lambda row: -row['share'])

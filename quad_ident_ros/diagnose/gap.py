@@ -1,0 +1,93 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+The gap between flights and a model: the one definition of the project.
+
+Open-loop predictions from recorded states, started every 0.1 s, held against the record at the
+end of a horizon; root mean square per group of outputs (greybox.errors.GROUPS).
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from quad_ident_ros.greybox.errors import difference, ERRORS, GROUPS, moved
+from quad_ident_ros.greybox.flights import flight_of
+from quad_ident_ros.greybox.linear import STATE_STEP
+from quad_ident_ros.greybox.parameters import SPLIT
+from quad_ident_ros.model.dynamics import predict
+
+HORIZONS = (0.1, 0.5, 1.0)      # s
+HEADLINE = 0.5                  # s
+EVERY = 0.1                     # s from one start to the next
+NOISE_STARTS = 60               # starts at which the noise is carried along
+BLOCK = 2.0                     # s of the bootstrap's blocks
+DRAWS = 400
+
+
+@dataclass(frozen=True, eq=False)
+class Ends:
+    """Errors (B, 12) of predictions at their end, and when they started (B,) s."""
+
+    errors: np.ndarray
+    t: np.ndarray
+
+
+def ends(record, vehicle, z, horizon, reference_voltage=None):
+    """Return the Ends of predictions along a flight record with a parameter vector z (Z,)."""
+    flight = flight_of(record, vehicle, reference_voltage=reference_voltage, segment=horizon,
+                       every=EVERY)
+    predicted = predict(vehicle, z[SPLIT:], flight.course, flight.states[flight.first],
+                        flight.first, flight.count, constants=z[None, :SPLIT])
+    return Ends(difference(flight.states[flight.first + flight.count], predicted[:, -1]),
+                flight.course.t[flight.first])
+
+
+def gap(all_ends):
+    """Return {group: root mean square error} of the Ends of flights."""
+    errors = np.concatenate([one.errors for one in all_ends])
+    return {name: float(np.sqrt(np.mean(np.sum(errors[:, part] ** 2, axis=1))))
+            for name, part in GROUPS.items()}
+
+
+def noise_gap(record, vehicle, z, noise, horizon, reference_voltage=None):
+    """
+    Return {group: what measurement noise alone would give}, for white noise (12,).
+
+    The noise of the first state, carried along by the model, and that of the last one.
+    """
+    flight = flight_of(record, vehicle, reference_voltage=reference_voltage, segment=horizon,
+                       every=EVERY)
+    chosen = flight.first[np.linspace(0, len(flight.first) - 1, NOISE_STARTS).astype(int)]
+    starts = flight.states[chosen]
+    everything = np.concatenate([starts, *(moved(starts, move) for move in np.diag(STATE_STEP))])
+    out = predict(vehicle, z[SPLIT:], flight.course, everything, np.tile(chosen, 1 + ERRORS),
+                  flight.count, constants=z[None, :SPLIT])[:, -1]
+    out = out.reshape(1 + ERRORS, len(chosen), -1)
+    carried = difference(out[1:], out[0]) / STATE_STEP[:, None, None] * noise[:, None, None]
+    variance = np.sum(carried ** 2, axis=0) + noise ** 2
+    return {name: float(np.sqrt(np.mean(np.sum(variance[:, part], axis=1))))
+            for name, part in GROUPS.items()}
+
+
+def interval(all_ends, seed=0):
+    """Return {group: (low, high)}, the 95 % interval of the gap: bootstrap of blocks of time."""
+    blocks = []
+    for one in all_ends:
+        which = (one.t // BLOCK).astype(int)
+        blocks += [one.errors[which == k] for k in np.unique(which)]
+    sums = {name: np.array([np.sum(block[:, part] ** 2) for block in blocks])
+            for name, part in GROUPS.items()}
+    counts = np.array([len(block) for block in blocks])
+    draws = np.random.default_rng(seed).integers(0, len(blocks), (DRAWS, len(blocks)))
+    found = {}
+    for name, values in sums.items():
+        means = np.sqrt(values[draws].sum(axis=1) / counts[draws].sum(axis=1))
+        found[name] = tuple(float(value) for value in np.quantile(means, (0.025, 0.975)))
+    return found
+
+
+def closed(before, after, noise):
+    """Return the share of the gap above the noise that is closed, at most 1; 0 where none is."""
+    room = before - noise
+    return float(np.clip((before - after) / room, -1.0, 1.0)) if room > 0.05 * noise else 0.0

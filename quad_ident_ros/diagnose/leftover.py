@@ -1,0 +1,84 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Whether structure is left that no known effect explains, and what it depends on."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import stats
+
+from quad_ident_ros.diagnose.where import CHANNELS
+
+CHANCE = 1e-6       # of calling structure what is none, per channel
+LAGS = 6            # windows over which what is left may hang together
+
+
+@dataclass(frozen=True)
+class Leftover:
+    """Structure in a channel: what it depends on, or 'time' alone; share of its variance."""
+
+    channel: str
+    depends_on: str
+    share: float
+    chance: float
+
+
+def leftovers(flights):
+    """Return the Leftovers, the strongest first, of the Lacking of flights (of the best model)."""
+    table, names = _library(flights)
+    found = []
+    for column, channel in enumerate(CHANNELS):
+        scaled = np.concatenate([flight.values[:, column] / flight.errors[:, column]
+                                 for flight in flights])
+        y = np.clip(scaled, *np.quantile(scaled, (0.005, 0.995)))
+        name, share, chance = _best_feature(table, names, y)
+        if chance > CHANCE:
+            chance = _memory(flights, column)
+            name, share = 'the time', float(max(0.0, 1.0 - 1.0 / max(np.var(y), 1e-9)))
+        if chance < CHANCE:
+            found.append(Leftover(channel, name, share, chance))
+    return sorted(found, key=lambda one: -one.share)
+
+
+def _library(flights):
+    """Return regressors (B, K) of unit spread, and the names of what they depend on."""
+    columns, names = [], []
+    for name in flights[0].features:
+        values = np.concatenate([flight.features[name][1] for flight in flights])
+        for column in (values, values * np.abs(values), values ** 2, np.abs(values)):
+            if np.std(column) > 1e-9 * (1.0 + np.abs(column).max()):
+                columns.append((column - column.mean()) / np.std(column))
+                names.append(name)
+    return np.stack(columns, axis=1), names
+
+
+def _best_feature(table, names, y):
+    """Return (name, share of the variance, chance) of the regressor that explains most of y."""
+    count = len(y)
+    centred = y - y.mean()
+    total = np.sum(centred ** 2)
+    along = table.T @ centred / count
+    explained = count * along ** 2
+    k = int(np.argmax(explained))
+    share = explained[k] / total
+    statistic = share * (count - 2) / max(1.0 - share, 1e-12)
+    chance = min(1.0, len(names) * float(stats.f.sf(statistic, 1, count - 2)))
+    mean = np.mean(y) ** 2 * count / max(np.var(y), 1.0)
+    constant = float(stats.chi2.sf(mean, 1))
+    if constant < chance:
+        return 'nothing: it is constant', float(np.mean(y) ** 2 / np.mean(y ** 2)), constant
+    return names[k], float(share), chance
+
+
+def _memory(flights, column):
+    """Return the chance that what is left hangs together in time as it does, were it noise."""
+    statistic = 0.0
+    for flight in flights:
+        y = flight.values[:, column] / flight.errors[:, column]
+        y = np.clip(y, *np.quantile(y, (0.01, 0.99)))
+        y = y - y.mean()
+        power = np.sum(y ** 2)
+        for lag in range(1, LAGS + 1):
+            r = np.sum(y[lag:] * y[:-lag]) / power
+            statistic += len(y) * (len(y) + 2) * r * r / (len(y) - lag)
+    return float(stats.chi2.sf(statistic, LAGS * len(flights)))

@@ -1,0 +1,81 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Flights cut into the short rollouts that are held against them."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.model.dynamics import Course, course_of, states_of
+
+RATE = 125.0        # Hz, the fastest that is looked at: more rows add cost, hardly information
+SEGMENT = 0.5       # s of a rollout
+WARM = 0.25         # s of commands before a rollout, from which the speeds of its rotors follow
+GAP = 1.6           # usual periods between two samples that no rollout crosses
+
+
+@dataclass(frozen=True, eq=False)
+class Flight:
+    """
+    A flight and where its rollouts begin.
+
+    course: of N samples; states (N, 13) recorded; first (B,) samples at which rollouts of `count`
+    samples begin; period s, the usual one.
+    """
+
+    name: str
+    course: Course
+    states: np.ndarray
+    first: np.ndarray
+    count: int
+    period: float
+
+
+def flight_of(record, vehicle, *, reference_voltage=None, segment=SEGMENT, every=None):
+    """
+    Return the Flight of a record; raises InputError where it lacks columns or is too short.
+
+    Args: reference_voltage V, see dynamics.course_of; segment s of each rollout; every s from one
+    start to the next, by default the length of a rollout, so that they do not overlap.
+    """
+    course, states = course_of(record, vehicle, reference_voltage), states_of(record)
+    period = float(np.median(np.diff(course.t)))
+    skip = max(1, int(1.0 / (period * RATE) + 0.5))
+    if skip > 1:
+        course, states = _thinned(course, states, skip)
+        period *= skip
+    count = max(2, round(segment / period))
+    step = count if every is None else max(1, round(every / period))
+    first = _starts(course.t, period, count, step, round(WARM / period))
+    name = record.info.get('name', 'flight')
+    if not len(first):
+        raise InputError(f'{name}: {course.t[-1]:.3g} s without a gap-free stretch of '
+                         f'{segment:g} s are too short; give a longer flight')
+    return Flight(name, course, states, first, count, period)
+
+
+def highest_voltage(records):
+    """Return the highest voltage at which a flight begins, V, or None where none is recorded."""
+    starts = [float(np.median(record.columns['vbat'][:max(1, len(record) // 20)]))
+              for record in records if record.has('vbat')]
+    return max(starts) if starts else None
+
+
+def _thinned(course, states, skip):
+    """Return every so many samples, with the mean of the commands between them."""
+    rows = len(course.t) // skip * skip
+
+    def mean(values):
+        return values[:rows].reshape(-1, skip, *values.shape[1:]).mean(axis=1)
+
+    return Course(course.t[:rows:skip], mean(course.commands), mean(course.volt_drop)), \
+        states[:rows:skip]
+
+
+def _starts(t, period, count, step, warm):
+    """Return the samples that `warm` others precede and `count` follow without a gap."""
+    gaps = np.flatnonzero(np.diff(t) > GAP * period)
+    edges = np.concatenate([[0], gaps + 1, [len(t)]])
+    return np.concatenate([np.arange(a + warm, b - count, step) for a, b in
+                           zip(edges[:-1], edges[1:], strict=True)]).astype(np.int64)

@@ -1,0 +1,32 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Measurement noise, from the flights themselves."""
+
+import numpy as np
+
+# m, m/s, rad, rad/s: below it a difference is the arithmetic's or the integrator's.
+FLOOR = np.repeat([2e-5, 2e-4, 2e-5, 2e-4], 3)
+MAD = 1.4826    # standard deviation over median deviation, of a normal distribution
+
+
+def quick_noise(raw):
+    """
+    Return the standard deviation of what changes from sample to sample, (12,).
+
+    Args: raw (B, count + 1, 12) recorded minus predicted. Third differences leave nothing of what
+    is smooth, as the errors of a model are; white noise comes out as it is, coloured too small.
+    """
+    third = np.diff(raw, 3, axis=1).reshape(-1, raw.shape[-1])
+    return np.maximum(MAD * np.median(np.abs(third), axis=0) / np.sqrt(20.0), FLOOR)
+
+
+def whole_noise(raw, freedom):
+    """
+    Return the standard deviation of all that is left, outliers apart, (12,).
+
+    Args: raw (B, count + 1, 12); freedom (12,) share that is not spent on initial states.
+    """
+    left = raw.reshape(-1, raw.shape[-1])
+    spread = MAD * np.median(np.abs(left), axis=0)
+    inside = np.minimum(np.abs(left), 5.0 * np.maximum(spread, FLOOR))
+    return np.maximum(np.sqrt(np.mean(inside ** 2, axis=0) / freedom), FLOOR)

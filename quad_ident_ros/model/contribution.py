@@ -1,0 +1,44 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What effects add to the nominal vehicle along a recorded flight."""
+
+import numpy as np
+
+from quad_ident_ros.effects.registry import NULL, SLICES
+from quad_ident_ros.model.actuators import actuated
+from quad_ident_ros.model.attitude import rotation_matrix
+from quad_ident_ros.model.rigid_body import derivatives, INPUT, rotor_table, vehicle_vector
+from quad_ident_ros.model.sensors import underlying
+
+
+def contribution(vehicle, theta, course, states):
+    """
+    Return force (N, 3) N and moment (N, 3) N m, body, that effects add to the nominal vehicle.
+
+    Nominal mass and inertia times what they change in the accelerations of the body origin.
+    Args: theta (P,); course: a dynamics.Course; states (N, 13) recorded at its times.
+    """
+    theta = np.asarray(theta, float)
+    linear, angular = (with_effects - nominal for with_effects, nominal in
+                       zip(_accelerations(vehicle, theta, course, states),
+                           _accelerations(vehicle, NULL, course, states), strict=True))
+    body = np.einsum('nij,ni->nj', rotation_matrix(states[:, 6:10]), linear)
+    return vehicle.mass * body, vehicle.inertia * angular
+
+
+def _accelerations(vehicle, theta, course, states):
+    """Return those of the body origin, world, and those of the rate, body, (N, 3) each."""
+    states = np.ascontiguousarray(underlying(theta, states))
+    (followed,), (speeds,) = actuated(course.t, course.commands, theta[None])
+    lag = theta[SLICES['motor_lag']][0]
+    rising = (followed - speeds) / lag if lag > 0 else np.zeros_like(speeds)
+    inputs = np.zeros((len(course.t), INPUT))
+    inputs[:, 5] = course.volt_drop
+    change = np.empty_like(states)
+    derivatives(vehicle_vector(vehicle)[:, None], rotor_table(vehicle), theta, course.t, states,
+                speeds, rising, inputs, change)
+    arm = -theta[SLICES['com_offset']]
+    rate, turning = states[:, 10:], change[:, 10:]
+    swing = np.cross(turning, arm) + np.cross(rate, np.cross(rate, arm))
+    linear = change[:, 3:6] + np.einsum('nij,nj->ni', rotation_matrix(states[:, 6:10]), swing)
+    return linear, turning

@@ -1,0 +1,309 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Fuzz the readers: mutated files of every format, each within limits of time and memory.
+
+  PYTHONPATH=. .venv/bin/python test/fuzz_readers.py --inputs 20000    # of each format
+
+Every input is read by a process of its own kind that the system ends where it takes too long. An
+input is refused (one line that names the file), read, or a failure; failures are kept in --keep.
+"""
+
+import argparse
+from collections import Counter
+import gzip
+import json
+from pathlib import Path
+import random
+import resource
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import traceback
+import warnings
+
+from flightmaker import flight, others_bag, px4_samples, ulog, VEHICLE
+import numpy as np
+from rich.progress import Progress
+from rosbags.rosbag2 import StoragePlugin, Writer
+from rosbags.typesys import get_typestore, Stores
+
+from quad_ident_ros.data.bag import read_bag_messages
+from quad_ident_ros.data.export import save, write_bag
+from quad_ident_ros.data.load import load_all
+from quad_ident_ros.data.mapping import load_mapping, mapping_from
+from quad_ident_ros.data.topics import EXACT_TOPIC
+from quad_ident_ros.errors import InputError
+
+SECONDS = 10        # for one input
+MEGABYTES = 1024    # for one input, beyond what the process has when it begins
+NAMES = {'csv': 'f.csv', 'csv_gz': 'f.csv.gz', 'mcap': 'f.mcap', 'mcap_topics': 'f.mcap',
+         'mcap_mapped': 'f.mcap', 'sqlite3': 'f.db3', 'metadata': 'bag', 'ulog': 'f.ulg',
+         'mapping': 'f.yaml'}
+"""File that each kind of input is written to."""
+
+TOPICS = mapping_from({'topics': {
+    'pose': {'topic': '/odom'}, 'velocity': {'topic': '/odom'}, 'rate': {'topic': '/imu'},
+    'specific_force': {'topic': '/imu'}, 'commands': {'topic': '/motors'}}}, 'mapping')
+OUTPUTS = mapping_from({'actuators': {'kind': 'pwm', 'order': [1, 3, 4, 2]}}, 'mapping')
+MAPPING = """\
+world: NED
+topics:
+  pose: {topic: /odom}
+  velocity: {topic: /odom, frame: world}
+  commands: {topic: /motors, field: data}
+instances: {actuator_outputs: 1}
+actuators:
+  {order: [1, 3, 4, 2], kind: pwm, minimum: 1e3, maximum: 2000, speeds: [0, 9e2], curve: thrust}
+"""
+
+
+def valid_inputs(folder):
+    """Return the bytes of a small valid input of each kind."""
+    record = flight(seconds=0.12, noise=0.0)
+    outputs = 1500 + np.zeros((len(record), 4))
+    found = {}
+    for kind in ('csv', 'csv_gz', 'mcap'):
+        save(folder / NAMES[kind], record)
+        found[kind] = (folder / NAMES[kind]).read_bytes()
+    found['mcap'] = _without_checksums(found['mcap'])
+    write_bag(folder / 'ours', record)
+    others_bag(folder / 'others', record, outputs)
+    found['mcap_topics'] = _mcap(folder, 'topics', folder / 'ours', {EXACT_TOPIC})
+    found['mcap_mapped'] = _without_checksums(next((folder / 'others').glob('*.mcap'))
+                                              .read_bytes())
+    _copy(folder / 'ours', folder / 'sql', StoragePlugin.SQLITE3, {EXACT_TOPIC})
+    found['sqlite3'] = next((folder / 'sql').glob('*.db3')).read_bytes()
+    found['metadata'] = (folder / 'ours' / 'metadata.yaml').read_bytes()
+    found['ulog'] = ulog(px4_samples(record, outputs=outputs, motors=0 * outputs))
+    found['mapping'] = MAPPING.encode()
+    return found
+
+
+def _mcap(folder, name, source, left_out):
+    _copy(source, folder / name, StoragePlugin.MCAP, left_out)
+    return _without_checksums(next((folder / name).glob('*.mcap')).read_bytes())
+
+
+def _copy(source, target, plugin, left_out):
+    store = get_typestore(Stores.ROS2_JAZZY)
+    with Writer(target, version=9, storage_plugin=plugin) as writer:
+        connections = {}
+        for topic, stamp, message in read_bag_messages(source):
+            if topic in left_out:
+                continue
+            kind = message.__msgtype__
+            if topic not in connections:
+                connections[topic] = writer.add_connection(topic, kind, typestore=store)
+            writer.write(connections[topic], stamp, store.serialize_cdr(message, kind))
+
+
+def _without_checksums(data):
+    """Return an MCAP file whose chunks say that they have none, so that mutations get further."""
+    data, at = bytearray(data), 8
+    while at + 9 <= len(data) - 8:
+        size = int.from_bytes(data[at + 1:at + 9], 'little')
+        if data[at] == 0x06:
+            data[at + 33:at + 37] = bytes(4)
+        at += 9 + size
+    return bytes(data)
+
+
+SPECIAL = (b'nan', b'inf', b'-', b',', b'\n', b'"', b'1e999', b'\0', b'\xff' * 4, b'\xff' * 8,
+           b'\x7f' + b'\xff' * 3, bytes(8), b'[65535]', b': ', b'[', b'{', b'!!', b'&a ', b'*a',
+           b'uint64_t', b'9' * 30, b'\x80', b'\xe2\x80\xa8', b'qw')
+
+
+def mutate(data, chance, others):
+    """Return a mutated copy of bytes: a few random changes of the kinds that parsers trip over."""
+    data = bytearray(data)
+    for _ in range(chance.choice((1, 1, 1, 2, 3, 8))):
+        at = chance.randrange(len(data) + 1)
+        size = chance.choice((1, 2, 4, 8, 30, 200))
+        what = chance.randrange(9)
+        if what == 0 and data:
+            data[at % len(data)] ^= 1 << chance.randrange(8)
+        elif what == 1:
+            data[at:at + 1] = bytes([chance.randrange(256)])
+        elif what == 2:
+            special = chance.choice(SPECIAL)
+            data[at:at + len(special)] = special
+        elif what == 3:
+            data[at:at] = chance.choice(SPECIAL)
+        elif what == 4:
+            del data[at:at + size]
+        elif what == 5:
+            data[at:at] = data[at:at + size] * chance.choice((1, 2, 20))
+        elif what == 6:
+            width = chance.choice((1, 2, 4, 8))
+            number = chance.choice((0, 1, 2 ** (8 * width) - 1, 2 ** (8 * width - 1),
+                                    chance.randrange(2 ** (8 * width))))
+            data[at:at + width] = number.to_bytes(width, 'little')
+        elif what == 7 and chance.random() < 0.3:
+            del data[at:]
+        else:
+            other = chance.choice(others)
+            begin = chance.randrange(len(other))
+            data[at:at + size] = other[begin:begin + size]
+    return bytes(data)
+
+
+def read(kind, path):
+    """Read an input as its kind is read."""
+    if kind == 'mapping':
+        load_mapping(path)
+    elif kind == 'mcap_mapped':
+        load_all(path, TOPICS)
+    elif kind == 'ulog':
+        load_all(path, OUTPUTS, VEHICLE)
+    else:
+        load_all(path)
+
+
+def work(kind, first, count, seed, keep):
+    """Read inputs first..first + count - 1 of a kind; print a line of JSON for each."""
+    warnings.simplefilter('error')
+    base = _peak()
+    limit = int((base + MEGABYTES) * 2 ** 20) + _virtual()
+    resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
+    with tempfile.TemporaryDirectory() as folder:
+        folder = Path(folder)
+        valid = valid_inputs(folder)
+        path = folder / NAMES[kind]
+        for number in range(first, first + count):
+            chance = random.Random(f'{seed} {kind} {number}')
+            packed = kind == 'csv_gz' and chance.random() < 0.8
+            data = mutate(valid['csv' if packed else kind], chance, list(valid.values()))
+            if packed:   # a change inside, which the checksum does not give away
+                data = gzip.compress(data, 1)
+            if kind == 'metadata':
+                path.mkdir(exist_ok=True)
+                (path / 'metadata.yaml').write_bytes(data)
+                for file in (folder / 'ours').glob('*.mcap'):
+                    (path / file.name).write_bytes(file.read_bytes())
+            else:
+                path.write_bytes(data)
+            print(json.dumps({'begun': number}), flush=True)
+            outcome, text, took, peak = attempt(kind, path)
+            if outcome not in ('refused', 'read') and keep:
+                Path(keep).mkdir(parents=True, exist_ok=True)
+                (Path(keep) / f'{kind}_{number}').write_bytes(data)
+            print(json.dumps({'number': number, 'outcome': outcome, 'text': text, 'took': took,
+                              'peak': peak}), flush=True)
+
+
+def attempt(kind, path):
+    """Return outcome, text, seconds and MB over the start of reading one input."""
+    before = _reset_peak()
+    signal.alarm(SECONDS)
+    began = time.perf_counter()
+    outcome, text = 'read', ''
+    try:
+        read(kind, path)
+    except InputError as error:
+        text = str(error)
+        whole = len(text.splitlines()) == 1 and str(path) in text and len(text) < 1000
+        outcome = 'refused' if whole else 'no good line'
+    except BaseException:
+        outcome, text = 'traceback', traceback.format_exc()
+    took = time.perf_counter() - began
+    signal.alarm(0)
+    return outcome, text if outcome != 'read' else '', took, _peak() - before
+
+
+def _status(name):
+    for line in Path('/proc/self/status').read_text().splitlines():
+        if line.startswith(name):
+            return int(line.split()[1]) / 1024
+    return 0.0
+
+
+def _peak():
+    return _status('VmHWM')
+
+
+def _virtual():
+    return int(_status('VmSize') * 2 ** 20)
+
+
+def _reset_peak():
+    """Let the peak begin anew at what the process has now, and return that in MB."""
+    Path('/proc/self/clear_refs').write_text('5')
+    return _status('VmRSS')
+
+
+def fuzz(kind, count, seed, keep, advance):
+    """Return the account of one kind: outcomes, slowest s, largest MB, and failures."""
+    outcomes, slowest, largest, failures = Counter(), 0.0, 0.0, []
+    number = 0
+    while number < count:
+        worker = subprocess.Popen(
+            [sys.executable, __file__, '--work', kind, str(number),
+             str(min(count - number, 2000)), '--seed', str(seed), '--keep', keep],
+            stdout=subprocess.PIPE, text=True)
+        end = number + min(count - number, 2000)
+        begun = None
+        for line in worker.stdout:
+            data = json.loads(line)
+            if 'begun' in data:
+                begun = data['begun']
+                continue
+            begun, number = None, data['number'] + 1
+            outcomes[data['outcome']] += 1
+            slowest, largest = max(slowest, data['took']), max(largest, data['peak'])
+            if data['outcome'] not in ('refused', 'read'):
+                failures.append({'kind': kind, 'number': data['number'], 'text': data['text']})
+            advance()
+        code = worker.wait()
+        if begun is not None:
+            name = 'hang' if code == -signal.SIGALRM else 'crash'
+            outcomes[name] += 1
+            failures.append({'kind': kind, 'number': begun, 'text': f'{name}, code {code}'})
+            number = begun + 1
+            advance()
+        elif number < end:
+            raise SystemExit(f'{kind}: the process that reads ended with code {code}')
+    return {'inputs': count, **{name: outcomes[name] for name in
+                                ('refused', 'read', 'traceback', 'no good line', 'hang',
+                                 'crash')}, 'slowest_s': slowest, 'largest_MB': largest}, failures
+
+
+def main():
+    """Fuzz all kinds and print the table."""
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument('--inputs', type=int, default=1000, help='of each kind (default 1000)')
+    parser.add_argument('--seed', type=int, default=0)
+    parser.add_argument('--kind', action='append', choices=tuple(NAMES), help='default: all')
+    parser.add_argument('--keep', default='', metavar='FOLDER', help='keep inputs that fail here')
+    parser.add_argument('--json', metavar='FILE', help='write the account and failures as data')
+    parser.add_argument('--work', nargs=3, help=argparse.SUPPRESS)
+    options = parser.parse_args()
+    if options.work:
+        kind, first, count = options.work
+        work(kind, int(first), int(count), options.seed, options.keep)
+        return
+    kinds = options.kind or list(NAMES)
+    account, failures = {}, []
+    with Progress(disable=not sys.stderr.isatty(), transient=True) as bar:
+        task = bar.add_task('fuzzing', total=len(kinds) * options.inputs)
+        for kind in kinds:
+            account[kind], failed = fuzz(kind, options.inputs, options.seed, options.keep,
+                                         lambda: bar.advance(task))
+            failures += failed
+            if options.json:
+                Path(options.json).write_text(json.dumps(
+                    {'account': account, 'failures': failures}, indent=2) + '\n')
+    columns = ('inputs', 'refused', 'read', 'traceback', 'no good line', 'hang', 'crash',
+               'slowest_s', 'largest_MB')
+    print(f'{"":<12}' + ''.join(f'{name:>13}' for name in columns))
+    for kind, row in account.items():
+        print(f'{kind:<12}' + ''.join(f'{row[name]:>13.4g}' for name in columns))
+    for failure in failures[:20]:
+        print(f'{failure["kind"]} {failure["number"]}: {failure["text"][-400:]}')
+
+
+if __name__ == '__main__':
+    main()

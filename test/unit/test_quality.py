@@ -1,0 +1,355 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The quality of records: silent on clean flights, and each fault found where it is put in."""
+
+from dataclasses import replace
+from itertools import permutations
+from pathlib import Path
+
+from flightmaker import changed, flight, frd, ned, ned_attitude, VEHICLE, world_velocity_in_body
+import numpy as np
+import pytest
+
+from quad_ident_ros.data.frames import conjugate, multiply, rotate
+from quad_ident_ros.data.load import load
+from quad_ident_ros.data.quality import clock_offset, command_offset, findings, SEVERITIES
+from quad_ident_ros.data.quality.excitation import excitation
+from quad_ident_ros.data.record import FlightRecord
+from quad_ident_ros.experiment import fly, load_experiment
+from quad_ident_ros.model.attitude import euler_from_quaternion
+from quad_ident_ros.model.vehicle import load_vehicle
+
+NANOBENCH = Path(__file__).parents[1] / 'data' / 'nanobench'
+P, V, Q = ('px', 'py', 'pz'), ('vx', 'vy', 'vz'), ('qw', 'qx', 'qy', 'qz')
+W, A, CMD = ('wx', 'wy', 'wz'), ('ax', 'ay', 'az'), ('cmd1', 'cmd2', 'cmd3', 'cmd4')
+
+
+def named(names, table):
+    return dict(zip(names, np.asarray(table).T, strict=True))
+
+
+def codes(record, vehicle=VEHICLE):
+    return {finding.code for finding in findings(record, vehicle)}
+
+
+def late(record, names, offset, drift=0.0):
+    """Return the record with columns stamped late: by offset (s) in the middle and drift."""
+    t = record.t
+    at = t - offset - drift * (t - t.mean())
+    inside = (at > t[0]) & (at < t[-1])
+    shifted = {name: np.interp(at, t, record.columns[name]) for name in names}
+    moved = changed(record, **shifted)
+    return FlightRecord(t[inside], {name: values[inside] for name, values in
+                                    moved.columns.items()}, record.info)
+
+
+CLEAN = {
+    'usual': {}, 'without noise': {'noise': 0.0}, 'noisy': {'noise': 2.0, 'seed': 1},
+    'fast': {'rate': 250.0, 'seconds': 8.0, 'seed': 3}, 'slow': {'rate': 50.0, 'seed': 4},
+    'later': {'start': 100.0, 'seed': 5}, 'long': {'seconds': 60.0, 'seed': 6},
+    'short': {'seconds': 3.0, 'seed': 7},
+}
+
+
+@pytest.mark.parametrize('options', CLEAN.values(), ids=CLEAN)
+def test_nothing_is_found_on_a_clean_flight(options):
+    assert findings(flight(**options), VEHICLE) == ()
+
+
+@pytest.mark.parametrize('seed', range(20))
+def test_no_seed_raises_a_false_alarm(seed):
+    assert findings(flight(seed=seed, seconds=12.0), VEHICLE) == ()
+
+
+def test_a_flight_with_an_uneven_rate_is_clean():
+    record = flight(rate=200.0, noise=0.0)
+    keep = np.sort(np.random.default_rng(0).choice(len(record), len(record) // 2, replace=False))
+    uneven = FlightRecord(record.t[keep], {name: values[keep] for name, values in
+                                           record.columns.items()})
+    assert not {code for code in codes(uneven) if code != 'gap'}
+
+
+@pytest.mark.parametrize('noise', [{}, {'attitude': 0.002, 'rate': 0.01}])
+def test_simulated_flights_have_no_faults(noise):
+    """None but axes that do not move, though these fall below their origin."""
+    for name in ('hover_single_axis', 'small_angle', 'paper_unit_steps_newton_euler'):
+        experiment = load_experiment(name)
+        for run in experiment.runs:
+            record = fly(experiment, run, noise=noise, seed=1).record
+            assert codes(record, load_vehicle('paper_quadrotor')) <= {'excitation'}
+
+
+@pytest.mark.parametrize('name, offset', [('star_fast', 0.01), ('oval_fast', 0.01)])
+def test_real_flights_have_the_faults_that_their_source_states(name, offset):
+    """Stale samples and, at most, the 10 ms that its README expects; no error."""
+    record = load(NANOBENCH / f'{name}.csv.gz')
+    vehicle = load_vehicle(NANOBENCH / 'vehicle.yaml')
+    found = findings(record, vehicle)
+    assert 'stale_marked' in {finding.code for finding in found}
+    assert {finding.code for finding in found} <= {
+        'stale_marked', 'clock_offset', 'clock_wander', 'saturation', 'excitation'}
+    assert not [finding for finding in found if finding.severity == 'error']
+    clock = clock_offset(record)
+    assert abs(clock.offset) < offset + 3 * clock.std
+
+
+def test_a_finding_says_what_where_and_how_to_mend_it():
+    record = changed(flight(), **named(W, np.degrees(flight().stack(*W))))
+    [finding] = findings(record, VEHICLE)
+    assert finding.code == 'rate_in_degrees' and finding.severity == 'error'
+    assert 'deg/s' in finding.message and 'pi/180' in finding.remedy and 'wx' in finding.where
+    assert '\n' not in finding.message + finding.remedy + finding.where
+
+
+def test_the_gravest_come_first():
+    record = changed(flight(), **named(W, np.degrees(flight().stack(*W))),
+                     stale=(np.arange(len(flight())) % 10 == 0).astype(float))
+    order = [SEVERITIES.index(finding.severity) for finding in findings(record, VEHICLE)]
+    assert len(order) > 1 and order == sorted(order, reverse=True)
+
+
+# --- time
+
+def test_gaps_are_counted():
+    record = flight()
+    keep = np.ones(len(record), bool)
+    keep[300:340] = keep[900:903] = False
+    cut = FlightRecord(record.t[keep], {n: v[keep] for n, v in record.columns.items()})
+    [finding] = findings(cut, VEHICLE)
+    assert finding.code == 'gap' and finding.severity == 'warning'
+    assert '2 gaps, 43 samples' in finding.message and '0.410 s' in finding.message
+
+
+def test_duplicated_samples_are_found():
+    record = flight()
+    index = np.insert(np.arange(len(record)), [500, 800], [499, 799])
+    t = record.t[index]
+    t[500] += 0.004
+    t[801] += 0.004
+    doubled = FlightRecord(t, {n: v[index] for n, v in record.columns.items()})
+    [finding] = [f for f in findings(doubled, VEHICLE) if f.code == 'duplicate']
+    assert finding.message.startswith('2 samples') and 't = 4.994' in finding.where
+
+
+@pytest.mark.parametrize('columns', [P, Q, W, A])
+def test_held_values_are_found(columns):
+    record = flight()
+    half = np.arange(len(record)) // 2 * 2
+    held = changed(record, **{name: record.columns[name][half] for name in columns})
+    [finding] = [f for f in findings(held, VEHICLE) if f.code == 'stale']
+    share = float(finding.message.split(' %')[0])
+    assert 45 < share < 51
+
+
+def test_one_frozen_stretch_is_found():
+    record = flight()
+    index = np.arange(len(record))
+    index[700:725] = 700
+    [finding] = findings(changed(record, **{n: record.columns[n][index] for n in W}), VEHICLE)
+    assert finding.code == 'stale' and 'up to 24 in a row' in finding.message
+    assert 't = 7.010' in finding.where
+
+
+def test_what_a_reader_left_out_is_passed_on():
+    noted = FlightRecord(flight().t, flight().columns, {'notes': ['topic /imu: 3 samples']})
+    [finding] = findings(noted)
+    assert finding.code == 'reader' and finding.message == 'topic /imu: 3 samples'
+
+
+# --- clocks
+
+@pytest.mark.parametrize('offset', [-0.2, -0.033, -0.0045, 0.0045, 0.0173, 0.12])
+def test_an_offset_is_estimated_to_a_fraction_of_a_sample(offset):
+    record = late(flight(seconds=30.0), (*P, *V, *Q), offset)
+    clock = clock_offset(record)
+    assert abs(clock.offset - offset) < 4 * clock.std < 0.004
+    [finding] = [f for f in findings(record, VEHICLE) if f.code == 'clock_offset']
+    assert ('later' in finding.message) == (offset > 0)
+    assert finding.severity == ('error' if abs(offset) > 0.1 else 'warning')
+
+
+def test_a_drift_is_estimated_with_its_uncertainty():
+    record = late(flight(seconds=60.0), (*P, *V, *Q), 0.02, 0.001)
+    clock = clock_offset(record)
+    assert abs(clock.drift - 0.001) < 4 * clock.drift_std < 2e-4
+    assert abs(clock.offset - 0.02) < 4 * clock.std
+    assert 'clock_drift' in codes(record)
+    truth = 0.02 + 0.001 * (clock.t - record.t.mean())
+    assert np.abs((clock.offsets - truth) / clock.stds).max() < 5
+
+
+def test_standard_errors_of_the_offset_are_honest():
+    """Over 60 draws of the noise the errors scatter as the standard errors say."""
+    pulls = []
+    for seed in range(60):
+        clock = clock_offset(flight(seconds=16.0, seed=100 + seed))
+        pulls.append(clock.offset / clock.std)
+    assert 0.6 < np.std(pulls) < 1.5 and abs(np.mean(pulls)) < 0.5
+
+
+def test_a_wandering_offset_is_found():
+    record = flight(seconds=60.0)
+    at = record.t - 0.02 * np.sin(2 * np.pi * record.t / 30)
+    names = (*P, *V, *Q)
+    wander = changed(record, **{n: np.interp(at, record.t, record.columns[n]) for n in names})
+    assert 'clock_wander' in codes(wander)
+
+
+def test_commands_that_act_before_they_are_given_are_found():
+    record = late(flight(), CMD, 0.05)
+    clock = command_offset(record)
+    assert abs(clock.offset + 0.05) < 4 * clock.std
+    assert 'command_offset' in codes(record)
+
+
+def test_the_lag_of_motors_is_no_fault():
+    record = late(flight(), (*P, *V, *Q, *W, *A), 0.04)
+    assert abs(command_offset(record).offset - 0.04) < 0.008
+    assert 'command_offset' not in codes(record)
+
+
+def test_no_offset_is_made_up():
+    rest = flight()
+    assert clock_offset(changed(rest, wx=None)) is None
+    random = np.random.default_rng(0)
+    assert clock_offset(changed(rest, **named(W, random.normal(size=(len(rest), 3))))) is None
+
+
+# --- units
+
+def euler(record):
+    return euler_from_quaternion(record.stack(*Q))
+
+
+FAULTS = {
+    'rate_in_degrees': lambda r: named(W, np.degrees(r.stack(*W))),
+    'euler_in_degrees': lambda r: named(('phi', 'theta', 'psi'), np.degrees(euler(r))),
+    'force_in_g': lambda r: named(A, r.stack(*A) / 9.80665),
+    'millimetres': lambda r: named(P, 1000 * r.stack(*P)),
+    'millimetres, velocity too': lambda r: named((*P, *V), 1000 * r.stack(*P, *V)),
+    'millimetres, velocity only': lambda r: named(V, 1000 * r.stack(*V)),
+    'cmd_in_rpm': lambda r: named(CMD, r.stack(*CMD) * 60 / (2 * np.pi)),
+    'rotor_in_rpm': lambda r: named(('rotor1', 'rotor2', 'rotor3', 'rotor4'),
+                                    r.stack(*CMD) * 60 / (2 * np.pi)),
+    'frame_ned': lambda r: {
+        **named(P, ned(r.stack(*P))), **named(V, ned(r.stack(*V))),
+        **named(Q, ned_attitude(r.stack(*Q))), **named(W, frd(r.stack(*W))),
+        **named(A, frd(r.stack(*A)))},
+    'frame_ned, position and velocity only': lambda r: {
+        **named(P, ned(r.stack(*P))), **named(V, ned(r.stack(*V)))},
+    'frame_frd': lambda r: {
+        **named(Q, multiply(r.stack(*Q), np.array([0.0, 1.0, 0.0, 0.0]))),
+        **named(W, frd(r.stack(*W))), **named(A, frd(r.stack(*A)))},
+    'frame_rate': lambda r: named(W, frd(r.stack(*W))),
+    'quaternion_order': lambda r: named(Q, r.stack(*Q)[:, [1, 2, 3, 0]]),
+    'quaternion_inverse': lambda r: named(Q, conjugate(r.stack(*Q))),
+    'quaternion_order_and_inverse': lambda r: named(Q, conjugate(r.stack(*Q))[:, [1, 2, 3, 0]]),
+    'velocity_in_body': lambda r: named(V, world_velocity_in_body(r)),
+    'rotor_spin': lambda r: {'cmd1': r.columns['cmd2'], 'cmd2': r.columns['cmd1'],
+                             'cmd3': r.columns['cmd4'], 'cmd4': r.columns['cmd3'],
+                             **named(W, r.stack(*W) * [1, 1, 1])},
+}
+del FAULTS['rotor_spin']   # its own test below
+
+
+@pytest.mark.parametrize('noise', [0.0, 1.0])
+@pytest.mark.parametrize('fault', FAULTS)
+def test_a_fault_put_into_a_clean_flight_is_found_alone(fault, noise):
+    record = flight(noise=noise)
+    assert codes(changed(record, **FAULTS[fault](record))) == {fault.split(',')[0]}
+
+
+@pytest.mark.parametrize('fault', FAULTS)
+def test_a_fault_is_found_in_a_real_flight(fault):
+    record = load(NANOBENCH / 'star_fast.csv.gz')
+    vehicle = load_vehicle(NANOBENCH / 'vehicle.yaml')
+    new = codes(changed(record, **FAULTS[fault](record)), vehicle) - codes(record, vehicle)
+    assert fault.split(',')[0] in new
+    assert new <= {fault.split(',')[0], 'clock_offset', 'clock_wander', 'excitation'}
+
+
+def test_right_euler_angles_beside_the_quaternion_are_no_fault():
+    record = flight()
+    assert codes(changed(record, **named(('phi', 'theta', 'psi'), euler(record)))) == set()
+
+
+def test_signs_of_the_quaternion_may_jump():
+    record = flight()
+    sign = np.random.default_rng(0).choice([-1.0, 1.0], len(record))
+    assert codes(changed(record, **named(Q, record.stack(*Q) * sign[:, None]))) == set()
+
+
+@pytest.mark.parametrize('without', [A, (*A, *V), (*A, *V, *W), (*A, *V, *W, *Q)])
+def test_ned_is_found_without_an_accelerometer_and_more(without):
+    record = flight()
+    down = changed(record, **FAULTS['frame_ned'](record))
+    assert codes(changed(down, **dict.fromkeys(without))) == {'frame_ned'}
+    assert codes(changed(record, **dict.fromkeys(without))) == set()
+
+
+def test_a_flight_below_its_origin_is_no_fault():
+    record = flight()
+    assert codes(changed(record, pz=record.columns['pz'] - 30.0)) == set()
+
+
+# --- rotors
+
+@pytest.mark.parametrize('order', [p for p in permutations(range(4)) if p != (0, 1, 2, 3)])
+def test_every_wrong_order_of_the_rotors_is_found_and_named(order):
+    record = flight()
+    names = [CMD[k] for k in order]
+    [finding] = findings(changed(record, **named(CMD, record.stack(*names))), VEHICLE)
+    assert finding.code == 'rotor_order'
+    assert f'rotors {", ".join(str(k + 1) for k in order)} of' in finding.message
+
+
+def test_reversed_spins_are_found():
+    wrong = replace(VEHICLE, rotors=tuple(replace(rotor, spin=-rotor.spin)
+                                          for rotor in VEHICLE.rotors))
+    [finding] = findings(flight(), wrong)
+    assert finding.code == 'rotor_spin'
+    assert str([rotor.spin for rotor in VEHICLE.rotors]) in finding.message
+
+
+def test_saturated_commands_are_found():
+    limit = 1080.0
+    record = flight()
+    clipped = np.minimum(record.stack(*CMD), limit)
+    [finding] = findings(changed(record, **named(CMD, clipped)),
+                         replace(VEHICLE, speed_max=limit))
+    assert finding.code == 'saturation' and 'speed_max = 1080' in finding.message
+    share = float(finding.message.split(' %')[0])
+    assert share == pytest.approx(100 * (clipped >= limit - 2.0).any(axis=1).mean(), abs=0.3)
+
+
+# --- excitation
+
+def test_an_axis_that_is_not_moved_is_found():
+    record = flight()
+    still = changed(record, wz=0.01 * np.random.default_rng(0).normal(size=len(record)))
+    found = [f for f in findings(still, VEHICLE) if f.code == 'excitation']
+    assert [f.where for f in found] == ['yaw'] and 'Izz' in found[0].message
+
+
+def test_excitation_is_that_of_the_signals():
+    record = flight(noise=0.0)
+    found = excitation(record)
+    assert found['roll'] == pytest.approx(record.columns['wx'].std(), rel=0.05)
+    assert found['vertical'] == pytest.approx(np.gradient(record.columns['vz'], 0.01).std(),
+                                              rel=0.1)
+
+
+def test_any_columns_will_do():
+    """A record of few columns has nothing to compare, and says nothing."""
+    record = flight()
+    for names in ((), ('pz',), W, Q, ('cmd1', 'cmd2'), (*V, *Q), ('u1', 'pz')):
+        part = FlightRecord(record.t, {n: record.columns.get(n, record.columns['pz'])
+                                       for n in names})
+        assert not [f for f in findings(part, VEHICLE) if f.severity == 'error']
+    assert findings(record.slice(0, 2), VEHICLE) == ()
+
+
+def test_turning_back_and_forth_is_the_same():
+    record = flight(noise=0.0)
+    body = world_velocity_in_body(record)
+    np.testing.assert_allclose(rotate(record.stack(*Q), body), record.stack(*V), atol=1e-12)
