@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
+from scipy.signal import lfilter
 
 from quad_ident_ros.model.sensors import product, turn
 
@@ -91,9 +92,7 @@ def gauss_markov(rng, count, width, step, time):
     keep = np.exp(-step / time)
     noise = rng.standard_normal((count, width))
     noise[1:] *= np.sqrt(1 - keep ** 2)
-    for k in range(1, count):
-        noise[k] += keep * noise[k - 1]
-    return noise
+    return lfilter([1.0], [1.0, -keep], noise, axis=0)
 
 
 def errors_of(sensors, count, step, seed):

@@ -57,6 +57,8 @@ def test_effects_of_the_command_go_over_those_of_the_vehicle():
     (['--noise', 'loud'], '--noise'),
     (['--rate', '1'], 'rate'),
     (['--duration', '0'], 'duration'),
+    (['--duration', '3600', '--rate', '2000'], 'samples'),
+    (['--effect', 'rotor_fault:loss_5=0.1'], 'loss_5'),
     (['--seed', '-1'], 'seed'),
     (['--vehicle', 'nobody'], 'nobody'),
     (['-o', 'flight.txt'], '.csv.gz')))
