@@ -10,15 +10,15 @@ from quad_ident_ros.data.foreign import read_mapped_bag
 from quad_ident_ros.data.replay import read_bag
 from quad_ident_ros.errors import InputError
 
-_BAG_MAGICS = (b'\x89MCAP0\r\n', b'SQLite format 3\0')
+_BAGS = {b'\x89MCAP0\r\n': '.mcap', b'SQLite format 3\0': '.db3'}   # how they begin
 
 
 def load(path, mapping=None, vehicle=None):
     """
     Return the FlightRecord in a file or bag that holds one flight.
 
-    CSV (plain or gzip), rosbag2 (folder, .mcap, .db3) and PX4 ULog are told apart by their first
-    bytes, then by their ending.
+    CSV (plain or gzip), rosbag2 (folder, .mcap, .db3) and PX4 ULog (by its first bytes) are told
+    apart.
     Args: path; mapping (data.mapping.Mapping) for bags of others and for the outputs of PX4;
     vehicle (model.vehicle.Vehicle) for the speeds of its rotors.
     Raises InputError in one line that names file, and row and column or topic and message.
@@ -54,7 +54,11 @@ def _kind(path):
                 start = file.read(16)
     except OSError as error:
         raise InputError(f'{path}: cannot be read: {error.strerror}') from None
-    if start.startswith(_BAG_MAGICS) or path.suffix in ('.mcap', '.db3'):
+    for magic, suffix in _BAGS.items():
+        if start.startswith(magic) and path.suffix != suffix:
+            raise InputError(f'{path}: this is a bag, and is read under a name that ends in '
+                             f'{suffix}; rename it')
+    if path.suffix in _BAGS.values():
         return 'bag'
     if start.startswith(ulog.MAGIC) or path.suffix == '.ulg':
         return 'ulog'
