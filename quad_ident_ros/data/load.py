@@ -4,12 +4,12 @@
 
 from pathlib import Path
 
-from quad_ident_ros.data import ulog
 from quad_ident_ros.data.csv import read_csv
 from quad_ident_ros.data.foreign import read_mapped_bag
 from quad_ident_ros.data.replay import read_bag
 from quad_ident_ros.errors import InputError
 
+_ULOG = b'ULog\x01\x12\x35'
 _BAGS = {b'\x89MCAP0\r\n': '.mcap', b'SQLite format 3\0': '.db3'}   # how they begin
 
 
@@ -37,11 +37,23 @@ def load_all(path, mapping=None, vehicle=None):
     if kind == 'bag':
         return [read_mapped_bag(path, mapping, vehicle)] if mapping else read_bag(path)
     if kind == 'ulog':
-        return [ulog.read_ulog(path, mapping, vehicle)]
+        return [_read_ulog(path, mapping, vehicle)]
     if mapping is not None:
         raise InputError(f'{path}: a mapping is for bags and logs; the columns of a CSV file have '
                          'the names of the flight record, see docs/records.md')
     return [read_csv(path)]
+
+
+def _read_ulog(path, mapping, vehicle):
+    # A ROS 2 installed by its packages may lack pyulog, which all else can do without.
+    try:
+        from quad_ident_ros.data.ulog import read_ulog
+    except ModuleNotFoundError as error:
+        if error.name != 'pyulog':
+            raise
+        raise InputError(f'{path}: logs of PX4 are read with pyulog, which is not installed; '
+                         'install it with: pip install pyulog') from None
+    return read_ulog(path, mapping, vehicle)
 
 
 def _kind(path):
@@ -60,6 +72,6 @@ def _kind(path):
                              f'{suffix}; rename it')
     if path.suffix in _BAGS.values():
         return 'bag'
-    if start.startswith(ulog.MAGIC) or path.suffix == '.ulg':
+    if start.startswith(_ULOG) or path.suffix == '.ulg':
         return 'ulog'
     return 'csv'

@@ -4,6 +4,7 @@
 
 import json
 from pathlib import Path
+import sys
 
 from flightmaker import changed, flight, frd, ned, others_bag, px4_samples, ulog, VEHICLE
 from hypothesis import given, HealthCheck, settings
@@ -15,6 +16,7 @@ from rosbags.typesys import get_typestore, Stores
 import yaml
 
 from quad_ident_ros.cli.main import main
+import quad_ident_ros.data
 from quad_ident_ros.data.bag import BagWriter, read_bag_messages, serialize
 from quad_ident_ros.data.csv import read_csv, write_csv
 from quad_ident_ros.data.export import save, write_bag
@@ -248,9 +250,9 @@ def test_a_bag_of_others_without_a_mapping_points_to_it(tmp_path):
 PX4 = mapping_from({'actuators': {'kind': 'pwm', 'order': [1, 4, 2, 3]}}, 'm')
 
 
-def log(tmp_path, data):
+def log(tmp_path, content):
     path = tmp_path / 'log.ulg'
-    path.write_bytes(data)
+    path.write_bytes(content)
     return path
 
 
@@ -317,6 +319,13 @@ def test_bad_logs_are_refused(tmp_path):
     refused(log(tmp_path, whole), 'speeds', mapping=PX4)
     refused(log(tmp_path, whole), 'only instances and actuators',
             mapping=mapping_from(ALL_TOPICS, 'm'))
+
+
+def test_without_pyulog_a_log_says_what_is_missing(tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, 'pyulog', None)
+    monkeypatch.delitem(sys.modules, 'quad_ident_ros.data.ulog', raising=False)
+    monkeypatch.delattr(quad_ident_ros.data, 'ulog', raising=False)
+    refused(log(tmp_path, ulog(px4_samples(SMALL))), 'pip install pyulog')
 
 
 def test_a_log_whose_parser_would_never_end_is_refused(tmp_path):
