@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """One way to read flights: every format, round trips, records of others, and bad input."""
 
+import gzip
 import json
 from pathlib import Path
 import sys
@@ -12,12 +13,13 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 from rosbags.rosbag2 import StoragePlugin, Writer
-from rosbags.typesys import get_typestore, Stores
+from rosbags.typesys import get_types_from_msg, get_typestore, Stores
 import yaml
 
 from quad_ident_ros.cli.main import main
 import quad_ident_ros.data
 from quad_ident_ros.data.bag import BagWriter, read_bag_messages, serialize
+import quad_ident_ros.data.csv
 from quad_ident_ros.data.csv import read_csv, write_csv
 from quad_ident_ros.data.export import save, write_bag
 from quad_ident_ros.data.frames import attitude, conjugate, multiply, rotate
@@ -229,6 +231,30 @@ def test_what_does_not_fit_a_bag_is_said(tmp_path, data, parts):
     others_bag(tmp_path / 'bag', SMALL.slice(0, 5), SMALL.stack(*CMD))
     mapping = mapping_from(data, 'm')
     refused(tmp_path / 'bag', *parts, mapping=mapping)
+
+
+def test_messages_of_other_packages_are_read_by_the_bag_s_definitions(tmp_path):
+    """A type that is not ROS 2's own: its definition lies in the MCAP."""
+    store = get_typestore(Stores.ROS2_JAZZY)
+    kind = 'actuator_msgs/msg/Actuators'
+    store.register(get_types_from_msg(
+        'std_msgs/Header header\nfloat64[] position\nfloat64[] velocity\nfloat64[] normalized\n',
+        kind))
+    time, head = store.types['builtin_interfaces/msg/Time'], store.types['std_msgs/msg/Header']
+    with Writer(tmp_path / 'bag', version=9, storage_plugin=StoragePlugin.MCAP) as writer:
+        connection = writer.add_connection('/motors', kind, typestore=store)
+        for k in range(10):
+            message = store.types[kind](
+                header=head(stamp=time(sec=k, nanosec=5), frame_id=''), position=np.zeros(0),
+                velocity=np.array([100.0, 200.0 + k]), normalized=np.zeros(0))
+            writer.write(connection, 10 ** 9 * (k + 77), store.serialize_cdr(message, kind))
+    data = {'topics': {'commands': {'topic': '/motors', 'field': 'velocity'}}}
+    read = load(tmp_path / 'bag', mapping_from(data, 'm'))
+    np.testing.assert_array_equal(read.columns['cmd2'], 200.0 + np.arange(10))
+    assert read.info['start_ns'] == 5   # the header's
+    data['topics']['commands']['field'] = 'speed'
+    refused(tmp_path / 'bag', "no field 'speed'", 'position, velocity, normalized',
+            mapping=mapping_from(data, 'm'))
 
 
 def test_arrays_that_change_their_size_are_refused(tmp_path):
@@ -522,6 +548,12 @@ def test_a_bad_csv_names_row_and_column(tmp_path):
     path = tmp_path / 'f.csv'
     path.write_text('t,pz\n0,1\n0.1,high\n')
     refused(path, 'line 3', "'pz'", 'high')
+
+
+def test_a_file_that_unpacks_to_anything_is_refused(tmp_path, monkeypatch):
+    monkeypatch.setattr(quad_ident_ros.data.csv, '_MOST_UNPACKED', 1 << 20)
+    (tmp_path / 'f.csv.gz').write_bytes(gzip.compress(b't,pz\n' + b'0' * (1 << 21)))
+    refused(tmp_path / 'f.csv.gz', 'unpacks to over 1 MB')
 
 
 def test_a_mapping_does_not_rename_csv(tmp_path):

@@ -208,6 +208,14 @@ def test_the_lag_of_motors_is_no_fault():
     assert 'command_offset' not in codes(record)
 
 
+@pytest.mark.parametrize('name', ['star_fast', 'oval_fast'])
+def test_an_offset_put_into_a_real_flight_is_found(name):
+    record = load(NANOBENCH / f'{name}.csv.gz')
+    before, after = clock_offset(record), clock_offset(late(record, (*P, *V, *Q), 0.06))
+    assert abs(after.offset - before.offset - 0.06) < 2 * before.std
+    assert abs(before.offset) < 3 * before.std + 0.01
+
+
 def test_no_offset_is_made_up():
     rest = flight()
     assert clock_offset(changed(rest, wx=None)) is None
