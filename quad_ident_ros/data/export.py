@@ -86,18 +86,10 @@ def _topics(record):
     if record.has('ax', 'ay', 'az'):
         found.append(('specific_force', VECTOR, record.stack('ax', 'ay', 'az')))
     for topic, prefix in (('command', 'cmd'), ('rotor_speed', 'rotor')):
-        names = numbered(record, prefix)
+        names = record.numbered(prefix)
         if names:
             found.append((topic, ARRAY_TYPE, record.stack(*names)))
     return found
-
-
-def numbered(record, prefix):
-    """Return the names prefix1, prefix2, ... of a record's columns, as far as they go."""
-    names = []
-    while record.has(f'{prefix}{len(names) + 1}'):
-        names.append(f'{prefix}{len(names) + 1}')
-    return names
 
 
 def _message(name, kind, stamp, values):

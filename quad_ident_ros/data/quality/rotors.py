@@ -6,7 +6,6 @@ from itertools import permutations, product
 
 import numpy as np
 
-from quad_ident_ros.data.export import numbered
 from quad_ident_ros.data.quality import frames
 from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.quality.series import Grid
@@ -23,7 +22,7 @@ def order_and_spin(record, vehicle):
     The moment on the body, I dw/dt + w x I w, is correlated with what the squared commands give
     for each order (roll and pitch), then for each choice of spins (yaw).
     """
-    names = numbered(record, 'cmd')
+    names = record.numbered('cmd')
     grid = Grid.of(record)
     if (vehicle is None or grid is None or not record.has('wx', 'wy', 'wz')
             or not len(names) == len(vehicle.rotors) <= MOST_ROTORS):
