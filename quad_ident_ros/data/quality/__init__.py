@@ -6,6 +6,8 @@ The quality of a flight record: what is wrong with it, and how to mend it.
 One file per subject, each with checks (record, vehicle or None) -> findings, entered in CHECKS.
 """
 
+import numpy as np
+
 from quad_ident_ros.data.quality import (
     clock,
     excitation,
@@ -36,5 +38,6 @@ def findings(record, vehicle=None):
     Args: record FlightRecord; vehicle model.vehicle.Vehicle or None; without it nothing is said
     of saturation, of the unit of rotor speeds, nor of the order and spin of the rotors.
     """
-    found = [finding for check in CHECKS for finding in check(record, vehicle)]
+    with np.errstate(all='ignore'):   # values so large that nothing can be said of them
+        found = [finding for check in CHECKS for finding in check(record, vehicle)]
     return tuple(sorted(found, key=lambda finding: -SEVERITIES.index(finding.severity)))
