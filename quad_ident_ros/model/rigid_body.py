@@ -116,15 +116,18 @@ def _place(x, v, s):
         for k in range(6):
             s[PX + k, i] = x[k, i]
         w, a, b, c = x[6, i], x[7, i], x[8, i], x[9, i]
-        s[R00, i] = 1.0 - 2.0 * (b * b + c * c)
-        s[R01, i] = 2.0 * (a * b - w * c)
-        s[R02, i] = 2.0 * (a * c + w * b)
-        s[R10, i] = 2.0 * (a * b + w * c)
-        s[R11, i] = 1.0 - 2.0 * (a * a + c * c)
-        s[R12, i] = 2.0 * (b * c - w * a)
-        s[R20, i] = 2.0 * (a * c - w * b)
-        s[R21, i] = 2.0 * (b * c + w * a)
-        s[R22, i] = 1.0 - 2.0 * (a * a + b * b)
+        # Within a step a quaternion is not of unit length; its rotation is one all the same, or
+        # the error of a step would depend on where the world's axes point.
+        two = 2.0 / (w * w + a * a + b * b + c * c)
+        s[R00, i] = 1.0 - two * (b * b + c * c)
+        s[R01, i] = two * (a * b - w * c)
+        s[R02, i] = two * (a * c + w * b)
+        s[R10, i] = two * (a * b + w * c)
+        s[R11, i] = 1.0 - two * (a * a + c * c)
+        s[R12, i] = two * (b * c - w * a)
+        s[R20, i] = two * (a * c - w * b)
+        s[R21, i] = two * (b * c + w * a)
+        s[R22, i] = 1.0 - two * (a * a + b * b)
         s[WX, i], s[WY, i], s[WZ, i] = x[10, i], x[11, i], x[12, i]
     for i in range(s.shape[1]):
         dx, dy = s[VX, i] - s[WIND_X, i], s[VY, i] - s[WIND_Y, i]
