@@ -24,8 +24,8 @@ EFFECT = Effect(
                 Parameter('translational', 'kg/m', 0.0, 1.0, 0.01, 'thrust of all rotors won per '
                           'square of the velocity across body z')),
     source='thrust - axial (speed / sum of hover speeds) vz + translational (vx^2 + vy^2) / '
-           'rotors at each rotor: blade-element and momentum thrust to first order in the inflow, and '
-           'translational lift; Mahony, Kumar, Corke 2012; Svacha et al., ICUAS 2017',
+           'rotors at each rotor: blade-element and momentum thrust to first order in the inflow, '
+           'and translational lift; Mahony, Kumar, Corke 2012; Svacha et al., ICUAS 2017',
     excitation='climbs and descents; fast horizontal flight for the second parameter',
     confused_with=('body_drag', 'thrust_scale'),
     wrench=wrench)
