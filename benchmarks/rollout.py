@@ -3,6 +3,7 @@
 """Rollouts of the vehicle with all effects: speed beside NumPy and rotorpy, memory, starts."""
 
 import os
+from pathlib import Path
 import resource
 import subprocess
 import sys
@@ -49,7 +50,7 @@ class Problem:
         self.x0[:, 2], self.x0[:, 6] = 5.0, 1.0
         self.x0[:, 3:6] = random.normal(0, 1, (batch, 3))
         self.samples = samples
-        self.out = np.zeros((batch, samples + 1, STATE))
+        self.out = np.full((batch, samples + 1, STATE), 1.0)    # written, so that it is there
 
     def compiled(self, kernel):
         """Roll out by a compiled kernel into `out`."""
@@ -186,10 +187,15 @@ def _measure():
         return rtsys.get_allocation_stats().alloc - before
 
     allocated = allocations(short)
-    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    before = _resident()
     longer = allocations(long)
-    grown = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before
-    print(until, took, allocated, longer, grown)
+    print(until, took, allocated, longer, _resident() - before)
+
+
+def _resident():
+    """Return the memory of this process, kB."""
+    pages = int(Path('/proc/self/statm').read_text(encoding='ascii').split()[1])
+    return pages * resource.getpagesize() / 1024
 
 
 if __name__ == '__main__':
