@@ -4,7 +4,7 @@
 
 from quad_ident_ros.compiled import compiled
 from quad_ident_ros.effects.base import Effect, Parameter
-from quad_ident_ros.model.situation import HOVER_SPEEDS, HZ, SPEED, UX, UY, UZ
+from quad_ident_ros.model.situation import HZ, PER_HOVER, SPEED, UX, UY, UZ
 
 
 @compiled(fused=True, inlined=True)
@@ -14,7 +14,7 @@ def wrench(p, k, s, rotors):
         for i in range(s.shape[1]):
             x, y, z = rotors[j, UX, i], rotors[j, UY, i], rotors[j, UZ, i]
             rotors[j, HZ, i] += (p[k + 1, i] * (x * x + y * y) / rotors.shape[0]
-                                 - p[k, i] * rotors[j, SPEED, i] / s[HOVER_SPEEDS, i] * z)
+                                 - p[k, i] * rotors[j, SPEED, i] * s[PER_HOVER, i] * z)
 
 
 EFFECT = Effect(

@@ -25,7 +25,6 @@ from quad_ident_ros.model.situation import (
     FZ,
     GAIN,
     HEIGHT,
-    HOVER_SPEEDS,
     HX,
     HY,
     HZ,
@@ -36,6 +35,11 @@ from quad_ident_ros.model.situation import (
     MX,
     MY,
     MZ,
+    PER_HOVER,
+    PER_IX,
+    PER_IY,
+    PER_IZ,
+    PER_MASS,
     PX,
     PZ,
     R00,
@@ -98,10 +102,13 @@ def prepare(v, places, theta, s, rotors):
     for i in range(s.shape[1]):
         s[MASS, i], s[IX, i], s[IY, i], s[IZ, i] = v[0], v[1], v[2], v[3]
         s[COM_X, i] = s[COM_Y, i] = s[COM_Z, i] = 0.0
-        s[RADIUS, i], s[HOVER_SPEEDS, i] = v[7], v[15]
+        s[RADIUS, i], s[PER_HOVER, i] = v[7], 1.0 / v[15]
         s[WIND_X, i] = s[WIND_Y, i] = s[WIND_Z, i] = 0.0
     BODY(theta, s)
     AIR(theta, s)
+    for i in range(s.shape[1]):
+        s[PER_MASS, i] = 1.0 / s[MASS, i]
+        s[PER_IX, i], s[PER_IY, i], s[PER_IZ, i] = 1.0 / s[IX, i], 1.0 / s[IY, i], 1.0 / s[IZ, i]
     for j in range(places.shape[0]):
         for i in range(s.shape[1]):
             rotors[j, RX, i] = places[j, 0] - s[COM_X, i]
@@ -202,17 +209,17 @@ def derivative(x, u, v, places, theta, s, rotors, dx):
         s[SPINS, i] = u[4, i]
     wrench(v, places, theta, s, rotors)
     for i in range(s.shape[1]):
-        mass = s[MASS, i]
-        fx, fy, fz = s[FX, i] / mass, s[FY, i] / mass, s[FZ, i] / mass
+        per_mass = s[PER_MASS, i]
+        fx, fy, fz = s[FX, i] * per_mass, s[FY, i] * per_mass, s[FZ, i] * per_mass
         for k in range(3):
             dx[k, i] = s[VX + k, i]
         dx[3, i] = s[R00, i] * fx + s[R01, i] * fy + s[R02, i] * fz
         dx[4, i] = s[R10, i] * fx + s[R11, i] * fy + s[R12, i] * fz
         dx[5, i] = s[R20, i] * fx + s[R21, i] * fy + s[R22, i] * fz - v[4]
         if world:
-            dx[3, i] -= v[8] * (s[VX, i] - s[WIND_X, i]) / mass
-            dx[4, i] -= v[9] * (s[VY, i] - s[WIND_Y, i]) / mass
-            dx[5, i] -= v[10] * (s[VZ, i] - s[WIND_Z, i]) / mass
+            dx[3, i] -= v[8] * (s[VX, i] - s[WIND_X, i]) * per_mass
+            dx[4, i] -= v[9] * (s[VY, i] - s[WIND_Y, i]) * per_mass
+            dx[5, i] -= v[10] * (s[VZ, i] - s[WIND_Z, i]) * per_mass
         w, a, b, c = x[6, i], x[7, i], x[8, i], x[9, i]
         wx, wy, wz = s[WX, i], s[WY, i], s[WZ, i]
         dx[6, i] = 0.5 * (-a * wx - b * wy - c * wz)
@@ -220,9 +227,9 @@ def derivative(x, u, v, places, theta, s, rotors, dx):
         dx[8, i] = 0.5 * (w * wy - a * wz + c * wx)
         dx[9, i] = 0.5 * (w * wz + a * wy - b * wx)
         ix, iy, iz = s[IX, i], s[IY, i], s[IZ, i]
-        dx[10, i] = (s[MX, i] + (iy - iz) * wy * wz) / ix
-        dx[11, i] = (s[MY, i] + (iz - ix) * wz * wx) / iy
-        dx[12, i] = (s[MZ, i] + (ix - iy) * wx * wy) / iz
+        dx[10, i] = (s[MX, i] + (iy - iz) * wy * wz) * s[PER_IX, i]
+        dx[11, i] = (s[MY, i] + (iz - ix) * wz * wx) * s[PER_IY, i]
+        dx[12, i] = (s[MZ, i] + (ix - iy) * wx * wy) * s[PER_IZ, i]
 
 
 @compiled(fused=True)
