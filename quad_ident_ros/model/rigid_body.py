@@ -58,7 +58,6 @@ from quad_ident_ros.model.situation import (
     RY,
     RZ,
     SPEED,
-    SPEEDS,
     SPIN_UP,
     SPINS,
     TIME,
@@ -117,7 +116,7 @@ def prepare(v, places, theta, s, rotors):
 
 
 @compiled(fused=True, inlined=True)
-def _place(x, v, s):
+def _place(x, s):
     """Write position, velocity, rotation, rate and air velocity of the states x (13, LANES)."""
     for i in range(s.shape[1]):
         for k in range(6):
@@ -146,9 +145,7 @@ def _place(x, v, s):
 
 @compiled(fused=True, inlined=True)
 def _rotors(s, rotors, places):
-    """Write the rotors' air velocities and heights, and the sums of their speeds."""
-    for i in range(s.shape[1]):
-        s[SPEEDS, i] = 0.0
+    """Write the rotors' air velocities and heights, and the sum of their spins."""
     for j in range(rotors.shape[0]):
         spin = places[j, 3]
         for i in range(s.shape[1]):
@@ -158,7 +155,6 @@ def _rotors(s, rotors, places):
             rotors[j, UZ, i] = s[AZ, i] + s[WX, i] * y - s[WY, i] * x
             rotors[j, HEIGHT, i] = (s[PZ, i] + s[R20, i] * x + s[R21, i] * y + s[R22, i] * z)
             rotors[j, GAIN, i] = 1.0
-            s[SPEEDS, i] += rotors[j, SPEED, i]
             s[SPINS, i] += spin * rotors[j, SPEED, i]
 
 
@@ -193,7 +189,7 @@ def derivative(x, u, v, places, theta, s, rotors, dx):
     Newton-Euler with a quaternion and the body rate, so that there is no singular attitude.
     u (INPUT, LANES) what acts besides the rotors.
     """
-    _place(x, v, s)
+    _place(x, s)
     world = v[14] != 0.0
     for i in range(s.shape[1]):
         s[FX, i] = s[FY, i] = s[FZ, i] = 0.0
