@@ -7,17 +7,19 @@ from pathlib import Path
 
 import numba
 
+FOLDERS = ('effects', 'identify', 'model')      # all that have compiled functions
+
 
 def _stamp():
-    """Return what changes with any file of the package."""
-    folder = Path(__file__).parent
-    files = sorted((str(path.relative_to(folder)), path.stat().st_mtime_ns, path.stat().st_size)
-                   for path in folder.rglob('*.py'))
+    """Return what changes with any file of these folders."""
+    package = Path(__file__).parent
+    files = sorted((str(path.relative_to(package)), path.stat().st_mtime_ns, path.stat().st_size)
+                   for folder in FOLDERS for path in (package / folder).rglob('*.py'))
     return hashlib.sha256(repr(files).encode()).hexdigest()
 
 
 # Numba makes what it keeps on disk anew where the function's own file has changed, but not where
-# that of a function has which it calls: so every file counts.
+# that of a function or constant has which it uses: so every file counts.
 STAMP = _stamp()
 
 

@@ -3,6 +3,7 @@
 """Compiled functions are kept between starts until something changes that they are made of."""
 
 import os
+from pathlib import Path
 import shutil
 import subprocess
 import sys
@@ -21,7 +22,7 @@ def inner(x):
 """
 OUTER = """
 from quad_ident_ros.compiled import compiled
-from quad_ident_ros.inner import inner
+from quad_ident_ros.model.inner import inner
 
 @compiled
 def outer(x):
@@ -36,18 +37,20 @@ def package(tmp_path):
     """Return the folder of a package of the same name with two functions in it."""
     folder = tmp_path / 'quad_ident_ros'
     folder.mkdir()
-    (folder / '__init__.py').write_text('')
+    (folder / 'model').mkdir()
+    for part in (folder, folder / 'model'):
+        (part / '__init__.py').write_text('')
     shutil.copy(compiled.__file__, folder)
-    (folder / 'inner.py').write_text(INNER.format(factor=3.0))
-    (folder / 'outer.py').write_text(OUTER)
+    (folder / 'model' / 'inner.py').write_text(INNER.format(factor=3.0))
+    (folder / 'model' / 'outer.py').write_text(OUTER)
     return folder
 
 
 def start(package):
     """Return what a start of the package prints: the result, and how often it was kept."""
     variables = {key: value for key, value in os.environ.items() if key != 'NUMBA_CACHE_DIR'}
-    done = subprocess.run([sys.executable, '-m', 'quad_ident_ros.outer'], capture_output=True,
-                          text=True, check=True, cwd=package.parent,
+    command = [sys.executable, '-m', 'quad_ident_ros.model.outer']
+    done = subprocess.run(command, capture_output=True, text=True, check=True, cwd=package.parent,
                           env={**variables, 'PYTHONPATH': str(package.parent)})
     return [float(word) for word in done.stdout.split()]
 
@@ -55,7 +58,7 @@ def start(package):
 def test_a_function_is_kept_until_one_that_it_calls_has_changed(package):
     assert start(package) == [7.0, 0]
     assert start(package) == [7.0, 1]
-    (package / 'inner.py').write_text(INNER.format(factor=50.0))
+    (package / 'model' / 'inner.py').write_text(INNER.format(factor=50.0))
     assert start(package) == [101.0, 0]
     assert start(package) == [101.0, 1]
 
@@ -70,3 +73,10 @@ def test_a_numba_that_keeps_in_another_way_compiles_at_each_start(monkeypatch):
 
     monkeypatch.setattr(numba, 'njit', njit)
     assert compiled.compiled(abs) is abs
+
+
+def test_all_compiled_functions_are_in_the_folders_that_count():
+    package = Path(compiled.__file__).parent
+    users = {path.relative_to(package).parts[0] for path in package.rglob('*.py')
+             if 'import compiled' in path.read_text(encoding='utf-8')}
+    assert users == set(compiled.FOLDERS)
