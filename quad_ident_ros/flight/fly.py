@@ -77,8 +77,8 @@ def _flown(vehicle, theta, wanted, errors, rate):
         count, n = len(phase), len(vehicle.rotors)
         out = (np.empty((count, STATE)), np.empty((count, n)), np.empty((count, n)),
                np.empty((count, 3)), np.empty(count))
-        close_loop(vehicle_vector(vehicle), rotor_table(vehicle), theta[:, None].copy(), tilt,
-                   1 / rate, clock, clock * FALL, LONGEST_STEP, x, phase,
+        close_loop(vehicle_vector(vehicle)[:, None], rotor_table(vehicle), theta[:, None].copy(),
+                   tilt, 1 / rate, clock, clock * FALL, LONGEST_STEP, x, phase,
                    np.ascontiguousarray(seen), gains_of(vehicle), mixer_of(vehicle), memory, *out)
     return out
 
