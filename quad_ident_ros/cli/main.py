@@ -6,16 +6,17 @@ import argparse
 import sys
 
 from quad_ident_ros import __version__
-from quad_ident_ros.cli import demo, identify, node, paper, simulate, warm_up
+from quad_ident_ros.cli import demo, fit, identify, node, paper, simulate, warm_up
 from quad_ident_ros.errors import InputError
 
-COMMANDS = (demo, simulate, identify, paper, node, warm_up)
+COMMANDS = (demo, simulate, identify, fit, paper, node, warm_up)
 
 EPILOG = """\
 examples:
   quad_ident demo                                  simulate, record and identify on ROS 2
   quad_ident simulate hover_single_axis -o flights make flight records without ROS
   quad_ident identify flights/*.csv --trim hover --initial-state rest
+  quad_ident fit flight.csv --vehicle v.yaml --free inertia,thrust_coefficient,motor_lag
   quad_ident paper                                 reproduce the paper and check its claims
   quad_ident node identifier --ros-args -p method:=pso_cs
 """

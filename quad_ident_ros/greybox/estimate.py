@@ -171,7 +171,7 @@ def _descend(flights, vehicle, z, columns, noise, starts, iterations, clock, don
             noise = [whole_noise(part, linear.freedom)
                      for part, linear in zip(aligned, linears, strict=True)]
         # In units of the noise, so that directions that are not determined do not count.
-        length = np.sqrt(max(step @ normal.information @ step, 0.0) / len(step))
+        length = np.sqrt(max(step @ normal.information @ step, 0.0) / max(1, len(step)))
         if share == 1.0 and length <= done:
             converged = True
             break
