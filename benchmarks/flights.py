@@ -65,12 +65,16 @@ class FlightProblem:
                             {'name': f'p3_{seed}'})
 
     def start(self, seed):
-        """Return a vehicle whose constants, but the mass, are off by up to FAR."""
+        """
+        Return a vehicle whose constants, but the mass, are off by up to FAR.
+
+        One factor for all moments of inertia, so that they remain those of a body.
+        """
         random = np.random.default_rng([self.number, seed, 1])
-        factor = dict(zip(NAMES[1:], random.uniform(1 - FAR, 1 + FAR, len(NAMES) - 1),
-                          strict=True))
-        return with_constants(self.vehicle, {name: value * factor[name] for name, value in
-                                             zip(NAMES[1:], self.truth, strict=True)})
+        factors = random.uniform(1 - FAR, 1 + FAR, len(NAMES) - 1)
+        factors[:3] = factors[0]
+        return with_constants(self.vehicle, dict(zip(NAMES[1:], self.truth * factors,
+                                                     strict=True)))
 
     @cached_property
     def bound(self):

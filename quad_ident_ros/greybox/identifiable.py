@@ -52,7 +52,7 @@ def freedoms(information, values, sizes, first=()):
     inverse = np.linalg.inv(scaled[np.ix_(rest, rest)])
     moves = -inverse @ scaled[np.ix_(rest, held)]
     depends = np.abs(moves) > np.sqrt(np.diag(inverse))[:, None]
-    return [_freedom(place, np.array(rest)[depends[:, k]], moves[depends[:, k], k], values)
+    return [_freedom(place, np.array(rest, int)[depends[:, k]], moves[depends[:, k], k], values)
             for k, place in enumerate(held)]
 
 
