@@ -18,7 +18,7 @@ from quad_ident_ros.model.vehicle import Rotor, Vehicle
 NAMES = ('mass', 'inertia_x', 'inertia_y', 'inertia_z', 'thrust_coefficient',
          'torque_coefficient', 'linear_drag_x', 'linear_drag_y')
 VEHICLE = Vehicle(
-    name='p3', mass=1.0, inertia=(8e-3, 9e-3, 1.5e-2), gravity=9.806, thrust_coefficient=1e-5,
+    name='p3', mass=1.0, inertia=(8e-3, 9e-3, 1.2e-2), gravity=9.806, thrust_coefficient=1e-5,
     torque_coefficient=1.6e-7, linear_drag=(0.25, 0.2, 0.0), speed_max=1500.0,
     rotors=tuple(Rotor((x, y, 0.0), spin) for x, y, spin in
                  ((0.16, 0.16, 1), (0.16, -0.16, -1), (-0.16, -0.16, 1), (-0.16, 0.16, -1))))
