@@ -30,6 +30,7 @@ from quad_ident_ros.effects import (
     thrust_scale,
     wind,
 )
+from quad_ident_ros.errors import InputError
 
 EFFECTS = {module.EFFECT.name: module.EFFECT for module in (
     motor_lag, actuation_delay, rotor_drag, body_drag, wind, inflow, ground_effect, battery_sag,
@@ -82,6 +83,19 @@ def mapping(theta):
     for value, null, (effect, parameter) in zip(theta, NULL, PARAMETERS, strict=True):
         if value != null:
             effects.setdefault(effect, {})[parameter.name] = float(value)
+    return effects
+
+
+def from_entries(entries, where='effects'):
+    """Return {effect: {parameter: value}} of texts like rotor_drag.coefficient=0.2; InputError."""
+    effects = {}
+    for entry in entries:
+        path, sign, value = entry.partition('=')
+        name, dot, parameter = path.strip().partition('.')
+        if not (sign and dot):
+            raise InputError(f'{where}: {schema.shown(entry)}: expected EFFECT.PARAMETER=VALUE, '
+                             'for example rotor_drag.coefficient=0.2')
+        effects.setdefault(name, {})[parameter] = value.strip()
     return effects
 
 
