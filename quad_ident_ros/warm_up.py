@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Compilation of the inner loops ahead of the first real work."""
 
+from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.experiment import fly, load_experiment
 from quad_ident_ros.identify.identify import identify, Settings
 from quad_ident_ros.identify.search import SwarmSettings
@@ -14,3 +15,10 @@ def warm_up():
     least = SwarmSettings(population=4, generations=1)
     for choice in ({}, {'search': 'joint'}, {'initial_state': 'free'}):
         identify(records, Settings(swarm=least, **choice))
+
+
+def warm_up_diagnosis():
+    """Fly a closed loop and diagnose half of it."""
+    experiment = load_experiment('closed_loop')
+    record = fly(experiment, experiment.runs[0]).record
+    diagnose([record.slice(0, len(record) // 2)], experiment.vehicle)

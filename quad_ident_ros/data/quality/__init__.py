@@ -18,6 +18,7 @@ from quad_ident_ros.data.quality import (
 )
 from quad_ident_ros.data.quality.clock import clock_offset, ClockOffset, command_offset
 from quad_ident_ros.data.quality.finding import Finding, SEVERITIES
+from quad_ident_ros.errors import InputError
 
 CHECKS = (timing.gaps, timing.duplicates, timing.reader_notes, stale.held, stale.marked,
           units.rates_in_degrees, units.euler_in_degrees, units.force_in_g,
@@ -26,7 +27,7 @@ CHECKS = (timing.gaps, timing.duplicates, timing.reader_notes, stale.held, stale
           saturation.speeds, excitation.axes)
 
 __all__ = ['CHECKS', 'clock_offset', 'ClockOffset', 'command_offset', 'Finding', 'findings',
-           'SEVERITIES']
+           'refuse_unfit', 'SEVERITIES']
 
 
 def findings(record, vehicle=None):
@@ -38,3 +39,11 @@ def findings(record, vehicle=None):
     """
     found = [finding for check in CHECKS for finding in check(record, vehicle)]
     return tuple(sorted(found, key=lambda finding: -SEVERITIES.index(finding.severity)))
+
+
+def refuse_unfit(record, vehicle):
+    """Raise InputError where a record has a fault that no verdict survives."""
+    for finding in findings(record, vehicle):
+        if finding.severity == 'error':
+            name = record.info.get('source') or record.info.get('name', 'flight')
+            raise InputError(f'{name}: {finding.where}: {finding.message}; {finding.remedy}')
