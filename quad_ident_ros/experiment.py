@@ -11,7 +11,7 @@ from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.effects import registry
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.excitation import excite
-from quad_ident_ros.flight.fly import fly_closed_loop, LONGEST, RATES, SHORTEST
+from quad_ident_ros.flight.fly import fly_closed_loop, LONGEST, MOST_SAMPLES, RATES, SHORTEST
 from quad_ident_ros.flight.measure import Noise, SENSORS
 from quad_ident_ros.flight.trajectories import TRAJECTORIES
 from quad_ident_ros.identify.signals import OUTPUTS
@@ -31,8 +31,6 @@ NOISE_UNITS = {'attitude': 'rad', 'altitude': 'm', 'position': 'm', 'velocity': 
 
 # A model of its own in experiment files: the vehicle under control, along trajectories.
 CLOSED_LOOP = 'closed_loop'
-
-MOST_SAMPLES = 1_000_000    # of a run: 2.8 hours at 100 Hz, some 200 MB
 
 
 @dataclass(frozen=True)
@@ -99,10 +97,8 @@ class Experiment:
 
 
     def with_effects(self, effects, where='effects'):
-        """Return the experiment with effects {effect: {parameter: value}} added; InputError."""
-        together = {name: {**self.vehicle.effects.get(name, {}), **effects.get(name, {})}
-                    for name in {**self.vehicle.effects, **effects}}
-        theta = registry.vector(together, self.vehicle, where)
+        """Return the experiment whose vehicle has {effect: {parameter: value}}; InputError."""
+        theta = registry.vector(effects, self.vehicle, where)
         return replace(self, vehicle=replace(self.vehicle, effects=registry.mapping(theta)))
 
     def check(self, noise):

@@ -86,16 +86,20 @@ def mapping(theta):
     return effects
 
 
-def from_entries(entries, where='effects'):
-    """Return {effect: {parameter: value}} of texts like rotor_drag.coefficient=0.2; InputError."""
-    effects = {}
+def from_entries(entries, start, where):
+    """
+    Return {effect: {parameter: value}} of entries NAME:PARAMETER=VALUE over those of start.
+
+    Raises InputError for entries of another form; the names are checked by vector.
+    """
+    effects = {name: dict(values) for name, values in start.items()}
     for entry in entries:
-        path, sign, value = entry.partition('=')
-        name, dot, parameter = path.strip().partition('.')
-        if not (sign and dot):
-            raise InputError(f'{where}: {schema.shown(entry)}: expected EFFECT.PARAMETER=VALUE, '
-                             'for example rotor_drag.coefficient=0.2')
-        effects.setdefault(name, {})[parameter] = value.strip()
+        name, colon, rest = entry.partition(':')
+        parameter, sign, value = rest.partition('=')
+        if not (colon and sign):
+            raise InputError(f'{where} {entry}: expected NAME:PARAMETER=VALUE, for example '
+                             'rotor_drag:coefficient=0.1')
+        effects.setdefault(name, {})[parameter] = schema.number(f'{where} {entry}', value)
     return effects
 
 

@@ -43,7 +43,7 @@ SPECS = (
     ParameterSpec('vehicle', '', 'Name or path of a vehicle file that replaces the '
                   "experiment's; empty keeps it."),
     ParameterSpec('effects', (), 'Effects that the vehicle has beside those of its file, each '
-                  'EFFECT.PARAMETER=VALUE.'),
+                  'NAME:PARAMETER=VALUE.'),
     ParameterSpec('real_time_factor', 1.0, 'Simulated seconds per second; 0 runs as fast as the '
                   'subscribers keep up, without loss.', limits=(0.0, 1000.0), fixed=True),
     ParameterSpec('publish_clock', False, 'Publish /clock with the simulated time, which then '
@@ -63,7 +63,7 @@ HELP = f"""simulator: flies an experiment and publishes what a vehicle would.
 
   ros2 run quad_ident_ros simulator --ros-args -p experiment:=small_angle -p real_time_factor:=2.0
   ros2 run quad_ident_ros simulator --ros-args -p experiment:=closed_loop \\
-      -p effects:="[rotor_drag.coefficient=0.2]"
+      -p effects:="[rotor_drag:coefficient=0.2]"
 
 Publishes (reliable; one stamp per sample on all five):
   attitude  geometry_msgs/Vector3Stamped  roll, pitch, yaw, unwrapped, rad
@@ -150,7 +150,8 @@ class Simulator(Node):
     def _load(self, values):
         where = 'parameter effects'
         experiment = load_experiment(values['experiment'], values['vehicle'] or None)
-        experiment = experiment.with_effects(from_entries(values['effects'], where), where)
+        experiment = experiment.with_effects(
+            from_entries(values['effects'], experiment.vehicle.effects, where), where)
         experiment.check(_noise(experiment, values))
         return experiment
 

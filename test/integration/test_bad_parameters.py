@@ -33,9 +33,9 @@ VALUES = {
         ('noise.attitude', 'much', 'noise.attitude'),
         ('noise.altitude', float('nan'), 'noise.altitude'),
         ('noise.rate', -2.0, 'noise.rate'),
-        ('effects', ['rotor_drag'], 'parameter effects: '),
-        ('effects', ['rotor_drag.coefficient=-1'], 'parameter effects: rotor_drag: coefficient'),
-        ('effects', ['rotor_drg.coefficient=1'], "did you mean 'rotor_drag'"),
+        ('effects', ['rotor_drag'], 'expected NAME:PARAMETER=VALUE'),
+        ('effects', ['rotor_drag:coefficient=-1'], 'parameter effects: rotor_drag: coefficient'),
+        ('effects', ['rotor_drg:coefficient=1'], "did you mean 'rotor_drag'"),
     ],
     'diagnoser': [
         ('vehicle', 'hummingbrd', "'hummingbrd' is not among the vehicles"),

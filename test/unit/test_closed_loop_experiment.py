@@ -25,7 +25,7 @@ def load(tmp_path):
     def loader(runs=None, **changes):
         data = {**resources.read_yaml(resources.find('experiments', 'closed_loop')), **changes}
         if runs is not None:
-            data['runs'] = [{'name': f'run{k}', 'duration': 4.0, 'trajectory': 'hover', **run}
+            data['runs'] = [{'name': f'run{k}', 'duration': 5.0, 'trajectory': 'hover', **run}
                             for k, run in enumerate(runs)]
         path = tmp_path / 'e.yaml'
         path.write_text(yaml.safe_dump(data), encoding='utf-8')
@@ -89,22 +89,25 @@ def test_commands_come_back_from_the_inputs(load):
     assert with_commands(record, experiment.vehicle) is record
 
 
-def test_effects_are_added_to_those_of_the_vehicle(load):
-    experiment = load().with_effects(HEAVY).with_effects(
-        from_entries(['rotor_drag.coefficient=0.2', 'wind.x=1']))
-    assert experiment.vehicle.effects == {'mass_offset': {'mass': 0.1}, 'wind': {'x': 1.0},
-                                          'rotor_drag': {'coefficient': 0.2}}
+def test_effects_go_over_those_of_the_vehicle(load):
+    start = {'mass_offset': {'mass': 0.3}, 'wind': {'y': 2.0}}
+    experiment = load().with_effects(from_entries(
+        ['mass_offset:mass=0.1', 'rotor_drag:coefficient=0.2', 'wind:x=1'], start, 'here'))
+    assert experiment.vehicle.effects == {
+        'mass_offset': {'mass': 0.1}, 'wind': {'x': 1.0, 'y': 2.0},
+        'rotor_drag': {'coefficient': 0.2}}
+    assert start == {'mass_offset': {'mass': 0.3}, 'wind': {'y': 2.0}}
     assert load_vehicle('hummingbird').effects == {}
 
 
 @pytest.mark.parametrize('entry, said', [
-    ('rotor_drag', 'expected EFFECT.PARAMETER=VALUE'),
-    ('rotor_drag=0.2', 'expected EFFECT.PARAMETER=VALUE'),
-    ('rotor_drg.coefficient=0.2', "did you mean 'rotor_drag'"),
-    ('rotor_drag.coeficient=0.2', "did you mean 'coefficient'"),
-    ('rotor_drag.coefficient=much', "expected a number, got 'much'"),
-    ('rotor_drag.coefficient=-1', 'out of range')])
+    ('rotor_drag', 'expected NAME:PARAMETER=VALUE'),
+    ('rotor_drag=0.2', 'expected NAME:PARAMETER=VALUE'),
+    ('rotor_drg:coefficient=0.2', "did you mean 'rotor_drag'"),
+    ('rotor_drag:coeficient=0.2', "did you mean 'coefficient'"),
+    ('rotor_drag:coefficient=much', "expected a number, got 'much'"),
+    ('rotor_drag:coefficient=-1', 'out of range')])
 def test_effects_that_are_none_are_refused(load, entry, said):
-    with pytest.raises(InputError, match='^effects: ') as caught:
-        load().with_effects(from_entries([entry]))
+    with pytest.raises(InputError, match='^here') as caught:
+        load().with_effects(from_entries([entry], {}, 'here'), 'here')
     assert said in str(caught.value)
