@@ -34,7 +34,8 @@ def test_the_secret_is_found_and_revealed_last(demo):
     assert data['effects'] == truth and data['found']
     assert data['diagnosis']['verdict'] == list(truth)
     assert data['closed'] == data['diagnosis']['gap']['closed'] > 0.9
-    assert said.index('verdict: ') < said.index('revealed: ') < said.index('the same again: --seed')
+    verdict, revealed = said.index('verdict: '), said.index('revealed: ')
+    assert verdict < revealed < said.index('the same again: --seed')
     assert f'revealed: {list(truth)[0]} ' in said
 
 
