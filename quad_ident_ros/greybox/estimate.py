@@ -12,9 +12,9 @@ from quad_ident_ros.greybox.noise import MAD, quick_noise, whole_noise
 from quad_ident_ros.greybox.parameters import limits
 
 ITERATIONS = 20
-DONE = 0.01         # length of a last step, in standard errors
-ROUGH = 10.0        # the same where only a few rollouts are looked at
-FEW = 10            # rollouts that bring a start near
+DONE = 0.2          # standard errors of a last step, which leaves a twentieth of that or less
+ROUGH = 30.0        # standard errors where only a few rollouts are looked at
+FEW = 8             # rollouts that bring a start near
 NEAR = 0.3          # usual sizes; after shorter steps the slopes are kept
 SHARES = tuple(0.5 ** k for k in range(7))  # of a step, tried until the cost does not rise
 WEAK = 1e-7         # of the largest information: a direction that says nothing
@@ -68,18 +68,21 @@ def normal_of(linears, flights, clock=True):
     information = gradient = 0.0
     cost, scores = 0.0, []
     for linear, flight in zip(linears, flights, strict=True):
-        error, slope = linear.error, linear.slope
+        across = linear.slope.transpose(0, 2, 1)
+        products = across @ linear.slope
+        each = (across @ linear.error[..., None])[..., 0]
+        cost += float(np.sum(linear.error ** 2))
         if clock:
-            own, slope = slope[..., -1], slope[..., :-1]
-            size = np.sum(own * own)
-            if size > 0:
-                error = error - own * (np.sum(own * error) / size)
-                slope = slope - own[..., None] * (np.tensordot(own, slope, 2) / size)
-        across = slope.transpose(0, 2, 1)
-        information = information + (across @ slope).sum(axis=0)
-        each = (across @ error[..., None])[..., 0]
+            # The column of the clock is taken out of the others and of the errors.
+            own, size = products[:, :-1, -1], max(products[:, -1, -1].sum(), 1e-300)
+            share, ties = each[:, -1].sum() / size, own.sum(axis=0) / size
+            rest = each[:, -1] - share * products[:, -1, -1]
+            each = each[:, :-1] - share * own - ties * rest[:, None]
+            cost -= size * share ** 2
+            information = information - size * np.outer(ties, ties)
+            products = products[:, :-1, :-1]
+        information = information + products.sum(axis=0)
         gradient = gradient + each.sum(axis=0)
-        cost += float(np.sum(error * error))
         scores.append(_blocks(each, flight))
     return Normal(information, gradient, cost, np.concatenate(scores))
 

@@ -88,7 +88,8 @@ def test_all_eight_free_have_no_scale_and_it_is_said(problem):
     for name in KNOWN_MASS:
         one, other = parts[name], by_name(with_mass)[name]
         assert one.value == pytest.approx(other.value, abs=0.1 * other.std)
-        assert one.std == pytest.approx(other.std, rel=0.02)
+        # The slopes at the end may be those at a point 0.3 usual sizes, 3 %, away.
+        assert one.std == pytest.approx(other.std, rel=0.05)
 
 
 def test_effects_are_found_beside_constants():
