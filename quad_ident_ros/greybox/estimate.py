@@ -141,7 +141,7 @@ def _descend(flights, vehicle, z, columns, noise, starts, iterations, clock, don
             for flight, start in zip(flights, starts, strict=True)]
     noise = known or [quick_noise(raw) for raw in raws]
     tangents, converged = None, False
-    for _ in range(iterations):
+    for count in range(iterations):
         fresh = tangents is None
         if fresh:
             tangents = [tangent_of(flight, vehicle, z, start, columns, STEP * size)
@@ -175,7 +175,8 @@ def _descend(flights, vehicle, z, columns, noise, starts, iterations, clock, don
                      for part, linear in zip(aligned, linears, strict=True)]
         # In units of the noise, so that directions that are not determined do not count.
         length = np.sqrt(max(step @ normal.information @ step, 0.0) / max(1, len(step)))
-        if share == 1.0 and length <= done:
+        # The first step is weighed by a first guess of the noise.
+        if share == 1.0 and length <= done and (known or count):
             converged = True
             break
         # Close by, the slopes are what they were.
