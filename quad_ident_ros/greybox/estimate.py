@@ -114,13 +114,14 @@ def estimate(flights, vehicle, z, columns, *, noise=None, starts=None, iteration
     few of the rollouts first bring z near.
     """
     columns = list(columns)
+    box = limits(vehicle)[:, columns]
     if starts is None:
         few = [_fewer(flight, max(1, FEW // len(flights))) for flight in flights]
         if 2 * sum(len(flight.first) for flight in few) <= sum(len(f.first) for f in flights):
-            z = _descend(few, vehicle, z, columns, noise, _recorded(few), iterations, clock,
-                         ROUGH).z
+            z = _descend(few, vehicle, z, columns, box, noise, _recorded(few), iterations,
+                         clock, ROUGH).z
         starts = _recorded(flights)
-    return _descend(flights, vehicle, z, columns, noise, starts, iterations, clock, DONE)
+    return _descend(flights, vehicle, z, columns, box, noise, starts, iterations, clock, DONE)
 
 
 def _fewer(flight, count):
@@ -133,9 +134,9 @@ def _recorded(flights):
     return [flight.states[flight.first] for flight in flights]
 
 
-def _descend(flights, vehicle, z, columns, noise, starts, iterations, clock, done):
+def _descend(flights, vehicle, z, columns, box, noise, starts, iterations, clock, done):
     """Return the Estimate from z by steps of Gauss and Newton that do not raise the cost."""
-    lower, upper, size = (limit[columns] for limit in limits(vehicle))
+    lower, upper, size = box
     known, z = noise, np.array(z, float)
     raws = [errors_along(flight, vehicle, z, start)
             for flight, start in zip(flights, starts, strict=True)]
