@@ -43,7 +43,17 @@ def run(size, bar):
                          number(float(np.sqrt(np.mean(misses ** 2, axis=0)).max())),
                          '–' if share != share else f'{100 * share:.0f} %'))
     head = ('method', 'CPU, ms', 'RMSE/CRB', 'its worst parameter', 'coverage of 95 %')
-    return f'{targets(_goals(scores))}\n\n{markdown(head, rows)}'
+    return f'{targets(_goals(scores))}\n\n{markdown(head, rows)}{_agreement(problem)}'
+
+
+def _agreement(problem):
+    """Return how far MuJoCo's model is from ours, in words; nothing where it is not there."""
+    try:
+        left = peers_mujoco.residual(problem.clean, problem.vehicle)
+    except ImportError:
+        return ''
+    return ('\n\nOn the flight without noise the two models differ by at most '
+            f'{np.abs(left).max():.0e} of the noise.')
 
 
 def ours(record, vehicle, names):

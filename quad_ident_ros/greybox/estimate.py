@@ -19,9 +19,9 @@ from quad_ident_ros.greybox.noise import MAD, quick_noise, whole_noise
 from quad_ident_ros.greybox.parameters import limits
 
 ITERATIONS = 20
-DONE = 0.01         # length of a last step, in standard errors
-ROUGH = 10.0        # the same where only a few rollouts are looked at
-FEW = 10            # rollouts that bring a start near
+DONE = 0.2          # standard errors of a last step, which leaves a twentieth of that or less
+ROUGH = 30.0        # standard errors where only a few rollouts are looked at
+FEW = 8             # rollouts that bring a start near
 NEAR = 0.3          # usual sizes; after shorter steps the slopes are kept
 SHARES = tuple(0.5 ** k for k in range(7))  # of a step, tried until the cost does not rise
 WEAK = 1e-7         # of the largest information: a direction that says nothing
@@ -75,18 +75,21 @@ def normal_of(linears, flights, clock=True):
     information = gradient = 0.0
     cost, scores = 0.0, []
     for linear, flight in zip(linears, flights, strict=True):
-        error, slope = linear.error, linear.slope
+        across = linear.slope.transpose(0, 2, 1)
+        products = across @ linear.slope
+        each = (across @ linear.error[..., None])[..., 0]
+        cost += float(np.sum(linear.error ** 2))
         if clock:
-            own, slope = slope[..., -1], slope[..., :-1]
-            size = np.sum(own * own)
-            if size > 0:
-                error = error - own * (np.sum(own * error) / size)
-                slope = slope - own[..., None] * (np.tensordot(own, slope, 2) / size)
-        across = slope.transpose(0, 2, 1)
-        information = information + (across @ slope).sum(axis=0)
-        each = (across @ error[..., None])[..., 0]
+            # The column of the clock is taken out of the others and of the errors.
+            own, size = products[:, :-1, -1], max(products[:, -1, -1].sum(), 1e-300)
+            share, ties = each[:, -1].sum() / size, own.sum(axis=0) / size
+            rest = each[:, -1] - share * products[:, -1, -1]
+            each = each[:, :-1] - share * own - ties * rest[:, None]
+            cost -= size * share ** 2
+            information = information - size * np.outer(ties, ties)
+            products = products[:, :-1, :-1]
+        information = information + products.sum(axis=0)
         gradient = gradient + each.sum(axis=0)
-        cost += float(np.sum(error * error))
         scores.append(_blocks(each, flight))
     return Normal(information, gradient, cost, np.concatenate(scores))
 
@@ -118,13 +121,14 @@ def estimate(flights, vehicle, z, columns, *, noise=None, starts=None, iteration
     few of the rollouts first bring z near.
     """
     columns = list(columns)
+    box = limits(vehicle)[:, columns]
     if starts is None:
         few = [_fewer(flight, max(1, FEW // len(flights))) for flight in flights]
         if 2 * sum(len(flight.first) for flight in few) <= sum(len(f.first) for f in flights):
-            z = _descend(few, vehicle, z, columns, noise, settled(few, vehicle, z, noise),
+            z = _descend(few, vehicle, z, columns, box, noise, settled(few, vehicle, z, noise),
                          iterations, clock, ROUGH).z
         starts = settled(flights, vehicle, z, noise)
-    return _descend(flights, vehicle, z, columns, noise, starts, iterations, clock, DONE)
+    return _descend(flights, vehicle, z, columns, box, noise, starts, iterations, clock, DONE)
 
 
 def _fewer(flight, count):
@@ -133,15 +137,15 @@ def _fewer(flight, count):
     return replace(flight, first=flight.first[skip // 2::skip])
 
 
-def _descend(flights, vehicle, z, columns, noise, starts, iterations, clock, done):
+def _descend(flights, vehicle, z, columns, box, noise, starts, iterations, clock, done):
     """Return the Estimate from z by steps of Gauss and Newton that do not raise the cost."""
-    lower, upper, size = (limit[columns] for limit in limits(vehicle))
+    lower, upper, size = box
     known, z = noise, np.array(z, float)
     raws = [errors_along(flight, vehicle, z, start)
             for flight, start in zip(flights, starts, strict=True)]
     noise = known or [quick_noise(raw) for raw in raws]
     tangents, converged = None, False
-    for _ in range(iterations):
+    for count in range(iterations):
         fresh = tangents is None
         if fresh:
             tangents = [tangent_of(flight, vehicle, z, start, columns, STEP * size)
@@ -174,8 +178,9 @@ def _descend(flights, vehicle, z, columns, noise, starts, iterations, clock, don
             noise = [whole_noise(part, linear.freedom)
                      for part, linear in zip(aligned, linears, strict=True)]
         # In units of the noise, so that directions that are not determined do not count.
-        length = np.sqrt(max(step @ normal.information @ step, 0.0) / max(len(step), 1))
-        if share == 1.0 and length <= done:
+        length = np.sqrt(max(step @ normal.information @ step, 0.0) / max(1, len(step)))
+        # The first step is weighed by a first guess of the noise.
+        if share == 1.0 and length <= done and (known or count):
             converged = True
             break
         # Close by, the slopes are what they were.

@@ -86,7 +86,7 @@ def fit(records, vehicle, names):
                 z[members] *= start[columns[freedom.held]] / z[columns[freedom.held]]
         z[held] = start[held]
         rest = [place for place in free.values() if place not in held]
-        found = estimate(flights, vehicle, z, rest, starts=found.starts)
+        found = estimate(flights, vehicle, z, rest, noise=found.noise, starts=found.starts)
     given = {name: {} for name in inside}
     for freedom in left:
         for k in freedom.members:

@@ -98,8 +98,9 @@ def tangent_of(flight, vehicle, z, starts, columns, steps):
     which = np.concatenate([np.zeros(batch * (1 + turned), int),
                             np.repeat(np.arange(1, len(sets)), batch)])
     moves = np.diag(STATE_STEP)[shifts:]
-    all_starts = np.concatenate([starts, *(moved(starts, move) for move in moves),
-                                 np.tile(starts, (len(columns), 1))])
+    all_starts = np.concatenate([
+        starts, moved(starts[None], moves[:, None]).reshape(-1, starts.shape[1]),
+        np.tile(starts, (len(columns), 1))])
     first = np.tile(flight.first, 1 + turned + len(columns))
     out = predict(vehicle, sets[:, SPLIT:], flight.course, all_starts, first, flight.count, which,
                   constants=constants_of(sets, vehicle))

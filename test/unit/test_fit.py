@@ -87,7 +87,7 @@ def test_all_eight_free_have_no_scale_and_it_is_said(problem):
     with_mass = fit([problem.draw(0)], problem.start(0), KNOWN_MASS)
     for name in KNOWN_MASS:
         one, other = parts[name], by_name(with_mass)[name]
-        assert one.value == pytest.approx(other.value, abs=0.1 * other.std)
+        assert one.value == pytest.approx(other.value, abs=0.05 * other.std)
         assert one.std == pytest.approx(other.std, rel=0.02)
 
 
