@@ -10,7 +10,7 @@ import numpy as np
 from quad_ident_ros.diagnose import gap as gaps
 from quad_ident_ros.diagnose import where
 from quad_ident_ros.greybox.flights import highest_voltage
-from quad_ident_ros.greybox.noise import quick_noise
+from quad_ident_ros.greybox.noise import quick_noise, whole_noise
 from quad_ident_ros.greybox.parameters import nominal
 from quad_ident_ros.report import gap_pictures
 from quad_ident_ros.report.diagnosis import verdict_line
@@ -40,11 +40,14 @@ def _pictures(found, training, held_out, folder):
     """Return the pictures by name, as figures."""
     vehicle, z, z0 = found.vehicle, found.z, nominal(found.vehicle)
     voltage = highest_voltage([*training, held_out])
-    noise = np.median([quick_noise(raw) for raw in found.selection.best.estimate.left], axis=0)
+    left = found.selection.best.estimate.left
+    # Of what is left in the end slow noise is a part, too: it is no force that the model lacks.
+    quick = np.median([quick_noise(raw) for raw in left], axis=0)
+    whole = np.median([whole_noise(raw, 1.0 - 1.0 / raw.shape[1]) for raw in left], axis=0)
     gap, horizon = found.data['gap'], found.data['gap']['horizon']
     before, after = (gaps.ends(held_out, vehicle, each, horizon, voltage) for each in (z0, z))
     lacks = [[where.lacking(record, vehicle, each, noise, voltage) for record in training]
-             for each in (z0, z)]
+             for each, noise in ((z0, quick), (z, whole))]
     made = {}
     for name, draw, caption in (
             ('predictions',
@@ -73,15 +76,17 @@ def _verdict(data):
                   for name in data['verdict']), ' ')
     gap = data['gap']
     return [tag('p', join([tag('strong', 'Verdict: '), words], '')),
-            tag('p', f'{_sentence(verdict_line(data))} On {data["held_out"]}, which took no part, '
+            tag('p', f'{_explained(data)}On {data["held_out"]}, which took no part, '
                      f'{100 * gap["closed"]:.0f} % of the velocity gap above the noise is closed '
                      f'({gap["horizon"]:g} s ahead: {gap["before"]["velocity"]:.3g} m/s before, '
                      f'{gap["after"]["velocity"]:.3g} after, {gap["noise"]["velocity"]:.3g} from '
                      'noise alone).')]
 
 
-def _sentence(text):
-    return f'{text[0].upper()}{text[1:]}.'
+def _explained(data):
+    """Return what the verdict means, where it is more than names, as a sentence."""
+    _, colon, text = verdict_line(data).partition(': ')
+    return f'{text[0].upper()}{text[1:]}. ' if colon else ''
 
 
 def _far(data, pictures):
