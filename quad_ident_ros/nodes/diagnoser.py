@@ -37,7 +37,7 @@ SPECS = (
     ParameterSpec('effects', (), 'Effects that may be found; empty: all.',
                   choices=tuple(EFFECTS)),
     ParameterSpec('mode', 'once', 'once: diagnose the first complete experiment, then only on '
-                  '~/diagnose; continuous: diagnose each new record.',
+                  '~/diagnose; continuous: diagnose each new record by itself.',
                   choices=('once', 'continuous')),
     ParameterSpec('window', 0.0, 'Seconds at the end of a record that are diagnosed; 0 takes '
                   'all.', limits=(0.0, 1e6)),
@@ -109,8 +109,10 @@ class Diagnoser(Node):
         busy = self._job.busy
         self._job.request()
         response.success = True
+        what = ('the newest record' if self._config['mode'] == 'continuous' else
+                f'{len(self._records)} records')
         response.message = ('a diagnosis is running; another follows' if busy else
-                            f'diagnosing {len(self._records)} records')
+                            f'diagnosing {what}')
         return response
 
     def _on_cancel(self, _, response):
@@ -119,9 +121,11 @@ class Diagnoser(Node):
         return response
 
     def _prepare(self):
-        """Return the diagnosis of the records as they are now."""
+        """Return the diagnosis of the records as they are now, or of the newest window."""
         self._diagnosed_once = True
-        values, records = self._config.values(), self._records.all()
+        values = self._config.values()
+        continuous = values['mode'] == 'continuous'
+        records = [self._records.newest] if continuous else self._records.all()
 
         def run():
             vehicle = load_nominal(values['vehicle'])

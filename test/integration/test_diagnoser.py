@@ -149,6 +149,7 @@ def test_each_window_is_diagnosed_in_continuous_mode(graph, draggy):
     assert {row['effect'] for row in first['ranking']} == {'rotor_drag', 'wind'}
     bench.feed(draggy[1:])
     graph.spin_until(lambda: len(bench.diagnoses) == 2, 'the second window', PATIENCE)
+    assert bench.diagnoses.data()[1]['flights'] == ['two/circle']
 
 
 @pytest.mark.parametrize('spoil, said', [

@@ -24,6 +24,7 @@ def test_an_experiment_is_complete_with_a_record_of_each_run_in_their_order():
     assert not records.complete
     assert not records.add(first, longest=True)
     assert records.complete and records.all() == [first, second]
+    assert records.newest is first
 
 
 def test_of_the_parts_of_a_run_the_longest_or_the_newest_has_the_say():
