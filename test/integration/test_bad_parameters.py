@@ -47,6 +47,7 @@ VALUES = {
         ('effects', ['rotor_drg'], "parameter effects: 'rotor_drg' is not one of"),
         ('mode', 'twice', "'twice' is not one of once, continuous"),
         ('window', -1.0, 'window'),
+        ('window', 3.0, 'parameter window: 3 s are too short for a diagnosis'),
     ],
     'identifier': [
         ('method', 'simplex', "'simplex' is not one of all, pso, cs, pso_cs, ls"),
