@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Pictures of a diagnosis."""
 
+from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 import numpy as np
 
 from quad_ident_ros.diagnose.where import CHANNELS, weights
@@ -47,8 +48,8 @@ def save_predictions(held_out, before, after, gap, path):
     axes[0, 1].set_title('measured - predicted', fontsize='medium')
     for axis in axes[-1]:
         axis.set_xlabel('time, s')
-    axes[0, 0].legend(frameon=False, ncols=3, loc='upper right', fontsize='small')
-    axes[0, 1].legend(frameon=False, loc='upper right', fontsize='small')
+    handles = [*axes[0, 0].get_lines(), *axes[0, 1].patches]
+    figure.legend(handles=handles, loc='outside upper center', ncols=len(handles), frameon=False)
     save(plt, figure, path)
 
 
@@ -68,12 +69,17 @@ def save_horizons(gap, path):
                           color=color, marker='o', markersize=4, capsize=3, label=stage)
         axis.plot(horizons, [one['noise'][group] for one in gap['horizons'].values()],
                   color=NOISE, linestyle='--', label='noise alone')
-        axis.set_ylim(0.0, None)
+        # What is left may be a hundredth of what was there: both are to be read.
+        axis.set_yscale('log')
+        axis.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        axis.yaxis.set_major_formatter(StrMethodFormatter('{x:g}'))
+        axis.yaxis.set_minor_formatter(NullFormatter())
         axis.set_xticks(horizons)
         axis.set_title(f'{group}, {gap["units"][group]}', fontsize='medium')
         axis.set_xlabel('horizon, s')
         _plain(axis)
-    axes[0].legend(frameon=False)
+    handles, labels = axes[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc='outside upper center', ncols=len(labels), frameon=False)
     save(plt, figure, path)
 
 
