@@ -13,6 +13,7 @@ BEFORE, AFTER, NOISE = '#d55e00', '#0072b2', '#555555'
 STATES = {'velocity': (('vx', 'vy', 'vz'), 'm/s'), 'rate': (('wx', 'wy', 'wz'), 'rad/s')}
 THIRDS = ('low', 'mid', 'high')
 HEADROOM = 1.5      # times the range of what was measured that is shown of predictions
+NARROW = 4.0        # times the lowest gap that its axis shows at least
 NAMED = 0.5         # probability from which on a bar is coloured
 
 
@@ -74,6 +75,8 @@ def save_horizons(gap, path):
         axis.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
         axis.yaxis.set_major_formatter(StrMethodFormatter('{x:g}'))
         axis.yaxis.set_minor_formatter(NullFormatter())
+        low, high = axis.get_ylim()
+        axis.set_ylim(min(low, high / NARROW), high)    # a gap that stays must not look steep
         axis.set_xticks(horizons)
         axis.set_title(f'{group}, {gap["units"][group]}', fontsize='medium')
         axis.set_xlabel('horizon, s')
