@@ -27,7 +27,8 @@ setup(
     description='Online identification of quadrotors on ROS 2',
     long_description=(
         'ROS 2 nodes and a command line that simulate a quadrotor, record its flight, identify '
-        'the parameters of second-order models of it, with their standard errors.'
+        'the parameters of second-order models of it, with their standard errors, and diagnose '
+        'what it has and its nominal description lacks.'
     ),
     long_description_content_type='text/plain',
     author='quad_ident_ros contributors',

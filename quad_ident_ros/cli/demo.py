@@ -6,6 +6,7 @@ import secrets
 import sys
 
 from quad_ident_ros.cli.identify import progress_bar, show
+from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.identify.result import as_data
 from quad_ident_ros.report import diagnosis
@@ -89,9 +90,11 @@ def _reveal(options, outcome):
     found = outcome.diagnosis
     if options.json != '-':
         diagnosis.show(found, sys.stdout)
-        truth = '; '.join(f'{name} ' + ', '.join(f'{key} = {value:.4g}'
-                                                 for key, value in values.items())
-                          for name, values in outcome.effects.items())
+        units = {(effect.name, one.name): '' if one.unit == '1' else f' {one.unit}'
+                 for effect in EFFECTS.values() for one in effect.parameters}
+        truth = '; '.join(f'{name} ' + ', '.join(
+            f'{key} {value:.4g}{units[name, key]}' for key, value in values.items())
+            for name, values in outcome.effects.items())
         print(f'\nrevealed: {truth}')
         gap = found['gap']
         hidden = all(gap['before'][name] < HIDDEN * gap['noise'][name] for name in gap['noise'])

@@ -11,7 +11,7 @@ from rich.progress import BarColumn, Progress, TextColumn
 
 from quad_ident_ros.cli.options import flights_from
 from quad_ident_ros.data.quality import refuse_unfit
-from quad_ident_ros.diagnose.diagnosis import diagnose
+from quad_ident_ros.diagnose.diagnosis import _split, diagnose
 from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.model.mixing import with_commands
 from quad_ident_ros.model.vehicle import load_nominal, write_vehicle
@@ -41,6 +41,8 @@ def add(commands):
                         "people's records mean what (YAML)")
     parser.add_argument('--effects', metavar='A,B', help='only these may be found (default: all)')
     parser.add_argument('--json', metavar='FILE', help='write it as data; - prints it')
+    parser.add_argument('--report', metavar='FILE.html',
+                        help='write a page for a browser: the verdict, pictures, all numbers')
     parser.add_argument('--out-vehicle', metavar='FILE',
                         help='write the vehicle file with the effects found, for the simulator')
     parser.set_defaults(run=run)
@@ -67,6 +69,9 @@ def run(options):
         show(found.data, sys.stdout)
     if options.json:
         write_json(options.json, found.data)
+    if options.report:
+        from quad_ident_ros.report import gap_page  # it draws: half a second to import
+        gap_page.write(options.report, found, *_split(records, held))
     if options.out_vehicle:
         write_vehicle(options.out_vehicle, replace(
             vehicle, name=f'{vehicle.name}_diagnosed', effects=found.effects()))

@@ -134,7 +134,8 @@ class Watcher:
 
     def _on_status(self, message):
         for status in message.status:
-            if status.name == self._worker and status.level == ERROR:
+            # A grave result has values; without any, there is none.
+            if status.name == self._worker and status.level == ERROR and not status.values:
                 self.refusal = status.message
 
 

@@ -29,6 +29,7 @@ from quad_ident_ros.nodes.records import Records
 from quad_ident_ros.report.diagnosis import verdict_line
 from quad_ident_ros.warm_up import warm_up_diagnosis
 
+SHORTEST = 8.0      # s of a record that can bear a verdict: of a single one half is held out
 STAGES = ('before', 'after', 'noise')
 
 SPECS = (
@@ -37,10 +38,10 @@ SPECS = (
     ParameterSpec('effects', (), 'Effects that may be found; empty: all.',
                   choices=tuple(EFFECTS)),
     ParameterSpec('mode', 'once', 'once: diagnose the first complete experiment, then only on '
-                  '~/diagnose; continuous: diagnose each new record.',
+                  '~/diagnose; continuous: diagnose each new record by itself.',
                   choices=('once', 'continuous')),
-    ParameterSpec('window', 0.0, 'Seconds at the end of a record that are diagnosed; 0 takes '
-                  'all.', limits=(0.0, 1e6)),
+    ParameterSpec('window', 0.0, 'Seconds at the end of a record that are diagnosed, at '
+                  f'least {SHORTEST:g}; 0 takes all.', limits=(0.0, 1e6)),
 )
 
 HELP = f"""diagnoser: says what a vehicle has and its nominal description lacks.
@@ -98,6 +99,9 @@ class Diagnoser(Node):
             self.get_logger().error(str(error))
             return
         continuous = self._config['mode'] == 'continuous'
+        if continuous and _length(record) < SHORTEST:   # the end of a run
+            self.get_logger().warning(_too_short(record))
+            return
         self._records.add(record, longest=not continuous)
         if continuous or self._records.complete and not self._diagnosed_once:
             self._job.request()
@@ -109,8 +113,10 @@ class Diagnoser(Node):
         busy = self._job.busy
         self._job.request()
         response.success = True
+        what = ('the newest record' if self._config['mode'] == 'continuous' else
+                f'{len(self._records)} records')
         response.message = ('a diagnosis is running; another follows' if busy else
-                            f'diagnosing {len(self._records)} records')
+                            f'diagnosing {what}')
         return response
 
     def _on_cancel(self, _, response):
@@ -119,15 +125,19 @@ class Diagnoser(Node):
         return response
 
     def _prepare(self):
-        """Return the diagnosis of the records as they are now."""
+        """Return the diagnosis of the records as they are now, or of the newest window."""
         self._diagnosed_once = True
-        values, records = self._config.values(), self._records.all()
+        values = self._config.values()
+        continuous = values['mode'] == 'continuous'
+        records = [self._records.newest] if continuous else self._records.all()
 
         def run():
             vehicle = load_nominal(values['vehicle'])
             flights = [with_commands(record.last(values['window']) if values['window']
                                      else record, vehicle) for record in records]
             for flight in flights:
+                if _length(flight) < SHORTEST:
+                    raise InputError(_too_short(flight))
                 refuse_unfit(flight, vehicle)
             found = diagnose(flights, vehicle, effects=values['effects'] or None,
                              on_progress=self._job.tell)
@@ -183,8 +193,21 @@ class Diagnoser(Node):
         self._diagnostics.publish(diagnostics_message(self, level, text, values))
 
 
+def _length(record):
+    """Return the length of a record, s; a nanosecond counts for nothing."""
+    return round(record.t[-1] - record.t[0] + record.period(), 6)
+
+
+def _too_short(record):
+    return (f'{record.info.get("name", "a record")}: {_length(record):.3g} s are too short for a '
+            f'diagnosis; at least {SHORTEST:g} s are needed')
+
+
 def _validate(values):
     load_nominal(values['vehicle'])
+    if 0.0 < values['window'] < SHORTEST:
+        raise InputError(f'parameter window: {values["window"]:g} s are too short for a '
+                         f'diagnosis; expected 0 (all) or at least {SHORTEST:g}')
 
 
 def main(args=None):

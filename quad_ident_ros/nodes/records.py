@@ -4,9 +4,14 @@
 
 
 class Records:
-    """The records of the session that flies: one for each run that it announced."""
+    """
+    The records of the session that flies: one for each run that it announced.
+
+    newest: the one that came last, or None.
+    """
 
     def __init__(self):
+        self.newest = None
         self._records = {}
         self._session = None
         self._wanted = 1
@@ -29,6 +34,7 @@ class Records:
         keep = (before is not None and longest and 'run_index' in info
                 and len(before) >= len(record))
         self._records[run] = before if keep else record
+        self.newest = record
         self._wanted = info.get('run_count', 1)
         return new
 

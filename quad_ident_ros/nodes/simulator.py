@@ -63,7 +63,7 @@ HELP = f"""simulator: flies an experiment and publishes what a vehicle would.
 
   ros2 run quad_ident_ros simulator --ros-args -p experiment:=small_angle -p real_time_factor:=2.0
   ros2 run quad_ident_ros simulator --ros-args -p experiment:=closed_loop \\
-      -p effects:="[rotor_drag:coefficient=0.2]"
+      -p effects:="['rotor_drag:coefficient=0.2']"
 
 Publishes (reliable; one stamp per sample on all five):
   attitude  geometry_msgs/Vector3Stamped  roll, pitch, yaw, unwrapped, rad

@@ -6,7 +6,7 @@ from rich import box
 from rich.console import Console
 from rich.table import Table
 
-WIDTH = 100
+WIDTH = 118     # columns that the widest row needs
 WORTH = 0.02        # probability or share from which on a row is shown
 
 

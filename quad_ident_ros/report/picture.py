@@ -25,7 +25,7 @@ def save_responses(identification, path, title):
 
     Raises InputError where the file cannot be written.
     """
-    plt = _pyplot(path)
+    plt = pyplot(path)
     signals = identification.signals
     figure, axes = plt.subplots(2, len(signals), figsize=(3.2 * len(signals) + 0.4, 5.2), dpi=130,
                                 sharex='col', squeeze=False, layout='constrained',
@@ -54,7 +54,7 @@ def save_responses(identification, path, title):
             axis.spines[['top', 'right']].set_visible(False)
     axes[0, 0].legend(frameon=False)
     figure.suptitle(title)
-    _save(plt, figure, path)
+    save(plt, figure, path)
 
 
 def save_spread(panels, path, title, quantity):
@@ -65,7 +65,7 @@ def save_spread(panels, path, title, quantity):
     What lies more than a decade below all that spread is shown at the lower edge, with its value.
     Raises InputError where the file cannot be written.
     """
-    plt = _pyplot(path)
+    plt = pyplot(path)
     everything = [values for methods in panels.values() for values in methods.values()]
     spread = np.concatenate([values for values in everything if len(values) > 1] or everything)
     everything, spread = (values[np.isfinite(values) & (values > 0)]
@@ -98,10 +98,10 @@ def save_spread(panels, path, title, quantity):
     axes[0, 0].yaxis.set_minor_formatter(plain if narrow else NullFormatter())
     axes[0, 0].set_ylabel(quantity)
     figure.suptitle(title)
-    _save(plt, figure, path)
+    save(plt, figure, path)
 
 
-def _pyplot(path):
+def pyplot(path):
     """Return pyplot for files; raises InputError where a path says no kind of picture."""
     if not Path(path).suffix:
         raise InputError(f'{path}: the name of a picture ends in .png, .svg or .pdf')
@@ -111,7 +111,8 @@ def _pyplot(path):
     return plt
 
 
-def _save(plt, figure, path):
+def save(plt, figure, path):
+    """Write a figure to a file and forget it; raises InputError."""
     try:
         Path(path).parent.mkdir(parents=True, exist_ok=True)
         figure.savefig(path)

@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Bad parameters are refused with the reason, at the start and while the nodes run."""
 
+from dataclasses import replace
+
 import pytest
 from rcl_interfaces.msg import Parameter as ParameterMessage
 from rcl_interfaces.msg import ParameterType
@@ -14,6 +16,7 @@ from rcl_interfaces.srv import (
 from rclpy.parameter import Parameter
 
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.model.vehicle import load_vehicle, write_vehicle
 from quad_ident_ros.nodes.diagnoser import Diagnoser
 from quad_ident_ros.nodes.identifier import Identifier
 from quad_ident_ros.nodes.recorder import Recorder
@@ -44,6 +47,7 @@ VALUES = {
         ('effects', ['rotor_drg'], "parameter effects: 'rotor_drg' is not one of"),
         ('mode', 'twice', "'twice' is not one of once, continuous"),
         ('window', -1.0, 'window'),
+        ('window', 3.0, 'parameter window: 3 s are too short for a diagnosis'),
     ],
     'identifier': [
         ('method', 'simplex', "'simplex' is not one of all, pso, cs, pso_cs, ls"),
@@ -170,7 +174,7 @@ def test_parameters_are_described(graph, node):
     names = [spec.name for spec in running._config.specs]
     response = graph.call(DescribeParameters, f'{node}/describe_parameters',
                           DescribeParameters.Request(names=names))
-    assert len(response.descriptors) == len(names) > 4
+    assert len(response.descriptors) == len(names) >= 4
     for spec, descriptor in zip(running._config.specs, response.descriptors, strict=True):
         assert descriptor.name == spec.name
         assert descriptor.description.startswith(spec.description)
@@ -178,3 +182,30 @@ def test_parameters_are_described(graph, node):
         assert descriptor.read_only == spec.fixed
         assert bool(descriptor.integer_range or descriptor.floating_point_range) \
             == bool(spec.limits)
+
+
+def test_noise_that_a_closed_loop_does_not_know_is_refused(graph):
+    """There position is one sensor: it has no altitude of its own."""
+    with pytest.raises(InputError, match="noise of a flight in closed loop: 'altitude'"):
+        graph.start(Simulator, {'experiment': 'closed_loop', 'noise.altitude': 0.1})
+
+
+def test_effects_can_be_switched_on_and_off_while_the_node_runs(graph):
+    running = graph.start(Simulator, {'experiment': 'closed_loop',
+                                      'effects': ['wind:x=1', 'rotor_drag:coefficient=0.2']})
+    result = graph.set_parameter('simulator', 'effects', ['wind:x=30'])
+    assert not result.successful and 'out of range' in result.reason
+    assert graph.set_parameter('simulator', 'effects', ['wind:x=3']).successful
+    assert list(running.get_parameter('effects').value) == ['wind:x=3']
+
+
+def test_a_nominal_vehicle_has_no_effects(graph, tmp_path):
+    path = tmp_path / 'reality.yaml'
+    vehicle = load_vehicle('hummingbird')
+    write_vehicle(path, replace(vehicle, effects={'wind': {'x': 1.0}}))
+    with pytest.raises(InputError, match='give the nominal vehicle'):
+        graph.start(Diagnoser, {'vehicle': str(path)})
+    running = graph.start(Diagnoser)
+    result = graph.set_parameter('diagnoser', 'vehicle', str(path))
+    assert not result.successful and 'give the nominal vehicle' in result.reason
+    assert running.get_parameter('vehicle').value == 'paper_quadrotor'

@@ -149,6 +149,7 @@ def test_each_window_is_diagnosed_in_continuous_mode(graph, draggy):
     assert {row['effect'] for row in first['ranking']} == {'rotor_drag', 'wind'}
     bench.feed(draggy[1:])
     graph.spin_until(lambda: len(bench.diagnoses) == 2, 'the second window', PATIENCE)
+    assert bench.diagnoses.data()[1]['flights'] == ['two/circle']
 
 
 @pytest.mark.parametrize('spoil, said', [
@@ -188,10 +189,16 @@ def test_a_vehicle_that_cannot_be_used_is_refused_in_one_line(processes, tmp_pat
         assert line.startswith('diagnoser: error: ') and said in line
 
 
-def test_a_flight_of_the_identifier_is_no_flight_to_diagnose(graph):
-    """Steps without control from the shipped experiment: what it says is one line, not silence."""
+def test_flights_that_are_too_short_are_refused_in_one_line(graph):
+    """Steps of 5 s, as the identifier has them."""
     bench = Bench(graph, {'vehicle': 'paper_quadrotor'})
     bench.feed(flights())
-    graph.spin_until(lambda: bench.diagnoses or any(
-        status.level == DiagnosticStatus.ERROR for message in bench.statuses
-        for status in message.status), 'a word', PATIENCE)
+    bench.await_status(DiagnosticStatus.ERROR, 'hover_single_axis/phi: 5.01 s are too short')
+    assert not bench.diagnoses
+
+
+def test_the_short_end_of_a_flight_is_left_aside_in_continuous_mode(graph, draggy):
+    bench = Bench(graph, {'mode': 'continuous', 'effects': ['rotor_drag']})
+    bench.feed([draggy[0].slice(0, 400), draggy[1]])
+    assert bench.await_diagnosis()['flights'] == ['two/circle']
+    assert len(bench.diagnoses) == 1
