@@ -1,0 +1,61 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Where the vehicles are told to fly, in the form of rotorpy's trajectories."""
+
+import numpy as np
+
+
+class Sines:
+    """
+    Sums of sines along each axis, and of the heading.
+
+    Args: rng; size m and speed m/s of the largest parts; height m of the middle, low m the lowest;
+    turn rad/s^2, the largest angular acceleration of the heading.
+    """
+
+    def __init__(self, rng, size, acceleration, low, turn, band=(0.12, 1.1)):
+        """Draw the sines, then scale them to size and acceleration (m/s^2, rms)."""
+        count = 5
+        self.rates = 2.0 * np.pi * np.exp(rng.uniform(*np.log(band), (4, count)))
+        self.phases = rng.uniform(0.0, 2.0 * np.pi, (4, count))
+        self.sizes = rng.uniform(0.3, 1.0, (4, count)) / self.rates ** 1.6
+        for axis, most in enumerate((acceleration, acceleration, 0.6 * acceleration, turn)):
+            rms = np.sqrt(0.5 * np.sum((self.sizes[axis] * self.rates[axis] ** 2) ** 2))
+            self.sizes[axis] *= most / rms
+            extent = np.sum(self.sizes[axis]) / 1.5
+            limit = (size, size, 0.5 * size, 2.0)[axis]
+            self.sizes[axis] *= min(1.0, limit / extent)
+        self.middle = np.array([0.0, 0.0, 0.0, rng.uniform(-3.0, 3.0)])
+        t = np.arange(0.0, 40.0, 0.02)
+        self.middle[2] = low - min(self._sum(x)[0][2] for x in t)
+
+    def _sum(self, t):
+        angle = self.rates * t + self.phases
+        sine, cosine = self.sizes * np.sin(angle), self.sizes * np.cos(angle)
+        return [np.sum(part, axis=1) for part in (
+            sine, self.rates * cosine, -self.rates ** 2 * sine, -self.rates ** 3 * cosine,
+            self.rates ** 4 * sine)]
+
+    def update(self, t):
+        """Return rotorpy's flat outputs at t, s."""
+        return flat(self.middle, self._sum(t))
+
+
+class Hover:
+    """Stay at a place: what shows little."""
+
+    def __init__(self, rng, low):
+        """Draw the place."""
+        self.middle = np.array([*rng.uniform(-0.5, 0.5, 2), low + 1.0, rng.uniform(-3.0, 3.0)])
+
+    def update(self, t):
+        """Return rotorpy's flat outputs at t, s."""
+        return flat(self.middle, [np.zeros(4)] * 5)
+
+
+def flat(middle, parts):
+    """Return rotorpy's flat outputs of derivatives 0 to 4 of (x, y, z, heading)."""
+    place = middle + parts[0]
+    return {'x': place[:3], 'x_dot': parts[1][:3], 'x_ddot': parts[2][:3], 'x_dddot': parts[3][:3],
+            'x_ddddot': parts[4][:3], 'yaw': place[3], 'yaw_dot': parts[1][3],
+            'yaw_ddot': parts[2][3]}
