@@ -6,7 +6,6 @@ import copy
 
 import numpy as np
 from rotorpy.vehicles.multirotor import Multirotor
-from scipy.spatial.transform import Rotation
 
 from withheld.vehicles import hover_speed
 
@@ -58,7 +57,7 @@ class Reality(Multirotor):
 
     def _s_dot_fn(self, t, s, cmd_rotor_speeds):
         # What rotorpy's wrench does not get told.
-        self._place = s[0:3], Rotation.from_quat(s[6:10]).as_matrix(), s[3:6]
+        self._place = s[0:3], rotation_of(s[6:10]), s[3:6]
         self._command = cmd_rotor_speeds
         return super()._s_dot_fn(t, s, cmd_rotor_speeds)
 
@@ -90,39 +89,47 @@ class Reality(Multirotor):
         return force, moment
 
     def advance(self, state, command, step):
-        """Return the packed state (20,) after a step (s) with a command held; Runge-Kutta."""
+        """Return the packed state (20,) after a step (s) with a command held; midpoint rule."""
         command = np.clip(command, self.rotor_speed_min, self.rotor_speed_max)
-        parts = int(np.clip(np.ceil(2.0 * step / self.lag), 1, 8)) if self.lag else 1
+        parts = int(np.clip(np.ceil(3.0 * step / self.lag), 1, 8)) if self.lag else 1
         h = step / parts
         s = state.copy()
         s[13:16] = self.wind
         if not self.lag:
             s[16:] = command
         for _ in range(parts):
-            a = self._s_dot_fn(0.0, s, command)
+            slope = self._s_dot_fn(0.0, s, command)
             self.time += 0.5 * h
-            b = self._s_dot_fn(0.0, s + 0.5 * h * a, command)
-            c = self._s_dot_fn(0.0, s + 0.5 * h * b, command)
+            s = s + h * self._s_dot_fn(0.0, s + 0.5 * h * slope, command)
             self.time += 0.5 * h
-            d = self._s_dot_fn(0.0, s + h * c, command)
-            s = s + h / 6.0 * (a + 2.0 * b + 2.0 * c + d)
             s[6:10] /= np.linalg.norm(s[6:10])
         return s
 
-    def hold(self, state, commands, begin, end):
+    def hold(self, state, command, earlier, step):
         """
-        Return the packed state after the time from begin to end, in s.
+        Return the packed state after a step (s) with the command given at its beginning.
 
-        Args: commands(t): the command given at t, before the delay, and when the next one comes.
+        Args: earlier: commands of the steps before, the last one last, as many as the delay needs.
         """
-        now = begin
-        while now < end - 1e-9:
-            command, until = commands(now - self.delay)
-            stop = min(end, until + self.delay)
-            if stop - now > 1e-9:
-                state = self.advance(state, command, stop - now)
-            now = max(stop, now + 1e-9)
+        whole = int(self.delay / step + 1e-9)
+        part = self.delay - whole * step
+        given = [command, *reversed(earlier)]
+        old, new = given[min(whole + 1, len(given) - 1)], given[min(whole, len(given) - 1)]
+        velocity = state[3:6]
+        if part > 1e-6:
+            state = self.advance(state, old, part)
+        state = self.advance(state, new, step - part)
+        if self.stranger is not None:
+            self.stranger.after(step, rotation_of(state[6:10]), (state[3:6] - velocity) / step)
         return state
+
+
+def rotation_of(q):
+    """Return the matrix (3, 3) of a quaternion x, y, z, w that is nearly of unit length."""
+    x, y, z, w = q / np.linalg.norm(q)
+    return np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+                     [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+                     [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]])
 
 
 NAMES = ('motor_lag', 'actuation_delay', 'rotor_drag', 'body_drag', 'wind', 'inflow',

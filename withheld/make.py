@@ -1,0 +1,83 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Fly realities and write their records; what they are goes to whoever asked, and nowhere else."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from withheld.faults import csv_text, draw_faults, Faults, record_of
+from withheld.fly import Lost
+from withheld.nominal import GROUPS
+from withheld.paths import Hover, Sines
+from withheld.realities import gaps_of, LARGEST, shape_of, size_of, World
+from withheld.sensors import Noise
+from withheld.vehicles import nominal_file, vehicle_of, yaw_authority
+
+STEP = 0.01         # s, of the controller
+ATTEMPTS = 8
+
+
+def make_case(case, part, flights, seconds, folder, rng):
+    """
+    Write the records and the vehicle file of a case into a folder and return its label.
+
+    Args: part: 'development' or 'evaluation'; flights of `seconds` s, the last one held out.
+    """
+    for _ in range(ATTEMPTS):
+        try:
+            return _attempt(case, part, flights, seconds, Path(folder), rng)
+        except Lost:
+            continue
+    raise RuntimeError(f'no vehicle stays on its path with {case}')
+
+
+def _attempt(case, part, flights, seconds, folder, rng):
+    drag = bool(rng.random() < 0.5) or 'wind' in case.effects
+    params = vehicle_of(part, case.vehicle, rng, drag)
+    noise = Noise()
+    if case.faulty:
+        noise = replace(noise, correlation=rng.uniform(0.05, 0.3), bias=0.5)
+    paths = [_path(case, params, part, rng) for _ in range(flights)]
+    trial, seed = paths[0], int(rng.integers(2 ** 31))
+    shapes = {name: shape_of(name, params, rng) for name in case.effects}
+    sizes, strengths = {}, {}
+    for name, strength in case.effects.items():
+        sizes[name], strengths[name] = size_of(
+            lambda size, name=name: World(params, shapes, {name: size}), strength,
+            LARGEST.get(name, 30.0), trial, noise, seed)
+    stranger, draws = None, int(rng.integers(2 ** 31))
+    if case.stranger is not None:
+        kind, strength = case.stranger
+        size, reached = size_of(lambda size: World(params, shapes, {}, (kind, size), draws),
+                                strength, 30.0, trial, noise, seed)
+        stranger, strengths[kind] = (kind, size), reached
+    world = World(params, shapes, sizes, stranger, draws, fall=rng.uniform(0.005, 0.05))
+    folder.mkdir()
+    voltage = rng.uniform(3.7, 16.8)
+    wrong = [draw_faults(rng) if case.faulty else Faults() for _ in paths]
+    for number, (path, fault) in enumerate(zip(paths, wrong, strict=True), 1):
+        flown = world.fly(path, seconds, STEP, noise, rng, voltage)
+        (folder / f'flight_{number}.csv').write_text(csv_text(record_of(flown, fault, rng)))
+    (folder / 'vehicle.yaml').write_text(nominal_file(params, folder.name))
+    exact, alone, before = gaps_of(flown, params)
+    return {
+        'kind': case.kind, 'faulty': case.faulty, 'vehicle': case.vehicle,
+        'effects': {name: {'asked': case.effects[name], 'strength': strengths[name],
+                           'parameters': world.effects[name]} for name in case.effects},
+        'stranger': None if stranger is None else {
+            'kind': stranger[0], 'asked': case.stranger[1], 'strength': strengths[stranger[0]]},
+        'held_out': {'exact': exact, 'noise': alone, 'before': before},
+        'groups': list(GROUPS)}
+
+
+def _path(case, params, part, rng):
+    radius = params['rotor_radius']
+    near = 'ground_effect' in case.effects or rng.random() < 0.4
+    low = rng.uniform(1.2, 2.0) * radius if near else rng.uniform(8.0, 14.0) * radius
+    if case.kind == 'poor':
+        return Hover(rng, low)
+    span = float(np.sqrt(params['rotor_radius'] / 0.1))
+    return Sines(rng, size=2.0 * span ** 0.5, acceleration=rng.uniform(1.8, 3.2), low=low,
+                 turn=min(3.0, 0.25 * yaw_authority(params)))
