@@ -6,16 +6,29 @@ import argparse
 import sys
 
 from quad_ident_ros import __version__
-from quad_ident_ros.cli import convert, demo, identify, info, node, paper, simulate, warm_up
+from quad_ident_ros.cli import (
+    convert,
+    demo,
+    diagnose,
+    fly,
+    identify,
+    info,
+    node,
+    paper,
+    simulate,
+    warm_up,
+)
 from quad_ident_ros.errors import InputError
 
-COMMANDS = (demo, simulate, identify, info, convert, paper, node, warm_up)
+COMMANDS = (demo, simulate, fly, identify, diagnose, info, convert, paper, node, warm_up)
 
 EPILOG = """\
 examples:
   quad_ident demo                                  simulate, record and identify on ROS 2
   quad_ident simulate hover_single_axis -o flights make flight records without ROS
+  quad_ident fly circle --vehicle iris -o a.csv    make a closed-loop flight with known truth
   quad_ident identify flights/*.csv --trim hover --initial-state rest
+  quad_ident diagnose a.csv b.csv --vehicle v.yaml what the vehicle has and the model lacks
   quad_ident info flight.csv                       what is in a flight, and what is wrong
   quad_ident convert flight.csv flight.mcap        the same flight as a bag
   quad_ident paper                                 reproduce the paper and check its claims

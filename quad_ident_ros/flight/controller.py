@@ -20,7 +20,8 @@ SEEN = 18       # position, velocity, rotation matrix by rows, rate
 MEMORY = 6      # integrals of the errors of position and attitude
 POSITION_PACE, YAW_PACE = 2.0, 3.0      # rad/s, of the closed loops
 DAMPING = 0.85
-STEEPEST = 2.0  # acceleration across the vertical that is asked for, in units of gravity
+STEEPEST = 2.0  # force across the vertical that is asked for, in weights
+LIGHTEST = 0.4  # force along it
 
 (MASS, IX, IY, IZ, GRAVITY, KP, KV, KI, TILT_P, TILT_V, TILT_I, YAW_P, YAW_V, YAW_I, MOST_PUSH,
  MOST_X, MOST_Y, MOST_Z, SQUARE_MIN, SQUARE_MAX, GAINS) = range(21)
@@ -83,8 +84,8 @@ def control(seen, wanted, dt, gains, mixer, memory, command):
     across = math.hypot(push[0], push[1])
     if across > STEEPEST * g[GRAVITY]:
         push[:2] *= STEEPEST * g[GRAVITY] / across
-    # To fall faster than half of gravity would leave the rotors nothing to turn the vehicle with.
-    push[2] = max(push[2] + g[GRAVITY], 0.5 * g[GRAVITY])
+    # To fall faster would leave the rotors nothing to turn the vehicle with.
+    push[2] = max(push[2] + g[GRAVITY], LIGHTEST * g[GRAVITY])
     strength = math.sqrt(push[0] ** 2 + push[1] ** 2 + push[2] ** 2)
     desired = np.empty((3, 3))      # columns: the desired body axes
     up = push / strength
@@ -99,6 +100,10 @@ def control(seen, wanted, dt, gains, mixer, memory, command):
                       desired[0, 0] * jerk[0] + desired[1, 0] * jerk[1]
                       + desired[2, 0] * jerk[2], 0.0]) / strength
     swing[2] = wanted[13] * up[2]
+    lift = g[MASS] * max(push[0] * rotation[0, 2] + push[1] * rotation[1, 2]
+                         + push[2] * rotation[2, 2], 0.0)
+    # What turns a vehicle steadily, a weak rotor or a mass off its centre, grows with the thrust.
+    load = lift / (g[MASS] * g[GRAVITY])
     between = desired.T @ rotation
     aim = between.T @ swing         # the desired rate, in the body
     turn = np.empty(3)
@@ -107,10 +112,8 @@ def control(seen, wanted, dt, gains, mixer, memory, command):
         error = 0.5 * (between[k, j] - between[j, k])
         first = TILT_P if i < 2 else YAW_P
         memory[3 + i] = _clamp(memory[3 + i] + g[first + 2] * error * dt, g[MOST_X + i])
-        turn[i] = -g[first] * error - g[first + 1] * (rate[i] - aim[i]) - memory[3 + i]
+        turn[i] = -g[first] * error - g[first + 1] * (rate[i] - aim[i]) - load * memory[3 + i]
         turn[i] = g[IX + i] * turn[i] + (g[IX + k] - g[IX + j]) * rate[j] * rate[k]
-    lift = g[MASS] * max(push[0] * rotation[0, 2] + push[1] * rotation[1, 2]
-                         + push[2] * rotation[2, 2], 0.0)
     _mix(lift, turn, g[SQUARE_MIN], g[SQUARE_MAX], mixer, command)
 
 

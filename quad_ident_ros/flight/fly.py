@@ -8,6 +8,7 @@ from quad_ident_ros import schema
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.effects.registry import SLICES, vector
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.experiment import MOST_SAMPLES
 from quad_ident_ros.flight.controller import gains_of, MEMORY, mixer_of
 from quad_ident_ros.flight.loop import close_loop
 from quad_ident_ros.flight.measure import CLEAN, errors_of, measured
@@ -22,7 +23,7 @@ FALL = 0.015            # V/s at hover power: some four minutes of flight with f
 LONGEST_STEP = 0.0025   # s, of the integration
 SETTLING = 8.0          # s of hover before the record, in which the integrals find the trim
 RATES = (50.0, 2000.0)  # Hz
-SHORTEST, LONGEST = 2.0, 3600.0     # s
+SHORTEST, LONGEST = 5.0, 3600.0     # s
 
 
 def fly_closed_loop(vehicle, effects, trajectory, *, duration=30.0, rate=100.0, seed=0,
@@ -40,6 +41,9 @@ def fly_closed_loop(vehicle, effects, trajectory, *, duration=30.0, rate=100.0, 
     """
     duration = schema.number('duration (s)', duration, SHORTEST, LONGEST)
     rate = schema.number('rate (Hz)', rate, *RATES)
+    if duration * rate > MOST_SAMPLES:
+        raise InputError(f'{duration:g} s at {rate:g} Hz are more than {MOST_SAMPLES} samples; '
+                         'shorten the flight or lower the rate')
     seed = schema.integer('seed', seed, 0)
     theta = vector(effects, vehicle)
     course = plan(trajectory, vehicle, duration, seed)

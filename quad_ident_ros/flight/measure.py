@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
+from scipy.signal import lfilter
 
 from quad_ident_ros.model.sensors import product, turn
 
@@ -39,8 +40,11 @@ class Stream:
 
     def times(self, t):
         """Return the times (N,) of what is recorded at t (N,) s; before the flight its start."""
-        t = t - self.delay - self.drift * (t - t[0])
-        return np.maximum(t, 0.0)
+        return np.maximum(t - self.delay - self.drift * (t - t[0]), t[0])
+
+    def latest(self, t):
+        """Return the times (N,) of the sensor's latest samples before those."""
+        return np.floor(self.times(t) * self.rate + 1e-9) / self.rate
 
 
 @dataclass(frozen=True)
@@ -88,9 +92,7 @@ def gauss_markov(rng, count, width, step, time):
     keep = np.exp(-step / time)
     noise = rng.standard_normal((count, width))
     noise[1:] *= np.sqrt(1 - keep ** 2)
-    for k in range(1, count):
-        noise[k] += keep * noise[k - 1]
-    return noise
+    return lfilter([1.0], [1.0, -keep], noise, axis=0)
 
 
 def errors_of(sensors, count, step, seed):
@@ -107,20 +109,17 @@ def errors_of(sensors, count, step, seed):
 
 def measured(sensors, t, states, forces, errors, seed):
     """
-    Return the states (N, 13) and forces (N, 3) that are recorded at t (N,) s, and which rows are.
+    Return the states (N, 13) and forces (N, 3) recorded at t (N,) s, and which rows are there.
 
     Args: states (N, 13) recorded without noise and delay; forces (N, 3) m/s^2; errors: see
     errors_of.
     """
     rng = np.random.default_rng([seed, 3])
-    out, forces = np.array(states), np.array(forces)
-    if sensors.mocap != Stream():
-        _stream(sensors.mocap, t, states, out)
-    if sensors.imu != Stream():
-        at = _sampled(sensors.imu, t)
-        for source, target in ((states[:, 10:], out[:, 10:]), (forces.copy(), forces)):
-            for axis in range(3):
-                target[:, axis] = np.interp(at, t, source[:, axis])
+    states, forces = np.asarray(states), np.asarray(forces)
+    out = np.concatenate([_shown(sensors.mocap, t, _pose(t, states)),
+                          _shown(sensors.imu, t, _linear(t, states[:, 10:]))], axis=1)
+    forces = _shown(sensors.imu, t, _linear(t, forces))
+    out[:, 6:10] /= np.linalg.norm(out[:, 6:10], axis=1, keepdims=True)
     fresh = _fresh(sensors.mocap, t)
     out[:, :6] += errors[fresh, :6]
     out[:, 6:10] = product(out[:, 6:10], turn(errors[fresh, 6:9] + _glitches(sensors, t, rng)))
@@ -134,41 +133,39 @@ def measured(sensors, t, states, forces, errors, seed):
     return out, forces, rows
 
 
-def _sampled(stream, t):
-    """Return the times of the sensor's samples that stand in the record at t (N,)."""
+def _shown(stream, t, sample):
+    """Return what stands in the record at t (N,) of a sensor that gives sample(times)."""
     at = stream.times(t)
-    if stream.rate is not None and stream.held:
-        at = np.floor(at * stream.rate + 1e-9) / stream.rate
-    return at
+    if stream.rate is None:
+        return sample(at)
+    before = stream.latest(t)
+    if stream.held:
+        return sample(before)
+    share = ((at - before) * stream.rate)[:, None]
+    return (1 - share) * sample(before) + share * sample(before + 1 / stream.rate)
 
 
 def _fresh(stream, t):
     """Return the row (N,) whose error each row has: that of the sensor's sample it shows."""
-    rows = np.arange(len(t))
     if stream.rate is None or not stream.held:
-        return rows
-    _, first, which = np.unique(_sampled(stream, t), return_index=True, return_inverse=True)
-    return rows[first][which]
+        return np.arange(len(t))
+    _, first, which = np.unique(stream.latest(t), return_index=True, return_inverse=True)
+    return first[which]
 
 
-def _stream(stream, t, states, out):
-    """Write position, velocity and attitude as the stream shows them."""
+def _pose(t, states):
+    """Return position, velocity and quaternion as a function of time, between samples too."""
     spin = product(states[:, 6:10], np.pad(states[:, 10:], ((0, 0), (1, 0)))) / 2
-    splines = [(slice(0, 3), CubicHermiteSpline(t, states[:, :3], states[:, 3:6])),
-               (slice(6, 10), CubicHermiteSpline(t, states[:, 6:10], spin))]
-    at = _sampled(stream, t)
-    times, share = at, None
-    if stream.rate is not None and not stream.held:
-        times = np.floor(at * stream.rate + 1e-9) / stream.rate
-        share = ((at - times) * stream.rate)[:, None]
-    for part, spline in splines:
-        out[:, part] = spline(times)
-        if share is not None:
-            out[:, part] += share * (spline(np.minimum(times + 1 / stream.rate, t[-1]))
-                                     - spline(times))
-    for axis in range(3, 6):
-        out[:, axis] = np.interp(at, t, states[:, axis])
-    out[:, 6:10] /= np.linalg.norm(out[:, 6:10], axis=1, keepdims=True)
+    place = CubicHermiteSpline(t, states[:, :3], states[:, 3:6])
+    attitude = CubicHermiteSpline(t, states[:, 6:10], spin)
+    velocity = _linear(t, states[:, 3:6])
+    return lambda at: np.concatenate([place(np.minimum(at, t[-1])), velocity(at),
+                                      attitude(np.minimum(at, t[-1]))], axis=1)
+
+
+def _linear(t, values):
+    """Return columns as a function of time, straight between samples."""
+    return lambda at: np.stack([np.interp(at, t, column) for column in values.T], axis=1)
 
 
 def _glitches(sensors, t, rng):

@@ -2,18 +2,31 @@
 # SPDX-License-Identifier: Apache-2.0
 """Parameters of the vehicle and its effects that predict flights best: Gauss-Newton."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.special import chdtri
 
-from quad_ident_ros.greybox.linear import errors_along, linearise, new_starts
-from quad_ident_ros.greybox.noise import quick_noise, whole_noise
+from quad_ident_ros.greybox.linear import (
+    errors_along,
+    linear_of,
+    linearise,
+    new_starts,
+    STEP,
+    tangent_of,
+)
+from quad_ident_ros.greybox.noise import MAD, quick_noise, whole_noise
 from quad_ident_ros.greybox.parameters import limits
 
-ITERATIONS = 12
-DONE = 1e-3         # standard errors that a last step may be long
+ITERATIONS = 20
+DONE = 0.01         # length of a last step, in standard errors
+ROUGH = 10.0        # the same where only a few rollouts are looked at
+FEW = 10            # rollouts that bring a start near
+NEAR = 0.5          # usual sizes; after shorter steps the slopes are kept
+SHARES = tuple(0.5 ** k for k in range(7))  # of a step, tried until the cost does not rise
 WEAK = 1e-7         # of the largest information: a direction that says nothing
 OUTLIER = 4.0       # noise deviations beyond which a sample counts less
+CHANCE = 0.01       # of white noise to be taken for noise that hangs together
 BLOCK = 2.0         # s over which what is left may hang together
 
 
@@ -68,9 +81,10 @@ def normal_of(linears, flights, clock=True):
             size = np.sum(own * own)
             if size > 0:
                 error = error - own * (np.sum(own * error) / size)
-                slope = slope - own[..., None] * (np.einsum('bm,bmc->c', own, slope) / size)
-        information = information + np.einsum('bmc,bmd->cd', slope, slope, optimize=True)
-        each = np.einsum('bmc,bm->bc', slope, error)
+                slope = slope - own[..., None] * (np.tensordot(own, slope, 2) / size)
+        across = slope.transpose(0, 2, 1)
+        information = information + (across @ slope).sum(axis=0)
+        each = (across @ error[..., None])[..., 0]
         gradient = gradient + each.sum(axis=0)
         cost += float(np.sum(error * error))
         scores.append(_blocks(each, flight))
@@ -87,8 +101,10 @@ def _blocks(each, flight):
 
 
 def weights_of(raw, noise):
-    """Return the weight of each sample, 1 but for outliers (Huber)."""
-    return np.sqrt(np.minimum(1.0, OUTLIER / np.maximum(np.abs(raw) / noise, 1e-12)))
+    """Return the weight of each sample, 1 but for those far beyond noise and bulk (Huber)."""
+    bulk = MAD * np.median(np.abs(raw.reshape(-1, raw.shape[-1])), axis=0)
+    far = OUTLIER * np.maximum(noise, bulk)
+    return np.sqrt(np.minimum(1.0, far / np.maximum(np.abs(raw), 1e-300)))
 
 
 def estimate(flights, vehicle, z, columns, *, noise=None, starts=None, iterations=ITERATIONS,
@@ -98,39 +114,92 @@ def estimate(flights, vehicle, z, columns, *, noise=None, starts=None, iteration
 
     Output error over short rollouts with free initial states, weighed by the noise, which is
     estimated along unless it is given; outliers count less; with `clock` each flight's pose may
-    be off in time against the rest.
+    be off in time against the rest. Without `starts` (B, 13) per flight, the initial states, a
+    few of the rollouts first bring z near.
     """
     columns = list(columns)
-    lower, upper, size = limits(vehicle)
+    if starts is None:
+        few = [_fewer(flight, max(1, FEW // len(flights))) for flight in flights]
+        if 2 * sum(len(flight.first) for flight in few) <= sum(len(f.first) for f in flights):
+            z = _descend(few, vehicle, z, columns, noise, settled(few, vehicle, z, noise),
+                         iterations, clock, ROUGH).z
+        starts = settled(flights, vehicle, z, noise)
+    return _descend(flights, vehicle, z, columns, noise, starts, iterations, clock, DONE)
+
+
+def _fewer(flight, count):
+    """Return a flight with `count` of its rollouts or a few more, spread over all of it."""
+    skip = max(1, len(flight.first) // count)
+    return replace(flight, first=flight.first[skip // 2::skip])
+
+
+def _descend(flights, vehicle, z, columns, noise, starts, iterations, clock, done):
+    """Return the Estimate from z by steps of Gauss and Newton that do not raise the cost."""
+    lower, upper, size = (limit[columns] for limit in limits(vehicle))
     known, z = noise, np.array(z, float)
-    starts = starts or settled(flights, vehicle, z, noise)
     raws = [errors_along(flight, vehicle, z, start)
             for flight, start in zip(flights, starts, strict=True)]
     noise = known or [quick_noise(raw) for raw in raws]
-    free = np.ones(len(columns), bool)
-    converged = False
+    tangents, converged = None, False
     for _ in range(iterations):
-        weights = [weights_of(raw, sigma) for raw, sigma in zip(raws, noise, strict=True)]
-        linears = [linearise(flight, vehicle, z, start, columns, sigma, clock, weight)
-                   for flight, start, sigma, weight in
-                   zip(flights, starts, noise, weights, strict=True)]
+        fresh = tangents is None
+        if fresh:
+            tangents = [tangent_of(flight, vehicle, z, start, columns, STEP * size)
+                        for flight, start in zip(flights, starts, strict=True)]
+        scales = [weights_of(raw, sigma) / sigma for raw, sigma in zip(raws, noise, strict=True)]
+        linears = [linear_of(tangent, raw, scale, clock)
+                   for tangent, raw, scale in zip(tangents, raws, scales, strict=True)]
         normal = normal_of(linears, flights, clock)
-        step, free = bounded_step(normal, z[columns], lower[columns], upper[columns],
-                                  size[columns])
-        z[columns] += step
-        starts = [new_starts(linear, start, np.append(step, own) if clock else step)
-                  for linear, start, own in zip(linears, starts, _own(linears, step, clock),
-                                                strict=True)]
-        raws = [errors_along(flight, vehicle, z, start)
-                for flight, start in zip(flights, starts, strict=True)]
+        step, free = bounded_step(normal, z[columns], lower, upper, size)
+        before = _cost(_aligned(raws, tangents, scales, clock), scales)
+        for share in SHARES:
+            there = z.copy()
+            there[columns] += share * step
+            own = _own(linears, share * step, clock)
+            moved = [new_starts(linear, start, np.append(share * step, shift) if clock
+                                else share * step)
+                     for linear, start, shift in zip(linears, starts, own, strict=True)]
+            left = [errors_along(flight, vehicle, there, start)
+                    for flight, start in zip(flights, moved, strict=True)]
+            aligned = _aligned(left, tangents, scales, clock)
+            if _cost(aligned, scales) <= before * (1.0 + 1e-9):
+                break
+        else:
+            if fresh:
+                break
+            tangents = None
+            continue
+        z, starts, raws = there, moved, left
         if known is None:
-            noise = [whole_noise(raw, 1.0 - 1.0 / raw.shape[1]) for raw in raws]
-        covariance = covariance_of(normal, size[columns])
-        errors = np.sqrt(np.maximum(np.diag(covariance), 1e-300))
-        if np.all(np.abs(step) <= DONE * np.maximum(errors, 1e-6 * size[columns])):
+            noise = [whole_noise(part, linear.freedom)
+                     for part, linear in zip(aligned, linears, strict=True)]
+        # In units of the noise, so that directions that are not determined do not count.
+        length = np.sqrt(max(step @ normal.information @ step, 0.0) / max(len(step), 1))
+        if share == 1.0 and length <= done:
             converged = True
             break
-    return Estimate(z, columns, covariance, noise, starts, normal, raws, free, converged)
+        # Close by, the slopes are what they were.
+        if share < 1.0 or np.any(np.abs(step) > NEAR * size):
+            tangents = None
+    return Estimate(z, columns, covariance_of(normal, size), noise, starts, normal, raws, free,
+                    converged)
+
+
+def _aligned(raws, tangents, scales, clock):
+    """Return errors without what an offset of each flight's clock explains."""
+    if not clock:
+        return raws
+    out = []
+    for raw, tangent, scale in zip(raws, tangents, scales, strict=True):
+        drift = tangent.drift * scale
+        share = np.sum(drift * raw * scale) / max(np.sum(drift * drift), 1e-300)
+        out.append(raw - share * tangent.drift)
+    return out
+
+
+def _cost(raws, scales):
+    return sum(float(np.sum((raw * scale) ** 2))
+               for raw, scale in zip(raws, scales, strict=True))
 
 
 def settled(flights, vehicle, z, noise=None):
@@ -189,13 +258,18 @@ def covariance_of(normal, size):
 
 
 def scatter_of(normal):
-    """Return, per column (C,), the variance of the blocks' scores over that of white noise."""
+    """
+    Return, per column (C,), the variance of the blocks' scores over that of white noise.
+
+    1 where it is not larger than white noise makes it by chance.
+    """
     count = len(normal.scores)
     expected = np.maximum(np.diag(normal.information), 1e-300)
     if count < 4:
         return np.ones(len(expected))
     centred = normal.scores - normal.scores.mean(axis=0)
-    return np.maximum(1.0, np.sum(centred ** 2, axis=0) * count / (count - 1) / expected)
+    found = np.sum(centred ** 2, axis=0) * count / (count - 1) / expected
+    return np.where(found > chdtri(count - 1, CHANCE) / (count - 1), found, 1.0)
 
 
 def _own(linears, step, clock):

@@ -6,12 +6,30 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from quad_ident_ros.greybox.errors import difference, ERRORS, moved
+from quad_ident_ros.effects import registry
+from quad_ident_ros.greybox.errors import difference, ERRORS, moved, slopes
 from quad_ident_ros.greybox.parameters import limits, SPLIT
 from quad_ident_ros.model.dynamics import predict
 
 STATE_STEP = np.repeat([1e-4, 1e-4, 1e-5, 1e-4], 3)     # of differences in the initial state
-STEP = 1e-3                                             # of a parameter's usual size
+STEP = 1e-4                                             # of a parameter's usual size
+GROUND = registry.SLICES['ground_effect']
+
+
+@dataclass(frozen=True, eq=False)
+class Tangent:
+    """
+    What predictions change by, SI: table (B, 12 + C + 1, M), with M = (count + 1) * 12.
+
+    Per initial state, per column, and per second of an offset of the pose in time.
+    """
+
+    table: np.ndarray
+
+    @property
+    def drift(self):
+        """Return the change per second of an offset of the pose in time, (B, count + 1, 12)."""
+        return self.table[:, -1].reshape(len(self.table), -1, ERRORS)
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,6 +49,12 @@ class Linear:
     triangle: np.ndarray
     whole_error: np.ndarray
     whole_slope: np.ndarray
+
+    @property
+    def freedom(self):
+        """Return the share of each channel (12,) that the initial states leave."""
+        spent = np.sum(self.basis ** 2, axis=-1).reshape(-1, ERRORS)
+        return 1.0 - spent.mean(axis=0)
 
 
 def recorded_along(flight):
@@ -53,44 +77,71 @@ def linearise(flight, vehicle, z, starts, columns, noise, clock=True, weight=Non
     clock: add a column, the last, for an offset of the pose in time (s); weight (B, count + 1, 12)
     of the samples, by default 1.
     """
-    size = limits(vehicle)[2]
+    scale = 1.0 / noise if weight is None else weight / noise
+    steps = STEP * limits(vehicle)[2, columns]
+    return linear_of(tangent_of(flight, vehicle, z, starts, columns, steps),
+                     errors_along(flight, vehicle, z, starts), scale, clock)
+
+
+def tangent_of(flight, vehicle, z, starts, columns, steps):
+    """
+    Return the Tangent of a flight around z, by differences.
+
+    Args: steps (C,) of the columns; the others as of linearise.
+    """
     batch = len(flight.first)
     sets = np.tile(z, (1 + len(columns), 1))
-    steps = STEP * size[columns]
     sets[np.arange(1, len(sets)), columns] += steps
-    which = np.concatenate([np.zeros(batch * (1 + ERRORS), int),
+    # A start elsewhere moves the whole rollout, exactly, unless the ground is felt.
+    shifts = 3 if (z[SPLIT:][GROUND] == registry.NULL[GROUND]).all() else 2
+    turned = ERRORS - shifts
+    which = np.concatenate([np.zeros(batch * (1 + turned), int),
                             np.repeat(np.arange(1, len(sets)), batch)])
-    moves = np.diag(STATE_STEP)
+    moves = np.diag(STATE_STEP)[shifts:]
     all_starts = np.concatenate([starts, *(moved(starts, move) for move in moves),
                                  np.tile(starts, (len(columns), 1))])
-    first = np.tile(flight.first, 1 + ERRORS + len(columns))
+    first = np.tile(flight.first, 1 + turned + len(columns))
     out = predict(vehicle, sets[:, SPLIT:], flight.course, all_starts, first, flight.count, which,
                   constants=sets[:, :SPLIT])
-    out = out.reshape(1 + ERRORS + len(columns), batch, flight.count + 1, -1)
+    out = out.reshape(1 + turned + len(columns), batch, flight.count + 1, -1)
     base = out[0]
-    raw = difference(recorded_along(flight), base)
-    scale = 1.0 / noise if weight is None else weight / noise
-    changes = difference(out[1:], base) / np.concatenate([STATE_STEP, steps])[:, None, None, None]
-    changes = changes * scale
-    if clock:
-        drift = np.zeros_like(base[..., :ERRORS])
-        ahead, behind = base[:, 2:], base[:, :-2]
-        t = flight.course.t[flight.first[:, None] + np.arange(flight.count + 1)]
-        drift[:, 1:-1] = difference(ahead, behind) / (t[:, 2:] - t[:, :-2])[..., None]
-        drift[:, 0], drift[:, -1] = drift[:, 1], drift[:, -2]
-        drift[..., 9:] = 0.0
-        changes = np.concatenate([changes, (drift * scale)[None]])
-    table = changes.reshape(len(changes), batch, -1).transpose(1, 2, 0)
-    error = (raw * scale).reshape(batch, -1)
-    basis, triangle = np.linalg.qr(table[..., :ERRORS])
-    slope = table[..., ERRORS:]
-    free = error - np.einsum('bmk,bk->bm', basis, np.einsum('bmk,bm->bk', basis, error))
-    rest = slope - basis @ (basis.transpose(0, 2, 1) @ slope)
-    return Linear(free, rest, raw, basis, triangle, error, slope)
+    table = np.zeros((batch, ERRORS + len(columns) + 1, (flight.count + 1) * ERRORS))
+    for axis in range(shifts):
+        table[:, axis, axis::ERRORS] = 1.0
+    slopes(out[1:], base, 1.0 / np.concatenate([STATE_STEP[shifts:], steps]),
+           table[:, shifts:-1])
+    drift = table[:, -1].reshape(batch, flight.count + 1, ERRORS)
+    t = flight.course.t[flight.first[:, None] + np.arange(flight.count + 1)]
+    drift[:, 1:-1] = difference(base[:, 2:], base[:, :-2]) / (t[:, 2:] - t[:, :-2])[..., None]
+    drift[:, 0], drift[:, -1] = drift[:, 1], drift[:, -2]
+    drift[..., 9:] = 0.0
+    return Tangent(table)
+
+
+def linear_of(tangent, raw, scale, clock=True):
+    """
+    Return the Linear of a flight from its Tangent.
+
+    Args: raw (B, count + 1, 12) recorded minus predicted; scale, of its shape or (12,), the
+    weight of each sample over its noise; clock as of linearise.
+    """
+    batch = len(raw)
+    scale = np.broadcast_to(scale, raw.shape).reshape(batch, -1)
+    table = tangent.table[:, :None if clock else -1] * scale[:, None]
+    error = raw.reshape(batch, -1) * scale
+    starts, slope = table[:, :ERRORS], table[:, ERRORS:]
+    # The first sample shows every initial state by itself, so that this has full rank.
+    lower = np.linalg.cholesky(starts @ starts.transpose(0, 2, 1))
+    basis = np.linalg.inv(lower) @ starts
+    across = basis.transpose(0, 2, 1)
+    free = error - (across @ (basis @ error[..., None]))[..., 0]
+    rest = slope - (slope @ across) @ basis
+    return Linear(free, rest.transpose(0, 2, 1), raw, across, lower.transpose(0, 2, 1), error,
+                  slope.transpose(0, 2, 1))
 
 
 def new_starts(linear, starts, step):
     """Return the initial states (B, 13) that fit best after a step (C,) of the parameters."""
     left = linear.whole_error - linear.whole_slope @ step
-    side = np.einsum('bmk,bm->bk', linear.basis, left)
-    return moved(starts, np.linalg.solve(linear.triangle, side[..., None])[..., 0])
+    side = (linear.basis.transpose(0, 2, 1) @ left[..., None])
+    return moved(starts, np.linalg.solve(linear.triangle, side)[..., 0])

@@ -24,7 +24,7 @@ def whole_noise(raw, freedom):
     """
     Return the standard deviation of all that is left, outliers apart, (12,).
 
-    Args: freedom: share of the samples that is not spent on initial states.
+    Args: raw (B, count + 1, 12); freedom (12,) share that is not spent on initial states.
     """
     left = raw.reshape(-1, raw.shape[-1])
     spread = MAD * np.median(np.abs(left), axis=0)

@@ -10,7 +10,7 @@ from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.actuators import actuated
 from quad_ident_ros.model.rigid_body import INPUT, rotor_table, STATE, vehicle_vector
 from quad_ident_ros.model.rollout import roll_out, roll_out_one
-from quad_ident_ros.model.sensors import recorded, underlying
+from quad_ident_ros.model.sensors import acts, recorded, underlying
 
 STATES = ('px', 'py', 'pz', 'vx', 'vy', 'vz', 'qw', 'qx', 'qy', 'qz', 'wx', 'wy', 'wz')
 LONGEST_STEP = 0.01     # s, of the integration: errors of about 1e-6 of what happens in it
@@ -82,9 +82,9 @@ def predict(vehicle, thetas, course, starts, first, count, which=None, constants
 
 
 def _by_set(function, thetas, which, states):
-    """Apply a function of a parameter set and states to the rollouts of each set."""
+    """Apply a function of a parameter set and states, in place, to the rollouts of each set."""
     for k, theta in enumerate(thetas):
-        mine = which == k
-        if mine.any():
+        if acts(theta):
+            mine = which == k
             states[mine] = function(theta, states[mine])
     return states

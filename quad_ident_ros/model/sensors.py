@@ -33,6 +33,11 @@ def turn(vector):
     return np.concatenate([np.cos(angle / 2), half * vector], axis=-1)
 
 
+def acts(theta):
+    """Return whether what is recorded differs from the state of the centre of mass."""
+    return theta[COM].any() or theta[TILT].any() or theta[BIAS].any()
+
+
 def recorded(theta, states):
     """Return what is recorded of states of the centre of mass, (..., 13)."""
     states = np.array(states)

@@ -1,0 +1,82 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""`quad_ident diagnose`: where the sim-to-real gap lies, what causes it, how far it shrinks."""
+
+import argparse
+from dataclasses import replace
+import sys
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn
+
+from quad_ident_ros.cli.options import flights_from
+from quad_ident_ros.data.quality import findings
+from quad_ident_ros.diagnose.diagnosis import diagnose
+from quad_ident_ros.effects.registry import EFFECTS
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.model.vehicle import load_vehicle, write_vehicle
+from quad_ident_ros.report.data import write_json
+from quad_ident_ros.report.diagnosis import show
+
+
+def add(commands):
+    """Add the command to the parser."""
+    parser = commands.add_parser(
+        'diagnose', help='say where the sim-to-real gap lies, what causes it, how far it shrinks',
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        description='Hold flights of a real vehicle against its nominal description. The last '
+                    'flight named is held\nout: it takes no part in the fit or the choice, and '
+                    'the gap is told on it.',
+        epilog='effects: ' + ', '.join(EFFECTS) + '\n\n'
+               '  quad_ident diagnose monday_*.csv.gz --vehicle quad.yaml\n'
+               '  quad_ident diagnose a.csv b.csv --hold-out c.csv --vehicle quad.yaml \\\n'
+               '      --json diagnosis.json --out-vehicle like_real.yaml\n\n'
+               'docs/diagnosis.md explains every line of the answer.')
+    parser.add_argument('flights', nargs='+', metavar='FLIGHT',
+                        help='.csv, .csv.gz, bag (folder, .mcap, .db3) or .ulg')
+    parser.add_argument('--vehicle', required=True, help='vehicle name or file: the nominal one')
+    parser.add_argument('--hold-out', metavar='FLIGHT',
+                        help='the flight on which the gap is told (default: the last one named)')
+    parser.add_argument('--mapping', metavar='FILE', help='which topics and outputs of other '
+                        "people's records mean what (YAML)")
+    parser.add_argument('--effects', metavar='A,B', help='only these may be found (default: all)')
+    parser.add_argument('--json', metavar='FILE', help='write it as data; - prints it')
+    parser.add_argument('--out-vehicle', metavar='FILE',
+                        help='write the vehicle file with the effects found, for the simulator')
+    parser.set_defaults(run=run)
+
+
+def run(options):
+    """Read the flights, diagnose, and show what was found."""
+    vehicle = load_vehicle(options.vehicle)
+    if vehicle.effects:
+        raise InputError(f'--vehicle {options.vehicle}: it has effects; give the nominal vehicle, '
+                         'without the section effects')
+    effects = options.effects.split(',') if options.effects else None
+    records = [record for path in options.flights
+               for record in flights_from(path, options.mapping, options.vehicle)]
+    held = None
+    if options.hold_out:
+        held = flights_from(options.hold_out, options.mapping, options.vehicle)[-1]
+    for record in [*records, *([held] if held else [])]:
+        refuse_unfit(record, vehicle)
+    with Progress(TextColumn('{task.description}'), BarColumn(),
+                  console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task('comparing sets of effects', total=1.0)
+        found = diagnose(records, vehicle, hold_out=held, effects=effects,
+                         on_progress=lambda share: bar.update(task, completed=share))
+    if options.json != '-':
+        show(found.data, sys.stdout)
+    if options.json:
+        write_json(options.json, found.data)
+    if options.out_vehicle:
+        write_vehicle(options.out_vehicle, replace(
+            vehicle, name=f'{vehicle.name}_diagnosed', effects=found.effects()))
+
+
+def refuse_unfit(record, vehicle):
+    """Raise InputError where a record has a fault that no verdict survives."""
+    for finding in findings(record, vehicle):
+        if finding.severity == 'error':
+            name = record.info.get('source') or record.info.get('name', 'flight')
+            raise InputError(f'{name}: {finding.where}: {finding.message}; {finding.remedy}')

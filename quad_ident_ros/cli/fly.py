@@ -1,0 +1,108 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""`quad_ident fly`: make a closed-loop flight whose truth is known."""
+
+import argparse
+from pathlib import Path
+
+import numpy as np
+
+from quad_ident_ros import resources, schema
+from quad_ident_ros.cli.identify import progress_bar
+from quad_ident_ros.data.csv import write_csv
+from quad_ident_ros.effects.registry import EFFECTS
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.flight.fly import fly_closed_loop
+from quad_ident_ros.flight.measure import SENSORS
+from quad_ident_ros.flight.trajectories import TRAJECTORIES
+from quad_ident_ros.model.vehicle import load_vehicle
+from quad_ident_ros.report.data import write_json
+
+
+def _effects_text():
+    """Return a line for each effect: its name and its parameters with their units."""
+    return ''.join(f'  {effect.name:22}' + ', '.join(
+        f'{parameter.name} ({parameter.unit})' if parameter.unit != '1' else parameter.name
+        for parameter in effect.parameters) + '\n' for effect in EFFECTS.values())
+
+
+def add(commands):
+    """Add the command to the parser."""
+    parser = commands.add_parser(
+        'fly', help='fly a trajectory under control, with effects that you choose',
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        description='Fly a trajectory in simulation under a geometric controller and write the '
+                    'flight record.\nThe controller knows the vehicle of the file; what flies '
+                    'has the effects besides, and only\nthese: so a diagnosis can be held '
+                    'against the truth.',
+        epilog='trajectories, their size and speed by the vehicle, the rest by the seed:\n  '
+        + ', '.join(TRAJECTORIES)
+        + '\n\neffects and their parameters:\n'
+        + _effects_text()
+        + '\nvehicles that ship:\n  ' + ', '.join(resources.names('vehicles'))
+        + '\n\nexamples:\n'
+          '  quad_ident fly figure8 --vehicle paper_quadrotor -o nominal.csv\n'
+          '  quad_ident fly lissajous --vehicle paper_quadrotor --noise mocap_imu --seed 3 \\\n'
+          '      --effect rotor_drag:coefficient=0.1 --effect wind:x=2 -o drag.csv.gz\n\n'
+          'The very first flight takes up to a minute, in which the model is compiled.')
+    parser.add_argument('trajectory', help='name of a trajectory, see below')
+    parser.add_argument('--vehicle', required=True, metavar='V',
+                        help='name of a shipped vehicle, or path of a .yaml')
+    parser.add_argument('--effect', action='append', default=[],
+                        metavar='NAME:PARAMETER=VALUE',
+                        help='what the flown vehicle has besides, in SI units; may be repeated; '
+                             'goes over the effects of the vehicle file')
+    parser.add_argument('--seed', type=int, default=0,
+                        help='seed of the trajectory and of the noise (default 0)')
+    parser.add_argument('--duration', type=float, default=30.0, metavar='S',
+                        help='length of the flight, s (default 30)')
+    parser.add_argument('--rate', type=float, default=100.0, metavar='HZ',
+                        help='samples and commands per second (default 100)')
+    parser.add_argument('--noise', default='clean', metavar='SENSORS',
+                        help='clean: none (default); mocap_imu: usual white and coloured noise; '
+                             'faulty: besides, the motion capture is late and slow, velocity is '
+                             'differentiated, packets are lost, attitude jumps')
+    parser.add_argument('-o', '--output', required=True, metavar='FILE',
+                        help='the flight record, .csv or .csv.gz')
+    parser.add_argument('--json', metavar='FILE', help='write the truth as data; - prints it')
+    parser.set_defaults(run=run)
+
+
+def run(options):
+    """Fly, write the record and say what was flown."""
+    schema.check_keys('--noise', {options.noise: None}, SENSORS)
+    vehicle = load_vehicle(options.vehicle)
+    effects = effects_from(options.effect, vehicle.effects)
+    path = Path(options.output)
+    if not path.name.endswith(('.csv', '.csv.gz')):
+        raise InputError(f'--output {options.output}: expected the name of a .csv or .csv.gz file')
+    with progress_bar() as bar:
+        bar.add_task('flying', total=None)
+        record = fly_closed_loop(vehicle, effects, options.trajectory, duration=options.duration,
+                                 rate=options.rate, seed=options.seed,
+                                 noise=SENSORS[options.noise])
+    path.parent.mkdir(parents=True, exist_ok=True)
+    write_csv(path, record)
+    if options.json != '-':
+        speed = np.linalg.norm(record.stack('vx', 'vy', 'vz'), axis=1)
+        print(f'{path}: {len(record)} samples, {record.t[-1]:g} s, up to {speed.max():.3g} m/s, '
+              f'{record.columns["pz"].min():.3g} to {record.columns["pz"].max():.3g} m high')
+        print('  effects: ' + ('; '.join(
+            name + ' ' + ', '.join(f'{key} = {value:g}' for key, value in values.items())
+            for name, values in effects.items()) or 'none'))
+    if options.json:
+        write_json(options.json, {**record.info, 'noise': options.noise, 'file': str(path),
+                                  'samples': len(record)})
+
+
+def effects_from(entries, start):
+    """Return {effect: {parameter: value}} of entries NAME:PARAMETER=VALUE over those of start."""
+    effects = {name: dict(values) for name, values in start.items()}
+    for entry in entries:
+        name, colon, rest = entry.partition(':')
+        parameter, sign, value = rest.partition('=')
+        if not (colon and sign):
+            raise InputError(f'--effect {entry}: expected NAME:PARAMETER=VALUE, for example '
+                             'rotor_drag:coefficient=0.1')
+        effects.setdefault(name, {})[parameter] = schema.number(f'--effect {entry}', value)
+    return effects

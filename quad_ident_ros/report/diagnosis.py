@@ -1,0 +1,89 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""A diagnosis as a table that a person reads in ten seconds."""
+
+from rich import box
+from rich.console import Console
+from rich.table import Table
+
+WIDTH = 100
+WORTH = 0.02        # probability or share from which on a row is shown
+
+
+def show(data, stream):
+    """Print a diagnosis (the project's JSON as data) to a stream: the verdict first."""
+    screen = Console(file=stream, width=WIDTH)
+
+    def say(text, style=None):
+        screen.print(text, style=style, markup=False, highlight=False, soft_wrap=True)
+
+    say(f'verdict: {verdict_line(data)}', 'bold')
+    gap = data['gap']
+    say('')
+    say(f'how far, on {data["held_out"]} (held out), {gap["horizon"]:g} s ahead: '
+        f'{100 * gap["closed"]:.0f} % of the velocity gap above the noise is closed')
+    screen.print(_far(gap))
+    say('which')
+    screen.print(_which(data['ranking']))
+    say('where: what the nominal vehicle lacks')
+    screen.print(_where(data['where']))
+    for row in data['unknown'] or ():
+        say(f'unexplained: {row["channel"]} depends on {row["depends_on"]} '
+            f'({100 * row["share"]:.0f} % of what is left there)')
+
+
+def verdict_line(data):
+    """Return the verdict in words."""
+    verdict = data['verdict']
+    if verdict == ['none']:
+        return 'none: nothing but measurement noise is left'
+    if verdict == ['undetermined']:
+        return f'undetermined: the flights cannot tell between {", ".join(data["undetermined"])}'
+    return ', '.join(verdict)
+
+
+def _far(gap):
+    table = _table('', 'before', 'after', 'noise alone', 'unit')
+    for name, unit in gap['units'].items():
+        table.add_row(name, *(_interval(gap, key, name) for key in ('before', 'after')),
+                      f'{gap["noise"][name]:.3g}', unit)
+    for name, values in gap['without'].items():
+        table.add_row(f'velocity, all but {name}', '', f'{values["velocity"]:.3g}', '', 'm/s')
+    return table
+
+
+def _interval(gap, key, name):
+    low, high = gap[f'{key}_interval'][name]
+    return f'{gap[key][name]:.3g} ({low:.3g} to {high:.3g})'
+
+
+def _which(ranking):
+    table = _table('effect', 'probability', 'parameters', 'velocity gap with it alone, m/s')
+    for row in ranking:
+        if row['probability'] >= WORTH:
+            values = ', '.join(f'{name} {one["value"]:.4g} ± {one["std"]:.2g} {one["unit"]}'
+                               for name, one in row['parameters'].items())
+            alone = row['gap_after']
+            table.add_row(row['effect'], f'{row["probability"]:.2f}', values,
+                          f'{alone["velocity"]:.3g}' if alone else '')
+    if not table.row_count:
+        table.add_row('none', '', '', '')
+    return table
+
+
+def _where(rows):
+    table = _table('channel', 'share', 'rms', 'of it noise', 'where most of it is', 'Hz')
+    for row in rows:
+        if row['share'] >= WORTH:
+            low, high = row['band']
+            table.add_row(row['channel'], f'{100 * row["share"]:.0f} %',
+                          f'{row["rms"]:.3g} {row["unit"]}', f'{row["noise_rms"]:.3g}',
+                          row['regime'], f'{low:.2g} to {high:.2g}')
+    return table
+
+
+def _table(*names):
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1), header_style='bold')
+    for name in names:
+        table.add_column(name, overflow='fold')
+    return table
