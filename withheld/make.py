@@ -10,7 +10,7 @@ import numpy as np
 from withheld.faults import csv_text, draw_faults, Faults, record_of
 from withheld.fly import Lost
 from withheld.nominal import GROUPS
-from withheld.paths import Hover, Sines
+from withheld.paths import Hover, Sines, Waypoints
 from withheld.realities import gaps_of, LARGEST, shape_of, size_of, World
 from withheld.sensors import Noise
 from withheld.vehicles import nominal_file, vehicle_of, yaw_authority
@@ -54,14 +54,14 @@ def _attempt(case, part, flights, seconds, folder, rng):
                                 strength, 30.0, trial, noise, seed)
         stranger, strengths[kind] = (kind, size), reached
     world = World(params, shapes, sizes, stranger, draws, fall=rng.uniform(0.005, 0.05))
-    folder.mkdir()
     voltage = rng.uniform(3.7, 16.8)
-    wrong = [draw_faults(rng) if case.faulty else Faults() for _ in paths]
-    for number, (path, fault) in enumerate(zip(paths, wrong, strict=True), 1):
-        flown = world.fly(path, seconds, STEP, noise, rng, voltage)
-        (folder / f'flight_{number}.csv').write_text(csv_text(record_of(flown, fault, rng)))
+    flown = [world.fly(path, seconds, STEP, noise, rng, voltage) for path in paths]
+    folder.mkdir()
+    for number, one in enumerate(flown, 1):
+        wrong = draw_faults(rng) if case.faulty else Faults()
+        (folder / f'flight_{number}.csv').write_text(csv_text(record_of(one, wrong, rng)))
     (folder / 'vehicle.yaml').write_text(nominal_file(params, folder.name))
-    exact, alone, before = gaps_of(flown, params)
+    exact, alone, before = gaps_of(flown[-1], params)
     return {
         'kind': case.kind, 'faulty': case.faulty, 'vehicle': case.vehicle,
         'effects': {name: {'asked': case.effects[name], 'strength': strengths[name],
@@ -79,5 +79,6 @@ def _path(case, params, part, rng):
     if case.kind == 'poor':
         return Hover(rng, low)
     span = float(np.sqrt(params['rotor_radius'] / 0.1))
-    return Sines(rng, size=2.0 * span ** 0.5, acceleration=rng.uniform(1.8, 3.2), low=low,
-                 turn=min(3.0, 0.25 * yaw_authority(params)))
+    family = Sines if part == 'development' else Waypoints
+    return family(rng, size=2.0 * span ** 0.5, acceleration=rng.uniform(1.8, 3.2), low=low,
+                  turn=min(3.0, 0.25 * yaw_authority(params)))

@@ -2,19 +2,21 @@
 # SPDX-License-Identifier: Apache-2.0
 """Where the vehicles are told to fly, in the form of rotorpy's trajectories."""
 
+import cvxopt
 import numpy as np
+from rotorpy.trajectories.minsnap import MinSnap
 
 
 class Sines:
     """
     Sums of sines along each axis, and of the heading.
 
-    Args: rng; size m and speed m/s of the largest parts; height m of the middle, low m the lowest;
-    turn rad/s^2, the largest angular acceleration of the heading.
+    Args: rng; size m from the middle; acceleration m/s^2, rms along x and y; low m, the lowest
+    height; turn rad/s^2, the angular acceleration of the heading.
     """
 
     def __init__(self, rng, size, acceleration, low, turn, band=(0.12, 1.1)):
-        """Draw the sines, then scale them to size and acceleration (m/s^2, rms)."""
+        """Draw the sines, then scale them."""
         count = 5
         self.rates = 2.0 * np.pi * np.exp(rng.uniform(*np.log(band), (4, count)))
         self.phases = rng.uniform(0.0, 2.0 * np.pi, (4, count))
@@ -39,6 +41,38 @@ class Sines:
     def update(self, t):
         """Return rotorpy's flat outputs at t, s."""
         return flat(self.middle, self._sum(t))
+
+
+class Waypoints:
+    """
+    rotorpy's minimum-snap path through places drawn at random, as large and as fast as asked.
+
+    Args as of Sines.
+    """
+
+    POINTS = 42
+
+    def __init__(self, rng, size, acceleration, low, turn):
+        """Draw the places and find the path."""
+        cvxopt.solvers.options['show_progress'] = False
+        places = rng.uniform([-1.0, -1.0, -0.5], [1.0, 1.0, 0.5], (self.POINTS, 3))
+        self.inner = MinSnap(places, yaw_angles=rng.uniform(-1.0, 1.0, self.POINTS), v_avg=1.0)
+        shown = [self.inner.update(t) for t in np.arange(0.0, self.inner.t_keyframes[-1], 0.02)]
+        fast = np.sqrt(np.mean([part['x_ddot'][:2] ** 2 for part in shown]))
+        self.pace = float(np.sqrt(acceleration / (size * fast)))
+        most = max(abs(part['yaw_ddot']) for part in shown) * self.pace ** 2
+        self.scale = np.array([size, size, size, min(1.5, 2.0 * turn / most)])
+        self.middle = np.array([0.0, 0.0, low - size * min(part['x'][2] for part in shown),
+                                rng.uniform(-3.0, 3.0)])
+
+    def update(self, t):
+        """Return rotorpy's flat outputs at t, s."""
+        found = self.inner.update(self.pace * t)
+        parts = [(found['x'], found['yaw']), (found['x_dot'], found['yaw_dot']),
+                 (found['x_ddot'], found['yaw_ddot']), (found['x_dddot'], 0.0),
+                 (found['x_ddddot'], 0.0)]
+        return flat(self.middle, [self.scale * self.pace ** order * np.array([*place, heading])
+                                  for order, (place, heading) in enumerate(parts)])
 
 
 class Hover:
