@@ -12,8 +12,6 @@ EFFECTS = ('motor_lag', 'actuation_delay', 'rotor_drag', 'body_drag', 'wind', 'i
            'gyro_bias')
 STRANGERS = ('periodic_force', 'tether', 'updraft', 'thrust_exponent', 'backlash', 'slosh')
 STRENGTHS = (0.3, 1.0, 3.0)
-# No flight tells these two apart beyond noise: a scale is a sag that does not sag, and the other
-# way round where neither changes during a flight.
 VEHICLES = 3
 # A pair of these in one reality would be one effect with another name.
 TWINS = ({'thrust_scale', 'mass_offset'}, {'com_offset', 'rotor_fault'})
@@ -77,3 +75,17 @@ def full_set(rng):
                for i, kind in enumerate(STRANGERS)]
     cases += faulty
     return [cases[k] for k in rng.permutation(len(cases))]
+
+
+@dataclass(frozen=True)
+class Set:
+    """Cases, whose vehicles and paths they fly, and how many flights of how many seconds."""
+
+    cases: object
+    part: str
+    flights: int
+    seconds: float
+
+
+SETS = {'development': Set(quick_set, 'development', 3, 20.0),
+        'evaluation': Set(full_set, 'evaluation', 4, 20.0)}

@@ -2,16 +2,22 @@
 # SPDX-License-Identifier: Apache-2.0
 """Fly realities and write their records; what they are goes to whoever asked, and nowhere else."""
 
+import argparse
+from concurrent.futures import as_completed, ProcessPoolExecutor
 from dataclasses import replace
+import os
 from pathlib import Path
+import secrets
+import sys
 
 import numpy as np
 
+from withheld.cases import SETS
 from withheld.faults import csv_text, draw_faults, Faults, record_of
 from withheld.fly import Lost
-from withheld.nominal import GROUPS
 from withheld.paths import Hover, Sines, Waypoints
 from withheld.realities import gaps_of, LARGEST, shape_of, size_of, World
+from withheld.seal import seal
 from withheld.sensors import Noise
 from withheld.vehicles import nominal_file, vehicle_of, yaw_authority
 
@@ -63,13 +69,12 @@ def _attempt(case, part, flights, seconds, folder, rng):
     (folder / 'vehicle.yaml').write_text(nominal_file(params, folder.name))
     exact, alone, before = gaps_of(flown[-1], params)
     return {
-        'kind': case.kind, 'faulty': case.faulty, 'vehicle': case.vehicle,
+        'kind': case.kind, 'period': STEP, 'faulty': case.faulty, 'vehicle': case.vehicle,
         'effects': {name: {'asked': case.effects[name], 'strength': strengths[name],
                            'parameters': world.effects[name]} for name in case.effects},
         'stranger': None if stranger is None else {
             'kind': stranger[0], 'asked': case.stranger[1], 'strength': strengths[stranger[0]]},
-        'held_out': {'exact': exact, 'noise': alone, 'before': before},
-        'groups': list(GROUPS)}
+        'held_out': {'exact': exact, 'noise': alone, 'before': before}}
 
 
 def _path(case, params, part, rng):
@@ -82,3 +87,49 @@ def _path(case, params, part, rng):
     family = Sines if part == 'development' else Waypoints
     return family(rng, size=2.0 * span ** 0.5, acceleration=rng.uniform(1.8, 3.2), low=low,
                   turn=min(3.0, 0.25 * yaw_authority(params)))
+
+
+def make_set(name, count, seed, jobs, folder, on_case=lambda done, total: None):
+    """
+    Write the cases of a set into `folder`, each in one with a random name, and return the labels.
+
+    Args: name of SETS; count: only the first so many cases, or None; seed: what is drawn depends
+    on it alone; jobs: processes; on_case is called after each case.
+    """
+    chosen = SETS[name]
+    cases = chosen.cases(np.random.default_rng(seed))[:count]
+    names = [secrets.token_hex(6) for _ in cases]
+    labels = {}
+    with ProcessPoolExecutor(jobs) as pool:
+        waiting = {pool.submit(make_case, case, chosen.part, chosen.flights, chosen.seconds,
+                               Path(folder) / names[k], np.random.default_rng([seed, k])): names[k]
+                   for k, case in enumerate(cases)}
+        for done in as_completed(waiting):
+            labels[waiting[done]] = done.result()
+            on_case(len(labels), len(cases))
+    return labels
+
+
+def main(arguments=None):
+    """Fly a set, seal its labels, and give the key to the pipe that was handed over."""
+    parser = argparse.ArgumentParser()
+    parser.add_argument('--set', required=True, choices=SETS)
+    parser.add_argument('--flights', required=True)
+    parser.add_argument('--sealed', required=True)
+    parser.add_argument('--key', required=True, type=int)
+    parser.add_argument('--count', type=int)
+    parser.add_argument('--seed', type=int)
+    parser.add_argument('--jobs', type=int, default=1)
+    options = parser.parse_args(arguments)
+    seed = secrets.randbits(48) if options.seed is None else options.seed
+    labels = make_set(options.set, options.count, seed, options.jobs, options.flights,
+                      lambda done, total: print(done, total, flush=True))
+    sealed, key = seal({'seed': seed, 'labels': labels})
+    Path(options.sealed).write_bytes(sealed)
+    with os.fdopen(options.key, 'wb') as pipe:
+        pipe.write(key)
+    return 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())

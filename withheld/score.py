@@ -9,6 +9,8 @@ from withheld.cases import EFFECTS
 # battery_sag: the reality's exponent is no parameter of ours.
 COMPARED = tuple(name for name in EFFECTS if name != 'battery_sag')
 BINS = (0.0, 0.05, 0.2, 0.4, 0.6, 0.8, 0.95, 1.0)
+# Between samples there is nothing to tell a delay from a lag by, where both are over at the next.
+PASSED = {'actuation_delay': ('delay', 1.0), 'motor_lag': ('time_constant', 0.5)}   # periods
 ROOM = 0.03         # of the noise: a gap that is less above it has no share that was closed
 
 
@@ -26,12 +28,23 @@ def undetermined_of(found):
     return set(doubts)
 
 
+def twins_of(label):
+    """Return the effects of which the records cannot tell which one it is, or an empty set."""
+    for name, (parameter, most) in PASSED.items():
+        true = label['effects'].get(name)
+        if len(label['effects']) == 1 and true is not None and (
+                true['parameters'][parameter] <= most * label['period']):
+            return set(PASSED)
+    return set()
+
+
 def judge(label, found):
     """
     Return what came of one case: {measure: True, False, a number, or None where it has none}.
 
     A failure is wrong; a refusal is neither right nor wrong but counted as refused. `exact` is
-    also right where the flights were poor and `undetermined` names what is there.
+    also right where the records cannot tell (poor flights, twins_of) and `undetermined` names
+    what is there; with twins, `first` is right with either.
     """
     truth = truth_of(label)
     out = {'refused': 'refused' in found, 'failed': 'failed' in found,
@@ -45,11 +58,12 @@ def judge(label, found):
     effects = truth & set(EFFECTS)
     ranking = [row['effect'] for row in found.get('ranking', ())]
     exact = verdict == truth
-    if label['kind'] == 'poor' and 'undetermined' in verdict:
-        exact = truth <= doubts | {'none'} if effects else False
+    twins = twins_of(label)
+    if 'undetermined' in verdict and (label['kind'] == 'poor' or doubts == twins):
+        exact = truth <= doubts if effects else False
     hits = len(named & effects)
     return out | {
-        'first': bool(ranking) and ranking[0] in effects if effects else None,
+        'first': bool(ranking) and ranking[0] in effects | twins if effects else None,
         'exact': exact,
         'alarm': verdict != {'none'} if truth == {'none'} else None,
         'unknown': 'unknown' in verdict,
