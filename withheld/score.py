@@ -172,9 +172,10 @@ def calibration(pairs):
         return None
     given, present = np.array(given), np.array(present, float)
     which = np.clip(np.searchsorted(BINS, given, side='right') - 1, 0, len(BINS) - 2)
-    table = [{'from': BINS[k], 'to': BINS[k + 1], 'count': int((which == k).sum()),
-              'given': float(given[which == k].mean()), 'present': float(present[which == k].mean())}
-             for k in range(len(BINS) - 1) if (which == k).any()]
+    inside = [(k, which == k) for k in range(len(BINS) - 1) if (which == k).any()]
+    table = [{'from': BINS[k], 'to': BINS[k + 1], 'count': int(some.sum()),
+              'given': float(given[some].mean()), 'present': float(present[some].mean())}
+             for k, some in inside]
     error = sum(row['count'] * abs(row['given'] - row['present']) for row in table) / len(given)
     return {'table': table, 'brier': float(np.mean((given - present) ** 2)),
             'error': float(error), 'count': len(given),

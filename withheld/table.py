@@ -46,9 +46,9 @@ def _claims(found):
     seconds = found['seconds'] or {'median': 0.0, 'most': 0.0}
     agrees = found['gap_agrees']
     return (f'`unknown` claimed where nothing unknown is: '
-            f'{percent(found["unknown_falsely_claimed"])}. A diagnosis took {seconds["median"]:.1f} '
-            f's of a core (most: {seconds["most"]:.1f} s). The gap before any effect, as they say '
-            f'it and as the check reckons it, differs by at most '
+            f'{percent(found["unknown_falsely_claimed"])}. A diagnosis took '
+            f'{seconds["median"]:.1f} s of a core (most: {seconds["most"]:.1f} s). The gap before '
+            'any effect, as the diagnosis and as the check reckon it, differs by at most '
             f'{"-" if agrees is None else f"{100 * agrees:.1f} %"}.')
 
 

@@ -17,10 +17,12 @@ from quad_ident_ros.cli import (
     paper,
     simulate,
     warm_up,
+    withheld,
 )
 from quad_ident_ros.errors import InputError
 
-COMMANDS = (demo, simulate, fly, identify, diagnose, info, convert, paper, node, warm_up)
+COMMANDS = (demo, simulate, fly, identify, diagnose, info, convert, paper, withheld, node,
+            warm_up)
 
 EPILOG = """\
 examples:
