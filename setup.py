@@ -60,6 +60,7 @@ setup(
         'PyYAML>=6',
         'rich>=13',
         'rosbags>=0.11.9,<0.12',
+        'pyulog>=1.2.4,<1.4',
     ],
     extras_require={'test': ['pytest>=7.4', 'hypothesis>=6.80', 'ruff>=0.4']},
     zip_safe=True,

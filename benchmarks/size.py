@@ -14,7 +14,8 @@ class Size:
     CPU time after which a slow method gets no further draw; long_runs, long_budget,
     long_seconds: searches for the best cost, their evaluations and CPU time; largest: samples of
     the longest record; accuracy_draws: per scenario of the accuracy study, and ten times that, to
-    tell chance from fault; flight: s of each flight through the nodes.
+    tell chance from fault; flight: s of each flight through the nodes; rollouts: calls of each
+    kind of rollout.
     """
 
     draws: int = 30
@@ -26,7 +27,9 @@ class Size:
     largest: int = 5_000_000
     accuracy_draws: tuple = (200, 2000)
     flight: float = 60.0
+    rollouts: int = 21
 
 
 QUICK = Size(draws=3, share_draws=4, seconds=1.0, long_runs=1, long_budget=20_000,
-             long_seconds=2.0, largest=50_000, accuracy_draws=(10, 20), flight=8.0)
+             long_seconds=2.0, largest=50_000, accuracy_draws=(10, 20), flight=8.0,
+             rollouts=3)

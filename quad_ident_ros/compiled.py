@@ -2,7 +2,25 @@
 # SPDX-License-Identifier: Apache-2.0
 """Compilation of the inner loops to machine code, kept on disk between starts."""
 
+import hashlib
+from pathlib import Path
+
 import numba
+
+FOLDERS = ('effects', 'identify', 'model')      # all that have compiled functions
+
+
+def _stamp():
+    """Return what changes with any file of these folders."""
+    package = Path(__file__).parent
+    files = sorted((str(path.relative_to(package)), path.stat().st_mtime_ns, path.stat().st_size)
+                   for folder in FOLDERS for path in (package / folder).rglob('*.py'))
+    return hashlib.sha256(repr(files).encode()).hexdigest()
+
+
+# Numba makes what it keeps on disk anew where the function's own file has changed, but not where
+# that of a function or constant has which it uses: so every file counts.
+STAMP = _stamp()
 
 
 def compiled(function=None, *, fused=False, reordered=False, inlined=False):
@@ -12,8 +30,8 @@ def compiled(function=None, *, fused=False, reordered=False, inlined=False):
     fused lets a product and a sum be one operation and division by zero give infinity, reordered
     lets sums be taken in another order, for kernels that the processor then does several elements
     at a time of; inlined makes it a part of the function that calls it. Not a number and infinity
-    keep their meaning. Where no folder can be written the function is compiled again at each
-    start.
+    keep their meaning. Where no folder can be written, or numba has another way of keeping, the
+    function is compiled again at each start.
     """
     if function is None:
         return lambda function: compiled(function, fused=fused, reordered=reordered,
@@ -23,6 +41,10 @@ def compiled(function=None, *, fused=False, reordered=False, inlined=False):
     options = {'nogil': True, 'fastmath': flags, 'forceinline': inlined,
                'error_model': 'numpy' if fused else 'python'}
     try:
-        return numba.njit(cache=True, **options)(function)
-    except RuntimeError:
+        kept = numba.njit(cache=True, **options)(function)
+        # There is no public way to say what a function was made from.
+        file = kept._cache._cache_file
+        file._source_stamp = (file._source_stamp, STAMP)
+        return kept
+    except (AttributeError, RuntimeError):
         return numba.njit(**options)(function)

@@ -2,34 +2,51 @@
 # SPDX-License-Identifier: Apache-2.0
 """Experiments: which model is flown, under which inputs, with which measurement noise."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields, replace
 
 import numpy as np
 
 from quad_ident_ros import __version__, resources, schema
 from quad_ident_ros.data.record import FlightRecord
+from quad_ident_ros.effects import registry
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.excitation import excite
+from quad_ident_ros.flight.fly import fly_closed_loop, LONGEST, MOST_SAMPLES, RATES, SHORTEST
+from quad_ident_ros.flight.measure import Noise, SENSORS
+from quad_ident_ros.flight.trajectories import TRAJECTORIES
 from quad_ident_ros.identify.signals import OUTPUTS
 from quad_ident_ros.model import attitude, mixing
-from quad_ident_ros.model.simulate import LONGEST_STEP, MODELS, omega_r_of, simulate
+from quad_ident_ros.model.simulate import (
+    LONGEST_STEP,
+    MODELS,
+    omega_r_of,
+    simulate,
+    Simulation,
+)
 from quad_ident_ros.model.vehicle import load_vehicle, Vehicle
 
 INPUTS = ('U1', 'U2', 'U3', 'U4')
 NOISE_UNITS = {'attitude': 'rad', 'altitude': 'm', 'position': 'm', 'velocity': 'm/s',
                'rate': 'rad/s'}
 
-MOST_SAMPLES = 1_000_000    # of a run: 2.8 hours at 100 Hz, some 200 MB
+# A model of its own in experiment files: the vehicle under control, along trajectories.
+CLOSED_LOOP = 'closed_loop'
 
 
 @dataclass(frozen=True)
 class Run:
-    """One flight of an experiment: its name, length (s), excitations and outputs to identify."""
+    """
+    One flight of an experiment: its name, length (s), excitations and outputs to identify.
+
+    In closed loop it has a trajectory (of flight.trajectories) and sensors (of flight.measure).
+    """
 
     name: str
     duration: float
-    inputs: dict
-    outputs: tuple
+    inputs: dict = field(default_factory=dict)
+    outputs: tuple = ()
+    trajectory: str | None = None
+    sensors: str = 'clean'
 
 
 @dataclass(frozen=True)
@@ -37,7 +54,8 @@ class Experiment:
     """
     A set of flights from rest.
 
-    period s between samples; trim 'hover' (the weight on U1) or 'zero'; altitude m at the start;
+    model: of MODELS, or CLOSED_LOOP; period s between samples; trim 'hover' (the weight on U1) or
+    'zero'; altitude m at the start;
     omega_r 'zero', 'from_rotors' or rad/s; noise: standard deviation per channel (NOISE_UNITS).
     """
 
@@ -73,7 +91,23 @@ class Experiment:
 
     def infeasible(self, run):
         """Say why no rotor speeds give the inputs of a run, or return None where some do."""
+        if self.model == CLOSED_LOOP:
+            return None
         return mixing.infeasibility(self.vehicle, self.input_signals(run), self.sample_times(run))
+
+
+    def with_effects(self, effects, where='effects'):
+        """Return the experiment whose vehicle has {effect: {parameter: value}}; InputError."""
+        theta = registry.vector(effects, self.vehicle, where)
+        return replace(self, vehicle=replace(self.vehicle, effects=registry.mapping(theta)))
+
+    def check(self, noise):
+        """Raise InputError where the runs cannot be flown with this noise (of NOISE_UNITS)."""
+        for run in self.runs:
+            if self.model == CLOSED_LOOP:
+                _sensors(run, noise)
+            else:
+                self.input_signals(run)
 
 
 def load_experiment(name_or_path, vehicle=None):
@@ -86,14 +120,16 @@ def load_experiment(name_or_path, vehicle=None):
     path = resources.find('experiments', name_or_path)
     where = str(path)
     data = resources.read_yaml(path)
-    schema.check_keys(where, data, ('name', 'description', 'model', 'vehicle', 'period', 'trim',
-                                    'altitude', 'runs', 'omega_r', 'omega_r_sign', 'step',
-                                    'noise'),
-                      ('name', 'model', 'vehicle', 'period', 'trim', 'runs'))
+    required = ('name', 'model', 'vehicle', 'period', 'runs')
+    schema.check_keys(where, data, [each.name for each in fields(Experiment)], required)
+    model = schema.choice(f'{where}: model', data['model'], (*MODELS, CLOSED_LOOP))
+    if model == CLOSED_LOOP:
+        schema.check_keys(f'{where} (model {model})', data, (*required, 'description', 'noise'))
+        data = {**data, 'trim': 'hover'}
+    schema.check_keys(where, data, data, ('trim',))
     omega_r = data.get('omega_r', 'zero')
     if omega_r not in ('zero', 'from_rotors'):
         omega_r = schema.number(f'{where}: omega_r (zero, from_rotors or rad/s)', omega_r)
-    model = schema.choice(f'{where}: model', data['model'], tuple(MODELS))
     step = data.get('step')
     if step is not None:
         step = schema.number(f'{where}: step', step, 0.0, exclusive=True)
@@ -101,10 +137,17 @@ def load_experiment(name_or_path, vehicle=None):
     runs = data['runs']
     if not isinstance(runs, list) or not runs:
         raise InputError(f'{where}: runs: expected a list of runs')
-    runs = tuple(_run(f'{where}: runs[{i}]', run, period, path.parent)
-                 for i, run in enumerate(runs))
+    if model == CLOSED_LOOP:
+        schema.number(f'{where}: period', period, 1 / RATES[1], 1 / RATES[0])
+        runs = tuple(_closed_loop_run(f'{where}: runs[{i}]', run) for i, run in enumerate(runs))
+    else:
+        runs = tuple(_run(f'{where}: runs[{i}]', run, period, path.parent)
+                     for i, run in enumerate(runs))
     if len({run.name for run in runs}) != len(runs):
         raise InputError(f'{where}: runs: two runs have the same name')
+    noise = check_noise(f'{where}: noise', data.get('noise', {}))
+    if model == CLOSED_LOOP:
+        _sensors(runs[0], noise, f'{where}: noise')
     return Experiment(
         name=schema.name(f'{where}: name', data['name']),
         description=str(data.get('description', '')), model=model,
@@ -114,7 +157,7 @@ def load_experiment(name_or_path, vehicle=None):
         altitude=schema.number(f'{where}: altitude', data.get('altitude', 0.0)),
         runs=runs, omega_r=omega_r,
         omega_r_sign=schema.choice(f'{where}: omega_r_sign', data.get('omega_r_sign', 1), (1, -1)),
-        step=step, noise=check_noise(f'{where}: noise', data.get('noise', {})))
+        step=step, noise=noise)
 
 
 def _run(where, data, period, folder):
@@ -130,6 +173,17 @@ def _run(where, data, period, folder):
     outputs = tuple(schema.choice(f'{where}: outputs', name, OUTPUTS) for name in data['outputs'])
     inputs = {name: _located(spec, folder) for name, spec in data['inputs'].items()}
     return Run(schema.name(f'{where}: name', data['name']), duration, inputs, outputs)
+
+
+def _closed_loop_run(where, data):
+    schema.check_keys(where, data, ('name', 'duration', 'trajectory', 'sensors'),
+                      ('name', 'duration', 'trajectory'))
+    return Run(schema.name(f'{where}: name', data['name']),
+               schema.number(f'{where}: duration', data['duration'], SHORTEST, LONGEST),
+               trajectory=schema.choice(f'{where}: trajectory', data['trajectory'],
+                                        tuple(TRAJECTORIES)),
+               sensors=schema.choice(f'{where}: sensors', data.get('sensors', 'clean'),
+                                     tuple(SENSORS)))
 
 
 def _located(spec, folder):
@@ -149,11 +203,14 @@ def fly(experiment, run, *, noise=None, seed=0, on_progress=lambda share: None):
     """
     Simulate one run of an experiment and measure it.
 
-    Args: noise: standard deviations that replace the experiment's; seed of the noise;
-    on_progress as in simulate.
+    Args: noise: standard deviations that replace the experiment's; seed of the noise, in closed
+    loop of the trajectory too; on_progress as in simulate.
     Returns a Simulation whose record carries its provenance in `info`: the same seed gives the
     same bytes.
     """
+    if experiment.model == CLOSED_LOOP:
+        return _fly_closed_loop(experiment, run, experiment.noise if noise is None else noise,
+                                seed)
     inputs = experiment.input_signals(run)
     t = experiment.sample_times(run)
     noise = experiment.noise if noise is None else noise
@@ -177,6 +234,34 @@ def fly(experiment, run, *, noise=None, seed=0, on_progress=lambda share: None):
     record = measure(flight.record, noise, stream)
     return type(flight)(FlightRecord(record.t, record.columns, info), flight.status,
                         flight.end_time)
+
+
+def _fly_closed_loop(experiment, run, noise, seed):
+    # Each run has a seed of its own, so that two runs of one trajectory are two flights.
+    own = int(np.random.SeedSequence([seed, experiment.runs.index(run)]).generate_state(1)[0])
+    nominal = replace(experiment.vehicle, effects={})
+    record = fly_closed_loop(nominal, experiment.vehicle.effects, run.trajectory,
+                             duration=run.duration, rate=1.0 / experiment.period, seed=own,
+                             noise=_sensors(run, noise))
+    commands = record.stack(*(f'cmd{j}' for j in range(1, len(nominal.rotors) + 1)))
+    inputs = commands ** 2 @ mixing.allocation_matrix(nominal).T
+    columns = {**record.columns, **dict(zip(('u1', 'u2', 'u3', 'u4'), inputs.T, strict=True)),
+               **dict(zip(('phi', 'theta', 'psi'), record.euler().T, strict=True))}
+    # What effects the vehicle has stays with who flies it: a diagnosis is not to be told.
+    info = {'name': f'{experiment.name}/{run.name}', 'experiment': experiment.name,
+            'run': run.name, 'model': experiment.model, 'vehicle': nominal.name,
+            'trajectory': run.trajectory, 'sensors': run.sensors, 'noise': dict(noise),
+            'trim': experiment.trim_input().tolist(), 'starts_at_rest': False,
+            'unwrapped': True, 'infeasible': None, 'seed': seed, 'status': 'complete',
+            'end_time': float(record.t[-1]), 'version': __version__}
+    return Simulation(FlightRecord(record.t, columns, info), 'complete', float(record.t[-1]))
+
+
+def _sensors(run, noise, where='noise of a flight in closed loop'):
+    """Return the Sensors of a run in closed loop with other white noise; raises InputError."""
+    schema.check_keys(where, noise, [each.name for each in fields(Noise)])
+    sensors = SENSORS[run.sensors]
+    return replace(sensors, white=replace(sensors.white, **noise))
 
 
 def measure(record, noise, random):

@@ -2,11 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Compilation of the inner loops ahead of the first real work."""
 
+from quad_ident_ros.diagnose.diagnosis import diagnose
+from quad_ident_ros.effects.registry import NULL
 from quad_ident_ros.experiment import fly, load_experiment
-from quad_ident_ros.flight.fly import fly_closed_loop, SHORTEST
 from quad_ident_ros.identify.identify import identify, Settings
 from quad_ident_ros.identify.search import SwarmSettings
-from quad_ident_ros.model.vehicle import load_vehicle
+from quad_ident_ros.model.contribution import contribution
+from quad_ident_ros.model.dynamics import course_of, states_of
 
 
 def warm_up():
@@ -16,4 +18,12 @@ def warm_up():
     least = SwarmSettings(population=4, generations=1)
     for choice in ({}, {'search': 'joint'}, {'initial_state': 'free'}):
         identify(records, Settings(swarm=least, **choice))
-    fly_closed_loop(load_vehicle('paper_quadrotor'), {}, 'hover', duration=SHORTEST)
+
+
+def warm_up_diagnosis():
+    """Fly a closed loop and diagnose half of it."""
+    experiment = load_experiment('closed_loop')
+    record = fly(experiment, experiment.runs[0]).record
+    diagnose([record.slice(0, len(record) // 2)], experiment.vehicle)
+    contribution(experiment.vehicle, NULL, course_of(record, experiment.vehicle),
+                 states_of(record))

@@ -300,7 +300,8 @@ def main():
                'slowest_s', 'largest_MB')
     print(f'{"":<12}' + ''.join(f'{name:>13}' for name in columns))
     for kind, row in account.items():
-        print(f'{kind:<12}' + ''.join(f'{row[name]:>13.4g}' for name in columns))
+        print(f'{kind:<12}' + ''.join(f'{row[name]:>13}' if isinstance(row[name], int) else
+                                      f'{row[name]:>13.2f}' for name in columns))
     for failure in failures[:20]:
         print(f'{failure["kind"]} {failure["number"]}: {failure["text"][-400:]}')
 

@@ -5,6 +5,7 @@
 import argparse
 from pathlib import Path
 
+from quad_ident_ros.cli.identify import progress_bar
 from quad_ident_ros.cli.options import flights_from
 from quad_ident_ros.data.export import save
 from quad_ident_ros.report.data import write_json
@@ -36,18 +37,22 @@ def add(commands):
 
 def run(options):
     """Read the flights, write them, and say what was written."""
-    flights = flights_from(options.flight, options.mapping, options.vehicle)
     out, done = Path(options.out), []
-    for number, record in enumerate(flights, 1):
-        path = out if len(flights) == 1 else _numbered(out, number)
-        path.parent.mkdir(parents=True, exist_ok=True)
-        save(path, record)
-        notes = list(record.info.get('notes', ()))
-        done.append({'file': str(path), 'samples': len(record),
-                     'columns': ['t', *record.columns], 'notes': notes})
-        if options.json != '-':
-            print(f'{path}: {len(record)} samples of {", ".join(["t", *record.columns])}')
-            for note in notes:
+    with progress_bar() as bar:
+        task = bar.add_task(f'reading {options.flight}', total=None)
+        flights = flights_from(options.flight, options.mapping, options.vehicle)
+        for number, record in enumerate(flights, 1):
+            path = out if len(flights) == 1 else _numbered(out, number)
+            path.parent.mkdir(parents=True, exist_ok=True)
+            bar.update(task, description=f'writing {path}', total=1.0, completed=0.0)
+            save(path, record, lambda share: bar.update(task, completed=share))
+            done.append({'file': str(path), 'samples': len(record),
+                         'columns': ['t', *record.columns],
+                         'notes': list(record.info.get('notes', ()))})
+    if options.json != '-':
+        for entry in done:
+            print(f'{entry["file"]}: {entry["samples"]} samples of {", ".join(entry["columns"])}')
+            for note in entry['notes']:
                 print(f'  note: {note}')
     if options.json:
         write_json(options.json, done)

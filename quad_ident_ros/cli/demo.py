@@ -2,26 +2,36 @@
 # SPDX-License-Identifier: Apache-2.0
 """`quad_ident demo`: the whole main job on real ROS 2."""
 
+import secrets
 import sys
 
+from quad_ident_ros.cli.identify import progress_bar, show
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.identify.result import as_data
+from quad_ident_ros.report import diagnosis
 from quad_ident_ros.report.data import write_json
+from quad_ident_ros.report.picture import save_responses
 
 PICTURE = 'responses.png'
+HIDDEN = 1.2    # times the noise's gap, below which an effect does not show
 
 
 def add(commands):
     """Add the command to the parser."""
     parser = commands.add_parser(
-        'demo', help='simulate, record and identify on ROS 2, in three processes',
+        'demo', help='simulate, record and identify, or diagnose, on ROS 2, in three processes',
         description='Start simulator, recorder and identifier as three processes on a ROS domain '
                     'of their own, fly an experiment, and show what was identified. Writes a '
-                    'picture, the bag, CSV files and logs.')
-    parser.add_argument('--experiment', default='hover_single_axis',
-                        help='name of a shipped experiment, or path of a .yaml')
-    parser.add_argument('--seed', type=int, default=0,
-                        help='seed of noise and searches (default 0)')
+                    'picture, the bag, CSV files and logs. With --gap the vehicle has an effect '
+                    'that its description lacks, drawn at random and told to the simulator '
+                    'alone: a diagnoser looks for it, and only then it is revealed.')
+    parser.add_argument('--gap', action='store_true',
+                        help='diagnose a vehicle with a secret instead')
+    parser.add_argument('--experiment', help='name of a shipped experiment, or path of a .yaml '
+                        '(default: hover_single_axis; with --gap: closed_loop)')
+    parser.add_argument('--seed', type=int,
+                        help='seed of noise and searches (default 0), with --gap of the secret '
+                             'too (default: another one each time)')
     parser.add_argument('--real-time-factor', type=float, default=0.0, metavar='X',
                         help='simulated seconds per second; 0 (default): as fast as it goes')
     parser.add_argument('-o', '--output', default='quad_ident_demo', metavar='FOLDER',
@@ -32,15 +42,21 @@ def add(commands):
 
 def run(options):
     """Run the demo and show what came of it."""
-    from quad_ident_ros.cli.identify import progress_bar, show
-    from quad_ident_ros.report.picture import save_responses
     try:
         from quad_ident_ros.nodes.demo import run_demo
+        from quad_ident_ros.nodes.gap_demo import run_gap_demo
     except ImportError as error:
         raise InputError(f'ROS 2 is not there ({error}): source a ROS 2 Jazzy, or start this as '
                          '`./run demo`, which installs it') from None
+    if options.seed is None:
+        options.seed = secrets.randbelow(10 ** 6) if options.gap else 0
+    if options.real_time_factor < 0 or options.seed < 0:
+        raise InputError('--real-time-factor and --seed must not be negative')
+    if options.experiment is None:
+        options.experiment = 'closed_loop' if options.gap else 'hover_single_axis'
+    worker = 'diagnoser' if options.gap else 'identifier'
     with progress_bar() as bar:
-        task = bar.add_task('starting simulator, recorder and identifier', total=1.0)
+        task = bar.add_task(f'starting simulator, recorder and {worker}', total=1.0)
         said = set()
 
         def on_progress(text, share):
@@ -51,18 +67,51 @@ def run(options):
                 said.add(stage)
                 print(f'{text} ...', file=sys.stderr)
 
-        outcome = run_demo(options, on_progress)
+        outcome = (run_gap_demo if options.gap else run_demo)(options, on_progress)
+    (_reveal if options.gap else _show)(options, outcome)
+
+
+def _show(options, outcome):
+    """Show what was identified."""
     result = outcome.identification
     picture = f'{options.output}/{PICTURE}'
     save_responses(result, picture, f'{options.experiment}: measured and identified over ROS 2')
     if options.json != '-':
         show(result)
-        for name, value in (('picture', picture), ('bag', f'{outcome.recording}/bag'),
-                            ('flights', f'{outcome.recording}/flight_*.csv'),
-                            ('logs', f'{options.output}/log')):
-            print(f'{name:>8}: {value}')
-        print(f'    took: {outcome.seconds:.1f} s, {outcome.samples} samples recorded, '
-              f'{outcome.dropped} dropped')
+        _say_where(options, outcome, picture=picture)
     if options.json:
         write_json(options.json, {**as_data(result), 'picture': picture,
                                   'recording': outcome.recording, 'seconds': outcome.seconds})
+
+
+def _reveal(options, outcome):
+    """Show the diagnosis, and only then the truth."""
+    found = outcome.diagnosis
+    if options.json != '-':
+        diagnosis.show(found, sys.stdout)
+        truth = '; '.join(f'{name} ' + ', '.join(f'{key} = {value:.4g}'
+                                                 for key, value in values.items())
+                          for name, values in outcome.effects.items())
+        print(f'\nrevealed: {truth}')
+        gap = found['gap']
+        hidden = all(gap['before'][name] < HIDDEN * gap['noise'][name] for name in gap['noise'])
+        said = ('found' if outcome.found else 'not found: what it does is within the noise'
+                if hidden else 'not what was found')
+        print(f'          {said}; {100 * gap["closed"]:.0f} % of the velocity gap above the '
+              f'noise is closed; the same again: --seed {options.seed}')
+        _say_where(options, outcome)
+    if options.json:
+        write_json(options.json, {
+            'diagnosis': found, 'effects': outcome.effects, 'found': outcome.found,
+            'closed': found['gap']['closed'], 'seed': options.seed,
+            'recording': outcome.recording, 'seconds': outcome.seconds})
+
+
+def _say_where(options, outcome, **more):
+    """Say where things are, and what it took."""
+    for name, value in {**more, 'bag': f'{outcome.recording}/bag',
+                        'flights': f'{outcome.recording}/flight_*.csv',
+                        'logs': f'{options.output}/log'}.items():
+        print(f'{name:>8}: {value}')
+    print(f'    took: {outcome.seconds:.1f} s, {outcome.samples} samples recorded, '
+          f'{outcome.dropped} dropped')

@@ -10,11 +10,11 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn
 
 from quad_ident_ros.cli.options import flights_from
-from quad_ident_ros.data.quality import findings
+from quad_ident_ros.data.quality import refuse_unfit
 from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.effects.registry import EFFECTS
-from quad_ident_ros.errors import InputError
-from quad_ident_ros.model.vehicle import load_vehicle, write_vehicle
+from quad_ident_ros.model.mixing import with_commands
+from quad_ident_ros.model.vehicle import load_nominal, write_vehicle
 from quad_ident_ros.report.data import write_json
 from quad_ident_ros.report.diagnosis import show
 
@@ -48,16 +48,14 @@ def add(commands):
 
 def run(options):
     """Read the flights, diagnose, and show what was found."""
-    vehicle = load_vehicle(options.vehicle)
-    if vehicle.effects:
-        raise InputError(f'--vehicle {options.vehicle}: it has effects; give the nominal vehicle, '
-                         'without the section effects')
+    vehicle = load_nominal(options.vehicle)
     effects = options.effects.split(',') if options.effects else None
-    records = [record for path in options.flights
+    records = [with_commands(record, vehicle) for path in options.flights
                for record in flights_from(path, options.mapping, options.vehicle)]
     held = None
     if options.hold_out:
-        held = flights_from(options.hold_out, options.mapping, options.vehicle)[-1]
+        held = with_commands(
+            flights_from(options.hold_out, options.mapping, options.vehicle)[-1], vehicle)
     for record in [*records, *([held] if held else [])]:
         refuse_unfit(record, vehicle)
     with Progress(TextColumn('{task.description}'), BarColumn(),
@@ -72,11 +70,3 @@ def run(options):
     if options.out_vehicle:
         write_vehicle(options.out_vehicle, replace(
             vehicle, name=f'{vehicle.name}_diagnosed', effects=found.effects()))
-
-
-def refuse_unfit(record, vehicle):
-    """Raise InputError where a record has a fault that no verdict survives."""
-    for finding in findings(record, vehicle):
-        if finding.severity == 'error':
-            name = record.info.get('source') or record.info.get('name', 'flight')
-            raise InputError(f'{name}: {finding.where}: {finding.message}; {finding.remedy}')

@@ -10,7 +10,7 @@ import numpy as np
 from quad_ident_ros import resources, schema
 from quad_ident_ros.cli.identify import progress_bar
 from quad_ident_ros.data.csv import write_csv
-from quad_ident_ros.effects.registry import EFFECTS
+from quad_ident_ros.effects.registry import EFFECTS, from_entries
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import SENSORS
@@ -72,7 +72,7 @@ def run(options):
     """Fly, write the record and say what was flown."""
     schema.check_keys('--noise', {options.noise: None}, SENSORS)
     vehicle = load_vehicle(options.vehicle)
-    effects = effects_from(options.effect, vehicle.effects)
+    effects = from_entries(options.effect, vehicle.effects, '--effect')
     path = Path(options.output)
     if not path.name.endswith(('.csv', '.csv.gz')):
         raise InputError(f'--output {options.output}: expected the name of a .csv or .csv.gz file')
@@ -93,16 +93,3 @@ def run(options):
     if options.json:
         write_json(options.json, {**record.info, 'noise': options.noise, 'file': str(path),
                                   'samples': len(record)})
-
-
-def effects_from(entries, start):
-    """Return {effect: {parameter: value}} of entries NAME:PARAMETER=VALUE over those of start."""
-    effects = {name: dict(values) for name, values in start.items()}
-    for entry in entries:
-        name, colon, rest = entry.partition(':')
-        parameter, sign, value = rest.partition('=')
-        if not (colon and sign):
-            raise InputError(f'--effect {entry}: expected NAME:PARAMETER=VALUE, for example '
-                             'rotor_drag:coefficient=0.1')
-        effects.setdefault(name, {})[parameter] = schema.number(f'--effect {entry}', value)
-    return effects

@@ -7,6 +7,7 @@ import argparse
 from rich import box
 from rich.table import Table
 
+from quad_ident_ros.cli.identify import progress_bar
 from quad_ident_ros.cli.options import flights_from
 from quad_ident_ros.data.summary import summarise
 from quad_ident_ros.model.vehicle import load_vehicle
@@ -41,8 +42,10 @@ def add(commands):
 def run(options):
     """Read the flights and show what is in them."""
     vehicle = load_vehicle(options.vehicle) if options.vehicle else None
-    found = [summarise(record, vehicle) for record in
-             flights_from(options.flight, options.mapping, options.vehicle)]
+    with progress_bar() as bar:
+        bar.add_task(f'reading {options.flight}', total=None)
+        found = [summarise(record, vehicle) for record in
+                 flights_from(options.flight, options.mapping, options.vehicle)]
     if options.json != '-':
         for summary in found:
             show(summary)

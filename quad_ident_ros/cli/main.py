@@ -10,6 +10,7 @@ from quad_ident_ros.cli import (
     convert,
     demo,
     diagnose,
+    fit,
     fly,
     identify,
     info,
@@ -21,7 +22,7 @@ from quad_ident_ros.cli import (
 )
 from quad_ident_ros.errors import InputError
 
-COMMANDS = (demo, simulate, fly, identify, diagnose, info, convert, paper, withheld, node,
+COMMANDS = (demo, simulate, fly, identify, fit, diagnose, info, convert, paper, withheld, node,
             warm_up)
 
 EPILOG = """\
@@ -30,6 +31,7 @@ examples:
   quad_ident simulate hover_single_axis -o flights make flight records without ROS
   quad_ident fly circle --vehicle iris -o a.csv    make a closed-loop flight with known truth
   quad_ident identify flights/*.csv --trim hover --initial-state rest
+  quad_ident fit flight.csv --vehicle v.yaml --free inertia,thrust_coefficient,motor_lag
   quad_ident diagnose a.csv b.csv --vehicle v.yaml what the vehicle has and the model lacks
   quad_ident info flight.csv                       what is in a flight, and what is wrong
   quad_ident convert flight.csv flight.mcap        the same flight as a bag

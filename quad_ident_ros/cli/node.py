@@ -5,7 +5,7 @@
 import argparse
 import importlib
 
-NODES = ('simulator', 'recorder', 'identifier')
+NODES = ('simulator', 'recorder', 'identifier', 'diagnoser')
 
 
 def add(commands):

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """`quad_ident warm-up`: compile the inner loops, so that the first real start need not."""
 
-from quad_ident_ros.warm_up import warm_up
+from quad_ident_ros.warm_up import warm_up, warm_up_diagnosis
 
 
 def add(commands):
@@ -14,3 +14,4 @@ def add(commands):
 def run(options):
     """Compile what is not compiled yet."""
     warm_up()
+    warm_up_diagnosis()

@@ -1,3 +1,3 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Flight records: in memory, as CSV and as rosbag2."""
+"""Flight records: in memory, as CSV, as rosbag2 and as logs of PX4, and their quality."""

@@ -16,6 +16,7 @@ from quad_ident_ros.data.record import find_fault, FlightRecord, unit
 from quad_ident_ros.errors import InputError
 
 _PENDING_BYTES = 1 << 16
+_MOST_UNPACKED = 1 << 30   # a small file may unpack to any size
 
 
 def read_csv(path):
@@ -148,7 +149,11 @@ def _bytes(path):
             problem = 'this is no file' if path.exists() else 'there is no such file'
             raise InputError(f'{path}: {problem}; give the path of a .csv or .csv.gz file')
         with (gzip.open if path.suffix == '.gz' else open)(path, 'rb') as file:
-            return file.read()
+            data = file.read() if path.suffix != '.gz' else file.read(_MOST_UNPACKED + 1)
+        if path.suffix == '.gz' and len(data) > _MOST_UNPACKED:
+            raise InputError(f'{path}: unpacks to over {_MOST_UNPACKED >> 20} MB, which is no '
+                             'usual flight; if it is one, unpack it first: zcat FILE > flight.csv')
+        return data
     except (EOFError, zlib.error, gzip.BadGzipFile):
         raise InputError(f'{path}: this is no whole gzip file; copy it again, or save what is '
                          'left of it with: zcat FILE > flight.csv') from None

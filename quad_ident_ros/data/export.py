@@ -19,12 +19,13 @@ from quad_ident_ros.errors import InputError
 VECTOR = 'geometry_msgs/msg/Vector3Stamped'
 
 
-def save(path, record):
+def save(path, record, on_progress=None):
     """
     Write a flight record to .csv, .csv.gz, .mcap, or a new rosbag2 folder (no ending).
 
-    Every number reads back as it was. Raises InputError for another ending or a folder that is
-    there already, OSError where the disk refuses.
+    Every number reads back as it was. on_progress is called with the share that is written.
+    Raises InputError for another ending or a folder that is there already, OSError where the disk
+    refuses.
     """
     path = Path(path)
     if path.name.endswith(('.csv', '.csv.gz')):
@@ -32,19 +33,19 @@ def save(path, record):
     elif path.suffix == '.mcap':
         folder = path.with_name(f'.{path.name}.{os.getpid()}.tmp')
         try:
-            write_bag(folder, record)
+            write_bag(folder, record, on_progress)
             os.replace(next(folder.glob('*.mcap')), path)
         finally:
             shutil.rmtree(folder, ignore_errors=True)
     elif not path.suffix:
-        write_bag(path, record)
+        write_bag(path, record, on_progress)
     else:
         raise InputError(f'{path}: flights are written as .csv, .csv.gz, .mcap or, without an '
                          'ending, as the folder of a bag; name one of these')
 
 
-def write_bag(path, record):
-    """Write a flight record to a new rosbag2 folder; raises as save."""
+def write_bag(path, record, on_progress=None):
+    """Write a flight record to a new rosbag2 folder; arguments and errors of save."""
     start = int(record.info.get('start_ns', 0))
     shift = (record.t - record.t[0]) * 1e9
     if start < 0 or not start + shift[-1] < 2.0 ** 63:
@@ -55,7 +56,9 @@ def write_bag(path, record):
     table, labels = record_table(record)
     with BagWriter(path, [*((name, kind) for name, kind, _ in topics),
                           (EXACT_TOPIC, ARRAY_TYPE)]) as writer:
-        for name, kind, fields in topics:
+        for number, (name, kind, fields) in enumerate(topics):
+            if on_progress is not None:
+                on_progress(number / len(topics))
             for stamp, values in zip(stamps.tolist(), fields.tolist(), strict=True):
                 writer.write(name, stamp, serialize(kind, _message(name, kind, stamp, values)))
         writer.write(EXACT_TOPIC, int(stamps[-1]), serialize(ARRAY_TYPE, _array(table, labels)))
@@ -83,18 +86,10 @@ def _topics(record):
     if record.has('ax', 'ay', 'az'):
         found.append(('specific_force', VECTOR, record.stack('ax', 'ay', 'az')))
     for topic, prefix in (('command', 'cmd'), ('rotor_speed', 'rotor')):
-        names = numbered(record, prefix)
+        names = record.numbered(prefix)
         if names:
             found.append((topic, ARRAY_TYPE, record.stack(*names)))
     return found
-
-
-def numbered(record, prefix):
-    """Return the names prefix1, prefix2, ... of a record's columns, as far as they go."""
-    names = []
-    while record.has(f'{prefix}{len(names) + 1}'):
-        names.append(f'{prefix}{len(names) + 1}')
-    return names
 
 
 def _message(name, kind, stamp, values):

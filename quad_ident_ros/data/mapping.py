@@ -83,7 +83,7 @@ def mapping_from(data, where):
          for role, entry in topics.items()},
         schema.choice(f'{where}: world', data.get('world', 'ENU'), WORLDS),
         schema.choice(f'{where}: body', data.get('body', 'FLU'), BODIES),
-        {str(topic): schema.integer(f'{where}: instances: {topic}', number, 0)
+        {str(topic): schema.integer(f'{where}: instances: {schema.shown(topic)}', number, 0)
          for topic, number in instances.items()},
         _actuators(f'{where}: actuators', data['actuators']) if 'actuators' in data else None)
 

@@ -108,6 +108,13 @@ class FlightRecord:
         """Return whether all of the named columns are there (t always is)."""
         return all(name == 't' or name in self.columns for name in names)
 
+    def numbered(self, prefix):
+        """Return the names prefix1, prefix2, ... of the columns, as far as they go."""
+        names = []
+        while self.has(f'{prefix}{len(names) + 1}'):
+            names.append(f'{prefix}{len(names) + 1}')
+        return names
+
     def stack(self, *names):
         """Return the named columns side by side, (N, k); InputError names those missing."""
         missing = [name for name in names if not self.has(name)]

@@ -45,7 +45,7 @@ def summarise(record, vehicle=None):
 
 def _column(name, values, t):
     finite = values[np.isfinite(values)]
-    changes = int(np.count_nonzero(np.diff(values)))
+    changes = int(np.count_nonzero(values[1:] != values[:-1]))
     some = {'unit': unit(name), 'missing': int(len(values) - len(finite)),
             'changes_hz': changes / float(t[-1] - t[0])}
     for key, function in (('minimum', np.min), ('mean', np.mean), ('maximum', np.max),

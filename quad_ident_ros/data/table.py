@@ -59,7 +59,9 @@ def _info_from(where, label):
         info = None
     if not isinstance(info, dict):
         raise InputError(f'{where}: the label of the third dimension is no JSON object')
-    for name in ('run_index', 'run_count'):
+    for name in ('run_index', 'run_count', 'start_ns'):
         if not isinstance(info.get(name, 0), int):
             raise InputError(f'{where}: {name} is no whole number')
+    if not isinstance(info.get('notes', []), list):
+        raise InputError(f'{where}: notes are no list')
     return info

@@ -15,8 +15,6 @@ from quad_ident_ros.data.record import FlightRecord, QUATERNION
 from quad_ident_ros.data.streams import HELD, INTERPOLATED, join, SLOW, Stream
 from quad_ident_ros.errors import InputError
 
-MAGIC = ULog.HEADER_BYTES
-
 TOPICS = ('vehicle_attitude', 'vehicle_local_position', 'vehicle_angular_velocity',
           'vehicle_acceleration', 'sensor_combined', 'actuator_outputs', 'actuator_motors',
           'battery_status')

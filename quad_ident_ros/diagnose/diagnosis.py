@@ -23,6 +23,7 @@ SCHEMA = 'quad_ident/diagnosis/1'
 LEAST = 0.1         # of the noise's gap that an effect must make somewhere to be named
 DOUBT = 0.12        # probability of another cause from which on it is not ruled out
 SURE = 0.88         # probability of a cause from which on it is named without doubt
+OUTWEIGHS = 1.5     # times what is left over that a cause must make beside an unknown one
 REMAINS = 0.4       # of the noise's gap that must be left over to speak of an unknown effect
 
 
@@ -70,7 +71,14 @@ def diagnose(records, vehicle, *, hold_out=None, effects=None, on_progress=lambd
     lacks = [where.lacking(record, vehicle, z0, noise, voltage) for record in training]
     on_progress(0.9)
     far = _how_far(test, vehicle, z0, z, named, noise, voltage)
-    unknown = bool(left) and _remains(training, vehicle, z, noise, voltage) > REMAINS
+    remains = _remains(training, vehicle, z, noise, voltage)
+    unknown = bool(left) and remains > REMAINS
+    if unknown:
+        # Known causes bend to what is not theirs: only those stay that say more than is left over.
+        weak = [cause for cause in named if strength[cause] < OUTWEIGHS * remains]
+        for column in (column for cause in weak for column in cause.columns):
+            z[column] = z0[column]
+        named = tuple(cause for cause in named if cause not in weak)
     doubts = _doubts(selection, named)
     verdict = [cause.effect for cause in named]
     if unknown:

@@ -12,8 +12,8 @@ from quad_ident_ros.greybox.linear import errors_along, linearise
 from quad_ident_ros.greybox.noise import quick_noise, whole_noise
 from quad_ident_ros.greybox.parameters import limits, nominal
 
-ROUNDS = 6
-REFITS = 4          # sets that are refitted in a round
+ROUNDS = 5
+REFITS = 3          # sets that are refitted in a round
 FIT_STEPS = 5
 COLOURED = 2.0      # times the noise from sample to sample that all that is left may be
 UNTRIED = -2.0      # log-evidence that the linear model alone may give a set, beside the best

@@ -21,8 +21,8 @@ EFFECT = Effect(
                           'below the voltage of reference, where the voltage is recorded'),
                 Parameter('per_second', '1/s', 0.0, 0.05, 0.002,
                           'share of the thrust lost per second of flight, where it is not')),
-    source='motor speed at a given command is proportional to the voltage: thrust about to its '
-           'square, linear over the range of a flight',
+    source='thrust (1 - per_volt drop - per_second t): motor speed at a given command is '
+           'proportional to the voltage, thrust about to its square, linear over a flight',
     excitation='a flight long enough for the voltage to fall',
     confused_with=('thrust_scale', 'mass_offset'),
     thrust=thrust)

@@ -4,7 +4,7 @@
 
 from quad_ident_ros.compiled import compiled
 from quad_ident_ros.effects.base import Effect, Parameter
-from quad_ident_ros.model.situation import HOVER_SPEEDS, MX, MY, SPEED, UX, UY
+from quad_ident_ros.model.situation import MX, MY, PER_HOVER, SPEED, UX, UY
 
 
 @compiled(fused=True, inlined=True)
@@ -12,7 +12,7 @@ def wrench(p, k, s, rotors):
     """Add the moment of each rotor."""
     for j in range(rotors.shape[0]):
         for i in range(s.shape[1]):
-            share = p[k, i] * rotors[j, SPEED, i] / s[HOVER_SPEEDS, i]
+            share = p[k, i] * rotors[j, SPEED, i] * s[PER_HOVER, i]
             s[MX, i] -= share * rotors[j, UY, i]
             s[MY, i] += share * rotors[j, UX, i]
 

@@ -15,8 +15,9 @@ def thrust(p, k, s, rotors):
     for j in range(rotors.shape[0]):
         for i in range(s.shape[1]):
             height = max(rotors[j, HEIGHT, i], LEAST * s[RADIUS, i] + 1e-9)
-            ratio = s[RADIUS, i] / (4.0 * height)
-            rotors[j, GAIN, i] /= 1.0 - min(p[k, i] * ratio * ratio, 0.75)
+            square = 16.0 * height * height
+            share = min(p[k, i] * s[RADIUS, i] * s[RADIUS, i], 0.75 * square)
+            rotors[j, GAIN, i] *= square / (square - share)
 
 
 EFFECT = Effect(

@@ -4,7 +4,7 @@
 
 from quad_ident_ros.compiled import compiled
 from quad_ident_ros.effects.base import Effect, Parameter
-from quad_ident_ros.model.situation import HOVER_SPEEDS, HZ, SPEED, UX, UY, UZ
+from quad_ident_ros.model.situation import HZ, PER_HOVER, SPEED, UX, UY, UZ
 
 
 @compiled(fused=True, inlined=True)
@@ -14,7 +14,7 @@ def wrench(p, k, s, rotors):
         for i in range(s.shape[1]):
             x, y, z = rotors[j, UX, i], rotors[j, UY, i], rotors[j, UZ, i]
             rotors[j, HZ, i] += (p[k + 1, i] * (x * x + y * y) / rotors.shape[0]
-                                 - p[k, i] * rotors[j, SPEED, i] / s[HOVER_SPEEDS, i] * z)
+                                 - p[k, i] * rotors[j, SPEED, i] * s[PER_HOVER, i] * z)
 
 
 EFFECT = Effect(
@@ -23,8 +23,9 @@ EFFECT = Effect(
                           'along body z, at hover speed'),
                 Parameter('translational', 'kg/m', 0.0, 1.0, 0.01, 'thrust of all rotors won per '
                           'square of the velocity across body z')),
-    source='first-order change of blade-element and momentum thrust with the inflow, and '
-           'translational lift; Mahony, Kumar, Corke 2012; Svacha et al., ICUAS 2017',
+    source='thrust - axial (speed / sum of hover speeds) vz + translational (vx^2 + vy^2) / '
+           'rotors at each rotor: blade-element and momentum thrust to first order in the inflow, '
+           'and translational lift; Mahony, Kumar, Corke 2012; Svacha et al., ICUAS 2017',
     excitation='climbs and descents; fast horizontal flight for the second parameter',
     confused_with=('body_drag', 'thrust_scale'),
     wrench=wrench)

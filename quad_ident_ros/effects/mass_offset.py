@@ -17,7 +17,7 @@ def body(p, k, s):
 EFFECT = Effect(
     name='mass_offset', title='offset of the mass',
     parameters=(Parameter('mass', 'kg', -0.6, 3.0, 0.1, 'added to the nominal mass'),),
-    source='mass of a payload, at the centre of mass, without inertia of its own',
+    source='nominal mass + mass: a payload at the centre of mass, without inertia of its own',
     excitation='any flight, with roll or pitch manoeuvres to tell it from thrust',
     confused_with=('thrust_scale',),
     body=body)

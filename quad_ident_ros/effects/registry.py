@@ -30,6 +30,7 @@ from quad_ident_ros.effects import (
     thrust_scale,
     wind,
 )
+from quad_ident_ros.errors import InputError
 
 EFFECTS = {module.EFFECT.name: module.EFFECT for module in (
     motor_lag, actuation_delay, rotor_drag, body_drag, wind, inflow, ground_effect, battery_sag,
@@ -82,6 +83,23 @@ def mapping(theta):
     for value, null, (effect, parameter) in zip(theta, NULL, PARAMETERS, strict=True):
         if value != null:
             effects.setdefault(effect, {})[parameter.name] = float(value)
+    return effects
+
+
+def from_entries(entries, start, where):
+    """
+    Return {effect: {parameter: value}} of entries NAME:PARAMETER=VALUE over those of start.
+
+    Raises InputError for entries of another form; the names are checked by vector.
+    """
+    effects = {name: dict(values) for name, values in start.items()}
+    for entry in entries:
+        name, colon, rest = entry.partition(':')
+        parameter, sign, value = rest.partition('=')
+        if not (colon and sign):
+            raise InputError(f'{where} {entry}: expected NAME:PARAMETER=VALUE, for example '
+                             'rotor_drag:coefficient=0.1')
+        effects.setdefault(name, {})[parameter] = schema.number(f'{where} {entry}', value)
     return effects
 
 

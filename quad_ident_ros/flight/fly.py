@@ -8,7 +8,6 @@ from quad_ident_ros import schema
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.effects.registry import SLICES, vector
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.experiment import MOST_SAMPLES
 from quad_ident_ros.flight.controller import gains_of, MEMORY, mixer_of
 from quad_ident_ros.flight.loop import close_loop
 from quad_ident_ros.flight.measure import CLEAN, errors_of, measured
@@ -23,6 +22,7 @@ FALL = 0.015            # V/s at hover power: some four minutes of flight with f
 LONGEST_STEP = 0.0025   # s, of the integration
 SETTLING = 8.0          # s of hover before the record, in which the integrals find the trim
 RATES = (50.0, 2000.0)  # Hz
+MOST_SAMPLES = 1_000_000    # of a flight: 2.8 hours at 100 Hz, some 200 MB
 SHORTEST, LONGEST = 5.0, 3600.0     # s
 
 

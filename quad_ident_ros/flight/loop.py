@@ -12,8 +12,8 @@ from quad_ident_ros.model.rollout import step
 from quad_ident_ros.model.situation import (
     COM_X,
     FX,
-    HOVER_SPEEDS,
     MASS,
+    PER_HOVER,
     ROTOR_ROWS,
     ROWS,
     SPEED,
@@ -92,7 +92,7 @@ def close_loop(v, places, theta, tilt, dt, clock, fall, longest, x, wanted, erro
         power = 0.0
         for j in range(n):
             power += speeds[k, j] ** 3
-        energy += dt * power * n * n / s[HOVER_SPEEDS, 0] ** 3
+        energy += dt * power * n * n * s[PER_HOVER, 0] ** 3
         for piece in range(2):
             length = part * dt if piece == 0 else (1.0 - part) * dt
             if length == 0.0:

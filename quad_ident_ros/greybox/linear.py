@@ -8,7 +8,7 @@ import numpy as np
 
 from quad_ident_ros.effects import registry
 from quad_ident_ros.greybox.errors import difference, ERRORS, moved, slopes
-from quad_ident_ros.greybox.parameters import limits, SPLIT
+from quad_ident_ros.greybox.parameters import constants_of, limits, SPLIT
 from quad_ident_ros.model.dynamics import predict
 
 STATE_STEP = np.repeat([1e-4, 1e-4, 1e-5, 1e-4], 3)     # of differences in the initial state
@@ -65,7 +65,7 @@ def recorded_along(flight):
 def errors_along(flight, vehicle, z, starts):
     """Return recorded minus predicted along the rollouts, (B, count + 1, 12)."""
     predicted = predict(vehicle, z[SPLIT:], flight.course, starts, flight.first, flight.count,
-                        constants=z[None, :SPLIT])
+                        constants=constants_of(z[None], vehicle))
     return difference(recorded_along(flight), predicted)
 
 
@@ -102,7 +102,7 @@ def tangent_of(flight, vehicle, z, starts, columns, steps):
                                  np.tile(starts, (len(columns), 1))])
     first = np.tile(flight.first, 1 + turned + len(columns))
     out = predict(vehicle, sets[:, SPLIT:], flight.course, all_starts, first, flight.count, which,
-                  constants=sets[:, :SPLIT])
+                  constants=constants_of(sets, vehicle))
     out = out.reshape(1 + turned + len(columns), batch, flight.count + 1, -1)
     base = out[0]
     table = np.zeros((batch, ERRORS + len(columns) + 1, (flight.count + 1) * ERRORS))

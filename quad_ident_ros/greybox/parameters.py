@@ -22,6 +22,15 @@ def nominal(vehicle):
     return np.concatenate([vehicle_vector(vehicle), registry.NULL])
 
 
+def constants_of(z, vehicle):
+    """Return the constants (..., 16) in vectors (..., Z), the hover speeds those of the others."""
+    constants = np.array(z[..., :SPLIT])
+    mass, gravity, thrust = (constants[..., INDEX[name]] for name in
+                             ('mass', 'gravity', 'thrust_coefficient'))
+    constants[..., INDEX['hover_speeds']] = np.sqrt(len(vehicle.rotors) * mass * gravity / thrust)
+    return constants
+
+
 def limits(vehicle):
     """Return lower bounds, upper bounds and usual sizes (3, Z), SI."""
     constants = vehicle_vector(vehicle)

@@ -5,6 +5,8 @@
 import numpy as np
 from scipy.optimize import lsq_linear
 
+from quad_ident_ros.data.record import FlightRecord, INPUTS
+
 RESIDUAL = 1e-6   # share of the inputs by which speeds that give them may miss
 
 
@@ -44,6 +46,21 @@ def squared_speeds(vehicle, inputs):
             if np.linalg.norm(found.fun) <= RESIDUAL * np.linalg.norm(value):
                 squared[outside[which.ravel() == k]] = found.x
     return squared
+
+
+def with_commands(record, vehicle):
+    """
+    Return a flight record with rotor speed commands; where it has none, those that give U1..U4.
+
+    With more than four rotors these are the smallest. Inputs that no rotor speeds give become
+    rotors at rest.
+    """
+    names = [f'cmd{j}' for j in range(1, len(vehicle.rotors) + 1)]
+    if record.has(*names) or not record.has(*INPUTS):
+        return record
+    speeds = np.sqrt(np.maximum(squared_speeds(vehicle, record.inputs()), 0.0))
+    columns = {**record.columns, **dict(zip(names, speeds.T, strict=True))}
+    return FlightRecord(record.t, columns, record.info)
 
 
 def infeasibility(vehicle, inputs, t):

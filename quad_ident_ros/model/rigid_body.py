@@ -26,7 +26,6 @@ from quad_ident_ros.model.situation import (
     FZ,
     GAIN,
     HEIGHT,
-    HOVER_SPEEDS,
     HX,
     HY,
     HZ,
@@ -37,6 +36,11 @@ from quad_ident_ros.model.situation import (
     MX,
     MY,
     MZ,
+    PER_HOVER,
+    PER_IX,
+    PER_IY,
+    PER_IZ,
+    PER_MASS,
     PX,
     PZ,
     R00,
@@ -55,7 +59,6 @@ from quad_ident_ros.model.situation import (
     RY,
     RZ,
     SPEED,
-    SPEEDS,
     SPIN_UP,
     SPINS,
     TIME,
@@ -99,10 +102,13 @@ def prepare(v, places, theta, s, rotors):
     for i in range(s.shape[1]):
         s[MASS, i], s[IX, i], s[IY, i], s[IZ, i] = v[0, i], v[1, i], v[2, i], v[3, i]
         s[COM_X, i] = s[COM_Y, i] = s[COM_Z, i] = 0.0
-        s[RADIUS, i], s[HOVER_SPEEDS, i] = v[7, i], v[15, i]
+        s[RADIUS, i], s[PER_HOVER, i] = v[7, i], 1.0 / v[15, i]
         s[WIND_X, i] = s[WIND_Y, i] = s[WIND_Z, i] = 0.0
     BODY(theta, s)
     AIR(theta, s)
+    for i in range(s.shape[1]):
+        s[PER_MASS, i] = 1.0 / s[MASS, i]
+        s[PER_IX, i], s[PER_IY, i], s[PER_IZ, i] = 1.0 / s[IX, i], 1.0 / s[IY, i], 1.0 / s[IZ, i]
     for j in range(places.shape[0]):
         for i in range(s.shape[1]):
             rotors[j, RX, i] = places[j, 0] - s[COM_X, i]
@@ -111,21 +117,24 @@ def prepare(v, places, theta, s, rotors):
 
 
 @compiled(fused=True, inlined=True)
-def _place(x, v, s):
+def _place(x, s):
     """Write position, velocity, rotation, rate and air velocity of the states x (13, LANES)."""
     for i in range(s.shape[1]):
         for k in range(6):
             s[PX + k, i] = x[k, i]
         w, a, b, c = x[6, i], x[7, i], x[8, i], x[9, i]
-        s[R00, i] = 1.0 - 2.0 * (b * b + c * c)
-        s[R01, i] = 2.0 * (a * b - w * c)
-        s[R02, i] = 2.0 * (a * c + w * b)
-        s[R10, i] = 2.0 * (a * b + w * c)
-        s[R11, i] = 1.0 - 2.0 * (a * a + c * c)
-        s[R12, i] = 2.0 * (b * c - w * a)
-        s[R20, i] = 2.0 * (a * c - w * b)
-        s[R21, i] = 2.0 * (b * c + w * a)
-        s[R22, i] = 1.0 - 2.0 * (a * a + b * b)
+        # Within a step a quaternion is not of unit length; its rotation is one all the same, or
+        # the error of a step would depend on where the world's axes point.
+        two = 2.0 / (w * w + a * a + b * b + c * c)
+        s[R00, i] = 1.0 - two * (b * b + c * c)
+        s[R01, i] = two * (a * b - w * c)
+        s[R02, i] = two * (a * c + w * b)
+        s[R10, i] = two * (a * b + w * c)
+        s[R11, i] = 1.0 - two * (a * a + c * c)
+        s[R12, i] = two * (b * c - w * a)
+        s[R20, i] = two * (a * c - w * b)
+        s[R21, i] = two * (b * c + w * a)
+        s[R22, i] = 1.0 - two * (a * a + b * b)
         s[WX, i], s[WY, i], s[WZ, i] = x[10, i], x[11, i], x[12, i]
     for i in range(s.shape[1]):
         dx, dy = s[VX, i] - s[WIND_X, i], s[VY, i] - s[WIND_Y, i]
@@ -137,9 +146,7 @@ def _place(x, v, s):
 
 @compiled(fused=True, inlined=True)
 def _rotors(s, rotors, places):
-    """Write the rotors' air velocities and heights, and the sums of their speeds."""
-    for i in range(s.shape[1]):
-        s[SPEEDS, i] = 0.0
+    """Write the rotors' air velocities and heights, and the sum of their spins."""
     for j in range(rotors.shape[0]):
         spin = places[j, 3]
         for i in range(s.shape[1]):
@@ -149,7 +156,6 @@ def _rotors(s, rotors, places):
             rotors[j, UZ, i] = s[AZ, i] + s[WX, i] * y - s[WY, i] * x
             rotors[j, HEIGHT, i] = (s[PZ, i] + s[R20, i] * x + s[R21, i] * y + s[R22, i] * z)
             rotors[j, GAIN, i] = 1.0
-            s[SPEEDS, i] += rotors[j, SPEED, i]
             s[SPINS, i] += spin * rotors[j, SPEED, i]
 
 
@@ -184,7 +190,7 @@ def derivative(x, u, v, places, theta, s, rotors, dx):
     Newton-Euler with a quaternion and the body rate, so that there is no singular attitude.
     u (INPUT, LANES) what acts besides the rotors.
     """
-    _place(x, v, s)
+    _place(x, s)
     for i in range(s.shape[1]):
         s[FX, i] = s[FY, i] = s[FZ, i] = 0.0
         if v[14, i] == 0.0:
@@ -199,17 +205,17 @@ def derivative(x, u, v, places, theta, s, rotors, dx):
         s[SPINS, i] = u[4, i]
     wrench(v, places, theta, s, rotors)
     for i in range(s.shape[1]):
-        mass = s[MASS, i]
-        fx, fy, fz = s[FX, i] / mass, s[FY, i] / mass, s[FZ, i] / mass
+        per_mass = s[PER_MASS, i]
+        fx, fy, fz = s[FX, i] * per_mass, s[FY, i] * per_mass, s[FZ, i] * per_mass
         for k in range(3):
             dx[k, i] = s[VX + k, i]
         dx[3, i] = s[R00, i] * fx + s[R01, i] * fy + s[R02, i] * fz
         dx[4, i] = s[R10, i] * fx + s[R11, i] * fy + s[R12, i] * fz
         dx[5, i] = s[R20, i] * fx + s[R21, i] * fy + s[R22, i] * fz - v[4, i]
         if v[14, i] != 0.0:
-            dx[3, i] -= v[8, i] * (s[VX, i] - s[WIND_X, i]) / mass
-            dx[4, i] -= v[9, i] * (s[VY, i] - s[WIND_Y, i]) / mass
-            dx[5, i] -= v[10, i] * (s[VZ, i] - s[WIND_Z, i]) / mass
+            dx[3, i] -= v[8, i] * (s[VX, i] - s[WIND_X, i]) * per_mass
+            dx[4, i] -= v[9, i] * (s[VY, i] - s[WIND_Y, i]) * per_mass
+            dx[5, i] -= v[10, i] * (s[VZ, i] - s[WIND_Z, i]) * per_mass
         w, a, b, c = x[6, i], x[7, i], x[8, i], x[9, i]
         wx, wy, wz = s[WX, i], s[WY, i], s[WZ, i]
         dx[6, i] = 0.5 * (-a * wx - b * wy - c * wz)
@@ -217,9 +223,9 @@ def derivative(x, u, v, places, theta, s, rotors, dx):
         dx[8, i] = 0.5 * (w * wy - a * wz + c * wx)
         dx[9, i] = 0.5 * (w * wz + a * wy - b * wx)
         ix, iy, iz = s[IX, i], s[IY, i], s[IZ, i]
-        dx[10, i] = (s[MX, i] + (iy - iz) * wy * wz) / ix
-        dx[11, i] = (s[MY, i] + (iz - ix) * wz * wx) / iy
-        dx[12, i] = (s[MZ, i] + (ix - iy) * wx * wy) / iz
+        dx[10, i] = (s[MX, i] + (iy - iz) * wy * wz) * s[PER_IX, i]
+        dx[11, i] = (s[MY, i] + (iz - ix) * wz * wx) * s[PER_IY, i]
+        dx[12, i] = (s[MZ, i] + (ix - iy) * wx * wy) * s[PER_IZ, i]
 
 
 @compiled(fused=True)

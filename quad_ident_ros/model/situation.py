@@ -15,11 +15,12 @@ A lane is one rollout of the batch. `s` (ROWS, LANES) holds the vehicle, the row
  FX, FY, FZ, MX, MY, MZ,
  # Velocity of the vehicle against the air, body; wind, world.
  AX, AY, AZ, WIND_X, WIND_Y, WIND_Z,
- # Sums over the rotors: speed, spin * speed, and the rate of change of the latter.
- SPEEDS, SPINS, SPIN_UP,
- # Constants of the vehicle and of its flight.
- MASS, IX, IY, IZ, COM_X, COM_Y, COM_Z, HOVER_SPEEDS, RADIUS, TIME, VOLT_DROP,
- ROWS) = range(45)
+ # Sums over the rotors: spin * speed, and its rate of change.
+ SPINS, SPIN_UP,
+ # Constants of the vehicle and of its flight; reciprocals of mass, of inertia, and of the sum of
+ # the hover speeds.
+ MASS, IX, IY, IZ, COM_X, COM_Y, COM_Z, RADIUS, TIME, VOLT_DROP, PER_MASS, PER_IX, PER_IY, PER_IZ,
+ PER_HOVER, ROWS) = range(48)
 
 # A rotor: speed; its velocity against the air, body; factor on its thrust; its force, body; its
 # place from the centre of mass, body; its height over ground.

@@ -9,6 +9,7 @@ from pathlib import Path
 import signal
 import time
 
+from diagnostic_msgs.msg import DiagnosticArray
 from std_msgs.msg import Float64MultiArray, String
 
 from quad_ident_ros.data.table import record_from_table
@@ -17,6 +18,7 @@ from quad_ident_ros.experiment import load_experiment
 from quad_ident_ros.identify.identify import collect, Settings
 from quad_ident_ros.identify.result import from_data, Identification
 from quad_ident_ros.nodes.launched import Launched
+from quad_ident_ros.nodes.messages import ERROR
 from quad_ident_ros.nodes.qos import latched
 
 PATIENCE = 60.0      # s without any news after which the demo gives up
@@ -45,13 +47,7 @@ def run_demo(options, on_progress):
     """
     started = time.monotonic()
     experiment = load_experiment(options.experiment)
-    if options.real_time_factor < 0 or options.seed < 0:
-        raise InputError('--real-time-factor and --seed must not be negative')
-    output = Path(options.output).resolve()
-    try:
-        (output / 'log').mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(f'{output}: cannot be written: {error.strerror}') from None
+    output = prepared(options.output)
     noise = {f'noise.{channel}': value for channel, value in NOISE.items()}
     nodes = {
         'recorder': {'output': str(output)},
@@ -60,14 +56,8 @@ def run_demo(options, on_progress):
                       if os.path.isfile(options.experiment) else options.experiment,
                       'real_time_factor': float(options.real_time_factor),
                       'seed': options.seed, **noise}}
-    # The nodes must not outlive a demo that is told to end or whose terminal is closed.
-    for number in (signal.SIGTERM, signal.SIGHUP):
-        signal.signal(number, _end)
-    watcher = _Watcher(len(experiment.runs), on_progress)
-    with Launched(output / 'log') as launched:
-        for name, parameters in nodes.items():
-            launched.start(name, parameters)
-        _watch(watcher, launched, output / 'log')
+    watcher = Watcher(len(experiment.runs), 'identifier', 'parameters_json', on_progress)
+    watch(watcher, nodes, output / 'log')
     pairs, _ = collect(watcher.records, Settings())
     recording = Path(options.output) / Path(watcher.statistics['recording']).name
     return Outcome(from_data(watcher.result, pairs), str(recording),
@@ -75,27 +65,43 @@ def run_demo(options, on_progress):
                    watcher.statistics['missing'])
 
 
-def _end(number, _):
-    raise SystemExit(128 + number)
+def prepared(output):
+    """Return the folder (absolute Path) of a demo with its folder for logs; raises InputError."""
+    output = Path(output).resolve()
+    try:
+        (output / 'log').mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f'{output}: cannot be written: {error.strerror}') from None
+    return output
 
 
-class _Watcher:
-    """Collects what the nodes publish and tells how far they are."""
+class Watcher:
+    """
+    Collects what the nodes publish and tells how far they are.
 
-    def __init__(self, runs, on_progress):
+    Args: runs: how many there are; worker: the node that works on their records; topic: of what
+    it publishes, JSON, at last; on_progress: see run_demo.
+    """
+
+    def __init__(self, runs, worker, topic, on_progress):
         self.records, self.statistics, self.result = [], {}, None
+        self.refusal = None
         self.news = 0
-        self._runs, self._on_progress = runs, on_progress
+        self._runs, self._worker, self._topic = runs, worker, topic
+        self._on_progress = on_progress
 
     def subscribe(self, node):
+        """Listen with a node."""
         node.create_subscription(String, 'run', self._on_run, latched(32))
         node.create_subscription(Float64MultiArray, 'record', self._on_record, latched(16))
         node.create_subscription(String, 'recorder/statistics', self._on_statistics, latched())
-        node.create_subscription(String, 'identifier/progress', self._on_fit, 10)
-        node.create_subscription(String, 'parameters_json', self._on_result, latched())
+        node.create_subscription(String, f'{self._worker}/progress', self._on_work, 10)
+        node.create_subscription(String, self._topic, self._on_result, latched())
+        node.create_subscription(DiagnosticArray, '/diagnostics', self._on_status, 10)
 
     @property
     def done(self):
+        """Whether all has come."""
         return (self.result is not None and len(self.records) == self._runs
                 and self.statistics.get('records') == self._runs)
 
@@ -117,24 +123,48 @@ class _Watcher:
         self.news += news != self.statistics
         self.statistics = news
 
-    def _on_fit(self, message):
+    def _on_work(self, message):
         data = json.loads(message.data)
-        self._tell(f'fitting {data["method"]} {data["output"]}', 0.6 + 0.4 * data['fraction'])
+        what = f'fitting {data["method"]} {data["output"]}' if 'method' in data else 'diagnosing'
+        self._tell(what, 0.6 + 0.4 * data['fraction'])
 
     def _on_result(self, message):
         self.result = json.loads(message.data)
-        self._tell('identified', 1.0)
+        self._tell('done', 1.0)
+
+    def _on_status(self, message):
+        for status in message.status:
+            if status.name == self._worker and status.level == ERROR:
+                self.refusal = status.message
 
 
-def _watch(watcher, launched, logs):
-    with launched.watcher('demo') as (node, executor):
-        watcher.subscribe(node)
-        news, since = -1, time.monotonic()
-        while not watcher.done:
-            executor.spin_once(timeout_sec=0.1)
-            launched.check()
-            if watcher.news != news:
-                news, since = watcher.news, time.monotonic()
-            elif time.monotonic() - since > PATIENCE:
-                raise InputError(f'nothing has happened for {PATIENCE:g} s; the logs are in '
-                                 f'{logs}')
+def watch(watcher, nodes, logs):
+    """
+    Run nodes as processes until the Watcher is done.
+
+    Args: nodes: {node: {parameter: value}}; logs: the folder of their logs. Raises InputError
+    where one of them fails, or refuses what it got.
+    """
+    # The nodes must not outlive a demo that is told to end or whose terminal is closed.
+    for number in (signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, _end)
+    with Launched(logs) as launched:
+        for name, parameters in nodes.items():
+            launched.start(name, parameters)
+        with launched.watcher('demo') as (node, executor):
+            watcher.subscribe(node)
+            news, since = -1, time.monotonic()
+            while not watcher.done:
+                executor.spin_once(timeout_sec=0.1)
+                launched.check()
+                if watcher.news != news:
+                    news, since = watcher.news, time.monotonic()
+                elif watcher.refusal and watcher.result is None:
+                    raise InputError(watcher.refusal)
+                elif time.monotonic() - since > PATIENCE:
+                    raise InputError(f'nothing has happened for {PATIENCE:g} s; the logs are in '
+                                     f'{logs}')
+
+
+def _end(number, _):
+    raise SystemExit(128 + number)

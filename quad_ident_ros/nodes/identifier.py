@@ -5,9 +5,6 @@
 from datetime import datetime, timezone
 import json
 import sys
-import threading
-import time
-import traceback
 
 from diagnostic_msgs.msg import DiagnosticArray
 import numpy as np
@@ -23,10 +20,11 @@ from quad_ident_ros.identify.levy import levy_sigma
 from quad_ident_ros.identify.methods import METHODS
 from quad_ident_ros.identify.online import Tracker
 from quad_ident_ros.identify.result import as_data, error_table, parameter_table
-from quad_ident_ros.identify.search import Cancelled, SwarmSettings
+from quad_ident_ros.identify.search import SwarmSettings
 from quad_ident_ros.identify.signals import FEWEST, OUTPUTS
 from quad_ident_ros.identify.vp import COMPLEX_PENALTY
 from quad_ident_ros.nodes import process
+from quad_ident_ros.nodes.job import Job
 from quad_ident_ros.nodes.messages import (
     diagnostics_message,
     ERROR,
@@ -36,9 +34,9 @@ from quad_ident_ros.nodes.messages import (
 )
 from quad_ident_ros.nodes.parameters import help_text, NodeParameters, ParameterSpec
 from quad_ident_ros.nodes.qos import latched
+from quad_ident_ros.nodes.records import Records
 from quad_ident_ros.warm_up import warm_up
 
-PROGRESS_PERIOD = 0.1   # s between two messages on ~/progress
 NEWS = 10.0             # s between two lines of log on results without a change
 
 _SWARM = SwarmSettings()
@@ -119,29 +117,21 @@ class Identifier(Node):
         self._errors = self.create_publisher(Float64MultiArray, 'standard_errors', latched())
         self._changed = self.create_publisher(Bool, 'changed', latched())
         self._json = self.create_publisher(String, 'parameters_json', latched())
-        self._progress = self.create_publisher(String, '~/progress', 10)
         self._diagnostics = self.create_publisher(DiagnosticArray, '/diagnostics', 10)
         self.create_service(Trigger, '~/identify', self._on_identify)
         self.create_service(Trigger, '~/cancel', self._on_cancel)
-        self._records = {}
-        self._session = None
+        self._records = Records()
         self._tracker = Tracker()
         self._fitted_once = False
-        self._waiting = False
-        self._worker = None
-        self._cancelled = threading.Event()
-        self._outcome = None
+        self._job = Job(self, self._prepare, self._on_end,
+                        'topic record: these records cannot be fitted')
         self._status = (OK, 'waiting for a record', {})
-        # The fit's thread wakes the executor by this, and does no more than that and publish.
-        self._finished = self.create_guard_condition(self._on_finished)
         self.create_timer(1.0, self._report, clock=Clock(clock_type=ClockType.STEADY_TIME))
         self.create_subscription(Float64MultiArray, 'record', self._on_record, latched(16))
 
     def close(self):
         """End a fit that is running."""
-        self._cancelled.set()
-        if self._worker is not None:
-            self._worker.join()
+        self._job.close()
 
     def _on_record(self, message):
         try:
@@ -153,96 +143,48 @@ class Identifier(Node):
             self.get_logger().warning(f'a record of {len(record)} samples is left aside: at least '
                                       f'{FEWEST} are needed')
             return
-        info = record.info
-        session = info.get('session')
-        if session != self._session:
-            self._records, self._session, self._tracker = {}, session, Tracker()
-        run = info.get('run_index', 0)
-        before = self._records.pop(run, None)
-        # The newest has the say, but for the parts of one announced run: there the longest has.
-        part = 'run_index' in info and self._config['mode'] == 'once'
-        longer = before is not None and part and len(before) >= len(record)
-        self._records[run] = before if longer else record
-        complete = len(self._records) >= info.get('run_count', 1)
-        if self._config['mode'] == 'continuous':
-            self._start()
-        elif complete and not self._fitted_once:
-            self._start()
+        continuous = self._config['mode'] == 'continuous'
+        if self._records.add(record, longest=not continuous):
+            self._tracker = Tracker()
+        if continuous or self._records.complete and not self._fitted_once:
+            self._job.request()
 
     def _on_identify(self, _, response):
         if not self._records:
             response.success = False
             response.message = 'there is no record yet: is a recorder running? (~/flush)'
             return response
-        busy = self._busy()
-        self._start()
+        busy = self._job.busy
+        self._job.request()
         response.success = True
         response.message = ('a fit is running; another follows' if busy else
                             f'fitting {len(self._records)} records')
         return response
 
     def _on_cancel(self, _, response):
-        response.success = self._busy()
+        response.success = self._job.cancel()
         response.message = 'cancelled' if response.success else 'no fit is running'
-        self._waiting = False
-        self._cancelled.set()
         return response
 
-    def _busy(self):
-        return self._worker is not None
-
-    def _start(self):
-        """Begin a fit of the records as they are now, or after the one that is running."""
-        if self._busy():
-            self._waiting = True
-            return
-        self._waiting = False
+    def _prepare(self):
+        """Return the fit of the records as they are now."""
         self._fitted_once = True
-        self._cancelled.clear()
         values = self._config.values()
-        tracker = self._tracker if values['mode'] == 'continuous' else None
-        self._worker = threading.Thread(target=self._fit, args=(
-            list(self._records.values()), values['window'], _settings(values), tracker))
-        self._worker.start()
-
-    def _fit(self, records, window, settings, tracker):
-        last = 0.0
-        order = list(settings.methods)
+        run = self._tracker.update if values['mode'] == 'continuous' else identify
+        records, settings = self._records.all(), _settings(values)
+        window, order = values['window'], list(settings.methods)
 
         def on_progress(method, output, share):
-            nonlocal last
-            if self._cancelled.is_set():
-                raise Cancelled
-            now = time.monotonic()
-            if now - last >= PROGRESS_PERIOD:
-                last = now
-                done = (order.index(method) + (OUTPUTS.index(output) + share) / len(OUTPUTS)
-                        if output in OUTPUTS else order.index(method) + share) / len(order)
-                self._progress.publish(String(data=json.dumps(
-                    {'method': method, 'output': output, 'fraction': round(done, 4)})))
+            done = ((OUTPUTS.index(output) + share) / len(OUTPUTS) if output in OUTPUTS
+                    else share)
+            self._job.tell((order.index(method) + done) / len(order), method=method,
+                           output=output)
 
-        try:
-            if window:
-                records = [record.last(window) for record in records]
-            run = identify if tracker is None else tracker.update
-            self._outcome = run(records, settings, on_progress=on_progress)
-        except Cancelled:
-            self._outcome = 'cancelled'
-        except InputError as error:
-            self._outcome = error
-        except Exception as error:   # records come from anybody: none may silence the node
-            self.get_logger().debug(traceback.format_exc())
-            self._outcome = InputError('topic record: these records cannot be fitted: '
-                                       f'{type(error).__name__}: {error}')
-        self._finished.trigger()
+        return lambda: run([record.last(window) if window else record for record in records],
+                           settings, on_progress=on_progress)
 
-    def _on_finished(self):
-        if self._worker is None or self._outcome is None:
-            return
-        self._worker.join()
-        self._worker = None
-        outcome, self._outcome = self._outcome, None
-        if outcome == 'cancelled':
+    def _on_end(self, outcome):
+        if outcome is None:
             self._status = (WARN, 'the fit was cancelled', {})
             self.get_logger().warning('the fit was cancelled')
         elif isinstance(outcome, InputError):
@@ -251,8 +193,6 @@ class Identifier(Node):
         else:
             self._publish(outcome)
         self._publish_status()
-        if self._waiting:
-            self._start()
 
     def _publish(self, result):
         for name, publisher in self._each.items():
@@ -266,8 +206,7 @@ class Identifier(Node):
         self._changed.publish(Bool(data=bool(result.changes)))
         data = {**as_data(result), 'time': datetime.now(timezone.utc).isoformat()}
         self._json.publish(String(data=json.dumps(data)))
-        self._progress.publish(String(data=json.dumps(
-            {'method': result.best, 'output': '', 'fraction': 1.0})))
+        self._job.say(1.0, method=result.best, output='')
         missing = [name for name in OUTPUTS if name not in best.outputs]
         notes = [f'{name}: {fit.model.form}' for name, fit in best.outputs.items()
                  if fit.model is not None and fit.model.form == 'complex']
@@ -294,12 +233,12 @@ class Identifier(Node):
 
     def _report(self):
         # A trigger that is lost, as was seen once in some thousand fits, delays a result at most.
-        self._on_finished()
+        self._job.collect()
         self._publish_status()
 
     def _publish_status(self):
         level, text, values = self._status
-        if self._busy():
+        if self._job.busy:
             level, text = OK, 'fitting'
         self._diagnostics.publish(diagnostics_message(self, level, text, values))
 

@@ -110,10 +110,11 @@ class NodeParameters:
         self.node.add_on_set_parameters_callback(self._on_set)
 
     def _declare(self, spec):
-        if spec.default != []:
+        if spec.default not in ([], ()):
             return self.node.declare_parameter(spec.name, spec.default, spec.descriptor()).value
         # rclpy takes an empty list for bytes: the type is declared, and the list set after it.
-        kind = Parameter.Type.DOUBLE_ARRAY
+        kind = (Parameter.Type.DOUBLE_ARRAY if isinstance(spec.default, list)
+                else Parameter.Type.STRING_ARRAY)
         value = self.node.declare_parameter(spec.name, kind, spec.descriptor()).value
         if value is None:
             self.node.set_parameters([Parameter(spec.name, kind, [])])

@@ -21,6 +21,7 @@ from std_msgs.msg import String, UInt64
 from std_srvs.srv import Trigger
 
 from quad_ident_ros.data.topics import JOINED_TOPIC, RUN_TOPIC, RunNotice
+from quad_ident_ros.effects.registry import EFFECTS, from_entries
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.experiment import fly, load_experiment, NOISE_UNITS
 from quad_ident_ros.nodes import process
@@ -41,6 +42,8 @@ SPECS = (
                   'Name of a shipped experiment or path of an experiment file.'),
     ParameterSpec('vehicle', '', 'Name or path of a vehicle file that replaces the '
                   "experiment's; empty keeps it."),
+    ParameterSpec('effects', (), 'Effects that the vehicle has beside those of its file, each '
+                  'NAME:PARAMETER=VALUE.'),
     ParameterSpec('real_time_factor', 1.0, 'Simulated seconds per second; 0 runs as fast as the '
                   'subscribers keep up, without loss.', limits=(0.0, 1000.0), fixed=True),
     ParameterSpec('publish_clock', False, 'Publish /clock with the simulated time, which then '
@@ -49,7 +52,8 @@ SPECS = (
                   fixed=True),
     ParameterSpec('wait_for_subscribers', True, 'Start only when somebody listens and the '
                   'subscriptions have settled, so that nothing is missed.', fixed=True),
-    ParameterSpec('seed', 0, 'Seed of the measurement noise.', limits=(0, 2 ** 31)),
+    ParameterSpec('seed', 0, 'Seed of the measurement noise, in closed loop of the trajectories '
+                  'too.', limits=(0, 2 ** 31)),
     *(ParameterSpec(f'noise.{channel}', -1.0, f'Standard deviation of the {channel} noise, '
                     f"{unit}; negative keeps the experiment's.", limits=(-1.0, 1e6))
       for channel, unit in NOISE_UNITS.items()),
@@ -58,6 +62,8 @@ SPECS = (
 HELP = f"""simulator: flies an experiment and publishes what a vehicle would.
 
   ros2 run quad_ident_ros simulator --ros-args -p experiment:=small_angle -p real_time_factor:=2.0
+  ros2 run quad_ident_ros simulator --ros-args -p experiment:=closed_loop \\
+      -p effects:="[rotor_drag:coefficient=0.2]"
 
 Publishes (reliable; one stamp per sample on all five):
   attitude  geometry_msgs/Vector3Stamped  roll, pitch, yaw, unwrapped, rad
@@ -69,6 +75,7 @@ Publishes (reliable; one stamp per sample on all five):
   run       std_msgs/String (latched)     JSON: what flies now, its stamps and provenance
   /clock    rosgraph_msgs/Clock           with publish_clock
 Services: ~/start, ~/stop (std_srvs/Trigger)
+Effects: {', '.join(EFFECTS)}
 
 Parameters (--ros-args -p NAME:=VALUE):
 {help_text(SPECS)}"""
@@ -141,9 +148,11 @@ class Simulator(Node):
         self._load(values)
 
     def _load(self, values):
+        where = 'parameter effects'
         experiment = load_experiment(values['experiment'], values['vehicle'] or None)
-        for run in experiment.runs:
-            experiment.input_signals(run)
+        experiment = experiment.with_effects(
+            from_entries(values['effects'], experiment.vehicle.effects, where), where)
+        experiment.check(_noise(experiment, values))
         return experiment
 
     def _on_start(self, _, response):
@@ -221,9 +230,7 @@ class Simulator(Node):
             return
         run = self._queue.pop(0)
         values = self._config.values()
-        noise = {channel: values[f'noise.{channel}'] for channel in NOISE_UNITS
-                 if values[f'noise.{channel}'] >= 0}
-        self._worker = _Worker(self._experiment, run, {**self._experiment.noise, **noise},
+        self._worker = _Worker(self._experiment, run, _noise(self._experiment, values),
                                values['seed'])
         self._schedule(0.002, lambda: self._await_flight(run))
 
@@ -320,6 +327,12 @@ class Simulator(Node):
         elif now - self._waiting > STALLED * 1e9:
             self.get_logger().warning(f'waiting for a subscriber of {publisher.topic_name} that '
                                       'does not keep up', throttle_duration_sec=STALLED)
+
+
+def _noise(experiment, values):
+    """Return the noise of an experiment with that of the parameter values in its place."""
+    return {**experiment.noise, **{channel: values[f'noise.{channel}'] for channel in NOISE_UNITS
+                                   if values[f'noise.{channel}'] >= 0}}
 
 
 class _Cancelled(Exception):

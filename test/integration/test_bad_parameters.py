@@ -14,11 +14,13 @@ from rcl_interfaces.srv import (
 from rclpy.parameter import Parameter
 
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.nodes.diagnoser import Diagnoser
 from quad_ident_ros.nodes.identifier import Identifier
 from quad_ident_ros.nodes.recorder import Recorder
 from quad_ident_ros.nodes.simulator import Simulator
 
-NODES = {'simulator': Simulator, 'recorder': Recorder, 'identifier': Identifier}
+NODES = {'simulator': Simulator, 'recorder': Recorder, 'identifier': Identifier,
+         'diagnoser': Diagnoser}
 
 # Values, and what the reason names, that are refused at the start and later.
 VALUES = {
@@ -31,6 +33,17 @@ VALUES = {
         ('noise.attitude', 'much', 'noise.attitude'),
         ('noise.altitude', float('nan'), 'noise.altitude'),
         ('noise.rate', -2.0, 'noise.rate'),
+        ('effects', ['rotor_drag'], 'expected NAME:PARAMETER=VALUE'),
+        ('effects', ['rotor_drag:coefficient=-1'], 'parameter effects: rotor_drag: coefficient'),
+        ('effects', ['rotor_drg:coefficient=1'], "did you mean 'rotor_drag'"),
+    ],
+    'diagnoser': [
+        ('vehicle', 'hummingbrd', "'hummingbrd' is not among the vehicles"),
+        ('vehicle', '/nowhere/x.yaml', '/nowhere/x.yaml: there is no such file'),
+        ('vehicle', 3, 'text'),
+        ('effects', ['rotor_drg'], "parameter effects: 'rotor_drg' is not one of"),
+        ('mode', 'twice', "'twice' is not one of once, continuous"),
+        ('window', -1.0, 'window'),
     ],
     'identifier': [
         ('method', 'simplex', "'simplex' is not one of all, pso, cs, pso_cs, ls"),
@@ -84,7 +97,7 @@ def test_bad_values_are_refused_at_the_start(graph):
 
 @pytest.mark.parametrize('node, name, near', [
     ('simulator', 'expriment', 'experiment'), ('recorder', 'windw_samples', 'window_samples'),
-    ('identifier', 'metod', 'method')])
+    ('identifier', 'metod', 'method'), ('diagnoser', 'vehicel', 'vehicle')])
 def test_unknown_names_are_refused_at_the_start(graph, node, name, near):
     with pytest.raises(InputError, match=f'{name!r} is not known here; did you mean {near!r}'):
         graph.start(NODES[node], {name: 1})

@@ -5,7 +5,7 @@
 import numpy as np
 import pytest
 
-from benchmarks import problems, reference, tables
+from benchmarks import problems, reference, rollout, tables
 from benchmarks.__main__ import SECTIONS
 from benchmarks.bound import bound, derivatives, FIRST, SECOND
 from benchmarks.compare import rmse_over_bound
@@ -125,6 +125,11 @@ def test_a_tracker_ends_a_search_at_its_budget_or_its_target():
     shorter = Tracker(joint, hurried.spent - 1)
     pursue(search, shorter, 0)
     assert shorter.best_cost > tracker.best_cost
+
+
+def test_plain_numpy_rolls_out_what_the_compiled_model_does():
+    problem = rollout.Problem(samples=20, batch=3)
+    assert np.abs(problem.compiled(rollout.roll_out) - problem.in_numpy()).max() < 1e-9
 
 
 def test_a_table_is_aligned():

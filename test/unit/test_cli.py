@@ -25,7 +25,8 @@ def flights(tmp_path_factory):
 def test_help_of_every_command_names_it(capsys):
     assert main([]) == 0
     assert 'identify' in capsys.readouterr().out
-    for command in ('demo', 'simulate', 'fly', 'identify', 'paper', 'node'):
+    for command in ('demo', 'simulate', 'fly', 'identify', 'diagnose', 'info', 'convert', 'paper',
+                    'node'):
         with pytest.raises(SystemExit) as end:
             main([command, '--help'])
         assert end.value.code == 0
@@ -76,6 +77,9 @@ def test_the_table_shows_all_methods_and_units(flights, capsys):
 BAD_CALLS = {
     'no such file': 'identify FOLDER/none.csv',
     'a folder that is no bag': 'identify FOLDER',
+    'no flight to look at': 'info FOLDER/none.csv',
+    'a mapping that is not there': 'info FLIGHT --mapping FOLDER/none.yaml',
+    'a format that is not written': 'convert FLIGHT FOLDER/out.txt',
     'no such experiment': 'simulate smal_angle',
     'no such vehicle': 'simulate small_angle --vehicle none',
     'unknown noise channel': 'simulate small_angle --noise atitude=1',

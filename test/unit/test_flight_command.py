@@ -7,9 +7,9 @@ import json
 import numpy as np
 import pytest
 
-from quad_ident_ros.cli.fly import effects_from
 from quad_ident_ros.cli.main import main
 from quad_ident_ros.data.csv import read_csv
+from quad_ident_ros.effects.registry import from_entries
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import MOCAP_IMU
 from quad_ident_ros.model.vehicle import load_vehicle
@@ -42,7 +42,7 @@ def test_the_command_says_what_it_flew(tmp_path, capsys):
 
 def test_effects_of_the_command_go_over_those_of_the_vehicle():
     own = {'wind': {'x': 1.0, 'y': 1.0}}
-    assert effects_from(['wind:x=2', 'thrust_scale:factor=0.9'], own) == {
+    assert from_entries(['wind:x=2', 'thrust_scale:factor=0.9'], own, 'here') == {
         'wind': {'x': 2.0, 'y': 1.0}, 'thrust_scale': {'factor': 0.9}}
     assert own == {'wind': {'x': 1.0, 'y': 1.0}}
 

@@ -8,7 +8,7 @@ import pytest
 from rcl_interfaces.msg import ParameterType
 
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.nodes import identifier, recorder, simulator
+from quad_ident_ros.nodes import diagnoser, identifier, recorder, simulator
 from quad_ident_ros.nodes.parameters import help_text, ParameterSpec, TYPES
 from quad_ident_ros.nodes.process import _matches, _node_names
 
@@ -19,7 +19,8 @@ KINDS = ParameterSpec('kinds', ('a',), 'Kinds.', choices=('a', 'b'))
 PAIR = ParameterSpec('pair', [], 'A pair.', length=(0, 2))
 FLAG = ParameterSpec('flag', False, 'A flag.')
 
-NODES = {'simulator': simulator, 'recorder': recorder, 'identifier': identifier}
+NODES = {'simulator': simulator, 'recorder': recorder, 'identifier': identifier,
+         'diagnoser': diagnoser}
 ALL = [(node, spec) for node, module in NODES.items() for spec in module.SPECS]
 
 

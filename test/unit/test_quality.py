@@ -3,7 +3,7 @@
 """The quality of records: silent on clean flights, and each fault found where it is put in."""
 
 from dataclasses import replace
-from itertools import permutations
+from itertools import permutations, product
 from pathlib import Path
 
 from flightmaker import changed, flight, frd, ned, ned_attitude, VEHICLE, world_velocity_in_body
@@ -208,6 +208,14 @@ def test_the_lag_of_motors_is_no_fault():
     assert 'command_offset' not in codes(record)
 
 
+@pytest.mark.parametrize('name', ['star_fast', 'oval_fast'])
+def test_an_offset_put_into_a_real_flight_is_found(name):
+    record = load(NANOBENCH / f'{name}.csv.gz')
+    before, after = clock_offset(record), clock_offset(late(record, (*P, *V, *Q), 0.06))
+    assert abs(after.offset - before.offset - 0.06) < 2 * before.std
+    assert abs(before.offset) < 3 * before.std + 0.01
+
+
 def test_no_offset_is_made_up():
     rest = flight()
     assert clock_offset(changed(rest, wx=None)) is None
@@ -303,9 +311,22 @@ def test_every_wrong_order_of_the_rotors_is_found_and_named(order):
     assert f'rotors {", ".join(str(k + 1) for k in order)} of' in finding.message
 
 
-def test_reversed_spins_are_found():
-    wrong = replace(VEHICLE, rotors=tuple(replace(rotor, spin=-rotor.spin)
-                                          for rotor in VEHICLE.rotors))
+@pytest.mark.parametrize('name', ['star_fast', 'oval_fast'])
+def test_wrong_orders_are_found_in_real_flights(name):
+    record = load(NANOBENCH / f'{name}.csv.gz')
+    vehicle = load_vehicle(NANOBENCH / 'vehicle.yaml')
+    for order in permutations(range(4)):
+        mixed = changed(record, **named(CMD, record.stack(*[CMD[k] for k in order])))
+        found = [f for f in findings(mixed, vehicle) if f.code == 'rotor_order']
+        said = [f'rotors {", ".join(str(k + 1) for k in order)} of' in f.message for f in found]
+        assert said == ([] if order == (0, 1, 2, 3) else [True])
+
+
+@pytest.mark.parametrize('spins', [spins for spins in product((1, -1), repeat=4)
+                                   if spins != (1, -1, 1, -1)])
+def test_every_wrong_set_of_spins_is_found(spins):
+    wrong = replace(VEHICLE, rotors=tuple(replace(rotor, spin=spin) for rotor, spin in
+                                          zip(VEHICLE.rotors, spins, strict=True)))
     [finding] = findings(flight(), wrong)
     assert finding.code == 'rotor_spin'
     assert str([rotor.spin for rotor in VEHICLE.rotors]) in finding.message

@@ -39,10 +39,10 @@ def test_shipped_experiments_load_under_their_own_name(name):
 
 
 def test_the_parameters_file_has_parameters_of_the_nodes_only():
-    from quad_ident_ros.nodes import identifier, recorder, simulator
+    from quad_ident_ros.nodes import diagnoser, identifier, recorder, simulator
     data = yaml.safe_load((ROOT / 'config' / 'parameters.yaml').read_text(encoding='utf-8'))
     for node, module in (('simulator', simulator), ('recorder', recorder),
-                         ('identifier', identifier)):
+                         ('identifier', identifier), ('diagnoser', diagnoser)):
         known = {spec.name: spec for spec in module.SPECS}
         for name, value in _flat(data[f'/**/{node}']['ros__parameters']):
             assert value == known[name].default

@@ -6,6 +6,8 @@ The quality of a flight record: what is wrong with it, and how to mend it.
 One file per subject, each with checks (record, vehicle or None) -> findings, entered in CHECKS.
 """
 
+import numpy as np
+
 from quad_ident_ros.data.quality import (
     clock,
     excitation,
@@ -18,6 +20,7 @@ from quad_ident_ros.data.quality import (
 )
 from quad_ident_ros.data.quality.clock import clock_offset, ClockOffset, command_offset
 from quad_ident_ros.data.quality.finding import Finding, SEVERITIES
+from quad_ident_ros.errors import InputError
 
 CHECKS = (timing.gaps, timing.duplicates, timing.reader_notes, stale.held, stale.marked,
           units.rates_in_degrees, units.euler_in_degrees, units.force_in_g,
@@ -26,7 +29,7 @@ CHECKS = (timing.gaps, timing.duplicates, timing.reader_notes, stale.held, stale
           saturation.speeds, excitation.axes)
 
 __all__ = ['CHECKS', 'clock_offset', 'ClockOffset', 'command_offset', 'Finding', 'findings',
-           'SEVERITIES']
+           'refuse_unfit', 'SEVERITIES']
 
 
 def findings(record, vehicle=None):
@@ -36,5 +39,14 @@ def findings(record, vehicle=None):
     Args: record FlightRecord; vehicle model.vehicle.Vehicle or None; without it nothing is said
     of saturation, of the unit of rotor speeds, nor of the order and spin of the rotors.
     """
-    found = [finding for check in CHECKS for finding in check(record, vehicle)]
+    with np.errstate(all='ignore'):   # values so large that nothing can be said of them
+        found = [finding for check in CHECKS for finding in check(record, vehicle)]
     return tuple(sorted(found, key=lambda finding: -SEVERITIES.index(finding.severity)))
+
+
+def refuse_unfit(record, vehicle):
+    """Raise InputError where a record has a fault that no verdict survives."""
+    for finding in findings(record, vehicle):
+        if finding.severity == 'error':
+            name = record.info.get('source') or record.info.get('name', 'flight')
+            raise InputError(f'{name}: {finding.where}: {finding.message}; {finding.remedy}')

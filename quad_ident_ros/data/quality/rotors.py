@@ -6,12 +6,12 @@ from itertools import permutations, product
 
 import numpy as np
 
-from quad_ident_ros.data.export import numbered
 from quad_ident_ros.data.quality import frames
 from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.quality.series import Grid
 
-SURE, BETTER = 0.5, 0.3   # mean correlation that an explanation needs, and its lead
+SURE, BETTER = 0.5, 0.2   # mean correlation that an explanation needs, and its lead
+SLOW = 1.0                # s; what changes more slowly is trim, aerodynamics and battery
 LATEST = 0.08             # s, motors follow their commands within
 MOST_ROTORS = 6           # of which all orders are tried
 
@@ -23,7 +23,7 @@ def order_and_spin(record, vehicle):
     The moment on the body, I dw/dt + w x I w, is correlated with what the squared commands give
     for each order (roll and pitch), then for each choice of spins (yaw).
     """
-    names = numbered(record, 'cmd')
+    names = record.numbered('cmd')
     grid = Grid.of(record)
     if (vehicle is None or grid is None or not record.has('wx', 'wy', 'wz')
             or not len(names) == len(vehicle.rotors) <= MOST_ROTORS):
@@ -32,8 +32,9 @@ def order_and_spin(record, vehicle):
         return []   # rates about other axes: that is to be mended first
     rate = grid.smooth(grid.signal('wx', 'wy', 'wz'))
     inertia = np.array(vehicle.inertia)
-    moment = inertia * np.gradient(rate, grid.period, axis=0) + np.cross(rate, inertia * rate)
-    squared = grid.smooth(grid.held(*names) ** 2)
+    moment = _fast(grid, inertia * np.gradient(rate, grid.period, axis=0)
+                   + np.cross(rate, inertia * rate))
+    squared = _fast(grid, grid.smooth(grid.held(*names) ** 2))
     position = np.array([rotor.position for rotor in vehicle.rotors])
     declared = tuple(range(len(names)))
     lag, scores = max((_scores(grid, moment, squared, position, shift) for shift in
@@ -50,6 +51,10 @@ def order_and_spin(record, vehicle):
             f'{scores[declared]:.2f})',
             'put the commands into the order of the vehicle file, or correct that')]
     return _spin(grid, moment, squared, vehicle, lag)
+
+
+def _fast(grid, signal):
+    return signal - grid.smooth(signal, SLOW)
 
 
 def _scores(grid, moment, squared, position, lag):

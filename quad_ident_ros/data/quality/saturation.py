@@ -4,7 +4,6 @@
 
 import numpy as np
 
-from quad_ident_ros.data.export import numbered
 from quad_ident_ros.data.quality import units
 from quad_ident_ros.data.quality.finding import Finding
 
@@ -13,7 +12,7 @@ NEAR = 0.002   # of the range of speeds
 
 def speeds(record, vehicle):
     """Find commands at or beyond speed_min and speed_max."""
-    names = numbered(record, 'cmd')
+    names = record.numbered('cmd')
     if vehicle is None or not names or not np.isfinite(vehicle.speed_max):
         return []
     if units.speeds_in_rpm(record, vehicle):

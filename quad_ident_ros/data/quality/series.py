@@ -72,9 +72,13 @@ class Grid:
             return None
         return slerp(self.record.t, continuous(q / norm), self.t)
 
-    def smooth(self, signal):
-        """Return a signal (N, k) smoothed by a Hann window of WIDTH."""
-        return smooth(signal, self.period)
+    def smooth(self, signal, width=WIDTH):
+        """Return a signal (N, k) smoothed by a Hann window of a full width in s."""
+        half = max(1, round(width / 2 / self.period))
+        window = np.hanning(2 * half + 3)[1:-1]
+        window /= window.sum()
+        padded = np.pad(signal, ((half, half), (0, 0)), mode='edge')
+        return np.stack([np.convolve(column, window, 'valid') for column in padded.T], axis=-1)
 
     def derivative(self, signal):
         """Return the smoothed derivative of a signal (N, k) by central differences."""
@@ -103,15 +107,6 @@ class Grid:
     def acceleration(self, attitude):
         """Return the acceleration in the world from attitude and specific force, (N, 3)."""
         return rotate(attitude, self.force()) - np.array([0.0, 0.0, GRAVITY])
-
-
-def smooth(signal, period):
-    """Return a signal (N, k) smoothed by a Hann window of WIDTH seconds."""
-    half = max(1, round(WIDTH / 2 / period))
-    window = np.hanning(2 * half + 3)[1:-1]
-    window /= window.sum()
-    padded = np.pad(signal, ((half, half), (0, 0)), mode='edge')
-    return np.stack([np.convolve(column, window, 'valid') for column in padded.T], axis=-1)
 
 
 def explained(target, model):

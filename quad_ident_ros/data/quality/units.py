@@ -4,7 +4,6 @@
 
 import numpy as np
 
-from quad_ident_ros.data.export import numbered
 from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.quality.series import correlation, GRAVITY, Grid
 from quad_ident_ros.data.record import EULER, QUATERNION
@@ -115,7 +114,7 @@ def speeds_in_rpm(record, vehicle):
                     / (len(vehicle.rotors) * vehicle.thrust_coefficient))
     found = []
     for prefix in ('cmd', 'rotor'):
-        names = numbered(record, prefix)
+        names = record.numbered(prefix)
         if not names:
             continue
         usual = float(np.sqrt(np.mean(np.median(record.stack(*names), axis=0) ** 2)))

@@ -1,0 +1,58 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Start the simulator, the recorder and the diagnoser side by side."""
+
+from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument
+from launch.substitutions import LaunchConfiguration
+from launch_ros.actions import Node
+from launch_ros.parameter_descriptions import ParameterValue
+
+# Name, default, description and type of each argument.
+ARGUMENTS = (
+    ('namespace', '', 'Namespace of the nodes and of their topics.', str),
+    ('experiment', 'closed_loop', 'Name of an experiment or path of its file.', str),
+    ('reality', '', "Vehicle that flies, name or file with effects; empty: the experiment's.",
+     str),
+    ('vehicle', 'hummingbird', 'Name or file of the nominal vehicle, without effects.', str),
+    ('real_time_factor', '1.0', 'Simulated seconds per second; 0.0: as fast as it goes.', float),
+    ('use_sim_time', 'false', 'Publish the simulated time on /clock and follow it.', bool),
+    ('output', '', 'Folder for recordings; empty: nothing is written.', str),
+    ('mode', 'once', 'Diagnose once, or continuous.', str),
+)
+# The parameters of each node, and the arguments that they come from.
+NODES = {
+    'simulator': {
+        'experiment': 'experiment',
+        'vehicle': 'reality',
+        'real_time_factor': 'real_time_factor',
+        'publish_clock': 'use_sim_time',
+    },
+    'recorder': {'use_sim_time': 'use_sim_time', 'output': 'output'},
+    'diagnoser': {'use_sim_time': 'use_sim_time', 'vehicle': 'vehicle', 'mode': 'mode'},
+}
+
+
+def generate_launch_description():
+    """Describe the arguments and the nodes."""
+    values = {
+        name: ParameterValue(LaunchConfiguration(name), value_type=value_type)
+        for name, _, _, value_type in ARGUMENTS
+    }
+    return LaunchDescription(
+        [
+            DeclareLaunchArgument(name, default_value=default, description=description)
+            for name, default, description, _ in ARGUMENTS
+        ]
+        + [
+            Node(
+                package='quad_ident_ros',
+                executable=node,
+                name=node,
+                namespace=LaunchConfiguration('namespace'),
+                output='screen',
+                parameters=[{name: values[source] for name, source in parameters.items()}],
+            )
+            for node, parameters in NODES.items()
+        ]
+    )

@@ -1,0 +1,78 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""`quad_ident fit`: chosen physical parameters from flights."""
+
+import argparse
+import textwrap
+
+from quad_ident_ros.cli.identify import progress_bar
+from quad_ident_ros.effects.registry import EFFECTS
+from quad_ident_ros.greybox.free import UNITS
+from quad_ident_ros.model.vehicle import load_vehicle
+from quad_ident_ros.report.data import write_json
+from quad_ident_ros.report.table import console
+
+
+def add(commands):
+    """Add the command to the parser."""
+    parser = commands.add_parser(
+        'fit', help='estimate mass, inertia, drag, motor lag, ... from flights',
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        description='Estimate chosen physical parameters of a vehicle from flight records, by '
+                    'prediction error over short\nrollouts, with standard errors and a word on '
+                    'what the flights cannot determine.',
+        epilog='what can be freed, several with commas between:\n'
+               f'  of the vehicle file: {", ".join(UNITS)},\n'
+               '  or one component, such as inertia_x\n'
+               + _wrapped(EFFECTS)
+               + '  or one parameter of an effect, such as motor_lag.time_constant\n\n'
+               'mass, inertia, thrust and drag together have no scale: leave out what you can '
+               'weigh.\n\nexample:\n  quad_ident fit flight.csv --vehicle v.yaml --free '
+               'inertia,thrust_coefficient,motor_lag --out-vehicle v2.yaml')
+    parser.add_argument('flights', nargs='+', metavar='FLIGHT', help='flight record')
+    parser.add_argument('--vehicle', required=True, help='vehicle name or file: the start, and '
+                        'what holds for all that is not freed')
+    parser.add_argument('--free', required=True, metavar='NAME,...', help='what to estimate')
+    parser.add_argument('--out-vehicle', metavar='FILE',
+                        help='write the vehicle file with the constants found')
+    parser.add_argument('--json', metavar='FILE', help='write the results as data; - prints them')
+    parser.set_defaults(run=run)
+
+
+def run(options):
+    """Read the flights, fit, show the result and write the files asked for."""
+    from quad_ident_ros.greybox.fit import as_data, fit, fitted_vehicle, write_vehicle
+    names = [name.strip() for name in options.free.split(',') if name.strip()]
+    vehicle = load_vehicle(options.vehicle)
+    records = [load(path) for path in options.flights]
+    with progress_bar() as bar:
+        bar.add_task('fitting', total=None)
+        found = fit(records, vehicle, names)
+    if options.json != '-':
+        show(found)
+    if options.out_vehicle:
+        write_vehicle(options.out_vehicle, fitted_vehicle(found))
+    if options.json:
+        write_json(options.json, as_data(found))
+
+
+def load(path):
+    """Return the flight record in a file; raises InputError."""
+    from quad_ident_ros.data.csv import read_csv
+    return read_csv(path)
+
+
+def show(found):
+    """Print the table of a fit and what is to be known of it."""
+    from quad_ident_ros.report.fit_table import fit_table
+    screen = console()
+    screen.print(fit_table(found))
+    screen.print('± is one standard error.', markup=False, highlight=False)
+    for line in found.findings:
+        screen.print(f'  note: {line}', markup=False, highlight=False, soft_wrap=True)
+
+
+def _wrapped(names):
+    """Return the names of the effects as lines of the help."""
+    return textwrap.fill(f'effects: {", ".join(names)},', 95, initial_indent='  ',
+                         subsequent_indent='  ') + '\n'

@@ -1,0 +1,41 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""A reality drawn at random: the nominal vehicle with one effect that it does not tell of."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from quad_ident_ros.effects.registry import bounds, EFFECTS, mapping, NULL, PARAMETERS, SLICES
+
+STRENGTHS = 1.5, 2.5    # of the usual size of a parameter
+
+
+def draw_reality(vehicle, seed):
+    """
+    Return a vehicle with one effect, drawn with its parameters by a seed.
+
+    Wind comes with a drag of the rotors, for a vehicle without drag does not feel it.
+    """
+    rng = np.random.default_rng([seed, 5])
+    name = str(rng.choice(list(EFFECTS)))
+    names = [name, 'rotor_drag'] if name == 'wind' else [name]
+    effects = {}
+    for each in names:
+        effects |= mapping(strengthened(EFFECTS[each], vehicle, rng))
+    return replace(vehicle, effects=effects)
+
+
+def strengthened(effect, vehicle, rng):
+    """Return the parameter vector (P,) of an effect, some usual sizes of each parameter."""
+    low, high, size = bounds(vehicle)
+    places = np.arange(len(PARAMETERS))[SLICES[effect.name]]
+    if effect.per_rotor:
+        places = [rng.choice(places[:len(vehicle.rotors)])]
+    theta = NULL.copy()
+    for place in places:
+        step = rng.uniform(*STRENGTHS) * size[place]
+        # A weak rotor is no strong one, whatever an estimate of it may be.
+        both = low[place] < NULL[place] - step and not effect.per_rotor
+        theta[place] += step * (rng.choice([-1, 1]) if both else 1)
+    return np.clip(theta, low, high)

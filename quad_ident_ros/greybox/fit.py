@@ -1,0 +1,216 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Chosen physical parameters from flights, with what the flights cannot determine."""
+
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+
+import numpy as np
+import yaml
+
+from quad_ident_ros import __version__
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.greybox.errors import GROUPS, UNITS
+from quad_ident_ros.greybox.estimate import covariance_of, Estimate, estimate, scatter_of
+from quad_ident_ros.greybox.flights import flight_of, highest_voltage
+from quad_ident_ros.greybox.free import columns_of_names, excitation_of, unit_of
+from quad_ident_ros.greybox.identifiable import correlated, freedoms
+from quad_ident_ros.greybox.noise import quick_noise
+from quad_ident_ros.greybox.parameters import INDEX, limits, nominal
+from quad_ident_ros.model.vehicle import Vehicle
+
+SCHEMA = 'quad_ident/fit/1'
+STRONG = 0.9    # correlation from which on two parameters are named
+COLOURED = 1.5  # noise over what changes from sample to sample, from which on it is said
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """
+    What was found of a parameter; value and std (standard error) in `unit`.
+
+    status: 'determined', 'bound' (it ends there, without a standard error) or 'undetermined'. The
+    value of an undetermined one holds if those in `given`, {name: value}, have these values; it
+    is None where it is not even known then.
+    """
+
+    name: str
+    unit: str
+    nominal: float
+    value: float | None
+    std: float | None
+    status: str
+    given: dict
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """
+    Parameters of a vehicle fitted to flights.
+
+    names of the columns of the estimate, and so of its covariance; findings: lines of text;
+    correlations: (name, name, value) of those that are strong.
+    """
+
+    vehicle: Vehicle
+    flights: tuple
+    parameters: tuple
+    estimate: Estimate
+    names: tuple
+    correlations: tuple
+    findings: tuple
+
+
+def fit(records, vehicle, names):
+    """
+    Return the Fit of the named parameters of a vehicle to flight records.
+
+    Args: names of vehicle constants, effects or parameters of effects (see free.py). What the
+    flights leave undetermined is held at the vehicle file's value, and said. Raises InputError.
+    """
+    free = columns_of_names(names, vehicle)
+    voltage = highest_voltage(records)
+    flights = [flight_of(record, vehicle, reference_voltage=voltage) for record in records]
+    start, sizes = nominal(vehicle), limits(vehicle)[2]
+    found = estimate(flights, vehicle, start, list(free.values()))
+    inside = [name for name, moves in zip(free, found.free, strict=True) if moves]
+    columns = [free[name] for name in inside]
+    left = freedoms(_inside(found.normal, found.free).information, found.z[columns],
+                    sizes[columns], [inside.index('mass')] if 'mass' in inside else [])
+    if left:
+        held = [columns[freedom.held] for freedom in left]
+        z = found.z.copy()
+        for freedom in left:
+            if freedom.scale:
+                members = [columns[k] for k in freedom.members]
+                z[members] *= start[columns[freedom.held]] / z[columns[freedom.held]]
+        z[held] = start[held]
+        rest = [place for place in free.values() if place not in held]
+        found = estimate(flights, vehicle, z, rest, starts=found.starts)
+    given = {name: {} for name in inside}
+    for freedom in left:
+        for k in freedom.members:
+            given[inside[k]][inside[freedom.held]] = float(start[columns[freedom.held]])
+    covariance = np.zeros((len(found.columns),) * 2)
+    covariance[np.ix_(found.free, found.free)] = covariance_of(
+        _inside(found.normal, found.free), sizes[found.columns][found.free])
+    errors = dict(zip(found.columns, np.sqrt(np.diag(covariance)), strict=True))
+    parameters = tuple(_parameter(name, start[place], found.z[place], errors.get(place), given)
+                       for name, place in free.items())
+    order = tuple(name for name, place in free.items() if place in errors)
+    pairs = tuple((order[i], order[j], share) for i, j, share in correlated(covariance, STRONG))
+    findings = (*(_said(freedom, inside, start[columns]) for freedom in left),
+                *_findings(found, parameters, pairs, flights))
+    return Fit(vehicle, tuple(flight.name for flight in flights), parameters,
+               replace(found, covariance=covariance), order, pairs, findings)
+
+
+def fitted_vehicle(fit):
+    """Return the vehicle with the constants found; what is undetermined as far as it is given."""
+    z = fit.estimate.z
+    return replace(fit.vehicle, mass=float(z[INDEX['mass']]),
+                   thrust_coefficient=float(z[INDEX['thrust_coefficient']]),
+                   torque_coefficient=float(z[INDEX['torque_coefficient']]),
+                   **{key: tuple(float(z[INDEX[f'{key}_{axis}']]) for axis in 'xyz')
+                      for key in ('inertia', 'linear_drag', 'rotational_drag')})
+
+
+def write_vehicle(path, vehicle):
+    """Write a vehicle file; raises InputError where it cannot be written."""
+    data = {key: list(value) if isinstance(value, tuple) else value
+            for key, value in asdict(vehicle).items() if value != float('inf')}
+    data['rotors'] = [{'position': list(rotor.position), 'spin': rotor.spin}
+                      for rotor in vehicle.rotors]
+    try:
+        Path(path).write_text(yaml.safe_dump(data, sort_keys=False, default_flow_style=None),
+                              encoding='utf-8')
+    except OSError as error:
+        raise InputError(f'{path}: cannot be written: {error.strerror}') from None
+
+
+def as_data(fit):
+    """Return a Fit as data for JSON."""
+    found = fit.estimate
+    return {
+        'schema': SCHEMA, 'version': __version__, 'vehicle': fit.vehicle.name,
+        'flights': list(fit.flights),
+        'parameters': {parameter.name: {key: value for key, value in asdict(parameter).items()
+                                        if key != 'name'} for parameter in fit.parameters},
+        'covariance': {'names': list(fit.names), 'matrix': found.covariance.tolist()},
+        'correlations': [{'parameters': [a, b], 'value': share}
+                         for a, b, share in fit.correlations],
+        'noise': {name: {group: {'std': noise[part].tolist(), 'unit': UNITS[group]}
+                         for group, part in GROUPS.items()}
+                  for name, noise in zip(fit.flights, found.noise, strict=True)},
+        'cost': found.normal.cost, 'samples': sum(raw.shape[0] * raw.shape[1]
+                                                  for raw in found.left),
+        'converged': found.converged, 'findings': list(fit.findings)}
+
+
+def _inside(normal, free):
+    """Return what is said of the columns that are inside their bounds, the others held."""
+    return replace(normal, information=normal.information[np.ix_(free, free)],
+                   gradient=normal.gradient[free], scores=normal.scores[:, free])
+
+
+def _parameter(name, start, value, error, given):
+    """Return the Parameter; error: its standard error, 0 at a bound, None where it is held."""
+    told = given.get(name, {})
+    status = 'undetermined' if told else 'determined' if error else 'bound'
+    return Parameter(name, unit_of(name), float(start), None if name in told else float(value),
+                     float(error) if error else None, status,
+                     {other: at for other, at in told.items() if other != name})
+
+
+def _said(freedom, names, values):
+    """Return what a Freedom means, in words."""
+    members = [names[k] for k in freedom.members]
+    held = names[freedom.held]
+    value = _with_unit(values[freedom.held], held)
+    if freedom.scale:
+        return (f'{", ".join(members)} are undetermined: multiplied by one factor they fly the '
+                f'same, so that the flights tell their ratios alone. Leave {held} out of --free '
+                f'if it is known; the values hold if {held} is {value}')
+    if len(members) == 1:
+        return (f'{held} is undetermined: the flights do not show it. Fly: {excitation_of(held)}; '
+                f'until then it stays at {value}')
+    wanted = '; '.join(dict.fromkeys(excitation_of(name) for name in members))
+    return (f'{", ".join(members)} are undetermined: the flights do not tell them from one '
+            f'another. Leave one out of --free, or fly: {wanted}; the values hold if {held} is '
+            f'{value}')
+
+
+def _findings(found, parameters, pairs, flights):
+    """Return what is to be known of the estimate besides what it leaves undetermined."""
+    said = []
+    if not found.converged:
+        said.append('the fit did not converge: the values are not the best ones; start it from '
+                    'a vehicle file that is nearer, or free fewer parameters')
+    for parameter in parameters:
+        if parameter.status == 'bound':
+            said.append(f'{parameter.name} ends at its bound, '
+                        f'{_with_unit(parameter.value, parameter.name)}: it is not there, or '
+                        'something that the model lacks takes its place')
+    if pairs:
+        said.append(f'correlated by more than {STRONG:g}, so that a combination is known better '
+                    'than each: ' + ', '.join(f'{a} and {b} ({share:.3f})'
+                                              for a, b, share in pairs))
+    widest = float(np.sqrt(scatter_of(found.normal).max(initial=1.0)))
+    if widest > 1.0:
+        said.append(f'what is left hangs together in time: standard errors are widened, up to '
+                    f'{widest:.1f} times')
+    for flight, noise, raw in zip(flights, found.noise, found.left, strict=True):
+        ratio = noise / quick_noise(raw)
+        worst = {group: float(ratio[part].max()) for group, part in GROUPS.items()}
+        coloured = [f'{group} {times:.1f} times' for group, times in worst.items()
+                    if times > COLOURED]
+        if coloured:
+            said.append(f'{flight.name}: more is left than the noise from sample to sample '
+                        f'({", ".join(coloured)}): noise that is not white, or an effect that '
+                        'the model lacks')
+    return said
+
+
+def _with_unit(value, name):
+    unit = unit_of(name)
+    return f'{value:g}' if unit == '1' else f'{value:g} {unit}'

@@ -1,0 +1,79 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The names of what may be freed in a fit: keys of the vehicle file, effects, their parameters."""
+
+from quad_ident_ros import schema
+from quad_ident_ros.effects import registry
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.greybox.parameters import columns_of, INDEX, SPLIT
+
+UNITS = {'mass': 'kg', 'inertia': 'kg m^2', 'thrust_coefficient': 'N/(rad/s)^2',
+         'torque_coefficient': 'N m/(rad/s)^2', 'linear_drag': 'N/(m/s)',
+         'rotational_drag': 'N m/(rad/s)^2'}
+"""Unit of each constant of the vehicle file that can be freed."""
+
+EXCITATION = {'mass': 'any flight', 'inertia': 'fast turns about each axis',
+              'thrust_coefficient': 'any flight', 'torque_coefficient': 'turns in yaw',
+              'linear_drag': 'flight at different speeds along each axis',
+              'rotational_drag': 'very fast turns about each axis'}
+"""What a flight must do to show a constant; for effects see the registry."""
+
+SAME = {'mass': 'mass_offset.mass', 'thrust_coefficient': 'thrust_scale.factor',
+        **{f'inertia_{axis}': f'inertia_mismatch.factor_{axis}' for axis in 'xyz'}}
+"""Constants that are one physical number with a parameter of an effect."""
+
+
+def columns_of_names(names, vehicle):
+    """
+    Return {full name: place in the parameter vector} of names to be freed, in their order.
+
+    Raises InputError for a name that is not known, and for two names of one physical number.
+    """
+    table = _table(vehicle)
+    found = {}
+    for name in names:
+        if name not in table:
+            raise schema.unknown_key('--free', name, table)
+        found |= table[name]
+    for constant, parameter in SAME.items():
+        if constant in found and parameter in found:
+            raise InputError(f'--free: {constant} and {parameter} are the same physical number; '
+                             'free one of them')
+    if not found:
+        raise InputError(f'--free: names nothing; known are {", ".join(table)}')
+    return found
+
+
+def unit_of(name):
+    """Return the unit of a full name."""
+    effect, dot, parameter = name.partition('.')
+    if not dot:
+        return UNITS[_key(name)]
+    return next(known.unit for known in registry.EFFECTS[effect].parameters
+                if known.name == parameter)
+
+
+def excitation_of(name):
+    """Return what a flight must do to show a full name."""
+    effect, dot, _ = name.partition('.')
+    return registry.EFFECTS[effect].excitation if dot else EXCITATION[_key(name)]
+
+
+def _key(name):
+    """Return the key of the vehicle file that a constant belongs to."""
+    return name if name in UNITS else name[:-2]
+
+
+def _table(vehicle):
+    """Return every name that can be given, with the full names and places it stands for."""
+    table = {}
+    for key in UNITS:
+        parts = [name for name in (key, *(f'{key}_{axis}' for axis in 'xyz')) if name in INDEX]
+        table[key] = {name: INDEX[name] for name in parts}
+        table |= {name: {name: INDEX[name]} for name in parts}
+    for effect in registry.EFFECTS:
+        places = columns_of([effect], len(vehicle.rotors))
+        table[effect] = {f'{effect}.{registry.PARAMETERS[place - SPLIT][1].name}': place
+                         for place in places}
+        table |= {name: {name: place} for name, place in table[effect].items()}
+    return table

@@ -1,0 +1,64 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The demo of the gap: a reality with a secret is flown, recorded and diagnosed by three nodes."""
+
+from dataclasses import dataclass
+from pathlib import Path
+import time
+
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.experiment import CLOSED_LOOP, load_experiment
+from quad_ident_ros.flight.secret import draw_reality
+from quad_ident_ros.model.vehicle import load_vehicle, write_vehicle
+from quad_ident_ros.nodes.demo import prepared, watch, Watcher
+
+NOMINAL, REALITY = 'nominal.yaml', 'reality.yaml'
+
+
+@dataclass(frozen=True)
+class GapOutcome:
+    """What the demo gave: the diagnosis as data, the effects in truth, the recording's folder."""
+
+    diagnosis: dict
+    effects: dict
+    recording: str
+    seconds: float
+    samples: int
+    dropped: int
+
+    @property
+    def found(self):
+        """Whether the verdict is the truth."""
+        return set(self.diagnosis['verdict']) == set(self.effects)
+
+
+def run_gap_demo(options, on_progress):
+    """
+    Have a secret reality flown, recorded and diagnosed by three processes; return a GapOutcome.
+
+    What it has is drawn into a file that only the simulator is told of; the diagnoser knows the
+    nominal vehicle and the recorder's records. Args: as those of demo.run_demo. Raises
+    InputError where a node fails or refuses.
+    """
+    started = time.monotonic()
+    experiment = load_experiment(options.experiment)
+    if experiment.model != CLOSED_LOOP:
+        raise InputError(f'--experiment {options.experiment}: --gap needs flights in closed loop '
+                         f'(model: {CLOSED_LOOP}), which excite what is looked for')
+    output = prepared(options.output)
+    nominal, reality = output / NOMINAL, output / REALITY
+    write_vehicle(nominal, experiment.vehicle)
+    write_vehicle(reality, draw_reality(experiment.vehicle, options.seed))
+    file = Path(options.experiment)
+    watcher = Watcher(len(experiment.runs), 'diagnoser', 'diagnosis', on_progress)
+    watch(watcher, {
+        'diagnoser': {'vehicle': str(nominal)},
+        'recorder': {'output': str(output)},
+        'simulator': {'experiment': str(file.resolve()) if file.is_file() else options.experiment,
+                      'vehicle': str(reality), 'seed': options.seed,
+                      'real_time_factor': float(options.real_time_factor)},
+    }, output / 'log')
+    recording = Path(options.output) / Path(watcher.statistics['recording']).name
+    return GapOutcome(watcher.result, load_vehicle(reality).effects, str(recording),
+                      time.monotonic() - started, watcher.statistics['joined'],
+                      watcher.statistics['missing'])

@@ -1,0 +1,197 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Node diagnoser: it finds what the simulator's vehicle has, and says so to whom it concerns."""
+
+from dataclasses import replace
+import json
+import time
+
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from graph import flights
+import numpy as np
+import pytest
+from rcl_interfaces.srv import ListParameters
+from std_msgs.msg import Float64MultiArray, String
+import yaml
+
+from quad_ident_ros.data.record import FlightRecord
+from quad_ident_ros.experiment import fly, load_experiment
+from quad_ident_ros.model.vehicle import load_vehicle, write_vehicle
+from quad_ident_ros.nodes.diagnoser import Diagnoser
+from quad_ident_ros.nodes.messages import record_message
+from quad_ident_ros.nodes.qos import latched
+from quad_ident_ros.nodes.recorder import Recorder
+from quad_ident_ros.nodes.simulator import Simulator
+from quad_ident_ros.warm_up import warm_up_diagnosis
+
+NOMINAL = 'hummingbird'
+DRAG = {'rotor_drag': {'coefficient': 0.25}}
+PATIENCE = 60.0     # s for a whole diagnosis on a busy machine
+
+
+@pytest.fixture(scope='module', autouse=True)
+def compiled():
+    """Compile beforehand, as the node does."""
+    warm_up_diagnosis()
+
+
+@pytest.fixture(scope='module')
+def experiment(tmp_path_factory):
+    """Return the path of an experiment with two short flights in closed loop."""
+    path = tmp_path_factory.mktemp('experiment') / 'two.yaml'
+    path.write_text(yaml.safe_dump({
+        'name': 'two', 'model': 'closed_loop', 'vehicle': NOMINAL, 'period': 0.01,
+        'runs': [{'name': name, 'duration': 10.0, 'trajectory': name, 'sensors': 'mocap_imu'}
+                 for name in ('figure8', 'circle')]}), encoding='utf-8')
+    return str(path)
+
+
+@pytest.fixture(scope='module')
+def draggy(experiment):
+    """Return the records of the flights of a vehicle with drag."""
+    flown = load_experiment(experiment).with_effects(DRAG)
+    records = [fly(flown, run).record for run in flown.runs]
+    return [FlightRecord(record.t, record.columns,
+                         {**record.info, 'session': 1, 'run_index': k, 'run_count': 2})
+            for k, record in enumerate(records)]
+
+
+class Bench:
+    """A diagnoser, a publisher of records for it, and all that it says."""
+
+    def __init__(self, graph, parameters):
+        self.graph = graph
+        self.diagnoses = graph.listen(String, 'diagnosis', latched())
+        self.progress = graph.listen(String, 'diagnoser/progress', 100)
+        self.statuses = graph.listen(DiagnosticArray, '/diagnostics')
+        graph.start(Diagnoser, {'vehicle': NOMINAL, **parameters})
+        self.publisher = graph.advertise(Float64MultiArray, 'record', latched(16))
+
+    def feed(self, records):
+        for record in records:
+            self.publisher.publish(record_message(record))
+
+    def await_diagnosis(self):
+        self.graph.spin_until(lambda: self.diagnoses, 'a diagnosis', PATIENCE)
+        return self.diagnoses.data()[-1]
+
+    def await_status(self, level, part):
+        def found():
+            return [status for message in self.statuses for status in message.status
+                    if status.name == 'diagnoser' and status.level == level
+                    and part in status.message]
+
+        return self.graph.spin_until(found, f'{part!r} in the diagnostics', PATIENCE)[-1]
+
+
+def test_it_finds_the_effect_of_the_simulated_vehicle(graph, tmp_path, experiment):
+    reality = tmp_path / 'reality.yaml'
+    write_vehicle(reality, replace(load_vehicle(NOMINAL), effects=DRAG))
+    statuses = graph.listen(DiagnosticArray, '/diagnostics')
+    diagnoses = graph.listen(String, 'diagnosis', latched())
+    graph.start(Recorder)
+    graph.start(Diagnoser, {'vehicle': NOMINAL})
+    graph.start(Simulator, {'experiment': experiment, 'vehicle': str(reality),
+                            'real_time_factor': 0.0})
+    graph.spin_until(lambda: diagnoses, 'a diagnosis', PATIENCE)
+    [data] = diagnoses.data()
+    assert data['verdict'] == ['rotor_drag'] and data['dropped_samples'] == 0
+    first = data['ranking'][0]['parameters']['coefficient']
+    assert abs(first['value'] - 0.25) < 4 * first['std']
+    assert data['held_out'] == 'two/circle' and data['flights'] == ['two/figure8']
+    graph.spin_until(lambda: any('rotor_drag' in status.message for message in statuses
+                                 for status in message.status), 'the verdict in the diagnostics')
+    # Who comes late hears it, too.
+    late = {name: graph.listen(kind, name, latched()) for name, kind in (
+        ('diagnosis', String), ('gap', Float64MultiArray), ('where', Float64MultiArray))}
+    graph.spin_until(lambda: all(late.values()), 'the latched results')
+    assert late['diagnosis'].data() == [data]
+    assert [dim.label for dim in late['gap'][0].layout.dim] == [
+        'position,velocity,attitude,rate', 'before,after,noise']
+    before, after, noise = np.reshape(late['gap'][0].data, (4, 3))[1]
+    assert (before, after, noise) == tuple(data['gap'][stage]['velocity']
+                                           for stage in ('before', 'after', 'noise'))
+    assert noise < after < 1.5 * noise < before
+    assert late['where'][0].layout.dim[0].label == 'Fx,Fy,Fz,Mx,My,Mz'
+    shares = np.array(late['where'][0].data)
+    assert shares.sum() == pytest.approx(1.0) and shares[:2].sum() > 0.8
+
+
+def test_it_answers_while_it_diagnoses_and_can_be_cancelled(graph, draggy):
+    bench = Bench(graph, {})
+    assert graph.trigger('diagnoser/diagnose').message.startswith('there is no record yet')
+    assert graph.trigger('diagnoser/cancel').message == 'no diagnosis is running'
+    bench.feed(draggy)
+    graph.spin_until(lambda: bench.progress, 'progress', PATIENCE)
+    client = graph.probe.create_client(ListParameters, 'diagnoser/list_parameters')
+    graph.spin_until(client.service_is_ready, 'the service')
+    assert 'vehicle' in graph.answer(client, ListParameters.Request()).result.names
+    assert not bench.diagnoses      # it did not wait for the end
+    answer = graph.trigger('diagnoser/cancel')
+    assert (answer.success, answer.message) == (True, 'cancelled')
+    bench.await_status(DiagnosticStatus.WARN, 'the diagnosis was cancelled')
+    assert not bench.diagnoses
+    answer = graph.trigger('diagnoser/diagnose')
+    assert (answer.success, answer.message) == (True, 'diagnosing 2 records')
+    assert bench.await_diagnosis()['verdict'] == ['rotor_drag']
+    assert json.loads(bench.progress[-1].data)['fraction'] <= 1.0
+    values = {entry.key: entry.value for entry in bench.await_status(
+        DiagnosticStatus.WARN, 'verdict: rotor_drag').values}
+    assert float(values['probability/rotor_drag']) > 0.5
+
+
+def test_each_window_is_diagnosed_in_continuous_mode(graph, draggy):
+    """A window of a single flight: its first half is for the fit, its second is held out."""
+    bench = Bench(graph, {'mode': 'continuous', 'window': 8.0, 'effects': ['rotor_drag', 'wind']})
+    bench.feed(draggy[:1])
+    first = bench.await_diagnosis()
+    assert (first['span_ns'][1] - first['span_ns'][0]) == pytest.approx(8e9, abs=2e7)
+    assert {row['effect'] for row in first['ranking']} == {'rotor_drag', 'wind'}
+    bench.feed(draggy[1:])
+    graph.spin_until(lambda: len(bench.diagnoses) == 2, 'the second window', PATIENCE)
+
+
+@pytest.mark.parametrize('spoil, said', [
+    (lambda record: {name: values for name, values in record.columns.items() if name != 'vx'},
+     'vx'),
+    (lambda record: {name: values for name, values in record.columns.items()
+                     if not name.startswith(('u', 'cmd'))}, 'cmd1'),
+    (lambda record: {**record.columns, 'cmd1': record.columns['cmd2'],
+                     'cmd2': record.columns['cmd1']}, 'cmd')])
+def test_records_that_bear_no_verdict_are_refused_in_one_line(graph, draggy, spoil, said):
+    bench = Bench(graph, {})
+    bench.feed([FlightRecord(record.t, spoil(record), record.info) for record in draggy])
+    status = bench.await_status(DiagnosticStatus.ERROR, said)
+    assert '\n' not in status.message
+    graph.spin_for(0.1)
+    assert not bench.diagnoses
+
+
+def test_it_ends_while_it_diagnoses(graph, draggy):
+    bench = Bench(graph, {})
+    bench.feed(draggy)
+    graph.spin_until(lambda: bench.progress, 'progress', PATIENCE)
+    node = next(node for node in graph.nodes if isinstance(node, Diagnoser))
+    began = time.monotonic()
+    graph.stop(node)
+    assert time.monotonic() - began < 10.0
+
+
+def test_a_vehicle_that_cannot_be_used_is_refused_in_one_line(processes, tmp_path):
+    path = tmp_path / 'with_effects.yaml'
+    write_vehicle(path, replace(load_vehicle(NOMINAL), effects=DRAG))
+    for vehicle, said in (('hummingbrd', "'hummingbrd' is not among the vehicles"),
+                          (str(path), 'give the nominal vehicle')):
+        process = processes.start('diagnoser', {'vehicle': vehicle})
+        assert process.wait(PATIENCE) == 2
+        [line] = process.errors().splitlines()
+        assert line.startswith('diagnoser: error: ') and said in line
+
+
+def test_a_flight_of_the_identifier_is_no_flight_to_diagnose(graph):
+    """Steps without control from the shipped experiment: what it says is one line, not silence."""
+    bench = Bench(graph, {'vehicle': 'paper_quadrotor'})
+    bench.feed(flights())
+    graph.spin_until(lambda: bench.diagnoses or any(
+        status.level == DiagnosticStatus.ERROR for message in bench.statuses
+        for status in message.status), 'a word', PATIENCE)

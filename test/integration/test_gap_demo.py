@@ -1,0 +1,60 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The demo of the gap: what the simulator alone knows is found, and revealed last."""
+
+import json
+import subprocess
+import sys
+
+import pytest
+
+from quad_ident_ros.data.replay import read_bag
+from quad_ident_ros.model.vehicle import load_vehicle
+
+SEED = '4'      # a drag of the rotors
+
+
+def run(*words):
+    return subprocess.run([sys.executable, '-m', 'quad_ident_ros', 'demo', '--gap', *words],
+                          capture_output=True, text=True, timeout=180)
+
+
+@pytest.fixture(scope='module')
+def demo(tmp_path_factory):
+    """Return the folder of a finished demo, what it printed, and the data that it wrote."""
+    folder = tmp_path_factory.mktemp('gap')
+    done = run('--seed', SEED, '-o', str(folder), '--json', str(folder / 'out.json'))
+    assert done.returncode == 0, done.stderr
+    return folder, done.stdout, json.loads((folder / 'out.json').read_text())
+
+
+def test_the_secret_is_found_and_revealed_last(demo):
+    folder, said, data = demo
+    truth = load_vehicle(folder / 'reality.yaml').effects
+    assert data['effects'] == truth and data['found']
+    assert data['diagnosis']['verdict'] == list(truth)
+    assert data['closed'] == data['diagnosis']['gap']['closed'] > 0.9
+    verdict, revealed = said.index('verdict: '), said.index('revealed: ')
+    assert verdict < revealed < said.index('the same again: --seed')
+    assert f'revealed: {list(truth)[0]} ' in said
+
+
+def test_the_diagnosing_process_was_not_told(demo):
+    folder, _, data = demo
+    assert load_vehicle(folder / 'nominal.yaml').effects == {}
+    name = list(data['effects'])[0]
+    records = read_bag(folder / 'recording_1' / 'bag')
+    assert len(records) == 4
+    for record in records:      # all that came over ROS
+        assert name not in json.dumps(record.info)
+    for log in ('simulator', 'recorder'):
+        assert name not in (folder / 'log' / f'{log}.txt').read_text()
+
+
+@pytest.mark.parametrize('words, said', [
+    (['--experiment', 'hover_single_axis'], '--gap needs flights in closed loop'),
+    (['--seed', '-1'], 'must not be negative')])
+def test_what_cannot_be_is_refused_in_one_line(tmp_path, words, said):
+    done = run(*words, '-o', str(tmp_path))
+    [line] = done.stderr.splitlines()
+    assert done.returncode == 2 and line.startswith('quad_ident demo: error: ') and said in line

@@ -1,0 +1,220 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Physical parameters from flights of known truth, and what the flights leave undetermined."""
+
+import dataclasses
+import json
+
+import numpy as np
+import pytest
+
+from benchmarks.flights import FlightProblem, NAMES, NOISE, VEHICLE, with_constants
+from quad_ident_ros.cli.main import main
+from quad_ident_ros.data.csv import write_csv
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.flight.fly import fly_closed_loop
+from quad_ident_ros.flight.measure import Noise, Sensors
+from quad_ident_ros.greybox.errors import difference, moved
+from quad_ident_ros.greybox.estimate import CHANCE, Normal, scatter_of
+from quad_ident_ros.greybox.fit import as_data, fit, fitted_vehicle, write_vehicle
+from quad_ident_ros.greybox.flights import flight_of
+from quad_ident_ros.greybox.identifiable import freedoms
+from quad_ident_ros.greybox.linear import errors_along, linearise
+from quad_ident_ros.greybox.parameters import INDEX, nominal
+from quad_ident_ros.model.dynamics import STATES
+from quad_ident_ros.model.vehicle import load_vehicle
+
+DRAWS = 20
+KNOWN_MASS = NAMES[1:]
+WHITE = Sensors(white=Noise(position=0.002, velocity=0.02, attitude=0.004, rate=0.02))
+
+
+def values(found, field='value'):
+    return np.array([getattr(parameter, field) for parameter in found.parameters], float)
+
+
+def by_name(found):
+    return {parameter.name: parameter for parameter in found.parameters}
+
+
+@pytest.fixture(scope='module')
+def problem():
+    return FlightProblem()
+
+
+@pytest.fixture(scope='module')
+def draws(problem):
+    """Return the fits to 20 draws of the noise, from starts up to 30 % off, one by one."""
+    random = np.random.default_rng(7)
+    found = []
+    for seed in range(DRAWS):
+        off = random.uniform(0.7, 1.3, len(KNOWN_MASS))
+        start = with_constants(VEHICLE, dict(zip(KNOWN_MASS, problem.truth * off, strict=True)))
+        found.append(fit([problem.draw(seed)], start, KNOWN_MASS))
+    return found
+
+
+def test_errors_are_those_of_the_cramer_rao_bound(problem, draws):
+    misses = np.array([values(found) - problem.truth for found in draws]) / problem.bound
+    assert np.sqrt(np.mean(misses ** 2)) <= 1.15
+    # A mean over 20 draws has a standard error of 0.22 of one draw's.
+    assert np.abs(misses.mean(axis=0)).max() < 4 / np.sqrt(DRAWS)
+
+
+def test_95_percent_intervals_hold_the_truth_as_often_as_they_say(problem, draws):
+    inside = np.array([np.abs(values(found) - problem.truth) <= 1.96 * values(found, 'std')
+                       for found in draws])
+    assert 0.90 <= inside.mean() <= 0.99
+    stds = np.array([values(found, 'std') for found in draws]) / problem.bound
+    np.testing.assert_allclose(stds.mean(axis=0), 1.0, atol=0.1)
+
+
+def test_every_start_converges_and_the_noise_comes_out(draws):
+    assert all(found.estimate.converged for found in draws)
+    noise = np.array([found.estimate.noise[0] for found in draws])
+    # 2,000 samples a channel and draw: a standard error of 0.4 % of the mean over the draws.
+    np.testing.assert_allclose(noise.mean(axis=0) / NOISE, 1.0, atol=0.016)
+
+
+def test_all_eight_free_have_no_scale_and_it_is_said(problem):
+    found = fit([problem.draw(0)], problem.start(0), NAMES)
+    assert {parameter.status for parameter in found.parameters} == {'undetermined'}
+    parts = by_name(found)
+    assert parts['mass'].value is None
+    assert parts['mass'].std is None
+    assert all(parts[name].given == {'mass': 1.0} for name in KNOWN_MASS)
+    assert 'multiplied by one factor' in found.findings[0]
+    with_mass = fit([problem.draw(0)], problem.start(0), KNOWN_MASS)
+    for name in KNOWN_MASS:
+        one, other = parts[name], by_name(with_mass)[name]
+        assert one.value == pytest.approx(other.value, abs=0.1 * other.std)
+        assert one.std == pytest.approx(other.std, rel=0.02)
+
+
+def test_effects_are_found_beside_constants():
+    truth = {'motor_lag': {'time_constant': 0.04}, 'rotor_drag': {'coefficient': 0.3}}
+    record = fly_closed_loop(VEHICLE, truth, 'lissajous', duration=20.0, seed=5, noise=WHITE)
+    start = dataclasses.replace(VEHICLE, thrust_coefficient=1.2e-5)
+    found = by_name(fit([record], start, ['thrust_coefficient', 'motor_lag', 'rotor_drag']))
+    for name, value in (('thrust_coefficient', 1e-5), ('motor_lag.time_constant', 0.04),
+                        ('rotor_drag.coefficient', 0.3)):
+        assert abs(found[name].value - value) < 4 * found[name].std < 0.2 * value
+
+
+def test_what_a_hover_does_not_show_is_undetermined_and_stays():
+    record = fly_closed_loop(VEHICLE, {}, 'hover', duration=10.0, seed=1, noise=WHITE)
+    found = fit([record], VEHICLE, ['thrust_coefficient', 'rotational_drag', 'body_drag'])
+    parts = by_name(found)
+    assert parts['thrust_coefficient'].status == 'determined'
+    for name in ('rotational_drag_x', 'rotational_drag_z', 'body_drag.horizontal'):
+        assert parts[name].status != 'determined'
+        assert any(name in line for line in found.findings)
+    vehicle = fitted_vehicle(found)
+    assert vehicle.rotational_drag == pytest.approx((0.0, 0.0, 0.0), abs=1e-9)
+
+
+def test_a_parameter_that_no_flight_shows_is_alone_undetermined():
+    record = fly_closed_loop(VEHICLE, {}, 'hover', duration=10.0, seed=1)
+    found = fit([record], VEHICLE, ['torque_coefficient', 'inertia_z'])
+    assert all(parameter.status == 'undetermined' for parameter in found.parameters)
+
+
+def test_one_clock_that_is_late_biases_nothing(problem):
+    record, truth = problem.draw(3), dict(zip(KNOWN_MASS, problem.truth, strict=True))
+    late = {name: record.columns[name][:-2] if name in STATES[:10] else values[2:]
+            for name, values in record.columns.items()}
+    shifted = dataclasses.replace(record, t=record.t[2:], columns=late)
+    for parameter in fit([shifted], problem.start(3), KNOWN_MASS).parameters:
+        assert abs(parameter.value - truth[parameter.name]) < 4 * parameter.std
+
+
+def test_outliers_hardly_move_the_estimate(problem):
+    record = problem.draw(4)
+    columns = {name: np.array(column) for name, column in record.columns.items()}
+    columns['px'][::97] += 1.0
+    spoilt = dataclasses.replace(record, columns=columns)
+    clean, found = (fit([each], problem.start(4), KNOWN_MASS) for each in (record, spoilt))
+    assert np.all(np.abs(values(found) - values(clean)) < 1.5 * values(clean, 'std'))
+
+
+def test_the_slopes_are_differences_of_the_errors(problem):
+    flight = flight_of(problem.clean, VEHICLE)
+    z, starts = nominal(VEHICLE), flight.states[flight.first]
+    columns = [INDEX[name] for name in (*NAMES, 'motor_lag.time_constant', 'wind.x')]
+    linear = linearise(flight, VEHICLE, z, starts, columns, NOISE, clock=False)
+    for k, column in enumerate(columns):
+        step = np.zeros(len(z))
+        step[column] = 1e-3 * abs(z[column]) or 1e-4
+        change = (errors_along(flight, VEHICLE, z, starts)
+                  - errors_along(flight, VEHICLE, z + step, starts)) / step[column]
+        expected = (change / NOISE).reshape(len(starts), -1)
+        size = np.abs(expected).max()
+        np.testing.assert_allclose(linear.whole_slope[..., k], expected, atol=0.01 * size)
+    # The initial states explain nothing of what is left.
+    across = linear.basis.transpose(0, 2, 1) @ linear.slope
+    assert np.abs(across).max() < 1e-9 * np.abs(linear.whole_slope).max()
+
+
+def test_moved_undoes_difference():
+    random = np.random.default_rng(0)
+    states = random.normal(size=(50, 13))
+    states[:, 6:10] /= np.linalg.norm(states[:, 6:10], axis=1, keepdims=True)
+    change = random.normal(size=(50, 12)) * np.where(np.arange(50) % 2, 1.0, 1e-5)[:, None]
+    np.testing.assert_allclose(difference(moved(states, change), states), change, atol=1e-12)
+
+
+def test_white_noise_widens_no_interval_but_by_the_chance_that_is_stated():
+    random, count, blocks = np.random.default_rng(1), 4000, 12
+    wide = 0
+    for _ in range(count):
+        scores = random.normal(size=(blocks, 1))
+        wide += scatter_of(Normal(np.array([[float(blocks)]]), scores.sum(axis=0), 0.0,
+                                  scores))[0] > 1.0
+    assert wide / count == pytest.approx(CHANCE, abs=4 * np.sqrt(CHANCE / count))
+    hanging = np.full((blocks, 1), 3.0) * np.where(np.arange(blocks) % 2, 1.0, -1.0)[:, None]
+    assert scatter_of(Normal(np.array([[float(blocks)]]), np.zeros(1), 0.0, hanging))[0] > 9.0
+
+
+def test_freedoms_of_a_matrix_that_is_known():
+    slope = np.array([[1e3, -1e3, 0.0, 0.0], [0.0, 0.0, 0.0, 50.0]])
+    left = freedoms(slope.T @ slope, np.array([2.0, 2.0, 0.0, 1.0]), np.full(4, 0.1))
+    assert sorted(freedom.members for freedom in left) == [(0, 1), (2,)]
+    assert [freedom.scale for freedom in left if freedom.members == (0, 1)] == [True]
+
+
+@pytest.mark.parametrize(('names', 'said'), [
+    (['mass', 'mass_offset'], 'same physical number'),
+    (['inertia', 'inertia_mismatch.factor_y'], 'same physical number'),
+    (['thrust_scale', 'thrust_coefficient'], 'same physical number'),
+    (['masss'], "did you mean 'mass'"), (['gravity'], 'not known here'), ([], 'names nothing')])
+def test_names_that_cannot_be_freed_are_refused(problem, names, said):
+    with pytest.raises(InputError, match=said):
+        fit([problem.clean], VEHICLE, names)
+
+
+def test_the_command_writes_table_data_and_vehicle(problem, tmp_path, capsys):
+    flight, vehicle = tmp_path / 'flight.csv', tmp_path / 'vehicle.yaml'
+    write_csv(flight, problem.draw(1))
+    write_vehicle(vehicle, problem.start(1))
+    out, data = tmp_path / 'out.yaml', tmp_path / 'fit.json'
+    assert main(['fit', str(flight), '--vehicle', str(vehicle), '--free',
+                 'inertia,thrust_coefficient, torque_coefficient,linear_drag_x,linear_drag_y',
+                 '--out-vehicle', str(out), '--json', str(data)]) == 0
+    shown = capsys.readouterr().out
+    written, found = json.loads(data.read_text()), load_vehicle(out)
+    assert found.mass == 1.0
+    for name, place in (('inertia_x', found.inertia[0]), ('linear_drag_y', found.linear_drag[1]),
+                        ('thrust_coefficient', found.thrust_coefficient)):
+        assert name in shown
+        assert written['parameters'][name]['value'] == place
+    assert np.shape(written['covariance']['matrix']) == (7, 7)
+    assert written['noise']['flight']['rate']['std'] == pytest.approx([0.02] * 3, rel=0.1)
+    assert written == as_data(fit([problem.draw(1)], load_vehicle(vehicle), KNOWN_MASS)) | {
+        'flights': ['flight'], 'noise': written['noise']}
+
+
+def test_the_command_refuses_in_one_line(problem, tmp_path, capsys):
+    flight = tmp_path / 'short.csv'
+    write_csv(flight, problem.clean.slice(0, 20))
+    assert main(['fit', str(flight), '--vehicle', 'paper_quadrotor', '--free', 'mass']) == 2
+    assert capsys.readouterr().err.count('\n') == 1
