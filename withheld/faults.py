@@ -15,9 +15,8 @@ class Faults:
     """
     What is wrong with a record.
 
-    repeat: rows per command, where the record is faster than the commands; lost: share of the
-    rows; offset s and drift (s/s) of the clock of the states against that of the commands;
-    glitches: share of the rows whose attitude jumps; voltage: whether it is recorded.
+    lost: share of the rows; offset s and drift (s/s) of the clock of the states against that of
+    the commands; glitches: share of the rows whose attitude jumps; voltage: whether it is there.
     """
 
     lost: float = 0.0

@@ -21,7 +21,8 @@ from withheld.seal import seal
 from withheld.sensors import Noise
 from withheld.vehicles import nominal_file, vehicle_of, yaw_authority
 
-STEP = 0.01         # s, of the controller
+STEP = 0.01         # s, of the controller and of the record
+RATES = (50.0, 100.0, 100.0, 200.0, 200.0, 500.0)      # Hz, of faulty records
 ATTEMPTS = 8
 
 
@@ -42,8 +43,9 @@ def make_case(case, part, flights, seconds, folder, rng):
 def _attempt(case, part, flights, seconds, folder, rng):
     drag = bool(rng.random() < 0.5) or 'wind' in case.effects
     params = vehicle_of(part, case.vehicle, rng, drag)
-    noise = Noise()
+    noise, step = Noise(), STEP
     if case.faulty:
+        step = 1.0 / rng.choice(RATES)
         noise = replace(noise, correlation=rng.uniform(0.05, 0.3), bias=0.5)
     paths = [_path(case, params, part, rng) for _ in range(flights)]
     trial, seed = paths[0], int(rng.integers(2 ** 31))
@@ -61,7 +63,7 @@ def _attempt(case, part, flights, seconds, folder, rng):
         stranger, strengths[kind] = (kind, size), reached
     world = World(params, shapes, sizes, stranger, draws, fall=rng.uniform(0.005, 0.05))
     voltage = rng.uniform(3.7, 16.8)
-    flown = [world.fly(path, seconds, STEP, noise, rng, voltage) for path in paths]
+    flown = [world.fly(path, seconds, step, noise, rng, voltage) for path in paths]
     folder.mkdir()
     for number, one in enumerate(flown, 1):
         wrong = draw_faults(rng) if case.faulty else Faults()
@@ -69,7 +71,7 @@ def _attempt(case, part, flights, seconds, folder, rng):
     (folder / 'vehicle.yaml').write_text(nominal_file(params, folder.name))
     exact, alone, before = gaps_of(flown[-1], params)
     return {
-        'kind': case.kind, 'period': STEP, 'faulty': case.faulty, 'vehicle': case.vehicle,
+        'kind': case.kind, 'period': step, 'faulty': case.faulty, 'vehicle': case.vehicle,
         'effects': {name: {'asked': case.effects[name], 'strength': strengths[name],
                            'parameters': world.effects[name]} for name in case.effects},
         'stranger': None if stranger is None else {

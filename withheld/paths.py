@@ -2,7 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Where the vehicles are told to fly, in the form of rotorpy's trajectories."""
 
-import cvxopt
+import contextlib
+import io
+
 import numpy as np
 from rotorpy.trajectories.minsnap import MinSnap
 
@@ -54,9 +56,10 @@ class Waypoints:
 
     def __init__(self, rng, size, acceleration, low, turn):
         """Draw the places and find the path."""
-        cvxopt.solvers.options['show_progress'] = False
         places = rng.uniform([-1.0, -1.0, -0.5], [1.0, 1.0, 0.5], (self.POINTS, 3))
-        self.inner = MinSnap(places, yaw_angles=rng.uniform(-1.0, 1.0, self.POINTS), v_avg=1.0)
+        headings = rng.uniform(-1.0, 1.0, self.POINTS)
+        with contextlib.redirect_stdout(io.StringIO()):     # its solver talks
+            self.inner = MinSnap(places, yaw_angles=headings, v_avg=1.0)
         shown = [self.inner.update(t) for t in np.arange(0.0, self.inner.t_keyframes[-1], 0.02)]
         fast = np.sqrt(np.mean([part['x_ddot'][:2] ** 2 for part in shown]))
         self.pace = float(np.sqrt(acceleration / (size * fast)))

@@ -74,7 +74,13 @@ def judge(label, found):
 
 
 def _closed(label, found):
-    """Return the share of the closable gap that was closed, velocity on the held-out flight."""
+    """
+    Return the share of the closable gap that was closed, velocity on the held-out flight.
+
+    With faults it is their own: what the records' faults leave of the gap is theirs to know.
+    """
+    if label['faulty']:
+        return None if label['stranger'] else (found.get('gap') or {}).get('closed')
     held = label['held_out']
     before, noise = held['before']['velocity'], held['noise']['velocity']
     after = (found.get('gap') or {}).get('after', {}).get('velocity')
