@@ -30,7 +30,7 @@ class Sines:
             limit = (size, size, 0.5 * size, 2.0)[axis]
             self.sizes[axis] *= min(1.0, limit / extent)
         self.middle = np.array([0.0, 0.0, 0.0, rng.uniform(-3.0, 3.0)])
-        t = np.arange(0.0, 40.0, 0.02)
+        t = np.arange(0.0, 20.0, 0.02)      # the flights
         self.middle[2] = low - min(self._sum(x)[0][2] for x in t)
 
     def _sum(self, t):
@@ -52,7 +52,8 @@ class Waypoints:
     Args as of Sines.
     """
 
-    POINTS = 42
+    POINTS = 24
+    FLOWN = 20.0        # s in which it comes down to the lowest height
 
     def __init__(self, rng, size, acceleration, low, turn):
         """Draw the places and find the path."""
@@ -65,7 +66,8 @@ class Waypoints:
         self.pace = float(np.sqrt(acceleration / (size * fast)))
         most = max(abs(part['yaw_ddot']) for part in shown) * self.pace ** 2
         self.scale = np.array([size, size, size, min(1.5, 2.0 * turn / most)])
-        self.middle = np.array([0.0, 0.0, low - size * min(part['x'][2] for part in shown),
+        flown = shown[:int(self.FLOWN * self.pace / 0.02)]
+        self.middle = np.array([0.0, 0.0, low - size * min(part['x'][2] for part in flown),
                                 rng.uniform(-3.0, 3.0)])
 
     def update(self, t):

@@ -106,7 +106,7 @@ def gaps_of(flown, params):
 
 def size_of(world_of, strength, largest, path, noise, seed):
     """
-    Return the size at which the gap is `strength` times the noise's, and the strength reached.
+    Return the size at which the gap is `strength` times the noise's, as near as it can be.
 
     Args: world_of(size) a World; largest size that may be; path of the trial flights.
     """
@@ -128,4 +128,4 @@ def size_of(world_of, strength, largest, path, noise, seed):
         size = min(largest, size * np.clip(strength / reached, 0.1, 10.0))
     if best is None:
         raise Lost
-    return best
+    return best[0]
