@@ -25,7 +25,6 @@ STEP = 0.01         # s, of the controller and of the record
 RATES = (50.0, 100.0, 100.0, 200.0, 200.0, 500.0)      # Hz, of faulty records
 ATTEMPTS = 8
 MOST = 30.0         # the largest size of an effect that has no limit of its own
-MENDS, NEAR = 4, 0.15       # flights to mend a size with, and how near to the strength is near
 
 
 def make_case(case, part, flights, seconds, folder, rng):
@@ -50,23 +49,25 @@ def _attempt(case, part, flights, seconds, folder, rng):
         step = 1.0 / rng.choice(RATES)
         noise = replace(noise, correlation=rng.uniform(0.05, 0.3), bias=0.5)
     paths = [_path(case, params, part, rng) for _ in range(flights)]
-    trial, seed = paths[0], int(rng.integers(2 ** 31))
+    seed, voltage = int(rng.integers(2 ** 31)), rng.uniform(3.7, 16.8)
     shapes = {name: shape_of(name, params, rng) for name in case.effects}
-    sizes, draws, fall = {}, int(rng.integers(2 ** 31)), rng.uniform(0.005, 0.05)
+    sizes, reached, draws, fall = {}, {}, int(rng.integers(2 ** 31)), rng.uniform(0.005, 0.05)
 
     def world_of(sizes):
         inside = {name: size for name, size in sizes.items() if name in shapes}
         outside = [item for item in sizes.items() if item[0] not in shapes]
         return World(params, shapes, inside, outside[0] if outside else None, draws, fall)
 
-    asked = dict(case.effects) if case.stranger is None else dict([case.stranger])
+    def held_out(sizes):
+        return world_of(sizes).fly(paths[-1], seconds, step, noise, np.random.default_rng(seed),
+                                   voltage)
+
+    asked = case.effects if case.stranger is None else dict([case.stranger])
     for name, strength in asked.items():
-        sizes[name] = size_of(lambda size, name=name: world_of({name: size}), strength,
-                              LARGEST.get(name, MOST), trial, noise, seed)
-    voltage = rng.uniform(3.7, 16.8)
-    last, reached = _adjusted(world_of, sizes, asked, lambda world: world.fly(
-        paths[-1], seconds, step, noise, np.random.default_rng(seed), voltage), params)
-    world = world_of(sizes)
+        sizes[name], reached[name] = size_of(
+            lambda size, name=name: held_out({name: size}), params, strength,
+            LARGEST.get(name, MOST))
+    world, last = world_of(sizes), held_out(sizes)
     flown = [world.fly(path, seconds, step, noise, rng, voltage) for path in paths[:-1]] + [last]
     folder.mkdir()
     for number, one in enumerate(flown, 1):
@@ -82,27 +83,6 @@ def _attempt(case, part, flights, seconds, folder, rng):
             'kind': case.stranger[0], 'asked': case.stranger[1],
             'strength': reached[case.stranger[0]]},
         'held_out': {'exact': exact, 'noise': alone, 'before': before}}
-
-
-def _adjusted(world_of, sizes, asked, flown_of, params):
-    """
-    Return the held-out flight and {name: strength reached}; alone, an effect's size is mended.
-
-    What depends on time or place is not in a short trial as it is in the flight itself.
-    """
-    for attempt in range(MENDS):
-        last = flown_of(world_of(sizes))
-        exact, alone, _ = gaps_of(last, params)
-        if len(asked) != 1:
-            return last, dict(asked)
-        (name, strength), = asked.items()
-        reached = exact['velocity'] / alone['velocity']
-        most = LARGEST.get(name, MOST)
-        if abs(reached / strength - 1.0) < NEAR or (sizes[name] >= most and reached < strength):
-            break
-        if attempt < MENDS - 1:
-            sizes[name] = min(most, sizes[name] * float(np.clip(strength / reached, 0.2, 5.0)))
-    return last, {name: reached}
 
 
 def _path(case, params, part, rng):

@@ -10,9 +10,8 @@ from withheld.nominal import Nominal, nominal_errors, rms
 from withheld.plant import Reality
 from withheld.vehicles import GRAVITY, hover_speed
 
-TRIAL = 6.0         # s of a flight that a size is tried on
 TRIES = 5
-CLOSE = 0.08        # of the strength that was asked for
+CLOSE = 0.1        # of the strength that was asked for
 
 
 def shape_of(name, params, rng):
@@ -104,28 +103,27 @@ def gaps_of(flown, params):
     return rms(exact), rms(measured - exact), rms(measured)
 
 
-def size_of(world_of, strength, largest, path, noise, seed):
+def size_of(flown_of, params, strength, largest):
     """
-    Return the size at which the gap is `strength` times the noise's, as near as it can be.
+    Return the size at which the gap is `strength` times the noise's, and the strength reached.
 
-    Args: world_of(size) a World; largest size that may be; path of the trial flights.
+    Args: flown_of(size) the Flown, or raises Lost; largest size that may be. Raises Lost where
+    none of the sizes tried can be flown.
     """
     size, best = min(strength, largest), None
     for _ in range(TRIES):
-        world = world_of(size)
         try:
-            flown = world.fly(path, TRIAL, 0.01, noise, np.random.default_rng(seed), 12.6)
+            gap, alone, _ = gaps_of(flown_of(size), params)
         except Lost:
             largest = 0.7 * size
             size = 0.5 * size
             continue
-        gap, alone, _ = gaps_of(flown, world.params)
         reached = gap['velocity'] / alone['velocity']
         if best is None or abs(np.log(reached / strength)) < abs(np.log(best[1] / strength)):
             best = size, reached
         if abs(reached / strength - 1.0) < CLOSE or (size >= largest and reached < strength):
             break
-        size = min(largest, size * np.clip(strength / reached, 0.1, 10.0))
+        size = min(largest, size * float(np.clip(strength / reached, 0.1, 10.0)))
     if best is None:
         raise Lost
-    return best[0]
+    return best
