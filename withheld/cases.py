@@ -51,6 +51,9 @@ def quick_set(rng):
     cases += [Case('mixture', _several(3, rng), i % VEHICLES) for i in range(3)]
     cases += [Case('unknown', {}, i % VEHICLES, (kind, (1.0, 3.0)[i % 2]))
               for i, kind in enumerate(STRANGERS)]
+    cases += [Case('single', {str(name): 3.0}, i % VEHICLES, faulty=True)
+              for i, name in enumerate(rng.choice(EFFECTS, 6, replace=False))]
+    cases += [Case('none', {}, i, faulty=True) for i in range(VEHICLES)]
     return [cases[k] for k in rng.permutation(len(cases))]
 
 

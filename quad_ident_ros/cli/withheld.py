@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """`quad_ident withheld`: the check on flights whose effects are withheld, in a checkout."""
 
-import argparse
 import importlib.util
 import os
 from pathlib import Path
@@ -16,10 +15,11 @@ ROOT = Path(__file__).resolve().parents[2]
 
 def add(commands):
     """Add the command to the parser."""
+    # No argument begins with this: all of them go on to the check as they are.
     parser = commands.add_parser(
-        'withheld', add_help=False,
+        'withheld', add_help=False, prefix_chars='\0',
         help='check the diagnosis on flights whose effects are withheld from it')
-    parser.add_argument('arguments', nargs=argparse.REMAINDER)
+    parser.add_argument('arguments', nargs='*')
     parser.set_defaults(run=run)
 
 
@@ -28,7 +28,8 @@ def run(options):
     if not (ROOT / 'withheld' / '__main__.py').is_file():
         raise InputError('the check is not installed with the package: get the source of '
                          'quad_ident_ros and start it there as `./run withheld`')
-    if importlib.util.find_spec('rotorpy') is None:
+    asks = {'-h', '--help'} & set(options.arguments)
+    if not asks and importlib.util.find_spec('rotorpy') is None:
         raise InputError('the check flies with rotorpy, which is not here: start it as '
                          '`./run withheld`, which installs it beside .venv')
     search = os.pathsep.join([str(ROOT), *filter(None, [os.environ.get('PYTHONPATH')])])

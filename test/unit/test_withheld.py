@@ -255,6 +255,13 @@ def test_a_run_is_kept_in_the_document(tmp_path):
     assert text.startswith('# Runs\n') and text.count('1 cases, seed 7') == 2
 
 
+def test_the_command_hands_its_arguments_on(capfd):
+    from quad_ident_ros.cli.main import main
+    assert main(['withheld', '--help']) == 0
+    assert '--count' in capfd.readouterr().out
+    assert main(['withheld', '--set', 'evaluation', '-h']) == 0
+
+
 def test_the_command_says_what_is_missing(tmp_path, monkeypatch, capsys):
     from quad_ident_ros.cli import withheld as command
     from quad_ident_ros.cli.main import main
