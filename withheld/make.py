@@ -4,7 +4,7 @@
 
 import argparse
 from concurrent.futures import as_completed, ProcessPoolExecutor
-from dataclasses import replace
+from dataclasses import asdict, replace
 import os
 from pathlib import Path
 import secrets
@@ -69,9 +69,9 @@ def _attempt(case, part, flights, seconds, folder, rng):
             LARGEST.get(name, MOST))
     world, last = world_of(sizes), held_out(sizes)
     flown = [world.fly(path, seconds, step, noise, rng, voltage) for path in paths[:-1]] + [last]
+    faults = [draw_faults(rng) if case.faulty else Faults() for _ in flown]
     folder.mkdir()
-    for number, one in enumerate(flown, 1):
-        wrong = draw_faults(rng) if case.faulty else Faults()
+    for number, (one, wrong) in enumerate(zip(flown, faults, strict=True), 1):
         (folder / f'flight_{number}.csv').write_text(csv_text(record_of(one, wrong, rng)))
     (folder / 'vehicle.yaml').write_text(nominal_file(params, folder.name))
     exact, alone, before = gaps_of(last, params)
@@ -82,6 +82,7 @@ def _attempt(case, part, flights, seconds, folder, rng):
         'stranger': None if case.stranger is None else {
             'kind': case.stranger[0], 'asked': case.stranger[1],
             'strength': reached[case.stranger[0]]},
+        'faults': [asdict(one) for one in faults],
         'held_out': {'exact': exact, 'noise': alone, 'before': before}}
 
 
