@@ -61,7 +61,8 @@ def main(arguments=None):
     try:
         opened, found = run(options, work)
         result = score(opened['labels'], found) | {
-            'set': options.set, 'seed': opened['seed'], 'version': _version()}
+            'set': options.set, 'seed': opened['seed'], 'version': _version(),
+            'not_flown': opened['not_flown']}
         if options.keep:
             (work / 'labels.json').write_text(json.dumps(opened, indent=1), encoding='utf-8')
             shutil.copytree(work, options.keep)
@@ -69,6 +70,8 @@ def main(arguments=None):
         shutil.rmtree(work)
     if options.json != '-':
         print(markdown(result))
+        for line in result['not_flown']:
+            print(f'not flown: {line}', file=sys.stderr)
     if options.json == '-':
         print(json.dumps(result, indent=1))
     elif options.json:

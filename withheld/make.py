@@ -27,6 +27,10 @@ ATTEMPTS = 8
 MOST = 30.0         # the largest size of an effect that has no limit of its own
 
 
+class Unflyable(Exception):
+    """No vehicle stays on its path with what was asked for."""
+
+
 def make_case(case, part, flights, seconds, folder, rng):
     """
     Write the records and the vehicle file of a case into a folder and return its label.
@@ -38,7 +42,7 @@ def make_case(case, part, flights, seconds, folder, rng):
             return _attempt(case, part, flights, seconds, Path(folder), rng)
         except Lost:
             continue
-    raise RuntimeError(f'no vehicle stays on its path with {case}')
+    raise Unflyable(f'no vehicle stays on its path with {case}')
 
 
 def _attempt(case, part, flights, seconds, folder, rng):
@@ -100,7 +104,9 @@ def _path(case, params, part, rng):
 
 def make_set(name, count, seed, jobs, folder, on_case=lambda done, total: None):
     """
-    Write the cases of a set into `folder`, each in one with a random name, and return the labels.
+    Write the cases of a set into `folder`, each in one with a random name.
+
+    Returns the labels, and what could not be flown.
 
     Args: name of SETS; count: only the first so many cases, or None; seed: what is drawn depends
     on it alone; jobs: processes; on_case is called after each case.
@@ -108,15 +114,18 @@ def make_set(name, count, seed, jobs, folder, on_case=lambda done, total: None):
     chosen = SETS[name]
     cases = chosen.cases(np.random.default_rng(seed))[:count]
     names = [secrets.token_hex(6) for _ in cases]
-    labels = {}
+    labels, not_flown = {}, []
     with ProcessPoolExecutor(jobs) as pool:
         waiting = {pool.submit(make_case, case, chosen.part, chosen.flights, chosen.seconds,
                                Path(folder) / names[k], np.random.default_rng([seed, k])): names[k]
                    for k, case in enumerate(cases)}
         for done in as_completed(waiting):
-            labels[waiting[done]] = done.result()
-            on_case(len(labels), len(cases))
-    return labels
+            try:
+                labels[waiting[done]] = done.result()
+            except Unflyable as error:
+                not_flown.append(str(error))
+            on_case(len(labels) + len(not_flown), len(cases))
+    return labels, not_flown
 
 
 def main(arguments=None):
@@ -131,9 +140,9 @@ def main(arguments=None):
     parser.add_argument('--jobs', type=int, default=1)
     options = parser.parse_args(arguments)
     seed = secrets.randbits(48) if options.seed is None else options.seed
-    labels = make_set(options.set, options.count, seed, options.jobs, options.flights,
-                      lambda done, total: print(done, total, flush=True))
-    sealed, key = seal({'seed': seed, 'labels': labels})
+    labels, not_flown = make_set(options.set, options.count, seed, options.jobs, options.flights,
+                                 lambda done, total: print(done, total, flush=True))
+    sealed, key = seal({'seed': seed, 'labels': labels, 'not_flown': not_flown})
     Path(options.sealed).write_bytes(sealed)
     with os.fdopen(options.key, 'wb') as pipe:
         pipe.write(key)
