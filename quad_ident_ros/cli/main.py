@@ -18,10 +18,11 @@ from quad_ident_ros.cli import (
     paper,
     simulate,
     warm_up,
+    withheld,
 )
 from quad_ident_ros.errors import InputError
 
-COMMANDS = (demo, simulate, fly, identify, fit, diagnose, info, convert, paper, node,
+COMMANDS = (demo, simulate, fly, identify, fit, diagnose, info, convert, paper, withheld, node,
             warm_up)
 
 EPILOG = """\

@@ -1,0 +1,271 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What the withheld check counts, and that its labels stay sealed. No reality is flown."""
+
+import copy
+import json
+import os
+from pathlib import Path
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from quad_ident_ros.effects.registry import EFFECTS as OURS
+from withheld import score as scores
+from withheld.cases import EFFECTS, full_set, quick_set, STRENGTHS, VEHICLES
+from withheld.seal import Broken, seal, unseal
+from withheld.table import markdown
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def label(effects=(), stranger=None, kind='single', faulty=False, values=None):
+    return {'kind': kind, 'faulty': faulty, 'vehicle': 0, 'period': 0.01,
+            'effects': {name: {'asked': 1.0, 'strength': 1.0,
+                               'parameters': (values or {}).get(name, {})} for name in effects},
+            'stranger': stranger and {'kind': stranger, 'asked': 3.0, 'strength': 3.0},
+            'held_out': {'exact': {'velocity': 0.3}, 'noise': {'velocity': 0.1},
+                         'before': {'velocity': 0.3}}}
+
+
+def diagnosis(*verdict, probability=1.0, after=0.1, doubts=None, parameters=None):
+    names = [name for name in (doubts or verdict) if name in EFFECTS]
+    return {'verdict': list(verdict), 'undetermined': doubts, 'seconds': 1.0,
+            'ranking': [{'effect': name, 'probability': probability,
+                         'parameters': (parameters or {}).get(name, {})} for name in names],
+            'gap': {'before': {'velocity': 0.3}, 'after': {'velocity': after}}}
+
+
+def test_the_vocabulary_is_that_of_the_project():
+    assert set(EFFECTS) == set(OURS)
+
+
+def test_the_full_set_has_every_effect_at_every_strength_on_every_vehicle():
+    cases = full_set(np.random.default_rng(1))
+    singles = {(*case.effects.items(), case.vehicle) for case in cases
+               if case.kind == 'single' and not case.faulty}
+    assert singles == {((name, strength), vehicle) for name in EFFECTS for strength in STRENGTHS
+                       for vehicle in range(VEHICLES)}
+    assert len(cases) >= 200
+    assert sum(case.kind == 'none' and not case.faulty for case in cases) >= 20
+    sizes = {len(case.effects) for case in cases if case.kind == 'mixture'}
+    assert sizes == {3, 4, 5}
+    assert {case.kind for case in cases if case.faulty} == {'single', 'none', 'pair', 'mixture',
+                                                            'unknown'}
+
+
+def test_the_order_of_the_cases_tells_nothing():
+    first, second = (full_set(np.random.default_rng(seed)) for seed in (1, 2))
+    assert first != second
+    assert quick_set(np.random.default_rng(1)) == quick_set(np.random.default_rng(1))
+
+
+def test_an_exact_set_has_no_more_and_no_less():
+    truth = label(['wind', 'motor_lag'], kind='pair')
+    assert scores.judge(truth, diagnosis('motor_lag', 'wind'))['exact']
+    assert not scores.judge(truth, diagnosis('wind'))['exact']
+    assert not scores.judge(truth, diagnosis('motor_lag', 'wind', 'inflow'))['exact']
+    assert not scores.judge(truth, diagnosis('motor_lag', 'wind', 'unknown'))['exact']
+
+
+def test_precision_and_recall_of_a_mixture():
+    row = scores.judge(label(['wind', 'motor_lag', 'inflow'], kind='mixture'),
+                       diagnosis('motor_lag', 'wind', 'body_drag', 'gyro_bias'))
+    assert row['precision'] == 0.5
+    assert row['recall'] == pytest.approx(2 / 3)
+
+
+@pytest.mark.parametrize('verdict', [['wind'], ['unknown'], ['undetermined']])
+def test_anything_but_none_is_a_false_alarm(verdict):
+    assert scores.judge(label(kind='none'), diagnosis(*verdict))['alarm']
+
+
+def test_none_is_no_false_alarm():
+    row = scores.judge(label(kind='none'), diagnosis('none'))
+    assert row['alarm'] is False and row['exact']
+
+
+def test_unknown_has_to_be_said_and_only_where_it_is():
+    labels = {'a': label(stranger='slosh', kind='unknown'), 'b': label(['wind'])}
+    found = {'a': diagnosis('unknown'), 'b': diagnosis('wind', 'unknown')}
+    result = scores.score(labels, found)
+    assert result['groups']['unknown']['unknown'] == {'rate': 1.0, 'count': 1}
+    assert result['unknown_falsely_claimed'] == {'rate': 1.0, 'count': 1}
+
+
+def test_doubt_is_right_only_where_the_records_cannot_tell():
+    doubt = diagnosis('undetermined', doubts=['mass_offset', 'thrust_scale'])
+    assert scores.judge(label(['mass_offset'], kind='poor'), doubt)['exact']
+    assert not scores.judge(label(['mass_offset']), doubt)['exact']
+    assert not scores.judge(label(['wind'], kind='poor'), doubt)['exact']
+
+
+@pytest.mark.parametrize(('delay', 'right'), [(0.002, True), (0.03, False)])
+def test_a_delay_is_told_from_a_lag_where_it_outlasts_a_sample(delay, right):
+    truth = label(['actuation_delay'], values={'actuation_delay': {'delay': delay}})
+    doubt = diagnosis('undetermined', doubts=['actuation_delay', 'motor_lag'])
+    assert scores.judge(truth, doubt)['exact'] is right
+
+
+def test_a_refusal_is_in_no_rate_and_a_failure_is_wrong():
+    labels = {name: label(['wind']) for name in 'abc'}
+    found = {'a': {'refused': 'too short'}, 'b': {'failed': 'ZeroDivisionError'}}
+    group = scores.score(labels, found)['groups']['single']
+    assert group['refused'] == {'rate': pytest.approx(1 / 3), 'count': 3}
+    assert group['exact'] == {'rate': 0.0, 'count': 2}
+
+
+@pytest.mark.parametrize(('after', 'share'), [(0.1, 1.0), (0.2, 0.5), (0.3, 0.0), (0.4, -0.5)])
+def test_the_share_closed_counts_from_the_noise(after, share):
+    row = scores.judge(label(['wind']), diagnosis('wind', after=after))
+    assert row['closed'] == pytest.approx(share)
+
+
+def test_where_nothing_can_be_closed_there_is_no_share():
+    truth = label(['wind'])
+    truth['held_out']['before']['velocity'] = 0.102
+    assert scores.judge(truth, diagnosis('wind'))['closed'] is None
+
+
+def test_calibration_is_perfect_where_shares_are_as_given():
+    pairs = [(label(['wind'] if k < 3 else []), diagnosis('wind', probability=0.75))
+             for k in range(4)]
+    found = scores.calibration(pairs)
+    assert found['error'] == pytest.approx(0.0)
+    assert found['brier'] == pytest.approx(0.75 * 0.25 ** 2 + 0.25 * 0.75 ** 2)
+
+
+def test_probabilities_that_are_too_sure_show_as_error():
+    pairs = [(label(['wind'] if k else []), diagnosis('wind', probability=1.0)) for k in range(2)]
+    assert scores.calibration(pairs)['error'] == pytest.approx(0.5)
+
+
+def test_coverage_counts_true_values_inside_their_intervals():
+    truth = label(['wind'], values={'wind': {'x': 1.0, 'y': 2.0}})
+    given = diagnosis('wind', parameters={'wind': {'x': {'value': 1.1, 'std': 0.1},
+                                                   'y': {'value': 2.5, 'std': 0.1}}})
+    assert scores.coverage([(truth, given)])['wind'] == {'rate': 0.5, 'count': 2}
+
+
+def test_chance_is_what_other_diagnoses_would_reach():
+    labels = {'a': label(['wind']), 'b': label(['wind']), 'c': label(['inflow'])}
+    found = {name: diagnosis(*one['effects']) for name, one in labels.items()}
+    assert scores.score(labels, found)['chance'] == {'first': pytest.approx(1 / 3),
+                                                     'exact': pytest.approx(1 / 3)}
+
+
+def test_the_score_does_not_change_what_it_is_given_and_makes_tables():
+    labels = {'a': label(['wind']), 'b': label(kind='none'), 'c': label(stranger='slosh',
+                                                                         kind='unknown'),
+              'd': label(['wind'], faulty=True)}
+    found = {'a': diagnosis('wind'), 'b': diagnosis('none'), 'c': diagnosis('unknown'),
+             'd': {'refused': 'clocks'}}
+    before = copy.deepcopy((labels, found))
+    text = markdown(scores.score(labels, found))
+    assert (labels, found) == before
+    assert '| faulty single | 1 |' in text and '| `wind` |' in text
+
+
+def test_a_seal_opens_with_its_key_alone():
+    labels = {'a': label(['wind'])}
+    sealed, key = seal(labels)
+    assert unseal(sealed, key) == labels
+    _, other = seal(labels)
+    with pytest.raises(Broken):
+        unseal(sealed, other)
+    with pytest.raises(Broken):
+        unseal(sealed, key[:-1])
+
+
+def test_sealed_labels_cannot_be_changed():
+    sealed, key = seal({'a': label(['wind'])})
+    with pytest.raises(Broken):
+        unseal(bytes([sealed[0] ^ 1]) + sealed[1:], key)
+
+
+def test_what_is_sealed_does_not_show():
+    sealed, _ = seal({'a': label(['wind'])})
+    again, _ = seal({'a': label(['wind'])})
+    assert b'wind' not in sealed and sealed != again
+    # Any text of that length fits the sealed bytes with some key: they say nothing but a length.
+    other = json.dumps({'a': label(['wing'])}, sort_keys=True).encode()
+    pad = bytes(a ^ b for a, b in zip(sealed, other, strict=True))
+    assert bytes(a ^ b for a, b in zip(sealed, pad, strict=True)) == other
+
+
+# Stands for the diagnosis: it looks at everything that the process was given.
+SPY = """
+import json, os, sys
+fds = {}
+for name in os.listdir('/proc/self/fd'):
+    try:
+        fds[name] = os.readlink(f'/proc/self/fd/{name}')
+    except OSError:
+        pass
+print(json.dumps({'argv': sys.argv, 'cwd': os.getcwd(), 'env': dict(os.environ), 'fds': fds}))
+"""
+
+
+def test_the_diagnosing_process_is_not_told_where_the_labels_are(tmp_path, monkeypatch):
+    from withheld import __main__ as check
+    flights, found, vault = tmp_path / 'flights', tmp_path / 'found', tmp_path / 'vault'
+    for folder in (flights, found, vault):
+        folder.mkdir()
+    sealed, key = seal({'a': label(['wind'])})
+    (vault / 'labels').write_bytes(sealed)
+    (tmp_path / 'spy.py').write_text(SPY, encoding='utf-8')
+    seen = []
+
+    def spied(command, **options):
+        assert command[1:3] == ['-m', 'withheld.blind']
+        return real([sys.executable, str(tmp_path / 'spy.py'), *command[3:]], **options)
+
+    real = subprocess.Popen
+    read, write = os.pipe()
+    os.write(write, key)
+    os.set_inheritable(read, False)
+    monkeypatch.setattr(check.subprocess, 'Popen', spied)
+    monkeypatch.setattr(check, 'follow', lambda process, *_: seen.append(process.communicate()[0]))
+    with open(vault / 'labels', 'rb'):
+        check.diagnose(flights, found, None)
+    os.close(read)
+    os.close(write)
+    told = json.loads(seen[0])
+    assert told['cwd'] == str(flights)
+    assert told['argv'][1:] == [str(flights), str(found)]
+    assert str(vault) not in seen[0]
+    assert key.hex() not in seen[0]
+    assert {'0', '1', '2'} >= {name for name, target in told['fds'].items()
+                               if not target.startswith('/proc/')}
+
+
+def test_a_run_is_kept_in_the_document(tmp_path):
+    import datetime
+
+    from withheld.__main__ import keep
+    page = tmp_path / 'withheld.md'
+    page.write_text('# Runs\n', encoding='utf-8')
+    result = scores.score({'a': label(['wind'])}, {'a': diagnosis('wind')})
+    for day in (1, 2):
+        keep(page, result | {'version': '0.1.0', 'seed': 7}, datetime.date(2026, 1, day))
+    text = page.read_text(encoding='utf-8')
+    assert text.index('## 2026-01-01') < text.index('## 2026-01-02')
+    assert text.startswith('# Runs\n') and text.count('1 cases, seed 7') == 2
+
+
+def test_the_command_hands_its_arguments_on(capfd):
+    from quad_ident_ros.cli.main import main
+    assert main(['withheld', '--help']) == 0
+    assert '--count' in capfd.readouterr().out
+    assert main(['withheld', '--set', 'evaluation', '-h']) == 0
+
+
+def test_the_command_says_what_is_missing(tmp_path, monkeypatch, capsys):
+    from quad_ident_ros.cli import withheld as command
+    from quad_ident_ros.cli.main import main
+    monkeypatch.setattr(command, 'ROOT', tmp_path)
+    assert main(['withheld']) == 2
+    said = capsys.readouterr().err
+    assert said.count('\n') == 1 and './run withheld' in said

@@ -1,0 +1,163 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Fly realities, diagnose them blindly, open the labels: `./run withheld`."""
+
+import argparse
+import datetime
+import json
+import os
+from pathlib import Path
+import shutil
+import subprocess
+import sys
+import tempfile
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+from withheld.cases import SETS
+from withheld.score import score
+from withheld.seal import unseal
+from withheld.table import markdown
+
+ROOT = Path(__file__).resolve().parents[1]
+DOCUMENT = ROOT / 'docs' / 'withheld.md'
+THREADS = dict.fromkeys(('OMP_NUM_THREADS', 'OPENBLAS_NUM_THREADS', 'MKL_NUM_THREADS'), '1')
+
+DESCRIPTION = """\
+Check the diagnosis on flights whose effects are withheld from it.
+
+One process flies realities with rotorpy and seals what they were; a second one diagnoses the
+flights and cannot open the seal; this one then opens it and prints how often the diagnosis was
+right. The labels on disk are enciphered with a pad that only this process holds in its memory.
+"""
+
+EPILOG = """\
+examples:
+  ./run withheld --set development --count 12    a few cases, to see that it works
+  ./run withheld                                 the evaluation set; adds to docs/withheld.md
+"""
+
+
+def main(arguments=None):
+    """Run the check and return the exit code."""
+    parser = argparse.ArgumentParser(
+        prog='quad_ident withheld', description=DESCRIPTION, epilog=EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument('--set', default='evaluation', choices=SETS,
+                        help='which cases (default: evaluation, to be run once per release)')
+    parser.add_argument('--count', type=_positive, metavar='N', help='only the first N cases')
+    parser.add_argument('--seed', type=_positive, metavar='S',
+                        help='fly this draw again (default: one that nobody knows beforehand)')
+    parser.add_argument('--jobs', type=_positive, default=os.cpu_count(), metavar='N',
+                        help='processes that fly (default: one per core)')
+    parser.add_argument('--keep', metavar='FOLDER',
+                        help='keep flights, diagnoses and opened labels in this new folder')
+    parser.add_argument('--json', metavar='FILE', help='write the score as data; - prints it')
+    options = parser.parse_args(arguments)
+    if options.keep and Path(options.keep).exists():
+        parser.error(f'--keep {options.keep}: it exists already; name a new folder')
+    work = Path(tempfile.mkdtemp(prefix='withheld-'))
+    try:
+        opened, found = run(options, work)
+        result = score(opened['labels'], found) | {
+            'set': options.set, 'seed': opened['seed'], 'version': _version(),
+            'not_flown': opened['not_flown']}
+        if options.keep:
+            (work / 'labels.json').write_text(json.dumps(opened, indent=1), encoding='utf-8')
+            shutil.copytree(work, options.keep)
+    finally:
+        shutil.rmtree(work)
+    if options.json != '-':
+        print(markdown(result))
+        for line in result['not_flown']:
+            print(f'not flown: {line}', file=sys.stderr)
+    if options.json == '-':
+        print(json.dumps(result, indent=1))
+    elif options.json:
+        Path(options.json).write_text(json.dumps(result, indent=1), encoding='utf-8')
+    if options.set == 'evaluation' and options.count is None:
+        keep(DOCUMENT, result, datetime.date.today())
+    return 0
+
+
+def run(options, work):
+    """Fly and diagnose in processes of their own; return the opened labels and the diagnoses."""
+    flights, found = work / 'flights', work / 'found'
+    flights.mkdir()
+    found.mkdir()
+    with tempfile.TemporaryDirectory(prefix='sealed-') as vault, _bar() as bar:
+        sealed = Path(vault) / 'labels'
+        key = fly(options, flights, sealed, bar)
+        diagnose(flights, found, bar)
+        opened = unseal(sealed.read_bytes(), key)
+    return opened, {path.stem: json.loads(path.read_text(encoding='utf-8'))
+                    for path in found.glob('*.json')}
+
+
+def fly(options, flights, sealed, bar):
+    """Have the realities flown; return the key of the sealed labels."""
+    read, write = os.pipe()
+    command = [sys.executable, '-m', 'withheld.make', '--set', options.set, '--flights',
+               str(flights), '--sealed', str(sealed), '--key', str(write),
+               '--jobs', str(options.jobs)]
+    for name in ('count', 'seed'):
+        if getattr(options, name) is not None:
+            command += [f'--{name}', str(getattr(options, name))]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, pass_fds=(write,),
+                               env={**os.environ, **THREADS})
+    os.close(write)
+    follow(process, bar, 'flying realities')
+    with os.fdopen(read, 'rb') as pipe:
+        key = pipe.read()
+    return key
+
+
+def diagnose(flights, found, bar):
+    """Have the flights diagnosed by a process that is told of them and of nothing else."""
+    process = subprocess.Popen(
+        [sys.executable, '-m', 'withheld.blind', str(flights), str(found)],
+        stdout=subprocess.PIPE, text=True, cwd=flights, env={**os.environ, **THREADS})
+    follow(process, bar, 'diagnosing them', sum(1 for _ in flights.iterdir()))
+
+
+def follow(process, bar, title, total=None):
+    """Show the lines of a process as progress; raises CalledProcessError where it fails."""
+    task = bar.add_task(title, total=total)
+    for count, line in enumerate(process.stdout, 1):
+        parts = line.split()
+        bar.update(task, completed=count, total=total or int(parts[-1]))
+    if process.wait():
+        raise subprocess.CalledProcessError(process.returncode, title)
+
+
+def keep(document, result, day):
+    """Append the tables of a run to the document."""
+    text = document.read_text(encoding='utf-8').rstrip('\n')
+    head = (f'## {day}, version {result["version"]}: {result["count"]} cases, '
+            f'seed {result["seed"]}')
+    document.write_text(f'{text}\n\n{head}\n\n{markdown(result)}\n', encoding='utf-8')
+
+
+def _bar():
+    return Progress(TextColumn('{task.description}'), BarColumn(),
+                    TextColumn('{task.completed} of {task.total}'), TimeElapsedColumn(),
+                    console=Console(stderr=True))
+
+
+def _version():
+    from quad_ident_ros import __version__
+    done = subprocess.run(['git', '-C', str(ROOT), 'rev-parse', '--short', 'HEAD'],
+                          capture_output=True, text=True)
+    return f'{__version__} ({done.stdout.strip()})' if done.returncode == 0 else __version__
+
+
+def _positive(text):
+    value = int(text)
+    if value < 1:
+        raise argparse.ArgumentTypeError(f'{text} is less than 1')
+    return value
+
+
+if __name__ == '__main__':
+    sys.exit(main())

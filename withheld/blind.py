@@ -1,0 +1,38 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The diagnosing process: it is told a folder of flights, and knows nothing else of them."""
+
+import json
+from pathlib import Path
+import sys
+import time
+
+from quad_ident_ros.data.csv import read_csv
+from quad_ident_ros.diagnose.diagnosis import diagnose
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.model.vehicle import load_vehicle
+
+
+def main(flights, found):
+    """Diagnose every case in the folder `flights` and write {its name}.json into `found`."""
+    for folder in sorted(path for path in Path(flights).iterdir() if path.is_dir()):
+        target = Path(found) / f'{folder.name}.json'
+        if target.exists():
+            continue
+        begin = time.process_time()
+        try:
+            vehicle = load_vehicle(str(folder / 'vehicle.yaml'))
+            records = [read_csv(path) for path in sorted(folder.glob('flight_*.csv'))]
+            data = diagnose(records, vehicle).data
+        except InputError as error:
+            data = {'refused': str(error)}
+        except Exception as error:
+            # A failure is a result too: it counts as wrong.
+            data = {'failed': f'{type(error).__name__}: {error}'}
+        data['seconds'] = time.process_time() - begin
+        target.write_text(json.dumps(data), encoding='utf-8')
+        print(folder.name, flush=True)
+
+
+if __name__ == '__main__':
+    main(*sys.argv[1:])

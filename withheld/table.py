@@ -1,0 +1,86 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The score as tables in Markdown, for the screen and for docs/withheld.md."""
+
+STRENGTHS = ('0.3', '1', '3')
+
+
+def percent(part):
+    """Return 'rate (count)' of a measure."""
+    if not part or part['rate'] is None:
+        return '-'
+    return f'{100 * part["rate"]:.0f} % ({part["count"]})'
+
+
+def closed(part):
+    """Return median and worst tenth of the share closed."""
+    return '-' if not part else f'{part["median"]:.2f} / {part["tenth"]:.2f} ({part["count"]})'
+
+
+def markdown(found):
+    """Return all tables of a score."""
+    return '\n\n'.join([_groups(found), _claims(found), _effects(found), _coverage(found),
+                        _calibration(found)])
+
+
+def _rows(head, rows):
+    lines = [head, ['---'] * len(head), *rows]
+    return '\n'.join('| ' + ' | '.join(str(cell) for cell in line) + ' |' for line in lines)
+
+
+def _groups(found):
+    rows = [(name, one['count'], percent(one['first']), percent(one['exact']),
+             percent(one['alarm']), percent(one['unknown']),
+             f'{one["undetermined"]} ({one["undetermined_right"]})', percent(one['refused']),
+             percent(one['f1']), closed(one['closed'])) for name, one in found['groups'].items()]
+    chance = found['chance']
+    rows.append(('chance', found['count'], *(
+        '-' if chance[key] is None else f'{100 * chance[key]:.0f} %'
+        for key in ('first', 'exact')), *['-'] * 6))
+    return _rows(('cases (strength)', 'count', 'first', 'exact set', 'false alarm', 'unknown said',
+                  'undetermined (with the truth)', 'refused', 'F1',
+                  'closed: median / worst tenth'), rows)
+
+
+def _claims(found):
+    seconds = found['seconds'] or {'median': 0.0, 'most': 0.0}
+    agrees = found['gap_agrees']
+    return (f'`unknown` claimed where nothing unknown is: '
+            f'{percent(found["unknown_falsely_claimed"])}. A diagnosis took '
+            f'{seconds["median"]:.1f} s of a core (most: {seconds["most"]:.1f} s). The gap before '
+            'any effect, as the diagnosis and as the check reckon it, differs by at most '
+            f'{"-" if agrees is None else f"{100 * agrees:.1f} %"}.')
+
+
+def _effects(found):
+    rows = []
+    for name, by in found['effects'].items():
+        rows.append((f'`{name}`', *(percent(by[s]['first']) if s in by else '-'
+                                    for s in STRENGTHS),
+                     *(percent(by[s]['exact']) if s in by else '-' for s in STRENGTHS),
+                     *(closed(by[s]['closed']) if s in by else '-' for s in STRENGTHS[1:])))
+    return _rows(('effect', *(f'first, {s}' for s in STRENGTHS),
+                  *(f'exact, {s}' for s in STRENGTHS),
+                  *(f'closed, {s}' for s in STRENGTHS[1:])), rows)
+
+
+def _coverage(found):
+    clean, faulty = found['coverage']['clean'], found['coverage']['faulty']
+    names = list(dict.fromkeys([*clean, *faulty]))
+    return _rows(('95 % intervals that hold the truth', 'clean', 'with faults'),
+                 [(name, percent(clean.get(name)), percent(faulty.get(name))) for name in names])
+
+
+def _calibration(found):
+    parts = []
+    for name, one in found['calibration'].items():
+        if one is None:
+            continue
+        parts.append(f'Calibration, {name}: error {one["error"]:.3f}, Brier score '
+                     f'{one["brier"]:.4f} (always the share present: '
+                     f'{one["brier_of_base_rate"]:.4f}), {one["count"]} probabilities.')
+        parts.append(_rows(('probability', 'count', 'mean given', 'present'),
+                           [(f'{row["from"]:g} to {row["to"]:g}', row['count'],
+                             f'{row["given"]:.3f}', f'{row["present"]:.3f}')
+                            for row in one['table']]))
+    return '\n\n'.join(parts)
