@@ -19,13 +19,15 @@ from quad_ident_ros.identify.search import Search, SwarmSettings
 from quad_ident_ros.identify.signals import OUTPUTS, signals
 from quad_ident_ros.identify.space import check_bounds, find_space, literal_space, no_space, SIZE
 from quad_ident_ros.identify.transfer import response, SecondOrder
-from quad_ident_ros.identify.uncertainty import KEYS, Uncertainty, uncertainty
+from quad_ident_ros.identify.uncertainty import KEYS, level_spread, Uncertainty, uncertainty
 
 FIRST_SAMPLE = ('search joint: the level at rest is taken from the first sample, whose noise '
                 'enters the fit')
 POOR = 50.0   # fit %
 FEWEST_FOR_ORDERS = 30   # samples
 UNDETERMINED = 'these data do not determine K, a and b: the information matrix is singular'
+LEVEL = ('the input never changes and the start is free: K cannot be told from the level that the '
+         'output is measured from; its error counts a level off by the range of the output')
 OVERFLOW = 'no model was found that stays finite over the record'
 
 
@@ -214,6 +216,8 @@ def _finish(signal, output, fitted, evaluations, remarks=()):
     tests = examine(signal, signal.y - fit, fitted.noise)
     found = errors(signal.t[signal.measured], signal.y[signal.measured], fit[signal.measured])
     findings = list(_said(model, sure, tests))
+    if sure.errors['K'] and sure.errors['K'] < 2 * level_spread(signal, model):
+        findings.append(LEVEL)
     if not found['fit_percent'] > POOR:
         findings.append('the model explains little of the response (fit '
                         f'{found["fit_percent"]:.0f} %)')
