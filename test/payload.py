@@ -17,9 +17,10 @@ START_NS = 10 ** 12
 @cache
 def climb(payload, noise=0.005, seed=0, length=20.0, dropped=np.inf):
     """
-    Return a flight record in z under a controller with steps, with a payload from PICKED_UP until dropped, s.
+    Return a flight record in z under a controller with steps.
 
-    m z'' = U1 - m g - k z', each sample's held input integrated in 20 steps.
+    The payload is there from PICKED_UP until dropped, s. m z'' = U1 - m g - k z', each sample's
+    held input integrated in 20 steps.
     """
     random = np.random.default_rng(seed)
     count = round(length / PERIOD)
