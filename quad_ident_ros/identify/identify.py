@@ -61,13 +61,20 @@ def collect(records, settings):
     """
     Return the signals of records, one per output (the last record that excites it), and remarks.
 
+    Of several that excite an output a remark says which was taken.
     Raises InputError where no record excites any input.
     """
-    found, remarks = {}, []
-    for record in records:
+    found, sources, remarks = {}, {}, []
+    for number, record in enumerate(records, 1):
         pairs, said = signals(record, trim=settings.trim, initial_state=settings.initial_state)
         found.update({pair.output: pair for pair in pairs})
+        for pair in pairs:
+            sources.setdefault(pair.output, []).append(record.source or f'flight {number}')
         remarks += said
+    for output, (*others, taken) in sources.items():
+        if others:
+            remarks.append(f'{output}: taken from {taken}; {len(others)} other '
+                           f'flight{"s" if len(others) > 1 else ""} that excited it not used')
     still = [remark for remark in remarks if 'does not move' in remark]
     if not found and still:
         raise InputError('; '.join(dict.fromkeys(still)))
@@ -254,7 +261,9 @@ def _described(settings, spaces):
     swarm = {name: getattr(settings.swarm, name) for name in settings.swarm.__dataclass_fields__}
     return {'methods': list(settings.methods), 'seed': settings.seed, 'search': settings.search,
             'box': settings.box, 'poles': settings.poles, 'initial_state': settings.initial_state,
-            'swarm': swarm,
+            'trim': settings.trim and list(settings.trim), 'swarm': swarm,
+            'requested_bounds': {name: bounds and list(bounds) for name, bounds in (
+                ('poles', settings.pole_bounds), ('gain', settings.gain_bounds))},
             'bounds': {name: {'poles': list(space.poles), 'gain': list(space.gain),
                               'evaluations': space.evaluations}
                        for name, space in spaces.items()}}

@@ -35,7 +35,8 @@ COLOURED = 'the noise is coloured: it was modelled, and the fit is the most like
 # The grid, in pole x record length: real poles from growing ones to one per sample, and pairs by
 # frequency and by the ratio of decay to frequency.
 GROWING = (-12.0, -9.5, -7.5, -6.0, -4.5, -3.5, -2.5, -1.5, -0.7, 0.0)
-REAL_RATIO = 3.0
+REAL_RATIO = 3.0        # of one pole to the next,
+REAL_RATIO_FREE = 1.7   # and where the start is not known, whose valleys are narrower
 TURN_RATIO = 1.3
 DECAYS = (0.02, 0.15, 0.6)
 STARTS, MINIMA = 3, 2   # candidates of each kind that are followed down, minima of the grid,
@@ -139,7 +140,8 @@ def _down_from(model, signal):
 def _best(signal, pairs):
     """Return the best Fitted with real poles, or pairs too, and the evaluations spent."""
     unknowns, whole = signal.unknowns, (signal.period, signal.u, signal.y, signal.measured)
-    starts = [_start(*part, *_grid(len(part[1]), pairs), unknowns) for part in _parts(signal)]
+    starts = [_start(*part, *_grid(len(part[1]), pairs, unknowns > 0), unknowns)
+              for part in _parts(signal)]
     spent = sum(start[2] for start in starts)
     c1, c0 = np.array([start[:2] for start in starts]).T
     if len(starts) > 1:
@@ -165,7 +167,7 @@ def _with_other_partners(found, signal, spent):
     while found.model.form != 'complex':
         best = found
         for kept in {found.model.a, found.model.b}:
-            partners = _real_poles(len(signal.y)) / scale
+            partners = _real_poles(len(signal.y), True) / scale
             c1, c0 = kept + partners, kept * partners
             costs = objective.of_poles(c1, c0)[0]
             spent += len(costs)
@@ -255,21 +257,22 @@ def _lowest(costs, neighbours, first, last, minimum):
     return lowest
 
 
-def _real_poles(samples):
-    """Return the poles x T (n,) of the grid for a record of a length T."""
-    steps = int(np.log(samples) / np.log(REAL_RATIO)) + 1
-    return np.array([*GROWING, *REAL_RATIO ** np.arange(steps)])
+def _real_poles(samples, free):
+    """Return the poles x T (n,) of the grid for a record of length T; free: where starts are."""
+    ratio = REAL_RATIO_FREE if free else REAL_RATIO
+    steps = int(np.log(samples) / np.log(ratio)) + 1
+    return np.array([*GROWING, *ratio ** np.arange(steps)])
 
 
 @lru_cache
-def _grid(samples, pairs):
+def _grid(samples, pairs, free):
     """
     Return the candidates for a record of a length T.
 
     How many of them are real, their neighbours (n, 8) in the grid, c1 x T and c0 x T^2 (n,); pairs
     follow where they are wanted.
     """
-    poles = _real_poles(samples)
+    poles = _real_poles(samples, free)
     upper = np.triu_indices(len(poles))
     index = np.zeros((len(poles), len(poles)), int)
     index[upper] = np.arange(len(upper[0]))

@@ -111,8 +111,8 @@ def test_no_start_value_is_needed(form, noise):
 
 @pytest.mark.parametrize('poles', COMPLEX_PENALTY)
 def test_from_a_free_start_no_start_value_is_needed_either(poles):
-    """In at most one of a hundred records a descent from the truth ends lower."""
-    worse, count = [], 300
+    """In less than 1 % of records a descent from the truth ends lower, and by less than 1 %."""
+    worse, count = {}, 300
     random = np.random.default_rng(23)
     for k in range(count):
         if k % 2:
@@ -122,9 +122,10 @@ def test_from_a_free_start_no_start_value_is_needed_either(poles):
         truth = SecondOrder.from_poles(4.0, *np.array(near) / T[-1])
         task = signal(truth, excitation(KINDS[k % len(KINDS)]), (1e-3, 1e-2)[k // 2 % 2], seed=k,
                       initial=tuple(random.normal(size=2)), at_rest=False)
-        if not vp(task, poles).cost <= vp(task, poles, near=truth).cost * (1 + 1e-6):
-            worse.append((k, truth))
-    assert len(worse) <= count // 100, worse
+        ratio = vp(task, poles).cost / vp(task, poles, near=truth).cost
+        if not ratio <= 1 + 1e-6:
+            worse[k] = ratio
+    assert len(worse) < count / 100 and max(worse.values(), default=1.0) < 1.01, worse
 
 
 @pytest.mark.parametrize('name', ['stable', 'complex', 'integrating'])
