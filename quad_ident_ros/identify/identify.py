@@ -69,7 +69,8 @@ def collect(records, settings):
         pairs, said = signals(record, trim=settings.trim, initial_state=settings.initial_state)
         found.update({pair.output: pair for pair in pairs})
         for pair in pairs:
-            sources.setdefault(pair.output, []).append(record.source or f'flight {number}')
+            source = record.info.get('source') or f'flight {number}'
+            sources.setdefault(pair.output, []).append(source)
         remarks += said
     for output, (*others, taken) in sources.items():
         if others:

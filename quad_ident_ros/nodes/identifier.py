@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Node `identifier`: fits K/((s+a)(s+b)) to the records of the recorder."""
 
+from dataclasses import replace
 from datetime import datetime, timezone
 import json
 import sys
@@ -225,7 +226,10 @@ class Identifier(Node):
             if window:
                 records = [record.last(window) for record in records]
             run = identify if tracker is None else tracker.update
-            self._outcome = run(records, settings, on_progress=on_progress)
+            result = run(records, settings, on_progress=on_progress)
+            self._outcome = replace(result, settings={
+                **result.settings, 'window': window,
+                'mode': 'once' if tracker is None else 'continuous'})
         except Cancelled:
             self._outcome = 'cancelled'
         except InputError as error:

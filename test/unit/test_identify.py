@@ -153,6 +153,23 @@ def test_the_last_record_of_an_output_has_the_say():
     assert model.gain == pytest.approx(2.0, rel=1e-6)
 
 
+def test_flights_of_the_same_output_but_the_last_are_named_as_not_used():
+    first, last = (record({'source': name}, phi=second_order(a)) for name, a in
+                   (('first.csv', 2.0), ('last.csv', 3.0)))
+    result = identify([first, last], Settings(methods=('vp',)))
+    assert result.methods['vp'].outputs['phi'].model.a == pytest.approx(3.0, rel=1e-6)
+    assert 'phi: taken from last.csv; 1 other flight that excited it not used' in result.remarks
+    alone = identify([last], Settings(methods=('vp',)))
+    assert not [remark for remark in alone.remarks if 'not used' in remark]
+
+
+def test_what_was_asked_for_is_in_the_data():
+    asked = Settings(methods=('ls',), trim=(0.0, 0.05, 0.0, 0.0), pole_bounds=(-1.0, 9.0))
+    said = as_data(identify([record(phi=second_order())], asked))['settings']
+    assert said['trim'] == [0.0, 0.05, 0.0, 0.0]
+    assert said['requested_bounds'] == {'poles': [-1.0, 9.0], 'gain': None}
+
+
 def test_dropped_samples_of_all_records_are_counted():
     flights = [record({'outputs': ['phi'], 'dropped': 3}, phi=second_order()),
                record({'outputs': ['psi'], 'dropped': 4}, psi=second_order())]
