@@ -10,7 +10,8 @@ from scipy.optimize import minimize
 
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.excitation import excite
-from quad_ident_ros.identify.identify import identify, LEVEL, Settings
+from quad_ident_ros.identify.findings import LEVEL
+from quad_ident_ros.identify.identify import identify, Settings
 from quad_ident_ros.identify.objective import Objective
 from quad_ident_ros.identify.signals import Signal
 from quad_ident_ros.identify.transfer import response, SecondOrder
