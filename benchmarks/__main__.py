@@ -31,7 +31,7 @@ def main(arguments=None):
                         help=f'one of {", ".join(SECTIONS)}; by default all but '
                         f'{" and ".join(APART)}')
     parser.add_argument('--quick', action='store_true',
-                        help='few draws, to see that it works: prints and keeps nothing')
+                        help='few draws, to see that it works: keeps nothing')
     options = parser.parse_args(arguments)
     for name in options.sections:
         if name not in SECTIONS:

@@ -54,7 +54,7 @@ class Problem:
 
     def compiled(self, kernel):
         """Roll out by a compiled kernel into `out`."""
-        kernel(vehicle_vector(self.vehicle), rotor_table(self.vehicle), self.theta[None],
+        kernel(vehicle_vector(self.vehicle)[None], rotor_table(self.vehicle), self.theta[None],
                np.zeros(len(self.x0), np.int64), self.x0, self.t, self.followed, self.speeds,
                self.inputs, self.first, self.samples, 1, self.out)
         return self.out

@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""A vehicle that picks up a payload in flight, simulated."""
+"""A vehicle that picks up a payload in flight and may drop it, simulated."""
 
 from functools import cache
 
@@ -15,11 +15,12 @@ START_NS = 10 ** 12
 
 
 @cache
-def climb(payload, noise=0.005, seed=0, length=20.0):
+def climb(payload, noise=0.005, seed=0, length=20.0, dropped=np.inf):
     """
-    Return a flight record in z under a controller with steps, with a payload from PICKED_UP on.
+    Return a flight record in z under a controller with steps.
 
-    m z'' = U1 - m g - k z', each sample's held input integrated in 20 steps.
+    The payload is there from PICKED_UP until dropped, s. m z'' = U1 - m g - k z', each sample's
+    held input integrated in 20 steps.
     """
     random = np.random.default_rng(seed)
     count = round(length / PERIOD)
@@ -27,7 +28,7 @@ def climb(payload, noise=0.005, seed=0, length=20.0):
     z, rate, target = 0.0, 0.0, 0.0
     heights, thrusts = np.empty(count), np.empty(count)
     for k in range(count):
-        mass = MASS + (payload if t[k] >= PICKED_UP else 0.0)
+        mass = MASS + (payload if PICKED_UP <= t[k] < dropped else 0.0)
         if k % 30 == 0:
             target = random.choice([-1.0, 1.0])
         thrust = MASS * GRAVITY + target - 4.0 * z - 3.0 * rate

@@ -8,6 +8,7 @@ import sys
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn
 
+from quad_ident_ros.data.commands import with_inputs
 from quad_ident_ros.data.load import load_all
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.identify.identify import identify, Settings, with_budget
@@ -39,8 +40,9 @@ def add(commands):
     parser.add_argument('--trim', choices=('record', 'hover', 'zero'), default='record',
                         help='inputs that count as zero: what the record says or its first '
                              "sample (default), the vehicle's weight on U1, or none")
-    parser.add_argument('--vehicle', default='paper_quadrotor',
-                        help='vehicle name or file, for --trim hover')
+    parser.add_argument('--vehicle',
+                        help='vehicle name or file, for --trim hover (default paper_quadrotor) '
+                             'and for flights that have rotor commands cmd1..N and no u1..u4')
     parser.add_argument('--initial-state', choices=('auto', 'rest', 'free'), default='auto',
                         help='free estimates the state at the first sample; auto (default) takes '
                              'rest where the record says so')
@@ -67,7 +69,7 @@ def run(options):
         raise InputError(f'--evaluations: expected at least 1, got {options.evaluations}')
     trim = {'record': None, 'zero': (0.0, 0.0, 0.0, 0.0)}.get(options.trim)
     if options.trim == 'hover':
-        trim = tuple(load_vehicle(options.vehicle).hover_input)
+        trim = tuple(load_vehicle(options.vehicle or 'paper_quadrotor').hover_input)
     settings = Settings(
         methods=tuple(METHODS) if options.method == 'all' else (options.method,),
         seed=options.seed, search=options.search, box=options.box, poles=options.poles,
@@ -75,6 +77,9 @@ def run(options):
         initial_state=options.initial_state, trim=trim)
     settings = with_budget(settings, options.evaluations)
     records = [record for path in options.flights for record in load_all(path)]
+    if options.vehicle:
+        vehicle = load_vehicle(options.vehicle)
+        records = [with_inputs(record, vehicle) for record in records]
     with progress_bar() as bar:
         task = bar.add_task('fitting', total=len(settings.methods))
 

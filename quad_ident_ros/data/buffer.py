@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from quad_ident_ros.data.record import FIRST_SAMPLE_INFO, FlightRecord
-from quad_ident_ros.data.topics import record_columns, run_at
+from quad_ident_ros.data.topics import needed_from, record_columns, run_at
 
 
 @dataclass(frozen=True)
@@ -74,6 +74,8 @@ class RecordBuffer:
                 done += self._end_run()
             elif self._full():
                 done += self.complete(self.limits.overlap)
+        if self._run is not None:
+            self._runs = needed_from(self._runs, self._run)
         return done
 
     def _end_run(self):

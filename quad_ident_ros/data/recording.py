@@ -10,6 +10,7 @@ from quad_ident_ros.data.bag import BagWriter
 from quad_ident_ros.data.csv import CsvAppender
 from quad_ident_ros.data.topics import (
     FLIGHT_TOPICS,
+    needed_from,
     raw_columns,
     record_columns,
     run_at,
@@ -83,6 +84,7 @@ class Recording:
             self._run, self._last = run, row[0]
             flight.append(row)
         self._write_rows(flight)
+        self._runs = needed_from(self._runs, self._run)
 
     def _write_rows(self, rows):
         if not rows:

@@ -149,6 +149,19 @@ class RunNotice:
                 and self.stop_ns < other.stop_ns)
 
 
+def needed_from(runs, now):
+    """
+    Return the notices that rows may still need when those of one of them, or None, are at hand.
+
+    Args: runs: in the order in which they came. One that came later may begin before, where the
+    clock begins anew.
+    """
+    if now is None:
+        return runs
+    place = runs.index(now)
+    return [run for run in runs[:place] if run.stop_ns >= now.start_ns] + runs[place:]
+
+
 def run_at(runs, stamp):
     """Return the notice of the run that a stamp (ns) belongs to, or None."""
     return next((run for run in runs if run.start_ns <= stamp <= run.stop_ns), None)

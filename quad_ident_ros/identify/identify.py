@@ -9,6 +9,7 @@ import numpy as np
 
 from quad_ident_ros import __version__
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.identify.findings import said_of, said_of_order
 from quad_ident_ros.identify.methods import METHODS
 from quad_ident_ros.identify.metrics import errors, UNITS
 from quad_ident_ros.identify.objective import Fitted, Objective
@@ -25,7 +26,6 @@ FIRST_SAMPLE = ('search joint: the level at rest is taken from the first sample,
                 'enters the fit')
 POOR = 50.0   # fit %
 FEWEST_FOR_ORDERS = 30   # samples
-UNDETERMINED = 'these data do not determine K, a and b: the information matrix is singular'
 OVERFLOW = 'no model was found that stays finite over the record'
 
 
@@ -59,13 +59,21 @@ def collect(records, settings):
     """
     Return the signals of records, one per output (the last record that excites it), and remarks.
 
+    Of several that excite an output a remark says which was taken.
     Raises InputError where no record excites any input.
     """
-    found, remarks = {}, []
-    for record in records:
+    found, sources, remarks = {}, {}, []
+    for number, record in enumerate(records, 1):
         pairs, said = signals(record, trim=settings.trim, initial_state=settings.initial_state)
         found.update({pair.output: pair for pair in pairs})
+        for pair in pairs:
+            source = record.info.get('source') or f'flight {number}'
+            sources.setdefault(pair.output, []).append(source)
         remarks += said
+    for output, (*others, taken) in sources.items():
+        if others:
+            remarks.append(f'{output}: taken from {taken}; {len(others)} other '
+                           f'flight{"s" if len(others) > 1 else ""} that excited it not used')
     still = [remark for remark in remarks if 'does not move' in remark]
     if not found and still:
         raise InputError('; '.join(dict.fromkeys(still)))
@@ -145,19 +153,7 @@ def _with_orders(fit, signal):
         return fit
     found = alternatives(signal, fit.model)
     return replace(fit, orders=found, findings=(*fit.findings, *(
-        said for said in map(_said_of_order, found) if said)))
-
-
-def _said_of_order(other):
-    if not other.is_better:
-        return None
-    if other.name == 'first order':
-        return (f'K/(s+a) with a = {other.denominator[0]:.4g} describes the record as well, with '
-                'one number less')
-    if other.name == 'double integrator':
-        return 'K/s^2 describes the record as well: its poles cannot be told from zero'
-    return ('a third pole fits significantly better: the rms error falls to '
-            f'{other.nrmse_percent:.3g} % of the range')
+        said for said in map(said_of_order, found) if said)))
 
 
 def _search(method, objective, space, output, settings, random, on_progress):
@@ -167,7 +163,8 @@ def _search(method, objective, space, output, settings, random, on_progress):
     if not np.isfinite(search.best_cost):
         return _finish(objective.signal, output, None, search.spent, [OVERFLOW])
     mean, half = space.mean_and_half(search.best[None])
-    return _finish(objective.signal, output, objective.fit(mean[0], half[0]), search.spent)
+    return _finish(objective.signal, output, objective.fit(mean[0], half[0]), search.spent,
+                   bounds=_bounded(space, objective))
 
 
 def _joint(method, objectives, spaces, settings, random, on_progress):
@@ -196,12 +193,18 @@ def _joint(method, objectives, spaces, settings, random, on_progress):
         gain, a, b = (values[0] for values in models(search.best[None], output, spaces[output]))
         fitted = Fitted(SecondOrder.from_poles(gain, a, b), (0.0, 0.0),
                         float(objective.of_models([gain], [a + b], [a * b])[0]))
-        fits[output] = _finish(objective.signal, output, fitted, search.spent)
+        fits[output] = _finish(objective.signal, output, fitted, search.spent,
+                               bounds=spaces[output])
     return fits
 
 
-def _finish(signal, output, fitted, evaluations, remarks=()):
-    """Return the OutputFit of a Fitted model, or of none."""
+def _bounded(space, objective):
+    """Return the space with the bounds of the gain that the objective keeps: it may have none."""
+    return replace(space, gain=objective.gain_bounds)
+
+
+def _finish(signal, output, fitted, evaluations, remarks=(), bounds=None):
+    """Return the OutputFit of a Fitted model, or of none; bounds: the Space it was searched in."""
     if fitted is not None:
         model = fitted.model
         fit = response(model, signal.u, signal.period, fitted.initial, fitted.disturbance)
@@ -213,7 +216,7 @@ def _finish(signal, output, fitted, evaluations, remarks=()):
     sure = uncertainty(signal, fitted)
     tests = examine(signal, signal.y - fit, fitted.noise)
     found = errors(signal.t[signal.measured], signal.y[signal.measured], fit[signal.measured])
-    findings = list(_said(model, sure, tests))
+    findings = list(said_of(signal, model, sure, tests, bounds))
     if not found['fit_percent'] > POOR:
         findings.append('the model explains little of the response (fit '
                         f'{found["fit_percent"]:.0f} %)')
@@ -222,35 +225,13 @@ def _finish(signal, output, fitted, evaluations, remarks=()):
                      fitted.least_cost)
 
 
-def _said(model, sure, tests):
-    """Return what must be said about how sure a model is."""
-    if sure.errors['K'] is None:
-        yield UNDETERMINED
-    # Of two poles that are closer than their errors only the sum and the product are known.
-    apart = model.form == 'real' and sure.errors['a']
-    mixed = model.form == 'equal' or apart and apart > model.a - model.b
-    if mixed and sure.errors['c1'] is not None:
-        yield ('a and b are closer than their errors: the data determine only '
-               f'a + b = {model.c1:.4g} ± {sure.errors["c1"]:.1g} and '
-               f'a b = {model.c0:.4g} ± {sure.errors["c0"]:.1g}')
-    unsure = [name for name in sure.unidentifiable if sure.errors[name] is not None
-              and not (mixed and name in 'ab')]
-    if unsure:
-        yield (f'not identifiable from this record: {", ".join(unsure)}; the standard error is '
-               'above half of the number, or of what the record can tell from zero')
-    if tests.depends_on_input:
-        yield ('the input is still in the residuals: the model leaves out dynamics, and the '
-               'standard errors count the noise alone')
-    elif tests.is_coloured:
-        yield ('the residuals are not white, by coloured noise or by dynamics left out: the '
-               'standard errors are too small')
-
-
 def _described(settings, spaces):
     swarm = {name: getattr(settings.swarm, name) for name in settings.swarm.__dataclass_fields__}
     return {'methods': list(settings.methods), 'seed': settings.seed, 'search': settings.search,
             'box': settings.box, 'poles': settings.poles, 'initial_state': settings.initial_state,
-            'swarm': swarm,
+            'trim': settings.trim and list(settings.trim), 'swarm': swarm,
+            'requested_bounds': {name: bounds and list(bounds) for name, bounds in (
+                ('poles', settings.pole_bounds), ('gain', settings.gain_bounds))},
             'bounds': {name: {'poles': list(space.poles), 'gain': list(space.gain),
                               'evaluations': space.evaluations}
                        for name, space in spaces.items()}}

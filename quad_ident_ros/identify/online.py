@@ -5,6 +5,8 @@
 from collections import deque
 from dataclasses import replace
 
+import numpy as np
+
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.identify.change import find_change, SHORTEST
 from quad_ident_ros.identify.identify import identify
@@ -20,8 +22,9 @@ class Tracker:
     """
     Identifies overlapping windows of one flight, each from the models of the one before.
 
-    Where the vehicle changed within a window, what was before the change is left out from then
-    on: the parameters are those of the vehicle as it is.
+    Where the vehicle changed, windows begin at the end of the one that shows it: the instant that
+    is found may be half a second early, and then the change was over. The parameters are those of
+    the vehicle as it is.
     """
 
     def __init__(self):
@@ -29,6 +32,7 @@ class Tracker:
         self._windows = 0
         self._since_ns = None
         self._advantages = {}
+        self._usual = {}    # the largest of them without a change, by output
 
     def update(self, records, settings, **options):
         """
@@ -44,11 +48,11 @@ class Tracker:
         result = self._identify(records, settings, options)
         changes = self._changes(result, settings)
         if changes:
-            self._since_ns = max(change.stamp_ns for change in changes)
+            self._since_ns = max(_end_ns(result.signals[change.output]) for change in changes)
             self._near, self._advantages = {}, {}
             try:
                 result = self._identify(records, settings, options)
-            except InputError:   # too little after the change: the window as a whole has to do
+            except InputError:   # the shortest window shows nothing: the whole has to do
                 pass
         self._near = {output: fit.model for output, fit in
                       result.methods[result.best].outputs.items() if fit.model is not None}
@@ -59,13 +63,13 @@ class Tracker:
                         **options)
 
     def _newest(self, record):
-        """Return the part of a record since the last change."""
+        """Return the part of a record since the last change, but no less than the shortest."""
         start = record.info.get('start_ns')
         if self._since_ns is None or start is None or start >= self._since_ns:
             return record
         age = (record.t - record.t[0]) * 1e9 + start - self._since_ns
         first = int((age < -1e3).sum())   # stamps are doubles of seconds: 1 us is the same time
-        return record if len(record) - first < SHORTEST else record.starting(first)
+        return record.starting(max(min(first, len(record) - SHORTEST), 0))
 
     def _model(self, result, output):
         """Return a model near the best one of an output: that of VP where it has one."""
@@ -77,10 +81,19 @@ class Tracker:
         for output, signal in result.signals.items():
             past = self._advantages.setdefault(output, deque(maxlen=USUAL + RECENT))
             known = list(past)[:-RECENT]
+            if len(known) >= SETTLED:
+                # Short windows, as after a change, do not tell all that is usual.
+                before = -np.inf if len(known) == USUAL else self._usual.get(output, -np.inf)
+                self._usual[output] = max(before, *known)
+            usual = self._usual.get(output)
             fitted = vp(signal, settings.poles, self._model(result, output))
-            change, advantage = find_change(signal, fitted, max(known, default=0.0))
+            change, advantage = find_change(signal, fitted, usual or 0.0)
             past.append(advantage)
-            if change is not None and len(known) >= SETTLED and signal.start_ns is not None:
+            if change is not None and usual is not None and signal.start_ns is not None:
                 found.append(replace(
                     change, stamp_ns=signal.start_ns + round(change.time * 1e9)))
         return found
+
+
+def _end_ns(signal):
+    return signal.start_ns + round(signal.t[-1] * 1e9)

@@ -140,6 +140,9 @@ def _columns(record):
     there = [name for name in OUTPUTS
              if recorded[INPUT_OF[name]] and (record.has('pz') if name == 'z' else euler)]
     if not there:
+        if not any(recorded.values()) and record.has('cmd1'):
+            raise InputError('the record has rotor commands and no inputs u1..u4: name its '
+                             'vehicle, from which they follow (--vehicle)')
         if not any(recorded.values()):
             record.inputs()
         if not euler and not record.has('pz'):

@@ -19,6 +19,7 @@ from quad_ident_ros.identify.transfer import SecondOrder
 from quad_ident_ros.identify.vp import best_poles, COMPLEX_PENALTY
 
 SIZE = 200.0
+AT_BOUNDS = 1e-6    # share of the space within which a model lies on its bounds
 
 
 @compiled
@@ -73,6 +74,18 @@ class Space:
         reach, mean = abs(model.a - model.b) / 2, model.c1 / 2
         return (self.gain[0] <= model.gain <= self.gain[1]
                 and self.poles[0] <= mean - reach and mean + reach <= self.poles[1])
+
+
+def at_bounds(space, model):
+    """Return the names of the bounds, 'poles' and 'gain', on which a model found lies."""
+    reach, mean = abs(model.a - model.b) / 2, model.c1 / 2
+    values = {'poles': (mean - reach, mean + reach), 'gain': (model.gain,)}
+    found = []
+    for name, (low, high) in (('poles', space.poles), ('gain', space.gain)):
+        near = AT_BOUNDS * (high - low)
+        if min(values[name]) <= low + near or max(values[name]) >= high - near:
+            found.append(name)
+    return found
 
 
 def check_bounds(pole_bounds, gain_bounds):

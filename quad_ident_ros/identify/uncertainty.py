@@ -41,7 +41,7 @@ def uncertainty(signal, fitted):
 
     From the information matrix of the response with respect to (K, c1, c0), with the unknowns of
     the signal projected out (L. Ljung, System Identification, 1999, sec. 9.4). The distance to
-    the optimum, by one Gauss-Newton step, is included.
+    the optimum, by one Gauss-Newton step, is included, and so is `level_spread`.
     """
     # Models that grow beyond all numbers over the record have no errors to speak of.
     with np.errstate(all='ignore'):
@@ -66,6 +66,18 @@ def uncertainty(signal, fitted):
     return Uncertainty({key: None if value is None else float(value)
                         for key, value in errors.items()},
                        names, full / np.outer(spread, spread) if spread.all() else None, unsure)
+
+
+def level_spread(signal, model):
+    """
+    Return by how much K is off where the output's level is off by the output's range.
+
+    From a free start under an input that never changes, K u and a level c0 y0 are one constant:
+    which part is K nobody can tell but at c0 = 0. Elsewhere it is 0.
+    """
+    if signal.unknowns != 2:
+        return 0.0
+    return abs(model.c0 * np.ptp(signal.y[signal.measured]) / signal.u[0])
 
 
 def disturbance_error(signal, fitted):
@@ -128,6 +140,7 @@ def _covariance(signal, fitted):
     step = inverse @ rest
     if model.form == 'complex' or (model.c1 + step[1]) ** 2 / 4 >= model.c0 + step[2]:
         covariance = covariance + np.outer(step, step)
+    covariance[0, 0] += level_spread(signal, model) ** 2
     return covariance if np.isfinite(covariance).all() else None
 
 

@@ -35,10 +35,12 @@ COLOURED = 'the noise is coloured: it was modelled, and the fit is the most like
 # The grid, in pole x record length: real poles from growing ones to one per sample, and pairs by
 # frequency and by the ratio of decay to frequency.
 GROWING = (-12.0, -9.5, -7.5, -6.0, -4.5, -3.5, -2.5, -1.5, -0.7, 0.0)
-REAL_RATIO = 3.0
+REAL_RATIO = 3.0        # of one pole to the next,
+REAL_RATIO_FREE = 1.7   # and where the start is not known, whose valleys are narrower
 TURN_RATIO = 1.3
 DECAYS = (0.02, 0.15, 0.6)
-STARTS, MINIMA = 3, 2   # candidates of each kind that are followed down, minima of the grid
+STARTS, MINIMA = 3, 2   # candidates of each kind that are followed down, minima of the grid,
+STARTS_FREE, MINIMA_FREE = 10, 6   # and where the start is not known
 ROUGHLY, FULLY = 1e-2, 1e-8   # squared distance to the optimum, in standard errors, of a descent
 THINNED = 1024     # samples of a long record that are enough for that
 
@@ -65,6 +67,13 @@ def best_poles(signal, penalty, near=None):
     best, spent = _best(signal, pairs)
     if pairs and penalty > 1.0 and best.model.form == 'complex':
         real, more = _best(signal, False)
+        if signal.unknowns:
+            # Under the lowest pair the real poles of least cost are nearly equal.
+            below, still = _down_from(SecondOrder.from_half_difference(
+                1.0, best.model.c1 / 2, 0.0), signal)
+            more += still
+            if below is not None and below.cost < real.cost:
+                real = below
         return (best if best.cost * penalty < real.cost else real), spent + more
     return best, spent
 
@@ -131,7 +140,8 @@ def _down_from(model, signal):
 def _best(signal, pairs):
     """Return the best Fitted with real poles, or pairs too, and the evaluations spent."""
     unknowns, whole = signal.unknowns, (signal.period, signal.u, signal.y, signal.measured)
-    starts = [_start(*part, *_grid(len(part[1]), pairs), unknowns) for part in _parts(signal)]
+    starts = [_start(*part, *_grid(len(part[1]), pairs, unknowns > 0), unknowns)
+              for part in _parts(signal)]
     spent = sum(start[2] for start in starts)
     c1, c0 = np.array([start[:2] for start in starts]).T
     if len(starts) > 1:
@@ -140,7 +150,38 @@ def _best(signal, pairs):
     linear = np.zeros(4)
     c1, c0, _, more = descend(c1[0], c0[0], not pairs, *whole, unknowns, FULLY, linear)
     model = SecondOrder.from_half_difference(linear[0], *mean_and_half(c1, c0))
-    return Objective(signal).fitted(model, linear), spent + more
+    found = Objective(signal).fitted(model, linear)
+    if unknowns and np.isfinite(found.cost):
+        found, more = _with_other_partners(found, signal, more)
+    return found, spent + more
+
+
+def _with_other_partners(found, signal, spent):
+    """
+    Return the best Fitted that has a pole near one of another's, and the evaluations, added up.
+
+    From a free start a growing pole alone explains most of a record, in a valley narrower than the
+    grid: what the other pole is shows only once the first is known.
+    """
+    objective, scale = Objective(signal), len(signal.y) * signal.period
+    while found.model.form != 'complex':
+        best = found
+        for kept in {found.model.a, found.model.b}:
+            partners = _real_poles(len(signal.y), True) / scale
+            c1, c0 = kept + partners, kept * partners
+            costs = objective.of_poles(c1, c0)[0]
+            spent += len(costs)
+            padded = np.pad(costs, 1, constant_values=np.inf)
+            for i in np.flatnonzero((costs < padded[:-2]) & (costs <= padded[2:])):
+                near, more = _down_from(SecondOrder.from_half_difference(
+                    1.0, *mean_and_half(c1[i], c0[i])), signal)
+                spent += more
+                if near is not None and near.cost < best.cost * (1 - 1e-9):
+                    best = near
+        if best is found:
+            break
+        found = best
+    return found, spent
 
 
 def mean_and_half(c1, c0):
@@ -186,8 +227,9 @@ def _start(period, u, y, measured, real_count, neighbours, c1, c0, unknowns):
     real = real_count == c1.size
     best = 0.0, 0.0, np.inf
     for first, last in ((0, real_count), (real_count, c1.size)):
-        for attempt in range(STARTS):
-            i = _lowest(costs, neighbours, first, last, attempt < MINIMA)
+        for attempt in range(STARTS if unknowns == 0 else STARTS_FREE):
+            i = _lowest(costs, neighbours, first, last,
+                        attempt < (MINIMA if unknowns == 0 else MINIMA_FREE))
             if i < 0:
                 continue
             here = descend(c1[i], c0[i], real, period, u, y, measured, unknowns, ROUGHLY,
@@ -215,16 +257,22 @@ def _lowest(costs, neighbours, first, last, minimum):
     return lowest
 
 
+def _real_poles(samples, free):
+    """Return the poles x T (n,) of the grid for a record of length T; free: where starts are."""
+    ratio = REAL_RATIO_FREE if free else REAL_RATIO
+    steps = int(np.log(samples) / np.log(ratio)) + 1
+    return np.array([*GROWING, *ratio ** np.arange(steps)])
+
+
 @lru_cache
-def _grid(samples, pairs):
+def _grid(samples, pairs, free):
     """
     Return the candidates for a record of a length T.
 
     How many of them are real, their neighbours (n, 8) in the grid, c1 x T and c0 x T^2 (n,); pairs
     follow where they are wanted.
     """
-    steps = int(np.log(samples) / np.log(REAL_RATIO)) + 1
-    poles = np.array([*GROWING, *REAL_RATIO ** np.arange(steps)])
+    poles = _real_poles(samples, free)
     upper = np.triu_indices(len(poles))
     index = np.zeros((len(poles), len(poles)), int)
     index[upper] = np.arange(len(upper[0]))

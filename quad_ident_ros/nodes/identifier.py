@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Node `identifier`: fits K/((s+a)(s+b)) to the records of the recorder."""
 
+from dataclasses import replace
 from datetime import datetime, timezone
 import json
 import sys
@@ -180,8 +181,13 @@ class Identifier(Node):
             self._job.tell((order.index(method) + done) / len(order), method=method,
                            output=output)
 
-        return lambda: run([record.last(window) if window else record for record in records],
-                           settings, on_progress=on_progress)
+        def fit():
+            result = run([record.last(window) if window else record for record in records],
+                         settings, on_progress=on_progress)
+            return replace(result, settings={**result.settings, 'window': window,
+                                             'mode': values['mode']})
+
+        return fit
 
     def _on_end(self, outcome):
         if outcome is None:

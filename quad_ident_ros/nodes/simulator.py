@@ -74,6 +74,7 @@ Publishes (reliable; one stamp per sample on all five):
                                           x, y, z; the roll moment is l U2, l the arm length
   run       std_msgs/String (latched)     JSON: what flies now, its stamps and provenance
   /clock    rosgraph_msgs/Clock           with publish_clock
+Subscribes: joined_until (std_msgs/UInt64): how far the recorders are, which full speed waits for
 Services: ~/start, ~/stop (std_srvs/Trigger)
 Effects: {', '.join(EFFECTS)}
 

@@ -25,7 +25,7 @@ class Case:
 
     duration: s to be flown; expected: time of divergence, s, or None where it is not known; source
     says from where; status and end_time as in Simulation; derived: the status of the derived
-    equations under the same inputs.
+    equations under the same inputs, for SHORT at most.
     """
 
     label: str
@@ -86,7 +86,7 @@ def _unit_steps():
 def _case(experiment, label, expected, source):
     run = experiment.runs[0]
     flight = fly(experiment, run)
-    # The equations derived right, under the same inputs for as long as these lasted.
+    # The equations derived right under the same inputs; a preset flies them for all 500 s.
     derived = replace(experiment, model='newton_euler', step=None,
                       runs=(replace(run, duration=min(run.duration, SHORT)),))
     return Case(label, experiment.vehicle.name, run.duration, expected, source, flight.status,

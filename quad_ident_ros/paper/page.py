@@ -7,6 +7,7 @@ from pathlib import Path
 from quad_ident_ros import __version__
 from quad_ident_ros.paper import sections
 from quad_ident_ros.paper.claims import FAILS, HOLDS, IN_PART, OPEN
+from quad_ident_ros.paper.divergence import SHORT
 from quad_ident_ros.paper.printed import DURATION
 from quad_ident_ros.paper.study import EFFORTS, EQUAL_BUDGET
 from quad_ident_ros.paper.table3 import EXCHANGED, OUTLIERS, PERIOD, POWERS, SAMPLES, TOLERANCE
@@ -32,7 +33,8 @@ def save_pictures(reproduction, folder):
     folder = Path(folder)
     paths = {'table_2': folder / FIGURES}
     save_responses(reproduction.printed, paths['table_2'],
-                   "Figures 4-7: the responses that Table 3 implies, and Table 2's models")
+                   "Figures 4-7: the responses that Table 3 implies, and Table 2's models",
+                   'implied')
     for name, study in reproduction.studies.items():
         paths[name] = folder / f'responses_{name}.png'
         save_responses(study.pick('median', 'per_output'), paths[name],
@@ -156,5 +158,7 @@ def _equations(reproduction):
         tag('p', 'Equations (13) to (15) feed energy in where friction should take it out. A run '
                  'ends when a rate exceeds 1e6 rad/s. Where one axis turns alone the time is '
                  'known exactly. The last column is the end of the same flight by the equations '
-                 'derived right.'),
+                 f'derived right; those of {DURATION:.0f} s were flown so for '
+                 f'{SHORT:g} s, and to the '
+                 'end as an experiment above.'),
         sections.printed_equations(reproduction.cases)])

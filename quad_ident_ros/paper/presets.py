@@ -105,7 +105,9 @@ def _unit_steps_long(name):
     record = FlightRecord(full.t[::LONG_THINNED],
                           {name: values[::LONG_THINNED] for name, values in full.columns.items()},
                           full.info)
-    title = experiment.description.replace('5 s', f'{DURATION:.0f} s')
+    title = (f'{experiment.description.replace("5 s", f"{DURATION:.0f} s")}. Yaw is at its speed '
+             'within a sample: of its model only K/a and b are known, a is where a search may go '
+             'no further, and its ranking is one of bounds')
     return Preset(name, title, (record,))
 
 

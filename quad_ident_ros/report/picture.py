@@ -19,11 +19,12 @@ STYLES = (('#0072b2', '-'), ('#e69f00', (0, (6, 2))), ('#009e73', (0, (3, 2))),
           ('#d55e00', (0, (1, 1.5))), ('#cc79a7', (0, (5, 1, 1, 1))))
 
 
-def save_responses(identification, path, title):
+def save_responses(identification, path, title, given='measured'):
     """
-    Save a picture of the measured responses with the fitted ones over them, errors beneath.
+    Save a picture of the given responses with the fitted ones over them, errors beneath.
 
-    Raises InputError where the file cannot be written.
+    Args: given: what the legend calls the responses that were fitted. Raises InputError where the
+    file cannot be written.
     """
     plt = pyplot(path)
     signals = identification.signals
@@ -33,7 +34,7 @@ def save_responses(identification, path, title):
     for column, (output, signal) in enumerate(signals.items()):
         top, bottom = axes[:, column]
         unit = OUTPUT_UNITS[output]
-        top.plot(signal.t, signal.y, color=MEASURED, linewidth=5, label='measured',
+        top.plot(signal.t, signal.y, color=MEASURED, linewidth=5, label=given,
                  solid_capstyle='butt')
         for (name, method), (color, dash) in zip(identification.methods.items(), STYLES,
                                                  strict=False):

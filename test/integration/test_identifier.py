@@ -170,6 +170,7 @@ def test_changed_parameters_hold_for_the_next_fit(bench, hover):
     assert second['settings']['swarm']['generations'] == 3
     assert second['settings']['poles'] == 'real'
     assert second['settings']['bounds']['z']['poles'] == [-1.0, 12.0]
+    assert (second['settings']['mode'], second['settings']['window']) == ('once', 3.0)
     assert second['samples']['z'] == 301
     assert second['methods']['cs']['evaluations'] == 4 * (50 + 2 * 3 * 50)
     # The same as the library gives with these.
@@ -274,7 +275,7 @@ def test_services_are_answered_during_a_fit(domain, graph, processes, hover):
     for name, seconds in took.items():
         print(f'{name}: median {1e3 * np.median(seconds):.2f} ms, '
               f'99 % {1e3 * np.quantile(seconds, 0.99):.1f} ms, max {1e3 * max(seconds):.1f} ms')
-        assert np.quantile(seconds, 0.95) < 0.05
+        assert np.quantile(seconds, 0.99) < 0.05
 
 
 def test_what_is_not_excited_is_no_number_and_a_warning(bench, hover):

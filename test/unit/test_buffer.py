@@ -127,6 +127,14 @@ def test_a_clock_that_begins_anew_ends_a_record():
     assert len(window) == 50
 
 
+def test_notices_of_runs_that_are_over_are_not_kept():
+    window = buffer()
+    for start in range(0, 100_000, 1000):
+        window.add_run(notice(start, start + 500))
+        window.add_rows(rows(start, start + 400))    # the last samples never come
+    assert len(window._runs) == 1
+
+
 def test_the_same_run_flown_again_is_another_record():
     window = buffer()
     window.add_run(notice(0, 1000, name='one'))

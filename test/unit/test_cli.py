@@ -2,15 +2,21 @@
 # SPDX-License-Identifier: Apache-2.0
 """The command line: what it writes, and how it takes bad input."""
 
+from dataclasses import replace
 import json
 
 import numpy as np
 import pytest
 
 from quad_ident_ros.cli.main import main
-from quad_ident_ros.data.csv import read_csv
+from quad_ident_ros.data.commands import with_inputs
+from quad_ident_ros.data.csv import read_csv, write_csv
+from quad_ident_ros.data.record import FlightRecord
+from quad_ident_ros.errors import InputError
 from quad_ident_ros.experiment import fly, load_experiment
 from quad_ident_ros.identify.identify import identify, Settings
+from quad_ident_ros.model.mixing import squared_speeds
+from quad_ident_ros.model.vehicle import load_vehicle
 
 
 @pytest.fixture(scope='module')
@@ -71,6 +77,28 @@ def test_the_table_shows_all_methods_and_units(flights, capsys):
     shown = capsys.readouterr().out
     for text in ('PSO', 'CS', 'PSO-CS', 'LS', 'IAE', 'ITSE', 'm/s^2/N', 'fit %'):
         assert text in shown
+
+
+def test_inputs_come_from_rotor_commands_with_the_vehicle_named(flights, tmp_path, capsys):
+    record = read_csv(flights['z'])
+    vehicle = load_vehicle('paper_quadrotor')
+    speeds = np.sqrt(squared_speeds(vehicle, record.inputs()))
+    columns = {name: values for name, values in record.columns.items()
+               if name not in ('u1', 'u2', 'u3', 'u4')}
+    columns.update({f'cmd{i}': speeds[:, i - 1] for i in range(1, 5)})
+    path = tmp_path / 'commands.csv'
+    write_csv(path, FlightRecord(record.t, columns, record.info))
+    arguments = ['--trim', 'hover', '--initial-state', 'rest', '--method', 'vp', '--json']
+    gains = []
+    for flight, more in ((flights['z'], []), (path, ['--vehicle', 'paper_quadrotor'])):
+        out = tmp_path / 'out.json'
+        assert main(['identify', str(flight), *arguments, str(out), *more]) == 0
+        gains.append(json.loads(out.read_text())['methods']['vp']['outputs']['z']['K'])
+    assert gains[1] == pytest.approx(gains[0], rel=1e-6)
+    assert main(['identify', str(path), *arguments, str(out)]) == 2
+    assert '--vehicle' in capsys.readouterr().err
+    with pytest.raises(InputError, match='4 rotor commands .* 8 rotors'):
+        with_inputs(read_csv(path), replace(vehicle, rotors=2 * vehicle.rotors))
 
 
 # FLIGHT stands for a flight, FOLDER for an empty folder.

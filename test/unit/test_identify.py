@@ -153,6 +153,48 @@ def test_the_last_record_of_an_output_has_the_say():
     assert model.gain == pytest.approx(2.0, rel=1e-6)
 
 
+def test_flights_of_the_same_output_but_the_last_are_named_as_not_used():
+    first, last = (record({'source': name}, phi=second_order(a)) for name, a in
+                   (('first.csv', 2.0), ('last.csv', 3.0)))
+    result = identify([first, last], Settings(methods=('vp',)))
+    assert result.methods['vp'].outputs['phi'].model.a == pytest.approx(3.0, rel=1e-6)
+    assert 'phi: taken from last.csv; 1 other flight that excited it not used' in result.remarks
+    alone = identify([last], Settings(methods=('vp',)))
+    assert not [remark for remark in alone.remarks if 'not used' in remark]
+
+
+@pytest.mark.parametrize('search', ['per_output', 'joint'])
+def test_a_search_that_ends_on_its_bounds_says_so(search):
+    flight = record({'initial': dict.fromkeys(('phi', 'theta', 'psi', 'z'), 0.0)},
+                    phi=second_order(a=6.0, b=4.0))
+    found = {}
+    for bounds in ((0.0, 1.0), (0.0, 20.0)):
+        fit = identify([flight], Settings(methods=('pso_cs',), pole_bounds=bounds, search=search)
+                       ).methods['pso_cs'].outputs['phi']
+        found[bounds] = [said for said in fit.findings if 'bounds of the poles' in said]
+    assert found[0.0, 1.0] and not found[0.0, 20.0]
+
+
+def test_a_pole_that_dies_out_within_a_sample_says_so():
+    t = np.arange(200) * 1.0
+    u = np.full(200, 0.1)
+    y = response(SecondOrder.from_poles(3.0, 30.0, 0.02), u, 1.0)
+    fits = identify([record(t=t, phi=y, u2=u)], Settings(methods=('vp',))).methods['vp']
+    fit = fits.outputs['phi']
+    assert any('dies out within a sample' in said and 'K/a = 0.1' in said
+               for said in fit.findings)
+    assert fit.model.gain / fit.model.a == pytest.approx(0.1, rel=1e-3)
+    clear = identify([record(phi=second_order())], Settings(methods=('vp',))).methods['vp']
+    assert not any('dies out' in said for said in clear.outputs['phi'].findings)
+
+
+def test_what_was_asked_for_is_in_the_data():
+    asked = Settings(methods=('ls',), trim=(0.0, 0.05, 0.0, 0.0), pole_bounds=(-1.0, 9.0))
+    said = as_data(identify([record(phi=second_order())], asked))['settings']
+    assert said['trim'] == [0.0, 0.05, 0.0, 0.0]
+    assert said['requested_bounds'] == {'poles': [-1.0, 9.0], 'gain': None}
+
+
 def test_dropped_samples_of_all_records_are_counted():
     flights = [record({'outputs': ['phi'], 'dropped': 3}, phi=second_order()),
                record({'outputs': ['psi'], 'dropped': 4}, psi=second_order())]

@@ -26,11 +26,11 @@ def windows(flight):
 
 
 @cache
-def tracked(payload, noise=0.005, seed=0):
+def tracked(payload, noise=0.005, seed=0, dropped=np.inf):
     """Return (end of window, Identification) of all windows of a flight."""
     tracker = Tracker()
     return [(end, tracker.update([window], SETTINGS))
-            for window, end in windows(climb(payload, noise, seed))]
+            for window, end in windows(climb(payload, noise, seed, dropped=dropped))]
 
 
 @pytest.mark.parametrize('seed', range(5))
@@ -57,6 +57,33 @@ def test_after_the_change_the_parameters_are_those_of_the_vehicle_as_it_is(seed)
     # The payload's weight is what the trim does not carry.
     assert fit.disturbance == pytest.approx(
         MASS * GRAVITY / (MASS + PAYLOAD) - GRAVITY, rel=0.2)
+
+
+@pytest.mark.parametrize('seed', range(5))
+def test_a_payload_dropped_soon_after_is_found_within_2_s_too(seed):
+    """What is usual was learnt before the first change: it need not be learnt anew."""
+    dropped = PICKED_UP + 3.0
+    found = [end for end, result in tracked(PAYLOAD, seed=seed, dropped=dropped)
+             if result.changes]
+    assert len(found) == 2
+    assert 0 < found[0] - PICKED_UP < 2.0 and 0 < found[1] - dropped < 2.0
+
+
+def test_the_errors_after_a_change_hold():
+    """Of four seconds of results less than 2 % are off by more than four standard errors."""
+    off = []
+    for payload in (PAYLOAD, 1.0):
+        for seed in range(5):
+            results = tracked(payload, seed=seed)
+            found = next(end for end, result in results if result.changes)
+            for end, result in results:
+                if found <= end < found + 4.0:
+                    fit = result.methods['vp'].outputs['z']
+                    error = fit.standard_errors['K']
+                    # Without an error nothing is claimed.
+                    off.append(error is not None
+                               and abs(fit.model.gain - 1 / (MASS + payload)) > 4 * error)
+    assert len(off) > 700 and np.mean(off) < 0.02
 
 
 @pytest.mark.parametrize('noise', [0.001, 0.01])

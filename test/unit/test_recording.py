@@ -285,3 +285,19 @@ def test_topics_of_no_flight_are_not_decoded(tmp_path):
             writer.write('/altitude', k, cdr('altitude', 10 * k, float(k)))
             writer.write('/chatter', k, b'not CDR at all')
     assert len(read_bag(tmp_path / 'bag')[0]) == 50
+
+
+def test_notices_of_runs_that_are_over_are_not_kept_nor_needed(tmp_path):
+    recording = Recording(tmp_path, NAMES)
+    for start in range(0, 50_000, 1000):
+        announce(recording, notice(start, start + 500))
+        recording.add_rows(rows(start, start + 500))
+        recording.flush()
+    assert len(recording._runs) == 1
+    # The clock begins anew: its notice comes before the last rows of the old time are written.
+    recording.add_rows(rows(49_500, 49_510))    # the last of its run
+    announce(recording, notice(0, 500))
+    recording.flush()
+    recording.add_rows(rows(0, 500))
+    recording.close()
+    assert len(list(recording.folder.glob('flight_*.csv'))) == 51

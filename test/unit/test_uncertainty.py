@@ -8,11 +8,19 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 
+from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.excitation import excite
+from quad_ident_ros.identify.findings import LEVEL
+from quad_ident_ros.identify.identify import identify, Settings
 from quad_ident_ros.identify.objective import Objective
 from quad_ident_ros.identify.signals import Signal
 from quad_ident_ros.identify.transfer import response, SecondOrder
-from quad_ident_ros.identify.uncertainty import disturbance_error, KEYS, uncertainty
+from quad_ident_ros.identify.uncertainty import (
+    disturbance_error,
+    KEYS,
+    level_spread,
+    uncertainty,
+)
 
 PERIOD = 0.02
 T = np.arange(301) * PERIOD
@@ -200,3 +208,30 @@ def test_a_disturbance_has_the_error_of_its_scatter():
     assert np.mean(said) / np.std(found) == pytest.approx(1.0, abs=0.22)
     at_rest = measured(truth, 0.01, 0)
     assert disturbance_error(at_rest, optimum(at_rest, truth)) is None
+
+
+@pytest.mark.parametrize('level', [0.0, -0.5, 2.0])
+def test_from_a_free_start_a_constant_input_does_not_tell_the_gain_from_the_level(level):
+    """The same flight measured from another level has the same poles and another best K."""
+    truth = SecondOrder.from_poles(4.0, 3.0, 2.0)
+    u = np.ones(len(T))
+    y = response(truth, u, PERIOD, (-0.5, 0.0)) + level
+    y = y + 1e-3 * np.random.default_rng(1).normal(size=len(y))
+    zero = np.zeros(len(T))
+    record = FlightRecord(T, {'phi': y, 'theta': zero, 'psi': zero, 'pz': zero, 'u1': zero,
+                              'u2': u, 'u3': zero, 'u4': zero}, {'trim': [0.0] * 4})
+    settings = Settings(methods=('vp',), initial_state='free')
+    fit = identify([record], settings).methods['vp'].outputs['phi']
+    assert [fit.model.a, fit.model.b] == pytest.approx([3.0, 2.0], rel=0.05)
+    assert abs(fit.model.gain - truth.gain) < fit.standard_errors['K']
+    assert 'K' in fit.uncertainty.unidentifiable and LEVEL in fit.findings
+
+
+def test_an_integrator_tells_the_gain_from_the_level():
+    truth = SecondOrder.from_poles(4.0, 3.0, 0.0)
+    u = np.ones(len(T))
+    y = response(truth, u, PERIOD, (-0.5, 0.3))
+    task = Signal('phi', T, u, y - y[0], PERIOD, False)
+    fitted = Objective(task).fit(1.5, 1.5)
+    assert fitted.model.gain == pytest.approx(4.0)
+    assert level_spread(task, fitted.model) == pytest.approx(0.0, abs=1e-9)

@@ -1,0 +1,63 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What a result says in words about what its model cannot say."""
+
+from quad_ident_ros.identify.space import at_bounds
+from quad_ident_ros.identify.uncertainty import level_spread
+
+UNDETERMINED = 'these data do not determine K, a and b: the information matrix is singular'
+LEVEL = ('the input never changes and the start is free: K cannot be told from the level that the '
+         'output is measured from; its error counts a level off by the range of the output')
+TRACELESS = 10.0   # pole x period beyond which e^-10 of its response is left at the next sample
+
+
+def said_of(signal, model, sure, tests, bounds=None):
+    """
+    Yield what must be said about how sure a model is.
+
+    Args: the Signal, its SecondOrder, Uncertainty and ResidualTests; bounds: the Space in which a
+    search found the model, or None.
+    """
+    if sure.errors['K'] is None:
+        yield UNDETERMINED
+    # Of two poles that are closer than their errors only the sum and the product are known.
+    apart = model.form == 'real' and sure.errors['a']
+    mixed = model.form == 'equal' or apart and apart > model.a - model.b
+    if mixed and sure.errors['c1'] is not None:
+        yield ('a and b are closer than their errors: the data determine only '
+               f'a + b = {model.c1:.4g} ± {sure.errors["c1"]:.1g} and '
+               f'a b = {model.c0:.4g} ± {sure.errors["c0"]:.1g}')
+    unsure = [name for name in sure.unidentifiable if sure.errors[name] is not None
+              and not (mixed and name in 'ab')]
+    if unsure:
+        yield (f'not identifiable from this record: {", ".join(unsure)}; the standard error is '
+               'above half of the number, or of what the record can tell from zero')
+    if tests.depends_on_input:
+        yield ('the input is still in the residuals: the model leaves out dynamics, and the '
+               'standard errors count the noise alone')
+    elif tests.is_coloured:
+        yield ('the residuals are not white, by coloured noise or by dynamics left out: the '
+               'standard errors are too small')
+    # The level enters beside the noise: it is said where it is not small.
+    if sure.errors['K'] and sure.errors['K'] < 2 * level_spread(signal, model):
+        yield LEVEL
+    for name in at_bounds(bounds, model) if bounds else ():
+        low, high = getattr(bounds, name)
+        yield (f'the search ended on the bounds of the {name}, {low:.4g} to {high:.4g}: a better '
+               'model may lie beyond')
+    if model.form != 'complex' and model.a * signal.period > TRACELESS:
+        yield (f'a = {model.a:.4g} 1/s dies out within a sample: of K and a the record tells '
+               f'K/a = {model.gain / model.a:.4g}')
+
+
+def said_of_order(other):
+    """Return what must be said of an order.Alternative, or None."""
+    if not other.is_better:
+        return None
+    if other.name == 'first order':
+        return (f'K/(s+a) with a = {other.denominator[0]:.4g} describes the record as well, with '
+                'one number less')
+    if other.name == 'double integrator':
+        return 'K/s^2 describes the record as well: its poles cannot be told from zero'
+    return ('a third pole fits significantly better: the rms error falls to '
+            f'{other.nrmse_percent:.3g} % of the range')
