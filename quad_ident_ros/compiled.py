@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numba
 
-FOLDERS = ('effects', 'identify', 'model')      # all that have compiled functions
+FOLDERS = ('effects', 'flight', 'greybox', 'identify', 'model')   # with compiled functions
 
 
 def _stamp():

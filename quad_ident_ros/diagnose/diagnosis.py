@@ -57,7 +57,7 @@ def diagnose(records, vehicle, *, hold_out=None, effects=None, on_progress=lambd
     for name in effects or ():
         if name not in EFFECTS:
             raise InputError(f'{name!r} is not among the effects: {", ".join(EFFECTS)}')
-    training, test = _split(list(records), hold_out)
+    training, test = split(list(records), hold_out)
     voltage = highest_voltage([*training, test])
     flights = [flight_of(record, vehicle, reference_voltage=voltage) for record in training]
     causes = candidates(flights, vehicle, effects)
@@ -99,7 +99,8 @@ def diagnose(records, vehicle, *, hold_out=None, effects=None, on_progress=lambd
     return Diagnosis(data, selection, z, vehicle)
 
 
-def _split(records, hold_out):
+def split(records, hold_out):
+    """Return the records to learn from and the one held out; InputError without a record."""
     if not records:
         raise InputError('no flight to diagnose: name at least one flight record')
     if hold_out is not None:
@@ -136,7 +137,8 @@ def _named(selection, training, vehicle, noise, voltage):
 
 def _remains(training, vehicle, z, noise, voltage):
     """Return what is left of the gap above the noise, over the noise, where it is largest."""
-    after = gaps.gap([gaps.ends(one, vehicle, z, gaps.HEADLINE, voltage) for one in training])
+    after = gaps.usual_gap([gaps.ends(one, vehicle, z, gaps.HEADLINE, voltage)
+                            for one in training])
     base = gaps.noise_gap(training[0], vehicle, z, noise, gaps.HEADLINE, voltage)
     return max(np.sqrt(max(0.0, (after[name] / base[name]) ** 2 - 1.0)) for name in after)
 

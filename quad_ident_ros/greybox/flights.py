@@ -12,7 +12,8 @@ from quad_ident_ros.model.dynamics import Course, course_of, states_of
 RATE = 125.0        # Hz, the fastest that is looked at: more rows add cost, hardly information
 SEGMENT = 0.5       # s of a rollout
 WARM = 0.25         # s of commands before a rollout, from which the speeds of its rotors follow
-GAP = 1.6           # usual periods between two samples that no rollout crosses
+GAP = 1.6           # usual periods between two samples that no rollout crosses,
+SHORT_GAP = 0.013   # s, unless it is as short as this
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,26 +57,34 @@ def flight_of(record, vehicle, *, reference_voltage=None, segment=SEGMENT, every
 
 
 def highest_voltage(records):
-    """Return the highest voltage at which a flight begins, V, or None where none is recorded."""
-    starts = [float(np.median(record.columns['vbat'][:max(1, len(record) // 20)]))
-              for record in records if record.has('vbat')]
+    """
+    Return the highest voltage at which a flight begins, V, or None where none is recorded.
+
+    That of a straight line through the first fifth: a median of it would lie below.
+    """
+    starts = []
+    for record in records:
+        if record.has('vbat'):
+            part = slice(0, max(2, len(record) // 5))
+            t = record.t[part] - record.t[0]
+            starts.append(float(np.polyfit(t, record.columns['vbat'][part], 1)[1]))
     return max(starts) if starts else None
 
 
 def _thinned(course, states, skip):
-    """Return every so many samples, with the mean of the commands between them."""
+    """Return every so many samples, with the root mean square of the commands between them."""
     rows = len(course.t) // skip * skip
 
     def mean(values):
         return values[:rows].reshape(-1, skip, *values.shape[1:]).mean(axis=1)
 
-    return Course(course.t[:rows:skip], mean(course.commands), mean(course.volt_drop)), \
-        states[:rows:skip]
+    return Course(course.t[:rows:skip], np.sqrt(mean(course.commands ** 2)),
+                  mean(course.volt_drop)), states[:rows:skip]
 
 
 def _starts(t, period, count, step, warm):
     """Return the samples that `warm` others precede and `count` follow without a gap."""
-    gaps = np.flatnonzero(np.diff(t) > GAP * period)
+    gaps = np.flatnonzero(np.diff(t) > max(GAP * period, SHORT_GAP))
     edges = np.concatenate([[0], gaps + 1, [len(t)]])
     return np.concatenate([np.arange(a + warm, b - count, step) for a, b in
                            zip(edges[:-1], edges[1:], strict=True)]).astype(np.int64)

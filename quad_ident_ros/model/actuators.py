@@ -15,17 +15,19 @@ def delayed(t, commands, delay):
     Return what the rotors follow from each sample to the next, (N, n) rad/s.
 
     Args: t (N,) s; commands (N, n) rad/s, each held to the next; delay s. Where a command changes
-    between two samples its mean is taken; before the first one the first is held.
+    between two samples its root mean square is taken, which has the mean thrust; before the first
+    one the first is held.
     """
     if delay == 0.0:
         return commands
     steps = np.diff(t)
-    # The time integral of the held command, of which differences are means.
+    squares = commands ** 2
+    # The time integral of the held command's square, of which differences are means.
     at = np.concatenate([[t[0] - delay - 1.0], t])
-    area = np.concatenate([-(delay + 1.0) * commands[:1], np.zeros_like(commands[:1]),
-                           np.cumsum(commands[:-1] * steps[:, None], axis=0)])
+    area = np.concatenate([-(delay + 1.0) * squares[:1], np.zeros_like(squares[:1]),
+                           np.cumsum(squares[:-1] * steps[:, None], axis=0)])
     shifted = np.stack([np.interp(t - delay, at, column) for column in area.T], axis=1)
-    means = np.diff(shifted, axis=0) / steps[:, None]
+    means = np.sqrt(np.maximum(np.diff(shifted, axis=0) / steps[:, None], 0.0))
     return np.concatenate([means, means[-1:]])
 
 
