@@ -139,15 +139,15 @@ def test_a_delay_of_whole_samples_moves_the_commands_by_these(count):
 @FAST
 @given(st.floats(0, 0.3), st.lists(st.floats(1e-3, 0.1), min_size=2, max_size=20),
        st.integers(0, 1000))
-def test_a_delayed_command_has_the_area_of_the_command(delay, steps, seed):
+def test_a_delayed_command_has_the_mean_thrust_of_the_command(delay, steps, seed):
     # What acts until the end is what was commanded until a delay before, whatever the samples.
     t = np.concatenate([[0.0], np.cumsum(steps)])
     commands = np.random.default_rng(seed).uniform(0, 1000, (len(t), 2))
-    found = np.diff(t) @ delayed(t, commands, delay)[:-1]
+    found = np.diff(t) @ delayed(t, commands, delay)[:-1] ** 2
     # The command held to the next sample, and the first one before it.
     until = np.clip(t[-1] - delay - t[:-1], 0.0, np.diff(t))
-    expected = until @ commands[:-1] + min(delay, t[-1]) * commands[0]
-    assert np.allclose(found, expected, rtol=1e-9, atol=1e-9)
+    expected = until @ commands[:-1] ** 2 + min(delay, t[-1]) * commands[0] ** 2
+    assert np.allclose(found, expected, rtol=1e-9, atol=1e-6)
 
 
 # Drag and wind.

@@ -36,8 +36,8 @@ def test_rotors_may_be_anywhere_and_turn_either_way(rotors, motion, euler):
     speeds = np.array([speed for *_, speed in rotors])
     start = state(velocity=motion[:3], euler=euler, rate=motion[3:])
     out = np.empty((1, 13))
-    derivatives(vehicle_vector(vehicle)[:, None], rotor_table(vehicle), NULL, np.zeros(1), start[None],
-                speeds[None], np.zeros((1, len(speeds))), np.zeros((1, INPUT)), out)
+    derivatives(vehicle_vector(vehicle)[:, None], rotor_table(vehicle), NULL, np.zeros(1),
+                start[None], speeds[None], np.zeros((1, len(speeds))), np.zeros((1, INPUT)), out)
     thrusts = vehicle.thrust_coefficient * speeds ** 2
     rotation, rate = rotation_matrix(start[6:10]), start[10:]
     force = [0, 0, thrusts.sum()] - np.multiply(vehicle.linear_drag, rotation.T @ start[3:6])
