@@ -6,9 +6,10 @@ import argparse
 import textwrap
 
 from quad_ident_ros.cli.identify import progress_bar
+from quad_ident_ros.cli.options import flights_from
 from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.greybox.free import UNITS
-from quad_ident_ros.model.vehicle import load_vehicle
+from quad_ident_ros.model.vehicle import load_vehicle, write_vehicle
 from quad_ident_ros.report.data import write_json
 from quad_ident_ros.report.table import console
 
@@ -29,22 +30,26 @@ def add(commands):
                'mass, inertia, thrust and drag together have no scale: leave out what you can '
                'weigh.\n\nexample:\n  quad_ident fit flight.csv --vehicle v.yaml --free '
                'inertia,thrust_coefficient,motor_lag --out-vehicle v2.yaml')
-    parser.add_argument('flights', nargs='+', metavar='FLIGHT', help='flight record')
+    parser.add_argument('flights', nargs='+', metavar='FLIGHT',
+                        help='.csv, .csv.gz, bag (folder, .mcap, .db3) or .ulg')
+    parser.add_argument('--mapping', metavar='FILE', help='which topics and outputs of other '
+                        "people's records mean what (YAML)")
     parser.add_argument('--vehicle', required=True, help='vehicle name or file: the start, and '
                         'what holds for all that is not freed')
     parser.add_argument('--free', required=True, metavar='NAME,...', help='what to estimate')
     parser.add_argument('--out-vehicle', metavar='FILE',
-                        help='write the vehicle file with the constants found')
+                        help='write the vehicle file with what was found')
     parser.add_argument('--json', metavar='FILE', help='write the results as data; - prints them')
     parser.set_defaults(run=run)
 
 
 def run(options):
     """Read the flights, fit, show the result and write the files asked for."""
-    from quad_ident_ros.greybox.fit import as_data, fit, fitted_vehicle, write_vehicle
+    from quad_ident_ros.greybox.fit import as_data, fit, fitted_vehicle
     names = [name.strip() for name in options.free.split(',') if name.strip()]
     vehicle = load_vehicle(options.vehicle)
-    records = [load(path) for path in options.flights]
+    records = [record for path in options.flights
+               for record in flights_from(path, options.mapping, options.vehicle)]
     with progress_bar() as bar:
         bar.add_task('fitting', total=None)
         found = fit(records, vehicle, names)
@@ -54,12 +59,6 @@ def run(options):
         write_vehicle(options.out_vehicle, fitted_vehicle(found))
     if options.json:
         write_json(options.json, as_data(found))
-
-
-def load(path):
-    """Return the flight record in a file; raises InputError."""
-    from quad_ident_ros.data.csv import read_csv
-    return read_csv(path)
 
 
 def show(found):

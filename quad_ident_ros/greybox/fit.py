@@ -3,20 +3,18 @@
 """Chosen physical parameters from flights, with what the flights cannot determine."""
 
 from dataclasses import asdict, dataclass, replace
-from pathlib import Path
 
 import numpy as np
-import yaml
 
 from quad_ident_ros import __version__
-from quad_ident_ros.errors import InputError
+from quad_ident_ros.effects.registry import mapping
 from quad_ident_ros.greybox.errors import GROUPS, UNITS
 from quad_ident_ros.greybox.estimate import covariance_of, Estimate, estimate, scatter_of
 from quad_ident_ros.greybox.flights import flight_of, highest_voltage
 from quad_ident_ros.greybox.free import columns_of_names, excitation_of, unit_of
 from quad_ident_ros.greybox.identifiable import correlated, freedoms
 from quad_ident_ros.greybox.noise import quick_noise
-from quad_ident_ros.greybox.parameters import INDEX, limits, nominal
+from quad_ident_ros.greybox.parameters import as_described, INDEX, limits, SPLIT
 from quad_ident_ros.model.vehicle import Vehicle
 
 SCHEMA = 'quad_ident/fit/1'
@@ -71,7 +69,7 @@ def fit(records, vehicle, names):
     free = columns_of_names(names, vehicle)
     voltage = highest_voltage(records)
     flights = [flight_of(record, vehicle, reference_voltage=voltage) for record in records]
-    start, sizes = nominal(vehicle), limits(vehicle)[2]
+    start, sizes = as_described(vehicle), limits(vehicle)[2]
     found = estimate(flights, vehicle, start, list(free.values()))
     inside = [name for name, moves in zip(free, found.free, strict=True) if moves]
     columns = [free[name] for name in inside]
@@ -106,26 +104,13 @@ def fit(records, vehicle, names):
 
 
 def fitted_vehicle(fit):
-    """Return the vehicle with the constants found; what is undetermined as far as it is given."""
+    """Return the vehicle as it was found; what is undetermined as far as it is given."""
     z = fit.estimate.z
-    return replace(fit.vehicle, mass=float(z[INDEX['mass']]),
+    return replace(fit.vehicle, effects=mapping(z[SPLIT:]), mass=float(z[INDEX['mass']]),
                    thrust_coefficient=float(z[INDEX['thrust_coefficient']]),
                    torque_coefficient=float(z[INDEX['torque_coefficient']]),
                    **{key: tuple(float(z[INDEX[f'{key}_{axis}']]) for axis in 'xyz')
                       for key in ('inertia', 'linear_drag', 'rotational_drag')})
-
-
-def write_vehicle(path, vehicle):
-    """Write a vehicle file; raises InputError where it cannot be written."""
-    data = {key: list(value) if isinstance(value, tuple) else value
-            for key, value in asdict(vehicle).items() if value != float('inf')}
-    data['rotors'] = [{'position': list(rotor.position), 'spin': rotor.spin}
-                      for rotor in vehicle.rotors]
-    try:
-        Path(path).write_text(yaml.safe_dump(data, sort_keys=False, default_flow_style=None),
-                              encoding='utf-8')
-    except OSError as error:
-        raise InputError(f'{path}: cannot be written: {error.strerror}') from None
 
 
 def as_data(fit):

@@ -22,6 +22,11 @@ def nominal(vehicle):
     return np.concatenate([vehicle_vector(vehicle), registry.NULL])
 
 
+def as_described(vehicle):
+    """Return the vector (Z,) of the vehicle file with the effects that it names."""
+    return np.concatenate([vehicle_vector(vehicle), registry.vector(vehicle.effects, vehicle)])
+
+
 def constants_of(z, vehicle):
     """Return the constants (..., 16) in vectors (..., Z), the hover speeds those of the others."""
     constants = np.array(z[..., :SPLIT])

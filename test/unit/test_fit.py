@@ -16,13 +16,13 @@ from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import Noise, Sensors
 from quad_ident_ros.greybox.errors import difference, moved
 from quad_ident_ros.greybox.estimate import CHANCE, Normal, scatter_of
-from quad_ident_ros.greybox.fit import as_data, fit, fitted_vehicle, write_vehicle
+from quad_ident_ros.greybox.fit import as_data, fit, fitted_vehicle
 from quad_ident_ros.greybox.flights import flight_of
 from quad_ident_ros.greybox.identifiable import freedoms
 from quad_ident_ros.greybox.linear import errors_along, linearise
 from quad_ident_ros.greybox.parameters import INDEX, nominal
 from quad_ident_ros.model.dynamics import STATES
-from quad_ident_ros.model.vehicle import load_vehicle
+from quad_ident_ros.model.vehicle import load_vehicle, write_vehicle
 
 DRAWS = 20
 KNOWN_MASS = NAMES[1:]
@@ -218,3 +218,15 @@ def test_the_command_refuses_in_one_line(problem, tmp_path, capsys):
     write_csv(flight, problem.clean.slice(0, 20))
     assert main(['fit', str(flight), '--vehicle', 'paper_quadrotor', '--free', 'mass']) == 2
     assert capsys.readouterr().err.count('\n') == 1
+
+
+def test_effects_that_were_freed_are_in_the_vehicle_written(problem):
+    effects = {'rotor_drag': {'coefficient': 0.3}}
+    record = fly_closed_loop(VEHICLE, effects, 'figure8', duration=10.0, seed=1, noise=WHITE)
+    found = fit([record], VEHICLE, ['rotor_drag'])
+    vehicle = fitted_vehicle(found)
+    assert vehicle.effects['rotor_drag']['coefficient'] == found.parameters[0].value
+    # From there on nothing is left to find, and what was there is kept.
+    again = fitted_vehicle(fit([record], vehicle, ['thrust_coefficient']))
+    assert again.effects == vehicle.effects
+    assert again.thrust_coefficient == pytest.approx(vehicle.thrust_coefficient, rel=0.01)
