@@ -70,7 +70,6 @@ def diagnose(records, vehicle, *, hold_out=None, effects=None, on_progress=lambd
     left = leftovers([where.lacking(record, vehicle, z, whole, voltage) for record in training])
     lacks = [where.lacking(record, vehicle, z0, noise, voltage) for record in training]
     on_progress(0.9)
-    far = _how_far(test, vehicle, z0, z, named, noise, voltage)
     remains = _remains(training, vehicle, z, noise, voltage)
     unknown = bool(left) and remains > REMAINS
     if unknown:
@@ -79,6 +78,7 @@ def diagnose(records, vehicle, *, hold_out=None, effects=None, on_progress=lambd
         for column in (column for cause in weak for column in cause.columns):
             z[column] = z0[column]
         named = tuple(cause for cause in named if cause not in weak)
+    far = _how_far(test, vehicle, z0, z, named, noise, voltage)
     doubts = _doubts(selection, named)
     verdict = [cause.effect for cause in named]
     if unknown:
