@@ -6,14 +6,9 @@ from datetime import datetime, timezone
 import json
 import sys
 
-from diagnostic_msgs.msg import DiagnosticArray
-from rclpy.clock import Clock, ClockType
-from rclpy.node import Node
 from std_msgs.msg import Float64MultiArray, String
-from std_srvs.srv import Trigger
 
 from quad_ident_ros.data.quality import refuse_unfit
-from quad_ident_ros.data.table import record_from_table
 from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.diagnose.where import CHANNELS
 from quad_ident_ros.effects.registry import EFFECTS
@@ -21,15 +16,15 @@ from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.mixing import with_commands
 from quad_ident_ros.model.vehicle import load_nominal
 from quad_ident_ros.nodes import process
-from quad_ident_ros.nodes.job import Job
-from quad_ident_ros.nodes.messages import diagnostics_message, ERROR, OK, table_message, WARN
-from quad_ident_ros.nodes.parameters import help_text, NodeParameters, ParameterSpec
+from quad_ident_ros.nodes.messages import ERROR, OK, table_message, WARN
+from quad_ident_ros.nodes.parameters import help_text, ParameterSpec
 from quad_ident_ros.nodes.qos import latched
-from quad_ident_ros.nodes.records import Records
+from quad_ident_ros.nodes.record_worker import RecordWorker, Words
 from quad_ident_ros.report.diagnosis import verdict_line
 from quad_ident_ros.warm_up import warm_up_diagnosis
 
 SHORTEST = 8.0      # s of a record that can bear a verdict: of a single one half is held out
+WORDS = Words('diagnose', 'diagnosis', 'diagnosing', 'diagnosed')
 STAGES = ('before', 'after', 'noise')
 
 SPECS = (
@@ -68,68 +63,27 @@ Parameters (--ros-args -p NAME:=VALUE):
 {help_text(SPECS)}"""
 
 
-class Diagnoser(Node):
-    """Diagnoses records in a thread of its own, so that the executor stays free."""
+class Diagnoser(RecordWorker):
+    """Diagnoses the records, or in mode continuous the newest one, and publishes the verdict."""
 
     def __init__(self, **kwargs):
-        super().__init__('diagnoser', **kwargs)
-        self._config = NodeParameters(self, SPECS, _validate)
+        super().__init__('diagnoser', SPECS, _validate, WORDS, **kwargs)
         self._json = self.create_publisher(String, 'diagnosis', latched())
         self._gap = self.create_publisher(Float64MultiArray, 'gap', latched())
         self._where = self.create_publisher(Float64MultiArray, 'where', latched())
-        self._diagnostics = self.create_publisher(DiagnosticArray, '/diagnostics', 10)
-        self.create_service(Trigger, '~/diagnose', self._on_diagnose)
-        self.create_service(Trigger, '~/cancel', self._on_cancel)
-        self._records = Records()
-        self._diagnosed_once = False
-        self._status = (OK, 'waiting for a record', {})
-        self._job = Job(self, self._prepare, self._on_end,
-                        'topic record: these records cannot be diagnosed')
-        self.create_timer(1.0, self._report, clock=Clock(clock_type=ClockType.STEADY_TIME))
-        self.create_subscription(Float64MultiArray, 'record', self._on_record, latched(16))
 
-    def close(self):
-        """End a diagnosis that is running."""
-        self._job.close()
+    def _unfit(self, record):
+        if self._continuous and _length(record) < SHORTEST:   # the end of a run
+            return _too_short(record)
+        return None
 
-    def _on_record(self, message):
-        try:
-            record = record_from_table(message)
-        except InputError as error:
-            self.get_logger().error(str(error))
-            return
-        continuous = self._config['mode'] == 'continuous'
-        if continuous and _length(record) < SHORTEST:   # the end of a run
-            self.get_logger().warning(_too_short(record))
-            return
-        self._records.add(record, longest=not continuous)
-        if continuous or self._records.complete and not self._diagnosed_once:
-            self._job.request()
-
-    def _on_diagnose(self, _, response):
-        if not self._records:
-            response.message = 'there is no record yet: is a recorder running? (~/flush)'
-            return response
-        busy = self._job.busy
-        self._job.request()
-        response.success = True
-        what = ('the newest record' if self._config['mode'] == 'continuous' else
-                f'{len(self._records)} records')
-        response.message = ('a diagnosis is running; another follows' if busy else
-                            f'diagnosing {what}')
-        return response
-
-    def _on_cancel(self, _, response):
-        response.success = self._job.cancel()
-        response.message = 'cancelled' if response.success else 'no diagnosis is running'
-        return response
+    def _taken(self):
+        return [self._records.newest] if self._continuous else self._records.all()
 
     def _prepare(self):
         """Return the diagnosis of the records as they are now, or of the newest window."""
-        self._diagnosed_once = True
         values = self._config.values()
-        continuous = values['mode'] == 'continuous'
-        records = [self._records.newest] if continuous else self._records.all()
+        records = self._taken()
 
         def run():
             vehicle = load_nominal(values['vehicle'])
@@ -145,18 +99,8 @@ class Diagnoser(Node):
 
         return run
 
-    def _on_end(self, outcome):
-        if outcome is None:
-            self._status = (WARN, 'the diagnosis was cancelled', {})
-            self.get_logger().warning('the diagnosis was cancelled')
-        elif isinstance(outcome, InputError):
-            self._status = (ERROR, str(outcome), {})
-            self.get_logger().error(str(outcome))
-        else:
-            self._publish(*outcome)
-        self._publish_status()
-
-    def _publish(self, data, flights):
+    def _publish(self, outcome):
+        data, flights = outcome
         span = [int(flights[0].info.get('start_ns', 0)),
                 int(flights[-1].info.get('start_ns', 0)
                     + round(1e9 * (flights[-1].t[-1] - flights[-1].t[0])))]
@@ -180,17 +124,6 @@ class Diagnoser(Node):
             **{f'probability/{row["effect"]}': row['probability'] for row in data['ranking']}})
         self.get_logger().info(f'{text}; {100 * gap["closed"]:.0f} % of the velocity gap above '
                                'the noise is closed')
-
-    def _report(self):
-        # A trigger that is lost delays a result at most.
-        self._job.collect()
-        self._publish_status()
-
-    def _publish_status(self):
-        level, text, values = self._status
-        if self._job.busy:
-            level, text = OK, 'diagnosing'
-        self._diagnostics.publish(diagnostics_message(self, level, text, values))
 
 
 def _length(record):

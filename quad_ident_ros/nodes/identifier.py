@@ -7,14 +7,9 @@ from datetime import datetime, timezone
 import json
 import sys
 
-from diagnostic_msgs.msg import DiagnosticArray
 import numpy as np
-from rclpy.clock import Clock, ClockType
-from rclpy.node import Node
 from std_msgs.msg import Bool, Float64MultiArray, String
-from std_srvs.srv import Trigger
 
-from quad_ident_ros.data.table import record_from_table
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.identify.identify import identify, Settings
 from quad_ident_ros.identify.levy import levy_sigma
@@ -25,19 +20,13 @@ from quad_ident_ros.identify.search import SwarmSettings
 from quad_ident_ros.identify.signals import FEWEST, OUTPUTS
 from quad_ident_ros.identify.vp import COMPLEX_PENALTY
 from quad_ident_ros.nodes import process
-from quad_ident_ros.nodes.job import Job
-from quad_ident_ros.nodes.messages import (
-    diagnostics_message,
-    ERROR,
-    OK,
-    parameter_message,
-    WARN,
-)
-from quad_ident_ros.nodes.parameters import help_text, NodeParameters, ParameterSpec
+from quad_ident_ros.nodes.messages import OK, parameter_message, WARN
+from quad_ident_ros.nodes.parameters import help_text, ParameterSpec
 from quad_ident_ros.nodes.qos import latched
-from quad_ident_ros.nodes.records import Records
+from quad_ident_ros.nodes.record_worker import RecordWorker, Words
 from quad_ident_ros.warm_up import warm_up
 
+WORDS = Words('identify', 'fit', 'fitting', 'fitted')
 NEWS = 10.0             # s between two lines of log on results without a change
 
 _SWARM = SwarmSettings()
@@ -106,73 +95,33 @@ Parameters (--ros-args -p NAME:=VALUE):
 {help_text(SPECS)}"""
 
 
-class Identifier(Node):
-    """Fits records in a thread of its own, so that the executor stays free."""
+class Identifier(RecordWorker):
+    """Fits the records together, and publishes what each method found."""
 
     def __init__(self, **kwargs):
-        super().__init__('identifier', **kwargs)
-        self._config = NodeParameters(self, SPECS, _settings)
+        super().__init__('identifier', SPECS, _settings, WORDS, **kwargs)
         self._best = self.create_publisher(Float64MultiArray, 'parameters', latched())
         self._each = {name: self.create_publisher(Float64MultiArray, f'parameters/{name}',
                                                   latched()) for name in METHODS}
         self._errors = self.create_publisher(Float64MultiArray, 'standard_errors', latched())
         self._changed = self.create_publisher(Bool, 'changed', latched())
         self._json = self.create_publisher(String, 'parameters_json', latched())
-        self._diagnostics = self.create_publisher(DiagnosticArray, '/diagnostics', 10)
-        self.create_service(Trigger, '~/identify', self._on_identify)
-        self.create_service(Trigger, '~/cancel', self._on_cancel)
-        self._records = Records()
         self._tracker = Tracker()
-        self._fitted_once = False
-        self._job = Job(self, self._prepare, self._on_end,
-                        'topic record: these records cannot be fitted')
-        self._status = (OK, 'waiting for a record', {})
-        self.create_timer(1.0, self._report, clock=Clock(clock_type=ClockType.STEADY_TIME))
-        self.create_subscription(Float64MultiArray, 'record', self._on_record, latched(16))
 
-    def close(self):
-        """End a fit that is running."""
-        self._job.close()
-
-    def _on_record(self, message):
-        try:
-            record = record_from_table(message)
-        except InputError as error:
-            self.get_logger().error(str(error))
-            return
+    def _unfit(self, record):
         if len(record) < FEWEST:
-            self.get_logger().warning(f'a record of {len(record)} samples is left aside: at least '
-                                      f'{FEWEST} are needed')
-            return
-        continuous = self._config['mode'] == 'continuous'
-        if self._records.add(record, longest=not continuous):
-            self._tracker = Tracker()
-        if continuous or self._records.complete and not self._fitted_once:
-            self._job.request()
+            return (f'a record of {len(record)} samples is left aside: at least {FEWEST} are '
+                    'needed')
+        return None
 
-    def _on_identify(self, _, response):
-        if not self._records:
-            response.success = False
-            response.message = 'there is no record yet: is a recorder running? (~/flush)'
-            return response
-        busy = self._job.busy
-        self._job.request()
-        response.success = True
-        response.message = ('a fit is running; another follows' if busy else
-                            f'fitting {len(self._records)} records')
-        return response
-
-    def _on_cancel(self, _, response):
-        response.success = self._job.cancel()
-        response.message = 'cancelled' if response.success else 'no fit is running'
-        return response
+    def _on_session(self):
+        self._tracker = Tracker()
 
     def _prepare(self):
         """Return the fit of the records as they are now."""
-        self._fitted_once = True
         values = self._config.values()
-        run = self._tracker.update if values['mode'] == 'continuous' else identify
-        records, settings = self._records.all(), _settings(values)
+        run = self._tracker.update if self._continuous else identify
+        records, settings = self._taken(), _settings(values)
         window, order = values['window'], list(settings.methods)
 
         def on_progress(method, output, share):
@@ -188,17 +137,6 @@ class Identifier(Node):
                                              'mode': values['mode']})
 
         return fit
-
-    def _on_end(self, outcome):
-        if outcome is None:
-            self._status = (WARN, 'the fit was cancelled', {})
-            self.get_logger().warning('the fit was cancelled')
-        elif isinstance(outcome, InputError):
-            self._status = (ERROR, str(outcome), {})
-            self.get_logger().error(str(outcome))
-        else:
-            self._publish(outcome)
-        self._publish_status()
 
     def _publish(self, result):
         for name, publisher in self._each.items():
@@ -236,17 +174,6 @@ class Identifier(Node):
             self.get_logger().info(text)
         elif not result.changes:
             self.get_logger().info(text, throttle_duration_sec=NEWS)
-
-    def _report(self):
-        # A trigger that is lost, as was seen once in some thousand fits, delays a result at most.
-        self._job.collect()
-        self._publish_status()
-
-    def _publish_status(self):
-        level, text, values = self._status
-        if self._job.busy:
-            level, text = OK, 'fitting'
-        self._diagnostics.publish(diagnostics_message(self, level, text, values))
 
 
 def _settings(values):

@@ -1,0 +1,128 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What the nodes that work on the records of the recorder have in common."""
+
+from dataclasses import dataclass
+
+from diagnostic_msgs.msg import DiagnosticArray
+from rclpy.clock import Clock, ClockType
+from rclpy.node import Node
+from std_msgs.msg import Float64MultiArray
+from std_srvs.srv import Trigger
+
+from quad_ident_ros.data.table import record_from_table
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.nodes.job import Job
+from quad_ident_ros.nodes.messages import diagnostics_message, ERROR, OK, WARN
+from quad_ident_ros.nodes.parameters import NodeParameters
+from quad_ident_ros.nodes.qos import latched
+from quad_ident_ros.nodes.records import Records
+
+
+@dataclass(frozen=True)
+class Words:
+    """What the work is called: its service (identify), and in sentences (fit, fitting, fitted)."""
+
+    service: str
+    noun: str
+    doing: str
+    done: str
+
+
+class RecordWorker(Node):
+    """
+    A node that works on records, in a thread of its own so that the executor stays free.
+
+    Mode once: on the first complete experiment, then only when its service is called;
+    continuous: on each new record. A node of this kind says with `_unfit` which records it leaves
+    aside, with `_prepare` what is to be done, and with `_publish` what came of it, where it sets
+    `_status`: (level, text, values) for /diagnostics.
+    """
+
+    def __init__(self, name, specs, validate, words, **kwargs):
+        super().__init__(name, **kwargs)
+        self._config = NodeParameters(self, specs, validate)
+        self._words = words
+        self._records = Records()
+        self._worked = False
+        self._status = (OK, 'waiting for a record', {})
+        self._diagnostics = self.create_publisher(DiagnosticArray, '/diagnostics', 10)
+        self._job = Job(self, self._begin, self._on_end,
+                        f'topic record: these records cannot be {words.done}')
+        self.create_service(Trigger, f'~/{words.service}', self._on_request)
+        self.create_service(Trigger, '~/cancel', self._on_cancel)
+        self.create_timer(1.0, self._report, clock=Clock(clock_type=ClockType.STEADY_TIME))
+        self.create_subscription(Float64MultiArray, 'record', self._on_record, latched(16))
+
+    def close(self):
+        """End the work that is being done."""
+        self._job.close()
+
+    @property
+    def _continuous(self):
+        return self._config['mode'] == 'continuous'
+
+    def _on_record(self, message):
+        try:
+            record = record_from_table(message)
+        except InputError as error:
+            self.get_logger().error(str(error))
+            return
+        why = self._unfit(record)
+        if why:
+            self.get_logger().warning(why)
+            return
+        if self._records.add(record, longest=not self._continuous):
+            self._on_session()
+        if self._continuous or self._records.complete and not self._worked:
+            self._job.request()
+
+    def _taken(self):
+        """Return the records that are worked on."""
+        return self._records.all()
+
+    def _on_session(self):
+        """Forget what was found in the records of another session."""
+
+    def _on_request(self, _, response):
+        if not self._records:
+            response.message = 'there is no record yet: is a recorder running? (~/flush)'
+            return response
+        busy = self._job.busy
+        self._job.request()
+        response.success = True
+        response.message = (f'a {self._words.noun} is running; another follows' if busy else
+                            f'{self._words.doing} {len(self._taken())} records')
+        return response
+
+    def _on_cancel(self, _, response):
+        response.success = self._job.cancel()
+        response.message = 'cancelled' if response.success else (
+            f'no {self._words.noun} is running')
+        return response
+
+    def _begin(self):
+        self._worked = True
+        return self._prepare()
+
+    def _on_end(self, outcome):
+        if outcome is None:
+            self._status = (WARN, f'the {self._words.noun} was cancelled', {})
+            self.get_logger().warning(self._status[1])
+        elif isinstance(outcome, InputError):
+            self._status = (ERROR, str(outcome), {})
+            self.get_logger().error(str(outcome))
+        else:
+            self._publish(outcome)
+        self._publish_status()
+
+    def _report(self):
+        # A trigger that is lost, as was seen once in some thousand fits, delays a result at most.
+        self._job.collect()
+        self._publish_status()
+
+    def _publish_status(self):
+        level, text, values = self._status
+        if self._job.busy:
+            level, text = OK, self._words.doing
+        self._diagnostics.publish(diagnostics_message(self, level, text, values))
