@@ -2,11 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Start the simulator, the recorder and the diagnoser side by side."""
 
-from launch import LaunchDescription
-from launch.actions import DeclareLaunchArgument
-from launch.substitutions import LaunchConfiguration
-from launch_ros.actions import Node
-from launch_ros.parameter_descriptions import ParameterValue
+from quad_ident_ros.nodes.launching import describe
 
 # Name, default, description and type of each argument.
 ARGUMENTS = (
@@ -35,24 +31,4 @@ NODES = {
 
 def generate_launch_description():
     """Describe the arguments and the nodes."""
-    values = {
-        name: ParameterValue(LaunchConfiguration(name), value_type=value_type)
-        for name, _, _, value_type in ARGUMENTS
-    }
-    return LaunchDescription(
-        [
-            DeclareLaunchArgument(name, default_value=default, description=description)
-            for name, default, description, _ in ARGUMENTS
-        ]
-        + [
-            Node(
-                package='quad_ident_ros',
-                executable=node,
-                name=node,
-                namespace=LaunchConfiguration('namespace'),
-                output='screen',
-                parameters=[{name: values[source] for name, source in parameters.items()}],
-            )
-            for node, parameters in NODES.items()
-        ]
-    )
+    return describe(ARGUMENTS, NODES)
