@@ -2,17 +2,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tests of rosbag2 folders."""
 
-from contextlib import contextmanager
 import errno
 from functools import cache
 import os
 from pathlib import Path
-import resource
 import shutil
 import signal
 import subprocess
 import sys
 
+from full_disk import file_size_limit
 import numpy as np
 import pytest
 from rosbags.highlevel import AnyReader
@@ -62,17 +61,6 @@ def swapped(count):
 def files(path):
     """Return the content of each file in a folder, by name."""
     return {file.name: file.read_bytes() for file in path.iterdir()}
-
-
-@contextmanager
-def file_size_limit(size):
-    """Have writes past that size (bytes) fail, as on a full disk."""
-    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (size, hard))
-    try:
-        yield
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
 
 
 def test_messages_come_back_by_time(tmp_path):

@@ -2,12 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tests of flight records as CSV."""
 
-from contextlib import contextmanager
 import gzip
 import os
-import resource
 import time
 
+from full_disk import file_size_limit
 from hypothesis import example, given, HealthCheck, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
@@ -20,17 +19,6 @@ from quad_ident_ros.errors import InputError
 
 FAST = settings(deadline=None, max_examples=80,
                 suppress_health_check=[HealthCheck.function_scoped_fixture])
-
-
-@contextmanager
-def file_size_limit(size):
-    """Have writes past that size (bytes) fail, as on a full disk."""
-    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (size, hard))
-    try:
-        yield
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
 
 
 def read(tmp_path, text, name='flight.csv'):

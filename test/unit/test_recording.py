@@ -2,10 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tests of a recording on disk and of what is read back from it."""
 
-from contextlib import contextmanager
 import json
-import resource
 
+from full_disk import file_size_limit
 import numpy as np
 import pytest
 from rosbags.typesys import get_typestore, Stores
@@ -60,17 +59,6 @@ def record(recording, start, stop, offset=10 ** 15):
 def announce(recording, run, offset=10 ** 15):
     recording.write('run', offset + run.start_ns, run_cdr(run))
     recording.add_run(run)
-
-
-@contextmanager
-def file_size_limit(size):
-    """Have writes past that size (bytes) fail, as on a full disk."""
-    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (size, hard))
-    try:
-        yield
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
 
 
 def check(flight, start, stop):

@@ -1,0 +1,17 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""A disk that is full, for tests of what is written to it."""
+
+from contextlib import contextmanager
+import resource
+
+
+@contextmanager
+def file_size_limit(size):
+    """Have writes past that size (bytes) fail, as on a full disk."""
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, hard))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
