@@ -103,6 +103,8 @@ def _reveal(options, outcome):
         print(f'          {said}; {100 * gap["closed"]:.0f} % of the velocity gap above the '
               f'noise is closed; the same again: --seed {options.seed}')
         _say_where(options, outcome)
+        print(f'pictures: ./run diagnose {outcome.recording}/flight_*.csv '
+              f'--vehicle {outcome.nominal} --report diagnosis.html')
     if options.json:
         write_json(options.json, {
             'diagnosis': found, 'effects': outcome.effects, 'found': outcome.found,

@@ -17,10 +17,15 @@ NOMINAL, REALITY = 'nominal.yaml', 'reality.yaml'
 
 @dataclass(frozen=True)
 class GapOutcome:
-    """What the demo gave: the diagnosis as data, the effects in truth, the recording's folder."""
+    """
+    What the demo gave: the diagnosis as data, and the effects in truth.
+
+    nominal: path of the vehicle file that the diagnosis was given; recording: folder.
+    """
 
     diagnosis: dict
     effects: dict
+    nominal: str
     recording: str
     seconds: float
     samples: int
@@ -59,6 +64,7 @@ def run_gap_demo(options, on_progress):
                       'real_time_factor': float(options.real_time_factor)},
     }, output / 'log')
     recording = Path(options.output) / Path(watcher.statistics['recording']).name
-    return GapOutcome(watcher.result, load_vehicle(reality).effects, str(recording),
+    return GapOutcome(watcher.result, load_vehicle(reality).effects,
+                      str(Path(options.output) / NOMINAL), str(recording),
                       time.monotonic() - started, watcher.statistics['joined'],
                       watcher.statistics['missing'])

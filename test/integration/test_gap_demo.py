@@ -38,6 +38,7 @@ def test_the_secret_is_found_and_revealed_last(demo):
     verdict, revealed = said.index('verdict: '), said.index('revealed: ')
     assert verdict < revealed < said.index('the same again: --seed')
     assert f'revealed: {list(truth)[0]} ' in said
+    assert f'flight_*.csv --vehicle {folder / "nominal.yaml"} --report' in said
 
 
 def test_the_diagnosing_process_was_not_told(demo):
