@@ -18,7 +18,8 @@ from quad_ident_ros.errors import InputError
 # The document that keeps the results of each section, which is a module of the same name.
 SECTIONS = {'p1': 'performance.md', 'p2': 'performance.md', 'p3': 'performance.md',
             'scaling': 'performance.md', 'limit': 'performance.md', 'start': 'performance.md',
-            'accuracy': 'accuracy.md', 'rollout': 'performance.md', 'graph': 'performance.md'}
+            'accuracy': 'accuracy.md', 'rollout': 'performance.md',
+            'diagnosis': 'performance.md', 'graph': 'performance.md'}
 APART = ('accuracy', 'graph')     # only where they are asked for
 PACKAGES = ('numpy', 'scipy', 'numba', 'pyswarms', 'mealpy', 'nevergrad', 'cma', 'pymoo',
             'sippy-unipi', 'rotorpy', 'mujoco', 'ros-jazzy-rclpy')

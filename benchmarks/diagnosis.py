@@ -1,0 +1,58 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The time of a diagnosis: four flights of 30 s at 100 Hz, all effects."""
+
+import numpy as np
+
+from benchmarks.machine import timed
+from benchmarks.tables import markdown, number, targets
+from quad_ident_ros.diagnose.diagnosis import diagnose
+from quad_ident_ros.effects.registry import bounds, EFFECTS, SLICES
+from quad_ident_ros.flight.fly import fly_closed_loop
+from quad_ident_ros.flight.measure import SENSORS
+from quad_ident_ros.model.vehicle import load_vehicle
+
+TRAJECTORIES = ('lissajous', 'steps', 'low_passes', 'circle')
+DURATION, RATE = 30.0, 100.0    # s, Hz
+MOST = 3.0                      # s
+TOGETHER = ('motor_lag', 'rotor_drag', 'battery_sag')   # what real vehicles have at once
+
+
+def run(size, bar):
+    """Return the results as Markdown; size: a Size; bar: makes progress bars."""
+    vehicle = load_vehicle('hummingbird')
+    cases = {'none': {}, **{name: usual(vehicle, name) for name in EFFECTS},
+             ' + '.join(TOGETHER): usual(vehicle, *TOGETHER)}
+    names = list(cases)[:size.diagnoses]
+    rows, seconds = [], []
+    with bar('Diagnosis', len(names) + 1) as advance:
+        for name in [names[0], *names]:     # the first call loads the program
+            flights = flown(vehicle, cases[name])
+            found, spent = timed(diagnose, flights, vehicle)
+            rows.append((name, number(spent), ', '.join(found.data['verdict'])))
+            seconds.append(spent)
+            advance()
+    rows, seconds = rows[1:], seconds[1:]
+    goals = [('CPU time, the slowest', f'≤ {MOST:g} s', f'{number(max(seconds))} s',
+              max(seconds) <= MOST),
+             ('CPU time, median', f'≤ {MOST:g} s', f'{number(float(np.median(seconds)))} s',
+              np.median(seconds) <= MOST)]
+    return f'{targets(goals)}\n\n{markdown(("what the vehicle has", "CPU, s", "verdict"), rows)}'
+
+
+def usual(vehicle, *names):
+    """Return {effect: {parameter: value}} of effects at their usual size; of one rotor alone."""
+    sizes = bounds(vehicle)[2]
+    effects = {}
+    for name in names:
+        known = zip(EFFECTS[name].parameters, sizes[SLICES[name]], strict=True)
+        values = {parameter.name: parameter.null + size for parameter, size in known}
+        effects[name] = dict(list(values.items())[:1]) if EFFECTS[name].per_rotor else values
+    return effects
+
+
+def flown(vehicle, effects):
+    """Return four flights of a vehicle with effects, measured by motion capture and IMU."""
+    return [fly_closed_loop(vehicle, effects, name, duration=DURATION, rate=RATE, seed=seed,
+                            noise=SENSORS['mocap_imu'])
+            for seed, name in enumerate(TRAJECTORIES)]
