@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from quad_ident_ros.diagnose.evidence import beam, linear_evidence, PRIOR
+from quad_ident_ros.diagnose.evidence import beam, PRIOR
 from quad_ident_ros.effects.registry import mapping
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.flight.fly import fly_closed_loop, FULL_VOLTAGE, RATES
@@ -81,21 +81,6 @@ def manoeuvres(selection, flights, vehicle, z):
     return found
 
 
-def rivals_of(selection, cause, others):
-    """
-    Return those of other causes that explain in place of one, in the best set, what it does.
-
-    That is at least half of the log-evidence that is lost without it.
-    """
-    def evidence(causes):
-        return linear_evidence(selection.quadratic, [selection.rows[one] for one in causes])[0]
-
-    rest = [one for one in selection.best.causes if one is not cause]
-    without = evidence(rest)
-    lost = evidence([*rest, cause]) - without
-    return [other for other in others if evidence([*rest, other]) - without > 0.5 * lost]
-
-
 def explanations(selection, sure, doubtful):
     """Return {causes: distances (C,)}: per doubtful cause the best set of these with it."""
     ranked = beam(selection.quadratic,
@@ -144,30 +129,45 @@ def visibility(information, selection, causes, present):
     return found
 
 
-def to_separate(selection, options, sure, doubtful):
-    """Return the proposal, as data, of the manoeuvre that separates doubtful causes, or None."""
-    sets = explanations(selection, sure, doubtful)
-    record = _of_record(selection)
-    after = {option.trajectory: separation(record + option.information, selection, sets)
-             for option in options}
-    if len(sets) < 2 or not after:
-        return None
-    return _proposal('separate', [cause.effect for cause in doubtful], options,
-                     separation(record, selection, sets), after)
-
-
 def hidden(selection, causes, present):
-    """Return the effects of which the flights would not show the usual size."""
+    """Return the names of effects that the flights would not show at their usual size."""
     seen = visibility(_of_record(selection), selection, causes, present)
     return [name for name, away in seen.items() if away < HIDDEN]
 
 
-def to_show(selection, options, names, causes, present):
-    """Return the proposals, as data, of manoeuvres that together show effects by name."""
+def fly_next(selection, flights, vehicle, z, sure, doubtful, unseen):
+    """
+    Return what to fly next, as data: [{purpose, effects, the manoeuvre, now, after, manoeuvres}].
+
+    First what separates the doubtful causes, then what shows the effects that were not seen; of
+    each manoeuvre how far, in standard errors, now and after it. Args: z (Z,): what was found;
+    sure, doubtful: causes; unseen: names of effects.
+    """
+    if not doubtful and not unseen:
+        return []
+    options = manoeuvres(selection, flights, vehicle, z)
+    return (_to_separate(selection, options, sure, doubtful)
+            + _to_show(selection, options, unseen, sure))
+
+
+def _to_separate(selection, options, sure, doubtful):
+    """Return at most one proposal: the manoeuvre that separates doubtful causes best."""
+    sets = explanations(selection, sure, doubtful)
+    if len(sets) < 2 or not options:
+        return []
+    record = _of_record(selection)
+    after = {option.trajectory: separation(record + option.information, selection, sets)
+             for option in options}
+    return [_proposal('separate', [cause.effect for cause in doubtful], options,
+                      separation(record, selection, sets), after)]
+
+
+def _to_show(selection, options, names, present):
+    """Return the proposals of a few manoeuvres that together show effects by name."""
     record, left, found = _of_record(selection), list(names), []
-    asked = [cause for cause in causes if cause.effect in names]
-    now = visibility(record, selection, asked, present)
-    seen = {option.trajectory: visibility(record + option.information, selection, asked, present)
+    causes = [cause for cause in selection.rows if cause.effect in left]
+    now = visibility(record, selection, causes, present)
+    seen = {option.trajectory: visibility(record + option.information, selection, causes, present)
             for option in options}
     while left and len(found) < MOST:
         shown = {name: [one for one in left if away[one] >= SHOWN] for name, away in seen.items()}

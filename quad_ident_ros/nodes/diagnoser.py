@@ -15,6 +15,7 @@ from std_srvs.srv import Trigger
 from quad_ident_ros.data.quality import refuse_unfit
 from quad_ident_ros.data.table import record_from_table
 from quad_ident_ros.diagnose.diagnosis import diagnose
+from quad_ident_ros.diagnose.length import refuse_short, SHORTEST
 from quad_ident_ros.diagnose.where import CHANNELS
 from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.errors import InputError
@@ -29,7 +30,6 @@ from quad_ident_ros.nodes.records import Records
 from quad_ident_ros.report.diagnosis import verdict_line
 from quad_ident_ros.warm_up import warm_up_diagnosis
 
-SHORTEST = 8.0      # s of a record that can bear a verdict: of a single one half is held out
 STAGES = ('before', 'after', 'noise')
 
 SPECS = (
@@ -99,9 +99,12 @@ class Diagnoser(Node):
             self.get_logger().error(str(error))
             return
         continuous = self._config['mode'] == 'continuous'
-        if continuous and _length(record) < SHORTEST:   # the end of a run
-            self.get_logger().warning(_too_short(record))
-            return
+        if continuous:
+            try:
+                refuse_short(record)
+            except InputError as error:     # the end of a run
+                self.get_logger().warning(str(error))
+                return
         self._records.add(record, longest=not continuous)
         if continuous or self._records.complete and not self._diagnosed_once:
             self._job.request()
@@ -136,8 +139,7 @@ class Diagnoser(Node):
             flights = [with_commands(record.last(values['window']) if values['window']
                                      else record, vehicle) for record in records]
             for flight in flights:
-                if _length(flight) < SHORTEST:
-                    raise InputError(_too_short(flight))
+                refuse_short(flight)
                 refuse_unfit(flight, vehicle)
             found = diagnose(flights, vehicle, effects=values['effects'] or None,
                              on_progress=self._job.tell)
@@ -191,16 +193,6 @@ class Diagnoser(Node):
         if self._job.busy:
             level, text = OK, 'diagnosing'
         self._diagnostics.publish(diagnostics_message(self, level, text, values))
-
-
-def _length(record):
-    """Return the length of a record, s; a nanosecond counts for nothing."""
-    return round(record.t[-1] - record.t[0] + record.period(), 6)
-
-
-def _too_short(record):
-    return (f'{record.info.get("name", "a record")}: {_length(record):.3g} s are too short for a '
-            f'diagnosis; at least {SHORTEST:g} s are needed')
 
 
 def _validate(values):

@@ -30,6 +30,8 @@ def show(data, stream):
     for row in data['unknown'] or ():
         say(f'unexplained: {row["channel"]} depends on {row["depends_on"]} '
             f'({100 * row["share"]:.0f} % of what is left there)')
+    for line in next_lines(data):
+        say(line)
 
 
 def verdict_line(data):
@@ -37,9 +39,28 @@ def verdict_line(data):
     verdict = data['verdict']
     if verdict == ['none']:
         return 'none: nothing but measurement noise is left'
-    if verdict == ['undetermined']:
-        return f'undetermined: the flights cannot tell between {", ".join(data["undetermined"])}'
+    if 'undetermined' in verdict:
+        return (f'{", ".join(verdict)}: the flights cannot tell between '
+                f'{", ".join(data["undetermined"])}')
     return ', '.join(verdict)
+
+
+def next_lines(data):
+    """Return the lines that say what the flights could not show, and what to fly next."""
+    lines = []
+    if data['not_shown']:
+        lines.append(f'could not be seen at its usual size: {", ".join(data["not_shown"])}')
+    return lines + [f'to fly next: {_proposed(one)}' for one in data['fly_next'] or ()]
+
+
+def _proposed(one):
+    low, high = one['height']
+    across = max(one['span'][:2])
+    names = ', '.join(one['effects'])
+    what = (f'to tell {names} apart' if one['purpose'] == 'separate' else f'to see {names}')
+    return (f'{one["trajectory"]}, {one["duration"]:g} s ({across:.2g} m across, {low:.2g} to '
+            f'{high:.2g} m high, up to {one["speed"]:.2g} m/s) {what}: '
+            f'{one["after"]:.2g} standard errors, now {one["now"]:.2g}')
 
 
 def _far(gap):
