@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from quad_ident_ros.diagnose.evidence import beam, PRIOR
+from quad_ident_ros.diagnose.evidence import beam, occam, PRIOR
 from quad_ident_ros.effects.registry import mapping
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.flight.fly import fly_closed_loop, FULL_VOLTAGE, RATES
@@ -98,17 +98,38 @@ def separation(information, selection, sets):
     """
     Return how far apart the two closest of sets of causes are, standard errors.
 
-    From each set as it was found to the nearest point of each other one; inf where there is but
-    one. Args: information (C, C); sets as of explanations.
+    From each set as it was found to the nearest point of each other one, or of that one with any
+    further cause, which costs what it does in the choice among sets; inf where there is but one.
+    Args: information (C, C); sets as of explanations.
     """
     least = np.inf
     for one, distances in sets.items():
         for other in sets:
-            away = _places(selection, [cause for cause in one if cause not in other])
-            if len(away):
-                block = _left(information, away, _places(selection, other), selection.quadratic)
-                least = min(least, distances[away] @ block @ distances[away])
+            if not set(one) <= set(other):
+                least = min(least, *(
+                    cost + _distance(information, selection, one, distances, others)
+                    for cost, others in _with_another(information, selection, one, other)))
     return float(np.sqrt(max(least, 0.0)))
+
+
+def _with_another(information, selection, one, other):
+    """Return [(cost, causes)]: a set and with it each cause that neither it nor `one` has."""
+    found, known = [(0.0, other)], _places(selection, other)
+    effects = {cause.effect for cause in (*one, *other)}
+    for cause in selection.rows:
+        if cause.effect not in effects:
+            places = _places(selection, [cause])
+            block = _left(information, places, known, selection.quadratic)
+            cost = -2.0 * occam(block, selection.quadratic.size[places], 1.0, 1)
+            found.append((cost, (*other, cause)))
+    return found
+
+
+def _distance(information, selection, one, distances, other):
+    """Return the square of the distance from a set as it was found to the nearest of another."""
+    away = _places(selection, [cause for cause in one if cause not in other])
+    block = _left(information, away, _places(selection, other), selection.quadratic)
+    return distances[away] @ block @ distances[away]
 
 
 def visibility(information, selection, causes, present):

@@ -30,8 +30,11 @@ def show(data, stream):
     for row in data['unknown'] or ():
         say(f'unexplained: {row["channel"]} depends on {row["depends_on"]} '
             f'({100 * row["share"]:.0f} % of what is left there)')
-    for line in next_lines(data):
-        say(line)
+    if data['not_shown']:
+        say(not_shown_line(data))
+    if data['fly_next']:
+        say('what to fly next')
+        screen.print(_next(data['fly_next']))
 
 
 def verdict_line(data):
@@ -45,22 +48,32 @@ def verdict_line(data):
     return ', '.join(verdict)
 
 
-def next_lines(data):
-    """Return the lines that say what the flights could not show, and what to fly next."""
-    lines = []
-    if data['not_shown']:
-        lines.append(f'could not be seen at its usual size: {", ".join(data["not_shown"])}')
-    return lines + [f'to fly next: {_proposed(one)}' for one in data['fly_next'] or ()]
+def not_shown_line(data):
+    """Return what the flights could not show, in words."""
+    return f'too little excited to be seen at their usual size: {", ".join(data["not_shown"])}'
 
 
-def _proposed(one):
+NEXT = ('manoeuvre', 'to', 'standard errors now', 'with it', 'size', 'height', 'speed up to')
+"""What next_row says of a manoeuvre."""
+
+
+def next_row(one):
+    """Return the cells of a proposal of what to fly next."""
     low, high = one['height']
-    across = max(one['span'][:2])
     names = ', '.join(one['effects'])
-    what = (f'to tell {names} apart' if one['purpose'] == 'separate' else f'to see {names}')
-    return (f'{one["trajectory"]}, {one["duration"]:g} s ({across:.2g} m across, {low:.2g} to '
-            f'{high:.2g} m high, up to {one["speed"]:.2g} m/s) {what}: '
-            f'{one["after"]:.2g} standard errors, now {one["now"]:.2g}')
+    return [f'{one["trajectory"]}, {one["duration"]:g} s',
+            f'tell apart {names}' if one['purpose'] == 'separate' else f'see {names}',
+            *(f'{value:.1f}' if value < 10 else f'{value:.0f}' for value in (one['now'],
+                                                                             one['after'])),
+            f'{max(one["span"][:2]):.1f} m', f'{low:.1f} to {high:.1f} m',
+            f'{one["speed"]:.1f} m/s']
+
+
+def _next(proposals):
+    table = _table(*NEXT)
+    for one in proposals:
+        table.add_row(*next_row(one))
+    return table
 
 
 def _far(gap):

@@ -13,7 +13,7 @@ from quad_ident_ros.greybox.flights import highest_voltage
 from quad_ident_ros.greybox.noise import quick_noise, whole_noise
 from quad_ident_ros.greybox.parameters import nominal
 from quad_ident_ros.report import gap_pictures
-from quad_ident_ros.report.diagnosis import next_lines, verdict_line
+from quad_ident_ros.report.diagnosis import NEXT, next_row, not_shown_line, verdict_line
 from quad_ident_ros.report.html import figure, join, Markup, table, tag, write_page
 
 WIDE = 1.96     # standard errors to the ends of a 95 % interval
@@ -140,11 +140,18 @@ def _open(data):
              for row in data['unknown'] or ()]
     if data['undetermined']:
         lines.append(f'The flights cannot tell between {", ".join(data["undetermined"])}.')
-    lines += [f'{line[0].upper()}{line[1:]}.' for line in next_lines(data)]
-    if not lines:
-        return []
-    return [tag('h2', 'What cannot be told'),
-            Markup(f'<ul>{join(tag("li", line) for line in lines)}</ul>')]
+    if data['not_shown']:
+        line = not_shown_line(data)
+        lines.append(f'{line[0].upper()}{line[1:]}.')
+    parts = []
+    if lines:
+        items = join(tag('li', line) for line in lines)
+        parts += [tag('h2', 'What cannot be told'), Markup(f'<ul>{items}</ul>')]
+    if data['fly_next']:
+        parts += [tag('h2', 'What to fly next'),
+                  table(NEXT, [next_row(one) for one in data['fly_next']],
+                        kinds=('text', 'text', '', '', '', '', ''))]
+    return parts
 
 
 def _provenance(data):
