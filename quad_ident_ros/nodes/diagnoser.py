@@ -54,7 +54,8 @@ Subscribes: record (std_msgs/Float64MultiArray, latched) of the recorder, which 
 and input; of records without rotor speed commands, those that give the input are taken.
 Of several flights the last one is held out, of a single one its second half.
 Publishes (latched, but progress and diagnostics):
-  diagnosis      std_msgs/String             JSON: verdict, effects with probability, where, gap
+  diagnosis      std_msgs/String             JSON: verdict, effects with probability, where, gap,
+                                             what to fly next
   gap            std_msgs/Float64MultiArray  gap of position, velocity, attitude, rate (m, m/s,
                                              rad, rad/s), 0.5 s ahead, held out: before, after the
                                              effects found, and of noise alone
