@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from quad_ident_ros.diagnose.evidence import beam, occam, PRIOR
+from quad_ident_ros.diagnose.evidence import occam, PRIOR
 from quad_ident_ros.effects.registry import mapping
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.flight.fly import fly_closed_loop, FULL_VOLTAGE, RATES
@@ -20,7 +20,7 @@ from quad_ident_ros.flight.trajectories import TRAJECTORIES
 from quad_ident_ros.greybox.estimate import normal_of
 from quad_ident_ros.greybox.flights import flight_of, RATE
 from quad_ident_ros.greybox.linear import linearise
-from quad_ident_ros.greybox.parameters import SPLIT
+from quad_ident_ros.greybox.parameters import nominal, SPLIT
 
 DURATION = 20.0     # s of a manoeuvre
 SEED = 0            # of its trajectory
@@ -81,26 +81,13 @@ def manoeuvres(selection, flights, vehicle, z):
     return found
 
 
-def explanations(selection, sure, doubtful):
-    """Return {causes: distances (C,)}: per doubtful cause the best set of these with it."""
-    ranked = beam(selection.quadratic,
-                  {cause: selection.rows[cause] for cause in (*sure, *doubtful)})
-    found = {}
-    for cause in doubtful:
-        for value, chosen, distances in ranked:
-            if cause in chosen and np.isfinite(value):
-                found[chosen] = distances
-                break
-    return found
-
-
 def separation(information, selection, sets):
     """
     Return how far apart the two closest of sets of causes are, standard errors.
 
     From each set as it was found to the nearest point of each other one, or of that one with any
     further cause, which costs what it does in the choice among sets; inf where there is but one.
-    Args: information (C, C); sets as of explanations.
+    Args: information (C, C); sets {causes: distances (C,) from no effect}.
     """
     least = np.inf
     for one, distances in sets.items():
@@ -156,30 +143,31 @@ def hidden(selection, causes, present):
     return [name for name, away in seen.items() if away < HIDDEN]
 
 
-def fly_next(selection, flights, vehicle, z, sure, doubtful, unseen):
+def fly_next(selection, flights, vehicle, z, sure, doubts, unseen):
     """
     Return what to fly next, as data: [{purpose, effects, the manoeuvre, now, after, manoeuvres}].
 
     First what separates the doubtful causes, then what shows the effects that were not seen; of
     each manoeuvre how far, in standard errors, now and after it. Args: z (Z,): what was found;
-    sure, doubtful: causes; unseen: names of effects.
+    sure: causes; doubts {cause: Fitted}, see doubts; unseen: names of effects.
     """
-    if not doubtful and not unseen:
+    if not doubts and not unseen:
         return []
     options = manoeuvres(selection, flights, vehicle, z)
-    return (_to_separate(selection, options, sure, doubtful)
+    return (_to_separate(selection, options, vehicle, doubts)
             + _to_show(selection, options, unseen, sure))
 
 
-def _to_separate(selection, options, sure, doubtful):
+def _to_separate(selection, options, vehicle, doubts):
     """Return at most one proposal: the manoeuvre that separates doubtful causes best."""
-    sets = explanations(selection, sure, doubtful)
+    columns = list(selection.quadratic.columns)
+    sets = {fit.causes: (fit.estimate.z - nominal(vehicle))[columns] for fit in doubts.values()}
     if len(sets) < 2 or not options:
         return []
     record = _of_record(selection)
     after = {option.trajectory: separation(record + option.information, selection, sets)
              for option in options}
-    return [_proposal('separate', [cause.effect for cause in doubtful], options,
+    return [_proposal('separate', [cause.effect for cause in doubts], options,
                       separation(record, selection, sets), after)]
 
 

@@ -147,7 +147,7 @@ def test_a_vehicle_that_cannot_fly_is_asked_for_nothing():
     z = nominal(VEHICLE)
     z[INDEX['mass_offset.mass']] = 3.0 * VEHICLE.mass
     selection = pair(0.9)
-    assert fly_next(selection, flights, VEHICLE, z, (), tuple(selection.rows), []) == []
+    assert fly_next(selection, flights, VEHICLE, z, (), {}, ['rotor_drag']) == []
 
 
 def pair(correlation, third=None):
@@ -193,24 +193,29 @@ def test_an_effect_beside_another_that_looks_alike_is_less_visible():
     assert beside == pytest.approx(1000.0 * np.sqrt(1.0 - 0.99 ** 2), rel=1e-3)
 
 
-def test_only_what_can_stand_in_its_place_is_a_rival():
-    """The rate's bias is no rival of a mass, however probable it is."""
-    selection = pair(0.99)
-    mass, thrust, bias = selection.rows
-    chosen = SimpleNamespace(causes=(mass,))
-    both = SimpleNamespace(**vars(selection), best=chosen,
-                           probability={mass: 0.6, thrust: 0.4, bias: 0.5})
-    assert doubts_of(both, (mass,)) == (mass, thrust)
-    sure = SimpleNamespace(**vars(selection), best=chosen,
-                           probability={mass: 0.95, thrust: 0.4, bias: 0.5})
-    assert doubts_of(sure, (mass,)) == ()
+def selected(*sets, probability):
+    """Return a selection of sets of causes by their log-evidence, the best first."""
+    fitted = [SimpleNamespace(causes=causes, evidence=evidence) for causes, evidence in sets]
+    return SimpleNamespace(best=fitted[0], fitted=fitted, probability=probability)
+
+
+MASS, THRUST, BIAS = pair(0.0).rows
+
+
+def test_only_what_stands_in_its_place_is_a_rival():
+    """The rate's bias is there or not with either of the two, and so is no rival."""
+    sets = [((MASS,), 0.0), ((THRUST,), -0.4), ((MASS, BIAS), -0.1), ((THRUST, BIAS), -0.5),
+            ((), -90.0)]
+    unsure = selected(*sets, probability={MASS: 0.6, THRUST: 0.4, BIAS: 0.5})
+    doubts = doubts_of(unsure, (MASS,))
+    assert list(doubts) == [MASS, THRUST]
+    assert [fit.causes for fit in doubts.values()] == [(MASS,), (THRUST,)]
+    sure = selected(*sets, probability={MASS: 0.95, THRUST: 0.2, BIAS: 0.5})
+    assert not doubts_of(sure, (MASS,))
 
 
 def test_which_rotor_is_weak_is_no_doubt_between_effects():
-    selection = pair(0.99)
     one, other = (Candidate('rotor_fault', f'rotor_fault {j}', (INDEX[f'rotor_fault.loss_{j}'],))
                   for j in (1, 2))
-    named = SimpleNamespace(
-        quadratic=selection.quadratic, rows={one: [0], other: [1]},
-        best=SimpleNamespace(causes=(one,)), probability={one: 0.5, other: 0.5})
-    assert doubts_of(named, (one,)) == ()
+    found = selected(((one,), 0.0), ((other,), -0.1), probability={one: 0.5, other: 0.5})
+    assert not doubts_of(found, (one,))
