@@ -88,7 +88,8 @@ def diagnose(records, vehicle, *, hold_out=None, effects=None, on_progress=lambd
     sure = [cause for cause in named if cause not in doubts]
     verdict = _verdict(sure, unknown, doubts)
     open_ones = sorted({cause.effect for cause in doubts})
-    unseen = hidden(selection, [cause for cause in causes if cause.effect not in open_ones], sure)
+    unseen = hidden(selection, [cause for cause in causes
+                                if cause.effect not in (*open_ones, *verdict)], sure)
     proposals = None
     if ASKS & set(verdict):
         proposals = fly_next(selection, flights, vehicle, z, sure, doubts, unseen) or None

@@ -50,7 +50,7 @@ def verdict_line(data):
 
 def not_shown_line(data):
     """Return what the flights could not show, in words."""
-    return f'too little excited to be seen at their usual size: {", ".join(data["not_shown"])}'
+    return f'would not show at their usual size: {", ".join(data["not_shown"])}'
 
 
 NEXT = ('manoeuvre', 'to', 'standard errors now', 'with it', 'size', 'height', 'speed up to')

@@ -71,7 +71,7 @@ def test_what_cannot_be_told_is_said(page):
     assert '<h2>What cannot be told</h2>' in text
     assert 'The flights cannot tell between wind, body_drag.' in text
     assert 'Fz depends on height &lt;5 m: 40 % of what is left there' in text
-    assert 'Too little excited to be seen at their usual size: ground_effect.' in text
+    assert 'Would not show at their usual size: ground_effect.' in text
     assert text.index('<td class="text">circle, 20 s</td>') < text.index('chirp_x, 20 s')
     assert '<td class="text">tell apart wind, body_drag</td><td>0.5</td><td>12</td>' in text
 
