@@ -44,7 +44,7 @@ def judge(label, found):
 
     A failure is wrong; a refusal is neither right nor wrong but counted as refused. `exact` is
     also right where the records cannot tell (poor flights, twins_of) and `undetermined` names
-    what is there; with twins, `first` is right with either.
+    what is there beside what the verdict names rightly; with twins, `first` is right with either.
     """
     truth = truth_of(label)
     out = {'refused': 'refused' in found, 'failed': 'failed' in found,
@@ -60,7 +60,8 @@ def judge(label, found):
     exact = verdict == truth
     twins = twins_of(label)
     if 'undetermined' in verdict and (label['kind'] == 'poor' or doubts == twins):
-        exact = truth <= doubts if effects else False
+        sure = set(found.get('sure') or ())
+        exact = sure <= truth <= doubts | sure if effects else False
     hits = len(named & effects)
     return out | {
         'first': bool(ranking) and ranking[0] in effects | twins if effects else None,

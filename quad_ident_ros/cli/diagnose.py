@@ -12,6 +12,7 @@ from rich.progress import BarColumn, Progress, TextColumn
 from quad_ident_ros.cli.options import flights_from
 from quad_ident_ros.data.quality import refuse_unfit
 from quad_ident_ros.diagnose.diagnosis import diagnose, split
+from quad_ident_ros.diagnose.length import refuse_short
 from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.model.mixing import with_commands
 from quad_ident_ros.model.vehicle import load_nominal, write_vehicle
@@ -59,6 +60,7 @@ def run(options):
         held = with_commands(
             flights_from(options.hold_out, options.mapping, options.vehicle)[-1], vehicle)
     for record in [*records, *([held] if held else [])]:
+        refuse_short(record)
         refuse_unfit(record, vehicle)
     with Progress(TextColumn('{task.description}'), BarColumn(),
                   console=Console(stderr=True), transient=True) as bar:

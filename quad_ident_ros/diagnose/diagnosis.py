@@ -10,7 +10,10 @@ from quad_ident_ros import __version__
 from quad_ident_ros.diagnose import gap as gaps
 from quad_ident_ros.diagnose import where
 from quad_ident_ros.diagnose.candidates import candidates
+from quad_ident_ros.diagnose.doubts import doubts_of
+from quad_ident_ros.diagnose.fly_next import fly_next, hidden
 from quad_ident_ros.diagnose.leftover import leftovers
+from quad_ident_ros.diagnose.length import refuse_short
 from quad_ident_ros.diagnose.select import select
 from quad_ident_ros.effects.registry import EFFECTS, mapping
 from quad_ident_ros.errors import InputError
@@ -21,10 +24,9 @@ from quad_ident_ros.greybox.parameters import NAMES, nominal, SPLIT
 
 SCHEMA = 'quad_ident/diagnosis/1'
 LEAST = 0.1         # of the noise's gap that an effect must make somewhere to be named
-DOUBT = 0.12        # probability of another cause from which on it is not ruled out
-SURE = 0.88         # probability of a cause from which on it is named without doubt
 OUTWEIGHS = 1.5     # times what is left over that a cause must make beside an unknown one
 REMAINS = 0.4       # of the noise's gap that must be left over to speak of an unknown effect
+ASKS = (['none'], ['undetermined'])     # verdicts that ask for another flight
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,7 +59,10 @@ def diagnose(records, vehicle, *, hold_out=None, effects=None, on_progress=lambd
     for name in effects or ():
         if name not in EFFECTS:
             raise InputError(f'{name!r} is not among the effects: {", ".join(EFFECTS)}')
-    training, test = split(list(records), hold_out)
+    records = list(records)
+    for record in records if hold_out is None else [*records, hold_out]:
+        refuse_short(record)
+    training, test = split(records, hold_out)
     voltage = highest_voltage([*training, test])
     flights = [flight_of(record, vehicle, reference_voltage=voltage) for record in training]
     causes = candidates(flights, vehicle, effects)
@@ -79,13 +84,17 @@ def diagnose(records, vehicle, *, hold_out=None, effects=None, on_progress=lambd
             z[column] = z0[column]
         named = tuple(cause for cause in named if cause not in weak)
     far = _how_far(test, vehicle, z0, z, named, noise, voltage)
-    doubts = _doubts(selection, named)
-    verdict = [cause.effect for cause in named]
-    if unknown:
-        verdict.append('unknown')
-    verdict = list(dict.fromkeys(verdict)) or ['none']
-    if doubts:
-        verdict = ['undetermined']
+    doubts = doubts_of(selection, named)
+    sure = [cause for cause in named if cause not in doubts]
+    known = list(dict.fromkeys(cause.effect for cause in sure))
+    verdict = ([*known, 'unknown'] if unknown else ['undetermined'] if doubts else
+               known or ['none'])
+    open_ones = sorted({cause.effect for cause in doubts})
+    unseen = hidden(selection, [cause for cause in causes
+                                if cause.effect not in (*open_ones, *known)], sure)
+    proposals = None
+    if verdict in ASKS:
+        proposals = fly_next(selection, flights, vehicle, z, sure, doubts, unseen) or None
     on_progress(1.0)
     data = {
         'schema': SCHEMA, 'version': __version__, 'vehicle': vehicle.name, 'verdict': verdict,
@@ -93,7 +102,8 @@ def diagnose(records, vehicle, *, hold_out=None, effects=None, on_progress=lambd
         'where': _where(lacks, vehicle), 'gap': far,
         'unknown': [{'channel': one.channel, 'depends_on': one.depends_on,
                      'share': one.share} for one in left] if unknown else None,
-        'undetermined': doubts or None,
+        'undetermined': open_ones or None, 'sure': known if doubts else None,
+        'not_shown': unseen, 'fly_next': proposals,
         'flights': [record.info.get('name') for record in training],
         'held_out': test.info.get('name')}
     return Diagnosis(data, selection, z, vehicle)
@@ -141,16 +151,6 @@ def _remains(training, vehicle, z, noise, voltage):
                             for one in training])
     base = gaps.noise_gap(training[0], vehicle, z, noise, gaps.HEADLINE, voltage)
     return max(np.sqrt(max(0.0, (after[name] / base[name]) ** 2 - 1.0)) for name in after)
-
-
-def _doubts(selection, named):
-    """Return the effects between which the flights cannot tell, or [] where they can."""
-    unsure = [cause for cause in named if selection.probability[cause] < SURE]
-    rivals = [cause for cause, value in selection.probability.items()
-              if cause not in named and value > DOUBT]
-    if not unsure or not rivals:
-        return []
-    return sorted({cause.effect for cause in (*unsure, *rivals)})
 
 
 def _how_far(test, vehicle, z0, z, named, noise, voltage):

@@ -11,6 +11,7 @@ from quad_ident_ros.diagnose.where import CHANNELS
 
 CHANCE = 1e-6       # of calling structure what is none, per channel
 LAGS = 6            # windows over which what is left may hang together
+FEWEST = 4 * LAGS   # windows from which on this can be told
 
 
 @dataclass(frozen=True)
@@ -24,7 +25,14 @@ class Leftover:
 
 
 def leftovers(flights):
-    """Return the Leftovers, the strongest first, of the Lacking of flights (of the best model)."""
+    """
+    Return the Leftovers, the strongest first, of the Lacking of flights (of the best model).
+
+    Of flights with less than FEWEST windows nothing is told.
+    """
+    flights = [flight for flight in flights if len(flight.t) >= FEWEST]
+    if not flights:
+        return []
     table, names = _library(flights)
     found = []
     for column, channel in enumerate(CHANNELS):

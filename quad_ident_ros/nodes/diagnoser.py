@@ -10,6 +10,7 @@ from std_msgs.msg import Float64MultiArray, String
 
 from quad_ident_ros.data.quality import refuse_unfit
 from quad_ident_ros.diagnose.diagnosis import diagnose
+from quad_ident_ros.diagnose.length import refuse_short, SHORTEST
 from quad_ident_ros.diagnose.where import CHANNELS
 from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.errors import InputError
@@ -23,7 +24,6 @@ from quad_ident_ros.nodes.record_worker import RecordWorker, Words
 from quad_ident_ros.report.diagnosis import verdict_line
 from quad_ident_ros.warm_up import warm_up_diagnosis
 
-SHORTEST = 8.0      # s of a record that can bear a verdict: of a single one half is held out
 WORDS = Words('diagnose', 'diagnosis', 'diagnosing', 'diagnosed')
 STAGES = ('before', 'after', 'noise')
 
@@ -49,7 +49,8 @@ Subscribes: record (std_msgs/Float64MultiArray, latched) of the recorder, which 
 and input; of records without rotor speed commands, those that give the input are taken.
 Of several flights the last one is held out, of a single one its second half.
 Publishes (latched, but progress and diagnostics):
-  diagnosis      std_msgs/String             JSON: verdict, effects with probability, where, gap
+  diagnosis      std_msgs/String             JSON: verdict, effects with probability, where, gap,
+                                             what to fly next
   gap            std_msgs/Float64MultiArray  gap of position, velocity, attitude, rate (m, m/s,
                                              rad, rad/s), 0.5 s ahead, held out: before, after the
                                              effects found, and of noise alone
@@ -73,8 +74,11 @@ class Diagnoser(RecordWorker):
         self._where = self.create_publisher(Float64MultiArray, 'where', latched())
 
     def _unfit(self, record):
-        if self._continuous and _length(record) < SHORTEST:   # the end of a run
-            return _too_short(record)
+        if self._continuous:
+            try:
+                refuse_short(record)
+            except InputError as error:     # the end of a run
+                return str(error)
         return None
 
     def _taken(self):
@@ -90,8 +94,7 @@ class Diagnoser(RecordWorker):
             flights = [with_commands(record.last(values['window']) if values['window']
                                      else record, vehicle) for record in records]
             for flight in flights:
-                if _length(flight) < SHORTEST:
-                    raise InputError(_too_short(flight))
+                refuse_short(flight)
                 refuse_unfit(flight, vehicle)
             found = diagnose(flights, vehicle, effects=values['effects'] or None,
                              on_progress=self._job.tell)
@@ -124,16 +127,6 @@ class Diagnoser(RecordWorker):
             **{f'probability/{row["effect"]}': row['probability'] for row in data['ranking']}})
         self.get_logger().info(f'{text}; {100 * gap["closed"]:.0f} % of the velocity gap above '
                                'the noise is closed')
-
-
-def _length(record):
-    """Return the length of a record, s; a nanosecond counts for nothing."""
-    return round(record.t[-1] - record.t[0] + record.period(), 6)
-
-
-def _too_short(record):
-    return (f'{record.info.get("name", "a record")}: {_length(record):.3g} s are too short for a '
-            f'diagnosis; at least {SHORTEST:g} s are needed')
 
 
 def _validate(values):

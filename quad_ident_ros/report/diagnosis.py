@@ -30,6 +30,11 @@ def show(data, stream):
     for row in data['unknown'] or ():
         say(f'unexplained: {row["channel"]} depends on {row["depends_on"]} '
             f'({100 * row["share"]:.0f} % of what is left there)')
+    if data['not_shown']:
+        say(not_shown_line(data))
+    if data['fly_next']:
+        say('what to fly next')
+        screen.print(_next(data['fly_next']))
 
 
 def verdict_line(data):
@@ -37,9 +42,40 @@ def verdict_line(data):
     verdict = data['verdict']
     if verdict == ['none']:
         return 'none: nothing but measurement noise is left'
-    if verdict == ['undetermined']:
-        return f'undetermined: the flights cannot tell between {", ".join(data["undetermined"])}'
-    return ', '.join(verdict)
+    said = ', '.join(verdict)
+    if data['undetermined']:
+        said += f': the flights cannot tell between {", ".join(data["undetermined"])}'
+        if verdict == ['undetermined'] and data['sure']:
+            said += f'; sure beside them: {", ".join(data["sure"])}'
+    return said
+
+
+def not_shown_line(data):
+    """Return what the flights could not show, in words."""
+    return f'would not show at their usual size: {", ".join(data["not_shown"])}'
+
+
+NEXT = ('manoeuvre', 'to', 'standard errors now', 'with it', 'size', 'height', 'speed up to')
+"""What next_row says of a manoeuvre."""
+
+
+def next_row(one):
+    """Return the cells of a proposal of what to fly next."""
+    low, high = one['height']
+    names = ', '.join(one['effects'])
+    return [f'{one["trajectory"]}, {one["duration"]:g} s',
+            f'tell apart {names}' if one['purpose'] == 'separate' else f'see {names}',
+            *(f'{value:.1f}' if value < 10 else f'{value:.0f}' for value in (one['now'],
+                                                                             one['after'])),
+            f'{max(one["span"][:2]):.1f} m', f'{low:.1f} to {high:.1f} m',
+            f'{one["speed"]:.1f} m/s']
+
+
+def _next(proposals):
+    table = _table(*NEXT)
+    for one in proposals:
+        table.add_row(*next_row(one))
+    return table
 
 
 def _far(gap):

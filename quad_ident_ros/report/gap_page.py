@@ -13,7 +13,7 @@ from quad_ident_ros.greybox.flights import highest_voltage
 from quad_ident_ros.greybox.noise import quick_noise, whole_noise
 from quad_ident_ros.greybox.parameters import nominal
 from quad_ident_ros.report import gap_pictures
-from quad_ident_ros.report.diagnosis import verdict_line
+from quad_ident_ros.report.diagnosis import NEXT, next_row, not_shown_line, verdict_line
 from quad_ident_ros.report.html import figure, join, Markup, table, tag, write_page
 
 WIDE = 1.96     # standard errors to the ends of a 95 % interval
@@ -140,18 +140,18 @@ def _open(data):
              for row in data['unknown'] or ()]
     if data['undetermined']:
         lines.append(f'The flights cannot tell between {", ".join(data["undetermined"])}.')
-    lines += [f'To fly next: {text}' for text in _texts(data.get('fly_next'))]
-    if not lines:
-        return []
-    return [tag('h2', 'What cannot be told'),
-            Markup(f'<ul>{join(tag("li", line) for line in lines)}</ul>')]
-
-
-def _texts(value):
-    """Return what a field says, be it nothing, one thing or a list, as lines."""
-    if not value:
-        return []
-    return [str(one) for one in (value if isinstance(value, list) else [value])]
+    if data['not_shown']:
+        line = not_shown_line(data)
+        lines.append(f'{line[0].upper()}{line[1:]}.')
+    parts = []
+    if lines:
+        items = join(tag('li', line) for line in lines)
+        parts += [tag('h2', 'What cannot be told'), Markup(f'<ul>{items}</ul>')]
+    if data['fly_next']:
+        parts += [tag('h2', 'What to fly next'),
+                  table(NEXT, [next_row(one) for one in data['fly_next']],
+                        kinds=('text', 'text', '', '', '', '', ''))]
+    return parts
 
 
 def _provenance(data):

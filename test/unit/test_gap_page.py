@@ -67,11 +67,19 @@ def test_the_interval_is_that_of_the_estimate(page, found):
 def test_what_cannot_be_told_is_said(page):
     text = page(verdict=['undetermined'], undetermined=['wind', 'body_drag'],
                 unknown=[{'channel': 'Fz', 'depends_on': 'height <5 m', 'share': 0.4}],
-                fly_next=['circle: 3 bits', 'chirp_x: 1 bit'])
+                not_shown=['ground_effect'], fly_next=[proposal('circle'), proposal('chirp_x')])
     assert '<h2>What cannot be told</h2>' in text
     assert 'The flights cannot tell between wind, body_drag.' in text
     assert 'Fz depends on height &lt;5 m: 40 % of what is left there' in text
-    assert text.index('To fly next: circle: 3 bits') < text.index('To fly next: chirp_x')
+    assert 'Would not show at their usual size: ground_effect.' in text
+    assert text.index('<td class="text">circle, 20 s</td>') < text.index('chirp_x, 20 s')
+    assert '<td class="text">tell apart wind, body_drag</td><td>0.5</td><td>12</td>' in text
+
+
+def proposal(trajectory):
+    return {'purpose': 'separate', 'effects': ['wind', 'body_drag'], 'trajectory': trajectory,
+            'duration': 20.0, 'seed': 0, 'span': [2.0, 2.0, 0.0], 'height': [1.0, 3.0],
+            'speed': 2.0, 'now': 0.5, 'after': 12.0, 'manoeuvres': {trajectory: 12.0}}
 
 
 def test_none_and_unknown_have_their_colours(page):

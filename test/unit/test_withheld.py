@@ -102,6 +102,13 @@ def test_doubt_is_right_only_where_the_records_cannot_tell():
     assert not scores.judge(label(['wind'], kind='poor'), doubt)['exact']
 
 
+def test_what_is_named_beside_a_doubt_must_be_there():
+    doubt = diagnosis('undetermined', doubts=['mass_offset', 'thrust_scale']) | {'sure': ['wind']}
+    assert scores.judge(label(['mass_offset', 'wind'], kind='poor'), doubt)['exact']
+    assert not scores.judge(label(['mass_offset'], kind='poor'), doubt)['exact']
+    assert not scores.judge(label(['wind', 'inflow'], kind='poor'), doubt)['exact']
+
+
 @pytest.mark.parametrize(('delay', 'right'), [(0.002, True), (0.03, False)])
 def test_a_delay_is_told_from_a_lag_where_it_outlasts_a_sample(delay, right):
     truth = label(['actuation_delay'], values={'actuation_delay': {'delay': delay}})

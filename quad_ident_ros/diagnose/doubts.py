@@ -1,0 +1,50 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Between which causes flights cannot tell."""
+
+import numpy as np
+
+DOUBT = 0.12        # probability of another effect from which on it is not ruled out
+SURE = 0.88         # probability of an effect from which on it is named without doubt
+INSTEAD = 2.0       # times as probable without a cause as with it that its rival must be
+
+
+def doubts_of(selection, named):
+    """
+    Return the causes between which the flights of a Selection cannot tell; none where they can.
+
+    Those of the named ones whose effects are not sure, and those that may be there in their place,
+    each with the Fitted set that speaks for it: {cause: Fitted}.
+    """
+    total = {}
+    for cause, value in selection.probability.items():
+        total[cause.effect] = total.get(cause.effect, 0.0) + value
+    present = {cause.effect for cause in named}
+    others = [cause for cause in selection.probability
+              if cause.effect not in present and total[cause.effect] > DOUBT]
+    found = {}
+    for cause in named:
+        rivals = rivals_of(selection, cause, others) if total[cause.effect] < SURE else {}
+        if rivals:
+            found |= {cause: selection.best, **rivals}
+    return found
+
+
+def rivals_of(selection, cause, others):
+    """Return {rival: Fitted} of other causes that are there rather where a cause is not."""
+    top = max(one.evidence for one in selection.fitted)
+    weights = [np.exp(max(one.evidence - top, -700.0)) for one in selection.fitted]
+
+    def share(other, there):
+        """Return the probability of another cause, given whether the cause is there."""
+        given = [(weight, other in one.causes) for weight, one in
+                 zip(weights, selection.fitted, strict=True) if (cause in one.causes) == there]
+        return sum(weight for weight, has in given if has) / sum((weight for weight, _ in given),
+                                                                 1e-300)
+
+    found = {}
+    for other in others:
+        sets = [one for one in selection.fitted if other in one.causes and cause not in one.causes]
+        if sets and share(other, False) > INSTEAD * share(other, True):
+            found[other] = max(sets, key=lambda one: one.evidence)
+    return found

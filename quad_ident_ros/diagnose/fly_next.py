@@ -1,0 +1,217 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+What to fly next: the manoeuvre that separates what the flights did not, by its information.
+
+Each standard manoeuvre is flown in simulation with what was found, and its information on the
+parameters is added to that of the flights (Fedorov, Theory of Optimal Experiments, 1972). Half the
+square of a distance in standard errors is the expected logarithm of the Bayes factor.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from quad_ident_ros.diagnose.evidence import occam, PRIOR
+from quad_ident_ros.effects.registry import mapping
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.flight.fly import fly_closed_loop, FULL_VOLTAGE, RATES
+from quad_ident_ros.flight.trajectories import TRAJECTORIES
+from quad_ident_ros.greybox.estimate import normal_of
+from quad_ident_ros.greybox.flights import flight_of, RATE
+from quad_ident_ros.greybox.linear import linearise
+from quad_ident_ros.greybox.parameters import nominal, SPLIT
+
+DURATION = 20.0     # s of a manoeuvre
+SEED = 0            # of its trajectory
+ROLLOUTS = 12       # of a manoeuvre that are looked at, for all of them
+HIDDEN = 1.0        # standard errors: an effect of usual size that is not that far off is not seen
+SHOWN = 3.0         # standard errors from which on it is
+MOST = 3            # manoeuvres that are proposed to show what was not
+
+
+@dataclass(frozen=True, eq=False)
+class Manoeuvre:
+    """
+    A trajectory as it would be flown, and what it would say of the columns of a Quadratic.
+
+    information (C, C), over the scatter; span (3,) m along x, y and z; height (2,) m, the lowest
+    and the highest; speed m/s, the highest.
+    """
+
+    trajectory: str
+    information: np.ndarray
+    span: tuple
+    height: tuple
+    speed: float
+
+    def data(self):
+        """Return what is to be flown, as data."""
+        return {'trajectory': self.trajectory, 'duration': DURATION, 'seed': SEED,
+                'span': list(self.span), 'height': list(self.height), 'speed': self.speed}
+
+
+def manoeuvres(selection, flights, vehicle, z):
+    """
+    Return the Manoeuvres that a vehicle with a parameter vector z (Z,) can fly.
+
+    Rate and noise are those of the flights that the Selection is of.
+    """
+    quadratic = selection.quadratic
+    noise = np.median(selection.noise, axis=0)
+    rate = float(np.clip(1.0 / np.median([flight.period for flight in flights]), RATES[0], RATE))
+    found = []
+    for name in TRAJECTORIES:
+        try:
+            record = fly_closed_loop(vehicle, mapping(z[SPLIT:]), name, duration=DURATION,
+                                     rate=rate, seed=SEED)
+        except InputError:      # it leaves its course: not one to propose
+            continue
+        flight = flight_of(record, vehicle, reference_voltage=FULL_VOLTAGE)
+        few = np.linspace(0, len(flight.first) - 1, ROLLOUTS).round().astype(int)
+        part = replace(flight, first=flight.first[few])
+        normal = normal_of([linearise(part, vehicle, z, part.states[part.first],
+                                      list(quadratic.columns), noise)], [part])
+        share = len(flight.first) / len(few)
+        place, speed = flight.states[:, :3], np.linalg.norm(flight.states[:, 3:6], axis=1)
+        found.append(Manoeuvre(
+            name, normal.information * share / quadratic.scatter,
+            tuple(float(value) for value in np.ptp(place, axis=0)),
+            (float(place[:, 2].min()), float(place[:, 2].max())), float(speed.max())))
+    return found
+
+
+def separation(information, selection, sets):
+    """
+    Return how far apart the two closest of sets of causes are, standard errors.
+
+    From each set as it was found to the nearest point of each other one, or of that one with any
+    further cause, which costs what it does in the choice among sets; inf where there is but one.
+    Args: information (C, C); sets {causes: distances (C,) from no effect}.
+    """
+    least = np.inf
+    for one, distances in sets.items():
+        for other in sets:
+            if not set(one) <= set(other):
+                least = min(least, *(
+                    cost + _distance(information, selection, one, distances, others)
+                    for cost, others in _with_another(information, selection, one, other)))
+    return float(np.sqrt(max(least, 0.0)))
+
+
+def _with_another(information, selection, one, other):
+    """Return [(cost, causes)]: a set and with it each cause that neither it nor `one` has."""
+    found, known = [(0.0, other)], _places(selection, other)
+    effects = {cause.effect for cause in (*one, *other)}
+    for cause in selection.rows:
+        if cause.effect not in effects:
+            places = _places(selection, [cause])
+            block = _left(information, places, known, selection.quadratic)
+            cost = -2.0 * occam(block, selection.quadratic.size[places], 1.0, 1)
+            found.append((cost, (*other, cause)))
+    return found
+
+
+def _distance(information, selection, one, distances, other):
+    """Return the square of the distance from a set as it was found to the nearest of another."""
+    away = _places(selection, [cause for cause in one if cause not in other])
+    block = _left(information, away, _places(selection, other), selection.quadratic)
+    return distances[away] @ block @ distances[away]
+
+
+def visibility(information, selection, causes, present):
+    """
+    Return, per effect, how far from none it would be at its usual size, standard errors.
+
+    Args: information (C, C); causes looked at; present: those that are known to be there.
+    """
+    size, found = selection.quadratic.size, {}
+    for cause in causes:
+        places = _places(selection, [cause])
+        known = _places(selection, [one for one in present if one.effect != cause.effect])
+        for k in range(len(places)):
+            others = np.concatenate([known, np.delete(places, k)])
+            block = _left(information, places[k:k + 1], others, selection.quadratic)
+            away = size[places[k]] * np.sqrt(max(block[0, 0], 0.0))
+            found[cause.effect] = max(found.get(cause.effect, 0.0), float(away))
+    return found
+
+
+def hidden(selection, causes, present):
+    """Return the names of effects that the flights would not show at their usual size."""
+    seen = visibility(_of_record(selection), selection, causes, present)
+    return [name for name, away in seen.items() if away < HIDDEN]
+
+
+def fly_next(selection, flights, vehicle, z, sure, doubts, unseen):
+    """
+    Return what to fly next, as data: [{purpose, effects, the manoeuvre, now, after, manoeuvres}].
+
+    First what separates the doubtful causes, then what shows the effects that were not seen; of
+    each manoeuvre how far, in standard errors, now and after it. Args: z (Z,): what was found;
+    sure: causes; doubts {cause: Fitted}, see doubts; unseen: names of effects.
+    """
+    if not doubts and not unseen:
+        return []
+    options = manoeuvres(selection, flights, vehicle, z)
+    return (_to_separate(selection, options, vehicle, doubts)
+            + _to_show(selection, options, unseen, sure))
+
+
+def _to_separate(selection, options, vehicle, doubts):
+    """Return at most one proposal: the manoeuvre that separates doubtful causes best."""
+    columns = list(selection.quadratic.columns)
+    sets = {fit.causes: (fit.estimate.z - nominal(vehicle))[columns] for fit in doubts.values()}
+    if len(sets) < 2 or not options:
+        return []
+    record = _of_record(selection)
+    after = {option.trajectory: separation(record + option.information, selection, sets)
+             for option in options}
+    return [_proposal('separate', [cause.effect for cause in doubts], options,
+                      separation(record, selection, sets), after)]
+
+
+def _to_show(selection, options, names, present):
+    """Return the proposals of a few manoeuvres that together show effects by name."""
+    record, left, found = _of_record(selection), list(names), []
+    causes = [cause for cause in selection.rows if cause.effect in left]
+    now = visibility(record, selection, causes, present)
+    seen = {option.trajectory: visibility(record + option.information, selection, causes, present)
+            for option in options}
+    while left and len(found) < MOST:
+        shown = {name: [one for one in left if away[one] >= SHOWN] for name, away in seen.items()}
+        best = max(shown, default=None, key=lambda name: (len(shown[name]), sum(
+            np.log(seen[name][one]) for one in shown[name])))
+        if best is None or not shown[best]:
+            break
+        these = shown[best]
+        found.append(_proposal('show', these, options, min(now[one] for one in these), {
+            name: min(away[one] for one in these) for name, away in seen.items()}))
+        left = [one for one in left if one not in these]
+    return found
+
+
+def _proposal(purpose, effects, options, now, after):
+    """Return the manoeuvre that reaches most, and what each would, as data."""
+    ranked = sorted(after, key=lambda name: -after[name])
+    best = next(option for option in options if option.trajectory == ranked[0])
+    return {'purpose': purpose, 'effects': sorted(set(effects)), **best.data(), 'now': now,
+            'after': after[ranked[0]], 'manoeuvres': {name: after[name] for name in ranked}}
+
+
+def _of_record(selection):
+    return selection.quadratic.information / selection.quadratic.scatter
+
+
+def _places(selection, causes):
+    return np.array([row for cause in causes for row in selection.rows[cause]], int)
+
+
+def _left(information, places, free, quadratic):
+    """Return the information (K, K) on places that is left where others are free."""
+    block = information[np.ix_(places, places)]
+    if not len(free):
+        return block
+    ties = information[np.ix_(free, places)]
+    prior = np.diag((PRIOR * quadratic.size[free]) ** -2)
+    return block - ties.T @ np.linalg.solve(information[np.ix_(free, free)] + prior, ties)

@@ -1,0 +1,223 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What flights cannot tell, and whether the manoeuvre that is proposed then tells it."""
+
+import io
+import json
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from quad_ident_ros.diagnose.candidates import Candidate
+from quad_ident_ros.diagnose.diagnosis import diagnose
+from quad_ident_ros.diagnose.doubts import doubts_of
+from quad_ident_ros.diagnose.evidence import Quadratic
+from quad_ident_ros.diagnose.fly_next import fly_next, separation, visibility
+from quad_ident_ros.flight.fly import fly_closed_loop
+from quad_ident_ros.flight.measure import MOCAP_IMU, Sensors
+from quad_ident_ros.flight.trajectories import TRAJECTORIES
+from quad_ident_ros.greybox.flights import flight_of
+from quad_ident_ros.greybox.parameters import INDEX, nominal
+from quad_ident_ros.model.vehicle import load_vehicle
+from quad_ident_ros.report.diagnosis import show
+
+VEHICLE = load_vehicle('hummingbird')
+WHITE = Sensors(white=MOCAP_IMU.white)
+PAYLOAD = {'mass_offset': {'mass': 0.015 * VEHICLE.mass}}
+WEAKER = {'thrust_scale': {'factor': 0.985}}
+TILTED = {'attitude_misalignment': {'roll': 0.03, 'pitch': -0.02}, **PAYLOAD}
+ALIKE = ['mass_offset', 'thrust_scale']
+
+
+def fly(truth, trajectory, seed, duration=20.0):
+    return fly_closed_loop(VEHICLE, truth, trajectory, duration=duration, seed=seed, noise=WHITE)
+
+
+def hovers(truth):
+    return [fly(truth, 'hover', seed, 10.0) for seed in (1, 2)]
+
+
+def probabilities(found):
+    return {row['effect']: row['probability'] for row in found.data['ranking']}
+
+
+@pytest.fixture(scope='module', params=['mass_offset', 'thrust_scale'])
+def doubtful(request):
+    """Return the truth, hovers of it and what a diagnosis finds in them."""
+    truth = {'mass_offset': PAYLOAD, 'thrust_scale': WEAKER}[request.param]
+    flights = hovers(truth)
+    return truth, flights, diagnose(flights, VEHICLE)
+
+
+def proposal(found):
+    [one] = [one for one in found.data['fly_next'] if one['purpose'] == 'separate']
+    return one
+
+
+def flown_as(doubtful, trajectory):
+    """Return what is found once a manoeuvre of the proposal was flown, too."""
+    truth, flights, found = doubtful
+    one = proposal(found)
+    more = fly(truth, trajectory, one['seed'], one['duration'])
+    return diagnose([flights[0], more], VEHICLE, hold_out=flights[1])
+
+
+def test_a_hover_does_not_tell_a_payload_from_weaker_thrust(doubtful):
+    data = doubtful[2].data
+    assert data['verdict'] == ['undetermined'] and data['undetermined'] == ALIKE
+    one = proposal(doubtful[2])
+    assert one['effects'] == ALIKE
+    assert one['now'] < 1.0 < 5.0 < one['after'] == one['manoeuvres'][one['trajectory']]
+    assert set(one['manoeuvres']) == set(TRAJECTORIES)
+    assert list(one['manoeuvres'].values()) == sorted(one['manoeuvres'].values(), reverse=True)
+
+
+def test_the_manoeuvre_proposed_tells_them_apart(doubtful):
+    found = flown_as(doubtful, proposal(doubtful[2])['trajectory'])
+    assert found.data['verdict'] == list(doubtful[0])
+    [rival] = set(ALIKE) - set(doubtful[0])
+    assert probabilities(found)[rival] < 0.01
+
+
+def test_the_manoeuvre_ranked_last_does_not(doubtful):
+    last = list(proposal(doubtful[2])['manoeuvres'])[-1]
+    found = flown_as(doubtful, last)
+    assert found.data['undetermined'] == ALIKE
+    assert all(probabilities(found)[name] > 0.1 for name in ALIKE)
+
+
+def test_more_hovering_is_worth_nothing(doubtful):
+    one = proposal(doubtful[2])
+    assert one['manoeuvres']['hover'] == pytest.approx(one['now'], rel=0.05)
+
+
+def test_a_sure_effect_is_named_beside_those_that_are_not():
+    found = diagnose(hovers(TILTED), VEHICLE)
+    assert found.data['verdict'] == ['undetermined']
+    assert found.data['undetermined'] == ALIKE
+    assert found.data['sure'] == ['attitude_misalignment']
+    text = io.StringIO()
+    show(found.data, text)
+    assert text.getvalue().startswith(
+        'verdict: undetermined: the flights cannot tell between mass_offset, thrust_scale; '
+        'sure beside them: attitude_misalignment\n')
+    assert 'what to fly next' in text.getvalue()
+    proposals = found.data['fly_next']
+    assert json.loads(json.dumps(proposals)) == proposals
+
+
+@pytest.fixture(scope='module')
+def nothing():
+    """Return hovers of the nominal vehicle and what a diagnosis finds in them."""
+    flights = hovers({})
+    return flights, diagnose(flights, VEHICLE)
+
+
+def test_what_a_hover_could_not_show_is_said_and_what_would(nothing):
+    data = nothing[1].data
+    assert data['verdict'] == ['none']
+    assert {'rotor_drag', 'ground_effect'} <= set(data['not_shown'])
+    assert not {'mass_offset', 'com_offset', 'gyro_bias'} & set(data['not_shown'])
+    [low] = [one for one in data['fly_next'] if 'ground_effect' in one['effects']]
+    assert low['trajectory'] == 'low_passes' and low['height'][0] < 3 * VEHICLE.rotor_radius
+    # Without drag nothing feels the wind, and no manoeuvre is proposed to see it.
+    assert 'wind' in data['not_shown']
+    assert all('wind' not in one['effects'] for one in data['fly_next'])
+
+
+def test_what_is_flown_then_is_seen_then(nothing):
+    flights, found = nothing
+    more = [fly({}, one['trajectory'], one['seed'], one['duration'])
+            for one in found.data['fly_next']]
+    again = diagnose([flights[0], *more], VEHICLE, hold_out=flights[1])
+    asked = {name for one in found.data['fly_next'] for name in one['effects']}
+    assert asked and not asked & set(again.data['not_shown'])
+
+
+def test_a_sure_verdict_asks_for_no_flight():
+    truth = {'rotor_drag': {'coefficient': 0.2}}
+    found = diagnose([fly(truth, name, 1) for name in ('lissajous', 'figure8')], VEHICLE,
+                     effects=['rotor_drag', 'wind', 'mass_offset', 'thrust_scale'])
+    assert found.data['verdict'] == ['rotor_drag']
+    assert found.data['fly_next'] is None and found.data['undetermined'] is None
+
+
+def test_a_vehicle_that_cannot_fly_is_asked_for_nothing():
+    """Three times as heavy it leaves every course."""
+    flights = [flight_of(flight, VEHICLE) for flight in hovers({})[:1]]
+    z = nominal(VEHICLE)
+    z[INDEX['mass_offset.mass']] = 3.0 * VEHICLE.mass
+    selection = pair(0.9)
+    assert fly_next(selection, flights, VEHICLE, z, (), {}, ['rotor_drag']) == []
+
+
+def pair(correlation, third=None):
+    """Return a selection between two causes a of a distance of 1, b, of an information of 100."""
+    causes = [Candidate(name, name, (INDEX[f'{name}.{parameter}'],)) for name, parameter in (
+        ('mass_offset', 'mass'), ('thrust_scale', 'factor'), ('gyro_bias', 'x'))]
+    information = np.full((3, 3), 0.0)
+    information[:2, :2] = 100 * np.array([[1.0, correlation], [correlation, 1.0]])
+    information[2, 2] = 100.0
+    if third is not None:
+        information[:2, 2] = information[2, :2] = third
+    columns = tuple(cause.columns[0] for cause in causes)
+    quadratic = Quadratic(columns, information, np.zeros(3), 0.0, np.array([1.0, 0.0, 0.0]),
+                          np.full(3, 100.0), np.full(3, -1e3), np.full(3, 1e3), 1.0)
+    rows = {cause: [k] for k, cause in enumerate(causes)}
+    return SimpleNamespace(quadratic=quadratic, rows=rows, noise=[np.full(12, 1e-2)])
+
+
+def test_the_distance_of_two_causes_is_what_the_other_cannot_take_up():
+    selection = pair(0.8)
+    a, b, _ = selection.rows
+    sets = {(a,): np.array([1.0, 0.0, 0.0]), (b,): np.array([0.0, 2.0, 0.0])}
+    away = separation(selection.quadratic.information, selection, sets)
+    assert away == pytest.approx(10.0 * np.sqrt(1.0 - 0.8 ** 2), rel=1e-4)
+    assert separation(selection.quadratic.information, selection, {(a,): sets[(a,)]}) == np.inf
+
+
+def test_a_further_cause_that_helps_the_rival_brings_them_closer():
+    """With b and c together all that a does is explained; c costs what it does in the choice."""
+    selection = pair(0.0, third=70.0)
+    a, b, _ = selection.rows
+    sets = {(a,): np.array([10.0, 0.0, 0.0]), (b,): np.array([0.0, 10.0, 0.0])}
+    away = separation(selection.quadratic.information, selection, sets)
+    assert 10.0 < away < 100.0 * 0.75
+
+
+def test_an_effect_beside_another_that_looks_alike_is_less_visible():
+    selection = pair(0.99)
+    a, b, _ = selection.rows
+    information = selection.quadratic.information
+    assert visibility(information, selection, [b], [])['thrust_scale'] == pytest.approx(1000.0)
+    beside = visibility(information, selection, [b], [a])['thrust_scale']
+    assert beside == pytest.approx(1000.0 * np.sqrt(1.0 - 0.99 ** 2), rel=1e-3)
+
+
+def selected(*sets, probability):
+    """Return a selection of sets of causes by their log-evidence, the best first."""
+    fitted = [SimpleNamespace(causes=causes, evidence=evidence) for causes, evidence in sets]
+    return SimpleNamespace(best=fitted[0], fitted=fitted, probability=probability)
+
+
+MASS, THRUST, BIAS = pair(0.0).rows
+
+
+def test_only_what_stands_in_its_place_is_a_rival():
+    """The rate's bias is there or not with either of the two, and so is no rival."""
+    sets = [((MASS,), 0.0), ((THRUST,), -0.4), ((MASS, BIAS), -0.1), ((THRUST, BIAS), -0.5),
+            ((), -90.0)]
+    unsure = selected(*sets, probability={MASS: 0.6, THRUST: 0.4, BIAS: 0.5})
+    doubts = doubts_of(unsure, (MASS,))
+    assert list(doubts) == [MASS, THRUST]
+    assert [fit.causes for fit in doubts.values()] == [(MASS,), (THRUST,)]
+    sure = selected(*sets, probability={MASS: 0.95, THRUST: 0.2, BIAS: 0.5})
+    assert not doubts_of(sure, (MASS,))
+
+
+def test_which_rotor_is_weak_is_no_doubt_between_effects():
+    one, other = (Candidate('rotor_fault', f'rotor_fault {j}', (INDEX[f'rotor_fault.loss_{j}'],))
+                  for j in (1, 2))
+    found = selected(((one,), 0.0), ((other,), -0.1), probability={one: 0.5, other: 0.5})
+    assert not doubts_of(found, (one,))
