@@ -21,9 +21,9 @@ def warm_up():
 
 
 def warm_up_diagnosis():
-    """Fly a closed loop and diagnose half of it."""
+    """Fly a closed loop and diagnose it."""
     experiment = load_experiment('closed_loop')
     record = fly(experiment, experiment.runs[0]).record
-    diagnose([record.slice(0, len(record) // 2)], experiment.vehicle)
+    diagnose([record], experiment.vehicle)
     contribution(experiment.vehicle, NULL, course_of(record, experiment.vehicle),
                  states_of(record))
