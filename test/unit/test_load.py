@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """One way to read flights: every format, round trips, records of others, and bad input."""
 
-import gzip
 import json
 from pathlib import Path
 import sys
@@ -19,7 +18,6 @@ import yaml
 from quad_ident_ros.cli.main import main
 import quad_ident_ros.data
 from quad_ident_ros.data.bag import BagWriter, read_bag_messages, serialize
-import quad_ident_ros.data.csv
 from quad_ident_ros.data.csv import read_csv, write_csv
 from quad_ident_ros.data.export import save, write_bag
 from quad_ident_ros.data.frames import attitude, conjugate, multiply, rotate
@@ -548,12 +546,6 @@ def test_a_bad_csv_names_row_and_column(tmp_path):
     path = tmp_path / 'f.csv'
     path.write_text('t,pz\n0,1\n0.1,high\n')
     refused(path, 'line 3', "'pz'", 'high')
-
-
-def test_a_file_that_unpacks_to_anything_is_refused(tmp_path, monkeypatch):
-    monkeypatch.setattr(quad_ident_ros.data.csv, '_MOST_UNPACKED', 1 << 20)
-    (tmp_path / 'f.csv.gz').write_bytes(gzip.compress(b't,pz\n' + b'0' * (1 << 21)))
-    refused(tmp_path / 'f.csv.gz', 'unpacks to over 1 MB')
 
 
 def test_a_mapping_does_not_rename_csv(tmp_path):
