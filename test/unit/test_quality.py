@@ -16,6 +16,8 @@ from quad_ident_ros.data.quality import clock_offset, command_offset, findings, 
 from quad_ident_ros.data.quality.excitation import excitation
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.experiment import fly, load_experiment
+from quad_ident_ros.flight.fly import fly_closed_loop
+from quad_ident_ros.flight.measure import MOCAP_IMU
 from quad_ident_ros.model.attitude import euler_from_quaternion
 from quad_ident_ros.model.vehicle import load_vehicle
 
@@ -187,6 +189,19 @@ def test_standard_errors_of_the_offset_are_honest():
     assert 0.6 < np.std(pulls) < 1.5 and abs(np.mean(pulls)) < 0.5
 
 
+@pytest.mark.parametrize('trajectory', ['figure8', 'lissajous', 'circle'])
+def test_standard_errors_know_that_an_autopilot_follows_errors_of_the_attitude(trajectory):
+    """Coloured errors of the attitude move the vehicle, and so hang together with its gyro."""
+    pulls = []
+    for seed in range(5):
+        record = fly_closed_loop(load_vehicle('crazyflie'), {}, trajectory, duration=20.0,
+                                 seed=seed, noise=MOCAP_IMU)
+        clock = clock_offset(record)
+        pulls.append(clock.offset / clock.std)
+        assert 'clock_offset' not in codes(record)
+    assert np.sqrt(np.mean(np.square(pulls))) < 1.5
+
+
 def test_a_wandering_offset_is_found():
     record = flight(seconds=60.0)
     at = record.t - 0.02 * np.sin(2 * np.pi * record.t / 30)
@@ -211,7 +226,9 @@ def test_the_lag_of_motors_is_no_fault():
 @pytest.mark.parametrize('name', ['star_fast', 'oval_fast'])
 def test_an_offset_put_into_a_real_flight_is_found(name):
     record = load(NANOBENCH / f'{name}.csv.gz')
-    before, after = clock_offset(record), clock_offset(late(record, (*P, *V, *Q), 0.06))
+    moved = late(record, (*P, *V, *Q), 0.06)
+    before, after = clock_offset(record), clock_offset(moved)
+    assert 'clock_offset' in codes(moved)
     assert abs(after.offset - before.offset - 0.06) < 2 * before.std
     assert abs(before.offset) < 3 * before.std + 0.01
 
