@@ -24,13 +24,11 @@ import time
 import traceback
 import warnings
 
-from flightmaker import flight, others_bag, px4_samples, ulog, VEHICLE
+from flightmaker import copy_bag, flight, others_bag, px4_samples, ulog, VEHICLE
 import numpy as np
 from rich.progress import Progress
-from rosbags.rosbag2 import StoragePlugin, Writer
-from rosbags.typesys import get_typestore, Stores
+from rosbags.rosbag2 import StoragePlugin
 
-from quad_ident_ros.data.bag import read_bag_messages
 from quad_ident_ros.data.export import save, write_bag
 from quad_ident_ros.data.load import load_all
 from quad_ident_ros.data.mapping import load_mapping, mapping_from
@@ -74,7 +72,7 @@ def valid_inputs(folder):
     found['mcap_topics'] = _mcap(folder, 'topics', folder / 'ours', {EXACT_TOPIC})
     found['mcap_mapped'] = _without_checksums(next((folder / 'others').glob('*.mcap'))
                                               .read_bytes())
-    _copy(folder / 'ours', folder / 'sql', StoragePlugin.SQLITE3, {EXACT_TOPIC})
+    copy_bag(folder / 'ours', folder / 'sql', StoragePlugin.SQLITE3, {EXACT_TOPIC})
     found['sqlite3'] = next((folder / 'sql').glob('*.db3')).read_bytes()
     found['metadata'] = (folder / 'ours' / 'metadata.yaml').read_bytes()
     found['ulog'] = ulog(px4_samples(record, outputs=outputs, motors=0 * outputs))
@@ -83,21 +81,8 @@ def valid_inputs(folder):
 
 
 def _mcap(folder, name, source, left_out):
-    _copy(source, folder / name, StoragePlugin.MCAP, left_out)
+    copy_bag(source, folder / name, StoragePlugin.MCAP, left_out)
     return _without_checksums(next((folder / name).glob('*.mcap')).read_bytes())
-
-
-def _copy(source, target, plugin, left_out):
-    store = get_typestore(Stores.ROS2_JAZZY)
-    with Writer(target, version=9, storage_plugin=plugin) as writer:
-        connections = {}
-        for topic, stamp, message in read_bag_messages(source):
-            if topic in left_out:
-                continue
-            kind = message.__msgtype__
-            if topic not in connections:
-                connections[topic] = writer.add_connection(topic, kind, typestore=store)
-            writer.write(connections[topic], stamp, store.serialize_cdr(message, kind))
 
 
 def _without_checksums(data):

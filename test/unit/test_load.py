@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 import sys
 
-from flightmaker import changed, flight, frd, ned, others_bag, px4_samples, ulog, VEHICLE
+from flightmaker import changed, copy_bag, flight, frd, ned, others_bag, px4_samples, ulog, VEHICLE
 from hypothesis import given, HealthCheck, settings
 from hypothesis import strategies as st
 import numpy as np
@@ -112,7 +112,7 @@ def test_the_topics_alone_make_the_flight_too(tmp_path):
     experiment = load_experiment('small_angle')
     record = fly(experiment, experiment.runs[0], noise={'attitude': 1e-3}).record
     write_bag(tmp_path / 'whole', record)
-    copy(tmp_path / 'whole', tmp_path / 'topics', StoragePlugin.MCAP, {'flight_record'})
+    copy_bag(tmp_path / 'whole', tmp_path / 'topics', StoragePlugin.MCAP, {'flight_record'})
     read = load(tmp_path / 'topics')
     assert set(read.columns) == set(record.columns)
     np.testing.assert_allclose(read.t, record.t, atol=1e-9)
@@ -120,23 +120,9 @@ def test_the_topics_alone_make_the_flight_too(tmp_path):
         np.testing.assert_allclose(read.columns[name], values, atol=1e-12, err_msg=name)
 
 
-def copy(source, target, plugin, left_out=()):
-    """Copy a bag into another storage, without some topics."""
-    store = get_typestore(Stores.ROS2_JAZZY)
-    with Writer(target, version=9, storage_plugin=plugin) as writer:
-        connections = {}
-        for topic, stamp, message in read_bag_messages(source):
-            if topic in left_out:
-                continue
-            kind = message.__msgtype__
-            if topic not in connections:
-                connections[topic] = writer.add_connection(topic, kind, typestore=store)
-            writer.write(connections[topic], stamp, store.serialize_cdr(message, kind))
-
-
 def test_sqlite3_reads_as_folder_and_as_file(tmp_path):
     write_bag(tmp_path / 'bag', SMALL)
-    copy(tmp_path / 'bag', tmp_path / 'sql', StoragePlugin.SQLITE3)
+    copy_bag(tmp_path / 'bag', tmp_path / 'sql', StoragePlugin.SQLITE3)
     same(load(tmp_path / 'sql'), SMALL)
     same(load(next((tmp_path / 'sql').glob('*.db3'))), SMALL)
 
@@ -513,7 +499,7 @@ def valid(folder, name):
             VALID[name] = ulog(px4_samples(SMALL.slice(0, 8)))
         elif name == 'f.db3':
             write_bag(folder / 'bag', SMALL.slice(0, 8))
-            copy(folder / 'bag', folder / 'sql', StoragePlugin.SQLITE3, {'flight_record'})
+            copy_bag(folder / 'bag', folder / 'sql', StoragePlugin.SQLITE3, {'flight_record'})
             VALID[name] = next((folder / 'sql').glob('*.db3')).read_bytes()
         else:
             save(folder / name, SMALL.slice(0, 8))
