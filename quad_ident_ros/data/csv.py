@@ -61,6 +61,9 @@ def write_csv(path, record):
     try:
         temporary.write_bytes(data)
         temporary.replace(path)
+    except OSError as error:
+        error.filename = str(path)   # the one that was asked for
+        raise
     finally:
         temporary.unlink(missing_ok=True)
 

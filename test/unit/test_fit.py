@@ -201,10 +201,10 @@ def test_a_flight_that_is_given_twice_is_refused(problem):
 
 def test_flights_of_one_name_are_told_apart_and_progress_rises(problem):
     shares = []
-    found = fit([problem.draw(0), problem.draw(1), problem.draw(2)], VEHICLE, ['inertia'],
-                shares.append)
-    name = found.flights[0]
-    assert found.flights == (name, f'{name} (2)', f'{name} (3)')
+    records = [dataclasses.replace(problem.draw(k), info={'name': name})
+               for k, name in enumerate(('flight_1', 'flight_2', 'flight_1'))]
+    found = fit(records, VEHICLE, ['inertia'], shares.append)
+    assert found.flights == ('flight_1', 'flight_2', 'flight_1 (2)')
     assert list(as_data(found)['noise']) == list(found.flights)
     assert len(shares) > 2 and shares == sorted(shares) and shares[-1] == 1.0
 
