@@ -19,7 +19,8 @@ SURE = 0.6        # correlation that an estimate needs
 SHAPE = 0.5       # correlation of the slopes, whose noise is larger
 MEMORY = 0.4      # s, over which errors may depend on one another
 ANSWER = 1.0      # s, within which the motion may answer to errors of the attitude
-SEVERAL = 3.0     # standard errors from which on an offset is one
+SEVERAL = 3.0     # standard errors from which on an offset of the attitude is one,
+MANY = 4.0        # and one of the commands, whose errors know nothing of the motion
 SCATTER = 4.0     # mean square of errors over standard errors from which on they wander
 
 
@@ -58,7 +59,8 @@ def clock_offset(record):
     _, attitude = best_reading(grid)
     if attitude is None:
         return None
-    return _offset(grid, grid.rate_of(attitude), grid.smooth(grid.signal('wx', 'wy', 'wz')))
+    return _offset(grid, grid.rate_of(attitude), grid.smooth(grid.signal('wx', 'wy', 'wz')),
+                   answers=True)
 
 
 def command_offset(record):
@@ -80,8 +82,12 @@ def _centred(signal):
     return signal - signal.mean(axis=0)
 
 
-def _offset(grid, late, early):
-    """Return the ClockOffset of one signal (N, k) against another on a grid, or None."""
+def _offset(grid, late, early, answers=False):
+    """
+    Return the ClockOffset of one signal (N, k) against another on a grid, or None.
+
+    answers: the motion may answer to the errors of the late one.
+    """
     reach = round(REACH / grid.period)
     whole = _whole_shift(late, early, grid.good, range(-reach, reach + 1))
     if whole is None:
@@ -99,7 +105,9 @@ def _offset(grid, late, early):
     t, offsets, stds = np.array(found).T
     middle = (grid.t[0] + grid.t[-1]) / 2
     offset, std, drift, drift_std = _line(t - middle, offsets, stds)
-    wider = max(1.0, _displaced(grid, spline, late, np.interp(grid.t, t, offsets)) / std)
+    wider = 1.0
+    if answers:
+        wider = max(1.0, _displaced(grid, spline, late, np.interp(grid.t, t, offsets)) / std)
     return ClockOffset(offset, wider * std, drift, wider * drift_std, t, offsets, wider * stds)
 
 
@@ -231,8 +239,8 @@ def commands(record, vehicle):
     found = command_offset(record)
     if found is None:
         return []
-    early = found.offset < -max(SEVERAL * found.std, 0.005)
-    if not early and found.offset < max(0.1, SEVERAL * found.std):
+    early = found.offset < -max(MANY * found.std, 0.005)
+    if not early and found.offset < max(0.1, MANY * found.std):
         return []
     return [Finding(
         'command_offset', 'warning', 'commands against accelerometer',

@@ -36,9 +36,10 @@ def attitude(record, vehicle):
     begins = np.flatnonzero(np.diff(off.astype(int), prepend=0) == 1)
     if not len(begins):
         return []
+    times = 'once' if len(begins) == 1 else f'{len(begins)} times'
     return [Finding(
         'attitude_glitch', 'warning', f'attitude, t = {record.t[begins[0]]:.3f} s',
-        f'{len(begins)} times the attitude jumps off and back within {LONGEST:g} s, by up to '
+        f'{times} the attitude jumps off and back within {LONGEST:g} s, by up to '
         f'{np.degrees(size.max()):.1f} deg in {100 * off.mean():.1f} % of the samples, and the '
         'gyro sees nothing of it',
         'give these samples no weight; look for markers that are hidden or taken for others')]
