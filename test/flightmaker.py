@@ -6,8 +6,10 @@ from functools import cache
 import struct
 
 import numpy as np
+from rosbags.rosbag2 import Writer
+from rosbags.typesys import get_typestore, Stores
 
-from quad_ident_ros.data.bag import BagWriter, serialize
+from quad_ident_ros.data.bag import BagWriter, read_bag_messages, serialize
 from quad_ident_ros.data.frames import conjugate, multiply
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.model.attitude import rotation_matrix
@@ -224,6 +226,20 @@ def header(ns, frame='map'):
 def xyz(values):
     """Return a vector as a dict."""
     return dict(zip('xyz', map(float, values), strict=True))
+
+
+def copy_bag(source, target, plugin, left_out=()):
+    """Copy a bag into another storage, without some topics."""
+    store = get_typestore(Stores.ROS2_JAZZY)
+    with Writer(target, version=9, storage_plugin=plugin) as writer:
+        connections = {}
+        for topic, stamp, message in read_bag_messages(source):
+            if topic in left_out:
+                continue
+            kind = message.__msgtype__
+            if topic not in connections:
+                connections[topic] = writer.add_connection(topic, kind, typestore=store)
+            writer.write(connections[topic], stamp, store.serialize_cdr(message, kind))
 
 
 def others_bag(path, record, commands=(), start=10 ** 12):

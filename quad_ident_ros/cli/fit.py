@@ -8,7 +8,7 @@ import textwrap
 from quad_ident_ros.cli.identify import progress_bar
 from quad_ident_ros.cli.options import flights_from
 from quad_ident_ros.effects.registry import EFFECTS
-from quad_ident_ros.greybox.free import UNITS
+from quad_ident_ros.greybox.free import columns_of_names, UNITS
 from quad_ident_ros.model.vehicle import load_vehicle, write_vehicle
 from quad_ident_ros.report.data import write_json
 from quad_ident_ros.report.table import console
@@ -48,11 +48,16 @@ def run(options):
     from quad_ident_ros.greybox.fit import as_data, fit, fitted_vehicle
     names = [name.strip() for name in options.free.split(',') if name.strip()]
     vehicle = load_vehicle(options.vehicle)
-    records = [record for path in options.flights
-               for record in flights_from(path, options.mapping, options.vehicle)]
+    columns_of_names(names, vehicle)   # before the flights are read: a name that is wrong
     with progress_bar() as bar:
-        bar.add_task('fitting', total=None)
-        found = fit(records, vehicle, names)
+        task = bar.add_task('', total=1.0)
+        records = []
+        for number, path in enumerate(options.flights):
+            bar.update(task, description=f'reading {path}',
+                       completed=number / len(options.flights))
+            records += flights_from(path, options.mapping, options.vehicle)
+        found = fit(records, vehicle, names, lambda share: bar.update(
+            task, description='fitting', completed=share))
     if options.json != '-':
         show(found)
     if options.out_vehicle:

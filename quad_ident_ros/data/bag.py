@@ -22,9 +22,12 @@ from rosbags.rosbag2 import StoragePlugin, Writer
 from rosbags.rosbag2.storage_mcap import McapWriter
 from rosbags.typesys import get_typestore, Stores
 
+from quad_ident_ros.data.limits import most, size_on_disk
+from quad_ident_ros.data.unpack import TooLarge
 from quad_ident_ros.errors import InputError
 
 _PENDING_BYTES = 1 << 22
+_MESSAGE_BYTES = 1000   # that a message takes in memory besides its content
 _DISTRO = 'ros_distro: rosbags', 'ros_distro: jazzy'
 _FOREVER = QosTime(9223372036, 854775807)
 _QOS = Qos(QosHistory.KEEP_ALL, 0, QosReliability.RELIABLE, QosDurability.VOLATILE, _FOREVER,
@@ -167,8 +170,12 @@ def read_bag_messages(path, topics=None):
         with AnyReader([path], default_typestore=_typestore()) as reader:
             wanted = [connection for connection in reader.connections
                       if topics is None or connection.topic in topics]
+            left = most(size_on_disk(path))
             # Without connections, messages() would yield those of all.
             for connection, stamp, data in reader.messages(wanted) if wanted else ():
+                left -= len(data) + _MESSAGE_BYTES
+                if left < 0:
+                    raise TooLarge('its messages unpack to far more than measurements do')
                 yield connection.topic, stamp, reader.deserialize(data, connection.msgtype)
     except Exception as error:  # a damaged bag makes the reader raise anything
         reason = ' '.join(str(error).split())[:200] or type(error).__name__

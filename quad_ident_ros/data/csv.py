@@ -12,11 +12,12 @@ import zlib
 
 import numpy as np
 
+from quad_ident_ros.data.limits import most
 from quad_ident_ros.data.record import find_fault, FlightRecord, unit
 from quad_ident_ros.errors import InputError
 
 _PENDING_BYTES = 1 << 16
-_MOST_UNPACKED = 1 << 30   # a small file may unpack to any size
+_LINE_BYTES = 60   # that a line takes in memory besides its text
 
 
 def read_csv(path):
@@ -60,6 +61,9 @@ def write_csv(path, record):
     try:
         temporary.write_bytes(data)
         temporary.replace(path)
+    except OSError as error:
+        error.filename = str(path)   # the one that was asked for
+        raise
     finally:
         temporary.unlink(missing_ok=True)
 
@@ -148,11 +152,13 @@ def _bytes(path):
         if not path.is_file():
             problem = 'this is no file' if path.exists() else 'there is no such file'
             raise InputError(f'{path}: {problem}; give the path of a .csv or .csv.gz file')
-        with (gzip.open if path.suffix == '.gz' else open)(path, 'rb') as file:
-            data = file.read() if path.suffix != '.gz' else file.read(_MOST_UNPACKED + 1)
-        if path.suffix == '.gz' and len(data) > _MOST_UNPACKED:
-            raise InputError(f'{path}: unpacks to over {_MOST_UNPACKED >> 20} MB, which is no '
-                             'usual flight; if it is one, unpack it first: zcat FILE > flight.csv')
+        packed = path.suffix == '.gz'
+        limit = most(path.stat().st_size)
+        with (gzip.open if packed else open)(path, 'rb') as file:
+            data = file.read(limit + 1 if packed else -1)
+        if packed and len(data) + _LINE_BYTES * data.count(b'\n') > limit:
+            raise InputError(f'{path}: unpacks to far more than flights do; if it is one, unpack '
+                             'it first: zcat FILE > flight.csv')
         return data
     except (EOFError, zlib.error, gzip.BadGzipFile):
         raise InputError(f'{path}: this is no whole gzip file; copy it again, or save what is '

@@ -8,6 +8,7 @@ import numpy as np
 
 from quad_ident_ros import __version__
 from quad_ident_ros.effects.registry import mapping
+from quad_ident_ros.errors import InputError
 from quad_ident_ros.greybox.errors import GROUPS, UNITS
 from quad_ident_ros.greybox.estimate import covariance_of, Estimate, estimate, scatter_of
 from quad_ident_ros.greybox.flights import flight_of, highest_voltage
@@ -19,6 +20,7 @@ from quad_ident_ros.model.vehicle import Vehicle
 
 SCHEMA = 'quad_ident/fit/1'
 STRONG = 0.9    # correlation from which on two parameters are named
+READ, FITTED = 0.05, 0.6    # shares of the work: a second fit may hold what is undetermined
 COLOURED = 1.5  # noise over what changes from sample to sample, from which on it is said
 
 
@@ -59,18 +61,24 @@ class Fit:
     findings: tuple
 
 
-def fit(records, vehicle, names):
+def fit(records, vehicle, names, on_progress=lambda share: None):
     """
     Return the Fit of the named parameters of a vehicle to flight records.
 
-    Args: names of vehicle constants, effects or parameters of effects (see free.py). What the
-    flights leave undetermined is held at the vehicle file's value, and said. Raises InputError.
+    Args: names of vehicle constants, effects or parameters of effects (see free.py); on_progress
+    is called with the share that is done. What the flights leave undetermined is held at the
+    vehicle file's value, and said. Raises InputError.
     """
     free = columns_of_names(names, vehicle)
+    _refuse_twice(records)
     voltage = highest_voltage(records)
     flights = [flight_of(record, vehicle, reference_voltage=voltage) for record in records]
+    flights = [replace(flight, name=name) for flight, name in
+               zip(flights, _apart([flight.name for flight in flights]), strict=True)]
+    on_progress(READ)
     start, sizes = as_described(vehicle), limits(vehicle)[2]
     found = estimate(flights, vehicle, start, list(free.values()))
+    on_progress(FITTED)
     inside = [name for name, moves in zip(free, found.free, strict=True) if moves]
     columns = [free[name] for name in inside]
     left = freedoms(_inside(found.normal, found.free).information, found.z[columns],
@@ -97,10 +105,28 @@ def fit(records, vehicle, names):
                        for name, place in free.items())
     order = tuple(name for name, place in free.items() if place in errors)
     pairs = tuple((order[i], order[j], share) for i, j, share in correlated(covariance, STRONG))
+    on_progress(1.0)
     findings = (*(_said(freedom, inside, start[columns]) for freedom in left),
                 *_findings(found, parameters, pairs, flights))
     return Fit(vehicle, tuple(flight.name for flight in flights), parameters,
                replace(found, covariance=covariance), order, pairs, findings)
+
+
+def _refuse_twice(records):
+    """Raise InputError where a flight is given twice: errors would seem smaller than they are."""
+    for k, record in enumerate(records):
+        for other in records[:k]:
+            if len(record) == len(other) and np.array_equal(record.t, other.t) and all(
+                    name in other.columns and np.array_equal(values, other.columns[name])
+                    for name, values in record.columns.items()):
+                name = record.info.get('source') or record.info.get('name', 'a flight')
+                raise InputError(f'{name}: this flight is given twice; give each once')
+
+
+def _apart(names):
+    """Return names of flights that differ: a second flight_1 is flight_1 (2)."""
+    return [name if name not in names[:k] else f'{name} ({names[:k].count(name) + 1})'
+            for k, name in enumerate(names)]
 
 
 def fitted_vehicle(fit):
@@ -173,9 +199,10 @@ def _findings(found, parameters, pairs, flights):
                     'a vehicle file that is nearer, or free fewer parameters')
     for parameter in parameters:
         if parameter.status == 'bound':
+            why = 'what the flights ask for lies beyond' if parameter.value else 'it is not there'
             said.append(f'{parameter.name} ends at its bound, '
-                        f'{_with_unit(parameter.value, parameter.name)}: it is not there, or '
-                        'something that the model lacks takes its place')
+                        f'{_with_unit(parameter.value, parameter.name)}: {why}, or something '
+                        'that the model lacks takes its place')
     if pairs:
         said.append(f'correlated by more than {STRONG:g}, so that a combination is known better '
                     'than each: ' + ', '.join(f'{a} and {b} ({share:.3f})'

@@ -18,6 +18,9 @@ EXCITATION = {'mass': 'any flight', 'inertia': 'fast turns about each axis',
               'rotational_drag': 'very fast turns about each axis'}
 """What a flight must do to show a constant; for effects see the registry."""
 
+_KNOWN = (f'known are {", ".join(UNITS)}, the names of effects, and single parameters such as '
+          'inertia_x and motor_lag.time_constant')
+
 SAME = {'mass': 'mass_offset.mass', 'thrust_coefficient': 'thrust_scale.factor',
         **{f'inertia_{axis}': f'inertia_mismatch.factor_{axis}' for axis in 'xyz'}}
 """Constants that are one physical number with a parameter of an effect."""
@@ -33,15 +36,23 @@ def columns_of_names(names, vehicle):
     found = {}
     for name in names:
         if name not in table:
-            raise schema.unknown_key('--free', name, table)
+            raise _unknown(name, table)
         found |= table[name]
     for constant, parameter in SAME.items():
         if constant in found and parameter in found:
             raise InputError(f'--free: {constant} and {parameter} are the same physical number; '
                              'free one of them')
     if not found:
-        raise InputError(f'--free: names nothing; known are {", ".join(table)}')
+        raise InputError(f'--free: names nothing; {_KNOWN}')
     return found
+
+
+def _unknown(name, table):
+    """Return the InputError for a name that is not known, with the nearest known one."""
+    error = schema.unknown_key('--free', name, table)
+    if 'did you mean' in str(error):
+        return error
+    return InputError(f'--free: {schema.shown(name)} cannot be freed; {_KNOWN}')
 
 
 def unit_of(name):

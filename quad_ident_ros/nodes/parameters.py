@@ -124,8 +124,9 @@ class NodeParameters:
     def _type_error(self, spec, given, error):
         if given is None:
             return f'parameter {spec.name}: {error}'
-        expected = {bool: 'true or false', int: 'a whole number', float: 'a number with a dot, '
-                    'for example 1.0', str: 'text', list: 'a list of numbers with dots',
+        expected = {bool: 'true or false', int: 'a whole number',
+                    float: f'a number with a dot, for example {spec.default}', str: 'text',
+                    list: 'a list of numbers with dots',
                     tuple: 'a list of texts'}[type(spec.default)]
         limits = f' from {spec.limits[0]:g} to {spec.limits[1]:g}' if spec.limits else ''
         return f'parameter {spec.name}: expected {expected}{limits}, got {given.value!r}'

@@ -160,6 +160,19 @@ def test_no_file(tmp_path):
         assert str(path) in str(caught.value)
 
 
+def test_what_cannot_be_written_is_named_as_it_was_asked_for(tmp_path):
+    path = tmp_path / 'nowhere' / 'f.csv'
+    with pytest.raises(OSError) as caught:
+        write_csv(path, read_csv(_written(tmp_path)))
+    assert caught.value.filename == str(path)
+
+
+def _written(folder):
+    (folder / 'f.csv').write_text('t,pz\n0,1\n1,2\n')
+    return folder / 'f.csv'
+
+
+
 def test_no_permission(tmp_path, monkeypatch):
     """A file that may not be read is refused."""
     path = tmp_path / 'flight.csv'

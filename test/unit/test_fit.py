@@ -186,10 +186,36 @@ def test_freedoms_of_a_matrix_that_is_known():
     (['mass', 'mass_offset'], 'same physical number'),
     (['inertia', 'inertia_mismatch.factor_y'], 'same physical number'),
     (['thrust_scale', 'thrust_coefficient'], 'same physical number'),
-    (['masss'], "did you mean 'mass'"), (['gravity'], 'not known here'), ([], 'names nothing')])
+    (['masss'], "did you mean 'mass'"), (['gravity'], 'cannot be freed; known are mass, '),
+    ([], 'names nothing')])
 def test_names_that_cannot_be_freed_are_refused(problem, names, said):
     with pytest.raises(InputError, match=said):
         fit([problem.clean], VEHICLE, names)
+
+
+def test_a_flight_that_is_given_twice_is_refused(problem):
+    one, other = problem.draw(0), problem.draw(0)
+    with pytest.raises(InputError, match='given twice'):
+        fit([one, problem.draw(1), other], VEHICLE, ['inertia'])
+
+
+def test_flights_of_one_name_are_told_apart_and_progress_rises(problem):
+    shares = []
+    records = [dataclasses.replace(problem.draw(k), info={'name': name})
+               for k, name in enumerate(('flight_1', 'flight_2', 'flight_1'))]
+    found = fit(records, VEHICLE, ['inertia'], shares.append)
+    assert found.flights == ('flight_1', 'flight_2', 'flight_1 (2)')
+    assert list(as_data(found)['noise']) == list(found.flights)
+    assert len(shares) > 2 and shares == sorted(shares) and shares[-1] == 1.0
+
+
+def test_what_ends_at_a_bound_is_not_there_or_lies_beyond(problem):
+    record = fly_closed_loop(VEHICLE, {}, 'figure8', duration=10.0, seed=1, noise=WHITE)
+    light = dataclasses.replace(VEHICLE, torque_coefficient=VEHICLE.torque_coefficient / 50)
+    [parameter], [line] = (lambda found: (found.parameters, [
+        line for line in found.findings if 'bound' in line]))(
+            fit([record], light, ['torque_coefficient']))
+    assert parameter.status == 'bound' and 'lies beyond' in line
 
 
 def test_the_command_writes_table_data_and_vehicle(problem, tmp_path, capsys):

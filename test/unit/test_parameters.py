@@ -3,13 +3,14 @@
 """Tests of parameter specifications; nodes with bad parameters are in test/integration."""
 
 import math
+from types import SimpleNamespace
 
 import pytest
 from rcl_interfaces.msg import ParameterType
 
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.nodes import diagnoser, identifier, recorder, simulator
-from quad_ident_ros.nodes.parameters import help_text, ParameterSpec, TYPES
+from quad_ident_ros.nodes.parameters import help_text, NodeParameters, ParameterSpec, TYPES
 from quad_ident_ros.nodes.process import _matches, _node_names
 
 SHARE = ParameterSpec('share', 0.5, 'A share.', limits=(0.0, 1.0))
@@ -60,6 +61,14 @@ def test_bad_values_are_refused_with_the_reason(spec, value, said):
     with pytest.raises(InputError) as caught:
         spec.check(value)
     assert str(caught.value).startswith(f'parameter {spec.name}') and said in str(caught.value)
+
+
+@pytest.mark.parametrize('spec', [spec for _, spec in ALL if type(spec.default) is float],
+                         ids=lambda spec: spec.name)
+def test_the_example_in_a_refusal_would_be_taken(spec):
+    given = SimpleNamespace(value='text')
+    said = NodeParameters._type_error(None, spec, given, None)
+    spec.check(float(said.split('for example ')[1].split(',')[0].split(' ')[0]))
 
 
 def test_help_names_default_and_description():

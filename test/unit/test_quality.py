@@ -16,6 +16,8 @@ from quad_ident_ros.data.quality import clock_offset, command_offset, findings, 
 from quad_ident_ros.data.quality.excitation import excitation
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.experiment import fly, load_experiment
+from quad_ident_ros.flight.fly import fly_closed_loop
+from quad_ident_ros.flight.measure import FAULTY, MOCAP_IMU
 from quad_ident_ros.model.attitude import euler_from_quaternion
 from quad_ident_ros.model.vehicle import load_vehicle
 
@@ -81,16 +83,36 @@ def test_simulated_flights_have_no_faults(noise):
 
 @pytest.mark.parametrize('name, offset', [('star_fast', 0.01), ('oval_fast', 0.01)])
 def test_real_flights_have_the_faults_that_their_source_states(name, offset):
-    """Stale samples and, at most, the 10 ms that its README expects; no error."""
+    """Its README: stale samples, jumps of the attitude, hardly any yaw, 10 ms at most."""
     record = load(NANOBENCH / f'{name}.csv.gz')
     vehicle = load_vehicle(NANOBENCH / 'vehicle.yaml')
     found = findings(record, vehicle)
-    assert 'stale_marked' in {finding.code for finding in found}
+    assert {'stale_marked', 'attitude_glitch', 'excitation'} <= {finding.code for finding in found}
     assert {finding.code for finding in found} <= {
-        'stale_marked', 'clock_offset', 'clock_wander', 'saturation', 'excitation'}
+        'stale_marked', 'attitude_glitch', 'clock_offset', 'clock_wander', 'saturation',
+        'excitation'}
     assert not [finding for finding in found if finding.severity == 'error']
     clock = clock_offset(record)
     assert abs(clock.offset) < offset + 3 * clock.std
+
+
+@pytest.mark.parametrize('trajectory', ['hover', 'chirp_x', 'chirp_y', 'vertical'])
+def test_axes_that_are_not_moved_at_all_are_no_fault(trajectory):
+    """Without noise they hold rounding alone, which looks like anything."""
+    iris = load_vehicle('iris')
+    for seed in range(2):
+        record = fly_closed_loop(iris, {}, trajectory, duration=20.0, seed=seed)
+        assert codes(record, iris) <= {'excitation'}
+
+
+@pytest.mark.parametrize('trajectory', ['steps', 'chirp_x', 'chirp_yaw', 'lissajous'])
+def test_an_attitude_that_is_late_and_slow_does_not_jump(trajectory):
+    sensors = replace(FAULTY, glitches=0.0)
+    for name in ('iris', 'crazyflie'):
+        vehicle = load_vehicle(name)
+        record = fly_closed_loop(vehicle, {}, trajectory, duration=20.0, seed=2, noise=sensors)
+        assert not codes(record, vehicle) - {'stale', 'clock_offset', 'clock_drift', 'gap',
+                                             'excitation'}
 
 
 def test_a_finding_says_what_where_and_how_to_mend_it():
@@ -150,6 +172,27 @@ def test_one_frozen_stretch_is_found():
     assert 't = 7.010' in finding.where
 
 
+def test_jumps_of_the_attitude_are_found_and_counted():
+    record = flight()
+    turn = np.zeros((len(record), 4))
+    turn[:, 0] = 1.0
+    for first, angle in ((300, 4.0), (900, 3.0), (1500, -5.0)):
+        half = np.radians(angle) / 2
+        turn[first:first + 5] = np.cos(half), 0.0, np.sin(half), 0.0
+    jumping = named(Q, multiply(record.stack(*Q), turn))
+    [finding] = findings(changed(record, **jumping), VEHICLE)
+    assert finding.code == 'attitude_glitch' and finding.severity == 'warning'
+    assert finding.message.startswith('3 times') and 't = 3.000 s' in finding.where
+    assert 4.0 < float(finding.message.split('up to ')[1].split(' deg')[0]) < 6.0
+
+
+def test_jumps_of_a_faulty_motion_capture_are_found():
+    for seed in range(3):
+        record = fly_closed_loop(load_vehicle('iris'), {}, 'lissajous', duration=30.0, seed=seed,
+                                 noise=FAULTY)
+        assert 'attitude_glitch' in codes(record)
+
+
 def test_what_a_reader_left_out_is_passed_on():
     noted = FlightRecord(flight().t, flight().columns, {'notes': ['topic /imu: 3 samples']})
     [finding] = findings(noted)
@@ -187,6 +230,19 @@ def test_standard_errors_of_the_offset_are_honest():
     assert 0.6 < np.std(pulls) < 1.5 and abs(np.mean(pulls)) < 0.5
 
 
+@pytest.mark.parametrize('trajectory', ['figure8', 'lissajous', 'circle'])
+def test_standard_errors_know_that_an_autopilot_follows_errors_of_the_attitude(trajectory):
+    """Coloured errors of the attitude move the vehicle, and so hang together with its gyro."""
+    pulls = []
+    for seed in range(5):
+        record = fly_closed_loop(load_vehicle('crazyflie'), {}, trajectory, duration=20.0,
+                                 seed=seed, noise=MOCAP_IMU)
+        clock = clock_offset(record)
+        pulls.append(clock.offset / clock.std)
+        assert 'clock_offset' not in codes(record)
+    assert np.sqrt(np.mean(np.square(pulls))) < 1.5
+
+
 def test_a_wandering_offset_is_found():
     record = flight(seconds=60.0)
     at = record.t - 0.02 * np.sin(2 * np.pi * record.t / 30)
@@ -211,7 +267,9 @@ def test_the_lag_of_motors_is_no_fault():
 @pytest.mark.parametrize('name', ['star_fast', 'oval_fast'])
 def test_an_offset_put_into_a_real_flight_is_found(name):
     record = load(NANOBENCH / f'{name}.csv.gz')
-    before, after = clock_offset(record), clock_offset(late(record, (*P, *V, *Q), 0.06))
+    moved = late(record, (*P, *V, *Q), 0.06)
+    before, after = clock_offset(record), clock_offset(moved)
+    assert 'clock_offset' in codes(moved)
     assert abs(after.offset - before.offset - 0.06) < 2 * before.std
     assert abs(before.offset) < 3 * before.std + 0.01
 
@@ -311,6 +369,12 @@ def test_every_wrong_order_of_the_rotors_is_found_and_named(order):
     assert f'rotors {", ".join(str(k + 1) for k in order)} of' in finding.message
 
 
+@pytest.mark.parametrize('columns', [{'cmd4': None}, {'cmd5': flight().columns['cmd1']}])
+def test_the_commands_of_another_vehicle_are_found(columns):
+    [finding] = findings(changed(flight(), **columns), VEHICLE)
+    assert finding.code == 'rotor_count' and finding.severity == 'error'
+
+
 @pytest.mark.parametrize('name', ['star_fast', 'oval_fast'])
 def test_wrong_orders_are_found_in_real_flights(name):
     record = load(NANOBENCH / f'{name}.csv.gz')
@@ -363,7 +427,7 @@ def test_excitation_is_that_of_the_signals():
 def test_any_columns_will_do():
     """A record of few columns has nothing to compare, and says nothing."""
     record = flight()
-    for names in ((), ('pz',), W, Q, ('cmd1', 'cmd2'), (*V, *Q), ('u1', 'pz')):
+    for names in ((), ('pz',), W, Q, CMD, (*V, *Q), ('u1', 'pz')):
         part = FlightRecord(record.t, {n: record.columns.get(n, record.columns['pz'])
                                        for n in names})
         assert not [f for f in findings(part, VEHICLE) if f.severity == 'error']

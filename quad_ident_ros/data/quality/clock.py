@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.interpolate import CubicSpline
+from scipy.signal import fftconvolve
 
 from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.quality.frames import best_reading
@@ -17,7 +18,10 @@ LOCAL = 0.1       # s, how far a window may be from the whole
 SURE = 0.6        # correlation that an estimate needs
 SHAPE = 0.5       # correlation of the slopes, whose noise is larger
 MEMORY = 0.4      # s, over which errors may depend on one another
-SEVERAL = 4.0     # standard errors from which on an offset is one
+ANSWER = 1.0      # s, within which the motion may answer to errors of the attitude
+SEVERAL = 3.0     # standard errors from which on an offset of the attitude is one,
+MANY = 4.0        # and one of the commands, whose errors know nothing of the motion
+SCATTER = 4.0     # mean square of errors over standard errors from which on they wander
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +50,8 @@ def clock_offset(record):
     A positive offset: attitude (and position, which comes with it) is stamped late. The rate of
     the attitude is compared with the gyro's in windows of 4 s: a whole-sample shift by
     cross-correlation, refined by Gauss-Newton. The standard errors allow for errors that last up
-    to 0.4 s (Newey and West 1987, Econometrica 55).
+    to 0.4 s (Newey and West 1987, Econometrica 55), and for a motion that depends on them, as
+    under an autopilot that follows the errors of the attitude: see _displaced.
     """
     grid = Grid.of(record)
     if grid is None or not record.has('wx', 'wy', 'wz'):
@@ -54,7 +59,8 @@ def clock_offset(record):
     _, attitude = best_reading(grid)
     if attitude is None:
         return None
-    return _offset(grid, grid.rate_of(attitude), grid.smooth(grid.signal('wx', 'wy', 'wz')))
+    return _offset(grid, grid.rate_of(attitude), grid.smooth(grid.signal('wx', 'wy', 'wz')),
+                   answers=True)
 
 
 def command_offset(record):
@@ -76,8 +82,12 @@ def _centred(signal):
     return signal - signal.mean(axis=0)
 
 
-def _offset(grid, late, early):
-    """Return the ClockOffset of one signal (N, k) against another on a grid, or None."""
+def _offset(grid, late, early, answers=False):
+    """
+    Return the ClockOffset of one signal (N, k) against another on a grid, or None.
+
+    answers: the motion may answer to the errors of the late one.
+    """
     reach = round(REACH / grid.period)
     whole = _whole_shift(late, early, grid.good, range(-reach, reach + 1))
     if whole is None:
@@ -94,7 +104,11 @@ def _offset(grid, late, early):
         return None
     t, offsets, stds = np.array(found).T
     middle = (grid.t[0] + grid.t[-1]) / 2
-    return ClockOffset(*_line(t - middle, offsets, stds), t, offsets, stds)
+    offset, std, drift, drift_std = _line(t - middle, offsets, stds)
+    wider = 1.0
+    if answers:
+        wider = max(1.0, _displaced(grid, spline, late, np.interp(grid.t, t, offsets)) / std)
+    return ClockOffset(offset, wider * std, drift, wider * drift_std, t, offsets, wider * stds)
 
 
 def _whole_shift(late, early, good, shifts):
@@ -139,6 +153,28 @@ def _refined(grid, spline, late, part, start):
         return None
     score = np.sum(slope * rest, axis=1)
     return offset, np.sqrt(_long_run(score, round(MEMORY / grid.period))) / curvature
+
+
+def _displaced(grid, spline, late, offsets):
+    """
+    Return the most by which what is left would move the offset if it came earlier or later, s.
+
+    Where it lies it does not move it, for so the offset was chosen. What has nothing to do with
+    the motion is, displaced, as large as its standard error; what the motion answers to is more.
+    """
+    def inside(signal):
+        return np.where(grid.good[:, None], signal - signal[grid.good].mean(axis=0), 0.0)
+
+    model, slope = inside(spline(grid.t - offsets)), inside(-spline(grid.t - offsets, 1))
+    target, power = inside(late), np.sum(model ** 2)
+    gain = np.sum(model * target) / power
+    slope = gain * (slope - model * np.sum(slope * model) / power)
+    rest, reach = target - gain * model, round(ANSWER / grid.period)
+    scores = sum(fftconvolve(one, other[::-1]) for one, other in
+                 zip(slope.T, rest.T, strict=True))
+    middle = len(rest) - 1
+    most = np.abs(scores[max(0, middle - reach):middle + reach + 1]).max()
+    return most / max(np.sum(slope ** 2), 1e-300)
 
 
 def _alike(one, other):
@@ -190,7 +226,7 @@ def attitude(record, vehicle):
     rest = found.offsets - found.offset - found.drift * (
         found.t - (record.t[0] + record.t[-1]) / 2)
     if len(rest) > 3 and np.sqrt(np.mean(rest ** 2)) > 0.004 \
-            and np.mean((rest / found.stds) ** 2) > SEVERAL:
+            and np.mean((rest / found.stds) ** 2) > SCATTER:
         result.append(Finding(
             'clock_wander', 'warning', where,
             f'the offset wanders by {1e3 * np.ptp(rest):.0f} ms along the flight: samples are '
@@ -203,8 +239,8 @@ def commands(record, vehicle):
     found = command_offset(record)
     if found is None:
         return []
-    early = found.offset < -max(SEVERAL * found.std, 0.005)
-    if not early and found.offset < max(0.1, SEVERAL * found.std):
+    early = found.offset < -max(MANY * found.std, 0.005)
+    if not early and found.offset < max(0.1, MANY * found.std):
         return []
     return [Finding(
         'command_offset', 'warning', 'commands against accelerometer',

@@ -7,7 +7,7 @@ import numpy as np
 from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.quality.series import Grid
 
-LEAST = {'roll': 0.05, 'pitch': 0.05, 'yaw': 0.05, 'vertical': 0.1, 'horizontal': 0.3}
+LEAST = {'roll': 0.05, 'pitch': 0.05, 'yaw': 0.1, 'vertical': 0.1, 'horizontal': 0.3}
 """Least excitation: rms body rate, rad/s; rms vertical acceleration, m/s^2; speed, m/s."""
 
 UNTOLD = {'roll': 'Ixx and roll moments', 'pitch': 'Iyy and pitch moments',

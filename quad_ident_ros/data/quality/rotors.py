@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Order and spin of the rotors, found from what the commands do to the body."""
+"""Number, order and spin of the rotors, the latter from what the commands do to the body."""
 
 from itertools import permutations, product
 
@@ -13,7 +13,19 @@ from quad_ident_ros.data.quality.series import Grid
 SURE, BETTER = 0.5, 0.2   # mean correlation that an explanation needs, and its lead
 SLOW = 1.0                # s; what changes more slowly is trim, aerodynamics and battery
 LATEST = 0.08             # s, motors follow their commands within
+ROUNDING = 1e-12          # of a power: less is none
 MOST_ROTORS = 6           # of which all orders are tried
+
+
+def count(record, vehicle):
+    """Find more or fewer columns cmd1..N than the vehicle has rotors."""
+    names = record.numbered('cmd')
+    if vehicle is None or not names or len(names) == len(vehicle.rotors):
+        return []
+    return [Finding(
+        'rotor_count', 'error', f'{names[0]} to {names[-1]}',
+        f'the record has the commands of {len(names)} rotors, {vehicle.name} has '
+        f'{len(vehicle.rotors)}', 'name the vehicle that flew, or the columns cmd1, cmd2, ...')]
 
 
 def order_and_spin(record, vehicle):
@@ -65,12 +77,15 @@ def _scores(grid, moment, squared, position, lag):
     scores = {}
     covariance, cross = drive.T @ drive, target.T @ drive
     power = np.sum(target ** 2, axis=0)
+    # Of an axis that is not moved there is rounding alone, which correlates with anything.
+    least = ROUNDING * np.trace(covariance) * np.sum(arms ** 2, axis=1)
+    moved = power > ROUNDING * power.max(initial=0.0)
     for order in permutations(range(len(position))):
         effect = arms[:, list(order)]
-        size = np.einsum('ai,ij,aj->a', effect, covariance, effect) * power
-        with np.errstate(invalid='ignore', divide='ignore'):
-            scores[order] = float(np.mean(np.nan_to_num(
-                np.einsum('ai,ai->a', effect, cross) / np.sqrt(size))))
+        size = np.einsum('ai,ij,aj->a', effect, covariance, effect)
+        told = moved & (size > least)
+        product = np.einsum('ai,ai->a', effect, cross)[told]
+        scores[order] = float(np.sum(product / np.sqrt(size[told] * power[told]))) / len(arms)
     return lag, scores
 
 

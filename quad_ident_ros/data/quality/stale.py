@@ -6,7 +6,8 @@ import numpy as np
 
 from quad_ident_ros.data.quality.finding import Finding
 
-JUMP = 0.2   # of the usual step: from rest a stream sets out slower
+JUMP = 0.2       # of the usual step: from rest a stream sets out slower
+ROUNDING = 1e-9  # m, rad/s, m/s^2: a step that is no motion
 STREAMS = {'position': ('px', 'py', 'pz'), 'attitude': ('qw', 'qx', 'qy', 'qz'),
            'rate': ('wx', 'wy', 'wz'), 'specific force': ('ax', 'ay', 'az')}
 
@@ -33,7 +34,7 @@ def held(record, vehicle):
 def _held(step):
     """Return share, number of runs, longest run and begin of the repeats that end in a jump."""
     moving = step[step > 0]
-    if not len(moving):
+    if not len(moving) or np.median(moving) < ROUNDING:
         return 0.0, 0, 0, 0
     still = np.concatenate([[0], (step == 0).astype(int), [0]])
     begins, ends = np.flatnonzero(np.diff(still) == 1), np.flatnonzero(np.diff(still) == -1)

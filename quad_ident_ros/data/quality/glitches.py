@@ -1,0 +1,64 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Short jumps of the attitude, off and back, which the gyro does not see."""
+
+import numpy as np
+from scipy.ndimage import maximum_filter1d, median_filter, minimum_filter1d, uniform_filter1d
+
+from quad_ident_ros.data.frames import conjugate, continuous, multiply
+from quad_ident_ros.data.quality.finding import Finding
+from quad_ident_ros.data.quality.frames import best_reading, SURE
+from quad_ident_ros.data.quality.series import correlation, GAP, Grid
+from quad_ident_ros.data.record import QUATERNION
+
+LONGEST = 0.15            # s, that a jump lasts
+FAR = 7.0                 # standard deviations of the noise from which on it is one,
+LEAST = np.radians(0.5)   # and rad,
+LATE = 0.02               # and s of the change of the rate: an attitude that is late is none
+ALIKE = 0.7, 1.4          # rate of the attitude over that of the gyro
+
+
+def attitude(record, vehicle):
+    """Find jumps of the attitude that are gone within 0.15 s."""
+    grid = Grid.of(record)
+    if (grid is None or not record.has(*QUATERNION, 'wx', 'wy', 'wz')
+            or record.period() > LONGEST / 5):
+        return []
+    name, q = best_reading(grid)
+    if q is None or name != 'as it is':
+        return []
+    gyro = grid.smooth(grid.signal('wx', 'wy', 'wz'))[grid.good]
+    sure, slope = correlation(grid.rate_of(q)[grid.good], gyro)
+    if sure < SURE or not ALIKE[0] < slope < ALIKE[1]:
+        return []   # another unit or frame: that is to be mended first
+    size, limit = _off(record)
+    off = size > limit
+    begins = np.flatnonzero(np.diff(off.astype(int), prepend=0) == 1)
+    if not len(begins):
+        return []
+    times = 'once' if len(begins) == 1 else f'{len(begins)} times'
+    return [Finding(
+        'attitude_glitch', 'warning', f'attitude, t = {record.t[begins[0]]:.3f} s',
+        f'{times} the attitude jumps off and back within {LONGEST:g} s, by up to '
+        f'{np.degrees(size.max()):.1f} deg in {100 * off.mean():.1f} % of the samples, and the '
+        'gyro sees nothing of it',
+        'give these samples no weight; look for markers that are hidden or taken for others')]
+
+
+def _off(record):
+    """Return how far each sample's attitude is off those around it and the limit, (N,) rad."""
+    q = record.stack(*QUATERNION)
+    q = continuous(q / np.linalg.norm(q, axis=-1, keepdims=True))
+    rate, steps = record.stack('wx', 'wy', 'wz'), np.diff(record.t)
+    turned = 2.0 * multiply(conjugate(q[:-1]), q[1:])[:, 1:]
+    apart = turned - 0.5 * (rate[1:] + rate[:-1]) * steps[:, None]
+    apart[steps > GAP * record.period()] = 0.0
+    sums = np.vstack([np.zeros((1, 3)), np.cumsum(apart, axis=0)])
+    width = 2 * round(LONGEST / record.period()) + 1
+    sums -= median_filter(sums, size=(width, 1), mode='nearest')
+    noise = 1.4826 * np.median(np.abs(sums), axis=0)
+    rate = uniform_filter1d(rate, max(1, width // 5), axis=0, mode='nearest')
+    change = (maximum_filter1d(rate, width, axis=0, mode='nearest')
+              - minimum_filter1d(rate, width, axis=0, mode='nearest'))
+    limit = max(FAR * float(np.sqrt(np.mean(noise ** 2))), LEAST)
+    return np.linalg.norm(sums, axis=-1), limit + LATE * np.linalg.norm(change, axis=-1)

@@ -1,0 +1,79 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Bags unpacked within limits: rosbags has none, and no way to set one."""
+
+from types import SimpleNamespace
+
+from lz4.frame import LZ4FrameDecompressor
+from rosbags.rosbag2 import reader, storage_mcap
+from rosbags.rosbag2.errors import ReaderError
+
+from quad_ident_ros.data import limits
+
+
+class TooLarge(ReaderError):
+    """Something unpacks to more than it may."""
+
+
+def _bounded(unpack):
+    """Return a function that unpacks data of a size that is told, and no more."""
+    def within(data, size):
+        if size > limits.PART:
+            raise TooLarge(f'a chunk says that it unpacks to {_in_mb(size)}')
+        return unpack(data, size + 1)
+    return within
+
+
+def _in_mb(size):
+    return f'{size / 2 ** 20:.3g} MB'
+
+
+def _zstd(data, most_bytes):
+    return _zstd_module.ZstdDecompressor().decompress(data, max_length=most_bytes)
+
+
+def _lz4(data, most_bytes):
+    return LZ4FrameDecompressor().decompress(data, max_length=most_bytes)
+
+
+def _message(data):
+    """Return a message unpacked."""
+    machine = _zstd_module.ZstdDecompressor()
+    message = machine.decompress(data, max_length=limits.PART)
+    if not machine.eof:
+        raise TooLarge(f'a message is cut off, or unpacks to over {_in_mb(limits.PART)}')
+    return message
+
+
+def _open(file, mode):
+    packed = file.seek(0, 2)
+    file.seek(0)
+    return _File(_zstd_module.open(file, mode), limits.most(packed))
+
+
+class _File:
+    """A packed file that is read up to a limit."""
+
+    def __init__(self, file, limit):
+        self._file, self._limit, self._done = file, limit, 0
+
+    def read(self, size):
+        """Return the next bytes; TooLarge beyond the limit."""
+        data = self._file.read(size)
+        self._done += len(data)
+        if self._done > self._limit:
+            raise TooLarge(f'the file unpacks to over {_in_mb(self._limit)}')
+        return data
+
+    def __enter__(self):
+        """Return the file."""
+        return self
+
+    def __exit__(self, *_):
+        """Close the file."""
+        self._file.close()
+
+
+_zstd_module = storage_mcap.zstd
+storage_mcap.DECOMPRESSORS.update(zstd=_bounded(_zstd), lz4=_bounded(_lz4))
+reader.zstd = SimpleNamespace(decompress=_message, open=_open)

@@ -1,0 +1,66 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The mapping file, and the rotor speeds that outputs stand for."""
+
+from pathlib import Path
+
+from hypothesis import given
+from hypothesis import strategies as st
+import numpy as np
+import pytest
+from records import FAST
+import yaml
+
+from quad_ident_ros.data.mapping import mapping_from, rotor_speeds
+from quad_ident_ros.errors import InputError
+
+
+def test_the_mapping_file_of_the_documents_is_one():
+    text = (Path(__file__).parents[2] / 'docs' / 'records.md').read_text(encoding='utf-8')
+    blocks = [block.split('```')[0] for block in text.split('```yaml\n')[1:]]
+    assert len(blocks) >= 2
+    for block in blocks:
+        mapping_from(yaml.safe_load(block), 'docs')
+
+
+@pytest.mark.parametrize('data, said', [
+    ({'topic': {}}, "did you mean 'topics'"), ({'topics': 3}, 'topics'),
+    ({'topics': {'pos': {}}}, "did you mean 'pose'"), ({'topics': {'pose': {}}}, 'topic'),
+    ({'topics': {'pose': {'topic': 3}}}, 'expected a name'), ({'world': 'UP'}, 'ENU, NED'),
+    ({'topics': {'pose': {'topic': '/a', 'field': 'x'}}}, 'field'),
+    ({'actuators': {}}, 'kind'), ({'actuators': {'kind': 'duty'}}, 'pwm'),
+    ({'actuators': {'kind': 'pwm', 'minimum': 2000}}, 'maximum'),
+    ({'actuators': {'kind': 'pwm', 'order': [1, 1]}}, 'twice'),
+    ({'actuators': {'kind': 'pwm', 'order': [0]}}, 'at least 1'),
+    ({'actuators': {'kind': 'pwm', 'order': []}}, 'order'),
+    ({'actuators': {'kind': 'rpm', 'minimum': 0}}, 'leave it out'),
+    ({'actuators': {'kind': 'pwm', 'speeds': [5, 5]}}, 'speeds'),
+    ({'instances': {'actuator_outputs': -1}}, 'at least 0'), ({'instances': 3}, 'instances')])
+def test_bad_mappings_are_refused(data, said):
+    with pytest.raises(InputError, match='m.yaml') as caught:
+        mapping_from(data, 'm.yaml')
+    assert said in str(caught.value)
+
+
+def test_outputs_become_speeds():
+    linear = mapping_from({'actuators': {'kind': 'pwm', 'speeds': [200, 1000]}}, 'm').actuators
+    outputs = np.array([[900.0, 1000.0, 1500.0, 2100.0, np.nan]])
+    np.testing.assert_allclose(rotor_speeds('x', outputs, linear, None),
+                               [[0, 200, 600, 1000, 0]])
+    thrust = mapping_from({'actuators': {'kind': 'normalised', 'curve': 'thrust',
+                                         'speeds': [0, 1000]}}, 'm').actuators
+    np.testing.assert_allclose(rotor_speeds('x', [[0.25, 1.0]], thrust, None), [[500, 1000]])
+    rpm = mapping_from({'actuators': {'kind': 'rpm'}}, 'm').actuators
+    np.testing.assert_allclose(rotor_speeds('x', [[60.0]], rpm, None), [[2 * np.pi]])
+
+
+@given(st.recursive(st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=8),
+                    lambda inner: st.lists(inner, max_size=4) | st.dictionaries(
+                        st.sampled_from(['topics', 'pose', 'topic', 'actuators', 'kind', 'order',
+                                         'world', 'instances', 'x', 3]), inner, max_size=4)))
+@FAST
+def test_any_yaml_is_a_mapping_or_is_refused_in_a_line(data):
+    try:
+        mapping_from(data, 'm')
+    except InputError as error:
+        assert len(str(error).splitlines()) == 1
