@@ -12,6 +12,7 @@ from quad_ident_ros.data.quality import (
     clock,
     excitation,
     frames,
+    glitch,
     rotors,
     saturation,
     stale,
@@ -26,7 +27,7 @@ CHECKS = (timing.gaps, timing.duplicates, timing.reader_notes, stale.held, stale
           units.rates_in_degrees, units.euler_in_degrees, units.force_in_g,
           units.position_in_millimetres, units.speeds_in_rpm, frames.quaternion, frames.world,
           frames.velocity_in_body, rotors.order_and_spin, clock.attitude, clock.commands,
-          saturation.speeds, excitation.axes)
+          glitch.attitude, saturation.speeds, excitation.axes)
 
 __all__ = ['CHECKS', 'clock_offset', 'ClockOffset', 'command_offset', 'Finding', 'findings',
            'refuse_unfit', 'SEVERITIES']
