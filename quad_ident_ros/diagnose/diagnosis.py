@@ -11,14 +11,13 @@ from quad_ident_ros.diagnose import gap as gaps
 from quad_ident_ros.diagnose import where
 from quad_ident_ros.diagnose.candidates import candidates
 from quad_ident_ros.diagnose.leftover import leftovers
+from quad_ident_ros.diagnose.own import as_data, own_of
 from quad_ident_ros.diagnose.select import select
 from quad_ident_ros.effects.registry import EFFECTS, mapping
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.greybox.errors import UNITS
-from quad_ident_ros.greybox.estimate import estimate
 from quad_ident_ros.greybox.flights import flight_of, highest_voltage
-from quad_ident_ros.greybox.noise import quick_noise, whole_noise
-from quad_ident_ros.greybox.own import Own
+from quad_ident_ros.greybox.noise import near_noise, whole_noise
 from quad_ident_ros.greybox.parameters import NAMES, nominal, SPLIT
 
 SCHEMA = 'quad_ident/diagnosis/1'
@@ -70,7 +69,7 @@ def diagnose(records, vehicle, *, hold_out=None, effects=None, on_progress=lambd
     z0, kinds = nominal(vehicle), selection.best.own
     training = list(zip(training, selection.best.estimate.own.vectors(np.zeros(len(z0))),
                         strict=True))
-    noise = np.median([quick_noise(raw) for raw in selection.best.estimate.left], axis=0)
+    noise = np.median([near_noise(raw) for raw in selection.best.estimate.left], axis=0)
     whole = np.median([whole_noise(raw, 1.0 - 1.0 / raw.shape[1])
                        for raw in selection.best.estimate.left], axis=0)
     z, named, strength = _named(selection, training, vehicle, noise, voltage)
@@ -87,7 +86,7 @@ def diagnose(records, vehicle, *, hold_out=None, effects=None, on_progress=lambd
         for column in (column for cause in weak for column in cause.columns):
             z[column] = z0[column]
         named = tuple(cause for cause in named if cause not in weak)
-    test = test, _own_of(test, vehicle, z, kinds, noise, voltage)
+    test = test, own_of(test, vehicle, z, kinds, noise, voltage)
     far = _how_far(test, vehicle, z0, z, named, noise, voltage)
     doubts = _doubts(selection, named)
     verdict = [cause.effect for cause in named]
@@ -104,7 +103,7 @@ def diagnose(records, vehicle, *, hold_out=None, effects=None, on_progress=lambd
         'unknown': [{'channel': one.channel, 'depends_on': one.depends_on,
                      'share': one.share} for one in left] if unknown else None,
         'undetermined': doubts or None,
-        'nuisances': _nuisances(kinds, training, test),
+        'nuisances': as_data(kinds, [own for _, own in training], test[1]),
         'flights': [record.info.get('name') for record, _ in training],
         'held_out': test[0].info.get('name')}
     return Diagnosis(data, selection, z, vehicle, [own for _, own in training], test[1])
@@ -144,23 +143,6 @@ def _named(selection, training, vehicle, noise, voltage):
         else:
             kept[list(cause.columns)] = z0[list(cause.columns)]
     return kept, tuple(named), strength
-
-
-def _own_of(record, vehicle, z, kinds, noise, voltage):
-    """Return what a flight that was not learnt from has of its own (Z,), the vehicle given."""
-    if not kinds:
-        return np.zeros(len(z))
-    flight = flight_of(record, vehicle, reference_voltage=voltage)
-    found = estimate([flight], vehicle, z, [], noise=[noise], own=Own.of(kinds, 1))
-    return found.vectors[0] - z
-
-
-def _nuisances(kinds, training, test):
-    """Return what flights have of their own as data: values per flight and of the held-out one."""
-    return {kind.name: {
-        'what': kind.title, 'unit': kind.unit,
-        'values': [own[list(kind.columns)].tolist() for _, own in training],
-        'held_out': test[1][list(kind.columns)].tolist()} for kind in kinds} or None
 
 
 def _remains(training, vehicle, z, noise, voltage):

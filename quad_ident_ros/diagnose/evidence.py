@@ -8,7 +8,8 @@ import numpy as np
 
 PRIOR = 3.0         # usual sizes that a parameter's prior is wide
 ODDS = 0.02         # of each cause being present, before looking,
-OWN_ODDS = 1e-4     # and of flights having something of their own: where one is enough, an effect
+OWN_ODDS = 1e-4     # and of flights having anything of their own,
+MORE_ODDS = 0.5     # and one more kind of it
 BEAM = 12           # sets kept per size
 MOST = 6            # causes in a set, beside what flights have of their own
 BEHIND = 40.0       # log-evidence behind the best set from which on none grows
@@ -39,9 +40,9 @@ def occam(information, wide, scatter, causes):
     """Return the log-evidence that free columns and causes cost."""
     scaled = information * np.outer(wide, wide) / scatter
     _, log_volume = np.linalg.slogdet(np.eye(len(wide)) + scaled)
-    odds = sum(np.log(share / (1.0 - share)) for share in
-               (OWN_ODDS if cause.own else ODDS for cause in causes))
-    return -0.5 * log_volume + odds
+    own = sum(cause.own is not None for cause in causes)
+    shares = [ODDS] * (len(causes) - own) + [OWN_ODDS, *[MORE_ODDS] * (own - 1)][:own]
+    return -0.5 * log_volume + sum(np.log(share / (1.0 - share)) for share in shares)
 
 
 def linear_evidence(quadratic, chosen, rows):

@@ -13,6 +13,8 @@ import numpy as np
 
 from quad_ident_ros.greybox.parameters import INDEX
 
+CLOCK = 'clock_offset'
+
 
 @dataclass(frozen=True)
 class Nuisance:
@@ -31,7 +33,7 @@ def nuisances(vehicle):
     twist = (vehicle.mass * vehicle.gravity * vehicle.torque_coefficient
              / vehicle.thrust_coefficient)
     kinds = (
-        ('clock_offset', 'the states are stamped later than the commands by', 's',
+        (CLOCK, 'the states are stamped later than the commands by', 's',
          ('actuation_delay.delay',), (0.02,)),
         ('rate_bias', 'bias of the rate', 'rad/s',
          tuple(f'gyro_bias.{axis}' for axis in 'xyz'), (0.01,) * 3),
