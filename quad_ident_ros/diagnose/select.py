@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Which effects explain flights: sets of causes compared jointly, each refitted."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -18,7 +18,9 @@ from quad_ident_ros.greybox.parameters import limits, nominal
 ROUNDS = 5
 REFITS = 3          # sets that are refitted in a round
 FIT_STEPS = 5
+FAR = 100.0         # times the noise that errors without any cause are on the median: very far off
 COLOURED = 2.0      # times the noise from sample to sample that all that is left may be
+SHORTER = (5, 2, 1)     # of the rollouts, where errors are far from linear
 UNTRIED = -2.0      # log-evidence that the linear model alone may give a set, beside the best
 
 
@@ -69,7 +71,8 @@ def select(flights, vehicle, causes, on_progress=lambda share: None):
     """
     found = _select(flights, vehicle, causes, None, lambda share: on_progress(0.5 * share))
     whole = [whole_noise(raw, 1.0 - 1.0 / raw.shape[1]) for raw in found.best.estimate.left]
-    if np.max(np.median(np.array(whole) / found.noise, axis=0)) > COLOURED:
+    ratio = np.median(np.array(whole) / found.noise, axis=0)
+    if np.max(ratio) > COLOURED or np.max(1.0 / ratio) > COLOURED:
         found = _select(flights, vehicle, causes, whole, lambda share: on_progress(
             0.5 + 0.5 * share))
     on_progress(1.0)
@@ -85,6 +88,11 @@ def _select(flights, vehicle, causes, noise, on_progress):
                       for flight, start in zip(flights, starts, strict=True)]
     tried = {(): estimate(flights, vehicle, nominal(vehicle), [], noise=noise, iterations=2)}
     best, scatter = (), 1.0
+    if np.max([np.median(np.abs(raw), axis=(0, 1)) / sigma
+               for raw, sigma in zip(tried[()].left, noise, strict=True)]) > FAR:
+        best = tuple({one.effect: one for one in own}.values())
+        tried[best] = _from_afar(flights, vehicle, [one.own for one in best])
+        noise = tried[best].noise
     for turn in range(ROUNDS):
         quadratic = quadratic_at(flights, vehicle, tried[best], columns, own)
         scatter = quadratic.scatter
@@ -116,6 +124,20 @@ def _select(flights, vehicle, causes, noise, on_progress):
     for cause, value in support.items():
         probability[cause] = min(probability[cause], float(1.0 / (1.0 + np.exp(-min(value, 50)))))
     return Selection(chosen, fitted, probability, quadratic, rows, noise, scatter)
+
+
+def _from_afar(flights, vehicle, kinds):
+    """
+    Return the Estimate of what flights have of their own where errors are far from linear.
+
+    Over longer and longer rollouts, each from what the shorter ones gave.
+    """
+    z, own = nominal(vehicle), Own.of(kinds, len(flights))
+    for share in SHORTER:
+        cut = [replace(flight, count=max(4, flight.count // share)) for flight in flights]
+        found = estimate(cut, vehicle, z, [], own=own, iterations=2 * FIT_STEPS)
+        own = found.own
+    return found
 
 
 def _rows(causes, own, columns, count):

@@ -28,21 +28,25 @@ class Nuisance:
 
 
 def nuisances(vehicle):
-    """Return the Nuisances of flights of a vehicle."""
+    """
+    Return the Nuisances of flights of a vehicle.
+
+    Those with one name exclude one another: how far flights usually differ depends on who flies.
+    """
     lever = vehicle.mass * vehicle.gravity * vehicle.arm_length
     twist = (vehicle.mass * vehicle.gravity * vehicle.torque_coefficient
              / vehicle.thrust_coefficient)
-    kinds = (
-        (CLOCK, 'the states are stamped later than the commands by', 's',
-         ('actuation_delay.delay',), (0.02,)),
-        ('rate_bias', 'bias of the rate', 'rad/s',
-         tuple(f'gyro_bias.{axis}' for axis in 'xyz'), (0.01,) * 3),
-        ('attitude_bias', 'tilt of the attitude', 'rad',
-         tuple(f'attitude_misalignment.{axis}' for axis in ('roll', 'pitch', 'yaw')),
-         (0.005,) * 3),
-        ('trim_moment', 'moment', 'N m',
-         tuple(f'external_wrench.moment_{axis}' for axis in 'xyz'),
-         (0.02 * lever, 0.02 * lever, 0.05 * twist)))
+    rate = tuple(f'gyro_bias.{axis}' for axis in 'xyz')
+    tilt = tuple(f'attitude_misalignment.{axis}' for axis in ('roll', 'pitch', 'yaw'))
+    moment = tuple(f'external_wrench.moment_{axis}' for axis in 'xyz')
+    kinds = [(CLOCK, 'the states are stamped later than the commands by', 's',
+              ('actuation_delay.delay',), (0.02,))]
+    kinds += [('rate_bias', 'bias of the rate', 'rad/s', rate, (spread,) * 3)
+              for spread in (0.01, 0.003)]
+    kinds += [('attitude_bias', 'tilt of the attitude', 'rad', tilt, (spread,) * 3)
+              for spread in (0.005, 0.0015)]
+    kinds.append(('trim_moment', 'moment', 'N m', moment,
+                  (0.02 * lever, 0.02 * lever, 0.05 * twist)))
     return tuple(Nuisance(name, title, unit, tuple(INDEX[one] for one in columns), spreads)
                  for name, title, unit, columns, spreads in kinds)
 
@@ -57,13 +61,18 @@ class Own:
 
     @classmethod
     def of(cls, kinds, count, known=None):
-        """Return the Own of Nuisances in so many flights, with the values of a known one."""
+        """
+        Return the Own of Nuisances in so many flights, with the values of a known one.
+
+        Where several stand for the same columns the first one has the values.
+        """
         columns = tuple(column for kind in kinds for column in kind.columns)
         spreads = np.array([spread for kind in kinds for spread in kind.spreads], float)
         values = np.zeros((count, len(columns)))
         for k, column in enumerate(columns):
-            if known is not None and column in known.columns:
-                values[:, k] = known.values[:, known.columns.index(column)]
+            if known is not None and column not in columns[:k]:
+                same = np.array(known.columns, int) == column
+                values[:, k] = known.values[:, same].sum(axis=1)
         return cls(columns, spreads, values)
 
     def vectors(self, z):
