@@ -18,7 +18,7 @@ from quad_ident_ros.greybox.parameters import limits, nominal
 ROUNDS = 5
 REFITS = 3          # sets that are refitted in a round
 FIT_STEPS = 5
-FAR = 100.0         # times the noise that errors without any cause are on the median: very far off
+FAR = 100.0         # times the noise that errors without causes are on the median: far from linear
 COLOURED = 2.0      # times the noise from sample to sample that all that is left may be
 SHORTER = (5, 2, 1)     # of the rollouts, where errors are far from linear
 UNTRIED = -2.0      # log-evidence that the linear model alone may give a set, beside the best
