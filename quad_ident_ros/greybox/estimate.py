@@ -16,7 +16,7 @@ from quad_ident_ros.greybox.linear import (
     tangent_of,
 )
 from quad_ident_ros.greybox.noise import MAD, quick_noise, whole_noise
-from quad_ident_ros.greybox.normal import bounded_step, covariance_of, Normal, normal_of
+from quad_ident_ros.greybox.normal import bounded_step, covariance_of, marginal, Normal, normal_of
 from quad_ident_ros.greybox.own import Layout, Own
 from quad_ident_ros.greybox.parameters import limits
 
@@ -154,7 +154,7 @@ def _descend(flights, vehicle, z, columns, box, noise, own, starts, iterations, 
         # Close by, the slopes are what they were.
         if share < 1.0 or np.any(np.abs(step) > NEAR * size):
             tangents = None
-    covariance = covariance_of(normal, size, precision)[:shared, :shared]
+    covariance = covariance_of(marginal(normal, shared, precision), size[:shared])
     return Estimate(z, columns, covariance, noise, own, starts, normal, raws, free[:shared],
                     converged)
 

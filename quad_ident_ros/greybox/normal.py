@@ -99,18 +99,30 @@ def solve(information, gradient, size):
     return size * (vectors[:, kept] @ (along[kept] / values[kept]))
 
 
-def covariance_of(normal, size, precision=0.0):
+def marginal(normal, shared, precision):
+    """
+    Return the Normal of the first columns, the others free but for their precision (C,).
+
+    The scores are those of the blocks with the others following, as far as they are free.
+    """
+    rest = slice(shared, None)
+    block = normal.information[rest, rest] + np.diag(precision[rest])
+    ties = np.linalg.solve(block, normal.information[rest, :shared])
+    return Normal(normal.information[:shared, :shared] - normal.information[:shared, rest] @ ties,
+                  normal.gradient[:shared] - normal.gradient[rest] @ ties, normal.cost,
+                  normal.scores[:, :shared] - normal.scores[:, rest] @ ties)
+
+
+def covariance_of(normal, size):
     """
     Return the covariance (C, C) of the columns: the inverse of the information.
 
-    Widened where blocks of time scatter more than independent noise would let them. precision
-    (C,): of what is known of the columns beforehand.
+    Widened where blocks of time scatter more than independent noise would let them.
     """
-    spread = size / np.sqrt(scatter_of(normal))
-    known = np.diag(np.broadcast_to(precision, len(size)) * size ** 2)
-    values, vectors = np.linalg.eigh(normal.information * np.outer(spread, spread) + known)
+    values, vectors = np.linalg.eigh(normal.information * np.outer(size, size))
     least = max(1e-12 * values.max(initial=0.0), 1e-300)
-    return (vectors / np.maximum(values, least)) @ vectors.T * np.outer(size, size)
+    spread = size * np.sqrt(scatter_of(normal))
+    return (vectors / np.maximum(values, least)) @ vectors.T * np.outer(spread, spread)
 
 
 def scatter_of(normal):
