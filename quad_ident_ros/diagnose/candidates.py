@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from quad_ident_ros.effects.registry import EFFECTS, SLICES
+from quad_ident_ros.greybox.own import nuisances
 from quad_ident_ros.greybox.parameters import SPLIT
 
 VOLTAGE = 0.02      # V that the battery must fall for its voltage to tell anything
@@ -14,11 +15,16 @@ VOLTAGE = 0.02      # V that the battery must fall for its voltage to tell anyth
 
 @dataclass(frozen=True)
 class Candidate:
-    """An effect, or for a weak rotor one of the rotors, and its columns."""
+    """
+    An effect, or for a weak rotor one of the rotors, and its columns.
+
+    own: the greybox.own.Nuisance that it is instead of an effect, or None.
+    """
 
     effect: str
     label: str
     columns: tuple
+    own: object = None
 
 
 def candidates(flights, vehicle, effects=None):
@@ -38,3 +44,9 @@ def candidates(flights, vehicle, effects=None):
         else:
             found.append(Candidate(name, name, columns))
     return tuple(found)
+
+
+def own_candidates(vehicle):
+    """Return the Candidates for what flights have of their own, which is no effect."""
+    return tuple(Candidate(kind.name, kind.name, kind.columns, kind)
+                 for kind in nuisances(vehicle))

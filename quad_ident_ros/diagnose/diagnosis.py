@@ -14,12 +14,13 @@ from quad_ident_ros.diagnose.doubts import doubts_of
 from quad_ident_ros.diagnose.fly_next import fly_next, hidden
 from quad_ident_ros.diagnose.leftover import leftovers
 from quad_ident_ros.diagnose.length import refuse_short
+from quad_ident_ros.diagnose.own import as_data, own_of
 from quad_ident_ros.diagnose.select import select
 from quad_ident_ros.effects.registry import EFFECTS, mapping
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.greybox.errors import UNITS
 from quad_ident_ros.greybox.flights import flight_of, highest_voltage
-from quad_ident_ros.greybox.noise import quick_noise, whole_noise
+from quad_ident_ros.greybox.noise import near_noise, whole_noise
 from quad_ident_ros.greybox.parameters import NAMES, nominal, SPLIT
 
 SCHEMA = 'quad_ident/diagnosis/1'
@@ -34,13 +35,16 @@ class Diagnosis:
     """
     What was found, as data (`data`: the JSON of the project) and as objects to go on with.
 
-    selection: of the effects; z (Z,): the vehicle with those named; vehicle: the nominal one.
+    selection: of the effects; z (Z,): the vehicle with those named; vehicle: the nominal one;
+    own, held_out_own (Z,): what is added to z in each flight, as clocks and trims are its own.
     """
 
     data: dict
     selection: object
     z: np.ndarray
     vehicle: object
+    own: list
+    held_out_own: np.ndarray
 
     def effects(self):
         """Return {effect: {parameter: value}} of the effects named."""
@@ -67,13 +71,17 @@ def diagnose(records, vehicle, *, hold_out=None, effects=None, on_progress=lambd
     flights = [flight_of(record, vehicle, reference_voltage=voltage) for record in training]
     causes = candidates(flights, vehicle, effects)
     selection = select(flights, vehicle, causes, lambda share: on_progress(0.8 * share))
-    z0 = nominal(vehicle)
-    noise = np.median([quick_noise(raw) for raw in selection.best.estimate.left], axis=0)
+    z0, kinds = nominal(vehicle), selection.best.own
+    training = list(zip(training, selection.best.estimate.own.vectors(np.zeros(len(z0))),
+                        strict=True))
+    noise = np.median([near_noise(raw) for raw in selection.best.estimate.left], axis=0)
     whole = np.median([whole_noise(raw, 1.0 - 1.0 / raw.shape[1])
                        for raw in selection.best.estimate.left], axis=0)
     z, named, strength = _named(selection, training, vehicle, noise, voltage)
-    left = leftovers([where.lacking(record, vehicle, z, whole, voltage) for record in training])
-    lacks = [where.lacking(record, vehicle, z0, noise, voltage) for record in training]
+    left = leftovers([where.lacking(record, vehicle, z + own, whole, voltage)
+                      for record, own in training])
+    lacks = [where.lacking(record, vehicle, z0 + own, noise, voltage)
+             for record, own in training]
     on_progress(0.9)
     remains = _remains(training, vehicle, z, noise, voltage)
     unknown = bool(left) and remains > REMAINS
@@ -83,6 +91,7 @@ def diagnose(records, vehicle, *, hold_out=None, effects=None, on_progress=lambd
         for column in (column for cause in weak for column in cause.columns):
             z[column] = z0[column]
         named = tuple(cause for cause in named if cause not in weak)
+    test = test, own_of(test, vehicle, z, kinds, noise, voltage)
     far = _how_far(test, vehicle, z0, z, named, noise, voltage)
     doubts = doubts_of(selection, named)
     sure = [cause for cause in named if cause not in doubts]
@@ -104,9 +113,10 @@ def diagnose(records, vehicle, *, hold_out=None, effects=None, on_progress=lambd
                      'share': one.share} for one in left] if unknown else None,
         'undetermined': open_ones or None, 'sure': known if doubts else None,
         'not_shown': unseen, 'fly_next': proposals,
-        'flights': [record.info.get('name') for record in training],
-        'held_out': test.info.get('name')}
-    return Diagnosis(data, selection, z, vehicle)
+        'nuisances': as_data(kinds, [own for _, own in training], test[1]),
+        'flights': [record.info.get('name') for record, _ in training],
+        'held_out': test[0].info.get('name')}
+    return Diagnosis(data, selection, z, vehicle, [own for _, own in training], test[1])
 
 
 def split(records, hold_out):
@@ -127,14 +137,14 @@ def _named(selection, training, vehicle, noise, voltage):
     best = selection.best
     z, strength = best.estimate.z, {}
     z0 = nominal(vehicle)
-    record = training[0]
-    base = gaps.noise_gap(record, vehicle, z, noise, gaps.HEADLINE, voltage)
-    full = [gaps.ends(one, vehicle, z, gaps.HEADLINE, voltage) for one in training]
+    base = gaps.noise_gap(training[0][0], vehicle, z, noise, gaps.HEADLINE, voltage)
+    full = [gaps.ends(one, vehicle, z + own, gaps.HEADLINE, voltage) for one, own in training]
     named, kept = [], z.copy()
     for cause in best.causes:
         without = z.copy()
         without[list(cause.columns)] = z0[list(cause.columns)]
-        other = [gaps.ends(one, vehicle, without, gaps.HEADLINE, voltage) for one in training]
+        other = [gaps.ends(one, vehicle, without + own, gaps.HEADLINE, voltage)
+                 for one, own in training]
         change = gaps.gap([gaps.Ends(a.errors - b.errors, a.t)
                            for a, b in zip(other, full, strict=True)])
         strength[cause] = max(change[name] / base[name] for name in base)
@@ -147,18 +157,18 @@ def _named(selection, training, vehicle, noise, voltage):
 
 def _remains(training, vehicle, z, noise, voltage):
     """Return what is left of the gap above the noise, over the noise, where it is largest."""
-    after = gaps.usual_gap([gaps.ends(one, vehicle, z, gaps.HEADLINE, voltage)
-                            for one in training])
-    base = gaps.noise_gap(training[0], vehicle, z, noise, gaps.HEADLINE, voltage)
+    after = gaps.usual_gap([gaps.ends(one, vehicle, z + own, gaps.HEADLINE, voltage)
+                            for one, own in training])
+    base = gaps.noise_gap(training[0][0], vehicle, z, noise, gaps.HEADLINE, voltage)
     return max(np.sqrt(max(0.0, (after[name] / base[name]) ** 2 - 1.0)) for name in after)
 
 
 def _how_far(test, vehicle, z0, z, named, noise, voltage):
     """Return the gap on the held-out flight: before, after, noise, intervals, by horizon."""
-    out = {}
+    out, (test, own) = {}, test
     for horizon in gaps.HORIZONS:
-        before = gaps.ends(test, vehicle, z0, horizon, voltage)
-        after = gaps.ends(test, vehicle, z, horizon, voltage)
+        before = gaps.ends(test, vehicle, z0 + own, horizon, voltage)
+        after = gaps.ends(test, vehicle, z + own, horizon, voltage)
         out[horizon] = {'before': gaps.gap([before]), 'after': gaps.gap([after]),
                         'noise': gaps.noise_gap(test, vehicle, z, noise, horizon, voltage),
                         'before_interval': gaps.interval([before]),
@@ -169,7 +179,7 @@ def _how_far(test, vehicle, z0, z, named, noise, voltage):
         without = z.copy()
         without[list(cause.columns)] = z0[list(cause.columns)]
         contributions[cause.effect] = gaps.gap(
-            [gaps.ends(test, vehicle, without, gaps.HEADLINE, voltage)])
+            [gaps.ends(test, vehicle, without + own, gaps.HEADLINE, voltage)])
     return {'horizon': gaps.HEADLINE, 'units': UNITS, **head,
             'closed': gaps.closed(head['before']['velocity'], head['after']['velocity'],
                                   head['noise']['velocity']),
@@ -179,7 +189,7 @@ def _how_far(test, vehicle, z0, z, named, noise, voltage):
 
 def _ranking(selection, causes, z, test, vehicle, voltage, strength):
     """Return every effect, the most probable first, with its parameters."""
-    z0 = nominal(vehicle)
+    z0, (test, own) = nominal(vehicle), test
     errors = dict(zip(selection.best.estimate.columns, selection.best.estimate.errors,
                       strict=True))
     rows = {}
@@ -200,7 +210,8 @@ def _ranking(selection, causes, z, test, vehicle, voltage, strength):
                                            'std': float(errors[column]), 'unit': units[name]}
             alone = z0.copy()
             alone[list(cause.columns)] = selection.best.estimate.z[list(cause.columns)]
-            row['gap_after'] = gaps.gap([gaps.ends(test, vehicle, alone, gaps.HEADLINE, voltage)])
+            row['gap_after'] = gaps.gap([gaps.ends(test, vehicle, alone + own, gaps.HEADLINE,
+                                                   voltage)])
     return sorted(rows.values(), key=lambda row: -row['probability'])
 
 

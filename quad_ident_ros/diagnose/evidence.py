@@ -7,9 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 
 PRIOR = 3.0         # usual sizes that a parameter's prior is wide
-ODDS = 0.02         # of each cause being present, before looking
+ODDS = 0.02         # of each cause being present, before looking,
+OWN_ODDS = 1e-4     # and of flights having anything of their own,
+MORE_ODDS = 0.5     # and one more kind of it
 BEAM = 12           # sets kept per size
-MOST = 6            # causes in a set
+MOST = 6            # causes in a set, beside what flights have of their own
+BEHIND = 40.0       # log-evidence behind the best set from which on none grows
 
 
 @dataclass(frozen=True, eq=False)
@@ -17,37 +20,39 @@ class Quadratic:
     """
     The cost around a point as a quadratic in the distance of the parameters from no effect.
 
-    columns: places in z; information (C, C), gradient (C,), cost at the point; now (C,) the
-    distance at the point; size (C,), lower and upper (C,) bounds of the distance; scatter: what a
-    difference of the cost has to be divided by.
+    Columns: the shared ones, then each flight's own. information (C, C), gradient (C,), cost at
+    the point; now (C,) the distance at the point; wide (C,), of the prior about no effect; lower
+    and upper (C,) bounds of the distance; scatter: what a difference of the cost has to be divided
+    by.
     """
 
-    columns: tuple
     information: np.ndarray
     gradient: np.ndarray
     cost: float
     now: np.ndarray
-    size: np.ndarray
+    wide: np.ndarray
     lower: np.ndarray
     upper: np.ndarray
     scatter: float
 
 
-def occam(information, size, scatter, count):
+def occam(information, wide, scatter, causes):
     """Return the log-evidence that free columns and causes cost."""
-    wide = PRIOR * size
     scaled = information * np.outer(wide, wide) / scatter
-    _, log_volume = np.linalg.slogdet(np.eye(len(size)) + scaled)
-    return -0.5 * log_volume + count * np.log(ODDS / (1.0 - ODDS))
+    _, log_volume = np.linalg.slogdet(np.eye(len(wide)) + scaled)
+    own = sum(cause.own is not None for cause in causes)
+    shares = [ODDS] * (len(causes) - own) + [OWN_ODDS, *[MORE_ODDS] * (own - 1)][:own]
+    return -0.5 * log_volume + sum(np.log(share / (1.0 - share)) for share in shares)
 
 
-def linear_evidence(quadratic, groups):
+def linear_evidence(quadratic, chosen, rows):
     """
-    Return the log-evidence of freeing groups of rows, and the distances (C,) that fit then.
+    Return the log-evidence of causes, and the distances (C,) that fit then.
 
-    A row that would leave its bounds is held there. -inf where a whole group is held at no effect.
+    Args: chosen causes; rows {cause: rows of the quadratic}. A row that would leave its bounds is
+    held there. -inf where all rows of a cause are held at no effect.
     """
-    groups = [np.asarray(rows, int) for rows in groups]
+    groups = [np.asarray(rows[cause], int) for cause in chosen]
     free = np.concatenate([*groups, np.zeros(0, int)])
     held = np.zeros(len(quadratic.now))
     for _ in range(len(free) + 1):
@@ -65,10 +70,10 @@ def linear_evidence(quadratic, groups):
     change = found - quadratic.now
     cost = (quadratic.cost - 2.0 * quadratic.gradient @ change
             + change @ quadratic.information @ change)
-    size = quadratic.size[free]
-    value = -0.5 * cost / quadratic.scatter - 0.5 * np.sum((found[free] / (PRIOR * size)) ** 2)
+    wide = quadratic.wide[free]
+    value = -0.5 * cost / quadratic.scatter - 0.5 * np.sum((found[free] / wide) ** 2)
     block = quadratic.information[np.ix_(free, free)]
-    return value + occam(block, size, quadratic.scatter, len(groups)), found
+    return value + occam(block, wide, quadratic.scatter, chosen), found
 
 
 def _solved(quadratic, free, held):
@@ -77,7 +82,7 @@ def _solved(quadratic, free, held):
     change[free] = 0.0
     pull = (quadratic.gradient - quadratic.information @ change)[free]
     block = quadratic.information[np.ix_(free, free)]
-    ridge = quadratic.scatter / (PRIOR * quadratic.size[free]) ** 2
+    ridge = quadratic.scatter / quadratic.wide[free] ** 2
     # The prior pulls towards no effect, from where the point is now.
     now = quadratic.now[free]
     return now + np.linalg.solve(block + np.diag(ridge), pull - ridge * now)
@@ -91,21 +96,29 @@ def beam(quadratic, causes):
     best of a size, and two causes of one effect never stand together.
     """
     def entry(chosen):
-        value, found = linear_evidence(quadratic, [causes[cause] for cause in chosen])
+        value, found = linear_evidence(quadratic, chosen, causes)
         return value, chosen, found
 
     level = [entry(())]
     seen = {(): level[0]}
-    for _ in range(MOST):
+    while level:
         grown = {}
         for _, chosen, _ in level:
+            full = sum(cause.own is None for cause in chosen) >= MOST
             for cause in causes:
-                if any(cause.effect == other.effect for other in chosen):
+                if full and cause.own is None or any(cause.effect == other.effect
+                                                     for other in chosen):
                     continue
-                bigger = tuple(sorted((*chosen, cause), key=lambda one: one.columns))
+                bigger = key_of((*chosen, cause))
                 if bigger not in seen and bigger not in grown:
                     grown[bigger] = entry(bigger)
         seen.update(grown)
+        best = max(value for value, _, _ in seen.values())
         level = sorted(grown.values(), key=lambda one: -one[0])[:BEAM]
-        level = [one for one in level if np.isfinite(one[0])]
+        level = [one for one in level if one[0] > best - BEHIND]
     return sorted(seen.values(), key=lambda one: -one[0])
+
+
+def key_of(causes):
+    """Return causes in the one order in which sets of them are compared."""
+    return tuple(sorted(causes, key=lambda one: (one.own is not None, one.columns)))

@@ -17,9 +17,10 @@ from quad_ident_ros.effects.registry import mapping
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.flight.fly import fly_closed_loop, FULL_VOLTAGE, RATES
 from quad_ident_ros.flight.trajectories import TRAJECTORIES
-from quad_ident_ros.greybox.estimate import normal_of
 from quad_ident_ros.greybox.flights import flight_of, RATE
 from quad_ident_ros.greybox.linear import linearise
+from quad_ident_ros.greybox.normal import marginal, normal_of
+from quad_ident_ros.greybox.own import Layout, Own
 from quad_ident_ros.greybox.parameters import nominal, SPLIT
 
 DURATION = 20.0     # s of a manoeuvre
@@ -33,7 +34,7 @@ MOST = 3            # manoeuvres that are proposed to show what was not
 @dataclass(frozen=True, eq=False)
 class Manoeuvre:
     """
-    A trajectory as it would be flown, and what it would say of the columns of a Quadratic.
+    A trajectory as it would be flown, and what it would say of the columns that flights share.
 
     information (C, C), over the scatter; span (3,) m along x, y and z; height (2,) m, the lowest
     and the highest; speed m/s, the highest.
@@ -57,8 +58,10 @@ def manoeuvres(selection, flights, vehicle, z):
 
     Rate and noise are those of the flights that the Selection is of.
     """
-    quadratic = selection.quadratic
-    noise = np.median(selection.noise, axis=0)
+    scatter, noise = selection.quadratic.scatter, np.median(selection.noise, axis=0)
+    own, columns = Own.of(selection.best.own, 1), _columns(selection)
+    layout = Layout(columns, own.columns, 1)
+    precision = np.append(np.zeros(len(columns)), own.spreads ** -2.0)
     rate = float(np.clip(1.0 / np.median([flight.period for flight in flights]), RATES[0], RATE))
     found = []
     for name in TRAJECTORIES:
@@ -70,12 +73,14 @@ def manoeuvres(selection, flights, vehicle, z):
         flight = flight_of(record, vehicle, reference_voltage=FULL_VOLTAGE)
         few = np.linspace(0, len(flight.first) - 1, ROLLOUTS).round().astype(int)
         part = replace(flight, first=flight.first[few])
-        normal = normal_of([linearise(part, vehicle, z, part.states[part.first],
-                                      list(quadratic.columns), noise)], [part])
-        share = len(flight.first) / len(few)
+        normal = normal_of([linearise(part, vehicle, z, part.states[part.first], layout.wanted,
+                                      noise)], [part], layout)
+        share = len(flight.first) / len(few) / scatter
+        normal = marginal(replace(normal, information=normal.information * share), len(columns),
+                          precision)
         place, speed = flight.states[:, :3], np.linalg.norm(flight.states[:, 3:6], axis=1)
         found.append(Manoeuvre(
-            name, normal.information * share / quadratic.scatter,
+            name, normal.information,
             tuple(float(value) for value in np.ptp(place, axis=0)),
             (float(place[:, 2].min()), float(place[:, 2].max())), float(speed.max())))
     return found
@@ -103,11 +108,11 @@ def _with_another(information, selection, one, other):
     """Return [(cost, causes)]: a set and with it each cause that neither it nor `one` has."""
     found, known = [(0.0, other)], _places(selection, other)
     effects = {cause.effect for cause in (*one, *other)}
-    for cause in selection.rows:
+    for cause in _causes(selection):
         if cause.effect not in effects:
             places = _places(selection, [cause])
             block = _left(information, places, known, selection.quadratic)
-            cost = -2.0 * occam(block, selection.quadratic.size[places], 1.0, 1)
+            cost = -2.0 * occam(block, selection.quadratic.wide[places], 1.0, [cause])
             found.append((cost, (*other, cause)))
     return found
 
@@ -125,7 +130,7 @@ def visibility(information, selection, causes, present):
 
     Args: information (C, C); causes looked at; present: those that are known to be there.
     """
-    size, found = selection.quadratic.size, {}
+    size, found = selection.quadratic.wide / PRIOR, {}
     for cause in causes:
         places = _places(selection, [cause])
         known = _places(selection, [one for one in present if one.effect != cause.effect])
@@ -160,7 +165,7 @@ def fly_next(selection, flights, vehicle, z, sure, doubts, unseen):
 
 def _to_separate(selection, options, vehicle, doubts):
     """Return at most one proposal: the manoeuvre that separates doubtful causes best."""
-    columns = list(selection.quadratic.columns)
+    columns = _columns(selection)
     sets = {fit.causes: (fit.estimate.z - nominal(vehicle))[columns] for fit in doubts.values()}
     if len(sets) < 2 or not options:
         return []
@@ -174,7 +179,7 @@ def _to_separate(selection, options, vehicle, doubts):
 def _to_show(selection, options, names, present):
     """Return the proposals of a few manoeuvres that together show effects by name."""
     record, left, found = _of_record(selection), list(names), []
-    causes = [cause for cause in selection.rows if cause.effect in left]
+    causes = [cause for cause in _causes(selection) if cause.effect in left]
     now = visibility(record, selection, causes, present)
     seen = {option.trajectory: visibility(record + option.information, selection, causes, present)
             for option in options}
@@ -199,8 +204,21 @@ def _proposal(purpose, effects, options, now, after):
             'after': after[ranked[0]], 'manoeuvres': {name: after[name] for name in ranked}}
 
 
+def _causes(selection):
+    """Return the causes that are effects."""
+    return [cause for cause in selection.rows if cause.own is None]
+
+
+def _columns(selection):
+    """Return the places in z that flights share."""
+    return sorted({column for cause in _causes(selection) for column in cause.columns})
+
+
 def _of_record(selection):
-    return selection.quadratic.information / selection.quadratic.scatter
+    """Return the information (C, C) of the flights, with what they have of their own free."""
+    own = _places(selection, [cause for cause in selection.best.chosen if cause.own])
+    return _left(selection.quadratic.information / selection.quadratic.scatter,
+                 np.arange(len(_columns(selection))), own, selection.quadratic)
 
 
 def _places(selection, causes):
@@ -213,5 +231,5 @@ def _left(information, places, free, quadratic):
     if not len(free):
         return block
     ties = information[np.ix_(free, places)]
-    prior = np.diag((PRIOR * quadratic.size[free]) ** -2)
+    prior = np.diag(quadratic.wide[free] ** -2.0)
     return block - ties.T @ np.linalg.solve(information[np.ix_(free, free)] + prior, ties)

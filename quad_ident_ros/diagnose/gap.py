@@ -38,10 +38,11 @@ def ends(record, vehicle, z, horizon, reference_voltage=None):
     """Return the Ends of predictions along a flight record with a parameter vector z (Z,)."""
     flight = flight_of(record, vehicle, reference_voltage=reference_voltage, segment=horizon,
                        every=EVERY)
-    predicted = predict(vehicle, z[SPLIT:], flight.course, flight.states[flight.first],
-                        flight.first, flight.count, constants=z[None, :SPLIT])
-    return Ends(difference(flight.states[flight.first + flight.count], predicted[:, -1]),
-                flight.course.t[flight.first])
+    first = flight.first[flight.seen[flight.first + flight.count].all(axis=1)]
+    predicted = predict(vehicle, z[SPLIT:], flight.course, flight.states[first], first,
+                        flight.count, constants=z[None, :SPLIT])
+    return Ends(difference(flight.states[first + flight.count], predicted[:, -1]),
+                flight.course.t[first])
 
 
 def gap(all_ends):

@@ -2,30 +2,45 @@
 # SPDX-License-Identifier: Apache-2.0
 """Which effects explain flights: sets of causes compared jointly, each refitted."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from quad_ident_ros.diagnose.candidates import own_candidates
 from quad_ident_ros.diagnose.evidence import beam, occam, PRIOR, Quadratic
-from quad_ident_ros.greybox.estimate import estimate, normal_of, scatter_of, weights_of
+from quad_ident_ros.greybox.estimate import estimate, weights_of
 from quad_ident_ros.greybox.linear import errors_along, linearise
 from quad_ident_ros.greybox.noise import quick_noise, whole_noise
+from quad_ident_ros.greybox.normal import normal_of, scatter_of
+from quad_ident_ros.greybox.own import Layout, Own
 from quad_ident_ros.greybox.parameters import limits, nominal
 
 ROUNDS = 5
 REFITS = 3          # sets that are refitted in a round
 FIT_STEPS = 5
+FAR = 100.0         # times the noise that errors without causes are on the median: far from linear
 COLOURED = 2.0      # times the noise from sample to sample that all that is left may be
+SHORTER = (5, 2, 1)     # of the rollouts, where errors are far from linear
 UNTRIED = -2.0      # log-evidence that the linear model alone may give a set, beside the best
 
 
 @dataclass(frozen=True, eq=False)
 class Fitted:
-    """A set of causes, its Estimate and its log-evidence."""
+    """A set of causes, with what flights have of their own; its Estimate and log-evidence."""
 
-    causes: tuple
+    chosen: tuple
     estimate: object
     evidence: float
+
+    @property
+    def causes(self):
+        """Return the causes that are effects."""
+        return tuple(cause for cause in self.chosen if cause.own is None)
+
+    @property
+    def own(self):
+        """Return the kinds of Nuisance that flights have of their own."""
+        return tuple(cause.own for cause in self.chosen if cause.own)
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,7 +71,8 @@ def select(flights, vehicle, causes, on_progress=lambda share: None):
     """
     found = _select(flights, vehicle, causes, None, lambda share: on_progress(0.5 * share))
     whole = [whole_noise(raw, 1.0 - 1.0 / raw.shape[1]) for raw in found.best.estimate.left]
-    if np.max(np.median(np.array(whole) / found.noise, axis=0)) > COLOURED:
+    ratio = np.median(np.array(whole) / found.noise, axis=0)
+    if np.max(ratio) > COLOURED or np.max(1.0 / ratio) > COLOURED:
         found = _select(flights, vehicle, causes, whole, lambda share: on_progress(
             0.5 + 0.5 * share))
     on_progress(1.0)
@@ -64,29 +80,34 @@ def select(flights, vehicle, causes, on_progress=lambda share: None):
 
 
 def _select(flights, vehicle, causes, noise, on_progress):
+    own = own_candidates(vehicle)
     columns = sorted({column for cause in causes for column in cause.columns})
-    rows = {cause: [columns.index(column) for column in cause.columns] for cause in causes}
-    z = nominal(vehicle)
+    rows = _rows(causes, own, columns, len(flights))
     starts = [flight.states[flight.first] for flight in flights]
-    noise = noise or [quick_noise(errors_along(flight, vehicle, z, start))
+    noise = noise or [quick_noise(errors_along(flight, vehicle, nominal(vehicle), start))
                       for flight, start in zip(flights, starts, strict=True)]
-    none = estimate(flights, vehicle, z, [], noise=noise, iterations=2)
-    tried = {(): none}
+    tried = {(): estimate(flights, vehicle, nominal(vehicle), [], noise=noise, iterations=2)}
     best, scatter = (), 1.0
+    if np.max([np.median(np.abs(raw), axis=(0, 1)) / sigma
+               for raw, sigma in zip(tried[()].left, noise, strict=True)]) > FAR:
+        best = tuple({one.effect: one for one in own}.values())
+        tried[best] = _from_afar(flights, vehicle, [one.own for one in best])
+        noise = tried[best].noise
     for turn in range(ROUNDS):
-        quadratic = quadratic_at(flights, vehicle, tried[best], columns)
+        quadratic = quadratic_at(flights, vehicle, tried[best], columns, own)
         scatter = quadratic.scatter
         ranked = beam(quadratic, rows)
         fresh = [(chosen, found) for _, chosen, found in ranked[:3 * REFITS]
                  if chosen not in tried][:REFITS]
         for chosen, found in fresh:
             start = nominal(vehicle)
-            free = sorted(column for cause in chosen for column in cause.columns)
             lower, upper, _ = limits(vehicle)
-            start[columns] += found
+            start[columns] += found[:len(columns)]
             start = np.clip(start, lower, upper)
-            tried[chosen] = estimate(flights, vehicle, start, free, noise=noise,
-                                     starts=tried[best].starts, iterations=FIT_STEPS)
+            everyone = Own.of([one.own for one in own], len(flights))
+            everyone.values.flat[:] = found[len(columns):]
+            tried[chosen] = _refitted(flights, vehicle, start, chosen, noise, everyone,
+                                      tried[best].starts)
         before, best = best, max(tried, key=lambda key: _evidence(tried[key], key, vehicle,
                                                                   scatter))
         on_progress((turn + 1) / ROUNDS)
@@ -95,21 +116,55 @@ def _select(flights, vehicle, causes, noise, on_progress):
     best = _pruned(flights, vehicle, best, tried, noise)
     fitted = tuple(sorted((Fitted(key, value, _evidence(value, key, vehicle, scatter))
                            for key, value in tried.items()), key=lambda one: -one.evidence))
-    chosen = next(one for one in fitted if one.causes == best)
-    fitted = (chosen, *(one for one in fitted if not set(best) < set(one.causes)
+    chosen = next(one for one in fitted if one.chosen == best)
+    fitted = (chosen, *(one for one in fitted if not set(best) < set(one.chosen)
                         and one is not chosen))
     probability = _probabilities(fitted, ranked, causes, tried)
-    support = {cause: support_of(chosen.estimate, cause, vehicle) for cause in best}
+    support = {cause: support_of(chosen.estimate, cause, vehicle) for cause in chosen.causes}
     for cause, value in support.items():
         probability[cause] = min(probability[cause], float(1.0 / (1.0 + np.exp(-min(value, 50)))))
     return Selection(chosen, fitted, probability, quadratic, rows, noise, scatter)
 
 
+def _from_afar(flights, vehicle, kinds):
+    """
+    Return the Estimate of what flights have of their own where errors are far from linear.
+
+    Over longer and longer rollouts, each from what the shorter ones gave.
+    """
+    z, own = nominal(vehicle), Own.of(kinds, len(flights))
+    for share in SHORTER:
+        cut = [replace(flight, count=max(4, flight.count // share)) for flight in flights]
+        found = estimate(cut, vehicle, z, [], own=own, iterations=2 * FIT_STEPS)
+        own = found.own
+    return found
+
+
+def _rows(causes, own, columns, count):
+    """Return {cause: its rows of the quadratic}, in each flight of what is its own."""
+    rows = {cause: [columns.index(column) for column in cause.columns] for cause in causes}
+    order = [column for one in own for column in one.columns]
+    first = 0
+    for one in own:
+        rows[one] = [len(columns) + number * len(order) + first + k for number in range(count)
+                     for k in range(len(one.columns))]
+        first += len(one.columns)
+    return rows
+
+
+def _refitted(flights, vehicle, z, chosen, noise, own, starts):
+    """Return the Estimate of a set, from a vector and an Own that has the values to start from."""
+    free = sorted(column for cause in chosen if cause.own is None for column in cause.columns)
+    own = Own.of([cause.own for cause in chosen if cause.own], len(flights), own)
+    return estimate(flights, vehicle, z, free, noise=noise, own=own, starts=starts,
+                    iterations=FIT_STEPS)
+
+
 def _pruned(flights, vehicle, best, tried, noise):
     """Return the causes of a set that its own standard errors support, refitted into tried."""
-    while best:
+    while any(cause.own is None for cause in best):
         fit = tried[best]
-        support = {cause: support_of(fit, cause, vehicle) for cause in best}
+        support = {cause: support_of(fit, cause, vehicle) for cause in best if cause.own is None}
         weakest = min(support, key=support.get)
         if support[weakest] > 0.0:
             return best
@@ -117,9 +172,7 @@ def _pruned(flights, vehicle, best, tried, noise):
         if best not in tried:
             z = fit.z.copy()
             z[list(weakest.columns)] = nominal(vehicle)[list(weakest.columns)]
-            free = sorted(column for cause in best for column in cause.columns)
-            tried[best] = estimate(flights, vehicle, z, free, noise=noise, starts=fit.starts,
-                                   iterations=FIT_STEPS)
+            tried[best] = _refitted(flights, vehicle, z, best, noise, fit.own, fit.starts)
     return best
 
 
@@ -137,38 +190,49 @@ def support_of(fit, cause, vehicle):
     scaled = covariance / np.outer(size, size)
     information = np.linalg.inv(scaled + 1e-12 * np.trace(scaled) * np.eye(len(columns)))
     return (0.5 * distance @ information @ distance
-            + occam(information, np.ones(len(columns)), 1.0, 1))
+            + occam(information, np.full(len(columns), PRIOR), 1.0, [cause]))
 
 
-def quadratic_at(flights, vehicle, fit, columns):
-    """Return the Quadratic of the columns around an Estimate."""
+def quadratic_at(flights, vehicle, fit, columns, own):
+    """Return the Quadratic of the columns and the own ones of flights around an Estimate."""
     lower, upper, size = limits(vehicle)
-    weights = [weights_of(raw, sigma) for raw, sigma in zip(fit.left, fit.noise, strict=True)]
-    normal = normal_of([linearise(flight, vehicle, fit.z, start, columns, sigma, True, weight)
-                        for flight, start, sigma, weight in
-                        zip(flights, fit.starts, fit.noise, weights, strict=True)], flights)
+    everyone = Own.of([one.own for one in own], len(flights), fit.own)
+    layout = Layout(columns, everyone.columns, len(flights))
+    weights = [weights_of(raw, sigma, flight)
+               for raw, sigma, flight in zip(fit.left, fit.noise, flights, strict=True)]
+    normal = normal_of([linearise(flight, vehicle, z, start, layout.wanted, sigma, True, weight)
+                        for flight, z, start, sigma, weight in
+                        zip(flights, fit.vectors, fit.starts, fit.noise, weights, strict=True)],
+                       flights, layout)
     null = nominal(vehicle)[columns]
-    return Quadratic(tuple(columns), normal.information, normal.gradient, normal.cost,
-                     fit.z[columns] - null, size[columns], lower[columns] - null,
-                     upper[columns] - null, float(np.median(scatter_of(normal))))
+    spreads = np.tile(everyone.spreads, len(flights))
+    beyond = np.full(len(spreads), np.inf)
+    scatter = float(np.median(scatter_of(normal)[:len(columns)]))
+    return Quadratic(normal.information, normal.gradient, normal.cost,
+                     np.append(fit.z[columns] - null, everyone.values),
+                     np.append(PRIOR * size[columns], spreads),
+                     np.append(lower[columns] - null, -beyond),
+                     np.append(upper[columns] - null, beyond), scatter)
 
 
-def _evidence(fit, causes, vehicle, scatter):
+def _evidence(fit, chosen, vehicle, scatter):
     """Return the log-evidence of a refitted set."""
     null, size = nominal(vehicle), limits(vehicle)[2]
-    distance = (fit.z - null)[fit.columns] / (PRIOR * size[fit.columns])
+    spreads = np.tile(fit.own.spreads, len(fit.own.values))
+    wide = np.append(PRIOR * size[fit.columns], spreads)
+    distance = np.append((fit.z - null)[fit.columns], fit.own.values) / wide
     return (-0.5 * fit.normal.cost / scatter - 0.5 * np.sum(distance ** 2)
-            + occam(fit.normal.information, size[fit.columns], scatter, len(causes)))
+            + occam(fit.normal.information, wide, scatter, chosen))
 
 
 def _probabilities(fitted, ranked, causes, tried):
     """Return {cause: probability}: refitted sets, and of the others their linear evidence."""
     top = fitted[0]
-    base = next((value for value, chosen, _ in ranked if chosen == top.causes), None)
-    weights = {one.causes: one.evidence - top.evidence for one in fitted}
+    base = next((value for value, chosen, _ in ranked if chosen == top.chosen), None)
+    weights = {one.chosen: one.evidence - top.evidence for one in fitted}
     if base is not None and np.isfinite(base):
         for value, chosen, _ in ranked:
-            if chosen not in tried and len(set(chosen) ^ set(top.causes)) <= 2:
+            if chosen not in tried and len(set(chosen) ^ set(top.chosen)) <= 2:
                 weights[chosen] = min(value - base, UNTRIED)
     values = np.array(list(weights.values()))
     shares = np.exp(np.clip(values - values.max(), -700, 0))

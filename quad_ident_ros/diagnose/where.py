@@ -35,8 +35,8 @@ class Lacking:
 def lacking(record, vehicle, z, noise, reference_voltage=None):
     """Return the Lacking of a flight record with a parameter vector z (Z,) and noise (12,)."""
     flight = flight_of(record, vehicle, reference_voltage=reference_voltage, segment=WINDOW)
-    [starts] = settled([flight], vehicle, z, [noise])
-    weight = weights_of(errors_along(flight, vehicle, z, starts), noise)
+    [starts] = settled([flight], vehicle, [z], [noise])
+    weight = weights_of(errors_along(flight, vehicle, z, starts), noise, flight)
     linear = linearise(flight, vehicle, z, starts, COLUMNS, noise, False, weight)
     information = np.einsum('bmc,bmd->bcd', linear.slope, linear.slope)
     inverse = np.linalg.inv(information)

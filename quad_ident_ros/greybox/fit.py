@@ -10,11 +10,12 @@ from quad_ident_ros import __version__
 from quad_ident_ros.effects.registry import mapping
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.greybox.errors import GROUPS, UNITS
-from quad_ident_ros.greybox.estimate import covariance_of, Estimate, estimate, scatter_of
+from quad_ident_ros.greybox.estimate import Estimate, estimate
 from quad_ident_ros.greybox.flights import flight_of, highest_voltage
 from quad_ident_ros.greybox.free import columns_of_names, excitation_of, unit_of
 from quad_ident_ros.greybox.identifiable import correlated, freedoms
 from quad_ident_ros.greybox.noise import quick_noise
+from quad_ident_ros.greybox.normal import covariance_of, scatter_of
 from quad_ident_ros.greybox.parameters import as_described, INDEX, limits, SPLIT
 from quad_ident_ros.model.vehicle import Vehicle
 

@@ -6,7 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from quad_ident_ros.data.frames import continuous
+from quad_ident_ros.data.quality.glitches import glitches
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.greybox.errors import ERRORS, GROUPS
 from quad_ident_ros.model.dynamics import Course, course_of, states_of
 
 RATE = 125.0        # Hz, the fastest that is looked at: more rows add cost, hardly information
@@ -14,6 +17,7 @@ SEGMENT = 0.5       # s of a rollout
 WARM = 0.25         # s of commands before a rollout, from which the speeds of its rotors follow
 GAP = 1.6           # usual periods between two samples that no rollout crosses,
 SHORT_GAP = 0.013   # s, unless it is as short as this
+BRIDGED = 0.08      # s, the longest step in time over lost rows whose commands are interpolated
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,13 +25,15 @@ class Flight:
     """
     A flight and where its rollouts begin.
 
-    course: of N samples; states (N, 13) recorded; first (B,) samples at which rollouts of `count`
-    samples begin; period s, the usual one.
+    course: of N samples; states (N, 13) recorded; seen (N, 12) whether each error counts, which
+    it does not in rows that were lost and in attitudes that are off; first (B,) samples at which
+    rollouts of `count` samples begin; period s, the usual one.
     """
 
     name: str
     course: Course
     states: np.ndarray
+    seen: np.ndarray
     first: np.ndarray
     count: int
     period: float
@@ -42,18 +48,21 @@ def flight_of(record, vehicle, *, reference_voltage=None, segment=SEGMENT, every
     """
     course, states = course_of(record, vehicle, reference_voltage), states_of(record)
     period = float(np.median(np.diff(course.t)))
+    seen = np.ones((len(states), ERRORS), bool)
+    seen[glitches(course.t, states[:, 6:10], states[:, 10:]), GROUPS['attitude']] = False
+    course, states, seen = _bridged(course, states, seen, period)
     skip = max(1, int(1.0 / (period * RATE) + 0.5))
     if skip > 1:
-        course, states = _thinned(course, states, skip)
+        course, states, seen = _thinned(course, states, seen, skip)
         period *= skip
     count = max(2, round(segment / period))
     step = count if every is None else max(1, round(every / period))
-    first = _starts(course.t, period, count, step, round(WARM / period))
+    first = _starts(course.t, seen, period, count, step, round(WARM / period))
     name = record.info.get('name', 'flight')
     if not len(first):
         raise InputError(f'{name}: {course.t[-1]:.3g} s without a gap-free stretch of '
                          f'{segment:g} s are too short; give a longer flight')
-    return Flight(name, course, states, first, count, period)
+    return Flight(name, course, states, seen, first, count, period)
 
 
 def highest_voltage(records):
@@ -71,7 +80,32 @@ def highest_voltage(records):
     return max(starts) if starts else None
 
 
-def _thinned(course, states, skip):
+def _bridged(course, states, seen, period):
+    """Return course, states and seen with rows in place of those that were lost."""
+    steps = np.diff(course.t)
+    count = np.round(steps / period).astype(int)
+    count = np.where((count > 1) & (steps <= BRIDGED), count, 1)
+    if not (count > 1).any():
+        return course, states, seen
+    before = np.repeat(np.arange(len(steps)), count)
+    place = np.arange(len(before)) - np.repeat(np.cumsum(count) - count, count)
+    share = np.append(place / count[before], 1.0)
+    before = np.append(before, len(steps) - 1)
+
+    def between(values):
+        part = share.reshape(-1, *(1,) * (values.ndim - 1))
+        return (1.0 - part) * values[before] + part * values[before + 1]
+
+    states = np.concatenate([states[:, :6], continuous(states[:, 6:10]), states[:, 10:]], axis=1)
+    filled = between(states)
+    filled[:, 6:10] /= np.linalg.norm(filled[:, 6:10], axis=1, keepdims=True)
+    rows = np.where(share == 1.0, before + 1, before)
+    there = (share == 0.0) | (share == 1.0)
+    return (Course(between(course.t), between(course.commands), between(course.volt_drop)),
+            filled, seen[rows] & there[:, None])
+
+
+def _thinned(course, states, seen, skip):
     """Return every so many samples, with the root mean square of the commands between them."""
     rows = len(course.t) // skip * skip
 
@@ -79,12 +113,17 @@ def _thinned(course, states, skip):
         return values[:rows].reshape(-1, skip, *values.shape[1:]).mean(axis=1)
 
     return Course(course.t[:rows:skip], np.sqrt(mean(course.commands ** 2)),
-                  mean(course.volt_drop)), states[:rows:skip]
+                  mean(course.volt_drop)), states[:rows:skip], seen[:rows:skip]
 
 
-def _starts(t, period, count, step, warm):
-    """Return the samples that `warm` others precede and `count` follow without a gap."""
+def _starts(t, seen, period, count, step, warm):
+    """Return the samples, seen, that `warm` others precede and `count` follow without a gap."""
     gaps = np.flatnonzero(np.diff(t) > max(GAP * period, SHORT_GAP))
     edges = np.concatenate([[0], gaps + 1, [len(t)]])
-    return np.concatenate([np.arange(a + warm, b - count, step) for a, b in
-                           zip(edges[:-1], edges[1:], strict=True)]).astype(np.int64)
+    whole = np.append(np.flatnonzero(seen.all(axis=1)), len(t))
+    found = [np.zeros(0, np.int64)]
+    for a, b in zip(edges[:-1], edges[1:], strict=True):
+        wanted = np.arange(a + warm, b - count, step)
+        first = whole[np.searchsorted(whole, wanted)]
+        found.append(np.unique(first[first < b - count]))
+    return np.concatenate(found).astype(np.int64)

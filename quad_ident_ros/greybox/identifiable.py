@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from quad_ident_ros.greybox.estimate import WEAK
+from quad_ident_ros.greybox.normal import WEAK
 
 LOOSE = 1.0     # standard error, in own or usual sizes, from which on a direction is unknown
 PART = 0.3      # of the largest part of a direction: who may be held

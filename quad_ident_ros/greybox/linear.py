@@ -62,6 +62,11 @@ def recorded_along(flight):
     return flight.states[flight.first[:, None] + np.arange(flight.count + 1)]
 
 
+def seen_along(flight):
+    """Return whether each of these errors counts, (B, count + 1, 12)."""
+    return flight.seen[flight.first[:, None] + np.arange(flight.count + 1)]
+
+
 def errors_along(flight, vehicle, z, starts):
     """Return recorded minus predicted along the rollouts, (B, count + 1, 12)."""
     predicted = predict(vehicle, z[SPLIT:], flight.course, starts, flight.first, flight.count,

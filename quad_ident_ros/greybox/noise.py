@@ -6,6 +6,8 @@ import numpy as np
 
 # m, m/s, rad, rad/s: below it a difference is the arithmetic's or the integrator's.
 FLOOR = np.repeat([2e-5, 2e-4, 2e-5, 2e-4], 3)
+STRIDES = (2, 4)    # samples over which smoothed noise is looked at
+CLEARLY = 1.2       # times the noise from sample to sample that it must be there
 MAD = 1.4826    # standard deviation over median deviation, of a normal distribution
 
 
@@ -18,6 +20,22 @@ def quick_noise(raw):
     """
     third = np.diff(raw, 3, axis=1).reshape(-1, raw.shape[-1])
     return np.maximum(MAD * np.median(np.abs(third), axis=0) / np.sqrt(20.0), FLOOR)
+
+
+def near_noise(raw):
+    """
+    Return the standard deviation of what changes within some samples, (12,).
+
+    That from sample to sample, unless what changes over a few is clearly more, as in noise that a
+    filter or an interpolation smoothed; raw as of quick_noise.
+    """
+    found = quick_noise(raw)
+    for stride in STRIDES:
+        if raw.shape[1] > 6 * stride:
+            wider = np.mean([quick_noise(raw[:, first::stride]) for first in range(stride)],
+                            axis=0)
+            found = np.where(wider > CLEARLY * found, wider, found)
+    return found
 
 
 def whole_noise(raw, freedom):

@@ -14,18 +14,21 @@ def delayed(t, commands, delay):
     """
     Return what the rotors follow from each sample to the next, (N, n) rad/s.
 
-    Args: t (N,) s; commands (N, n) rad/s, each held to the next; delay s. Where a command changes
-    between two samples its root mean square is taken, which has the mean thrust; before the first
-    one the first is held.
+    Args: t (N,) s; commands (N, n) rad/s, each held to the next; delay s, negative where the
+    clock of the commands is late. Where a command changes between two samples its root mean square
+    is taken, which has the mean thrust; before the first one the first is held, after the last
+    one the last.
     """
     if delay == 0.0:
         return commands
     steps = np.diff(t)
     squares = commands ** 2
     # The time integral of the held command's square, of which differences are means.
-    at = np.concatenate([[t[0] - delay - 1.0], t])
-    area = np.concatenate([-(delay + 1.0) * squares[:1], np.zeros_like(squares[:1]),
-                           np.cumsum(squares[:-1] * steps[:, None], axis=0)])
+    beyond = abs(delay) + 1.0
+    widths = np.concatenate([[beyond], steps, [beyond]])[:, None]
+    held = np.concatenate([squares[:1], squares])
+    area = np.concatenate([np.zeros_like(squares[:1]), np.cumsum(held * widths, axis=0)])
+    at = np.concatenate([[t[0] - beyond], t, [t[-1] + beyond]])
     shifted = np.stack([np.interp(t - delay, at, column) for column in area.T], axis=1)
     means = np.sqrt(np.maximum(np.diff(shifted, axis=0) / steps[:, None], 0.0))
     return np.concatenate([means, means[-1:]])

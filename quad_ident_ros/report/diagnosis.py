@@ -27,6 +27,11 @@ def show(data, stream):
     screen.print(_which(data['ranking']))
     say('where: what the nominal vehicle lacks')
     screen.print(_where(data['where']))
+    for name, own in (data['nuisances'] or {}).items():
+        say(f'each flight has its own {name}, which is no effect: {_own(own)}')
+        if own.get('hidden_delay'):
+            say(f'a delay of all flights of up to {1e3 * own["hidden_delay"]:.0f} ms cannot be '
+                'told from the clocks')
     for row in data['unknown'] or ():
         say(f'unexplained: {row["channel"]} depends on {row["depends_on"]} '
             f'({100 * row["share"]:.0f} % of what is left there)')
@@ -76,6 +81,13 @@ def _next(proposals):
     for one in proposals:
         table.add_row(*next_row(one))
     return table
+
+
+def _own(own):
+    """Return the values of each flight, the held-out one last."""
+    flights = [' '.join(f'{value:.2g}' for value in values)
+               for values in (*own['values'], own['held_out'])]
+    return f'{"; ".join(flights)} {own["unit"]}'
 
 
 def _far(gap):

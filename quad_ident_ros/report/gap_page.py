@@ -45,8 +45,10 @@ def _pictures(found, training, held_out, folder):
     quick = np.median([quick_noise(raw) for raw in left], axis=0)
     whole = np.median([whole_noise(raw, 1.0 - 1.0 / raw.shape[1]) for raw in left], axis=0)
     gap, horizon = found.data['gap'], found.data['gap']['horizon']
-    before, after = (gaps.ends(held_out, vehicle, each, horizon, voltage) for each in (z0, z))
-    lacks = [[where.lacking(record, vehicle, each, noise, voltage) for record in training]
+    before, after = (gaps.ends(held_out, vehicle, each + found.held_out_own, horizon, voltage)
+                     for each in (z0, z))
+    lacks = [[where.lacking(record, vehicle, each + own, noise, voltage)
+              for record, own in zip(training, found.own, strict=True)]
              for each, noise in ((z0, quick), (z, whole))]
     made = {}
     for name, draw, caption in (

@@ -15,11 +15,11 @@ from quad_ident_ros.errors import InputError
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import Noise, Sensors
 from quad_ident_ros.greybox.errors import difference, moved
-from quad_ident_ros.greybox.estimate import CHANCE, Normal, scatter_of
 from quad_ident_ros.greybox.fit import as_data, fit, fitted_vehicle
 from quad_ident_ros.greybox.flights import flight_of
 from quad_ident_ros.greybox.identifiable import freedoms
 from quad_ident_ros.greybox.linear import errors_along, linearise
+from quad_ident_ros.greybox.normal import CHANCE, Normal, scatter_of
 from quad_ident_ros.greybox.parameters import INDEX, nominal
 from quad_ident_ros.model.dynamics import STATES
 from quad_ident_ros.model.vehicle import load_vehicle, write_vehicle

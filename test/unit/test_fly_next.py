@@ -12,7 +12,7 @@ import pytest
 from quad_ident_ros.diagnose.candidates import Candidate
 from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.diagnose.doubts import doubts_of
-from quad_ident_ros.diagnose.evidence import Quadratic
+from quad_ident_ros.diagnose.evidence import PRIOR, Quadratic
 from quad_ident_ros.diagnose.fly_next import fly_next, separation, visibility
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import MOCAP_IMU, Sensors
@@ -161,11 +161,11 @@ def pair(correlation, third=None):
     information[2, 2] = 100.0
     if third is not None:
         information[:2, 2] = information[2, :2] = third
-    columns = tuple(cause.columns[0] for cause in causes)
-    quadratic = Quadratic(columns, information, np.zeros(3), 0.0, np.array([1.0, 0.0, 0.0]),
-                          np.full(3, 100.0), np.full(3, -1e3), np.full(3, 1e3), 1.0)
+    quadratic = Quadratic(information, np.zeros(3), 0.0, np.array([1.0, 0.0, 0.0]),
+                          np.full(3, PRIOR * 100.0), np.full(3, -1e3), np.full(3, 1e3), 1.0)
     rows = {cause: [k] for k, cause in enumerate(causes)}
-    return SimpleNamespace(quadratic=quadratic, rows=rows, noise=[np.full(12, 1e-2)])
+    return SimpleNamespace(quadratic=quadratic, rows=rows, noise=[np.full(12, 1e-2)],
+                           best=SimpleNamespace(chosen=(), own=()))
 
 
 def test_the_distance_of_two_causes_is_what_the_other_cannot_take_up():

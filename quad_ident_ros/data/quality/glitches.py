@@ -31,8 +31,7 @@ def attitude(record, vehicle):
     sure, slope = correlation(grid.rate_of(q)[grid.good], gyro)
     if sure < SURE or not ALIKE[0] < slope < ALIKE[1]:
         return []   # another unit or frame: that is to be mended first
-    size, limit = _off(record)
-    off = size > limit
+    size, off = _off(record.t, record.stack(*QUATERNION), record.stack('wx', 'wy', 'wz'))
     begins = np.flatnonzero(np.diff(off.astype(int), prepend=0) == 1)
     if not len(begins):
         return []
@@ -42,23 +41,34 @@ def attitude(record, vehicle):
         f'{times} the attitude jumps off and back within {LONGEST:g} s, by up to '
         f'{np.degrees(size.max()):.1f} deg in {100 * off.mean():.1f} % of the samples, and the '
         'gyro sees nothing of it',
-        'give these samples no weight; look for markers that are hidden or taken for others')]
+        'fit and diagnosis give them no weight; look for markers that are hidden or taken for '
+        'others')]
 
 
-def _off(record):
-    """Return how far each sample's attitude is off those around it and the limit, (N,) rad."""
-    q = record.stack(*QUATERNION)
-    q = continuous(q / np.linalg.norm(q, axis=-1, keepdims=True))
-    rate, steps = record.stack('wx', 'wy', 'wz'), np.diff(record.t)
+def glitches(t, attitudes, rates):
+    """
+    Return which samples (N,) of the attitude are off those around them.
+
+    Args: t (N,) s; attitudes (N, 4); rates (N, 3) rad/s, body.
+    """
+    return _off(t, attitudes, rates)[1]
+
+
+def _off(t, attitudes, rates):
+    """Return how far each attitude is off those around it, (N,) rad, and whether that is far."""
+    q = continuous(attitudes / np.linalg.norm(attitudes, axis=-1, keepdims=True))
+    steps = np.diff(t)
+    period = float(np.median(steps))
     turned = 2.0 * multiply(conjugate(q[:-1]), q[1:])[:, 1:]
-    apart = turned - 0.5 * (rate[1:] + rate[:-1]) * steps[:, None]
-    apart[steps > GAP * record.period()] = 0.0
+    apart = turned - 0.5 * (rates[1:] + rates[:-1]) * steps[:, None]
+    apart[steps > GAP * period] = 0.0
     sums = np.vstack([np.zeros((1, 3)), np.cumsum(apart, axis=0)])
-    width = 2 * round(LONGEST / record.period()) + 1
+    width = 2 * round(LONGEST / period) + 1
     sums -= median_filter(sums, size=(width, 1), mode='nearest')
     noise = 1.4826 * np.median(np.abs(sums), axis=0)
-    rate = uniform_filter1d(rate, max(1, width // 5), axis=0, mode='nearest')
-    change = (maximum_filter1d(rate, width, axis=0, mode='nearest')
-              - minimum_filter1d(rate, width, axis=0, mode='nearest'))
+    rates = uniform_filter1d(rates, max(1, width // 5), axis=0, mode='nearest')
+    change = (maximum_filter1d(rates, width, axis=0, mode='nearest')
+              - minimum_filter1d(rates, width, axis=0, mode='nearest'))
     limit = max(FAR * float(np.sqrt(np.mean(noise ** 2))), LEAST)
-    return np.linalg.norm(sums, axis=-1), limit + LATE * np.linalg.norm(change, axis=-1)
+    size = np.linalg.norm(sums, axis=-1)
+    return size, size > limit + LATE * np.linalg.norm(change, axis=-1)

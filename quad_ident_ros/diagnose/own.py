@@ -1,0 +1,38 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What each flight has of its own, told: clocks, trims and biases, which are no effects."""
+
+import numpy as np
+
+from quad_ident_ros.greybox.estimate import estimate
+from quad_ident_ros.greybox.flights import flight_of
+from quad_ident_ros.greybox.own import CLOCK, Own
+
+WIDE = 1.64     # standard errors below which 95 % lie
+
+
+def own_of(record, vehicle, z, kinds, noise, voltage):
+    """Return what a flight that was not learnt from has of its own (Z,), beside a vector z."""
+    if not kinds:
+        return np.zeros(len(z))
+    flight = flight_of(record, vehicle, reference_voltage=voltage)
+    found = estimate([flight], vehicle, z, [], noise=[noise], own=Own.of(kinds, 1))
+    return found.vectors[0] - z
+
+
+def as_data(kinds, training, held_out):
+    """
+    Return as data, by Nuisance, what flights and the held-out one have of their own, (Z,).
+
+    Of clocks also the longest delay (s) of all flights that they may hide, None where none.
+    """
+    found = {kind.name: {
+        'what': kind.title, 'unit': kind.unit,
+        'values': [own[list(kind.columns)].tolist() for own in training],
+        'held_out': held_out[list(kind.columns)].tolist()} for kind in kinds}
+    if CLOCK in found:
+        [kind] = [kind for kind in kinds if kind.name == CLOCK]
+        offsets = np.ravel(found[CLOCK]['values'])
+        most = float(offsets.mean() + WIDE * kind.spreads[0] / np.sqrt(len(offsets)))
+        found[CLOCK]['hidden_delay'] = most if most > 0 else None
+    return found or None

@@ -1,0 +1,140 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Normal equations of flights: what is shared by all of them, what each has of its own."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.special import chdtri
+
+WEAK = 1e-7         # of the largest information: a direction that says nothing
+CHANCE = 0.01       # of white noise to be taken for noise that hangs together
+BLOCK = 2.0         # s over which what is left may hang together
+
+
+@dataclass(frozen=True, eq=False)
+class Normal:
+    """
+    What flights say of the columns around a point: information (C, C), gradient (C,), cost.
+
+    scores (K, C): the gradient of each block of time, whose scatter shows what the errors that
+    hang together take from the information.
+    """
+
+    information: np.ndarray
+    gradient: np.ndarray
+    cost: float
+    scores: np.ndarray
+
+
+def normal_of(linears, flights, layout, clock=True):
+    """
+    Return the Normal of linearised flights, in the columns of a greybox.own.Layout.
+
+    With clock, what the last columns of each flight explain is taken out.
+    """
+    information = np.zeros((layout.size, layout.size))
+    gradient, cost, scores = np.zeros(layout.size), 0.0, []
+    for number, (linear, flight) in enumerate(zip(linears, flights, strict=True)):
+        across = linear.slope.transpose(0, 2, 1)
+        products = across @ linear.slope
+        each = (across @ linear.error[..., None])[..., 0]
+        cost += float(np.sum(linear.error ** 2))
+        if clock:
+            # The column of the clock is taken out of the others and of the errors.
+            own, size = products[:, :-1, -1], max(products[:, -1, -1].sum(), 1e-300)
+            share, ties = each[:, -1].sum() / size, own.sum(axis=0) / size
+            rest = each[:, -1] - share * products[:, -1, -1]
+            each = each[:, :-1] - share * own - ties * rest[:, None]
+            cost -= size * share ** 2
+            whole = products[:, :-1, :-1].sum(axis=0) - size * np.outer(ties, ties)
+        else:
+            whole = products.sum(axis=0)
+        rows, places = layout.rows, layout.places(number)
+        information[np.ix_(places, places)] += whole[np.ix_(rows, rows)]
+        gradient[places] += each[:, rows].sum(axis=0)
+        blocks = _blocks(each[:, rows], flight)
+        scores.append(np.zeros((len(blocks), layout.size)))
+        scores[-1][:, places] = blocks
+    return Normal(information, gradient, cost, np.concatenate(scores))
+
+
+def _blocks(each, flight):
+    """Return sums over blocks of time of what there is per rollout."""
+    block = (flight.course.t[flight.first] // BLOCK).astype(int)
+    _, which = np.unique(block, return_inverse=True)
+    sums = np.zeros((which.max() + 1, each.shape[1]))
+    np.add.at(sums, which, each)
+    return sums
+
+
+def bounded_step(information, gradient, now, lower, upper, size):
+    """Return the Gauss-Newton step (C,) that stays in bounds, and which columns it is free in."""
+    free = np.ones(len(now), bool)
+    step = np.zeros(len(now))
+    for _ in range(len(now) + 1):
+        step[:] = 0.0
+        held = np.where(free, 0.0, np.clip(step, lower - now, upper - now))
+        pull = gradient - information @ held
+        inside = np.flatnonzero(free)
+        if len(inside):
+            step[inside] = solve(information[np.ix_(inside, inside)], pull[inside], size[inside])
+        beyond = free & ((now + step < lower - 1e-12) | (now + step > upper + 1e-12))
+        if not beyond.any():
+            break
+        # Those that have somewhere to go end at the bound, the others stay there.
+        free &= ~beyond | ((now > lower) & (now < upper))
+        step = np.clip(step, lower - now, upper - now)
+        if not (beyond & ~free).any():
+            break
+    return np.clip(step, lower - now, upper - now), free
+
+
+def solve(information, gradient, size):
+    """Return the step (C,) that the information supports; where it says nothing, none."""
+    scaled = information * np.outer(size, size)
+    values, vectors = np.linalg.eigh(scaled)
+    kept = values > WEAK * max(values.max(initial=0.0), 1e-300)
+    along = vectors.T @ (gradient * size)
+    return size * (vectors[:, kept] @ (along[kept] / values[kept]))
+
+
+def marginal(normal, shared, precision):
+    """
+    Return the Normal of the first columns, the others free but for their precision (C,).
+
+    The scores are those of the blocks with the others following, as far as they are free.
+    """
+    rest = slice(shared, None)
+    block = normal.information[rest, rest] + np.diag(precision[rest])
+    ties = np.linalg.solve(block, normal.information[rest, :shared])
+    return Normal(normal.information[:shared, :shared] - normal.information[:shared, rest] @ ties,
+                  normal.gradient[:shared] - normal.gradient[rest] @ ties, normal.cost,
+                  normal.scores[:, :shared] - normal.scores[:, rest] @ ties)
+
+
+def covariance_of(normal, size):
+    """
+    Return the covariance (C, C) of the columns: the inverse of the information.
+
+    Widened where blocks of time scatter more than independent noise would let them.
+    """
+    values, vectors = np.linalg.eigh(normal.information * np.outer(size, size))
+    least = max(1e-12 * values.max(initial=0.0), 1e-300)
+    spread = size * np.sqrt(scatter_of(normal))
+    return (vectors / np.maximum(values, least)) @ vectors.T * np.outer(spread, spread)
+
+
+def scatter_of(normal):
+    """
+    Return, per column (C,), the variance of the blocks' scores over that of white noise.
+
+    1 where it is not larger than white noise makes it by chance.
+    """
+    count = len(normal.scores)
+    expected = np.maximum(np.diag(normal.information), 1e-300)
+    if count < 4:
+        return np.ones(len(expected))
+    centred = normal.scores - normal.scores.mean(axis=0)
+    found = np.sum(centred ** 2, axis=0) * count / (count - 1) / expected
+    return np.where(found > chdtri(count - 1, CHANCE) / (count - 1), found, 1.0)

@@ -1,0 +1,111 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+What each flight may have of its own: clocks, trims and biases, which are no effects.
+
+An effect is shared by flights. What differs from one flight to the next is added to the
+parameters of each one, about zero and about as wide as its usual spread.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from quad_ident_ros.greybox.parameters import INDEX
+
+CLOCK = 'clock_offset'
+
+
+@dataclass(frozen=True)
+class Nuisance:
+    """A kind of it: name, what it is, unit, places in z and its usual spread from 0 there, SI."""
+
+    name: str
+    title: str
+    unit: str
+    columns: tuple
+    spreads: tuple
+
+
+def nuisances(vehicle):
+    """
+    Return the Nuisances of flights of a vehicle.
+
+    Those with one name exclude one another: how far flights usually differ depends on who flies.
+    """
+    lever = vehicle.mass * vehicle.gravity * vehicle.arm_length
+    twist = (vehicle.mass * vehicle.gravity * vehicle.torque_coefficient
+             / vehicle.thrust_coefficient)
+    rate = tuple(f'gyro_bias.{axis}' for axis in 'xyz')
+    tilt = tuple(f'attitude_misalignment.{axis}' for axis in ('roll', 'pitch', 'yaw'))
+    moment = tuple(f'external_wrench.moment_{axis}' for axis in 'xyz')
+    kinds = [(CLOCK, 'the states are stamped later than the commands by', 's',
+              ('actuation_delay.delay',), (0.02,))]
+    kinds += [('rate_bias', 'bias of the rate', 'rad/s', rate, (spread,) * 3)
+              for spread in (0.01, 0.003)]
+    kinds += [('attitude_bias', 'tilt of the attitude', 'rad', tilt, (spread,) * 3)
+              for spread in (0.005, 0.0015)]
+    kinds.append(('trim_moment', 'moment', 'N m', moment,
+                  (0.02 * lever, 0.02 * lever, 0.05 * twist)))
+    return tuple(Nuisance(name, title, unit, tuple(INDEX[one] for one in columns), spreads)
+                 for name, title, unit, columns, spreads in kinds)
+
+
+@dataclass(frozen=True, eq=False)
+class Own:
+    """Places in z (K,) where flights have something of their own, spreads (K,), values (F, K)."""
+
+    columns: tuple
+    spreads: np.ndarray
+    values: np.ndarray
+
+    @classmethod
+    def of(cls, kinds, count, known=None):
+        """
+        Return the Own of Nuisances in so many flights, with the values of a known one.
+
+        Where several stand for the same columns the first one has the values.
+        """
+        columns = tuple(column for kind in kinds for column in kind.columns)
+        spreads = np.array([spread for kind in kinds for spread in kind.spreads], float)
+        values = np.zeros((count, len(columns)))
+        for k, column in enumerate(columns):
+            if known is not None and column not in columns[:k]:
+                same = np.array(known.columns, int) == column
+                values[:, k] = known.values[:, same].sum(axis=1)
+        return cls(columns, spreads, values)
+
+    def vectors(self, z):
+        """Return z (Z,) with what each flight has of its own, a list of (Z,)."""
+        found = []
+        for values in self.values:
+            own = np.array(z, float)
+            own[list(self.columns)] += values
+            found.append(own)
+        return found
+
+
+class Layout:
+    """
+    Where the columns that flights share and those of their own stand in one vector.
+
+    wanted: places in z to be linearised in; rows: of these, the shared ones and those of a
+    flight; size of the vector: shared, then those of each flight.
+    """
+
+    def __init__(self, shared, own, count):
+        self.wanted = sorted({*shared, *own})
+        self.shared, self.own = len(shared), len(own)
+        self.rows = [self.wanted.index(column) for column in (*shared, *own)]
+        self.size = self.shared + count * self.own
+
+    def places(self, number):
+        """Return where the rows of a flight stand in the vector."""
+        first = self.shared + number * self.own
+        return [*range(self.shared), *range(first, first + self.own)]
+
+    def of_flight(self, vector, number):
+        """Return the part (wanted,) of a vector that moves a flight's parameters."""
+        out = np.zeros(len(self.wanted))
+        np.add.at(out, self.rows, vector[self.places(number)])
+        return out

@@ -1,0 +1,206 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What is each flight's own - clocks, trims, biases, glitches, lost rows - is no effect."""
+
+from dataclasses import replace
+
+from flying import VEHICLES
+import numpy as np
+import pytest
+
+from quad_ident_ros.data.quality import findings
+from quad_ident_ros.data.quality.glitches import glitches
+from quad_ident_ros.data.record import FlightRecord
+from quad_ident_ros.diagnose.diagnosis import diagnose
+from quad_ident_ros.experiment import fly, load_experiment
+from quad_ident_ros.greybox.flights import flight_of
+from quad_ident_ros.model.actuators import delayed
+from quad_ident_ros.model.attitude import rotation_matrix
+from quad_ident_ros.model.dynamics import STATES
+from quad_ident_ros.model.sensors import product, turn
+
+EXPERIMENT = load_experiment('closed_loop')
+VEHICLE = EXPERIMENT.vehicle
+DRAG = {'rotor_drag': {'coefficient': 0.25}}
+LATE = (3, -2, 1, -3)       # samples of 0.01 s that the states are stamped late
+
+
+def flown(effects):
+    """Return the records of the flights of an experiment with effects."""
+    real = EXPERIMENT.with_effects(effects)
+    return [fly(real, run, seed=3).record for run in real.runs]
+
+
+@pytest.fixture(scope='module')
+def dragged():
+    return flown(DRAG)
+
+
+def shifted(record, samples):
+    """Return a record whose states are stamped so many samples late."""
+    columns = {}
+    for name, values in record.columns.items():
+        behind = name in STATES or name in ('ax', 'ay', 'az')
+        first = max(samples, 0) - (samples if behind else 0)
+        columns[name] = values[first:first + len(record) - abs(samples)]
+    first = max(samples, 0)
+    return replace(record, t=record.t[first:first + len(record) - abs(samples)], columns=columns)
+
+
+def changed(record, **columns):
+    return replace(record, columns=record.columns | columns)
+
+
+def attitude_of(record):
+    return record.stack('qw', 'qx', 'qy', 'qz')
+
+
+def parameters(data, effect):
+    """Return {name: (value, std)} of an effect that was found."""
+    [row] = [row for row in data['ranking'] if row['effect'] == effect]
+    return {name: (one['value'], one['std']) for name, one in row['parameters'].items()}
+
+
+def test_clocks_that_differ_from_flight_to_flight_are_no_delay(dragged):
+    data = diagnose([shifted(one, late) for one, late in zip(dragged, LATE, strict=True)],
+                    VEHICLE).data
+    assert data['verdict'] == ['rotor_drag']
+    value, std = parameters(data, 'rotor_drag')['coefficient']
+    assert abs(value - DRAG['rotor_drag']['coefficient']) < 4 * std
+    offsets = data['nuisances']['clock_offset']
+    assert np.ravel(offsets['values']) == pytest.approx([0.03, -0.02, 0.01], abs=0.003)
+    assert offsets['held_out'] == pytest.approx([-0.03], abs=0.003)
+    # A delay within the scatter of the clocks is not ruled out, and that is said.
+    assert 0.01 < offsets['hidden_delay'] < 0.05
+    assert data['gap']['closed'] > 0.95
+
+
+def test_flights_without_anything_of_their_own_are_told_so(dragged):
+    assert diagnose(dragged, VEHICLE).data['nuisances'] is None
+
+
+def test_what_is_late_alike_in_all_flights_is_a_delay(dragged):
+    data = diagnose([shifted(one, 2) for one in dragged], VEHICLE).data
+    assert data['verdict'] == ['actuation_delay', 'rotor_drag']
+    value, std = parameters(data, 'actuation_delay')['delay']
+    assert abs(value - 0.02) < 4 * std < 0.005
+    assert data['nuisances'] is None
+
+
+def test_a_delay_beyond_the_scatter_of_the_clocks_is_named_with_that_scatter(dragged):
+    late = [8, 5, 7, 6]
+    data = diagnose([shifted(one, k) for one, k in zip(dragged, late, strict=True)], VEHICLE).data
+    assert data['verdict'] == ['actuation_delay', 'rotor_drag']
+    value, std = parameters(data, 'actuation_delay')['delay']
+    assert abs(value - 0.01 * np.mean(late[:3])) < 2 * std
+    assert std == pytest.approx(0.02 / np.sqrt(3), rel=0.1)
+    assert 'clock_offset' in data['nuisances']
+
+
+def test_trims_that_differ_from_flight_to_flight_are_no_offset_of_the_centre_of_mass(dragged):
+    """Rotors that give a little more at one side and less at the other: a moment."""
+    trims = ((0.012, -0.008), (-0.01, -0.012), (0.004, 0.014), (-0.008, 0.006))
+    hover = VEHICLE.mass * VEHICLE.gravity / VEHICLE.thrust_coefficient / len(VEHICLE.rotors)
+    places = np.array([rotor.position for rotor in VEHICLE.rotors]) / VEHICLE.arm_length
+    flights = []
+    for record, (roll, pitch) in zip(dragged, trims, strict=True):
+        more = hover * (roll * places[:, 1] - pitch * places[:, 0])
+        flights.append(changed(record, **{
+            name: np.sqrt(np.maximum(record.columns[name] ** 2 + more[j], 0.0))
+            for j, name in enumerate(f'cmd{j}' for j in range(1, 1 + len(more)))}))
+    data = diagnose(flights, VEHICLE).data
+    assert data['verdict'] == ['rotor_drag']
+    assert 'trim_moment' in data['nuisances']
+
+
+def test_biases_that_differ_from_flight_to_flight_are_no_effect(dragged):
+    random = np.random.default_rng(5)
+    flights = []
+    for record in dragged:
+        bias = random.normal(0.0, 0.006, 3)
+        flights.append(changed(record, **{name: record.columns[name] + one
+                                          for name, one in zip(('wx', 'wy', 'wz'), bias,
+                                                               strict=True)}))
+    data = diagnose(flights, VEHICLE).data
+    assert data['verdict'] == ['rotor_drag']
+    assert 'rate_bias' in data['nuisances']
+
+
+def spoilt(record, rng):
+    """Return a record with an attitude in 500 off by some 20 degrees, and which ones."""
+    off = np.zeros(len(record), bool)
+    off[rng.choice(np.arange(2, len(record) - 2, 3), len(record) // 500, replace=False)] = True
+    q = attitude_of(record)
+    q[off] = product(q[off], turn(rng.normal(0.0, 0.2, (off.sum(), 3))))
+    return changed(record, **dict(zip(('qw', 'qx', 'qy', 'qz'), q.T, strict=True))), off
+
+
+def test_single_attitudes_that_are_off_do_not_alter_the_verdict(dragged):
+    random = np.random.default_rng(1)
+    flights = [spoilt(record, random)[0] for record in dragged]
+    data, clean = (diagnose(each, VEHICLE).data for each in (flights, dragged))
+    assert data['verdict'] == clean['verdict'] == ['rotor_drag']
+    (value, std), (other, _) = (parameters(each, 'rotor_drag')['coefficient']
+                                for each in (data, clean))
+    assert abs(value - other) < 0.5 * std
+
+
+def test_single_attitudes_that_are_off_are_found_and_no_others(dragged):
+    record, off = spoilt(dragged[0], np.random.default_rng(2))
+    rates = record.stack('wx', 'wy', 'wz')
+    large = np.zeros(len(record), bool)
+    true = rotation_matrix(attitude_of(dragged[0]))
+    wrong = rotation_matrix(attitude_of(record))
+    large[:] = np.einsum('nij,nij->n', true, wrong) < 1.0 + 2.0 * np.cos(0.1)
+    found = glitches(record.t, attitude_of(record), rates)
+    assert found[large].all() and not found[~off].any()
+    assert not glitches(dragged[0].t, attitude_of(dragged[0]), rates).any()
+    [finding] = [one for one in findings(record, VEHICLE) if one.code == 'attitude_glitch']
+    assert f'{int(found.sum())} times the attitude jumps' in finding.message
+
+
+def test_an_attitude_that_turns_and_stays_is_no_glitch():
+    t = 0.01 * np.arange(300)
+    q = np.tile([1.0, 0.0, 0.0, 0.0], (300, 1))
+    q[150:] = turn([0.0, 0.0, 0.4])
+    assert not glitches(t, q, np.zeros((300, 3))).any()
+
+
+def test_lost_rows_hardly_move_the_estimate(dragged):
+    random = np.random.default_rng(4)
+    flights = []
+    for record in dragged:
+        kept = np.ones(len(record), bool)
+        while kept.mean() > 0.95:
+            k = int(random.integers(1, len(record) - 1))
+            kept[k:k + int(random.geometric(0.4))] = False
+        flights.append(FlightRecord(record.t[kept], {name: values[kept] for name, values in
+                                                     record.columns.items()}, record.info))
+    data = diagnose(flights, VEHICLE).data
+    assert data['verdict'] == ['rotor_drag']
+    value, std = parameters(data, 'rotor_drag')['coefficient']
+    assert abs(value - DRAG['rotor_drag']['coefficient']) < 4 * std
+
+
+def test_rows_that_were_lost_count_for_nothing(dragged):
+    record = dragged[0]
+    kept = np.ones(len(record), bool)
+    kept[[400, 401, 700]] = False
+    short = FlightRecord(record.t[kept], {name: values[kept] for name, values in
+                                          record.columns.items()}, record.info)
+    flight, whole = flight_of(short, VEHICLE), flight_of(record, VEHICLE)
+    np.testing.assert_allclose(flight.course.t, whole.course.t, atol=1e-12)
+    np.testing.assert_array_equal(np.flatnonzero(~flight.seen.all(axis=1)), [400, 401, 700])
+    np.testing.assert_allclose(flight.states[kept], whole.states[kept], atol=1e-12)
+    assert flight.seen[flight.first].all()
+
+
+@pytest.mark.parametrize('name', VEHICLES)
+def test_a_negative_delay_undoes_a_positive_one(name):
+    count = len(VEHICLES[name].rotors)
+    t = 0.01 * np.arange(100)
+    commands = 100.0 + np.cumsum(np.random.default_rng(0).normal(size=(100, count)), axis=0)
+    back = delayed(t, delayed(t, commands, 0.03), -0.03)
+    np.testing.assert_allclose(back[:96], commands[:96], rtol=1e-9)
+    # What the delay has pushed out of the record is gone: the last that is left is held.
+    np.testing.assert_allclose(back[96:], np.tile(commands[95], (4, 1)), rtol=1e-9)
