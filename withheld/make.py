@@ -124,6 +124,8 @@ def make_set(name, count, seed, jobs, folder, on_case=lambda done, total: None):
                 labels[waiting[done]] = done.result()
             except Unflyable as error:
                 not_flown.append(str(error))
+            except Exception as error:      # of rotorpy: it takes no other case with it
+                not_flown.append(f'{type(error).__name__}: {error}')
             on_case(len(labels) + len(not_flown), len(cases))
     return labels, not_flown
 
