@@ -113,14 +113,15 @@ def _select(flights, vehicle, causes, noise, on_progress):
         on_progress((turn + 1) / ROUNDS)
         if best == before:
             break
-    best = _pruned(flights, vehicle, best, tried, noise)
+    best, pruned = _pruned(flights, vehicle, best, tried, noise)
     fitted = tuple(sorted((Fitted(key, value, _evidence(value, key, vehicle, scatter))
                            for key, value in tried.items()), key=lambda one: -one.evidence))
     chosen = next(one for one in fitted if one.chosen == best)
     fitted = (chosen, *(one for one in fitted if not set(best) < set(one.chosen)
                         and one is not chosen))
     probability = _probabilities(fitted, ranked, causes, tried)
-    support = {cause: support_of(chosen.estimate, cause, vehicle) for cause in chosen.causes}
+    support = pruned | {cause: support_of(chosen.estimate, cause, vehicle)
+                        for cause in chosen.causes}
     for cause, value in support.items():
         probability[cause] = min(probability[cause], float(1.0 / (1.0 + np.exp(-min(value, 50)))))
     return Selection(chosen, fitted, probability, quadratic, rows, noise, scatter)
@@ -161,19 +162,25 @@ def _refitted(flights, vehicle, z, chosen, noise, own, starts):
 
 
 def _pruned(flights, vehicle, best, tried, noise):
-    """Return the causes of a set that its own standard errors support, refitted into tried."""
+    """
+    Return the causes of a set that its own standard errors support, refitted into tried.
+
+    And {cause: its support} of those that are left out.
+    """
+    pruned = {}
     while any(cause.own is None for cause in best):
         fit = tried[best]
         support = {cause: support_of(fit, cause, vehicle) for cause in best if cause.own is None}
         weakest = min(support, key=support.get)
         if support[weakest] > 0.0:
-            return best
+            break
+        pruned[weakest] = support[weakest]
         best = tuple(cause for cause in best if cause != weakest)
         if best not in tried:
             z = fit.z.copy()
             z[list(weakest.columns)] = nominal(vehicle)[list(weakest.columns)]
             tried[best] = _refitted(flights, vehicle, z, best, noise, fit.own, fit.starts)
-    return best
+    return best, pruned
 
 
 def support_of(fit, cause, vehicle):

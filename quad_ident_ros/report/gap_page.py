@@ -30,14 +30,20 @@ def write(path, found, training, held_out):
     """
     data = found.data
     with tempfile.TemporaryDirectory() as folder:
-        pictures = _pictures(found, training, held_out, Path(folder))
+        captions = save_pictures(found, training, held_out, Path(folder))
+        pictures = {name: figure(Path(folder) / f'{name}.png', caption)
+                    for name, caption in captions.items()}
         body = [*_verdict(data), *_far(data, pictures), *_where(data, pictures),
                 *_which(data, pictures), *_open(data), *_provenance(data)]
     write_page(path, f'What {data["vehicle"]} lacks', join(body))
 
 
-def _pictures(found, training, held_out, folder):
-    """Return the pictures by name, as figures."""
+def save_pictures(found, training, held_out, folder):
+    """
+    Save the pictures of a diagnosis as NAME.png in a folder, a Path; return {name: caption}.
+
+    Args as those of `write`.
+    """
     vehicle, z, z0 = found.vehicle, found.z, nominal(found.vehicle)
     voltage = highest_voltage([*training, held_out])
     left = found.selection.best.estimate.left
@@ -67,9 +73,8 @@ def _pictures(found, training, held_out, folder):
             ('probabilities',
              lambda path: gap_pictures.save_probabilities(found.data['ranking'], path),
              'Probability of each effect of being present.')):
-        path = folder / f'{name}.png'
-        draw(path)
-        made[name] = figure(path, caption)
+        draw(folder / f'{name}.png')
+        made[name] = caption
     return made
 
 

@@ -34,6 +34,8 @@ def test_the_secret_is_found_and_revealed_last(demo):
     truth = load_vehicle(folder / 'reality.yaml').effects
     assert data['effects'] == truth and data['found']
     assert data['diagnosis']['verdict'] == list(truth)
+    assert [row['effect'] for row in data['diagnosis']['ranking']
+            if row['probability'] > 0.5] == list(truth)
     assert data['closed'] == data['diagnosis']['gap']['closed'] > 0.9
     verdict, revealed = said.index('verdict: '), said.index('revealed: ')
     assert verdict < revealed < said.index('the same again: --seed')
