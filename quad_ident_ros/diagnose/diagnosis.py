@@ -14,12 +14,13 @@ from quad_ident_ros.diagnose.doubts import doubts_of
 from quad_ident_ros.diagnose.fly_next import fly_next, hidden
 from quad_ident_ros.diagnose.leftover import leftovers
 from quad_ident_ros.diagnose.length import refuse_short
+from quad_ident_ros.diagnose.near import near_flights
 from quad_ident_ros.diagnose.own import as_data, own_of
 from quad_ident_ros.diagnose.select import select
 from quad_ident_ros.effects.registry import EFFECTS, mapping
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.greybox.errors import UNITS
-from quad_ident_ros.greybox.flights import flight_of, highest_voltage
+from quad_ident_ros.greybox.flights import highest_voltage
 from quad_ident_ros.greybox.noise import near_noise, whole_noise
 from quad_ident_ros.greybox.parameters import NAMES, nominal, SPLIT
 
@@ -68,7 +69,7 @@ def diagnose(records, vehicle, *, hold_out=None, effects=None, on_progress=lambd
         refuse_short(record)
     training, test = split(records, hold_out)
     voltage = highest_voltage([*training, test])
-    flights = [flight_of(record, vehicle, reference_voltage=voltage) for record in training]
+    flights = near_flights(training, vehicle, voltage)
     causes = candidates(flights, vehicle, effects)
     selection = select(flights, vehicle, causes, lambda share: on_progress(0.8 * share))
     z0, kinds = nominal(vehicle), selection.best.own
@@ -91,7 +92,7 @@ def diagnose(records, vehicle, *, hold_out=None, effects=None, on_progress=lambd
         for column in (column for cause in weak for column in cause.columns):
             z[column] = z0[column]
         named = tuple(cause for cause in named if cause not in weak)
-    test = test, own_of(test, vehicle, z, kinds, noise, voltage)
+    test = test, own_of(test, vehicle, z, kinds, noise, voltage, flights[0].segment)
     far = _how_far(test, vehicle, z0, z, named, noise, voltage)
     doubts = doubts_of(selection, named)
     sure = [cause for cause in named if cause not in doubts]

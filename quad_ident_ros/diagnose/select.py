@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Which effects explain flights: sets of causes compared jointly, each refitted."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -18,9 +18,7 @@ from quad_ident_ros.greybox.parameters import limits, nominal
 ROUNDS = 5
 REFITS = 3          # sets that are refitted in a round
 FIT_STEPS = 5
-FAR = 100.0         # times the noise that errors without causes are on the median: far from linear
 COLOURED = 2.0      # times the noise from sample to sample that all that is left may be
-SHORTER = (5, 2, 1)     # of the rollouts, where errors are far from linear
 UNTRIED = -2.0      # log-evidence that the linear model alone may give a set, beside the best
 
 
@@ -88,11 +86,6 @@ def _select(flights, vehicle, causes, noise, on_progress):
                       for flight, start in zip(flights, starts, strict=True)]
     tried = {(): estimate(flights, vehicle, nominal(vehicle), [], noise=noise, iterations=2)}
     best, scatter = (), 1.0
-    if np.max([np.median(np.abs(raw), axis=(0, 1)) / sigma
-               for raw, sigma in zip(tried[()].left, noise, strict=True)]) > FAR:
-        best = tuple({one.effect: one for one in own}.values())
-        tried[best] = _from_afar(flights, vehicle, [one.own for one in best])
-        noise = tried[best].noise
     for turn in range(ROUNDS):
         quadratic = quadratic_at(flights, vehicle, tried[best], columns, own)
         scatter = quadratic.scatter
@@ -125,20 +118,6 @@ def _select(flights, vehicle, causes, noise, on_progress):
     for cause, value in support.items():
         probability[cause] = min(probability[cause], float(1.0 / (1.0 + np.exp(-min(value, 50)))))
     return Selection(chosen, fitted, probability, quadratic, rows, noise, scatter)
-
-
-def _from_afar(flights, vehicle, kinds):
-    """
-    Return the Estimate of what flights have of their own where errors are far from linear.
-
-    Over longer and longer rollouts, each from what the shorter ones gave.
-    """
-    z, own = nominal(vehicle), Own.of(kinds, len(flights))
-    for share in SHORTER:
-        cut = [replace(flight, count=max(4, flight.count // share)) for flight in flights]
-        found = estimate(cut, vehicle, z, [], own=own, iterations=2 * FIT_STEPS)
-        own = found.own
-    return found
 
 
 def _rows(causes, own, columns, count):

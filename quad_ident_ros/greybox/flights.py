@@ -38,6 +38,11 @@ class Flight:
     count: int
     period: float
 
+    @property
+    def segment(self):
+        """Return the length of a rollout, s."""
+        return self.count * self.period
+
 
 def flight_of(record, vehicle, *, reference_voltage=None, segment=SEGMENT, every=None):
     """
