@@ -161,7 +161,7 @@ def tampered_table(found):
     rows = []
     for label, one in found.items():
         if isinstance(one, InputError):
-            rows.append((label, f'refused: {one}', *[''] * 4))
+            rows.append((label, f'refused: {str(one).rpartition("/")[2]}', *[''] * 4))
             continue
         data = one.data
         sag = next(row for row in data['ranking'] if row['effect'] == 'battery_sag')
