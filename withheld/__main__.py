@@ -3,6 +3,7 @@
 """Fly realities, diagnose them blindly, open the labels: `./run withheld`."""
 
 import argparse
+from concurrent.futures import ThreadPoolExecutor
 import datetime
 import json
 import os
@@ -97,20 +98,25 @@ def run(options, work):
 
 def fly(options, flights, sealed, bar):
     """Have the realities flown; return the key of the sealed labels."""
-    read, write = os.pipe()
     command = [sys.executable, '-m', 'withheld.make', '--set', options.set, '--flights',
-               str(flights), '--sealed', str(sealed), '--key', str(write),
-               '--jobs', str(options.jobs)]
+               str(flights), '--sealed', str(sealed), '--jobs', str(options.jobs)]
     for name in ('count', 'seed'):
         if getattr(options, name) is not None:
             command += [f'--{name}', str(getattr(options, name))]
-    process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, pass_fds=(write,),
-                               env={**os.environ, **THREADS})
+    return key_from(command, bar)
+
+
+def key_from(command, bar):
+    """Run a command with `--key` and a pipe of its own; return what it writes there."""
+    read, write = os.pipe()
+    process = subprocess.Popen([*command, '--key', str(write)], stdout=subprocess.PIPE, text=True,
+                               pass_fds=(write,), env={**os.environ, **THREADS})
     os.close(write)
-    follow(process, bar, 'flying realities')
-    with os.fdopen(read, 'rb') as pipe:
-        key = pipe.read()
-    return key
+    # A pipe holds less than the key of many labels: it is read while the process goes on.
+    with os.fdopen(read, 'rb') as pipe, ThreadPoolExecutor(1) as reader:
+        key = reader.submit(pipe.read)
+        follow(process, bar, 'flying realities')
+        return key.result()
 
 
 def diagnose(flights, found, bar):

@@ -248,6 +248,24 @@ def test_the_diagnosing_process_is_not_told_where_the_labels_are(tmp_path, monke
                                if not target.startswith('/proc/')}
 
 
+WRITES = """
+import os, sys
+print('1 1', flush=True)
+with os.fdopen(int(sys.argv[-1]), 'wb') as pipe:
+    pipe.write(bytes(range(256)) * 4096)
+"""
+
+
+def test_a_key_of_many_labels_comes_through_its_pipe():
+    """It is longer than what a pipe holds, and comes before the process ends."""
+    from rich.progress import Progress
+
+    from withheld.__main__ import key_from
+    with Progress(disable=True) as bar:
+        key = key_from([sys.executable, '-c', WRITES], bar)
+    assert key == bytes(range(256)) * 4096
+
+
 def test_a_run_is_kept_in_the_document(tmp_path):
     import datetime
 
