@@ -130,10 +130,11 @@ def diagnose(flights, found, bar):
 def follow(process, bar, title, total=None):
     """Show the lines of a process as progress; raises CalledProcessError where it fails."""
     task = bar.add_task(title, total=total)
-    for count, line in enumerate(process.stdout, 1):
-        parts = line.split()
-        bar.update(task, completed=count, total=total or int(parts[-1]))
-    if process.wait():
+    with process:
+        for count, line in enumerate(process.stdout, 1):
+            parts = line.split()
+            bar.update(task, completed=count, total=total or int(parts[-1]))
+    if process.returncode:
         raise subprocess.CalledProcessError(process.returncode, title)
 
 
