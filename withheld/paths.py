@@ -57,16 +57,17 @@ class Waypoints:
 
     def __init__(self, rng, size, acceleration, low, turn):
         """Draw the places and find the path."""
-        self.inner = None
-        while self.inner is None:
+        shown = None
+        while shown is None:
             places = rng.uniform([-1.0, -1.0, -0.5], [1.0, 1.0, 0.5], (self.POINTS, 3))
             headings = rng.uniform(-1.0, 1.0, self.POINTS)
             with contextlib.redirect_stdout(io.StringIO()):     # its solver talks,
                 try:
                     self.inner = MinSnap(places, yaw_angles=headings, v_avg=1.0)
-                except TypeError:       # and gives None where it finds no path
+                    end = self.inner.t_keyframes[-1]
+                    shown = [self.inner.update(t) for t in np.arange(0.0, end, 0.02)]
+                except (TypeError, IndexError):     # and now and then finds no path, or a part
                     continue
-        shown = [self.inner.update(t) for t in np.arange(0.0, self.inner.t_keyframes[-1], 0.02)]
         fast = np.sqrt(np.mean([part['x_ddot'][:2] ** 2 for part in shown]))
         self.pace = float(np.sqrt(acceleration / (size * fast)))
         most = max(abs(part['yaw_ddot']) for part in shown) * self.pace ** 2

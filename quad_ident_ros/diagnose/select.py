@@ -57,7 +57,6 @@ class Selection:
     quadratic: Quadratic
     rows: dict
     noise: list
-    scatter: float
 
 
 def select(flights, vehicle, causes, on_progress=lambda share: None):
@@ -117,7 +116,7 @@ def _select(flights, vehicle, causes, noise, on_progress):
                         for cause in chosen.causes}
     for cause, value in support.items():
         probability[cause] = min(probability[cause], float(1.0 / (1.0 + np.exp(-min(value, 50)))))
-    return Selection(chosen, fitted, probability, quadratic, rows, noise, scatter)
+    return Selection(chosen, fitted, probability, quadratic, rows, noise)
 
 
 def _rows(causes, own, columns, count):
