@@ -24,7 +24,7 @@ def files_below(folder):
 setup(
     name=PACKAGE,
     version='0.1.0',
-    description='Online identification of quadrotors on ROS 2',
+    description='Identification of quadrotors and diagnosis of their sim-to-real gap on ROS 2',
     long_description=(
         'ROS 2 nodes and a command line that simulate a quadrotor, record its flight, identify '
         'the parameters of second-order models of it, with their standard errors, and diagnose '
