@@ -45,8 +45,8 @@ def parser():
     """Return the parser of the whole command line."""
     top = argparse.ArgumentParser(
         prog='quad_ident', epilog=EPILOG, formatter_class=argparse.RawDescriptionHelpFormatter,
-        description='Identify a quadrotor online by PSO, CS, PSO-CS, LS and VP; say where, why and '
-                    'how far it differs from its simulation.')
+        description='Identify a quadrotor online by PSO, CS, PSO-CS, LS and VP; say where, why '
+                    'and how far it differs from its simulation.')
     top.add_argument('--version', action='version', version=__version__)
     commands = top.add_subparsers(dest='command', metavar='COMMAND')
     for command in COMMANDS:
