@@ -24,7 +24,7 @@ ITERATIONS = 20
 DONE = 0.2          # standard errors of a last step, which leaves a twentieth of that or less
 ROUGH = 30.0        # standard errors where only a few rollouts are looked at
 FEW = 8             # rollouts that bring a start near
-NEAR = 0.3          # usual sizes; after shorter steps the slopes are kept
+STRAIGHT = 0.2      # of what a step should save that it may save more or less: slopes are kept
 SHARES = tuple(0.5 ** k for k in range(7))  # of a step, tried until the cost does not rise
 OUTLIER = 4.0       # noise deviations beyond which a sample counts less
 
@@ -34,9 +34,10 @@ class Estimate:
     """
     A fit: the vector z (Z,), the free columns, their covariance (C, C), noise per flight (12,).
 
-    own: what the flights have of their own; starts: initial states per flight; normal: the Normal
-    at the end, of the columns and of each flight's own; left: recorded minus predicted per
-    flight; free: whether each column is inside its bounds; converged.
+    own: what the flights have of their own; starts: initial states per flight; normal: the last
+    Normal, of the columns and of each flight's own, by slopes at the vector `at` (Z,), near z;
+    left: recorded minus predicted per flight; free: whether each column is inside its bounds;
+    converged.
     """
 
     z: np.ndarray
@@ -46,6 +47,7 @@ class Estimate:
     own: Own
     starts: list
     normal: Normal
+    at: np.ndarray
     left: list
     free: np.ndarray
     converged: bool
@@ -114,14 +116,16 @@ def _descend(flights, vehicle, z, columns, box, noise, own, starts, iterations, 
             tangents = [tangent_of(flight, vehicle, vector, start, layout.wanted, STEP * usual)
                         for flight, vector, start in
                         zip(flights, own.vectors(z), starts, strict=True)]
+            at = z
         scales = [weights_of(raw, sigma, flight) / sigma
                   for raw, sigma, flight in zip(raws, noise, flights, strict=True)]
         linears = [linear_of(tangent, raw, scale, clock)
                    for tangent, raw, scale in zip(tangents, raws, scales, strict=True)]
         normal = normal_of(linears, flights, layout, clock)
         now = np.concatenate([z[columns], own.values.ravel()])
-        step, free = bounded_step(normal.information + np.diag(precision),
-                                  normal.gradient - precision * now, now, lower, upper, size)
+        information = normal.information + np.diag(precision)
+        gradient = normal.gradient - precision * now
+        step, free = bounded_step(information, gradient, now, lower, upper, size)
         before = _cost(_aligned(raws, tangents, scales, clock), scales) + precision @ now ** 2
         for share in SHARES:
             there, new = z.copy(), now + share * step
@@ -134,7 +138,8 @@ def _descend(flights, vehicle, z, columns, box, noise, own, starts, iterations, 
             left = [errors_along(flight, vehicle, vector, start) for flight, vector, start in
                     zip(flights, theirs.vectors(there), moved, strict=True)]
             aligned = _aligned(left, tangents, scales, clock)
-            if _cost(aligned, scales) + precision @ new ** 2 <= before * (1.0 + 1e-9):
+            after = _cost(aligned, scales) + precision @ new ** 2
+            if after <= before * (1.0 + 1e-9):
                 break
         else:
             if fresh:
@@ -151,11 +156,12 @@ def _descend(flights, vehicle, z, columns, box, noise, own, starts, iterations, 
         if share == 1.0 and length <= done and (known or count):
             converged = True
             break
-        # Close by, the slopes are what they were.
-        if share < 1.0 or np.any(np.abs(step) > NEAR * size):
+        # Where a step saves what the slopes say, they are what they were.
+        saved = step @ (2.0 * gradient - information @ step)
+        if share < 1.0 or abs(before - after - saved) > STRAIGHT * saved:
             tangents = None
     covariance = covariance_of(marginal(normal, shared, precision), size[:shared])
-    return Estimate(z, columns, covariance, noise, own, starts, normal, raws, free[:shared],
+    return Estimate(z, columns, covariance, noise, own, starts, normal, at, raws, free[:shared],
                     converged)
 
 

@@ -82,7 +82,7 @@ def fit(records, vehicle, names, on_progress=lambda share: None):
     on_progress(FITTED)
     inside = [name for name, moves in zip(free, found.free, strict=True) if moves]
     columns = [free[name] for name in inside]
-    left = freedoms(_inside(found.normal, found.free).information, found.z[columns],
+    left = freedoms(_inside(found.normal, found.free).information, found.at[columns],
                     sizes[columns], [inside.index('mass')] if 'mass' in inside else [])
     if left:
         held = [columns[freedom.held] for freedom in left]
