@@ -21,11 +21,12 @@ from quad_ident_ros.effects.registry import EFFECTS, mapping
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.greybox.errors import UNITS
 from quad_ident_ros.greybox.flights import highest_voltage
-from quad_ident_ros.greybox.noise import near_noise, whole_noise
+from quad_ident_ros.greybox.kinematics import measurement_noise
+from quad_ident_ros.greybox.noise import near_noise, quick_noise, whole_noise
 from quad_ident_ros.greybox.parameters import NAMES, nominal, SPLIT
 
 SCHEMA = 'quad_ident/diagnosis/1'
-LEAST = 0.1         # of the noise's gap that an effect must make somewhere to be named
+LEAST = 0.2         # of the noise's gap that an effect must make somewhere to be named
 OUTWEIGHS = 1.5     # times what is left over that a cause must make beside an unknown one
 REMAINS = 0.4       # of the noise's gap that must be left over to speak of an unknown effect
 ASKS = (['none'], ['undetermined'])     # verdicts that ask for another flight
@@ -37,7 +38,8 @@ class Diagnosis:
     What was found, as data (`data`: the JSON of the project) and as objects to go on with.
 
     selection: of the effects; z (Z,): the vehicle with those named; vehicle: the nominal one;
-    own, held_out_own (Z,): what is added to z in each flight, as clocks and trims are its own.
+    own, held_out_own (Z,): what is added to z in each flight, as clocks and trims are its own;
+    noise (12,): of the measurement; whole (12,): all that the best model leaves.
     """
 
     data: dict
@@ -46,6 +48,8 @@ class Diagnosis:
     vehicle: object
     own: list
     held_out_own: np.ndarray
+    noise: np.ndarray
+    whole: np.ndarray
 
     def effects(self):
         """Return {effect: {parameter: value}} of the effects named."""
@@ -75,7 +79,7 @@ def diagnose(records, vehicle, *, hold_out=None, effects=None, on_progress=lambd
     z0, kinds = nominal(vehicle), selection.best.own
     training = list(zip(training, selection.best.estimate.own.vectors(np.zeros(len(z0))),
                         strict=True))
-    noise = np.median([near_noise(raw) for raw in selection.best.estimate.left], axis=0)
+    noise = noise_of(selection, flights)
     whole = np.median([whole_noise(raw, 1.0 - 1.0 / raw.shape[1])
                        for raw in selection.best.estimate.left], axis=0)
     z, named, strength = _named(selection, training, vehicle, noise, voltage)
@@ -117,7 +121,8 @@ def diagnose(records, vehicle, *, hold_out=None, effects=None, on_progress=lambd
         'nuisances': as_data(kinds, [own for _, own in training], test[1]),
         'flights': [record.info.get('name') for record, _ in training],
         'held_out': test[0].info.get('name')}
-    return Diagnosis(data, selection, z, vehicle, [own for _, own in training], test[1])
+    return Diagnosis(data, selection, z, vehicle, [own for _, own in training], test[1], noise,
+                     whole)
 
 
 def split(records, hold_out):
@@ -131,6 +136,14 @@ def split(records, hold_out):
     record = records[0]
     half = len(record) // 2
     return [record.slice(0, half)], record.slice(half, len(record))
+
+
+def noise_of(selection, flights):
+    """Return the standard deviation of the measurement noise of flights, (12,)."""
+    best = selection.best.estimate
+    near, white = (np.median([kind(raw) for raw in best.left], axis=0)
+                   for kind in (near_noise, quick_noise))
+    return measurement_noise(flights, best.vectors, near, white)
 
 
 def _named(selection, training, vehicle, noise, voltage):

@@ -5,12 +5,9 @@
 from pathlib import Path
 import tempfile
 
-import numpy as np
-
 from quad_ident_ros.diagnose import gap as gaps
 from quad_ident_ros.diagnose import where
 from quad_ident_ros.greybox.flights import highest_voltage
-from quad_ident_ros.greybox.noise import near_noise, whole_noise
 from quad_ident_ros.greybox.parameters import nominal
 from quad_ident_ros.report import gap_pictures
 from quad_ident_ros.report.diagnosis import NEXT, next_row, not_shown_line, verdict_line
@@ -46,16 +43,12 @@ def save_pictures(found, training, held_out, folder):
     """
     vehicle, z, z0 = found.vehicle, found.z, nominal(found.vehicle)
     voltage = highest_voltage([*training, held_out])
-    left = found.selection.best.estimate.left
-    # Of what is left in the end slow noise is a part, too: it is no force that the model lacks.
-    near = np.median([near_noise(raw) for raw in left], axis=0)
-    whole = np.median([whole_noise(raw, 1.0 - 1.0 / raw.shape[1]) for raw in left], axis=0)
     gap, horizon = found.data['gap'], found.data['gap']['horizon']
     before, after = (gaps.ends(held_out, vehicle, each + found.held_out_own, horizon, voltage)
                      for each in (z0, z))
     lacks = [[where.lacking(record, vehicle, each + own, noise, voltage)
               for record, own in zip(training, found.own, strict=True)]
-             for each, noise in ((z0, near), (z, whole))]
+             for each, noise in ((z0, found.noise), (z, found.whole))]
     made = {}
     for name, draw, caption in (
             ('predictions',
