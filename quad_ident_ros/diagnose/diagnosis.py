@@ -12,7 +12,7 @@ from quad_ident_ros.diagnose import where
 from quad_ident_ros.diagnose.candidates import candidates
 from quad_ident_ros.diagnose.doubts import doubts_of
 from quad_ident_ros.diagnose.fly_next import fly_next, hidden
-from quad_ident_ros.diagnose.leftover import leftovers
+from quad_ident_ros.diagnose.leftover import leftovers, unstructured
 from quad_ident_ros.diagnose.length import refuse_short
 from quad_ident_ros.diagnose.near import near_flights
 from quad_ident_ros.diagnose.own import as_data, own_of
@@ -28,7 +28,10 @@ from quad_ident_ros.greybox.parameters import NAMES, nominal, SPLIT
 SCHEMA = 'quad_ident/diagnosis/1'
 LEAST = 0.2         # of the noise's gap that an effect must make somewhere to be named
 OUTWEIGHS = 1.5     # times what is left over that a cause must make beside an unknown one
-REMAINS = 0.4       # of the noise's gap that must be left over to speak of an unknown effect
+REMAINS = 0.25      # of the noise's gap that structure must make to speak of an unknown effect
+# Times the noise's gap from which on what is left is unknown without structure, too. Commands that
+# were lost and clocks that drift show in rates and attitude first.
+BEYOND = {'velocity': 1.25, 'attitude': 1.5}
 ASKS = (['none'], ['undetermined'])     # verdicts that ask for another flight
 
 
@@ -88,14 +91,18 @@ def diagnose(records, vehicle, *, hold_out=None, effects=None, on_progress=lambd
     lacks = [where.lacking(record, vehicle, z0 + own, noise, voltage)
              for record, own in training]
     on_progress(0.9)
-    remains = _remains(training, vehicle, z, noise, voltage)
-    unknown = bool(left) and remains > REMAINS
+    times = _left_over(training, vehicle, z, noise, voltage)
+    remains = np.sqrt(max(0.0, max(times.values()) ** 2 - 1.0))
+    beyond = any(times[name] > limit for name, limit in BEYOND.items())
+    unknown = beyond or bool(left) and remains > REMAINS
     if unknown:
         # Known causes bend to what is not theirs: only those stay that say more than is left over.
         weak = [cause for cause in named if strength[cause] < OUTWEIGHS * remains]
         for column in (column for cause in weak for column in cause.columns):
             z[column] = z0[column]
         named = tuple(cause for cause in named if cause not in weak)
+        left = left or [unstructured([where.lacking(record, vehicle, z + own, noise, voltage)
+                                      for record, own in training], vehicle)]
     test = test, own_of(test, vehicle, z, kinds, noise, voltage, flights[0].segment)
     far = _how_far(test, vehicle, z0, z, named, noise, voltage)
     doubts = doubts_of(selection, named)
@@ -169,12 +176,12 @@ def _named(selection, training, vehicle, noise, voltage):
     return kept, tuple(named), strength
 
 
-def _remains(training, vehicle, z, noise, voltage):
-    """Return what is left of the gap above the noise, over the noise, where it is largest."""
+def _left_over(training, vehicle, z, noise, voltage):
+    """Return {group: the gap that is left, over that of the noise}."""
     after = gaps.usual_gap([gaps.ends(one, vehicle, z + own, gaps.HEADLINE, voltage)
                             for one, own in training])
     base = gaps.noise_gap(training[0][0], vehicle, z, noise, gaps.HEADLINE, voltage)
-    return max(np.sqrt(max(0.0, (after[name] / base[name]) ** 2 - 1.0)) for name in after)
+    return {name: after[name] / base[name] for name in after}
 
 
 def _how_far(test, vehicle, z0, z, named, noise, voltage):

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import stats
 
-from quad_ident_ros.diagnose.where import CHANNELS
+from quad_ident_ros.diagnose.where import CHANNELS, shares
 
 CHANCE = 1e-6       # of calling structure what is none, per channel
 LAGS = 6            # windows over which what is left may hang together
@@ -16,7 +16,7 @@ FEWEST = 4 * LAGS   # windows from which on this can be told
 
 @dataclass(frozen=True)
 class Leftover:
-    """Structure in a channel: what it depends on, or 'time' alone; share of its variance."""
+    """What is left in a channel: what it depends on, or 'time' alone; share of its variance."""
 
     channel: str
     depends_on: str
@@ -46,6 +46,13 @@ def leftovers(flights):
         if chance < CHANCE:
             found.append(Leftover(channel, name, share, chance))
     return sorted(found, key=lambda one: -one.share)
+
+
+def unstructured(flights, vehicle):
+    """Return the Leftover of the channel in which most is left, where that has no structure."""
+    parts = shares(flights, vehicle)
+    channel = max(parts, key=parts.get)
+    return Leftover(channel, 'nothing that is looked at', 1.0, 1.0)
 
 
 def _library(flights):

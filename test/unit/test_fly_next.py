@@ -83,7 +83,7 @@ def test_the_manoeuvre_proposed_tells_them_apart(doubtful):
 def test_the_manoeuvre_ranked_last_does_not(doubtful):
     last = list(proposal(doubtful[2])['manoeuvres'])[-1]
     found = flown_as(doubtful, last)
-    assert found.data['undetermined'] == ALIKE
+    assert set(ALIKE) <= set(found.data['undetermined'])
     assert all(probabilities(found)[name] > 0.1 for name in ALIKE)
 
 

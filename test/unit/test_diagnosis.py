@@ -1,0 +1,118 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Verdicts on simulated flights whose truth is known: each effect, none, several, unknown ones."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from quad_ident_ros.diagnose.diagnosis import diagnose
+from quad_ident_ros.effects.registry import EFFECTS
+from quad_ident_ros.flight.fly import fly_closed_loop
+from quad_ident_ros.flight.measure import Noise, Sensors
+from quad_ident_ros.model.vehicle import load_vehicle
+
+# With a drag that is known: without any no wind is felt.
+VEHICLE = replace(load_vehicle('hummingbird'), linear_drag=(0.15, 0.15, 0.15))
+HALF = Noise(position=7e-4, velocity=7e-3, attitude=1.4e-3, rate=7e-3, voltage=0.01)
+WHITE, COLOURED = Sensors(white=HALF), Sensors(white=HALF, coloured=HALF, correlation_time=0.1)
+COURSES = ('figure8', 'low_passes', 'steps')
+HOVER = np.sqrt(VEHICLE.mass * VEHICLE.gravity
+                / (len(VEHICLE.rotors) * VEHICLE.thrust_coefficient))
+TRUTHS = {
+    'motor_lag': {'time_constant': 0.03}, 'actuation_delay': {'delay': 0.02},
+    'rotor_drag': {'coefficient': 0.15}, 'body_drag': {'horizontal': 0.1, 'vertical': 0.1},
+    'wind': {'x': 1.0, 'y': -0.7, 'z': 0.1}, 'inflow': {'axial': 0.15, 'translational': 0.05},
+    'ground_effect': {'strength': 3.0}, 'battery_sag': {'per_volt': 0.05},
+    'thrust_scale': {'factor': 0.97}, 'mass_offset': {'mass': 0.03},
+    'inertia_mismatch': {'factor_x': 1.3, 'factor_y': 1.2, 'factor_z': 1.3},
+    'com_offset': {'x': 0.003, 'y': -0.002, 'z': 0.002}, 'rotor_fault': {'loss_2': 0.04},
+    'rotor_gyro': {'rotor_inertia': 6e-5}, 'blade_flapping': {'coefficient': 0.01},
+    'attitude_misalignment': {'roll': 0.03, 'pitch': -0.02, 'yaw': 0.03},
+    'gyro_bias': {'x': 0.04, 'y': -0.03, 'z': 0.05}}
+SEVERAL = ('motor_lag', 'rotor_drag', 'battery_sag')
+
+
+def flown(truth, noise=WHITE, seed=0):
+    # The last one is held out: there, too, the effect has to show.
+    last = 'low_passes' if 'ground_effect' in truth else 'lissajous'
+    return [fly_closed_loop(VEHICLE, truth, course, duration=12.0, seed=seed + k, noise=noise)
+            for k, course in enumerate((*COURSES, last))]
+
+
+def as_if(record, told):
+    """Return a record whose commands are told as a function of what the rotors were given."""
+    columns = {f'cmd{j}': told(record.columns[f'cmd{j}']) for j in range(1, 5)}
+    return replace(record, columns=record.columns | columns)
+
+
+def with_play(commands, width=0.03 * HOVER):
+    """Return commands that the rotors followed through a play of some width."""
+    told = [commands[0]]
+    for command in commands[1:]:
+        told.append(np.clip(told[-1], command - width, command + width))
+    return np.array(told)
+
+
+def check(data, truth):
+    """Check verdict, parameters and what is closed against the truth."""
+    assert set(data['verdict']) == set(truth)
+    rows = {row['effect']: row for row in data['ranking']}
+    for effect, parameters in truth.items():
+        assert rows[effect]['probability'] > 0.9
+        for name, value in parameters.items():
+            found = rows[effect]['parameters'][name]
+            assert abs(found['value'] - value) < 4.5 * found['std'], (effect, name)
+    before, after, noise = (data['gap'][when] for when in ('before', 'after', 'noise'))
+    most = max(before, key=lambda group: before[group] / noise[group])
+    assert before[most] - after[most] > 0.9 * (before[most] - noise[most]) > 0.0
+
+
+def test_the_truths_are_of_every_effect():
+    assert set(TRUTHS) == set(EFFECTS)
+
+
+@pytest.mark.parametrize('effect', TRUTHS)
+def test_each_effect_is_named_alone_with_its_parameters(effect):
+    truth = {effect: TRUTHS[effect]}
+    check(diagnose(flown(truth), VEHICLE).data, truth)
+
+
+def test_several_at_once_are_named_together():
+    truth = {name: TRUTHS[name] for name in SEVERAL}
+    data = diagnose(flown(truth), VEHICLE).data
+    check(data, truth)
+    # Each of them contributes: without it more is left.
+    assert all(data['gap']['without'][name]['velocity'] > data['gap']['after']['velocity']
+               for name in truth)
+
+
+@pytest.mark.parametrize('noise', [WHITE, COLOURED], ids=['white', 'coloured'])
+def test_where_nothing_but_noise_is_left_the_verdict_is_none(noise):
+    data = diagnose(flown({}, noise, seed=10), VEHICLE).data
+    assert data['verdict'] == ['none']
+    # Noise with a memory is noise, too: it opens no gap.
+    for group in ('velocity', 'attitude'):
+        assert data['gap']['before'][group] == pytest.approx(data['gap']['noise'][group], rel=0.2)
+
+
+def test_noise_with_a_memory_is_not_held_against_the_share_that_is_closed():
+    truth = {'mass_offset': TRUTHS['mass_offset']}
+    check(diagnose(flown(truth, COLOURED, seed=20), VEHICLE).data, truth)
+
+
+@pytest.mark.parametrize('told', [lambda commands: HOVER * (commands / HOVER) ** 0.7, with_play],
+                         ids=['another exponent of the thrust', 'play of the actuators'])
+def test_what_no_effect_explains_is_unknown(told):
+    data = diagnose([as_if(record, told) for record in flown({}, seed=30)], VEHICLE).data
+    assert 'unknown' in data['verdict']
+    assert all(row['channel'] and row['depends_on'] for row in data['unknown'])
+    assert data['gap']['after']['velocity'] > 1.1 * data['gap']['noise']['velocity']
+
+
+def test_a_hover_is_no_reason_for_another_inertia():
+    """What moves in hover is the noise, to which the controller replies."""
+    hovers = [fly_closed_loop(VEHICLE, {}, 'hover', duration=12.0, seed=seed, noise=WHITE)
+              for seed in (1, 101, 102)]
+    assert diagnose(hovers, VEHICLE).data['verdict'] == ['none']
