@@ -23,6 +23,7 @@ EVERY = 0.1                     # s from one start to the next
 NOISE_STARTS = 60               # starts at which the noise is carried along
 BLOCK = 2.0                     # s of the bootstrap's blocks
 DRAWS = 400
+LEAST = 0.01                    # of the noise's gap: what is less above it is none
 MEDIAN = 2.366                  # of the sum of three squared standard normal numbers
 
 
@@ -97,6 +98,10 @@ def interval(all_ends, seed=0):
 
 
 def closed(before, after, noise):
-    """Return the share of the gap above the noise that is closed, at most 1; 0 where none is."""
-    room = before - noise
-    return float(np.clip((before - after) / room, -1.0, 1.0)) if room > 0.05 * noise else 0.0
+    """
+    Return the share of the gap above the noise that is closed, -1 to 1; 0 where there is none.
+
+    What is left in the end is an upper bound of what the noise makes.
+    """
+    room = before - min(noise, after)
+    return float(np.clip((before - after) / room, -1.0, 1.0)) if room > LEAST * noise else 0.0
