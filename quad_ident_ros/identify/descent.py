@@ -13,7 +13,8 @@ from quad_ident_ros.compiled import compiled
 from quad_ident_ros.identify.tangent import factorise, WIDTH
 
 MOST_PASSES = 100    # over the data, for one descent
-FASTEST = 40.0       # pole x period beyond which a pole leaves no trace
+FASTEST = 40.0       # pole x period beyond which a pole leaves no trace; no pair turns faster than
+                     # by half a turn per sample, for slower ones look the same
 WILDEST = 16.0       # growth x record length beyond which rounding is all there is
 EMPTY = 1e-13        # share of a column that is left by rounding where others span it
 ROUNDING = 1e-30     # share of the squared data that rounding leaves of a perfect fit
@@ -132,6 +133,7 @@ def descend(c1, c0, real, period, u, y, measured, unknowns, arrived, linear):
             new0 = 0.25 * new1 * new1
         slowest = 0.5 * new1 - np.sqrt(max(0.25 * new1 * new1 - new0, 0.0))
         if (max(abs(new1), np.sqrt(abs(new0))) * period > FASTEST
+                or new0 - 0.25 * new1 * new1 > (np.pi / period) ** 2
                 or slowest * period * y.size < -WILDEST or (step1 == 0.0 == step0)):
             accepted = False
         else:

@@ -16,6 +16,7 @@ import numpy as np
 from quad_ident_ros.compiled import compiled
 from quad_ident_ros.identify.descent import descend
 from quad_ident_ros.identify.objective import Objective, project_all, project_gain
+from quad_ident_ros.identify.order import independent_count
 from quad_ident_ros.identify.residuals import (
     can_tell_noise,
     examine,
@@ -24,10 +25,11 @@ from quad_ident_ros.identify.residuals import (
 )
 from quad_ident_ros.identify.transfer import response, SecondOrder
 
-# How much larger the squared error of a complex pair counts, by the parameter `poles`. With
-# `auto` a pair is taken only where it at least halves the rms error of the best real poles: the
-# paper's model has real a and b, and the pair's a and b are no numbers to publish.
+# How much larger the squared error of a complex pair counts, by the parameter `poles`. The paper's
+# model has real a and b, and a pair's are no numbers to publish: with `auto` it is taken only where
+# it halves the rms error of the best real poles, or lessens it by more than noise does.
 COMPLEX_PENALTY = {'real': np.inf, 'auto': 4.0, 'any': 1.0}
+BY_NOISE = 25.0    # twice the log-likelihood that a pair gains on real poles by noise, and more
 
 NOISE_ROUNDS = 3   # of noise model and fit in turn
 COLOURED = 'the noise is coloured: it was modelled, and the fit is the most likely one for it'
@@ -39,6 +41,9 @@ REAL_RATIO = 3.0        # of one pole to the next,
 REAL_RATIO_FREE = 1.7   # and where the start is not known, whose valleys are narrower
 TURN_RATIO = 1.3
 DECAYS = (0.02, 0.15, 0.6)
+TIED = 1e-13            # of a column that is left by rounding where others span it
+COMB, COMB_STEP = 64, 1.5    # turns tried around its own, so far apart over the record, rad
+SCALES = 5              # times over which averages give candidates, too, each a third of the last
 STARTS, MINIMA = 3, 2   # candidates of each kind that are followed down, minima of the grid,
 STARTS_FREE, MINIMA_FREE = 10, 6   # and where the start is not known
 ROUGHLY, FULLY = 1e-2, 1e-8   # squared distance to the optimum, in standard errors, of a descent
@@ -74,8 +79,15 @@ def best_poles(signal, penalty, near=None):
             more += still
             if below is not None and below.cost < real.cost:
                 real = below
-        return (best if best.cost * penalty < real.cost else real), spent + more
+        halves = best.cost * penalty < real.cost
+        return (best if halves or _gains(signal, best, real) else real), spent + more
     return best, spent
+
+
+def _gains(signal, pair, real):
+    """Return whether a pair explains more than real poles by more than noise that is left."""
+    left = residual_of(signal, pair)[signal.measured]
+    return real.cost > pair.cost * np.exp(BY_NOISE / independent_count(left))
 
 
 def vp_fit(objective, space):
@@ -218,15 +230,18 @@ def _start(period, u, y, measured, real_count, neighbours, c1, c0, unknowns):
     """Return c1, c0 of the best of what the best candidates lead to, and the evaluations."""
     scale = 1.0 / (u.size * period)
     c1, c0 = c1 * scale, c0 * scale * scale
+    real, grid = real_count == c1.size, c1.size
+    if not real:
+        first1, first0 = _by_averages(period, u, y, unknowns)
+        c1, c0 = np.append(c1, first1), np.append(c0, first0)
     costs, found = np.empty(c1.size), np.zeros((c1.size, 4))
     if unknowns == 0:
         project_gain(c1, c0, period, u, y, measured, -np.inf, np.inf, costs, found)
     else:
         project_all(c1, c0, period, u, y, measured, unknowns, -np.inf, np.inf, costs, found)
     spent = c1.size
-    real = real_count == c1.size
     best = 0.0, 0.0, np.inf
-    for first, last in ((0, real_count), (real_count, c1.size)):
+    for first, last in ((0, real_count), (real_count, grid)):
         for attempt in range(STARTS if unknowns == 0 else STARTS_FREE):
             i = _lowest(costs, neighbours, first, last,
                         attempt < (MINIMA if unknowns == 0 else MINIMA_FREE))
@@ -239,7 +254,120 @@ def _start(period, u, y, measured, real_count, neighbours, c1, c0, unknowns):
             costs[i] = -np.inf
             if here[2] < best[2]:
                 best = here[0], here[1], here[2]
+    if not real:
+        lowest = grid + np.argmin(costs[grid:])
+        # The shortest times see what turns fast, however little of it there is.
+        for i, tuned in ((lowest, False), (lowest, True), (c1.size - 1, True)):
+            at1, at0 = c1[i], c0[i]
+            if not costs[i] < np.inf or (tuned and at0 <= 0.25 * at1 * at1):
+                continue
+            if tuned:
+                at1, at0 = _tuned(at1, at0, period, u, y, measured, unknowns)
+                spent += COMB
+            here = descend(at1, at0, real, period, u, y, measured, unknowns, ROUGHLY, found[i])
+            spent += here[3]
+            if here[2] < best[2]:
+                best = here[0], here[1], here[2]
     return best[0], best[1], spent
+
+
+@compiled
+def _tuned(c1, c0, period, u, y, measured, unknowns):
+    """Return c1, c0 of the best pair that turns a little slower or faster than one."""
+    turn = np.sqrt(c0 - 0.25 * c1 * c1)
+    step = COMB_STEP / (u.size * period)
+    turns = np.abs(turn + step * (np.arange(COMB) - COMB // 2))
+    sums, products = np.full(COMB, c1), turns ** 2 + 0.25 * c1 * c1
+    costs, found = np.empty(COMB), np.zeros((COMB, 4))
+    if unknowns == 0:
+        project_gain(sums, products, period, u, y, measured, -np.inf, np.inf, costs, found)
+    else:
+        project_all(sums, products, period, u, y, measured, unknowns, -np.inf, np.inf, costs,
+                    found)
+    best = np.argmin(costs)
+    return sums[best], products[best]
+
+
+@compiled
+def _by_averages(period, u, y, unknowns):
+    """
+    Return c1, c0 (SCALES,) by least squares of the model, averaged over shorter and shorter times.
+
+    The second difference over a time W of the model, integrated twice, has no derivative and no
+    initial state in it, and averages the noise over W; what is left of that biases the estimate,
+    least where W is some part of a swing. Source: weak forms, as H. Unbehauen and G. P. Rao,
+    Automatica 26(1), 1990.
+    """
+    samples = u.size
+    integrals = np.zeros((samples, 3))     # of y, of that, and of u twice
+    inputs = 0.0
+    for k in range(1, samples):
+        integrals[k, 0] = integrals[k - 1, 0] + 0.5 * period * (y[k - 1] + y[k])
+        integrals[k, 1] = (integrals[k - 1, 1]
+                           + 0.5 * period * (integrals[k - 1, 0] + integrals[k, 0]))
+        integrals[k, 2] = integrals[k - 1, 2] + period * (inputs + 0.5 * period * u[k - 1])
+        inputs += period * u[k - 1]
+    c1, c0 = np.zeros(SCALES), np.zeros(SCALES)
+    columns = 4 if unknowns == 3 else 3
+    row, table = np.ones(5), np.empty((5, 5))
+    width = samples // 3
+    for scale in range(SCALES):
+        if width < 1:
+            break
+        table[:] = 0.0
+        for k in range(2 * width, samples):
+            for j in range(3):
+                row[j] = (integrals[k, j] - 2.0 * integrals[k - width, j]
+                          + integrals[k - 2 * width, j])
+            row[columns] = y[k] - 2.0 * y[k - width] + y[k - 2 * width]
+            if columns == 4:
+                row[3] = 1.0
+            for i in range(columns + 1):
+                for j in range(i, columns + 1):
+                    table[i, j] += row[i] * row[j]
+        c1[scale], c0[scale] = _held(*_first_two(table, columns), period)
+        width //= 3
+    return c1, c0
+
+
+@compiled
+def _first_two(table, columns):
+    """Return minus the first two numbers that solve normal equations (upper part, side last)."""
+    size, solved = np.ones(columns), np.zeros(columns)
+    lower = np.eye(columns)
+    for i in range(columns):
+        if table[i, i] > 0.0:
+            size[i] = np.sqrt(table[i, i])
+    for i in range(columns):
+        for j in range(i + 1):
+            value = table[j, i] / (size[i] * size[j]) + (TIED if i == j else 0.0)
+            for k in range(j):
+                value -= lower[i, k] * lower[j, k]
+            if i > j:
+                lower[i, j] = value / lower[j, j]
+            else:
+                lower[i, i] = np.sqrt(max(value, TIED))
+        solved[i] = table[i, columns] / size[i]
+        for k in range(i):
+            solved[i] -= lower[i, k] * solved[k]
+        solved[i] /= lower[i, i]
+    for i in range(columns - 1, -1, -1):
+        for k in range(i + 1, columns):
+            solved[i] -= lower[k, i] * solved[k]
+        solved[i] /= lower[i, i]
+    return -solved[0] / size[0], -solved[1] / size[1]
+
+
+@compiled
+def _held(c1, c0, period):
+    """Return c1, c0 whose integrals by the trapezoidal rule give those of the arguments."""
+    root = np.sqrt(complex(0.25 * c1 * c1 - c0))
+    first, second = (-0.5 * c1 + root) * 0.5 * period, (-0.5 * c1 - root) * 0.5 * period
+    if first.imag == 0.0 and max(abs(first.real), abs(second.real)) >= 1.0:
+        return c1, c0
+    first = np.log((1.0 + first) / (1.0 - first)) / period
+    second = np.log((1.0 + second) / (1.0 - second)) / period
+    return -(first + second).real, (first * second).real
 
 
 @compiled

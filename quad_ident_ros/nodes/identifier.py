@@ -41,8 +41,8 @@ SPECS = (
                   'data.', length=(0, 2)),
     ParameterSpec('gain_bounds', [], 'Lower and upper bound of K; empty: from the data.',
                   length=(0, 2)),
-    ParameterSpec('poles', 'auto', 'Complex pairs: never (real), where they at least halve the '
-                  'error (auto), or where they are better at all (any).',
+    ParameterSpec('poles', 'auto', 'Complex pairs: never (real), where they lessen the '
+                  'error by more than noise does (auto), or where they are better at all (any).',
                   choices=tuple(COMPLEX_PENALTY)),
     ParameterSpec('search', 'per_output', "per_output solves for K; joint is the paper's literal "
                   '12-dimensional search.', choices=('per_output', 'joint')),

@@ -128,6 +128,33 @@ def test_from_a_free_start_no_start_value_is_needed_either(poles):
     assert len(worse) < count / 100 and max(worse.values(), default=1.0) < 1.01, worse
 
 
+@pytest.mark.parametrize('growth', [0.5, 3.0, 5.0, -1.0, -5.0])
+@pytest.mark.parametrize('kind', KINDS)
+def test_swings_that_grow_or_hardly_decay_are_found(kind, growth):
+    """From rest at 1 % of noise; growth: of the exponent over the record."""
+    for seed in range(12):
+        turn = np.random.default_rng(seed).uniform(2.0, 100.0)
+        truth = SecondOrder.from_half_difference(1.0, -growth / (T[-1] + PERIOD), -turn)
+        task = signal(truth, excitation(kind), 0.01, seed=seed)
+        assert vp(task).cost <= vp(task, near=truth).cost * (1 + 1e-6), (seed, turn)
+
+
+def test_a_pair_is_taken_where_real_poles_explain_clearly_less():
+    truth = SecondOrder.from_half_difference(5.0, 0.5, -2.0)
+    forms = [vp(signal(truth, excitation('step'), 0.1, seed=seed)).model.form for seed in range(20)]
+    assert forms == ['complex'] * 20
+    truth = SecondOrder.from_poles(5.0, 1.0, 1.2)
+    forms = [vp(signal(truth, excitation('step'), 0.1, seed=seed)).model.form for seed in range(20)]
+    assert 'complex' not in forms
+
+
+def test_no_pair_turns_faster_than_the_samples_show():
+    for seed, turn in enumerate((150.0, 200.0, 250.0, 300.0) * 5):
+        truth = SecondOrder.from_half_difference(4e4, 1.0, -turn)
+        model = vp(signal(truth, excitation('step'), 0.01, seed=seed)).model
+        assert abs(complex(model.a).imag) <= np.pi / PERIOD
+
+
 @pytest.mark.parametrize('name', ['stable', 'complex', 'integrating'])
 def test_long_records_are_thinned_to_start_and_fitted_whole(name):
     t = np.arange(20_000) * PERIOD
