@@ -26,8 +26,8 @@ from quad_ident_ros.identify.residuals import (
 from quad_ident_ros.identify.transfer import response, SecondOrder
 
 # How much larger the squared error of a complex pair counts, by the parameter `poles`. The paper's
-# model has real a and b, and a pair's are no numbers to publish: with `auto` it is taken only where
-# it halves the rms error of the best real poles, or lessens it by more than noise does.
+# model has real a and b, and a pair's are no numbers to publish: with `auto` it is taken only
+# where it halves the rms error of the best real poles, or lessens it by more than noise does.
 COMPLEX_PENALTY = {'real': np.inf, 'auto': 4.0, 'any': 1.0}
 BY_NOISE = 25.0    # twice the log-likelihood that a pair gains on real poles by noise, and more
 
