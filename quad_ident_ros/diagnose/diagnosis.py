@@ -14,7 +14,6 @@ from quad_ident_ros.diagnose.doubts import doubts_of
 from quad_ident_ros.diagnose.fly_next import fly_next, hidden
 from quad_ident_ros.diagnose.leftover import leftovers, unstructured
 from quad_ident_ros.diagnose.length import refuse_short
-from quad_ident_ros.diagnose.near import near_flights
 from quad_ident_ros.diagnose.own import as_data, own_of
 from quad_ident_ros.diagnose.select import select
 from quad_ident_ros.effects.registry import EFFECTS, mapping
@@ -22,6 +21,7 @@ from quad_ident_ros.errors import InputError
 from quad_ident_ros.greybox.errors import UNITS
 from quad_ident_ros.greybox.flights import highest_voltage
 from quad_ident_ros.greybox.kinematics import measurement_noise
+from quad_ident_ros.greybox.near import near_flights
 from quad_ident_ros.greybox.noise import near_noise, quick_noise, whole_noise
 from quad_ident_ros.greybox.parameters import NAMES, nominal, SPLIT
 
@@ -76,7 +76,7 @@ def diagnose(records, vehicle, *, hold_out=None, effects=None, on_progress=lambd
         refuse_short(record)
     training, test = split(records, hold_out)
     voltage = highest_voltage([*training, test])
-    flights = near_flights(training, vehicle, voltage)
+    flights = near_flights(training, vehicle, nominal(vehicle), voltage)
     causes = candidates(flights, vehicle, effects)
     selection = select(flights, vehicle, causes, lambda share: on_progress(0.8 * share))
     z0, kinds = nominal(vehicle), selection.best.own

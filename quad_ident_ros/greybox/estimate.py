@@ -26,6 +26,7 @@ ROUGH = 30.0        # standard errors where only a few rollouts are looked at
 FEW = 8             # rollouts that bring a start near
 STRAIGHT = 0.2      # of what a step should save that it may save more or less: slopes are kept
 SHARES = tuple(0.5 ** k for k in range(7))  # of a step, tried until the cost does not rise
+SPARSE = 4          # every so many samples tell how far the bulk of them is off
 OUTLIER = 4.0       # noise deviations beyond which a sample counts less
 
 
@@ -66,7 +67,7 @@ class Estimate:
 def weights_of(raw, noise, flight):
     """Return the weight of each sample, 1 but for those far beyond noise and bulk (Huber)."""
     seen = seen_along(flight)
-    bulk = MAD * np.median(np.abs(raw.reshape(-1, raw.shape[-1])), axis=0)
+    bulk = MAD * np.median(np.abs(raw.reshape(-1, raw.shape[-1])[::SPARSE]), axis=0)
     far = OUTLIER * np.maximum(noise, bulk)
     return seen * np.sqrt(np.minimum(1.0, far / np.maximum(np.abs(raw), 1e-300)))
 

@@ -11,9 +11,10 @@ from quad_ident_ros.effects.registry import mapping
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.greybox.errors import GROUPS, UNITS
 from quad_ident_ros.greybox.estimate import Estimate, estimate
-from quad_ident_ros.greybox.flights import flight_of, highest_voltage
+from quad_ident_ros.greybox.flights import highest_voltage
 from quad_ident_ros.greybox.free import columns_of_names, excitation_of, unit_of
 from quad_ident_ros.greybox.identifiable import correlated, freedoms
+from quad_ident_ros.greybox.near import near_flights
 from quad_ident_ros.greybox.noise import quick_noise
 from quad_ident_ros.greybox.normal import covariance_of, scatter_of
 from quad_ident_ros.greybox.parameters import as_described, INDEX, limits, SPLIT
@@ -73,11 +74,11 @@ def fit(records, vehicle, names, on_progress=lambda share: None):
     free = columns_of_names(names, vehicle)
     _refuse_twice(records)
     voltage = highest_voltage(records)
-    flights = [flight_of(record, vehicle, reference_voltage=voltage) for record in records]
+    start, sizes = as_described(vehicle), limits(vehicle)[2]
+    flights = near_flights(records, vehicle, start, voltage)
     flights = [replace(flight, name=name) for flight, name in
                zip(flights, _apart([flight.name for flight in flights]), strict=True)]
     on_progress(READ)
-    start, sizes = as_described(vehicle), limits(vehicle)[2]
     found = estimate(flights, vehicle, start, list(free.values()))
     on_progress(FITTED)
     inside = [name for name, moves in zip(free, found.free, strict=True) if moves]

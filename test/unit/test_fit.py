@@ -91,6 +91,17 @@ def test_all_eight_free_have_no_scale_and_it_is_said(problem):
         assert one.std == pytest.approx(other.std, rel=0.02)
 
 
+def test_a_start_whose_attitude_is_soon_anywhere_is_mended_all_the_same():
+    """Offset mass and weak thrust turn the model over within half a second."""
+    vehicle = load_vehicle('crazyflie')
+    truth = {'com_offset': {'x': 0.003, 'y': -0.003}, 'thrust_scale': {'factor': 0.7}}
+    record = fly_closed_loop(vehicle, truth, 'lissajous', duration=15.0, seed=2, noise=WHITE)
+    found = by_name(fit([record], vehicle, ['com_offset', 'thrust_scale']))
+    for name, value in (('com_offset.x', 0.003), ('com_offset.y', -0.003),
+                        ('thrust_scale.factor', 0.7)):
+        assert abs(found[name].value - value) < 4 * found[name].std
+
+
 def test_effects_are_found_beside_constants():
     truth = {'motor_lag': {'time_constant': 0.04}, 'rotor_drag': {'coefficient': 0.3}}
     record = fly_closed_loop(VEHICLE, truth, 'lissajous', duration=20.0, seed=5, noise=WHITE)

@@ -1,21 +1,20 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Rollouts that are short enough for the nominal model to stay near the record."""
+"""Rollouts that are short enough for a model to stay near the record."""
 
 import numpy as np
 
 from quad_ident_ros.greybox.errors import GROUPS
 from quad_ident_ros.greybox.flights import flight_of, SEGMENT
 from quad_ident_ros.greybox.linear import errors_along
-from quad_ident_ros.greybox.parameters import nominal
 
 SEGMENTS = (SEGMENT, 0.3, 0.2)      # s
 FAR = 0.8       # rad, of the attitude at the end: beyond it what the slopes say is not so
 
 
-def near_flights(records, vehicle, reference_voltage):
+def near_flights(records, vehicle, z, reference_voltage):
     """
-    Return the Flights of records, with the longest rollouts that stay near them.
+    Return the Flights of records, with the longest rollouts of a vector z (Z,) that stay near.
 
     An attitude that is let go is soon anywhere: no fit finds its way back from there. Raises
     InputError where a record is too short for them.
@@ -24,7 +23,7 @@ def near_flights(records, vehicle, reference_voltage):
         flights = [flight_of(record, vehicle, reference_voltage=reference_voltage,
                              segment=segment) for record in records]
         off = np.concatenate([
-            errors_along(flight, vehicle, nominal(vehicle), flight.states[flight.first])[:, -1]
+            errors_along(flight, vehicle, z, flight.states[flight.first])[:, -1]
             for flight in flights])[:, GROUPS['attitude']]
         if np.median(np.linalg.norm(off, axis=1)) < FAR:
             break
