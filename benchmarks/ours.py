@@ -6,11 +6,13 @@ import numpy as np
 
 from benchmarks.problems import GAIN_BOUNDS, POLE_BOUNDS
 from quad_ident_ros.identify.objective import Objective
+from quad_ident_ros.identify.order import alternatives
 from quad_ident_ros.identify.pso_cs import pso_cs
+from quad_ident_ros.identify.residuals import examine
 from quad_ident_ros.identify.search import Search, SwarmSettings
-from quad_ident_ros.identify.space import SIZE, Space
+from quad_ident_ros.identify.space import no_space, SIZE, Space
 from quad_ident_ros.identify.uncertainty import uncertainty
-from quad_ident_ros.identify.vp import best_poles, COMPLEX_PENALTY, vp
+from quad_ident_ros.identify.vp import best_poles, COMPLEX_PENALTY, residual_of, vp, vp_fit
 
 BUDGET = 8200    # evaluations of CS and PSO-CS with the paper's settings
 SPACE = Space(POLE_BOUNDS, GAIN_BOUNDS, np.inf)
@@ -21,6 +23,25 @@ def fit_vp(signals, seed, poles='auto'):
     found = [best_poles(signal, COMPLEX_PENALTY[poles]) for signal in signals]
     return (np.array([_coefficients(fitted) for fitted, _ in found]),
             sum(spent for _, spent in found) / len(found))
+
+
+def fit_whole(signals, seed, orders=False):
+    """Return the same as fit_vp, of all that an identification does: errors and tests too."""
+    models, spent = [], 0
+    for signal in signals:
+        fitted, more, _ = vp_fit(Objective(signal), no_space('auto'))
+        uncertainty(signal, fitted)
+        examine(signal, residual_of(signal, fitted), fitted.noise)
+        if orders:
+            alternatives(signal, fitted.model)
+        models.append(_coefficients(fitted))
+        spent += more
+    return np.array(models), spent / len(signals)
+
+
+def fit_with_orders(signals, seed):
+    """Return the same, with the comparison of other orders."""
+    return fit_whole(signals, seed, True)
 
 
 def fit_vp_real(signals, seed):

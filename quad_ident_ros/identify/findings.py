@@ -2,12 +2,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a result says in words about what its model cannot say."""
 
+import numpy as np
+
 from quad_ident_ros.identify.space import at_bounds
 from quad_ident_ros.identify.uncertainty import level_spread
 
 UNDETERMINED = 'these data do not determine K, a and b: the information matrix is singular'
 LEVEL = ('the input never changes and the start is free: K cannot be told from the level that the '
          'output is measured from; its error counts a level off by the range of the output')
+SAME = 1e-9        # of an input's range: changes below are rounding
 TRACELESS = 10.0   # pole x period beyond which e^-10 of its response is left at the next sample
 
 
@@ -38,6 +41,11 @@ def said_of(signal, model, sure, tests, bounds=None):
     elif tests.is_coloured:
         yield ('the residuals are not white, by coloured noise or by dynamics left out: the '
                'standard errors are too small')
+    gaps, changed = _gaps(signal)
+    if changed:
+        yield (f'the input differs between the two sides of {changed} of {gaps} gaps in the '
+               'record: when it changed within them is not known, and the standard errors, which '
+               'count the noise alone, are too small')
     # The level enters beside the noise: it is said where it is not small.
     if sure.errors['K'] and sure.errors['K'] < 2 * level_spread(signal, model):
         yield LEVEL
@@ -48,6 +56,16 @@ def said_of(signal, model, sure, tests, bounds=None):
     if model.form != 'complex' and model.a * signal.period > TRACELESS:
         yield (f'a = {model.a:.4g} 1/s dies out within a sample: of K and a the record tells '
                f'K/a = {model.gain / model.a:.4g}')
+
+
+def _gaps(signal):
+    """Return how many gaps the samples of a Signal have, and across how many the input differs."""
+    ends = signal.measured[1:] & ~signal.measured[:-1]
+    if not ends.any():
+        return 0, 0
+    # In a gap the input stands as it was before.
+    changes = np.abs(np.diff(signal.u)[ends]) > SAME * np.ptp(signal.u)
+    return np.count_nonzero(ends), np.count_nonzero(changes)
 
 
 def said_of_order(other):

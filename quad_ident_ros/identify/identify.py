@@ -24,6 +24,9 @@ from quad_ident_ros.identify.uncertainty import KEYS, Uncertainty, uncertainty
 
 FIRST_SAMPLE = ('search joint: the level at rest is taken from the first sample, whose noise '
                 'enters the fit')
+LEVEL_UNKNOWN = ('the record does not say at which level it rests, as a bag of the recorder does: '
+                 'it is estimated beside K, a and b. Where the vehicle is not of this class it '
+                 'takes up a part of the misfit: a record that has it gives other numbers')
 POOR = 50.0   # fit %
 FEWEST_FOR_ORDERS = 30   # samples
 OVERFLOW = 'no model was found that stays finite over the record'
@@ -106,6 +109,8 @@ def identify(records, settings=None, *, on_progress=lambda method, output, share
         if not all(signal.level_known for signal in pairs.values()):
             remarks.append(FIRST_SAMPLE)
         pairs = {name: replace(signal, level_known=True) for name, signal in pairs.items()}
+    elif any(signal.unknowns == 1 for signal in pairs.values()):
+        remarks.append(LEVEL_UNKNOWN)
     objectives, spaces = {}, {}
     for name, signal in pairs.items():
         searching = any(METHODS[method].search for method in settings.methods)

@@ -112,10 +112,10 @@ class _Task:
 
     def __init__(self, signal):
         self._signal = signal
-        places = np.flatnonzero(signal.measured)
         self.samples = len(signal.y)
-        self._places = places[::-(-len(places) // MOST)]
-        self._y = signal.y[self._places]
+        self._stride = -(-self.samples // MOST)
+        self._there = signal.measured[::self._stride]
+        self._y = signal.y[::self._stride][self._there]
         self.span = float(np.ptp(signal.y)) or 1.0
         self.duration = signal.t[-1] + signal.period
 
@@ -128,23 +128,69 @@ class _Task:
         matrix[order - 1, order] = 1.0
         # In units of the record's length all entries are of one size.
         scale = self.duration ** -np.arange(order + 1.0)
-        whole = _exponential(matrix * signal.period * scale / scale[:, None])
-        phi, gamma = whole[:order, :order], whole[:order, order]
-        rest, nothing = np.zeros(order), np.zeros_like(signal.u)
-        columns = [_simulate(phi, gamma, signal.u, rest)]
-        if signal.unknowns == 1:
-            columns.append(nothing + 1.0)
-        if signal.unknowns > 1:
-            columns += [_simulate(phi, gamma, nothing, start) for start in np.eye(order)]
-        if signal.unknowns > 2:
-            columns.append(_simulate(phi, gamma, nothing + 1.0, rest))
-        columns = np.column_stack(columns)[self._places]
-        size = np.abs(columns).max(axis=0)
-        if not size.max() < 1e100:
+        matrix = matrix * signal.period * scale / scale[:, None]
+        columns = _columns(matrix, self._stride, signal.u, signal.unknowns)
+        if not np.abs(columns).max() < 1e100:
             return np.full_like(self._y, BEYOND * self.span)
-        columns = columns / np.where(size > 0, size, 1.0)
-        orthogonal, _ = np.linalg.qr(columns)
-        return self._y - orthogonal @ (orthogonal.T @ self._y)
+        return _left(columns, self._there, self._y)
+
+
+@compiled
+def _columns(matrix, stride, u, unknowns):
+    """
+    Return what is fitted linearly, at every stride (n, M): responses to u and to each unknown.
+
+    matrix (order + 1, order + 1): the system matrix times the period, and the input's column.
+    """
+    order = matrix.shape[0] - 1
+    whole, leap = _exponential(matrix), _exponential(matrix * stride)
+    kernel = _kernel(whole[:order, :order], whole[:order, order], stride)
+    count = -(-u.size // stride)
+    wanted = 1 if unknowns == 0 else 2 if unknowns == 1 else unknowns + order - 1
+    columns = np.ones((wanted, count))
+    nothing, rest = np.zeros((count, order)), np.zeros(order)
+    _leap(leap, _pushes(kernel, u, count), rest, columns[0])
+    if unknowns > 1:
+        for i in range(order):
+            start = rest.copy()
+            start[i] = 1.0
+            _leap(leap, nothing, start, columns[1 + i])
+    if unknowns > 2:
+        for i in range(order):
+            nothing[:, i] = kernel[i].sum()
+        _leap(leap, nothing, rest, columns[1 + order])
+    return columns
+
+
+@compiled
+def _left(columns, there, y):
+    """
+    Return what a linear fit of columns (n, M) leaves of y, known where it is there (M,).
+
+    Gram and Schmidt, each column twice: once more is enough (A. Bjorck, Numerical Methods for
+    Least Squares Problems, 1996, sec. 2.4.5).
+    """
+    count, rest = columns.shape[0], y.copy()
+    basis = np.empty((count, y.size))
+    used = 0
+    for j in range(count):
+        here = basis[used]
+        here[:] = columns[j][there]
+        size = np.abs(here).max()
+        if size == 0.0:
+            continue
+        here /= size
+        before = np.sqrt((here * here).sum())
+        for _ in range(2):
+            for i in range(used):
+                here -= (basis[i] * here).sum() * basis[i]
+        length = np.sqrt((here * here).sum())
+        # What is left of a column that hangs on others is rounding, in no direction.
+        if length > 1e-14 * before:
+            here /= length
+            rest -= (here * rest).sum() * here
+            used += 1
+    return rest
 
 
 @compiled
@@ -163,15 +209,43 @@ def _exponential(matrix):
 
 
 @compiled
-def _simulate(phi, gamma, u, start):
-    """Return the first state (N,) of x(k+1) = phi x(k) + gamma u(k)."""
-    order = start.size
-    out, state, following = np.empty(u.size), start.copy(), np.empty(order)
-    for k in range(u.size):
-        out[k] = state[0]
+def _kernel(phi, gamma, stride):
+    """Return what inputs of one add to the state by the end of a stride, (order, stride)."""
+    order = gamma.size
+    kernel = np.empty((order, stride))
+    kernel[:, stride - 1] = gamma
+    for k in range(stride - 1, 0, -1):
         for i in range(order):
-            following[i] = gamma[i] * u[k]
+            total = 0.0
             for j in range(order):
-                following[i] += phi[i, j] * state[j]
+                total += phi[i, j] * kernel[j, k]
+            kernel[i, k - 1] = total
+    return kernel
+
+
+@compiled(fused=True, reordered=True)
+def _pushes(kernel, u, count):
+    """Return what each stride of inputs u (N,) adds to the state, (count, order)."""
+    order, stride = kernel.shape
+    found = np.zeros((count, order))
+    for m in range(u.size // stride):
+        for i in range(order):
+            total = 0.0
+            for k in range(stride):
+                total += kernel[i, k] * u[m * stride + k]
+            found[m, i] = total
+    return found
+
+
+@compiled
+def _leap(leap, pushes, start, out):
+    """Write the first state (M,) of x(m+1) = leap x(m) + pushes(m), exact at every stride."""
+    order = start.size
+    state, following = start.copy(), np.empty(order)
+    for m in range(len(pushes)):
+        out[m] = state[0]
+        for i in range(order):
+            following[i] = pushes[m, i]
+            for j in range(order):
+                following[i] += leap[i, j] * state[j]
         state[:] = following
-    return out

@@ -9,13 +9,15 @@ from scipy.linalg import solve_toeplitz
 from scipy.signal import lfilter
 from scipy.stats import chi2, f
 
+from quad_ident_ros.compiled import compiled
+from quad_ident_ros.identify.tangent import CHUNK, fold
+
 FEWEST = 50            # residuals that a test needs
 LAGS = 20              # of the test of whiteness
 INPUT_LAGS = 8         # of the test of independence, spread evenly on a logarithmic scale
 LONGEST_MEMORY = 10    # order of a noise model at most
 SIGNIFICANT = 0.01     # probability below which a test has found something
-
-
+ROUNDING = 1e-12       # of the output's range: residuals below are not of the data
 ENOUGH_CHANGES = 5     # of an input that tell the dynamics left out from coloured noise
 
 
@@ -46,8 +48,12 @@ class ResidualTests:
 
 
 def examine(signal, residual, noise=()):
-    """Return the ResidualTests of residuals (N,) of a Signal; noise: see ResidualTests."""
-    if signal.samples < FEWEST or not np.any(residual):
+    """
+    Return the ResidualTests of residuals (N,) of a Signal; noise: see ResidualTests.
+
+    Residuals that are but rounding are not tested: exact data leave nothing to tell.
+    """
+    if signal.samples < FEWEST or _is_rounding(signal, residual):
         return ResidualTests(None, None, tuple(noise))
     residual, measured = _filtered(noise, residual, signal.measured)
     u, _ = _filtered(noise, signal.u, signal.measured)
@@ -56,6 +62,11 @@ def examine(signal, residual, noise=()):
     residual, measured = _filtered(memory, residual, measured)
     u, _ = _filtered(memory, u, measured)
     return ResidualTests(white, _independence(u, residual, measured), tuple(noise))
+
+
+def _is_rounding(signal, residual):
+    left, y = residual[signal.measured], signal.y[signal.measured]
+    return left @ left <= len(left) * (ROUNDING * np.ptp(y)) ** 2
 
 
 def noise_model(residual, measured):
@@ -121,6 +132,8 @@ def _autocovariances(residual, measured, lags):
 
 def _pairs(measured, lags):
     """Return how many pairs of samples at lags 0..lags were both measured."""
+    if measured.all():
+        return len(measured) - np.arange(lags + 1)
     return np.array([np.count_nonzero(measured[lag:] & measured[:len(measured) - lag])
                      for lag in range(lags + 1)])
 
@@ -140,15 +153,36 @@ def _independence(u, residual, measured):
     longest = len(u) // 4
     lags = np.unique(np.round(np.concatenate([[0], np.geomspace(1, longest, INPUT_LAGS - 1)])
                               ).astype(int))
-    columns = np.column_stack([np.concatenate([np.zeros(lag), u[:len(u) - lag]])
-                               for lag in lags])[measured]
-    values = residual[measured]
+    factor = _lagged(u, residual, measured, lags)
+    # In the triangle the columns keep their lengths and angles, however long the record.
+    columns, values = factor[:, :-1], factor[:, -1]
     scale = np.linalg.norm(columns, axis=0)
     columns = columns[:, scale > 0] / scale[scale > 0]
     solution, _, rank, _ = np.linalg.lstsq(columns, values, rcond=1e-10)
     explained = float(np.sum((columns @ solution) ** 2))
-    freedom = len(values) - rank
+    freedom = np.count_nonzero(measured) - rank
     if rank == 0 or freedom < 1:
         return 1.0
     rest = float(values @ values) - explained
     return float(f.sf(explained / rank / (rest / freedom), rank, freedom)) if rest > 0 else 0.0
+
+
+@compiled
+def _lagged(u, residual, measured, lags):
+    """Return the triangular factor (n + 1, n + 1) of u at n lags, zero before it, and residual."""
+    last = lags.size
+    factor, columns = np.zeros((last + 1, last + 1)), np.empty((last + 1, CHUNK))
+    rows = 0
+    for k in range(u.size):
+        if not measured[k]:
+            continue
+        for i in range(last):
+            columns[i, rows] = u[k - lags[i]] if k >= lags[i] else 0.0
+        columns[last, rows] = residual[k]
+        rows += 1
+        if rows == CHUNK:
+            fold(factor, columns, last + 1, rows)
+            rows = 0
+    if rows:
+        fold(factor, columns, last + 1, rows)
+    return factor

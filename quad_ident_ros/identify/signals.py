@@ -186,6 +186,12 @@ def _even_grid(t, inputs, measured):
             'input taken as held']
     remark = (f'sample times are uneven ({steps.min():.4g} to {steps.max():.4g} s): resampled to '
               f'{period:.4g} s, {max(missing, 0)} samples filled by interpolation')
+    gaps = steps > 1.5 * period
+    changed = np.count_nonzero(np.any(np.diff(inputs, axis=0)[gaps] != 0, axis=1))
+    if changed:
+        remark += (f'; an input differs between the two sides of {changed} of '
+                   f'{np.count_nonzero(gaps)} gaps, and the standard errors do not count that '
+                   'nobody knows when it changed')
     return grid, _mean_inputs(t, inputs, grid), columns, there, [remark]
 
 

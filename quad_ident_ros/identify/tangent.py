@@ -83,7 +83,7 @@ def _take_away(a, share, b, count):
 
 
 @compiled
-def _fold(factor, columns, width, rows):
+def fold(factor, columns, width, rows):
     """Fold rows of columns (width, rows) into the triangular factor, by Householder's mirrors."""
     for j in range(width):
         power = _dot(columns[j], columns[j], rows)
@@ -129,7 +129,7 @@ def factorise(c1, c0, linear, period, u, y, measured, unknowns, factor):
                 columns[unknowns + 3, rows] = y[k] - level - gain * f
                 rows += 1
                 if rows == CHUNK:
-                    _fold(factor, columns, width, rows)
+                    fold(factor, columns, width, rows)
                     rows = 0
             v = u[k]
             s, sv = (p11 * s + p12 * sv + d11 * f + d12 * fv + e1 * v,
@@ -150,7 +150,7 @@ def factorise(c1, c0, linear, period, u, y, measured, unknowns, factor):
                 columns[unknowns + 3, rows] = y[k] - x
                 rows += 1
                 if rows == CHUNK:
-                    _fold(factor, columns, width, rows)
+                    fold(factor, columns, width, rows)
                     rows = 0
             v = gain * u[k] + disturbance
             s, sv = (p11 * s + p12 * sv + d11 * x + d12 * xv + e1 * v,
@@ -161,5 +161,5 @@ def factorise(c1, c0, linear, period, u, y, measured, unknowns, factor):
             h, hv = p11 * h + p12 * hv, p21 * h + p22 * hv
             o, ov = p11 * o + p12 * ov + g1, p21 * o + p22 * ov + g2
     if rows:
-        _fold(factor, columns, width, rows)
+        fold(factor, columns, width, rows)
     return width

@@ -26,6 +26,7 @@ class Claim:
     """
     A claim: short text, where the paper makes it, its verdict, and the numbers that say so.
 
+    One about everything (_claim: refutable) does not hold when a single case refutes it.
     score: in how many cases it is so, or the number that decides.
     """
 
@@ -231,7 +232,10 @@ def _ours(reproduction):
               for method in PAPERS if METHODS[method].search or effort == 'per_output']
     worse = sum(entry.verdict == 'worse' for entry in rivals)
     better = sum(entry.verdict == 'better' for entry in rivals)
-    return _claim(f'No method of the paper is better than {METHODS[OURS].label}', 'this project',
-                  len(rivals) - worse, len(rivals),
-                  f'{METHODS[OURS].label} is better in {better}, equal or undecided in '
-                  f'{len(rivals) - better - worse}')
+    good = sum(entry.is_not_worse for entry in rivals)
+    label = METHODS[OURS].label
+    claim = _claim(f'No method of the paper is better than {label}', 'this project', good,
+                   len(rivals), f'{label} is better in {better}, and as good or better in '
+                   f'{good - better} more; worse in {worse}, undecided in '
+                   f'{len(rivals) - good - worse}', refutable=True)
+    return replace(claim, verdict=OPEN) if good < len(rivals) and not worse else claim

@@ -83,9 +83,17 @@ def _conclusions(claims):
              Markup(f'<td class="prose">{markup(claim.numbers)}</td>')] for claim in claims]
     return join([
         _heading('conclusions', 'Conclusions'),
-        tag('p', 'A claim holds when it is so in all cases, in part when in some, unless one '
-                 'case refutes it. One method is better than another where the 95 % interval of '
-                 'the probability that it ends below the other lies above one half.'),
+        tag('p', 'A claim holds when it is so in all cases, in part when in some, and not when in '
+                 'none. One about everything (equations that are the same, a space that contains '
+                 'all solutions, the smallest of all errors, no better method) does not hold '
+                 'when a single case refutes it. Claims of which method is better have each '
+                 'experiment, search and pair of methods as a case: those in which the opposite '
+                 'is so are counted beside. One method is better than another where the 95 % '
+                 'interval of the probability that it ends below the other lies above one half, '
+                 'ties counting half to each; where no case is that sure, the claim is '
+                 'undecided. That no method is better is undecided as long as one case is, and '
+                 'so in a case where the 95 % interval of the probability that the other ends '
+                 'below lies under one half.'),
         table(['claim', 'verdict', 'so in', 'the numbers'], rows,
               ('text', 'text', 'text', 'text'))])
 

@@ -22,7 +22,8 @@ class Comparison:
     How often one method ends below another: wins (a tie is half) of count, seed by seed.
 
     low and high bound the probability at 95 %; where neither method draws random numbers there is
-    nothing uncertain, count is 1 and they are the probability itself.
+    nothing uncertain, count is 1 and they are the probability itself. ties: how often they end at
+    the same cost.
     """
 
     first: str
@@ -31,6 +32,7 @@ class Comparison:
     count: int
     low: float
     high: float
+    ties: int = 0
 
     @property
     def probability(self):
@@ -43,6 +45,14 @@ class Comparison:
         if self.low > 0.5:
             return 'better'
         return 'worse' if self.high < 0.5 else 'undecided'
+
+    @property
+    def is_not_worse(self):
+        """Whether, at 95 %, the second method ends below the first in less than half the runs."""
+        losses = self.count - self.wins - self.ties / 2
+        if self.low == self.high:
+            return losses == 0
+        return interval(losses, self.count)[1] < 0.5
 
 
 def interval(wins, count):
@@ -66,10 +76,11 @@ def compare(first, second, first_costs, second_costs):
     Args: their names; costs (n,) by seed, or (1,) of a method without random numbers.
     """
     one, two = np.broadcast_arrays(first_costs, second_costs)
-    wins = float(np.sum(np.where(same(one, two), 0.5, one < two)))
+    tied = same(one, two)
+    wins, ties = float(np.sum(np.where(tied, 0.5, one < two))), int(np.sum(tied))
     if not {first, second} & set(SWARMS) and len(one) == 1:
-        return Comparison(first, second, wins, 1, wins, wins)
-    return Comparison(first, second, wins, len(one), *interval(wins, len(one)))
+        return Comparison(first, second, wins, 1, wins, wins, ties)
+    return Comparison(first, second, wins, len(one), *interval(wins, len(one)), ties)
 
 
 def comparisons(study, effort, output=None):

@@ -14,6 +14,8 @@ from quad_ident_ros.identify.signals import INPUT_OF, OUTPUT_UNITS
 
 NAMES = {'phi': 'roll φ', 'theta': 'pitch θ', 'psi': 'yaw ψ', 'z': 'altitude z'}
 MEASURED = '#9aa0a6'
+WIDTH = 170.0            # pt, about what a panel of responses is wide
+THICK, THIN = 5.0, 0.5   # pt, of the measured line
 # One colour and dash per method (Okabe and Ito), so that lines on top of one another still show.
 STYLES = (('#0072b2', '-'), ('#e69f00', (0, (6, 2))), ('#009e73', (0, (3, 2))),
           ('#d55e00', (0, (1, 1.5))), ('#cc79a7', (0, (5, 1, 1, 1))))
@@ -34,8 +36,8 @@ def save_responses(identification, path, title, given='measured'):
     for column, (output, signal) in enumerate(signals.items()):
         top, bottom = axes[:, column]
         unit = OUTPUT_UNITS[output]
-        top.plot(signal.t, signal.y, color=MEASURED, linewidth=5, label=given,
-                 solid_capstyle='butt')
+        top.plot(signal.t, signal.y, color=MEASURED, linewidth=_line(signal.y),
+                 label=given, solid_capstyle='butt')
         for (name, method), (color, dash) in zip(identification.methods.items(), STYLES,
                                                  strict=False):
             fit = method.outputs[output]
@@ -43,9 +45,11 @@ def save_responses(identification, path, title, given='measured'):
                 continue
             label = METHODS[name].label
             top.plot(signal.t, fit.response, color=color, linestyle=dash, label=label)
-            bottom.plot(signal.t, signal.y - fit.response, color=color, linestyle=dash,
-                        linewidth=1.0)
-        top.set_title(f'{NAMES[output]} from {INPUT_OF[output]}')
+            error = signal.y - fit.response
+            bottom.plot(signal.t, error, color=color, linestyle=dash,
+                        linewidth=min(1.0, _line(error)))
+        fast = '\n(only its range can be seen)' if _line(signal.y) == THIN else ''
+        top.set_title(f'{NAMES[output]} from {INPUT_OF[output]}{fast}')
         top.set_ylabel(unit)
         bottom.set_ylabel(f'error, {unit}')
         bottom.set_xlabel('time, s')
@@ -53,9 +57,21 @@ def save_responses(identification, path, title, given='measured'):
         for axis in (top, bottom):
             axis.grid(color='0.92')
             axis.spines[['top', 'right']].set_visible(False)
-    axes[0, 0].legend(frameon=False)
+    # Below the panels, where no response passes.
+    entries = {line.get_label(): line for axis in axes[0] for line in axis.lines}
+    legend = figure.legend(entries.values(), entries, loc='outside lower center', frameon=False,
+                           ncols=2 if len(signals) == 1 else len(entries))
+    for line in legend.get_lines():
+        line.set_linewidth(max(line.get_linewidth(), 1.5))
     figure.suptitle(title)
     save(plt, figure, path)
+
+
+def _line(y):
+    """Return how thick a line, in pt, leaves the turns of y (N,) to be seen."""
+    above = y > (y.min() + y.max()) / 2
+    crossings = max(1, np.count_nonzero(above[1:] != above[:-1]))
+    return float(np.clip(WIDTH / crossings / 3, THIN, THICK))
 
 
 def save_spread(panels, path, title, quantity):

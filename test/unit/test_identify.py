@@ -14,7 +14,7 @@ import pytest
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.experiment import fly, load_experiment
-from quad_ident_ros.identify.identify import identify, Settings, with_budget
+from quad_ident_ros.identify.identify import identify, LEVEL_UNKNOWN, Settings, with_budget
 from quad_ident_ros.identify.result import as_data, from_data, parameter_table
 from quad_ident_ros.identify.search import Cancelled
 from quad_ident_ros.identify.transfer import response, SecondOrder
@@ -332,3 +332,12 @@ def test_bounds_are_checked_for_methods_that_have_no_use_for_them(method):
     with pytest.raises(InputError, match='pole_bounds: the lower bound must be below'):
         identify([record(phi=second_order())],
                  Settings(methods=(method,), pole_bounds=(2.0, -1.0)))
+
+
+@pytest.mark.parametrize(('info', 'search', 'said'), [
+    ({}, 'per_output', True), ({'initial': {'phi': 0.0}}, 'per_output', False),
+    ({'starts_at_rest': False}, 'per_output', False), ({}, 'joint', False)])
+def test_a_level_that_is_estimated_is_said(info, search, said):
+    flight = record({'outputs': ['phi'], 'starts_at_rest': True, **info}, phi=second_order())
+    settings = Settings(methods=('pso' if search == 'joint' else 'vp',), search=search)
+    assert (LEVEL_UNKNOWN in identify([flight], settings).remarks) == said

@@ -9,7 +9,7 @@ import pytest
 from scipy.signal import lsim
 
 from quad_ident_ros.excitation import excite
-from quad_ident_ros.identify.order import alternatives
+from quad_ident_ros.identify.order import alternatives, MOST
 from quad_ident_ros.identify.signals import Signal
 from quad_ident_ros.identify.vp import vp
 
@@ -22,11 +22,12 @@ TRUTHS = {
 }
 
 
-def task(truth, kind='prbs', seed=0, noise=0.01, at_rest=True):
-    u = excite('u', {'type': kind, 'amplitude': 1.0}, T)
-    y = lsim(TRUTHS[truth], u, T, interp=False)[1]
+def task(truth, kind='prbs', seed=0, noise=0.01, at_rest=True, samples=501):
+    t = np.arange(samples) * 0.01
+    u = excite('u', {'type': kind, 'amplitude': 1.0}, t)
+    y = lsim(TRUTHS[truth], u, t, interp=False)[1]
     y = y + noise * np.ptp(y) * np.random.default_rng(seed).normal(size=len(y))
-    return Signal('phi', T, u, y, 0.01, at_rest)
+    return Signal('phi', t, u, y, 0.01, at_rest)
 
 
 # A free initial state explains what a third pole does to one step: that is no case.
@@ -59,3 +60,15 @@ def test_missing_samples_do_not_matter():
     part = Signal('phi', T, whole.u, np.where(there, whole.y, 99.0), 0.01, True, measured=there)
     names = [other.name for other in alternatives(part, vp(part).model) if other.is_better]
     assert names == ['third order']
+
+
+@pytest.mark.parametrize('at_rest', [True, False])
+@pytest.mark.parametrize('truth', ['second order', 'third order'])
+def test_of_long_records_a_few_samples_are_compared_but_every_input_counts(truth, at_rest):
+    # With so little noise an input that acted a sample late would look like another pole.
+    found = task(truth, noise=1e-5, at_rest=at_rest, samples=MOST * 5 // 2)
+    others = {other.name: other for other in alternatives(found, vp(found).model)}
+    assert others['third order'].is_better == (truth == 'third order')
+    if truth == 'third order':
+        assert others[truth].denominator == pytest.approx(TRUTHS[truth][1][1:], rel=1e-3)
+        assert others[truth].nrmse_percent == pytest.approx(1e-3, rel=0.1)

@@ -155,8 +155,8 @@ def test_verdicts_follow_the_numbers_of_the_run(reproduction):
         assert found(other, text).verdict == HOLDS
 
 
-def forged(reproduction, **costs):
-    """Return the reproduction with one study whose methods have costs (20,) at any effort."""
+def forged(reproduction, seeds=20, **costs):
+    """Return the reproduction with one study whose methods have costs (seeds,) at any effort."""
     def fits(values):
         return tuple(SimpleNamespace(
             cost=value, seconds=1.0, evaluations=1,
@@ -164,7 +164,7 @@ def forged(reproduction, **costs):
                                      cost=value / 4) for output in OUTPUTS}) for value in values)
 
     only = reproduction.studies['paper_table3']
-    by_method = {name: fits(np.broadcast_to(costs.get(name, 1.0), 20)) for name in METHODS}
+    by_method = {name: fits(np.broadcast_to(costs.get(name, 1.0), seeds)) for name in METHODS}
     only = replace(only, fits=dict.fromkeys(EFFORTS, by_method))
     return replace(reproduction, presets={'paper_table3': reproduction.presets['paper_table3']},
                    studies={'paper_table3': only})
@@ -179,6 +179,25 @@ def test_claims_of_ranking_follow_the_costs(reproduction):
     claim = found(forged(reproduction, ls=2.0, cs=3.0), 'LS is worse than PSO, CS and PSO-CS, one '
                                                         'search per output')
     assert (claim.verdict, claim.score) == (IN_PART, '2 of 3, opposite in 1')
+
+
+def test_that_no_method_is_better_is_decided_by_all_cases(reproduction):
+    text = 'No method of the paper is better'
+    better = found(forged(reproduction, vp=0.5), text)
+    # Four searches of three methods, and least squares.
+    assert (better.verdict, better.score) == (HOLDS, '13 of 13')
+    equal = found(forged(reproduction), text)
+    assert (equal.verdict, equal.score) == (HOLDS, '13 of 13') and 'better in 0,' in equal.numbers
+    unsure = found(forged(reproduction, vp=0.5, cs=np.tile([0.4, 0.6], 10)), text)
+    assert (unsure.verdict, unsure.score) == (OPEN, '9 of 13')
+    refuted = found(forged(reproduction, vp=0.5, ls=0.4, cs=np.tile([0.4, 0.6], 10)), text)
+    assert (refuted.verdict, refuted.score) == (FAILS, '8 of 13')
+
+
+def test_one_seed_leaves_claims_of_ranking_undecided(reproduction):
+    entries = [claim for claim in claims(forged(reproduction, seeds=1, vp=0.5, cs=2.0))
+               if 'better' in claim.text or claim.text.startswith('LS is worse')]
+    assert len(entries) == 7 and {claim.verdict for claim in entries} == {OPEN}
 
 
 def test_claims_leave_out_what_was_not_flown(reproduction):

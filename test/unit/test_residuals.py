@@ -3,10 +3,12 @@
 """Tests of residuals: that they find what is there, and little else."""
 
 from dataclasses import replace
+import tracemalloc
 
 import numpy as np
 import pytest
 from scipy.signal import lfilter
+from scipy.stats import f
 
 from quad_ident_ros.excitation import excite
 from quad_ident_ros.identify.residuals import examine, noise_model, SIGNIFICANT, whitened
@@ -82,3 +84,42 @@ def test_where_there_is_nothing_to_test_nothing_is_said(residual):
     assert (tests.white, tests.independent) == (None, None)
     assert not tests.is_coloured and not tests.depends_on_input
     assert 0 < SIGNIFICANT < 0.05
+
+
+def test_the_test_of_independence_is_the_f_test_of_lagged_inputs():
+    there = np.random.default_rng(5).random(501) > 0.1
+    residual = white(4) + 0.1 * np.roll(PRBS, 3) / 0.1
+    found = examine(replace(SIGNAL, y=residual, measured=there), residual)
+    lags = [0, 1, 2, 5, 11, 25, 56, 125]
+    columns = np.array([np.concatenate([np.zeros(lag), PRBS[:501 - lag]]) for lag in lags]).T
+    columns, values = columns[there], residual[there]
+    left = values - columns @ np.linalg.lstsq(columns, values)[0]
+    freedom = len(values) - len(lags)
+    ratio = (values @ values / (left @ left) - 1) * freedom / len(lags)
+    assert not found.is_coloured
+    assert found.independent == pytest.approx(f.sf(ratio, len(lags), freedom), rel=1e-6)
+
+
+@pytest.mark.parametrize('scale', [1.0, 1e-6], ids=['range 1', 'range 1e-6'])
+def test_rounding_is_no_residual(scale):
+    y = scale * np.sin(T)
+    residual = 1e-13 * scale * coloured(1)
+    assert examine(replace(SIGNAL, y=y), residual).white is None
+    assert examine(replace(SIGNAL, y=y), 1e5 * residual).is_coloured
+
+
+def test_the_tests_of_long_records_keep_few_copies():
+    samples = 200_001
+    t = np.arange(samples) * 0.01
+    signal = Signal('phi', t, excite('u', {'type': 'prbs', 'amplitude': 0.1}, t),
+                    np.zeros(samples), 0.01, True)
+    residual = lfilter([1.0], [1.0, -0.6], white(1, samples))
+    signal = replace(signal, y=residual)
+    examine(SIGNAL, white(1))    # loads what it needs
+    tracemalloc.start()
+    try:
+        examine(signal, residual)
+        most = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    assert most < 3 * (signal.u.nbytes + signal.y.nbytes)

@@ -288,3 +288,40 @@ def test_values_beyond_computing_are_refused(value):
 def test_times_in_the_wrong_unit_are_refused():
     with pytest.raises(InputError, match='check the unit of t'):
         signals(record(np.arange(501) * 1e10))
+
+
+# Missing samples and what the errors do not count.
+
+def gapped(u, missing, jitter=0.0):
+    """Return the psi fit of a response to inputs (501,) of which some samples are not recorded."""
+    random = np.random.default_rng(3)
+    t = np.arange(501) * PERIOD
+    y = response(TRUTH, u, PERIOD)
+    y = y + 0.01 * np.ptp(y) * random.normal(size=501)
+    keep = ~np.isin(np.arange(501), missing)
+    t = t + jitter * PERIOD * random.uniform(-1, 1, 501) * (np.arange(501) > 0)
+    flight = record(t[keep], steps=(0, 0, 0, 0), u4=u[keep], psi=y[keep],
+                    info={'trim': list(HOVER), 'starts_at_rest': True, 'unwrapped': True})
+    result = identify([flight], Settings(methods=('vp',), compare_orders=False))
+    return result.remarks, result.methods['vp'].outputs['psi'].findings
+
+
+def test_an_input_that_changed_within_a_gap_is_a_finding():
+    u = np.where(np.arange(501) // 50 % 2, 0.1, -0.1)
+    _, findings = gapped(u, [99, 100, 220, 330, 331, 400])
+    [said] = [finding for finding in findings if 'gaps' in finding]
+    assert 'between the two sides of 2 of 4 gaps' in said and 'too small' in said
+
+
+@pytest.mark.parametrize('missing', [[], [220, 330, 331]], ids=['none', 'while it stood'])
+def test_gaps_in_which_the_input_stood_are_none(missing):
+    u = np.where(np.arange(501) // 50 % 2, 0.1, -0.1)
+    assert not [finding for finding in gapped(u, missing)[1] if 'gaps' in finding]
+
+
+def test_uneven_records_say_the_same_where_they_are_resampled():
+    u = np.where(np.arange(501) // 50 % 2, 0.1, -0.1)
+    [said] = [remark for remark in gapped(u, [99, 100, 220], 0.1)[0] if 'resampled' in remark]
+    assert 'between the two sides of 1 of 2 gaps' in said
+    [said] = [remark for remark in gapped(u, [220], 0.1)[0] if 'resampled' in remark]
+    assert 'two sides' not in said
