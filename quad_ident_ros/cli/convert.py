@@ -7,6 +7,7 @@ from pathlib import Path
 
 from quad_ident_ros.cli.identify import progress_bar
 from quad_ident_ros.cli.options import flights_from
+from quad_ident_ros.cli.outputs import refuse_overwriting
 from quad_ident_ros.data.export import save
 from quad_ident_ros.report.data import write_json
 
@@ -41,8 +42,11 @@ def run(options):
     with progress_bar() as bar:
         task = bar.add_task(f'reading {options.flight}', total=None)
         flights = flights_from(options.flight, options.mapping, options.vehicle)
-        for number, record in enumerate(flights, 1):
-            path = out if len(flights) == 1 else _numbered(out, number)
+        paths = [out] if len(flights) == 1 else [_numbered(out, number) for number in
+                                                 range(1, len(flights) + 1)]
+        for path in paths:
+            refuse_overwriting(path, [options.flight])
+        for path, record in zip(paths, flights, strict=True):
             path.parent.mkdir(parents=True, exist_ok=True)
             bar.update(task, description=f'writing {path}', total=1.0, completed=0.0)
             save(path, record, lambda share: bar.update(task, completed=share))

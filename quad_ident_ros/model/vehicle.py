@@ -121,8 +121,15 @@ def vehicle_to_mapping(vehicle):
     return data
 
 
+def check_ending(path):
+    """Raise InputError where a path has not the ending of a vehicle file."""
+    if Path(path).suffix not in ('.yaml', '.yml'):
+        raise InputError(f'{path}: a vehicle is written to a .yaml file; name one')
+
+
 def write_vehicle(path, vehicle):
     """Write a vehicle file that load_vehicle reads back as it was; raises InputError."""
+    check_ending(path)
     text = yaml.safe_dump(vehicle_to_mapping(vehicle), sort_keys=False, default_flow_style=None)
     try:
         Path(path).write_text(text, encoding='utf-8')
