@@ -141,6 +141,19 @@ def test_convert_says_what_it_wrote(tmp_path, capsys):
     same(load(done['file']), SMALL)
 
 
+def test_a_last_line_that_is_left_out_is_said(tmp_path, capsys):
+    cut = tmp_path / 'f.csv'
+    write_csv(cut, flight())
+    cut.write_bytes(cut.read_bytes()[:-1])
+    assert main(['convert', str(cut), str(tmp_path / 'g.csv')]) == 0
+    assert 'note: the last line of the file has no line end and was left out' in (
+        capsys.readouterr().out)
+    assert len(load(tmp_path / 'g.csv')) == len(flight()) - 1
+    assert main(['info', str(cut), '--json', '-']) == 0
+    [finding] = json.loads(capsys.readouterr().out)['findings']
+    assert finding['code'] == 'truncated' and finding['severity'] == 'warning'
+
+
 def test_info_shows_what_the_json_has(tmp_path, capsys):
     record = changed(flight(), wx=np.degrees(flight().columns['wx']),
                      wy=np.degrees(flight().columns['wy']), wz=np.degrees(flight().columns['wz']))
@@ -163,4 +176,4 @@ def test_info_takes_any_record(tmp_path, capsys):
                  '-']) == 0
     data = json.loads(capsys.readouterr().out)
     assert data['columns']['x']['missing'] == 1
-    assert [finding['code'] for finding in data['findings']] == ['slow']
+    assert {finding['code'] for finding in data['findings']} == {'no_columns', 'slow'}

@@ -10,6 +10,7 @@ import numpy as np
 
 from quad_ident_ros.data.quality import (
     clock,
+    columns,
     excitation,
     frames,
     glitches,
@@ -23,11 +24,13 @@ from quad_ident_ros.data.quality.clock import clock_offset, ClockOffset, command
 from quad_ident_ros.data.quality.finding import Finding, SEVERITIES
 from quad_ident_ros.errors import InputError
 
-CHECKS = (timing.slow, timing.gaps, timing.duplicates, timing.reader_notes, stale.held,
-          stale.marked, glitches.attitude, units.rates_in_degrees, units.euler_in_degrees,
-          units.force_in_g, units.position_in_millimetres, units.speeds_in_rpm, frames.quaternion,
-          frames.world, frames.velocity_in_body, rotors.count, rotors.order_and_spin,
-          clock.attitude, clock.commands, saturation.speeds, excitation.axes)
+CHECKS = (columns.known, columns.incomplete, columns.frozen, columns.quaternions, columns.possible,
+          timing.slow, timing.gaps, timing.duplicates, timing.truncated, timing.reader_notes,
+          stale.held, stale.marked, glitches.attitude, units.rates_in_degrees,
+          units.euler_in_degrees, units.force_in_g, units.position_in_millimetres,
+          units.speeds_in_rpm, frames.quaternion, frames.world, frames.velocity_in_body,
+          rotors.hover, rotors.count, rotors.order_and_spin, clock.attitude, clock.commands,
+          saturation.speeds, excitation.axes)
 
 __all__ = ['CHECKS', 'clock_offset', 'ClockOffset', 'command_offset', 'Finding', 'findings',
            'refuse_errors', 'refuse_unfit', 'SEVERITIES']

@@ -6,6 +6,7 @@ import numpy as np
 
 from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.quality.series import GAP
+from quad_ident_ros.data.record import CUT
 
 SLOWEST = 0.25    # s between samples: of a rollout of 0.5 s no more than its end is then seen
 
@@ -61,6 +62,14 @@ def _at_rest(same):
     """Whether all repeats lie at the beginning or the end."""
     changes = np.flatnonzero(~same)
     return not same[changes[0]:changes[-1]].any()
+
+
+def truncated(record, vehicle):
+    """Find files whose last line was left out."""
+    if not record.info.get('truncated'):
+        return []
+    return [Finding('truncated', 'warning', 'file', CUT,
+                    'if the line is whole, end it with a line end')]
 
 
 def reader_notes(record, vehicle):
