@@ -141,6 +141,26 @@ def test_convert_says_what_it_wrote(tmp_path, capsys):
     same(load(done['file']), SMALL)
 
 
+@pytest.mark.parametrize('name', ['bag', 'f.mcap'])
+def test_an_interrupted_conversion_leaves_nothing_and_can_be_repeated(tmp_path, name):
+    def interrupt(share):
+        if share > 0:
+            raise KeyboardInterrupt
+    with pytest.raises(KeyboardInterrupt):
+        save(tmp_path / name, flight(), interrupt)
+    assert list(tmp_path.iterdir()) == []
+    save(tmp_path / name, flight())
+    same(load(tmp_path / name), flight())
+
+
+def test_a_folder_that_was_there_before_is_left_alone(tmp_path):
+    (tmp_path / 'bag').mkdir()
+    (tmp_path / 'bag' / 'mine').write_text('kept')
+    with pytest.raises((InputError, OSError)):
+        save(tmp_path / 'bag', SMALL)
+    assert (tmp_path / 'bag' / 'mine').read_text() == 'kept'
+
+
 def test_a_last_line_that_is_left_out_is_said(tmp_path, capsys):
     cut = tmp_path / 'f.csv'
     write_csv(cut, flight())
