@@ -16,11 +16,15 @@ def check_outputs(options):
     """
     Check, before any work, where the options of a command have it write.
 
-    Raises InputError for an output that is an input, and for a vehicle file of another ending.
+    Raises InputError for an output that is an input or lies in a file, and for a vehicle file of
+    another ending.
     """
     inputs = _named(options, INPUTS)
     for output in _named(options, OUTPUTS):
         refuse_overwriting(output, inputs)
+        for folder in Path(output).parents:
+            if folder.exists() and not folder.is_dir():
+                raise InputError(f'{output}: {folder} is a file, no folder; give another path')
     for output in _named(options, ('out_vehicle',)):
         check_ending(output)
 

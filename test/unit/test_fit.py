@@ -10,6 +10,7 @@ import pytest
 
 from benchmarks.flights import FlightProblem, NAMES, NOISE, VEHICLE, with_constants
 from quad_ident_ros.cli.main import main
+from quad_ident_ros.data.commands import with_inputs
 from quad_ident_ros.data.csv import write_csv
 from quad_ident_ros.data.quality import Finding, findings
 from quad_ident_ros.data.record import FlightRecord
@@ -24,7 +25,8 @@ from quad_ident_ros.greybox.identifiable import freedoms
 from quad_ident_ros.greybox.linear import errors_along, linearise
 from quad_ident_ros.greybox.normal import CHANCE, Normal, scatter_of
 from quad_ident_ros.greybox.parameters import INDEX, nominal
-from quad_ident_ros.model.dynamics import STATES
+from quad_ident_ros.model.dynamics import course_of, STATES, states_of
+from quad_ident_ros.model.mixing import with_commands
 from quad_ident_ros.model.vehicle import load_vehicle, write_vehicle
 
 DRAWS = 20
@@ -296,6 +298,26 @@ def test_a_flight_whose_times_are_in_milliseconds_is_refused_as_info_says(proble
     assert wanted.severity == 'error' and 'in seconds' in wanted.remedy
     with pytest.raises(InputError, match='late.csv: t: a sample every 10 s is too slow'):
         fit([record], VEHICLE, ['inertia_x'])
+
+
+def test_angles_and_inputs_do_instead_of_quaternion_and_commands(problem):
+    clean = with_inputs(problem.clean, VEHICLE)
+    part = {name: values for name, values in clean.columns.items()
+            if name[0] != 'q' and not name.startswith('cmd')}
+    angles = dict(zip(('phi', 'theta', 'psi'), clean.euler().T, strict=True))
+    other = with_commands(FlightRecord(clean.t, {**part, **angles}, clean.info), VEHICLE)
+    np.testing.assert_allclose(course_of(other, VEHICLE).commands,
+                               course_of(clean, VEHICLE).commands, rtol=1e-6)
+    one, same = states_of(other)[:, 6:10], states_of(clean)[:, 6:10]
+    np.testing.assert_allclose(np.abs(np.sum(one * same, axis=1)), 1.0, atol=1e-12)
+
+
+def test_a_quaternion_that_is_zero_names_its_flight(problem):
+    zero = with_columns(problem.clean, **{name: 0 * problem.clean.t for name in
+                                          ('qw', 'qx', 'qy', 'qz')})
+    named = FlightRecord(zero.t, zero.columns, {'source': 'second.csv'})
+    with pytest.raises(InputError, match='second.csv: sample 0: the quaternion'):
+        fit([problem.clean, named], VEHICLE, ['mass'])
 
 
 def test_a_flight_that_moves_an_axis_makes_up_for_one_that_does_not():
