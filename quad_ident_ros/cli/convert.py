@@ -7,7 +7,9 @@ from pathlib import Path
 
 from quad_ident_ros.cli.identify import progress_bar
 from quad_ident_ros.cli.options import flights_from
+from quad_ident_ros.cli.outputs import refuse_overwriting
 from quad_ident_ros.data.export import save
+from quad_ident_ros.data.record import CUT
 from quad_ident_ros.report.data import write_json
 
 
@@ -17,8 +19,9 @@ def add(commands):
         'convert', help='write a flight record in another format',
         formatter_class=argparse.RawDescriptionHelpFormatter,
         description='Read a flight (CSV, rosbag2, PX4 ULog) and write it as CSV or as a bag. '
-                    'Nothing is lost: every\ncolumn, known or not, reads back number for number. '
-                    'A bag with several flights makes several\nfiles, OUT_1, OUT_2, ...',
+                    'Nothing is lost: every\ncolumn, known or not, reads back number for number; '
+                    'what could not be read is noted.\nA bag with several flights makes several '
+                    'files, OUT_1, OUT_2, ...',
         epilog='  quad_ident convert flight.csv.gz flight.mcap\n'
                '  quad_ident convert recording_1/bag flights.csv\n'
                '  quad_ident convert log_12.ulg out.csv --mapping px4.yaml --vehicle quad.yaml\n'
@@ -41,14 +44,18 @@ def run(options):
     with progress_bar() as bar:
         task = bar.add_task(f'reading {options.flight}', total=None)
         flights = flights_from(options.flight, options.mapping, options.vehicle)
-        for number, record in enumerate(flights, 1):
-            path = out if len(flights) == 1 else _numbered(out, number)
+        paths = [out] if len(flights) == 1 else [_numbered(out, number) for number in
+                                                 range(1, len(flights) + 1)]
+        for path in paths:
+            refuse_overwriting(path, [options.flight])
+        for path, record in zip(paths, flights, strict=True):
             path.parent.mkdir(parents=True, exist_ok=True)
             bar.update(task, description=f'writing {path}', total=1.0, completed=0.0)
             save(path, record, lambda share: bar.update(task, completed=share))
             done.append({'file': str(path), 'samples': len(record),
                          'columns': ['t', *record.columns],
-                         'notes': list(record.info.get('notes', ()))})
+                         'notes': [*record.info.get('notes', ()),
+                                   *([CUT] if record.info.get('truncated') else [])]})
     if options.json != '-':
         for entry in done:
             print(f'{entry["file"]}: {entry["samples"]} samples of {", ".join(entry["columns"])}')

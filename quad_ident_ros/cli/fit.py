@@ -3,12 +3,16 @@
 """`quad_ident fit`: chosen physical parameters from flights."""
 
 import argparse
+from dataclasses import replace
 import textwrap
 
 from quad_ident_ros.cli.identify import progress_bar
 from quad_ident_ros.cli.options import flights_from
+from quad_ident_ros.data.quality import refuse_unfit
 from quad_ident_ros.effects.registry import EFFECTS
+from quad_ident_ros.greybox.cautions import cautions
 from quad_ident_ros.greybox.free import columns_of_names, UNITS
+from quad_ident_ros.model.mixing import with_commands
 from quad_ident_ros.model.vehicle import load_vehicle, write_vehicle
 from quad_ident_ros.report.data import write_json
 from quad_ident_ros.report.table import console
@@ -48,16 +52,21 @@ def run(options):
     from quad_ident_ros.greybox.fit import as_data, fit, fitted_vehicle
     names = [name.strip() for name in options.free.split(',') if name.strip()]
     vehicle = load_vehicle(options.vehicle)
-    columns_of_names(names, vehicle)   # before the flights are read: a name that is wrong
+    free = columns_of_names(names, vehicle)   # before the flights are read: a name that is wrong
     with progress_bar() as bar:
         task = bar.add_task('', total=1.0)
         records = []
         for number, path in enumerate(options.flights):
             bar.update(task, description=f'reading {path}',
                        completed=number / len(options.flights))
-            records += flights_from(path, options.mapping, options.vehicle)
+            records += [with_commands(record, vehicle) for record in
+                        flights_from(path, options.mapping, options.vehicle)]
+        bar.update(task, description='looking for faults')
+        quality = [refuse_unfit(record, vehicle) for record in records]
         found = fit(records, vehicle, names, lambda share: bar.update(
             task, description='fitting', completed=share))
+    found = replace(found, findings=(*found.findings, *cautions(
+        tuple(zip(found.flights, quality, strict=True)), free)))
     if options.json != '-':
         show(found)
     if options.out_vehicle:

@@ -20,6 +20,7 @@ from quad_ident_ros.cli import (
     warm_up,
     withheld,
 )
+from quad_ident_ros.cli.outputs import check_outputs
 from quad_ident_ros.errors import InputError
 
 COMMANDS = (demo, simulate, fly, identify, fit, diagnose, info, convert, paper, withheld, node,
@@ -66,6 +67,7 @@ def main(args=None):
         if hasattr(stream, 'reconfigure'):
             stream.reconfigure(errors='replace')
     try:
+        check_outputs(options)
         return options.run(options) or 0
     except InputError as error:
         print(f'quad_ident {options.command}: error: {error}', file=sys.stderr)

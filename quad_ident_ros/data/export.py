@@ -23,7 +23,8 @@ def save(path, record, on_progress=None):
     """
     Write a flight record to .csv, .csv.gz, .mcap, or a new rosbag2 folder (no ending).
 
-    Every number reads back as it was. on_progress is called with the share that is written.
+    Every number reads back as it was, or nothing is left where it fails or is interrupted.
+    on_progress is called with the share that is written.
     Raises InputError for another ending or a folder that is there already, OSError where the disk
     refuses.
     """
@@ -54,14 +55,20 @@ def write_bag(path, record, on_progress=None):
     stamps = start + np.round(shift).astype(np.int64)
     topics = _topics(record)
     table, labels = record_table(record)
-    with BagWriter(path, [*((name, kind) for name, kind, _ in topics),
-                          (EXACT_TOPIC, ARRAY_TYPE)]) as writer:
-        for number, (name, kind, fields) in enumerate(topics):
-            if on_progress is not None:
-                on_progress(number / len(topics))
-            for stamp, values in zip(stamps.tolist(), fields.tolist(), strict=True):
-                writer.write(name, stamp, serialize(kind, _message(name, kind, stamp, values)))
-        writer.write(EXACT_TOPIC, int(stamps[-1]), serialize(ARRAY_TYPE, _array(table, labels)))
+    writer = BagWriter(path, [*((name, kind) for name, kind, _ in topics),
+                              (EXACT_TOPIC, ARRAY_TYPE)])
+    try:
+        with writer:
+            for number, (name, kind, fields) in enumerate(topics):
+                if on_progress is not None:
+                    on_progress(number / len(topics))
+                for stamp, values in zip(stamps.tolist(), fields.tolist(), strict=True):
+                    writer.write(name, stamp, serialize(kind, _message(name, kind, stamp, values)))
+            writer.write(EXACT_TOPIC, int(stamps[-1]),
+                         serialize(ARRAY_TYPE, _array(table, labels)))
+    except BaseException:   # an interrupt too: half a bag is no flight, and bars the next try
+        shutil.rmtree(path, ignore_errors=True)
+        raise
 
 
 def _topics(record):

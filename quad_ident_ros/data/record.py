@@ -66,6 +66,10 @@ def find_fault(t, columns):
     return None
 
 
+CUT = ('the last line of the file has no line end and was left out: a recording that was cut off '
+       'there may have cut its last number')
+"""What the info `truncated` of a record means."""
+
 # What holds for a record only from its first sample on.
 FIRST_SAMPLE_INFO = ('starts_at_rest', 'initial')
 

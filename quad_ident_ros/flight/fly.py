@@ -16,6 +16,7 @@ from quad_ident_ros.model.attitude import quaternion_from_euler, rotation_matrix
 from quad_ident_ros.model.dynamics import STATES
 from quad_ident_ros.model.rigid_body import rotor_table, STATE, vehicle_vector
 from quad_ident_ros.model.sensors import recorded, turn
+from quad_ident_ros.model.vehicle import hover_fault
 
 FULL_VOLTAGE = 16.8     # V at the start of every flight: the voltage of reference
 FALL = 0.015            # V/s at hover power: some four minutes of flight with four cells
@@ -45,6 +46,9 @@ def fly_closed_loop(vehicle, effects, trajectory, *, duration=30.0, rate=100.0, 
         raise InputError(f'{duration:g} s at {rate:g} Hz are more than {MOST_SAMPLES} samples; '
                          'shorten the flight or lower the rate')
     seed = schema.integer('seed', seed, 0)
+    fault = hover_fault(vehicle)
+    if fault:
+        raise InputError('; '.join(fault))
     theta = vector(effects, vehicle)
     course = plan(trajectory, vehicle, duration, seed)
     t = np.arange(int(duration * rate + 1e-6) + 1) / rate

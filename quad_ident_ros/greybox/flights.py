@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from quad_ident_ros.data.frames import continuous
+from quad_ident_ros.data.quality import refuse_errors, timing
 from quad_ident_ros.data.quality.glitches import glitches
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.greybox.errors import ERRORS, GROUPS
@@ -46,11 +47,12 @@ class Flight:
 
 def flight_of(record, vehicle, *, reference_voltage=None, segment=SEGMENT, every=None):
     """
-    Return the Flight of a record; raises InputError where it lacks columns or is too short.
+    Return the Flight of a record; InputError where it lacks columns, is too short or too slow.
 
     Args: reference_voltage V, see dynamics.course_of; segment s of each rollout; every s from one
     start to the next, by default the length of a rollout, so that they do not overlap.
     """
+    refuse_errors(record, timing.slow(record, vehicle))
     course, states = course_of(record, vehicle, reference_voltage), states_of(record)
     period = float(np.median(np.diff(course.t)))
     seen = np.ones((len(states), ERRORS), bool)

@@ -8,6 +8,7 @@ import numpy as np
 
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.actuators import actuated
+from quad_ident_ros.model.attitude import quaternion_from_euler
 from quad_ident_ros.model.rigid_body import INPUT, rotor_table, STATE, vehicle_vector
 from quad_ident_ros.model.rollout import roll_out, roll_out_one
 from quad_ident_ros.model.sensors import acts, recorded, underlying
@@ -45,12 +46,21 @@ def course_of(record, vehicle, reference_voltage=None):
 
 
 def states_of(record):
-    """Return the recorded states, (N, 13), quaternions of unit length; InputError where none."""
-    states = record.stack(*STATES)
+    """
+    Return the recorded states, (N, 13), quaternions of unit length; InputError where none.
+
+    Where the record has phi, theta, psi instead of the quaternion, that is made from them.
+    """
+    if record.has(*STATES[6:10]) or not record.has('phi', 'theta', 'psi'):
+        states = record.stack(*STATES)
+    else:
+        attitude = quaternion_from_euler(record.stack('phi', 'theta', 'psi'))
+        states = np.hstack([record.stack(*STATES[:6]), attitude, record.stack(*STATES[10:])])
     norm = np.linalg.norm(states[:, 6:10], axis=1, keepdims=True)
     if not (norm > 0.5).all():
-        raise InputError(f'sample {int(np.argmin(norm))}: the quaternion qw, qx, qy, qz has the '
-                         f'length {float(norm.min()):g}, expected 1')
+        name = record.info.get('source') or record.info.get('name', 'flight')
+        raise InputError(f'{name}: sample {int(np.argmin(norm))}: the quaternion qw, qx, qy, qz '
+                         f'has the length {float(norm.min()):g}, expected 1')
     states[:, 6:10] /= norm
     return states
 

@@ -8,7 +8,6 @@ rotor radius, linear drag (3), rotational drag (3), 1 where the linear drag acts
 sum of the hover speeds.
 """
 
-import math
 
 import numpy as np
 
@@ -83,12 +82,10 @@ INPUT = 6       # besides the rotors: force z, moment x, y, z (body), spin sum, 
 
 def vehicle_vector(vehicle, drag_in_world=False):
     """Return the constants of the equations of motion, (16,), in the order stated above."""
-    hover = math.sqrt(vehicle.mass * vehicle.gravity
-                      / (len(vehicle.rotors) * vehicle.thrust_coefficient))
     return np.array([vehicle.mass, *vehicle.inertia, vehicle.gravity, vehicle.thrust_coefficient,
                      vehicle.torque_coefficient, vehicle.rotor_radius, *vehicle.linear_drag,
                      *vehicle.rotational_drag, float(drag_in_world),
-                     len(vehicle.rotors) * hover])
+                     len(vehicle.rotors) * vehicle.hover_speed])
 
 
 def rotor_table(vehicle):

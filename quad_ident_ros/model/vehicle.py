@@ -13,6 +13,8 @@ from quad_ident_ros import resources, schema
 from quad_ident_ros.effects import registry
 from quad_ident_ros.errors import InputError
 
+LEAST_HOVER = 0.03  # of speed_max: the rotors would carry a thousand times the weight
+
 
 @dataclass(frozen=True)
 class Rotor:
@@ -53,9 +55,31 @@ class Vehicle:
         return float(np.mean([np.hypot(r.position[0], r.position[1]) for r in self.rotors]))
 
     @property
+    def hover_speed(self):
+        """Speed of each rotor, rad/s, at which they all carry the weight."""
+        return math.sqrt(self.mass * self.gravity / (len(self.rotors) * self.thrust_coefficient))
+
+    @property
     def hover_input(self):
         """Inputs U1..U4 (4,) that hold the vehicle still: the weight on U1, N."""
         return np.array([self.mass * self.gravity, 0.0, 0.0, 0.0])
+
+
+def hover_fault(vehicle):
+    """Return (what, how to mend it) where a vehicle cannot hover by its file, or None."""
+    hover, low, high = vehicle.hover_speed, vehicle.speed_min, vehicle.speed_max
+    if hover >= high:
+        limit = f'beyond its speed_max of {high:g} rad/s: it cannot take off'
+    elif hover <= low:
+        limit = f'below its speed_min of {low:g} rad/s: it cannot come down'
+    elif math.isfinite(high) and hover < LEAST_HOVER * high:
+        limit = (f'at {100 * hover / high:.2g} % of its speed_max of {high:g} rad/s: no vehicle '
+                 'is so strong')
+    else:
+        return None
+    return (f'{vehicle.name} would hover at {hover:.4g} rad/s, {limit}',
+            'correct mass (kg), thrust_coefficient (N/(rad/s)^2), rotors or limits (rad/s) in the '
+            'vehicle file')
 
 
 def load_vehicle(name_or_path):
@@ -121,8 +145,15 @@ def vehicle_to_mapping(vehicle):
     return data
 
 
+def check_ending(path):
+    """Raise InputError where a path has not the ending of a vehicle file."""
+    if Path(path).suffix not in ('.yaml', '.yml'):
+        raise InputError(f'{path}: a vehicle is written to a .yaml file; name one')
+
+
 def write_vehicle(path, vehicle):
     """Write a vehicle file that load_vehicle reads back as it was; raises InputError."""
+    check_ending(path)
     text = yaml.safe_dump(vehicle_to_mapping(vehicle), sort_keys=False, default_flow_style=None)
     try:
         Path(path).write_text(text, encoding='utf-8')

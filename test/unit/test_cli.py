@@ -16,7 +16,7 @@ from quad_ident_ros.errors import InputError
 from quad_ident_ros.experiment import fly, load_experiment
 from quad_ident_ros.identify.identify import identify, Settings
 from quad_ident_ros.model.mixing import squared_speeds
-from quad_ident_ros.model.vehicle import load_vehicle
+from quad_ident_ros.model.vehicle import load_vehicle, write_vehicle
 
 
 @pytest.fixture(scope='module')
@@ -99,6 +99,52 @@ def test_inputs_come_from_rotor_commands_with_the_vehicle_named(flights, tmp_pat
     assert '--vehicle' in capsys.readouterr().err
     with pytest.raises(InputError, match='4 rotor commands .* 8 rotors'):
         with_inputs(read_csv(path), replace(vehicle, rotors=2 * vehicle.rotors))
+
+
+OVERWRITING = {
+    'fit': 'fit FLIGHT --vehicle VEHICLE --free mass --out-vehicle FLIGHT',
+    'fit, its vehicle': 'fit FLIGHT --vehicle VEHICLE --free mass --out-vehicle VEHICLE',
+    'fit, data': 'fit FLIGHT --vehicle VEHICLE --free mass --json FLIGHT',
+    'diagnose': 'diagnose FLIGHT --vehicle VEHICLE --out-vehicle FLIGHT',
+    'diagnose, held out': 'diagnose x --hold-out FLIGHT --vehicle VEHICLE --report FLIGHT',
+    'convert': 'convert FLIGHT FLIGHT',
+    'convert, by another name': 'convert FLIGHT FOLDER/sub/../flight.csv',
+    'convert, into the bag': 'convert FOLDER/sub FOLDER/sub/flight.csv',
+    'fly': 'fly hover --vehicle VEHICLE -o VEHICLE',
+    'info': 'info FLIGHT --json FLIGHT',
+    'identify': 'identify FLIGHT --picture FLIGHT',
+}
+
+
+@pytest.mark.parametrize('call', OVERWRITING.values(), ids=OVERWRITING)
+def test_no_command_writes_over_what_it_reads(call, flights, tmp_path, capsys):
+    flight, vehicle = tmp_path / 'flight.csv', tmp_path / 'vehicle.yaml'
+    flight.write_bytes(flights['z'].read_bytes())
+    write_vehicle(vehicle, load_vehicle('paper_quadrotor'))
+    (tmp_path / 'sub').mkdir()
+    before = {path: path.read_bytes() for path in (flight, vehicle)}
+    words = [word.replace('FLIGHT', str(flight)).replace('VEHICLE', str(vehicle))
+             .replace('FOLDER', str(tmp_path)) for word in call.split()]
+    assert main(words) == 2
+    assert 'which is read; give another name' in capsys.readouterr().err
+    assert before == {path: path.read_bytes() for path in (flight, vehicle)}
+    assert list((tmp_path / 'sub').iterdir()) == []
+
+
+def test_a_file_in_the_place_of_a_folder_is_named(flights, tmp_path, capsys):
+    (tmp_path / 'b.csv').write_text('mine')
+    assert main(['convert', str(flights['z']), str(tmp_path / 'b.csv' / 'x.csv')]) == 2
+    assert f'{tmp_path / "b.csv"} is a file, no folder' in capsys.readouterr().err
+
+
+@pytest.mark.parametrize('call', ['fit FLIGHT --vehicle paper_quadrotor --free mass',
+                                  'diagnose FLIGHT --vehicle paper_quadrotor'])
+def test_a_vehicle_is_written_to_no_other_kind_of_file(call, flights, tmp_path, capsys):
+    other = tmp_path / 'other.csv'
+    other.write_text('mine')
+    words = call.replace('FLIGHT', str(flights['z'])).split()
+    assert main([*words, '--out-vehicle', str(other)]) == 2
+    assert 'to a .yaml file' in capsys.readouterr().err and other.read_text() == 'mine'
 
 
 # FLIGHT stands for a flight, FOLDER for an empty folder.

@@ -10,10 +10,14 @@ import pytest
 
 from benchmarks.flights import FlightProblem, NAMES, NOISE, VEHICLE, with_constants
 from quad_ident_ros.cli.main import main
+from quad_ident_ros.data.commands import with_inputs
 from quad_ident_ros.data.csv import write_csv
+from quad_ident_ros.data.quality import Finding, findings
+from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import Noise, Sensors
+from quad_ident_ros.greybox.cautions import cautions
 from quad_ident_ros.greybox.errors import difference, moved
 from quad_ident_ros.greybox.fit import as_data, fit, fitted_vehicle
 from quad_ident_ros.greybox.flights import flight_of
@@ -21,7 +25,8 @@ from quad_ident_ros.greybox.identifiable import freedoms
 from quad_ident_ros.greybox.linear import errors_along, linearise
 from quad_ident_ros.greybox.normal import CHANCE, Normal, scatter_of
 from quad_ident_ros.greybox.parameters import INDEX, nominal
-from quad_ident_ros.model.dynamics import STATES
+from quad_ident_ros.model.dynamics import course_of, STATES, states_of
+from quad_ident_ros.model.mixing import with_commands
 from quad_ident_ros.model.vehicle import load_vehicle, write_vehicle
 
 DRAWS = 20
@@ -255,6 +260,85 @@ def test_the_command_refuses_in_one_line(problem, tmp_path, capsys):
     write_csv(flight, problem.clean.slice(0, 20))
     assert main(['fit', str(flight), '--vehicle', 'paper_quadrotor', '--free', 'mass']) == 2
     assert capsys.readouterr().err.count('\n') == 1
+
+
+def run_on(record, tmp_path, *more):
+    path, vehicle = tmp_path / 'flight.csv', tmp_path / 'vehicle.yaml'
+    write_csv(path, record)
+    write_vehicle(vehicle, VEHICLE)
+    return main(['fit', str(path), '--vehicle', str(vehicle), *more])
+
+
+def with_columns(record, **columns):
+    return FlightRecord(record.t, {**record.columns, **columns}, record.info)
+
+
+FAULTS = {
+    'rate_in_degrees': lambda c: {name: np.degrees(c[name]) for name in ('wx', 'wy', 'wz')},
+    'rotor_order': lambda c: {'cmd1': c['cmd3'], 'cmd3': c['cmd1']},
+    'rotor_count': lambda c: {'cmd5': c['cmd1'], 'cmd6': c['cmd2']},
+    'quaternion_order': lambda c: {'qw': c['qx'], 'qx': c['qy'], 'qy': c['qz'], 'qz': c['qw']},
+}
+
+
+@pytest.mark.parametrize('code', FAULTS)
+def test_the_command_refuses_what_info_calls_an_error(problem, tmp_path, capsys, code):
+    record = with_columns(problem.clean, **FAULTS[code](problem.clean.columns))
+    [wanted] = [finding for finding in findings(record, VEHICLE) if finding.code == code]
+    assert run_on(record, tmp_path, '--free', 'thrust_coefficient') == 2
+    said = capsys.readouterr().err
+    assert wanted.message in said and wanted.remedy in said and said.count('\n') == 1
+
+
+def test_an_axis_that_no_flight_moves_and_warnings_are_said_beside_the_values(tmp_path, capsys):
+    record = fly_closed_loop(VEHICLE, {}, 'hover', duration=10.0, noise=WHITE)
+    hot = record.columns['cmd1'].copy()
+    hot[:200] = VEHICLE.speed_max
+    assert run_on(with_columns(record, cmd1=hot), tmp_path, '--free', 'inertia_z', '--json',
+                  '-') == 0
+    said = json.loads(capsys.readouterr().out)['findings']
+    [still] = [line for line in said if 'yaw axis is hardly excited' in line]
+    assert still.startswith('inertia_z:') and not [line for line in said if 'roll axis' in line]
+    assert [line for line in said if 'at or beyond speed_max' in line]
+
+
+def test_a_flight_whose_times_are_in_milliseconds_is_refused_as_info_says(problem):
+    clean = problem.clean
+    record = FlightRecord(1000 * clean.t, clean.columns, {'name': 'late.csv'})
+    [wanted] = [finding for finding in findings(record) if finding.code == 'slow']
+    assert wanted.severity == 'error' and 'in seconds' in wanted.remedy
+    with pytest.raises(InputError, match='late.csv: t: a sample every 10 s is too slow'):
+        fit([record], VEHICLE, ['inertia_x'])
+
+
+def test_angles_and_inputs_do_instead_of_quaternion_and_commands(problem):
+    clean = with_inputs(problem.clean, VEHICLE)
+    part = {name: values for name, values in clean.columns.items()
+            if name[0] != 'q' and not name.startswith('cmd')}
+    angles = dict(zip(('phi', 'theta', 'psi'), clean.euler().T, strict=True))
+    other = with_commands(FlightRecord(clean.t, {**part, **angles}, clean.info), VEHICLE)
+    np.testing.assert_allclose(course_of(other, VEHICLE).commands,
+                               course_of(clean, VEHICLE).commands, rtol=1e-6)
+    one, same = states_of(other)[:, 6:10], states_of(clean)[:, 6:10]
+    np.testing.assert_allclose(np.abs(np.sum(one * same, axis=1)), 1.0, atol=1e-12)
+
+
+def test_a_quaternion_that_is_zero_names_its_flight(problem):
+    zero = with_columns(problem.clean, **{name: 0 * problem.clean.t for name in
+                                          ('qw', 'qx', 'qy', 'qz')})
+    named = FlightRecord(zero.t, zero.columns, {'source': 'second.csv'})
+    with pytest.raises(InputError, match='second.csv: sample 0: the quaternion'):
+        fit([problem.clean, named], VEHICLE, ['mass'])
+
+
+def test_a_flight_that_moves_an_axis_makes_up_for_one_that_does_not():
+    still = Finding('excitation', 'info', 'yaw', 'hardly', 'move it')
+    late = Finding('clock_offset', 'warning', 'gyro', 'late', 'shift it')
+    assert cautions((('a', (still,)), ('b', ())), ['inertia_z']) == []
+    assert len(cautions((('a', (still,)), ('b', (still,))), ['inertia_z'])) == 1
+    assert cautions((('a', (still,)),), ['mass']) == []
+    assert cautions((('a', (late,)), ('b', (late,))), ['mass']) == [
+        'a (and 1 more): gyro: late; shift it']
 
 
 def test_effects_that_were_freed_are_in_the_vehicle_written(problem):

@@ -141,6 +141,39 @@ def test_convert_says_what_it_wrote(tmp_path, capsys):
     same(load(done['file']), SMALL)
 
 
+@pytest.mark.parametrize('name', ['bag', 'f.mcap'])
+def test_an_interrupted_conversion_leaves_nothing_and_can_be_repeated(tmp_path, name):
+    def interrupt(share):
+        if share > 0:
+            raise KeyboardInterrupt
+    with pytest.raises(KeyboardInterrupt):
+        save(tmp_path / name, flight(), interrupt)
+    assert list(tmp_path.iterdir()) == []
+    save(tmp_path / name, flight())
+    same(load(tmp_path / name), flight())
+
+
+def test_a_folder_that_was_there_before_is_left_alone(tmp_path):
+    (tmp_path / 'bag').mkdir()
+    (tmp_path / 'bag' / 'mine').write_text('kept')
+    with pytest.raises((InputError, OSError)):
+        save(tmp_path / 'bag', SMALL)
+    assert (tmp_path / 'bag' / 'mine').read_text() == 'kept'
+
+
+def test_a_last_line_that_is_left_out_is_said(tmp_path, capsys):
+    cut = tmp_path / 'f.csv'
+    write_csv(cut, flight())
+    cut.write_bytes(cut.read_bytes()[:-1])
+    assert main(['convert', str(cut), str(tmp_path / 'g.csv')]) == 0
+    assert 'note: the last line of the file has no line end and was left out' in (
+        capsys.readouterr().out)
+    assert len(load(tmp_path / 'g.csv')) == len(flight()) - 1
+    assert main(['info', str(cut), '--json', '-']) == 0
+    [finding] = json.loads(capsys.readouterr().out)['findings']
+    assert finding['code'] == 'truncated' and finding['severity'] == 'warning'
+
+
 def test_info_shows_what_the_json_has(tmp_path, capsys):
     record = changed(flight(), wx=np.degrees(flight().columns['wx']),
                      wy=np.degrees(flight().columns['wy']), wz=np.degrees(flight().columns['wz']))
@@ -162,4 +195,5 @@ def test_info_takes_any_record(tmp_path, capsys):
     assert main(['info', str(tmp_path / 'f.csv'), '--vehicle', 'paper_quadrotor', '--json',
                  '-']) == 0
     data = json.loads(capsys.readouterr().out)
-    assert data['columns']['x']['missing'] == 1 and data['findings'] == []
+    assert data['columns']['x']['missing'] == 1
+    assert {finding['code'] for finding in data['findings']} == {'no_columns', 'slow'}

@@ -15,6 +15,7 @@ from quad_ident_ros.data.load import load
 from quad_ident_ros.data.quality import clock_offset, command_offset, findings, SEVERITIES
 from quad_ident_ros.data.quality.excitation import excitation
 from quad_ident_ros.data.record import FlightRecord
+from quad_ident_ros.errors import InputError
 from quad_ident_ros.experiment import fly, load_experiment
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import FAULTY, MOCAP_IMU
@@ -396,6 +397,18 @@ def test_every_wrong_set_of_spins_is_found(spins):
     assert str([rotor.spin for rotor in VEHICLE.rotors]) in finding.message
 
 
+@pytest.mark.parametrize('wrong, said', [
+    ({'mass': 500.0}, 'beyond its speed_max'), ({'mass': 0.0005}, 'below its speed_min'),
+    ({'thrust_coefficient': 1.2e-6 / 91, 'speed_max': 1700.0}, 'beyond its speed_max'),
+    ({'speed_max': 178.0}, 'beyond its speed_max'), ({'speed_max': 1e6}, '% of its speed_max')])
+def test_a_vehicle_that_cannot_hover_is_found(wrong, said):
+    vehicle = replace(VEHICLE, **wrong)
+    [finding] = [finding for finding in findings(flight(), vehicle) if finding.code == 'hover']
+    assert finding.severity == 'error' and said in finding.message and 'kg' in finding.remedy
+    with pytest.raises(InputError, match='half_kilogram would hover at'):
+        fly_closed_loop(vehicle, {}, 'hover', duration=10.0)
+
+
 def test_saturated_commands_are_found():
     limit = 1080.0
     record = flight()
@@ -427,11 +440,55 @@ def test_excitation_is_that_of_the_signals():
 def test_any_columns_will_do():
     """A record of few columns has nothing to compare, and says nothing."""
     record = flight()
-    for names in ((), ('pz',), W, Q, CMD, (*V, *Q), ('u1', 'pz')):
+    for names in (('pz',), W, Q, CMD, (*V, *Q), ('u1', 'pz')):
         part = FlightRecord(record.t, {n: record.columns.get(n, record.columns['pz'])
                                        for n in names})
         assert not [f for f in findings(part, VEHICLE) if f.severity == 'error']
     assert findings(record.slice(0, 2), VEHICLE) == ()
+
+
+# --- columns
+
+def one(record, name, sample, value):
+    values = record.columns[name].copy()
+    values[sample] = value
+    return {name: values}
+
+
+UNFIT = {
+    'quaternion_zero, error': lambda r: {k: v for name in Q for k, v in
+                                         one(r, name, 7, 0.0).items()},
+    'quaternion_length, warning': lambda r: named(Q, 2 * r.stack(*Q)),
+    'impossible, error': lambda r: one(r, 'vx', 7, 1e300),
+    'impossible, error, once more': lambda r: one(r, 'cmd2', 7, -1e9),
+}
+
+
+@pytest.mark.parametrize('fault', UNFIT)
+def test_values_that_no_flight_has_are_found_and_their_place_is_named(fault):
+    record = changed(flight(), **UNFIT[fault](flight()))
+    code, severity = fault.split(', ')[:2]
+    [finding] = [finding for finding in findings(record, VEHICLE) if finding.code == code]
+    assert finding.severity == severity and 't = 0.0' in finding.where
+
+
+def test_nothing_but_time_and_unknown_columns_is_no_flight():
+    for columns in ({}, {'PX': flight().columns['px']}):
+        [finding] = findings(FlightRecord(flight().t, columns), VEHICLE)
+        assert finding.code == 'no_columns' and finding.severity == 'error'
+
+
+def test_a_quaternion_without_its_scalar_is_said():
+    part = {name: values for name, values in flight().columns.items() if name != 'qw'}
+    [finding] = findings(FlightRecord(flight().t, part), VEHICLE)
+    assert finding.code == 'incomplete' and finding.message.startswith('qw is missing')
+
+
+def test_a_recorder_that_stood_still_is_no_fault_of_frames():
+    record = flight()
+    columns = {name: np.full(len(record), values[700]) for name, values in record.columns.items()}
+    found = findings(FlightRecord(record.t, columns), VEHICLE)
+    assert {finding.code for finding in found if finding.severity == 'error'} == {'frozen'}
 
 
 def test_turning_back_and_forth_is_the_same():

@@ -10,6 +10,7 @@ import numpy as np
 
 from quad_ident_ros.data.quality import (
     clock,
+    columns,
     excitation,
     frames,
     glitches,
@@ -23,14 +24,16 @@ from quad_ident_ros.data.quality.clock import clock_offset, ClockOffset, command
 from quad_ident_ros.data.quality.finding import Finding, SEVERITIES
 from quad_ident_ros.errors import InputError
 
-CHECKS = (timing.gaps, timing.duplicates, timing.reader_notes, stale.held, stale.marked,
-          glitches.attitude, units.rates_in_degrees, units.euler_in_degrees, units.force_in_g,
-          units.position_in_millimetres, units.speeds_in_rpm, frames.quaternion, frames.world,
-          frames.velocity_in_body, rotors.count, rotors.order_and_spin, clock.attitude,
-          clock.commands, saturation.speeds, excitation.axes)
+CHECKS = (columns.known, columns.incomplete, columns.frozen, columns.quaternions, columns.possible,
+          timing.slow, timing.gaps, timing.duplicates, timing.truncated, timing.reader_notes,
+          stale.held, stale.marked, glitches.attitude, units.rates_in_degrees,
+          units.euler_in_degrees, units.force_in_g, units.position_in_millimetres,
+          units.speeds_in_rpm, frames.quaternion, frames.world, frames.velocity_in_body,
+          rotors.hover, rotors.count, rotors.order_and_spin, clock.attitude, clock.commands,
+          saturation.speeds, excitation.axes)
 
 __all__ = ['CHECKS', 'clock_offset', 'ClockOffset', 'command_offset', 'Finding', 'findings',
-           'refuse_unfit', 'SEVERITIES']
+           'refuse_errors', 'refuse_unfit', 'SEVERITIES']
 
 
 def findings(record, vehicle=None):
@@ -46,8 +49,15 @@ def findings(record, vehicle=None):
 
 
 def refuse_unfit(record, vehicle):
-    """Raise InputError where a record has a fault that no verdict survives."""
-    for finding in findings(record, vehicle):
+    """Return the Findings on a record; InputError for a fault that no verdict survives."""
+    found = findings(record, vehicle)
+    refuse_errors(record, found)
+    return found
+
+
+def refuse_errors(record, found):
+    """Raise InputError where one of the Findings on a record is an error."""
+    for finding in found:
         if finding.severity == 'error':
             name = record.info.get('source') or record.info.get('name', 'flight')
             raise InputError(f'{name}: {finding.where}: {finding.message}; {finding.remedy}')

@@ -10,6 +10,7 @@ from quad_ident_ros.data.quality.series import correlation, explained, Grid
 from quad_ident_ros.data.record import QUATERNION
 
 SURE, BETTER = 0.7, 0.3   # correlation that an explanation needs, and its lead
+STILL = 1e-6              # rad/s rms: an attitude that does not turn, but for rounding
 TURNED = 0.003            # share of its power by which a velocity in body axes is off at least
 
 
@@ -34,13 +35,16 @@ def readings(grid):
     found = {}
     gyro = (grid.smooth(grid.signal('wx', 'wy', 'wz'))[grid.good]
             if grid.record.has('wx', 'wy', 'wz') else None)
+    if gyro is None or _still(grid, q):
+        return {'as it is': (q, 1.0)}
     for name, read in READINGS.items():
         attitude = read(q)
-        sure = 1.0 if gyro is None else correlation(grid.rate_of(attitude)[grid.good], gyro)[0]
-        found[name] = attitude, sure
-        if gyro is None:
-            break
+        found[name] = attitude, correlation(grid.rate_of(attitude)[grid.good], gyro)[0]
     return found
+
+
+def _still(grid, attitude):
+    return np.sqrt(np.mean(grid.rate_of(attitude)[grid.good] ** 2)) < STILL
 
 
 def best_reading(grid):
@@ -60,7 +64,7 @@ def quaternion(record, vehicle):
     if grid is None or not record.has(*QUATERNION, 'wx', 'wy', 'wz'):
         return []
     name, attitude = best_reading(grid)
-    if attitude is None:
+    if attitude is None or _still(grid, attitude):
         return []
     if name != 'as it is':
         code = {'x, y, z, w': 'quaternion_order', 'world to body': 'quaternion_inverse'}

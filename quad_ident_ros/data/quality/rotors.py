@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Number, order and spin of the rotors, the latter from what the commands do to the body."""
+"""Whether the rotors carry the vehicle; their number, order and spin, by what commands do."""
 
 from itertools import permutations, product
 
@@ -9,6 +9,7 @@ import numpy as np
 from quad_ident_ros.data.quality import frames
 from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.quality.series import Grid
+from quad_ident_ros.model.vehicle import hover_fault
 
 SURE, BETTER = 0.5, 0.2   # mean correlation that an explanation needs, and its lead
 SLOW = 1.0                # s; what changes more slowly is trim, aerodynamics and battery
@@ -26,6 +27,12 @@ def count(record, vehicle):
         'rotor_count', 'error', f'{names[0]} to {names[-1]}',
         f'the record has the commands of {len(names)} rotors, {vehicle.name} has '
         f'{len(vehicle.rotors)}', 'name the vehicle that flew, or the columns cmd1, cmd2, ...')]
+
+
+def hover(record, vehicle):
+    """Find vehicle files whose vehicle could not hover."""
+    fault = hover_fault(vehicle) if vehicle is not None else None
+    return [Finding('hover', 'error', 'vehicle file', *fault)] if fault else []
 
 
 def order_and_spin(record, vehicle):

@@ -1,11 +1,27 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Gaps and duplicates in time, and what the reader had to leave out."""
+"""Rate, gaps and duplicates in time, and what the reader had to leave out."""
 
 import numpy as np
 
 from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.quality.series import GAP
+from quad_ident_ros.data.record import CUT
+
+SLOWEST = 0.25    # s between samples: of a rollout of 0.5 s no more than its end is then seen
+
+
+def slow(record, vehicle):
+    """Find records that are sampled too slowly to be held against rollouts."""
+    period = record.period()
+    if period <= SLOWEST:
+        return []
+    return [Finding(
+        'slow', 'error', 't',
+        f'a sample every {period:.4g} s is too slow to see a vehicle fly; at least every '
+        f'{SLOWEST:g} s is needed',
+        't is in seconds: divide it by 1000 where it is in ms, by 1e6 where it is in us; if it '
+        'is right, record faster')]
 
 
 def gaps(record, vehicle):
@@ -46,6 +62,14 @@ def _at_rest(same):
     """Whether all repeats lie at the beginning or the end."""
     changes = np.flatnonzero(~same)
     return not same[changes[0]:changes[-1]].any()
+
+
+def truncated(record, vehicle):
+    """Find files whose last line was left out."""
+    if not record.info.get('truncated'):
+        return []
+    return [Finding('truncated', 'warning', 'file', CUT,
+                    'if the line is whole, end it with a line end')]
 
 
 def reader_notes(record, vehicle):

@@ -110,9 +110,7 @@ def speeds_in_rpm(record, vehicle):
     """Find commands or rotor speeds in rpm: they are 9.55 times those that carry the vehicle."""
     if vehicle is None:
         return []
-    hover = np.sqrt(vehicle.mass * vehicle.gravity
-                    / (len(vehicle.rotors) * vehicle.thrust_coefficient))
-    found = []
+    hover, found = vehicle.hover_speed, []
     for prefix in ('cmd', 'rotor'):
         names = record.numbered(prefix)
         if not names:

@@ -1,0 +1,47 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What no command may write to."""
+
+from pathlib import Path
+
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.model.vehicle import check_ending
+
+INPUTS = ('flight', 'flights', 'hold_out', 'mapping', 'vehicle', 'experiment')
+OUTPUTS = ('out', 'output', 'out_vehicle', 'json', 'report', 'picture')
+"""Names of the options, of any command, that name files read and written."""
+
+
+def check_outputs(options):
+    """
+    Check, before any work, where the options of a command have it write.
+
+    Raises InputError for an output that is an input or lies in a file, and for a vehicle file of
+    another ending.
+    """
+    inputs = _named(options, INPUTS)
+    for output in _named(options, OUTPUTS):
+        refuse_overwriting(output, inputs)
+        for folder in Path(output).parents:
+            if folder.exists() and not folder.is_dir():
+                raise InputError(f'{output}: {folder} is a file, no folder; give another path')
+    for output in _named(options, ('out_vehicle',)):
+        check_ending(output)
+
+
+def refuse_overwriting(output, inputs):
+    """Raise InputError where an output is one of the inputs, or lies in one that is a folder."""
+    whole = Path(output).resolve()
+    places = [place for place in (whole, *whole.parents) if place.exists()]
+    for given in map(Path, inputs):
+        if given.exists() and any(place.samefile(given) for place in places):
+            raise InputError(f'{output}: this would write over {given}, which is read; give '
+                             'another name')
+
+
+def _named(options, names):
+    """Return the paths that options name; - is standard output, and no path."""
+    values = [getattr(options, name, None) for name in names]
+    paths = [path for value in values if value
+             for path in (value if isinstance(value, list) else [value])]
+    return [path for path in paths if path != '-']

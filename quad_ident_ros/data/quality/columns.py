@@ -1,0 +1,86 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Columns that are missing, that stand still, or whose values no flight has."""
+
+import numpy as np
+
+from quad_ident_ros.data.quality.finding import Finding
+from quad_ident_ros.data.record import QUATERNION, unit
+
+GROUPS = (('px', 'py', 'pz'), ('vx', 'vy', 'vz'), QUATERNION, ('wx', 'wy', 'wz'))
+"""Columns of the motion, of which one alone is of little use, but the height."""
+
+LARGEST = {'m': 1e8, '1': 1e3}      # by unit; beyond it a value is no measurement,
+LARGEST_OTHER = 1e6                 # in m/s, rad/s, V, ...; wrong units alone lie below
+SHORTEST, OFF = 0.5, 0.02           # length of a quaternion: none; off 1
+
+
+def known(record, vehicle):
+    """Find records without any column of the format."""
+    if any(unit(name) for name in record.columns):
+        return []
+    has = ', '.join(record.columns) or 'none'
+    return [Finding('no_columns', 'error', 'header',
+                    f'beside t there is no column of a flight record (there are: {has[:80]})',
+                    'name the columns as docs/records.md does: px, py, pz, qw, ...')]
+
+
+def incomplete(record, vehicle):
+    """Find attitudes, rates and velocities of which a component is missing."""
+    found = []
+    for names in GROUPS:
+        missing = [name for name in names if not record.has(name)]
+        some = [name for name in names if name not in missing and name != 'pz']
+        if missing and some:
+            found.append(Finding(
+                'incomplete', 'warning', ', '.join(some),
+                f'{", ".join(missing)} {"is" if len(missing) == 1 else "are"} missing beside '
+                'them, so that they are not used', 'record all of them'))
+    return found
+
+
+def frozen(record, vehicle):
+    """Find records in which position, velocity, attitude and rate never change."""
+    names = [name for names in GROUPS for name in names if record.has(name)]
+    if not names or np.any(np.diff(record.stack(*names), axis=0)):
+        return []
+    return [Finding('frozen', 'error', ', '.join(names), 'none of these ever changes: a sensor '
+                    'or the recorder stood still', 'see that the streams run, and record again')]
+
+
+def quaternions(record, vehicle):
+    """Find quaternions that are zero or not of unit length."""
+    if not record.has(*QUATERNION):
+        return []
+    length = np.linalg.norm(record.stack(*QUATERNION), axis=1)
+    short = length < SHORTEST
+    if short.any():
+        return [Finding('quaternion_zero', 'error',
+                        f'qw, qx, qy, qz, t = {record.t[int(np.argmax(short))]:.3f} s',
+                        f'{int(short.sum())} samples hold no attitude: their quaternion has a '
+                        f'length down to {length.min():.3g}, expected 1',
+                        'remove these samples')]
+    off = np.abs(length - 1.0) > OFF
+    if not off.any():
+        return []
+    first = int(np.argmax(off))
+    return [Finding('quaternion_length', 'warning', f'qw, qx, qy, qz, t = {record.t[first]:.3f} s',
+                    f'the length of the quaternion is {length[first]:.3g} there, expected 1 '
+                    f'({100 * off.mean():.1f} % of the samples are so)',
+                    'divide it by its length, as all commands do, and see what writes it')]
+
+
+def possible(record, vehicle):
+    """Find values that are too large for any flight, whatever the unit."""
+    found = []
+    for name, values in record.columns.items():
+        if unit(name) is None:
+            continue
+        bad = np.abs(values) > LARGEST.get(unit(name), LARGEST_OTHER)
+        if bad.any():
+            first = int(np.argmax(bad))
+            found.append(Finding(
+                'impossible', 'error', f'{name}, t = {record.t[first]:.3f} s',
+                f'{values[first]:.3g} {unit(name)} is not of a flight ({int(bad.sum())} such '
+                'samples)', 'remove these samples'))
+    return found
