@@ -78,13 +78,13 @@ def _closed(label, found):
     """
     Return the share of the closable gap that was closed, velocity on the held-out flight.
 
-    With faults it is their own: what the records' faults leave of the gap is theirs to know.
+    With faults the gap before is the diagnosis's, too, as clocks are its own to mend.
     """
-    if label['faulty']:
-        return None if label['stranger'] else (found.get('gap') or {}).get('closed')
-    held = label['held_out']
+    held, gap = label['held_out'], found.get('gap') or {}
     before, noise = held['before']['velocity'], held['noise']['velocity']
-    after = (found.get('gap') or {}).get('after', {}).get('velocity')
+    if label['faulty']:
+        before = gap.get('before', {}).get('velocity', before)
+    after = gap.get('after', {}).get('velocity')
     if label['stranger'] or after is None or before - noise < ROOM * noise:
         return None
     return float(np.clip((before - after) / (before - noise), -1.0, 2.0))

@@ -52,7 +52,7 @@ def add(commands):
 def run(options):
     """Read the flights, diagnose, and show what was found."""
     vehicle = load_nominal(options.vehicle)
-    effects = options.effects.split(',') if options.effects else None
+    effects = options.effects.split(',') if options.effects is not None else None
     records = [with_commands(record, vehicle) for path in options.flights
                for record in flights_from(path, options.mapping, options.vehicle)]
     held = None

@@ -197,3 +197,18 @@ class FlightRecord:
                              f'fit; give one value for each sample, {length or "(N,)"}')
         array.flags.writeable = False
         return array
+
+
+def same_flight(one, other):
+    """Return whether two records have the same samples."""
+    return len(one) == len(other) and np.array_equal(one.t, other.t) and all(
+        name in other.columns and np.array_equal(values, other.columns[name])
+        for name, values in one.columns.items())
+
+
+def refuse_twice(records):
+    """Raise InputError where a flight is given twice: errors would seem smaller than they are."""
+    for k, record in enumerate(records):
+        if any(same_flight(record, other) for other in records[:k]):
+            name = record.info.get('source') or record.info.get('name', 'a flight')
+            raise InputError(f'{name}: this flight is given twice; give each once')

@@ -2,11 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """The diagnosis of flights: gap, where, which, how far, and what cannot be told."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from quad_ident_ros import __version__
+from quad_ident_ros.data.record import refuse_twice, same_flight
 from quad_ident_ros.diagnose import gap as gaps
 from quad_ident_ros.diagnose import where
 from quad_ident_ros.diagnose.candidates import candidates
@@ -19,6 +20,7 @@ from quad_ident_ros.diagnose.select import select
 from quad_ident_ros.effects.registry import EFFECTS, mapping
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.greybox.errors import UNITS
+from quad_ident_ros.greybox.estimate import estimate
 from quad_ident_ros.greybox.flights import highest_voltage
 from quad_ident_ros.greybox.kinematics import measurement_noise
 from quad_ident_ros.greybox.near import near_flights
@@ -28,6 +30,7 @@ from quad_ident_ros.greybox.parameters import NAMES, nominal, SPLIT
 SCHEMA = 'quad_ident/diagnosis/1'
 LEAST = 0.2         # of the noise's gap that an effect must make somewhere to be named
 OUTWEIGHS = 1.5     # times what is left over that a cause must make beside an unknown one
+BENT = 0.5          # the most that an effect is probable which may be what is unknown
 REMAINS = 0.25      # of the noise's gap that structure must make to speak of an unknown effect
 # Times the noise's gap from which on what is left is unknown without structure, too. Commands that
 # were lost and clocks that drift show in rates and attitude first.
@@ -74,14 +77,16 @@ def diagnose(records, vehicle, *, hold_out=None, effects=None, on_progress=lambd
     records = list(records)
     for record in records if hold_out is None else [*records, hold_out]:
         refuse_short(record)
+    if hold_out is not None:    # among others it would take part in fit and choice
+        records = [record for record in records if not same_flight(record, hold_out)]
+    refuse_twice(records)
     training, test = split(records, hold_out)
     voltage = highest_voltage([*training, test])
     flights = near_flights(training, vehicle, nominal(vehicle), voltage)
     causes = candidates(flights, vehicle, effects)
     selection = select(flights, vehicle, causes, lambda share: on_progress(0.8 * share))
     z0, kinds = nominal(vehicle), selection.best.own
-    training = list(zip(training, selection.best.estimate.own.vectors(np.zeros(len(z0))),
-                        strict=True))
+    training = _with_own(training, selection, z0)
     noise = noise_of(selection, flights)
     whole = np.median([whole_noise(raw, 1.0 - 1.0 / raw.shape[1])
                        for raw in selection.best.estimate.left], axis=0)
@@ -98,9 +103,15 @@ def diagnose(records, vehicle, *, hold_out=None, effects=None, on_progress=lambd
     if unknown:
         # Known causes bend to what is not theirs: only those stay that say more than is left over.
         weak = [cause for cause in named if strength[cause] < OUTWEIGHS * remains]
-        for column in (column for cause in weak for column in cause.columns):
-            z[column] = z0[column]
         named = tuple(cause for cause in named if cause not in weak)
+        if weak:
+            selection = _refitted(selection, flights, vehicle, named)
+            z = selection.best.estimate.z
+            training = _with_own([record for record, _ in training], selection, z0)
+            times = _left_over(training, vehicle, z, noise, voltage)
+            nothing = _left_over(training, vehicle, z0, noise, voltage)
+            if times['velocity'] > nothing['velocity']:
+                named, z = (), z0
         left = left or [unstructured([where.lacking(record, vehicle, z + own, noise, voltage)
                                       for record, own in training], vehicle)]
     test = test, own_of(test, vehicle, z, kinds, noise, voltage, flights[0].segment)
@@ -135,14 +146,37 @@ def diagnose(records, vehicle, *, hold_out=None, effects=None, on_progress=lambd
 def split(records, hold_out):
     """Return the records to learn from and the one held out; InputError without a record."""
     if not records:
-        raise InputError('no flight to diagnose: name at least one flight record')
+        raise InputError('no flight to learn from: name at least one flight record beside the one '
+                         'that is held out')
     if hold_out is not None:
         return records, hold_out
     if len(records) > 1:
         return records[:-1], records[-1]
     record = records[0]
     half = len(record) // 2
-    return [record.slice(0, half)], record.slice(half, len(record))
+    later = record.slice(half, len(record))
+    # The battery goes on emptying from the start of the flight.
+    return [record.slice(0, half)], replace(later, info={**later.info, 'began': record.t[0]})
+
+
+def _with_own(records, selection, z0):
+    """Return [(record, what it has of its own (Z,))] of the records that a Selection is of."""
+    return list(zip(records, selection.best.estimate.own.vectors(np.zeros(len(z0))), strict=True))
+
+
+def _refitted(selection, flights, vehicle, named):
+    """Return a Selection whose best set has some of its causes alone, refitted."""
+    best = selection.best
+    columns = sorted(column for cause in named for column in cause.columns)
+    z = nominal(vehicle)
+    z[columns] = best.estimate.z[columns]
+    found = estimate(flights, vehicle, z, columns, noise=best.estimate.noise,
+                     own=best.estimate.own, starts=best.estimate.starts)
+    chosen = tuple(cause for cause in best.chosen if cause.own or cause in named)
+    bent = {cause: min(value, BENT) for cause, value in selection.probability.items()
+            if cause not in named}
+    return replace(selection, best=replace(best, chosen=chosen, estimate=found),
+                   probability=selection.probability | bent)
 
 
 def noise_of(selection, flights):
@@ -158,7 +192,7 @@ def _named(selection, training, vehicle, noise, voltage):
     best = selection.best
     z, strength = best.estimate.z, {}
     z0 = nominal(vehicle)
-    base = gaps.noise_gap(training[0][0], vehicle, z, noise, gaps.HEADLINE, voltage)
+    base = _noise_gap(training, vehicle, z, noise, voltage)
     full = [gaps.ends(one, vehicle, z + own, gaps.HEADLINE, voltage) for one, own in training]
     named, kept = [], z.copy()
     for cause in best.causes:
@@ -176,11 +210,18 @@ def _named(selection, training, vehicle, noise, voltage):
     return kept, tuple(named), strength
 
 
+def _noise_gap(training, vehicle, z, noise, voltage):
+    """Return {group: the gap of the noise alone} of all flights."""
+    found = [gaps.noise_gap(one, vehicle, z + own, noise, gaps.HEADLINE, voltage)
+             for one, own in training]
+    return {name: float(np.sqrt(np.mean([one[name] ** 2 for one in found]))) for name in found[0]}
+
+
 def _left_over(training, vehicle, z, noise, voltage):
     """Return {group: the gap that is left, over that of the noise}."""
     after = gaps.usual_gap([gaps.ends(one, vehicle, z + own, gaps.HEADLINE, voltage)
                             for one, own in training])
-    base = gaps.noise_gap(training[0][0], vehicle, z, noise, gaps.HEADLINE, voltage)
+    base = _noise_gap(training, vehicle, z, noise, voltage)
     return {name: after[name] / base[name] for name in after}
 
 
@@ -213,13 +254,14 @@ def _ranking(selection, causes, z, test, vehicle, voltage, strength):
     z0, (test, own) = nominal(vehicle), test
     errors = dict(zip(selection.best.estimate.columns, selection.best.estimate.errors,
                       strict=True))
+    before = gaps.gap([gaps.ends(test, vehicle, z0 + own, gaps.HEADLINE, voltage)])
     rows = {}
     for cause in causes:
         probability = selection.probability[cause]
         if strength.get(cause, 1.0) < LEAST:
             probability = min(probability, 0.02)
         row = rows.setdefault(cause.effect, {'effect': cause.effect, 'probability': 0.0,
-                                             'parameters': {}, 'gap_after': None})
+                                             'parameters': {}, 'gap_after': before})
         row['probability'] = min(1.0, row['probability'] + probability)
         if cause in selection.best.causes and cause in strength:
             parameters = EFFECTS[cause.effect].parameters

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Where the gap lies: the force and moment that the model lacks, by channel, regime and band."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from quad_ident_ros.greybox.parameters import SPLIT
 from quad_ident_ros.model.attitude import rotation_matrix
 
 CHANNELS = ('Fx', 'Fy', 'Fz', 'Mx', 'My', 'Mz')
+MOST = 2000         # windows of a flight; of more, every so many
 WINDOW = 0.25       # s over which force and moment are taken as constant
 COLUMNS = list(range(SPLIT + SLICES[LACKING.name].start, SPLIT + SLICES[LACKING.name].stop))
 
@@ -35,6 +36,7 @@ class Lacking:
 def lacking(record, vehicle, z, noise, reference_voltage=None):
     """Return the Lacking of a flight record with a parameter vector z (Z,) and noise (12,)."""
     flight = flight_of(record, vehicle, reference_voltage=reference_voltage, segment=WINDOW)
+    flight = replace(flight, first=flight.first[::-(-len(flight.first) // MOST)])
     [starts] = settled([flight], vehicle, [z], [noise])
     weight = weights_of(errors_along(flight, vehicle, z, starts), noise, flight)
     linear = linearise(flight, vehicle, z, starts, COLUMNS, noise, False, weight)

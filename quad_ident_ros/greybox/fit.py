@@ -7,8 +7,8 @@ from dataclasses import asdict, dataclass, replace
 import numpy as np
 
 from quad_ident_ros import __version__
+from quad_ident_ros.data.record import refuse_twice
 from quad_ident_ros.effects.registry import mapping
-from quad_ident_ros.errors import InputError
 from quad_ident_ros.greybox.errors import GROUPS, UNITS
 from quad_ident_ros.greybox.estimate import Estimate, estimate
 from quad_ident_ros.greybox.flights import highest_voltage
@@ -72,7 +72,7 @@ def fit(records, vehicle, names, on_progress=lambda share: None):
     vehicle file's value, and said. Raises InputError.
     """
     free = columns_of_names(names, vehicle)
-    _refuse_twice(records)
+    refuse_twice(records)
     voltage = highest_voltage(records)
     start, sizes = as_described(vehicle), limits(vehicle)[2]
     flights = near_flights(records, vehicle, start, voltage)
@@ -112,17 +112,6 @@ def fit(records, vehicle, names, on_progress=lambda share: None):
                 *_findings(found, parameters, pairs, flights))
     return Fit(vehicle, tuple(flight.name for flight in flights), parameters,
                replace(found, covariance=covariance), order, pairs, findings)
-
-
-def _refuse_twice(records):
-    """Raise InputError where a flight is given twice: errors would seem smaller than they are."""
-    for k, record in enumerate(records):
-        for other in records[:k]:
-            if len(record) == len(other) and np.array_equal(record.t, other.t) and all(
-                    name in other.columns and np.array_equal(values, other.columns[name])
-                    for name, values in record.columns.items()):
-                name = record.info.get('source') or record.info.get('name', 'a flight')
-                raise InputError(f'{name}: this flight is given twice; give each once')
 
 
 def _apart(names):

@@ -18,6 +18,7 @@ from quad_ident_ros.model.sensors import product, turn, underlying
 
 PAIRS = (('position', 'velocity'), ('attitude', 'rate'))
 MEMORIES = (0.03, 0.08, 0.2, 0.5)   # s, of which the noise may be made up
+HORIZON = 0.5   # s of the predictions that it is for
 LONGEST = 1.0   # s between two samples that are compared
 LAGS = 14
 ALIKE = 0.1     # weight of shares that are alike, beside the drift's
@@ -28,6 +29,9 @@ BREAK = 1.6     # usual periods between two samples over which nothing is integr
 def measurement_noise(flights, vectors, near, white):
     """
     Return the standard deviation of the measurement noise, with what of it has a memory, (12,).
+
+    Of a long memory only what changes within HORIZON counts: start and end of a prediction have
+    the rest in common.
 
     Args: flights; vectors: a vector z (Z,) per flight, whose tilt and bias of the sensors are
     undone; near (12,): the noise over some samples, which it is at least; white (12,): that from
@@ -94,7 +98,7 @@ def _spreads(flights, drifts, group):
 
 def _split(lags, spread, period, white, near):
     """
-    Return the variances of the noise of a pose and of its rate.
+    Return the variances of the noise of a pose and of its rate, as far as it changes in HORIZON.
 
     Args: lags (L,) s; spread (L,) of the drift over them; white: the variance of what is white in
     the rate; near (2,): variances of the noise over some samples. The noise of both is a sum of
@@ -113,4 +117,5 @@ def _split(lags, spread, period, white, near):
     share, _ = nnls(table / size, np.append((spread - white * period * lags) * weight,
                                             np.zeros(count)))
     share /= size
-    return share[:1 + count].sum(), white + share[1 + count:].sum()
+    apart = 1.0 - np.exp(-HORIZON / memory)
+    return share[0] + apart @ share[1:1 + count], white + apart @ share[1 + count:]

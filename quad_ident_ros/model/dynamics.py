@@ -42,7 +42,8 @@ def course_of(record, vehicle, reference_voltage=None):
     drop = np.zeros(len(record))
     if reference_voltage is not None and record.has('vbat'):
         drop = reference_voltage - record.columns['vbat']
-    return Course(record.t - record.t[0], np.ascontiguousarray(commands), drop)
+    began = record.info.get('began', record.t[0])
+    return Course(record.t - began, np.ascontiguousarray(commands), drop)
 
 
 def states_of(record):

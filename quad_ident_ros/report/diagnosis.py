@@ -113,7 +113,7 @@ def _which(ranking):
                                for name, one in row['parameters'].items())
             alone = row['gap_after']
             table.add_row(row['effect'], f'{row["probability"]:.2f}', values,
-                          f'{alone["velocity"]:.3g}' if alone else '')
+                          f'{alone["velocity"]:.3g}' if values else '')
     if not table.row_count:
         table.add_row('none', '', '', '')
     return table
