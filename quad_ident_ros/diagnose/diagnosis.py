@@ -20,7 +20,6 @@ from quad_ident_ros.diagnose.select import select
 from quad_ident_ros.effects.registry import EFFECTS, mapping
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.greybox.errors import UNITS
-from quad_ident_ros.greybox.estimate import estimate
 from quad_ident_ros.greybox.flights import highest_voltage
 from quad_ident_ros.greybox.kinematics import measurement_noise
 from quad_ident_ros.greybox.near import near_flights
@@ -30,7 +29,6 @@ from quad_ident_ros.greybox.parameters import NAMES, nominal, SPLIT
 SCHEMA = 'quad_ident/diagnosis/1'
 LEAST = 0.2         # of the noise's gap that an effect must make somewhere to be named
 OUTWEIGHS = 1.5     # times what is left over that a cause must make beside an unknown one
-BENT = 0.5          # the most that an effect is probable which may be what is unknown
 REMAINS = 0.25      # of the noise's gap that structure must make to speak of an unknown effect
 # Times the noise's gap from which on what is left is unknown without structure, too. Commands that
 # were lost and clocks that drift show in rates and attitude first.
@@ -86,7 +84,8 @@ def diagnose(records, vehicle, *, hold_out=None, effects=None, on_progress=lambd
     causes = candidates(flights, vehicle, effects)
     selection = select(flights, vehicle, causes, lambda share: on_progress(0.8 * share))
     z0, kinds = nominal(vehicle), selection.best.own
-    training = _with_own(training, selection, z0)
+    training = list(zip(training, selection.best.estimate.own.vectors(np.zeros(len(z0))),
+                        strict=True))
     noise = noise_of(selection, flights)
     whole = np.median([whole_noise(raw, 1.0 - 1.0 / raw.shape[1])
                        for raw in selection.best.estimate.left], axis=0)
@@ -103,15 +102,13 @@ def diagnose(records, vehicle, *, hold_out=None, effects=None, on_progress=lambd
     if unknown:
         # Known causes bend to what is not theirs: only those stay that say more than is left over.
         weak = [cause for cause in named if strength[cause] < OUTWEIGHS * remains]
+        for column in (column for cause in weak for column in cause.columns):
+            z[column] = z0[column]
         named = tuple(cause for cause in named if cause not in weak)
-        if weak:
-            selection = _refitted(selection, flights, vehicle, named)
-            z = selection.best.estimate.z
-            training = _with_own([record for record, _ in training], selection, z0)
-            times = _left_over(training, vehicle, z, noise, voltage)
-            nothing = _left_over(training, vehicle, z0, noise, voltage)
-            if times['velocity'] > nothing['velocity']:
-                named, z = (), z0
+        with_them, without = (_left_over(training, vehicle, each, noise, voltage)
+                              for each in (z, z0))
+        if with_them['velocity'] > without['velocity']:
+            named, z = (), z0.copy()
         left = left or [unstructured([where.lacking(record, vehicle, z + own, noise, voltage)
                                       for record, own in training], vehicle)]
     test = test, own_of(test, vehicle, z, kinds, noise, voltage, flights[0].segment)
@@ -157,26 +154,6 @@ def split(records, hold_out):
     later = record.slice(half, len(record))
     # The battery goes on emptying from the start of the flight.
     return [record.slice(0, half)], replace(later, info={**later.info, 'began': record.t[0]})
-
-
-def _with_own(records, selection, z0):
-    """Return [(record, what it has of its own (Z,))] of the records that a Selection is of."""
-    return list(zip(records, selection.best.estimate.own.vectors(np.zeros(len(z0))), strict=True))
-
-
-def _refitted(selection, flights, vehicle, named):
-    """Return a Selection whose best set has some of its causes alone, refitted."""
-    best = selection.best
-    columns = sorted(column for cause in named for column in cause.columns)
-    z = nominal(vehicle)
-    z[columns] = best.estimate.z[columns]
-    found = estimate(flights, vehicle, z, columns, noise=best.estimate.noise,
-                     own=best.estimate.own, starts=best.estimate.starts)
-    chosen = tuple(cause for cause in best.chosen if cause.own or cause in named)
-    bent = {cause: min(value, BENT) for cause, value in selection.probability.items()
-            if cause not in named}
-    return replace(selection, best=replace(best, chosen=chosen, estimate=found),
-                   probability=selection.probability | bent)
 
 
 def noise_of(selection, flights):
