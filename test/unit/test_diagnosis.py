@@ -9,6 +9,7 @@ import pytest
 
 from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.effects.registry import EFFECTS
+from quad_ident_ros.errors import InputError
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import Noise, Sensors
 from quad_ident_ros.model.vehicle import load_vehicle
@@ -116,3 +117,25 @@ def test_a_hover_is_no_reason_for_another_inertia():
     hovers = [fly_closed_loop(VEHICLE, {}, 'hover', duration=12.0, seed=seed, noise=WHITE)
               for seed in (1, 101, 102)]
     assert diagnose(hovers, VEHICLE).data['verdict'] == ['none']
+
+
+def test_the_held_out_flight_takes_no_part_even_where_it_is_named_among_the_others():
+    flights = flown({'mass_offset': TRUTHS['mass_offset']})
+    beside = diagnose(flights, VEHICLE, hold_out=flights[1]).data
+    alone = diagnose([flights[0], *flights[2:]], VEHICLE, hold_out=flights[1]).data
+    assert beside == alone
+
+
+def test_a_flight_that_is_given_twice_is_refused():
+    flights = flown({})
+    with pytest.raises(InputError, match='given twice'):
+        diagnose([*flights, flights[0]], VEHICLE)
+    with pytest.raises(InputError, match='beside the one that is held out'):
+        diagnose(flights[:1], VEHICLE, hold_out=flights[0])
+
+
+def test_the_second_half_of_a_flight_is_not_the_beginning_of_a_battery():
+    truth = {'battery_sag': {'per_second': 0.003}}
+    record = fly_closed_loop(VEHICLE, truth, 'lissajous', duration=40.0, seed=3, noise=WHITE)
+    columns = {name: values for name, values in record.columns.items() if name != 'vbat'}
+    check(diagnose([replace(record, columns=columns)], VEHICLE).data, truth)
