@@ -6,7 +6,7 @@ from dataclasses import asdict
 
 import numpy as np
 
-from quad_ident_ros.data.quality import clock_offset, command_offset, findings
+from quad_ident_ros.data.quality import clock_offset, command_offset, findings, velocity_offset
 from quad_ident_ros.data.quality.excitation import excitation
 from quad_ident_ros.data.quality.series import GAP
 from quad_ident_ros.data.record import unit
@@ -38,6 +38,7 @@ def summarise(record, vehicle=None):
         'excitation': {name: {'value': value, 'unit': UNITS[name]}
                        for name, value in excitation(record).items()},
         'clock': {'attitude_against_gyro': _clock(clock_offset(record)),
+                  'position_against_velocity': _clock(velocity_offset(record)),
                   'accelerometer_against_commands': _clock(command_offset(record))},
         'findings': [asdict(finding) for finding in findings(record, vehicle)],
     }

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from quad_ident_ros import __version__
+from quad_ident_ros.data.aligned import aligned
 from quad_ident_ros.data.record import refuse_twice, same_flight
 from quad_ident_ros.diagnose import gap as gaps
 from quad_ident_ros.diagnose import where
@@ -79,6 +80,8 @@ def diagnose(records, vehicle, *, hold_out=None, effects=None, on_progress=lambd
         records = [record for record in records if not same_flight(record, hold_out)]
     refuse_twice(records)
     training, test = split(records, hold_out)
+    training, late = zip(*(aligned(record) for record in training), strict=True)
+    test, test_late = aligned(test)
     voltage = highest_voltage([*training, test])
     flights = near_flights(training, vehicle, nominal(vehicle), voltage)
     causes = candidates(flights, vehicle, effects)
@@ -133,7 +136,7 @@ def diagnose(records, vehicle, *, hold_out=None, effects=None, on_progress=lambd
                      'share': one.share} for one in left] if unknown else None,
         'undetermined': open_ones or None, 'sure': known if doubts else None,
         'not_shown': unseen, 'fly_next': proposals,
-        'nuisances': as_data(kinds, [own for _, own in training], test[1]),
+        'nuisances': as_data(kinds, [own for _, own in training], test[1], late, test_late),
         'flights': [record.info.get('name') for record, _ in training],
         'held_out': test[0].info.get('name')}
     return Diagnosis(data, selection, z, vehicle, [own for _, own in training], test[1], noise,

@@ -20,11 +20,12 @@ def own_of(record, vehicle, z, kinds, noise, voltage, segment):
     return found.vectors[0] - z
 
 
-def as_data(kinds, training, held_out):
+def as_data(kinds, training, held_out, late, held_out_late):
     """
     Return as data, by Nuisance, what flights and the held-out one have of their own, (Z,).
 
-    Of clocks also the longest delay (s) of all flights that they may hide, None where none.
+    Of clocks also the longest delay (s) of all flights that they may hide, None where none; late,
+    held_out_late: {stream: s}, what was moved as it was stamped late, of each flight.
     """
     found = {kind.name: {
         'what': kind.title, 'unit': kind.unit,
@@ -35,4 +36,9 @@ def as_data(kinds, training, held_out):
         offsets = np.ravel(found[CLOCK]['values'])
         most = float(offsets.mean() + WIDE * kind.spreads[0] / np.sqrt(len(offsets)))
         found[CLOCK]['hidden_delay'] = most if most > 0 else None
+    for stream in dict.fromkeys(stream for one in (*late, held_out_late) for stream in one):
+        found[f'{stream}_clock'] = {
+            'what': f'the {stream} is stamped later than the other states by', 'unit': 's',
+            'values': [[one.get(stream, 0.0)] for one in late],
+            'held_out': [held_out_late.get(stream, 0.0)]}
     return found or None

@@ -20,7 +20,12 @@ from quad_ident_ros.data.quality import (
     timing,
     units,
 )
-from quad_ident_ros.data.quality.clock import clock_offset, ClockOffset, command_offset
+from quad_ident_ros.data.quality.clock import (
+    clock_offset,
+    ClockOffset,
+    command_offset,
+    velocity_offset,
+)
 from quad_ident_ros.data.quality.finding import Finding, SEVERITIES
 from quad_ident_ros.errors import InputError
 
@@ -29,11 +34,11 @@ CHECKS = (columns.known, columns.incomplete, columns.frozen, columns.quaternions
           stale.held, stale.marked, glitches.attitude, units.rates_in_degrees,
           units.euler_in_degrees, units.force_in_g, units.position_in_millimetres,
           units.speeds_in_rpm, frames.quaternion, frames.world, frames.velocity_in_body,
-          rotors.hover, rotors.count, rotors.order_and_spin, clock.attitude, clock.commands,
-          saturation.speeds, excitation.axes)
+          rotors.hover, rotors.count, rotors.order_and_spin, clock.attitude, clock.velocity,
+          clock.commands, saturation.speeds, excitation.axes)
 
 __all__ = ['CHECKS', 'clock_offset', 'ClockOffset', 'command_offset', 'Finding', 'findings',
-           'refuse_errors', 'refuse_unfit', 'SEVERITIES']
+           'refuse_errors', 'refuse_unfit', 'SEVERITIES', 'velocity_offset']
 
 
 def findings(record, vehicle=None):

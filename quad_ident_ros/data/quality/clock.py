@@ -63,6 +63,20 @@ def clock_offset(record):
                    answers=True)
 
 
+def velocity_offset(record):
+    """
+    Return the ClockOffset of the position against the velocity, or None where it cannot be told.
+
+    The slope of the position is compared with the velocity as clock_offset does with attitude and
+    gyro. A positive offset: the position is stamped late.
+    """
+    grid = Grid.of(record)
+    if grid is None or not record.has('px', 'py', 'pz', 'vx', 'vy', 'vz'):
+        return None
+    return _offset(grid, grid.derivative(grid.signal('px', 'py', 'pz')),
+                   grid.smooth(grid.signal('vx', 'vy', 'vz')), answers=True)
+
+
 def command_offset(record):
     """
     Return the ClockOffset of the accelerometer against the commands, or None.
@@ -212,11 +226,7 @@ def attitude(record, vehicle):
     span = record.t[-1] - record.t[0]
     where, result = 'attitude and position against gyro', []
     if abs(found.offset) > max(SEVERAL * found.std, 0.002):
-        result.append(Finding(
-            'clock_offset', 'error' if abs(found.offset) > 0.1 else 'warning', where,
-            f'the attitude is stamped {1e3 * abs(found.offset):.1f} ± {1e3 * found.std:.1f} ms '
-            f'{"later" if found.offset > 0 else "earlier"} than the gyro',
-            f'move position, velocity and attitude by {-1e3 * found.offset:+.1f} ms'))
+        result.append(_apart(found, where, 'attitude', 'gyro'))
     if abs(found.drift) > SEVERAL * found.drift_std and abs(found.drift) * span > 0.005:
         result.append(Finding(
             'clock_drift', 'warning', where,
@@ -232,6 +242,23 @@ def attitude(record, vehicle):
             f'the offset wanders by {1e3 * np.ptp(rest):.0f} ms along the flight: samples are '
             'stamped on arrival', 'stamp samples where they are measured'))
     return result
+
+
+def velocity(record, vehicle):
+    """Find an offset between position and velocity."""
+    found = velocity_offset(record)
+    if found is None or abs(found.offset) <= max(SEVERAL * found.std, 0.002):
+        return []
+    return [_apart(found, 'position against velocity', 'position', 'velocity')]
+
+
+def _apart(found, where, late, early):
+    """Return the Finding of a ClockOffset of one stream against another."""
+    return Finding(
+        'clock_offset', 'error' if abs(found.offset) > 0.1 else 'warning', where,
+        f'the {late} is stamped {1e3 * abs(found.offset):.1f} ± {1e3 * found.std:.1f} ms '
+        f'{"later" if found.offset > 0 else "earlier"} than the {early}',
+        'stamp both by one clock; fit and diagnosis move the one that is late')
 
 
 def commands(record, vehicle):

@@ -1,0 +1,72 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Streams of one record that are stamped at different times for the same event, put together."""
+
+from dataclasses import replace
+
+import numpy as np
+from scipy.interpolate import Akima1DInterpolator
+
+from quad_ident_ros.data.frames import continuous
+from quad_ident_ros.data.quality.clock import clock_offset, SEVERAL, velocity_offset
+from quad_ident_ros.data.quality.glitches import glitches
+from quad_ident_ros.data.record import EULER, QUATERNION
+
+STREAMS = {'pose': ('px', 'py', 'pz', *QUATERNION, *EULER), 'velocity': ('vx', 'vy', 'vz'),
+           'rate': ('wx', 'wy', 'wz', 'ax', 'ay', 'az')}
+LEAST = 0.0005      # s, of an offset that is worth moving a stream for
+GAP = 1.6           # usual periods between two samples that nothing is taken from between
+
+
+def aligned(record):
+    """
+    Return a flight record with states of one clock, and {stream: s that it was stamped late}.
+
+    Pose, velocity and rate each know the slope of another. Where their stamps differ by more than
+    three standard errors, the one that comes first keeps its time, for a measurement may be late
+    but never early, and the others are moved onto it; rows whose new values lie in gaps are left
+    out. Without such offsets the record itself is returned, and {}.
+    """
+    late = lateness(record)
+    if not late:
+        return record, late
+    columns, whole = dict(record.columns), np.ones(len(record), bool)
+    for stream, offset in late.items():
+        names = [name for name in STREAMS[stream] if record.has(name)]
+        moved, there = _moved(record, stream, names, offset)
+        columns |= dict(zip(names, moved.T, strict=True))
+        whole &= there
+    if whole.sum() < 2:
+        return record, {}
+    return replace(record, t=record.t[whole],
+                   columns={name: values[whole] for name, values in columns.items()}), late
+
+
+def lateness(record):
+    """Return {stream: s} of the streams of a record that are stamped later than the first."""
+    offsets = {'pose': 0.0}
+    for stream, found in (('rate', clock_offset(record)), ('velocity', velocity_offset(record))):
+        sure = found is not None and abs(found.offset) > max(SEVERAL * found.std, LEAST)
+        offsets[stream] = -found.offset if sure else 0.0
+    first = min(offsets.values())
+    return {stream: float(offset - first) for stream, offset in offsets.items()
+            if offset - first > LEAST}
+
+
+def _moved(record, stream, names, offset):
+    """Return columns (N, k) at stamps that much later, and where they are known, (N,)."""
+    t, values = record.t, record.stack(*names)
+    good = np.ones(len(t), bool)
+    if stream == 'pose' and record.has(*QUATERNION):
+        places = [names.index(name) for name in QUATERNION]
+        values[:, places] = continuous(values[:, places])
+        if record.has('wx', 'wy', 'wz'):    # a jump would reach its neighbours
+            good = ~glitches(t, values[:, places], record.stack('wx', 'wy', 'wz'))
+    known, at = t[good], t + offset
+    after = np.clip(np.searchsorted(known, at), 1, len(known) - 1)
+    there = (at <= known[-1]) & (known[after] - known[after - 1] <= GAP * record.period())
+    moved = values.copy()
+    moved[there] = Akima1DInterpolator(known, values[good])(at[there])
+    if stream == 'pose' and record.has(*QUATERNION):
+        moved[:, places] /= np.linalg.norm(moved[:, places], axis=1, keepdims=True)
+    return moved, there

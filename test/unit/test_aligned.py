@@ -1,0 +1,116 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Streams that are stamped late: how late is told, and they are put together again."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from quad_ident_ros.data.aligned import aligned, STREAMS
+from quad_ident_ros.data.quality import findings
+from quad_ident_ros.data.record import QUATERNION
+from quad_ident_ros.diagnose.diagnosis import diagnose
+from quad_ident_ros.flight.fly import fly_closed_loop
+from quad_ident_ros.flight.measure import Noise, Sensors, Stream
+from quad_ident_ros.greybox.fit import fit
+from quad_ident_ros.model.vehicle import load_vehicle
+
+VEHICLE = load_vehicle('hummingbird')
+FINE = Sensors(white=Noise(position=1e-5, velocity=1e-4, attitude=1e-5, rate=1e-4, force=1e-3))
+USUAL = Sensors(white=Noise(position=7e-4, velocity=7e-3, attitude=1.4e-3, rate=7e-3))
+LATE = [{'pose': 0.023}, {'velocity': 0.012}, {'rate': 0.0043},
+        {'pose': 0.017, 'velocity': 0.03}, {'velocity': 0.008, 'rate': 0.015}]
+
+
+def late(record, offsets):
+    """Return a record as if streams {name: s} were stamped later than the others."""
+    columns, there = dict(record.columns), np.ones(len(record), bool)
+    for stream, offset in offsets.items():
+        for name in STREAMS[stream]:
+            if record.has(name):
+                columns[name] = np.interp(record.t - offset, record.t, columns[name])
+        there &= record.t - offset >= record.t[0]
+    return replace(record, t=record.t[there],
+                   columns={name: values[there] for name, values in columns.items()})
+
+
+def flown(seed=0, noise=USUAL, truth=None, course='lissajous'):
+    return fly_closed_loop(VEHICLE, truth or {}, course, duration=12.0, seed=seed, noise=noise)
+
+
+@pytest.mark.parametrize('offsets', LATE, ids=str)
+def test_how_late_a_stream_is_stamped_is_told_and_it_is_moved_back(offsets):
+    record = flown(noise=FINE)
+    back, told = aligned(late(record, offsets))
+    assert told.keys() == offsets.keys()
+    for stream, offset in offsets.items():
+        assert told[stream] == pytest.approx(offset, abs=3e-4)
+    # The first rows of a late stream are of before the record, its last ones are not there yet.
+    same = np.isin(record.t, back.t)
+    assert same.sum() > len(record) - 20
+    for name in ('px', 'vx', *QUATERNION, 'wx', 'wy'):
+        was, speed = record.columns[name][same], np.gradient(record.columns[name], record.t)
+        assert np.abs(back.columns[name] - was).max() < 2e-3 * np.abs(speed).max() + 1e-3
+
+
+def test_a_record_of_one_clock_is_left_as_it_is():
+    for seed in range(5):
+        record = flown(seed)
+        assert aligned(record) == (record, {})
+
+
+def test_lost_rows_and_jumps_of_the_attitude_do_not_reach_their_neighbours():
+    record = late(flown(noise=FINE), {'pose': 0.02})
+    columns = dict(record.columns)
+    jumped = np.zeros(len(record), bool)
+    jumped[[200, 500, 800]] = True
+    for name in QUATERNION:
+        columns[name] = np.where(jumped, columns[{'qw': 'qx', 'qx': 'qw'}.get(name, name)],
+                                 columns[name])
+    lost = np.ones(len(record), bool)
+    lost[300:306] = False
+    faulty = replace(record, t=record.t[lost],
+                     columns={name: values[lost] for name, values in columns.items()})
+    whole, _ = aligned(record)
+    back, told = aligned(faulty)
+    assert told['pose'] == pytest.approx(0.02, abs=5e-4)
+    assert len(faulty) - 20 < len(back) < len(faulty)
+    both = np.intersect1d(whole.t, back.t)
+    apart = [record.stack(*QUATERNION)[np.isin(record.t, both)] for record in (whole, back)]
+    assert np.abs(apart[1] - apart[0]).max() < 0.01
+
+
+@pytest.mark.parametrize('truth', [{}, {'rotor_drag': {'coefficient': 0.15}}],
+                         ids=['none', 'drag'])
+@pytest.mark.parametrize('sensors, stream, offset', [
+    (replace(USUAL, imu=Stream(delay=0.006)), 'rate', 0.006),
+    (replace(USUAL, mocap=Stream(delay=0.02)), 'pose', 0.02), (USUAL, 'velocity', 0.02)],
+    ids=['rate', 'pose', 'velocity'])
+def test_a_stream_that_is_late_changes_no_verdict(sensors, stream, offset, truth):
+    flights = [flown(k, sensors, truth, course)
+               for k, course in enumerate(('figure8', 'low_passes', 'lissajous'))]
+    if stream == 'velocity':    # the others come from one sensor each
+        flights = [late(flight, {stream: offset}) for flight in flights]
+    data = diagnose(flights, VEHICLE).data
+    assert data['verdict'] == (list(truth) or ['none'])
+    # The slow passes tell it to less than a millisecond, and no better.
+    assert np.ravel(data['nuisances'][f'{stream}_clock']['values']) == pytest.approx(
+        offset, abs=0.0025)
+    assert data['gap']['after']['velocity'] < 1.15 * data['gap']['noise']['velocity']
+
+
+def test_a_late_rate_is_not_taken_for_the_lag_of_motors():
+    lagging = {'motor_lag': {'time_constant': 0.03}}
+    record = flown(0, replace(USUAL, imu=Stream(delay=0.006)), lagging, 'figure8')
+    [parameter] = fit([aligned(record)[0]], VEHICLE, ['motor_lag']).parameters
+    assert parameter.value == pytest.approx(0.03, abs=4 * parameter.std)
+
+
+@pytest.mark.parametrize('stream, where', [('velocity', 'position against velocity'),
+                                           ('rate', 'attitude and position against gyro')])
+def test_info_says_which_streams_are_apart(stream, where):
+    found = [one for one in findings(late(flown(), {stream: 0.02})) if one.code == 'clock_offset']
+    assert where in [one.where for one in found]
+    assert all(one.severity == 'warning' for one in found)
+    assert not [one for one in findings(flown()) if one.code == 'clock_offset']
