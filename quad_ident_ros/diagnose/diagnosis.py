@@ -102,6 +102,7 @@ def diagnose(records, vehicle, *, hold_out=None, effects=None, on_progress=lambd
     remains = np.sqrt(max(0.0, max(times.values()) ** 2 - 1.0))
     beyond = any(times[name] > limit for name, limit in BEYOND.items())
     unknown = beyond or bool(left) and remains > REMAINS
+    probability = _probabilities(selection, strength, remains if unknown else 0.0)
     if unknown:
         # Known causes bend to what is not theirs: only those stay that say more than is left over.
         weak = [cause for cause in named if strength[cause] < OUTWEIGHS * remains]
@@ -130,7 +131,7 @@ def diagnose(records, vehicle, *, hold_out=None, effects=None, on_progress=lambd
     on_progress(1.0)
     data = {
         'schema': SCHEMA, 'version': __version__, 'vehicle': vehicle.name, 'verdict': verdict,
-        'ranking': _ranking(selection, causes, z, test, vehicle, voltage, strength),
+        'ranking': _ranking(selection, causes, z, test, vehicle, voltage, probability),
         'where': _where(lacks, vehicle), 'gap': far,
         'unknown': [{'channel': one.channel, 'depends_on': one.depends_on,
                      'share': one.share} for one in left] if unknown else None,
@@ -229,7 +230,23 @@ def _how_far(test, vehicle, z0, z, named, noise, voltage):
             'horizons': {str(horizon): values for horizon, values in out.items()}}
 
 
-def _ranking(selection, causes, z, test, vehicle, voltage, strength):
+def _probabilities(selection, strength, remains):
+    """
+    Return {cause: probability of being present}.
+
+    The selection knows nothing but noise and effects: where something unknown remains, so many
+    times the noise's gap, a cause is believed as far as it stands out from that. One that makes
+    no gap worth a name is not believed.
+    """
+    found = dict(selection.probability)
+    for cause, size in strength.items():
+        found[cause] *= size / max(size + remains, 1e-300)
+        if size < LEAST:
+            found[cause] = min(found[cause], 0.02)
+    return found
+
+
+def _ranking(selection, causes, z, test, vehicle, voltage, probabilities):
     """Return every effect, the most probable first, with its parameters."""
     z0, (test, own) = nominal(vehicle), test
     errors = dict(zip(selection.best.estimate.columns, selection.best.estimate.errors,
@@ -237,13 +254,10 @@ def _ranking(selection, causes, z, test, vehicle, voltage, strength):
     before = gaps.gap([gaps.ends(test, vehicle, z0 + own, gaps.HEADLINE, voltage)])
     rows = {}
     for cause in causes:
-        probability = selection.probability[cause]
-        if strength.get(cause, 1.0) < LEAST:
-            probability = min(probability, 0.02)
         row = rows.setdefault(cause.effect, {'effect': cause.effect, 'probability': 0.0,
                                              'parameters': {}, 'gap_after': before})
-        row['probability'] = min(1.0, row['probability'] + probability)
-        if cause in selection.best.causes and cause in strength:
+        row['probability'] = min(1.0, row['probability'] + probabilities[cause])
+        if cause in selection.best.causes:
             parameters = EFFECTS[cause.effect].parameters
             units = {parameter.name: parameter.unit for parameter in parameters}
             for column in cause.columns:

@@ -38,7 +38,8 @@ def as_data(kinds, training, held_out, late, held_out_late):
         found[CLOCK]['hidden_delay'] = most if most > 0 else None
     for stream in dict.fromkeys(stream for one in (*late, held_out_late) for stream in one):
         found[f'{stream}_clock'] = {
-            'what': f'the {stream} is stamped later than the other states by', 'unit': 's',
+            'what': f'how much later than the other states the {stream} is stamped',
+            'unit': 's',
             'values': [[one.get(stream, 0.0)] for one in late],
             'held_out': [held_out_late.get(stream, 0.0)]}
     return found or None

@@ -37,7 +37,8 @@ class Estimate:
 
     own: what the flights have of their own; starts: initial states per flight; normal: the last
     Normal, of the columns and of each flight's own, by slopes at the vector `at` (Z,), near z;
-    left: recorded minus predicted per flight; free: whether each column is inside its bounds;
+    left: recorded minus predicted per flight, but for what the clock explains; free: whether each
+    column is inside its bounds;
     converged.
     """
 
@@ -127,7 +128,8 @@ def _descend(flights, vehicle, z, columns, box, noise, own, starts, iterations, 
         information = normal.information + np.diag(precision)
         gradient = normal.gradient - precision * now
         step, free = bounded_step(information, gradient, now, lower, upper, size)
-        before = _cost(_aligned(raws, tangents, scales, clock), scales) + precision @ now ** 2
+        told = _aligned(raws, tangents, scales, clock)
+        before = _cost(told, scales) + precision @ now ** 2
         for share in SHARES:
             there, new = z.copy(), now + share * step
             there[columns] = new[:shared]
@@ -147,7 +149,7 @@ def _descend(flights, vehicle, z, columns, box, noise, own, starts, iterations, 
                 break
             tangents = None
             continue
-        z, own, starts, raws = there, theirs, moved, left
+        z, own, starts, raws, told = there, theirs, moved, left, aligned
         if known is None:
             noise = [whole_noise(part, linear.freedom)
                      for part, linear in zip(aligned, linears, strict=True)]
@@ -162,7 +164,7 @@ def _descend(flights, vehicle, z, columns, box, noise, own, starts, iterations, 
         if share < 1.0 or abs(before - after - saved) > STRAIGHT * saved:
             tangents = None
     covariance = covariance_of(marginal(normal, shared, precision), size[:shared])
-    return Estimate(z, columns, covariance, noise, own, starts, normal, at, raws, free[:shared],
+    return Estimate(z, columns, covariance, noise, own, starts, normal, at, told, free[:shared],
                     converged)
 
 

@@ -39,7 +39,7 @@ def nuisances(vehicle):
     rate = tuple(f'gyro_bias.{axis}' for axis in 'xyz')
     tilt = tuple(f'attitude_misalignment.{axis}' for axis in ('roll', 'pitch', 'yaw'))
     moment = tuple(f'external_wrench.moment_{axis}' for axis in 'xyz')
-    kinds = [(CLOCK, 'the states are stamped later than the commands by', 's',
+    kinds = [(CLOCK, 'how much later than the commands the states are stamped', 's',
               ('actuation_delay.delay',), (0.02,))]
     kinds += [('rate_bias', 'bias of the rate', 'rad/s', rate, (spread,) * 3)
               for spread in (0.01, 0.003)]

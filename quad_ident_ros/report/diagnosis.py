@@ -28,7 +28,7 @@ def show(data, stream):
     say('where: what the nominal vehicle lacks')
     screen.print(_where(data['where']))
     for name, own in (data['nuisances'] or {}).items():
-        say(f'each flight has its own {name}, which is no effect: {_own(own)}')
+        say(f'{name} ({own["what"]}) differs by flight and is no effect: {_own(own)}')
         if own.get('hidden_delay'):
             say(f'a delay of all flights of up to {1e3 * own["hidden_delay"]:.0f} ms cannot be '
                 'told from the clocks')
@@ -85,9 +85,9 @@ def _next(proposals):
 
 def _own(own):
     """Return the values of each flight, the held-out one last."""
-    flights = [' '.join(f'{value:.2g}' for value in values)
-               for values in (*own['values'], own['held_out'])]
-    return f'{"; ".join(flights)} {own["unit"]}'
+    *flights, held_out = (' '.join(f'{value:.2g}' for value in values)
+                          for values in (*own['values'], own['held_out']))
+    return f'{"; ".join(flights)}; held out {held_out} {own["unit"]}'
 
 
 def _far(gap):
@@ -120,7 +120,7 @@ def _which(ranking):
 
 
 def _where(rows):
-    table = _table('channel', 'share', 'rms', 'of it noise', 'where most of it is', 'Hz')
+    table = _table('channel', 'share', 'rms', 'noise alone', 'where most of it is', 'Hz')
     for row in rows:
         if row['share'] >= WORTH:
             low, high = row['band']

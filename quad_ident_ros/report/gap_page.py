@@ -110,7 +110,7 @@ def _where(data, pictures):
              f'{row["noise_rms"]:.3g}', row['regime'],
              f'{row["band"][0]:.2g} to {row["band"][1]:.2g}'] for row in data['where']]
     return [tag('h2', 'Where'), pictures['map'],
-            table(['channel', 'share', 'rms', 'of it noise', 'where most of it is', 'Hz'], rows,
+            table(['channel', 'share', 'rms', 'noise alone', 'where most of it is', 'Hz'], rows,
                   kinds=('text', '', '', '', 'text', ''))]
 
 
