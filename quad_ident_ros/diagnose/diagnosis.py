@@ -29,7 +29,7 @@ from quad_ident_ros.greybox.parameters import NAMES, nominal, SPLIT
 
 SCHEMA = 'quad_ident/diagnosis/1'
 LEAST = 0.2         # of the noise's gap that an effect must make somewhere to be named
-OUTWEIGHS = 1.5     # times what is left over that a cause must make beside an unknown one
+BENT = 1.5          # times the gap that is left that may be left without causes beside an unknown
 REMAINS = 0.25      # of the noise's gap that structure must make to speak of an unknown effect
 # Times the noise's gap from which on what is left is unknown without structure, too. Commands that
 # were lost and clocks that drift show in rates and attitude first.
@@ -104,14 +104,8 @@ def diagnose(records, vehicle, *, hold_out=None, effects=None, on_progress=lambd
     unknown = beyond or bool(left) and remains > REMAINS
     probability = _probabilities(selection, strength, remains if unknown else 0.0)
     if unknown:
-        # Known causes bend to what is not theirs: only those stay that say more than is left over.
-        weak = [cause for cause in named if strength[cause] < OUTWEIGHS * remains]
-        for column in (column for cause in weak for column in cause.columns):
-            z[column] = z0[column]
-        named = tuple(cause for cause in named if cause not in weak)
-        with_them, without = (_left_over(training, vehicle, each, noise, voltage)
-                              for each in (z, z0))
-        if with_them['velocity'] > without['velocity']:
+        named, z = _outstanding(training, vehicle, z0, z, named, strength, noise, voltage)
+        if named and not _help(training, vehicle, z0, z, voltage):
             named, z = (), z0.copy()
         left = left or [unstructured([where.lacking(record, vehicle, z + own, noise, voltage)
                                       for record, own in training], vehicle)]
@@ -204,6 +198,30 @@ def _left_over(training, vehicle, z, noise, voltage):
                             for one, own in training])
     base = _noise_gap(training, vehicle, z, noise, voltage)
     return {name: after[name] / base[name] for name in after}
+
+
+def _outstanding(training, vehicle, z0, z, named, strength, noise, voltage):
+    """
+    Return the causes without which clearly more is left, and the vector with them.
+
+    Known causes bend to what is unknown and not theirs: the weakest go first.
+    """
+    most = BENT * max(_left_over(training, vehicle, z, noise, voltage).values())
+    for cause in sorted(named, key=strength.get):
+        without = z.copy()
+        without[list(cause.columns)] = z0[list(cause.columns)]
+        if max(_left_over(training, vehicle, without, noise, voltage).values()) < most:
+            z, named = without, tuple(one for one in named if one is not cause)
+    return named, z
+
+
+def _help(training, vehicle, z0, z, voltage):
+    """Return whether causes lessen the velocity gap of each flight: what is there is in all."""
+    def gap_of(record, vector):
+        ends = gaps.ends(record, vehicle, vector, gaps.HEADLINE, voltage)
+        return gaps.usual_gap([ends])['velocity']
+
+    return all(gap_of(one, z + own) < gap_of(one, z0 + own) for one, own in training)
 
 
 def _how_far(test, vehicle, z0, z, named, noise, voltage):

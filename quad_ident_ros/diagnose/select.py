@@ -18,6 +18,7 @@ from quad_ident_ros.greybox.parameters import limits, nominal
 ROUNDS = 5
 REFITS = 3          # sets that are refitted in a round
 FIT_STEPS = 5
+KNOWN = 3           # sets found before that a second search begins with
 COLOURED = 2.0      # times the noise from sample to sample that all that is left may be
 UNTRIED = -2.0      # log-evidence that the linear model alone may give a set, beside the best
 
@@ -66,17 +67,18 @@ def select(flights, vehicle, causes, on_progress=lambda share: None):
     The errors are weighed by the noise from sample to sample; where much more than that is left,
     noise that hangs together or what no cause explains, by all that is left, once more.
     """
-    found = _select(flights, vehicle, causes, None, lambda share: on_progress(0.5 * share))
+    found = _select(flights, vehicle, causes, None, (), lambda share: on_progress(0.5 * share))
     whole = [whole_noise(raw, 1.0 - 1.0 / raw.shape[1]) for raw in found.best.estimate.left]
     ratio = np.median(np.array(whole) / found.noise, axis=0)
     if np.max(ratio) > COLOURED or np.max(1.0 / ratio) > COLOURED:
-        found = _select(flights, vehicle, causes, whole, lambda share: on_progress(
-            0.5 + 0.5 * share))
+        # What was found is where the search goes on from: from a far-off model it may get lost.
+        found = _select(flights, vehicle, causes, whole, found.fitted[:KNOWN],
+                        lambda share: on_progress(0.5 + 0.5 * share))
     on_progress(1.0)
     return found
 
 
-def _select(flights, vehicle, causes, noise, on_progress):
+def _select(flights, vehicle, causes, noise, known, on_progress):
     own = own_candidates(vehicle)
     columns = sorted({column for cause in causes for column in cause.columns})
     rows = _rows(causes, own, columns, len(flights))
@@ -84,7 +86,10 @@ def _select(flights, vehicle, causes, noise, on_progress):
     noise = noise or [quick_noise(errors_along(flight, vehicle, nominal(vehicle), start))
                       for flight, start in zip(flights, starts, strict=True)]
     tried = {(): estimate(flights, vehicle, nominal(vehicle), [], noise=noise, iterations=2)}
-    best, scatter = (), 1.0
+    for one in known:
+        tried[one.chosen] = _refitted(flights, vehicle, one.estimate.z, one.chosen, noise,
+                                      one.estimate.own, one.estimate.starts)
+    best, scatter = (known[0].chosen if known else ()), 1.0
     for turn in range(ROUNDS):
         quadratic = quadratic_at(flights, vehicle, tried[best], columns, own)
         scatter = quadratic.scatter
