@@ -82,7 +82,7 @@ def diagnose(records, vehicle, *, hold_out=None, effects=None, on_progress=lambd
     training, test = split(records, hold_out)
     training, late = zip(*(aligned(record) for record in training), strict=True)
     test, test_late = aligned(test)
-    voltage = highest_voltage([*training, test])
+    voltage = highest_voltage(training)
     flights = near_flights(training, vehicle, nominal(vehicle), voltage)
     causes = candidates(flights, vehicle, effects)
     selection = select(flights, vehicle, causes, lambda share: on_progress(0.8 * share))

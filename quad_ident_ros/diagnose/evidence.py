@@ -11,7 +11,7 @@ ODDS = 0.02         # of each cause being present, before looking,
 OWN_ODDS = 1e-4     # and of flights having anything of their own,
 MORE_ODDS = 0.5     # and one more kind of it
 BEAM = 12           # sets kept per size
-MOST = 6            # causes in a set, beside what flights have of their own
+MOST = 8            # causes in a set, beside what flights have of their own
 BEHIND = 40.0       # log-evidence behind the best set from which on none grows
 
 

@@ -105,6 +105,7 @@ def _select(flights, vehicle, causes, noise, known, on_progress):
             everyone.values.flat[:] = found[len(columns):]
             tried[chosen] = _refitted(flights, vehicle, start, chosen, noise, everyone,
                                       tried[best].starts)
+            tried[chosen] = _found_again(flights, vehicle, chosen, tried, noise)
         before, best = best, max(tried, key=lambda key: _evidence(tried[key], key, vehicle,
                                                                   scatter))
         on_progress((turn + 1) / ROUNDS)
@@ -142,6 +143,21 @@ def _refitted(flights, vehicle, z, chosen, noise, own, starts):
     own = Own.of([cause.own for cause in chosen if cause.own], len(flights), own)
     return estimate(flights, vehicle, z, free, noise=noise, own=own, starts=starts,
                     iterations=FIT_STEPS)
+
+
+def _found_again(flights, vehicle, chosen, tried, noise):
+    """
+    Return the Estimate of a set that fits at least as well as its subsets.
+
+    One that fits worse got lost on its way, and starts once more from the best of these.
+    """
+    lost = tried[chosen]
+    known = [one for key, one in tried.items() if set(key) < set(chosen)]
+    near = min(known, key=lambda one: one.normal.cost, default=lost)
+    if near.normal.cost >= lost.normal.cost:
+        return lost
+    again = _refitted(flights, vehicle, near.z, chosen, noise, near.own, near.starts)
+    return min(lost, again, key=lambda one: one.normal.cost)
 
 
 def _pruned(flights, vehicle, best, tried, noise):
