@@ -126,6 +126,26 @@ def test_the_held_out_flight_takes_no_part_even_where_it_is_named_among_the_othe
     assert beside == alone
 
 
+def test_what_is_learnt_does_not_depend_on_the_held_out_flight():
+    *training, test = flown({'battery_sag': TRUTHS['battery_sag']})
+    fuller = replace(test, columns={**test.columns, 'vbat': test.columns['vbat'] + 0.3})
+    one, other = (diagnose([*training, held], VEHICLE).data for held in (test, fuller))
+    assert one['verdict'] == other['verdict']
+    assert [row['parameters'] for row in one['ranking']] == [row['parameters']
+                                                             for row in other['ranking']]
+    assert one['where'] == other['where']
+
+
+def test_a_vehicle_that_is_lost_within_half_a_second_is_found():
+    """The model without effects turns over: no slope at it leads to what is there."""
+    truth = {'com_offset': {'x': 0.006, 'y': -0.008, 'z': 0.004},
+             'inertia_mismatch': {'factor_x': 1.6, 'factor_y': 1.5, 'factor_z': 1.4},
+             'thrust_scale': {'factor': 0.9}}
+    data = diagnose(flown(truth), VEHICLE).data
+    assert data['gap']['before']['attitude'] > 1.0
+    check(data, truth)
+
+
 def test_a_flight_that_is_given_twice_is_refused():
     flights = flown({})
     with pytest.raises(InputError, match='given twice'):
