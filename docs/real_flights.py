@@ -164,18 +164,43 @@ def tampered_table(found):
             rows.append((label, f'refused: {str(one).rpartition("/")[2]}', *[''] * 4))
             continue
         data = one.data
-        sag = next(row for row in data['ranking'] if row['effect'] == 'battery_sag')
-        own = data['nuisances'] or {}
-        delay = next((value['value'] for row in data['ranking'] for name, value in
-                      row['parameters'].items() if row['effect'] == 'actuation_delay'), 0.0)
-        clock = np.mean(own['clock_offset']['values']) if 'clock_offset' in own else 0.0
-        moment = (np.mean(own['trim_moment']['values'], axis=0)[0] if 'trim_moment' in own
-                  else 0.0)
-        rows.append((label, ', '.join(data['verdict']), f'{sag["probability"]:.2f}',
-                     f'{1e3 * (clock + delay):.0f} ms', f'{1e3 * moment:.2f} mN m',
+        rows.append((label, ', '.join(data['verdict']), _sag(data),
+                     f'{1e3 * _delay(data):.0f} ms', f'{1e3 * _moment(one):.2f} mN m',
                      number(data['gap']['after']['velocity'])))
-    return markdown(('flights', 'verdict', 'probability of `battery_sag`',
-                     'commands act after', 'trim about x', 'velocity gap after, m/s'), rows)
+    return markdown(('flights', 'verdict', 'fall of the thrust', 'commands act after',
+                     'moment about x in hover', 'velocity gap after, m/s'), rows)
+
+
+def _parameters(data, effect):
+    """Return {parameter: value} that was found of an effect, named or not."""
+    [row] = [row for row in data['ranking'] if row['effect'] == effect]
+    return {name: one['value'] for name, one in row['parameters'].items()}
+
+
+def _own(data, name):
+    """Return the mean over the flights of what each has of its own, (K,), or zeros."""
+    return (np.mean(data['nuisances'][name]['values'], axis=0)
+            if name in (data['nuisances'] or {}) else np.zeros(3))
+
+
+def _sag(data):
+    """Return the fall of thrust that was found, in words."""
+    found = _parameters(data, 'battery_sag')
+    kinds = {'per_volt': (1.0, 'a volt'), 'per_second': (60.0, 'a minute')}
+    return ' and '.join(f'{100 * kinds[name][0] * value:.0f} % {kinds[name][1]}'
+                        for name, value in found.items()) or 'none'
+
+
+def _delay(data):
+    """Return how long after the commands the vehicle acts, s: by clock or delay."""
+    return _own(data, 'clock_offset')[0] + _parameters(data, 'actuation_delay').get('delay', 0.0)
+
+
+def _moment(found):
+    """Return the moment about x in hover, N m: each flight's own, and the weight's lever."""
+    weight = found.vehicle.mass * found.vehicle.gravity
+    lever = _parameters(found.data, 'com_offset').get('y', 0.0)
+    return _own(found.data, 'trim_moment')[0] - weight * lever
 
 
 if __name__ == '__main__':

@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The score as tables in Markdown, for the screen and for docs/withheld.md."""
 
+from withheld.goals import goals
+
 STRENGTHS = ('0.3', '1', '3')
 
 
@@ -19,8 +21,9 @@ def closed(part):
 
 def markdown(found):
     """Return all tables of a score."""
-    return '\n\n'.join([_groups(found), _claims(found), _effects(found), _coverage(found),
-                        _calibration(found)])
+    head = ('what', 'target', 'reached (bold: not)')
+    return '\n\n'.join([_rows(head, goals(found)), _groups(found), _claims(found),
+                        _effects(found), _coverage(found), _calibration(found)])
 
 
 def _rows(head, rows):

@@ -28,7 +28,7 @@ from quad_ident_ros.greybox.noise import near_noise, quick_noise, whole_noise
 from quad_ident_ros.greybox.parameters import NAMES, nominal, SPLIT
 
 SCHEMA = 'quad_ident/diagnosis/1'
-LEAST = 0.2         # of the noise's gap that an effect must make somewhere to be named
+LEAST = 0.1         # of the noise's gap that an effect must make somewhere to be named
 BENT = 1.5          # times the gap that is left that may be left without causes beside an unknown
 REMAINS = 0.25      # of the noise's gap that structure must make to speak of an unknown effect
 # Times the noise's gap from which on what is left is unknown without structure, too. Commands that

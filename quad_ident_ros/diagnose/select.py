@@ -20,6 +20,8 @@ REFITS = 3          # sets that are refitted in a round
 FIT_STEPS = 5
 KNOWN = 3           # sets found before that a second search begins with
 COLOURED = 2.0      # times the noise from sample to sample that all that is left may be
+NEAR = 25.0         # log-evidence behind the best set by the slopes that may be made up for
+MISSED = 1.05       # times the cost from which on a cause is missed, whatever its standard errors
 UNTRIED = -2.0      # log-evidence that the linear model alone may give a set, beside the best
 
 
@@ -94,9 +96,7 @@ def _select(flights, vehicle, causes, noise, known, on_progress):
         quadratic = quadratic_at(flights, vehicle, tried[best], columns, own)
         scatter = quadratic.scatter
         ranked = beam(quadratic, rows)
-        fresh = [(chosen, found) for _, chosen, found in ranked[:3 * REFITS]
-                 if chosen not in tried][:REFITS]
-        for chosen, found in fresh:
+        for chosen, found in _promising(ranked, tried):
             start = nominal(vehicle)
             lower, upper, _ = limits(vehicle)
             start[columns] += found[:len(columns)]
@@ -111,7 +111,7 @@ def _select(flights, vehicle, causes, noise, known, on_progress):
         on_progress((turn + 1) / ROUNDS)
         if best == before:
             break
-    best, pruned = _pruned(flights, vehicle, best, tried, noise)
+    best, pruned, missed = _pruned(flights, vehicle, best, tried, noise)
     fitted = tuple(sorted((Fitted(key, value, _evidence(value, key, vehicle, scatter))
                            for key, value in tried.items()), key=lambda one: -one.evidence))
     chosen = next(one for one in fitted if one.chosen == best)
@@ -119,10 +119,25 @@ def _select(flights, vehicle, causes, noise, known, on_progress):
                         and one is not chosen))
     probability = _probabilities(fitted, ranked, causes, tried)
     support = pruned | {cause: support_of(chosen.estimate, cause, vehicle)
-                        for cause in chosen.causes}
+                        for cause in chosen.causes if cause not in missed}
     for cause, value in support.items():
         probability[cause] = min(probability[cause], float(1.0 / (1.0 + np.exp(-min(value, 50)))))
     return Selection(chosen, fitted, probability, quadratic, rows, noise)
+
+
+def _promising(ranked, tried):
+    """
+    Return [(causes, distances)] of the untried sets that are worth refitting.
+
+    Those with the most evidence, and those with another cause in place of one of the best set's:
+    slopes at a point tell little of which of two is there that do nearly the same.
+    """
+    most, top, _ = ranked[0]
+    fresh = [(chosen, found) for _, chosen, found in ranked[:3 * REFITS] if chosen not in tried]
+    rivals = [(chosen, found) for value, chosen, found in ranked[3 * REFITS:]
+              if value > most - NEAR and chosen not in tried and len(chosen) == len(top)
+              and [cause.own for cause in set(chosen) ^ set(top)] == [None, None]]
+    return [*fresh[:REFITS], *rivals[:REFITS]]
 
 
 def _rows(causes, own, columns, count):
@@ -164,22 +179,27 @@ def _pruned(flights, vehicle, best, tried, noise):
     """
     Return the causes of a set that its own standard errors support, refitted into tried.
 
-    And {cause: its support} of those that are left out.
+    And {cause: its support} of those that are left out; and those that are kept without any, for
+    much is missed without them, as where several could stand for one another.
     """
-    pruned = {}
-    while any(cause.own is None for cause in best):
+    pruned, missed = {}, set()
+    while True:
         fit = tried[best]
-        support = {cause: support_of(fit, cause, vehicle) for cause in best if cause.own is None}
-        weakest = min(support, key=support.get)
-        if support[weakest] > 0.0:
-            break
-        pruned[weakest] = support[weakest]
-        best = tuple(cause for cause in best if cause != weakest)
-        if best not in tried:
+        weak = {cause: support for cause in best if cause.own is None and cause not in missed
+                if (support := support_of(fit, cause, vehicle)) <= 0.0}
+        if not weak:
+            return best, pruned, missed
+        weakest = min(weak, key=weak.get)
+        without = tuple(cause for cause in best if cause != weakest)
+        if without not in tried:
             z = fit.z.copy()
             z[list(weakest.columns)] = nominal(vehicle)[list(weakest.columns)]
-            tried[best] = _refitted(flights, vehicle, z, best, noise, fit.own, fit.starts)
-    return best, pruned
+            tried[without] = _refitted(flights, vehicle, z, without, noise, fit.own, fit.starts)
+        if tried[without].normal.cost > MISSED * fit.normal.cost:
+            missed.add(weakest)
+        else:
+            pruned[weakest] = weak[weakest]
+            best, missed = without, set()
 
 
 def support_of(fit, cause, vehicle):

@@ -15,6 +15,7 @@ import pytest
 from quad_ident_ros.effects.registry import EFFECTS as OURS
 from withheld import score as scores
 from withheld.cases import EFFECTS, full_set, quick_set, STRENGTHS, VEHICLES
+from withheld.goals import goals
 from withheld.seal import Broken, seal, unseal
 from withheld.table import markdown
 
@@ -173,6 +174,31 @@ def test_the_score_does_not_change_what_it_is_given_and_makes_tables():
     text = markdown(scores.score(labels, found))
     assert (labels, found) == before
     assert '| faulty single | 1 |' in text and '| `wind` |' in text
+
+
+def test_the_goals_say_what_was_not_reached():
+    labels = {'a': label(kind='none'), 'b': label(stranger='slosh', kind='unknown'),
+              'c': label(kind='none', faulty=True)}
+    right = {'a': diagnosis('none'), 'b': diagnosis('unknown'), 'c': diagnosis('none')}
+    wrong = {'a': diagnosis('wind'), 'b': diagnosis('none'), 'c': diagnosis('none')}
+    reached = [dict((what, cell) for what, _, cell in goals(scores.score(labels, found)))
+               for found in (right, wrong)]
+    assert not any('**' in cell for cell in reached[0].values())
+    assert [one['false alarms on `none`'] for one in reached] == ['0 % of 1', '**100 % of 1**']
+    assert [one['`unknown` recognised / falsely claimed'] for one in reached] == [
+        '100 % / 0 %', '**0 %** / 0 %']
+
+
+def test_with_faults_rates_are_held_against_those_without():
+    labels = {f'{kind}{k}': label(['wind', 'inflow'], kind='pair', faulty=kind == 'faulty')
+              for kind in ('clean', 'faulty') for k in range(10)}
+    found = {name: diagnosis(*one['effects']) for name, one in labels.items()}
+    what = 'with faults: exact set, single and `none` / pairs / mixtures'
+    for k, cell in enumerate(('- / 100 % of 10 / -', '- / 90 % of 10 / -',
+                              '- / **80 % of 10** / -')):
+        if k:
+            found[f'faulty{k}'] = diagnosis('wind')
+        assert dict(row[::2] for row in goals(scores.score(labels, found)))[what] == cell
 
 
 def test_a_seal_opens_with_its_key_alone():
