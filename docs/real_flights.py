@@ -149,6 +149,8 @@ def effects_table(data):
 def own_table(data):
     """Return what each flight has of its own."""
     own = data['nuisances'] or {}
+    if not own:
+        return 'None: what there is of it is alike in all flights.'
     head = ('flight', *(f'{name}, {one["unit"]}' for name, one in own.items()))
     columns = [[*one['values'], one['held_out']] for one in own.values()]
     return markdown(head, [
