@@ -64,7 +64,7 @@ def main(folder):
 def save(found, records):
     """Save the pictures of a diagnosis beside the document."""
     with tempfile.TemporaryDirectory() as folder:
-        gap_page.save_pictures(found, records[:-1], records[-1], Path(folder))
+        gap_page.save_pictures(found, Path(folder))
         for name in PICTURES:
             shutil.copy(Path(folder) / f'{name}.png', DOCUMENTS / f'real_flights_{name}.png')
 
@@ -169,8 +169,9 @@ def tampered_table(found):
         rows.append((label, ', '.join(data['verdict']), _sag(data),
                      f'{1e3 * _delay(data):.0f} ms', f'{1e3 * _moment(one):.2f} mN m',
                      number(data['gap']['after']['velocity'])))
-    return markdown(('flights', 'verdict', 'fall of the thrust', 'commands act after',
-                     'moment about x in hover', 'velocity gap after, m/s'), rows)
+    return markdown(('flights', 'verdict', 'fall of the thrust (probability)',
+                     'commands act after', 'moment about x in hover', 'velocity gap after, m/s'),
+                    rows)
 
 
 def _parameters(data, effect):
@@ -189,8 +190,9 @@ def _sag(data):
     """Return the fall of thrust that was found, in words."""
     found = _parameters(data, 'battery_sag')
     kinds = {'per_volt': (1.0, 'a volt'), 'per_second': (60.0, 'a minute')}
-    return ' and '.join(f'{100 * kinds[name][0] * value:.0f} % {kinds[name][1]}'
-                        for name, value in found.items()) or 'none'
+    [row] = [row for row in data['ranking'] if row['effect'] == 'battery_sag']
+    return ' and '.join(f'{100 * kinds[name][0] * value:.0f} % {kinds[name][1]} '
+                        f'({row["probability"]:.2f})' for name, value in found.items()) or 'none'
 
 
 def _delay(data):

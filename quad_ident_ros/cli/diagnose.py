@@ -11,7 +11,7 @@ from rich.progress import BarColumn, Progress, TextColumn
 
 from quad_ident_ros.cli.options import flights_from
 from quad_ident_ros.data.quality import refuse_unfit
-from quad_ident_ros.diagnose.diagnosis import diagnose, split
+from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.diagnose.length import refuse_short
 from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.model.mixing import with_commands
@@ -73,7 +73,7 @@ def run(options):
         write_json(options.json, found.data)
     if options.report:
         from quad_ident_ros.report import gap_page  # it draws: half a second to import
-        gap_page.write(options.report, found, *split(records, held))
+        gap_page.write(options.report, found)
     if options.out_vehicle:
         write_vehicle(options.out_vehicle, replace(
             vehicle, name=f'{vehicle.name}_diagnosed', effects=found.effects()))

@@ -9,23 +9,25 @@ from scipy.interpolate import Akima1DInterpolator
 
 from quad_ident_ros.data.frames import continuous
 from quad_ident_ros.data.quality.clock import clock_offset, SEVERAL, velocity_offset
-from quad_ident_ros.data.quality.glitches import glitches
+from quad_ident_ros.data.quality.glitches import jumps
 from quad_ident_ros.data.record import EULER, QUATERNION
 
 STREAMS = {'pose': ('px', 'py', 'pz', *QUATERNION, *EULER), 'velocity': ('vx', 'vy', 'vz'),
            'rate': ('wx', 'wy', 'wz', 'ax', 'ay', 'az')}
 LEAST = 0.0005      # s, of an offset that is worth moving a stream for
-GAP = 1.6           # usual periods between two samples that nothing is taken from between
+GAP = 0.05          # s between two samples, or as many periods as below, from which on nothing
+PERIODS = 1.6       # is taken from between
 
 
 def aligned(record):
     """
     Return a flight record with states of one clock, and {stream: s that it was stamped late}.
 
-    Pose, velocity and rate each know the slope of another. Where their stamps differ by more than
-    three standard errors, the one that comes first keeps its time, for a measurement may be late
-    but never early, and the others are moved onto it; rows whose new values lie in gaps are left
-    out. Without such offsets the record itself is returned, and {}.
+    The slopes of the pose are velocity and rate. Where their stamps differ by more than three
+    standard errors, the one that comes first keeps its time, for a measurement may be late but
+    never early, and the others are moved onto it; one whose offset cannot be told stays where it
+    is. Rows whose new values lie in gaps or beyond the end are left out. Without such offsets the
+    record itself is returned, and {}.
     """
     late = lateness(record)
     if not late:
@@ -33,6 +35,8 @@ def aligned(record):
     columns, whole = dict(record.columns), np.ones(len(record), bool)
     for stream, offset in late.items():
         names = [name for name in STREAMS[stream] if record.has(name)]
+        if not names:
+            continue
         moved, there = _moved(record, stream, names, offset)
         columns |= dict(zip(names, moved.T, strict=True))
         whole &= there
@@ -44,10 +48,18 @@ def aligned(record):
 
 def lateness(record):
     """Return {stream: s} of the streams of a record that are stamped later than the first."""
-    offsets = {'pose': 0.0}
-    for stream, found in (('rate', clock_offset(record)), ('velocity', velocity_offset(record))):
-        sure = found is not None and abs(found.offset) > max(SEVERAL * found.std, LEAST)
-        offsets[stream] = -found.offset if sure else 0.0
+    found = {'rate': clock_offset(record), 'velocity': velocity_offset(record)}
+    known = {stream: (-one.offset, one.std) for stream, one in found.items() if one is not None}
+    if len(known) == 2:
+        (rate, wide), (velocity, narrow) = known.values()
+        if abs(rate - velocity) <= SEVERAL * np.hypot(wide, narrow):
+            # They are of one clock: the better known of the two tells the pose's.
+            weights = np.array([wide, narrow]) ** -2.0
+            both = float(np.average([rate, velocity], weights=weights)), weights.sum() ** -0.5
+            known = dict.fromkeys(known, both)
+    offsets = {'pose': 0.0} | {
+        stream: offset if abs(offset) > max(SEVERAL * std, LEAST) else 0.0
+        for stream, (offset, std) in known.items()}
     first = min(offsets.values())
     return {stream: float(offset - first) for stream, offset in offsets.items()
             if offset - first > LEAST}
@@ -56,17 +68,16 @@ def lateness(record):
 def _moved(record, stream, names, offset):
     """Return columns (N, k) at stamps that much later, and where they are known, (N,)."""
     t, values = record.t, record.stack(*names)
-    good = np.ones(len(t), bool)
-    if stream == 'pose' and record.has(*QUATERNION):
-        places = [names.index(name) for name in QUATERNION]
+    good = ~jumps(record) if stream == 'pose' else np.ones(len(t), bool)    # they reach neighbours
+    places = [names.index(name) for name in QUATERNION if name in names]
+    if places:
         values[:, places] = continuous(values[:, places])
-        if record.has('wx', 'wy', 'wz'):    # a jump would reach its neighbours
-            good = ~glitches(t, values[:, places], record.stack('wx', 'wy', 'wz'))
     known, at = t[good], t + offset
     after = np.clip(np.searchsorted(known, at), 1, len(known) - 1)
-    there = (at <= known[-1]) & (known[after] - known[after - 1] <= GAP * record.period())
+    there = (at <= known[-1]) & (known[after] - known[after - 1]
+                                 <= max(GAP, PERIODS * record.period()))
     moved = values.copy()
     moved[there] = Akima1DInterpolator(known, values[good])(at[there])
-    if stream == 'pose' and record.has(*QUATERNION):
+    if places:
         moved[:, places] /= np.linalg.norm(moved[:, places], axis=1, keepdims=True)
     return moved, there

@@ -43,16 +43,20 @@ class Diagnosis:
     What was found, as data (`data`: the JSON of the project) and as objects to go on with.
 
     selection: of the effects; z (Z,): the vehicle with those named; vehicle: the nominal one;
-    own, held_out_own (Z,): what is added to z in each flight, as clocks and trims are its own;
-    noise (12,): of the measurement; whole (12,): all that the best model leaves.
+    training, held_out: FlightRecords, of one clock each; own, held_out_own (Z,): what is added
+    to z in each flight, as clocks and trims are its own; voltage V at which the vehicle holds, or
+    None; noise (12,): of the measurement; whole (12,): all that the best model leaves.
     """
 
     data: dict
     selection: object
     z: np.ndarray
     vehicle: object
+    training: tuple
+    held_out: object
     own: list
     held_out_own: np.ndarray
+    voltage: float | None
     noise: np.ndarray
     whole: np.ndarray
 
@@ -134,8 +138,8 @@ def diagnose(records, vehicle, *, hold_out=None, effects=None, on_progress=lambd
         'nuisances': as_data(kinds, [own for _, own in training], test[1], late, test_late),
         'flights': [record.info.get('name') for record, _ in training],
         'held_out': test[0].info.get('name')}
-    return Diagnosis(data, selection, z, vehicle, [own for _, own in training], test[1], noise,
-                     whole)
+    return Diagnosis(data, selection, z, vehicle, tuple(record for record, _ in training), test[0],
+                     [own for _, own in training], test[1], voltage, noise, whole)
 
 
 def split(records, hold_out):

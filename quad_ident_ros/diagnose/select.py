@@ -134,8 +134,10 @@ def _promising(ranked, tried):
     """
     most, top, _ = ranked[0]
     fresh = [(chosen, found) for _, chosen, found in ranked[:3 * REFITS] if chosen not in tried]
-    rivals = [(chosen, found) for value, chosen, found in ranked[3 * REFITS:]
-              if value > most - NEAR and chosen not in tried and len(chosen) == len(top)
+    first = {chosen for chosen, _ in fresh[:REFITS]}
+    rivals = [(chosen, found) for value, chosen, found in ranked
+              if value > most - NEAR and chosen not in tried and chosen not in first
+              and len(chosen) == len(top)
               and [cause.own for cause in set(chosen) ^ set(top)] == [None, None]]
     return [*fresh[:REFITS], *rivals[:REFITS]]
 
@@ -168,11 +170,11 @@ def _found_again(flights, vehicle, chosen, tried, noise):
     """
     lost = tried[chosen]
     known = [one for key, one in tried.items() if set(key) < set(chosen)]
-    near = min(known, key=lambda one: one.normal.cost, default=lost)
-    if near.normal.cost >= lost.normal.cost:
+    near = min(known, key=lambda one: one.cost, default=lost)
+    if near.cost >= lost.cost:
         return lost
     again = _refitted(flights, vehicle, near.z, chosen, noise, near.own, near.starts)
-    return min(lost, again, key=lambda one: one.normal.cost)
+    return min(lost, again, key=lambda one: one.cost)
 
 
 def _pruned(flights, vehicle, best, tried, noise):
@@ -195,7 +197,7 @@ def _pruned(flights, vehicle, best, tried, noise):
             z = fit.z.copy()
             z[list(weakest.columns)] = nominal(vehicle)[list(weakest.columns)]
             tried[without] = _refitted(flights, vehicle, z, without, noise, fit.own, fit.starts)
-        if tried[without].normal.cost > MISSED * fit.normal.cost:
+        if tried[without].cost > MISSED * fit.cost:
             missed.add(weakest)
         else:
             pruned[weakest] = weak[weakest]
@@ -247,7 +249,7 @@ def _evidence(fit, chosen, vehicle, scatter):
     spreads = np.tile(fit.own.spreads, len(fit.own.values))
     wide = np.append(PRIOR * size[fit.columns], spreads)
     distance = np.append((fit.z - null)[fit.columns], fit.own.values) / wide
-    return (-0.5 * fit.normal.cost / scatter - 0.5 * np.sum(distance ** 2)
+    return (-0.5 * fit.cost / scatter - 0.5 * np.sum(distance ** 2)
             + occam(fit.normal.information, wide, scatter, chosen))
 
 

@@ -37,9 +37,8 @@ class Estimate:
 
     own: what the flights have of their own; starts: initial states per flight; normal: the last
     Normal, of the columns and of each flight's own, by slopes at the vector `at` (Z,), near z;
-    left: recorded minus predicted per flight, but for what the clock explains; free: whether each
-    column is inside its bounds;
-    converged.
+    left: recorded minus predicted per flight, but for what the clock explains, and its cost;
+    free: whether each column is inside its bounds; converged: whether the last step was small.
     """
 
     z: np.ndarray
@@ -51,6 +50,7 @@ class Estimate:
     normal: Normal
     at: np.ndarray
     left: list
+    cost: float
     free: np.ndarray
     converged: bool
 
@@ -164,8 +164,8 @@ def _descend(flights, vehicle, z, columns, box, noise, own, starts, iterations, 
         if share < 1.0 or abs(before - after - saved) > STRAIGHT * saved:
             tangents = None
     covariance = covariance_of(marginal(normal, shared, precision), size[:shared])
-    return Estimate(z, columns, covariance, noise, own, starts, normal, at, told, free[:shared],
-                    converged)
+    return Estimate(z, columns, covariance, noise, own, starts, normal, at, told,
+                    _cost(told, scales), free[:shared], converged)
 
 
 def _whole(box, own, count):

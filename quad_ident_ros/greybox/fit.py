@@ -144,7 +144,7 @@ def as_data(fit):
         'noise': {name: {group: {'std': noise[part].tolist(), 'unit': UNITS[group]}
                          for group, part in GROUPS.items()}
                   for name, noise in zip(fit.flights, found.noise, strict=True)},
-        'cost': found.normal.cost, 'samples': sum(raw.shape[0] * raw.shape[1]
+        'cost': found.cost, 'samples': sum(raw.shape[0] * raw.shape[1]
                                                   for raw in found.left),
         'converged': found.converged, 'findings': list(fit.findings)}
 

@@ -28,7 +28,7 @@ def show(data, stream):
     say('where: what the nominal vehicle lacks')
     screen.print(_where(data['where']))
     for name, own in (data['nuisances'] or {}).items():
-        say(f'{name} ({own["what"]}) differs by flight and is no effect: {_own(own)}')
+        say(f"each flight's own {name} ({own['what']}) is no effect: {_own(own)}")
         if own.get('hidden_delay'):
             say(f'a delay of all flights of up to {1e3 * own["hidden_delay"]:.0f} ms cannot be '
                 'told from the clocks')

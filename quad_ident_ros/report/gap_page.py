@@ -7,7 +7,6 @@ import tempfile
 
 from quad_ident_ros.diagnose import gap as gaps
 from quad_ident_ros.diagnose import where
-from quad_ident_ros.greybox.flights import highest_voltage
 from quad_ident_ros.greybox.parameters import nominal
 from quad_ident_ros.report import gap_pictures
 from quad_ident_ros.report.diagnosis import NEXT, next_row, not_shown_line, verdict_line
@@ -18,16 +17,15 @@ SHOWN = 0.02    # probability from which on an effect has a row among the parame
 KINDS = {'none': 'yes', 'unknown': 'no', 'undetermined': 'part'}
 
 
-def write(path, found, training, held_out):
+def write(path, found):
     """
     Write the page of a diagnosis; raises InputError where the file cannot be written.
 
-    Args: found: diagnose.diagnosis.Diagnosis; training: the flight records of the fit; held_out:
-    the one on which the gap is told.
+    Args: found: diagnose.diagnosis.Diagnosis.
     """
     data = found.data
     with tempfile.TemporaryDirectory() as folder:
-        captions = save_pictures(found, training, held_out, Path(folder))
+        captions = save_pictures(found, Path(folder))
         pictures = {name: figure(Path(folder) / f'{name}.png', caption)
                     for name, caption in captions.items()}
         body = [*_verdict(data), *_far(data, pictures), *_where(data, pictures),
@@ -35,19 +33,19 @@ def write(path, found, training, held_out):
     write_page(path, f'What {data["vehicle"]} lacks', join(body))
 
 
-def save_pictures(found, training, held_out, folder):
+def save_pictures(found, folder):
     """
     Save the pictures of a diagnosis as NAME.png in a folder, a Path; return {name: caption}.
 
-    Args as those of `write`.
+    Args: found as that of `write`.
     """
     vehicle, z, z0 = found.vehicle, found.z, nominal(found.vehicle)
-    voltage = highest_voltage([*training, held_out])
+    held_out, voltage = found.held_out, found.voltage
     gap, horizon = found.data['gap'], found.data['gap']['horizon']
     before, after = (gaps.ends(held_out, vehicle, each + found.held_out_own, horizon, voltage)
                      for each in (z0, z))
     lacks = [[where.lacking(record, vehicle, each + own, noise, voltage)
-              for record, own in zip(training, found.own, strict=True)]
+              for record, own in zip(found.training, found.own, strict=True)]
              for each, noise in ((z0, found.noise), (z, found.whole))]
     made = {}
     for name, draw, caption in (

@@ -6,11 +6,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
-from quad_ident_ros.data.aligned import aligned, STREAMS
+from quad_ident_ros.data.aligned import aligned, lateness, STREAMS
 from quad_ident_ros.data.quality import findings
 from quad_ident_ros.data.record import QUATERNION
 from quad_ident_ros.diagnose.diagnosis import diagnose
+from quad_ident_ros.errors import InputError
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import Noise, Sensors, Stream
 from quad_ident_ros.greybox.fit import fit
@@ -79,6 +81,57 @@ def test_lost_rows_and_jumps_of_the_attitude_do_not_reach_their_neighbours():
     both = np.intersect1d(whole.t, back.t)
     apart = [record.stack(*QUATERNION)[np.isin(record.t, both)] for record in (whole, back)]
     assert np.abs(apart[1] - apart[0]).max() < 0.01
+
+
+@pytest.mark.parametrize('seed', range(6))
+def test_jumps_of_the_attitude_make_no_stream_late(seed):
+    record = flown(seed, replace(USUAL, mocap=Stream(delay=0.02)))
+    rng = np.random.default_rng(seed)
+    jumped = rng.random(len(record)) < 0.01
+    turns = Rotation.from_rotvec(0.35 * rng.normal(size=(len(record), 3)) * jumped[:, None])
+    attitude = Rotation.from_quat(record.stack('qx', 'qy', 'qz', 'qw')) * turns
+    columns = dict(zip(('qx', 'qy', 'qz', 'qw'), attitude.as_quat().T, strict=True))
+    told = lateness(replace(record, columns={**record.columns, **columns}))
+    assert told.keys() == {'pose', 'velocity'}      # motion capture gives both
+    assert told['pose'] == pytest.approx(0.02, abs=2e-3)
+
+
+@pytest.mark.parametrize('share', [0.1, 0.2])
+def test_lost_rows_take_no_others_with_them(share):
+    record = flown(0, replace(USUAL, mocap=Stream(delay=0.02), lost=share))
+    back, told = aligned(record)
+    assert told.keys() == {'pose', 'velocity'}
+    assert len(back) > 0.97 * len(record)
+
+
+def test_a_rate_that_changes_along_the_flight_leaves_no_part_out():
+    record = flown(0, replace(USUAL, mocap=Stream(delay=0.02)))
+    rows = np.r_[:500, 500:len(record):2]
+    slower = replace(record, t=record.t[rows],
+                     columns={name: values[rows] for name, values in record.columns.items()})
+    assert len(aligned(slower)[0]) > len(slower) - 5
+
+
+@pytest.mark.parametrize('gone', ['velocity', 'rate'])
+def test_a_stream_that_is_not_there_is_not_moved(gone):
+    record = flown(0, replace(USUAL, mocap=Stream(delay=0.02)))
+    columns = {name: values for name, values in record.columns.items()
+               if name not in STREAMS[gone]}
+    record = replace(record, columns=columns)
+    assert gone not in aligned(record)[1]
+    with pytest.raises(InputError, match=STREAMS[gone][0]):
+        diagnose([record, flown(1)], VEHICLE)
+
+
+def test_a_stream_whose_offset_cannot_be_told_stays_where_it_is():
+    """In hover the attitude does not say when the rate is of."""
+    record = flown(0, USUAL)
+    still = {name: np.full(len(record), value) for name, value in
+             zip((*QUATERNION, 'wx', 'wy', 'wz'), (1, 0, 0, 0, 0, 0, 0), strict=True)}
+    record = late(record, {'pose': 0.02})
+    still = {name: values[:len(record)] for name, values in still.items()}
+    told = lateness(replace(record, columns={**record.columns, **still}))
+    assert told.keys() == {'pose'}
 
 
 @pytest.mark.parametrize('truth', [{}, {'rotor_drag': {'coefficient': 0.15}}],

@@ -40,7 +40,7 @@ def page(found, flights, tmp_path):
     """Return a function that writes the page of the diagnosis with other data and reads it."""
     def write(**changes):
         other = replace(found, data={**found.data, **changes})
-        gap_page.write(tmp_path / 'page.html', other, flights[:1], flights[1])
+        gap_page.write(tmp_path / 'page.html', other)
         return (tmp_path / 'page.html').read_text(encoding='utf-8')
     return write
 
@@ -90,7 +90,7 @@ def test_none_and_unknown_have_their_colours(page):
 def test_a_place_that_cannot_be_written_is_said_in_one_line(found, flights, tmp_path):
     (tmp_path / 'file').write_text('')
     with pytest.raises(InputError, match='cannot be written'):
-        gap_page.write(tmp_path / 'file' / 'page.html', found, flights[:1], flights[1])
+        gap_page.write(tmp_path / 'file' / 'page.html', found)
 
 
 def test_the_command_writes_it(flights, tmp_path, capsys):

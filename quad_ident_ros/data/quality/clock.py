@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Clock offset and drift between the streams of a record, with their uncertainty."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -10,6 +10,7 @@ from scipy.signal import fftconvolve
 
 from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.quality.frames import best_reading
+from quad_ident_ros.data.quality.glitches import jumps
 from quad_ident_ros.data.quality.series import Grid
 
 WINDOW = 4.0      # s, of one estimate
@@ -21,6 +22,7 @@ MEMORY = 0.4      # s, over which errors may depend on one another
 ANSWER = 1.0      # s, within which the motion may answer to errors of the attitude
 SEVERAL = 3.0     # standard errors from which on an offset of the attitude is one,
 MANY = 4.0        # and one of the commands, whose errors know nothing of the motion
+FEW = 0.05        # share of samples that may be left out, as their attitude is off
 SCATTER = 4.0     # mean square of errors over standard errors from which on they wander
 
 
@@ -53,7 +55,7 @@ def clock_offset(record):
     to 0.4 s (Newey and West 1987, Econometrica 55), and for a motion that depends on them, as
     under an autopilot that follows the errors of the attitude: see _displaced.
     """
-    grid = Grid.of(record)
+    grid = Grid.of(_without_jumps(record))
     if grid is None or not record.has('wx', 'wy', 'wz'):
         return None
     _, attitude = best_reading(grid)
@@ -61,6 +63,15 @@ def clock_offset(record):
         return None
     return _offset(grid, grid.rate_of(attitude), grid.smooth(grid.signal('wx', 'wy', 'wz')),
                    answers=True)
+
+
+def _without_jumps(record):
+    """Return a record without the few samples whose attitude is off: its slope there is none."""
+    off = jumps(record)
+    if not off.any() or off.mean() > FEW:
+        return record
+    return replace(record, t=record.t[~off],
+                   columns={name: values[~off] for name, values in record.columns.items()})
 
 
 def velocity_offset(record):
@@ -254,11 +265,13 @@ def velocity(record, vehicle):
 
 def _apart(found, where, late, early):
     """Return the Finding of a ClockOffset of one stream against another."""
+    grave = abs(found.offset) > 0.1
     return Finding(
-        'clock_offset', 'error' if abs(found.offset) > 0.1 else 'warning', where,
+        'clock_offset', 'error' if grave else 'warning', where,
         f'the {late} is stamped {1e3 * abs(found.offset):.1f} ± {1e3 * found.std:.1f} ms '
         f'{"later" if found.offset > 0 else "earlier"} than the {early}',
-        'stamp both by one clock; fit and diagnosis move the one that is late')
+        'stamp both by one clock'
+        + ('' if grave else '; fit and diagnosis move the one that is late'))
 
 
 def commands(record, vehicle):
