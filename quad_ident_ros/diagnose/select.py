@@ -21,6 +21,7 @@ FIT_STEPS = 5
 KNOWN = 3           # sets found before that a second search begins with
 COLOURED = 2.0      # times the noise from sample to sample that all that is left may be
 NEAR = 25.0         # log-evidence behind the best set by the slopes that may be made up for
+LOST = 1.01         # times the cost of a subset from which on a fit did not get where it belongs
 MISSED = 1.05       # times the cost from which on a cause is missed, whatever its standard errors
 UNTRIED = -2.0      # log-evidence that the linear model alone may give a set, beside the best
 
@@ -164,14 +165,14 @@ def _refitted(flights, vehicle, z, chosen, noise, own, starts):
 
 def _found_again(flights, vehicle, chosen, tried, noise):
     """
-    Return the Estimate of a set that fits at least as well as its subsets.
+    Return the Estimate of a set that fits about as well as its subsets.
 
-    One that fits worse got lost on its way, and starts once more from the best of these.
+    One that fits clearly worse got lost on its way, and starts once more from the best of these.
     """
     lost = tried[chosen]
     known = [one for key, one in tried.items() if set(key) < set(chosen)]
     near = min(known, key=lambda one: one.cost, default=lost)
-    if near.cost >= lost.cost:
+    if LOST * near.cost >= lost.cost:
         return lost
     again = _refitted(flights, vehicle, near.z, chosen, noise, near.own, near.starts)
     return min(lost, again, key=lambda one: one.cost)
