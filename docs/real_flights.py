@@ -202,9 +202,9 @@ def _delay(data):
 
 def _moment(found):
     """Return the moment about x in hover, N m: each flight's own, and the weight's lever."""
-    weight = found.vehicle.mass * found.vehicle.gravity
+    vehicle = found.training.vehicle
     lever = _parameters(found.data, 'com_offset').get('y', 0.0)
-    return _own(found.data, 'trim_moment')[0] - weight * lever
+    return _own(found.data, 'trim_moment')[0] - vehicle.mass * vehicle.gravity * lever
 
 
 if __name__ == '__main__':

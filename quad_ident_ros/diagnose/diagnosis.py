@@ -16,6 +16,7 @@ from quad_ident_ros.diagnose.doubts import doubts_of
 from quad_ident_ros.diagnose.fly_next import fly_next, hidden
 from quad_ident_ros.diagnose.leftover import leftovers, unstructured
 from quad_ident_ros.diagnose.length import refuse_short
+from quad_ident_ros.diagnose.named import believed, named_of, outstanding, Training, without
 from quad_ident_ros.diagnose.own import as_data, own_of
 from quad_ident_ros.diagnose.select import select
 from quad_ident_ros.effects.registry import EFFECTS, mapping
@@ -28,8 +29,6 @@ from quad_ident_ros.greybox.noise import near_noise, quick_noise, whole_noise
 from quad_ident_ros.greybox.parameters import NAMES, nominal, SPLIT
 
 SCHEMA = 'quad_ident/diagnosis/1'
-LEAST = 0.1         # of the noise's gap that an effect must make somewhere to be named
-BENT = 1.5          # times the gap that is left that may be left without causes beside an unknown
 REMAINS = 0.25      # of the noise's gap that structure must make to speak of an unknown effect
 # Times the noise's gap from which on what is left is unknown without structure, too. Commands that
 # were lost and clocks that drift show in rates and attitude first.
@@ -42,22 +41,17 @@ class Diagnosis:
     """
     What was found, as data (`data`: the JSON of the project) and as objects to go on with.
 
-    selection: of the effects; z (Z,): the vehicle with those named; vehicle: the nominal one;
-    training, held_out: FlightRecords, of one clock each; own, held_out_own (Z,): what is added
-    to z in each flight, as clocks and trims are its own; voltage V at which the vehicle holds, or
-    None; noise (12,): of the measurement; whole (12,): all that the best model leaves.
+    selection: of the effects; z (Z,): the vehicle with those named; training: the flights that
+    were learnt from, with the nominal vehicle; held_out: the FlightRecord, of one clock, and
+    held_out_own (Z,) what is its own, added to z; whole (12,): all that the best model leaves.
     """
 
     data: dict
     selection: object
     z: np.ndarray
-    vehicle: object
-    training: tuple
+    training: Training
     held_out: object
-    own: list
     held_out_own: np.ndarray
-    voltage: float | None
-    noise: np.ndarray
     whole: np.ndarray
 
     def effects(self):
@@ -91,28 +85,26 @@ def diagnose(records, vehicle, *, hold_out=None, effects=None, on_progress=lambd
     causes = candidates(flights, vehicle, effects)
     selection = select(flights, vehicle, causes, lambda share: on_progress(0.8 * share))
     z0, kinds = nominal(vehicle), selection.best.own
-    training = list(zip(training, selection.best.estimate.own.vectors(np.zeros(len(z0))),
-                        strict=True))
     noise = noise_of(selection, flights)
+    learnt = Training(tuple(zip(training, selection.best.estimate.own.vectors(np.zeros(len(z0))),
+                                strict=True)), vehicle, noise, voltage)
     whole = np.median([whole_noise(raw, 1.0 - 1.0 / raw.shape[1])
                        for raw in selection.best.estimate.left], axis=0)
-    z, named, strength = _named(selection, training, vehicle, noise, voltage)
+    z, named, strength = named_of(selection.best, learnt)
     left = leftovers([where.lacking(record, vehicle, z + own, whole, voltage)
-                      for record, own in training])
+                      for record, own in learnt.flights])
     lacks = [where.lacking(record, vehicle, z0 + own, noise, voltage)
-             for record, own in training]
+             for record, own in learnt.flights]
     on_progress(0.9)
-    times = _left_over(training, vehicle, z, noise, voltage)
+    times = learnt.left_over(z)
     remains = np.sqrt(max(0.0, max(times.values()) ** 2 - 1.0))
     beyond = any(times[name] > limit for name, limit in BEYOND.items())
     unknown = beyond or bool(left) and remains > REMAINS
-    probability = _probabilities(selection, strength, remains if unknown else 0.0)
+    probability = believed(selection.probability, strength, remains if unknown else 0.0)
     if unknown:
-        named, z = _outstanding(training, vehicle, z0, z, named, strength, noise, voltage)
-        if named and not _help(training, vehicle, z0, z, voltage):
-            named, z = (), z0.copy()
+        z, named = outstanding(z, named, strength, learnt)
         left = left or [unstructured([where.lacking(record, vehicle, z + own, noise, voltage)
-                                      for record, own in training], vehicle)]
+                                      for record, own in learnt.flights], vehicle)]
     test = test, own_of(test, vehicle, z, kinds, noise, voltage, flights[0].segment)
     far = _how_far(test, vehicle, z0, z, named, noise, voltage)
     doubts = doubts_of(selection, named)
@@ -135,11 +127,11 @@ def diagnose(records, vehicle, *, hold_out=None, effects=None, on_progress=lambd
                      'share': one.share} for one in left] if unknown else None,
         'undetermined': open_ones or None, 'sure': known if doubts else None,
         'not_shown': unseen, 'fly_next': proposals,
-        'nuisances': as_data(kinds, [own for _, own in training], test[1], late, test_late),
-        'flights': [record.info.get('name') for record, _ in training],
+        'nuisances': as_data(kinds, [own for _, own in learnt.flights], test[1], late,
+                             test_late),
+        'flights': [record.info.get('name') for record in training],
         'held_out': test[0].info.get('name')}
-    return Diagnosis(data, selection, z, vehicle, tuple(record for record, _ in training), test[0],
-                     [own for _, own in training], test[1], voltage, noise, whole)
+    return Diagnosis(data, selection, z, learnt, *test, whole)
 
 
 def split(records, hold_out):
@@ -166,68 +158,6 @@ def noise_of(selection, flights):
     return measurement_noise(flights, best.vectors, near, white)
 
 
-def _named(selection, training, vehicle, noise, voltage):
-    """Return the vector with the causes that matter, those, and the strength of each."""
-    best = selection.best
-    z, strength = best.estimate.z, {}
-    z0 = nominal(vehicle)
-    base = _noise_gap(training, vehicle, z, noise, voltage)
-    full = [gaps.ends(one, vehicle, z + own, gaps.HEADLINE, voltage) for one, own in training]
-    named, kept = [], z.copy()
-    for cause in best.causes:
-        without = z.copy()
-        without[list(cause.columns)] = z0[list(cause.columns)]
-        other = [gaps.ends(one, vehicle, without + own, gaps.HEADLINE, voltage)
-                 for one, own in training]
-        change = gaps.gap([gaps.Ends(a.errors - b.errors, a.t)
-                           for a, b in zip(other, full, strict=True)])
-        strength[cause] = max(change[name] / base[name] for name in base)
-        if strength[cause] >= LEAST:
-            named.append(cause)
-        else:
-            kept[list(cause.columns)] = z0[list(cause.columns)]
-    return kept, tuple(named), strength
-
-
-def _noise_gap(training, vehicle, z, noise, voltage):
-    """Return {group: the gap of the noise alone} of all flights."""
-    found = [gaps.noise_gap(one, vehicle, z + own, noise, gaps.HEADLINE, voltage)
-             for one, own in training]
-    return {name: float(np.sqrt(np.mean([one[name] ** 2 for one in found]))) for name in found[0]}
-
-
-def _left_over(training, vehicle, z, noise, voltage):
-    """Return {group: the gap that is left, over that of the noise}."""
-    after = gaps.usual_gap([gaps.ends(one, vehicle, z + own, gaps.HEADLINE, voltage)
-                            for one, own in training])
-    base = _noise_gap(training, vehicle, z, noise, voltage)
-    return {name: after[name] / base[name] for name in after}
-
-
-def _outstanding(training, vehicle, z0, z, named, strength, noise, voltage):
-    """
-    Return the causes without which clearly more is left, and the vector with them.
-
-    Known causes bend to what is unknown and not theirs: the weakest go first.
-    """
-    most = BENT * max(_left_over(training, vehicle, z, noise, voltage).values())
-    for cause in sorted(named, key=strength.get):
-        without = z.copy()
-        without[list(cause.columns)] = z0[list(cause.columns)]
-        if max(_left_over(training, vehicle, without, noise, voltage).values()) < most:
-            z, named = without, tuple(one for one in named if one is not cause)
-    return named, z
-
-
-def _help(training, vehicle, z0, z, voltage):
-    """Return whether causes lessen the velocity gap of each flight: what is there is in all."""
-    def gap_of(record, vector):
-        ends = gaps.ends(record, vehicle, vector, gaps.HEADLINE, voltage)
-        return gaps.usual_gap([ends])['velocity']
-
-    return all(gap_of(one, z + own) < gap_of(one, z0 + own) for one, own in training)
-
-
 def _how_far(test, vehicle, z0, z, named, noise, voltage):
     """Return the gap on the held-out flight: before, after, noise, intervals, by horizon."""
     out, (test, own) = {}, test
@@ -241,31 +171,13 @@ def _how_far(test, vehicle, z0, z, named, noise, voltage):
     head = out[gaps.HEADLINE]
     contributions = {}
     for cause in named:
-        without = z.copy()
-        without[list(cause.columns)] = z0[list(cause.columns)]
-        contributions[cause.effect] = gaps.gap(
-            [gaps.ends(test, vehicle, without + own, gaps.HEADLINE, voltage)])
+        contributions[cause.effect] = gaps.gap([gaps.ends(
+            test, vehicle, without(z, cause, vehicle) + own, gaps.HEADLINE, voltage)])
     return {'horizon': gaps.HEADLINE, 'units': UNITS, **head,
             'closed': gaps.closed(head['before']['velocity'], head['after']['velocity'],
                                   head['noise']['velocity']),
             'without': contributions,
             'horizons': {str(horizon): values for horizon, values in out.items()}}
-
-
-def _probabilities(selection, strength, remains):
-    """
-    Return {cause: probability of being present}.
-
-    The selection knows nothing but noise and effects: where something unknown remains, so many
-    times the noise's gap, a cause is believed as far as it stands out from that. One that makes
-    no gap worth a name is not believed.
-    """
-    found = dict(selection.probability)
-    for cause, size in strength.items():
-        found[cause] *= size / max(size + remains, 1e-300)
-        if size < LEAST:
-            found[cause] = min(found[cause], 0.02)
-    return found
 
 
 def _ranking(selection, causes, z, test, vehicle, voltage, probabilities):

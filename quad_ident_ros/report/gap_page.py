@@ -39,14 +39,14 @@ def save_pictures(found, folder):
 
     Args: found as that of `write`.
     """
-    vehicle, z, z0 = found.vehicle, found.z, nominal(found.vehicle)
-    held_out, voltage = found.held_out, found.voltage
+    training, held_out, z = found.training, found.held_out, found.z
+    vehicle, voltage, z0 = training.vehicle, training.voltage, nominal(training.vehicle)
     gap, horizon = found.data['gap'], found.data['gap']['horizon']
     before, after = (gaps.ends(held_out, vehicle, each + found.held_out_own, horizon, voltage)
                      for each in (z0, z))
     lacks = [[where.lacking(record, vehicle, each + own, noise, voltage)
-              for record, own in zip(found.training, found.own, strict=True)]
-             for each, noise in ((z0, found.noise), (z, found.whole))]
+              for record, own in training.flights]
+             for each, noise in ((z0, training.noise), (z, found.whole))]
     made = {}
     for name, draw, caption in (
             ('predictions',

@@ -8,9 +8,8 @@ from scipy.ndimage import maximum_filter1d, median_filter, minimum_filter1d, uni
 from quad_ident_ros.data.frames import conjugate, continuous, multiply
 from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.quality.frames import best_reading, SURE
-from quad_ident_ros.data.quality.series import correlation, GAP, Grid
-from quad_ident_ros.data.record import EULER, QUATERNION
-from quad_ident_ros.model.attitude import quaternion_from_euler
+from quad_ident_ros.data.quality.series import attitudes_of, correlation, GAP, Grid
+from quad_ident_ros.data.record import QUATERNION
 
 LONGEST = 0.15            # s, that a jump lasts
 FAR = 7.0                 # standard deviations of the noise from which on it is one,
@@ -48,15 +47,8 @@ def attitude(record, vehicle):
 
 def jumps(record):
     """Return in which samples (N,) of a record the attitude is off; nowhere without a gyro."""
-    if not record.has('wx', 'wy', 'wz') or len(record) < 3:
-        return np.zeros(len(record), bool)
-    if record.has(*QUATERNION):
-        attitudes = record.stack(*QUATERNION)
-    elif record.has(*EULER):
-        attitudes = quaternion_from_euler(record.stack(*EULER))
-    else:
-        return np.zeros(len(record), bool)
-    if np.linalg.norm(attitudes, axis=-1).min() < 1e-3:
+    attitudes = attitudes_of(record)
+    if attitudes is None or not record.has('wx', 'wy', 'wz'):
         return np.zeros(len(record), bool)
     return glitches(record.t, attitudes, record.stack('wx', 'wy', 'wz'))
 

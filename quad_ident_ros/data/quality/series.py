@@ -17,6 +17,18 @@ GAP = 3.0         # median periods from which on a step in time is a gap
 MOST = 200_000    # samples that the checks look at
 
 
+def attitudes_of(record):
+    """Return the unit quaternions of a record, (N, 4), or None where one of them is none."""
+    if record.has(*QUATERNION):
+        q = record.stack(*QUATERNION)
+    elif record.has(*EULER):
+        q = quaternion_from_euler(record.stack(*EULER))
+    else:
+        return None
+    norm = np.linalg.norm(q, axis=-1, keepdims=True)
+    return None if norm.min() < 1e-3 else q / norm
+
+
 @dataclass(frozen=True, eq=False)
 class Grid:
     """
@@ -61,16 +73,8 @@ class Grid:
 
     def attitude(self):
         """Return the attitude at t, (N, 4), or None where there is none."""
-        if self.record.has(*QUATERNION):
-            q = self.record.stack(*QUATERNION)
-        elif self.record.has(*EULER):
-            q = quaternion_from_euler(self.record.stack(*EULER))
-        else:
-            return None
-        norm = np.linalg.norm(q, axis=-1, keepdims=True)
-        if norm.min() < 1e-3:
-            return None
-        return slerp(self.record.t, continuous(q / norm), self.t)
+        q = attitudes_of(self.record)
+        return None if q is None else slerp(self.record.t, continuous(q), self.t)
 
     def smooth(self, signal, width=WIDTH):
         """Return a signal (N, k) smoothed by a Hann window of a full width in s."""
