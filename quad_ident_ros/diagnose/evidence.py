@@ -38,54 +38,74 @@ class Quadratic:
 
 def occam(information, wide, scatter, causes):
     """Return the log-evidence that free columns and causes cost."""
-    scaled = information * np.outer(wide, wide) / scatter
-    _, log_volume = np.linalg.slogdet(np.eye(len(wide)) + scaled)
+    return _volume(information, wide, scatter) + _odds(causes)
+
+
+def _volume(information, wide, scatter):
+    """Return the log-evidence that free columns cost, of a stack (..., C, C)."""
+    scaled = information * (wide[..., :, None] * wide[..., None, :]) / scatter
+    return -0.5 * np.linalg.slogdet(np.eye(wide.shape[-1]) + scaled)[1]
+
+
+def _odds(causes):
     own = sum(cause.own is not None for cause in causes)
     shares = [ODDS] * (len(causes) - own) + [OWN_ODDS, *[MORE_ODDS] * (own - 1)][:own]
-    return -0.5 * log_volume + sum(np.log(share / (1.0 - share)) for share in shares)
+    return sum(np.log(share / (1.0 - share)) for share in shares)
 
 
-def linear_evidence(quadratic, chosen, rows):
+def linear_evidence(quadratic, sets, rows):
     """
-    Return the log-evidence of causes, and the distances (C,) that fit then.
+    Return the log-evidence (N,) of sets of causes, and the distances (N, C) that fit then.
 
-    Args: chosen causes; rows {cause: rows of the quadratic}. A row that would leave its bounds is
-    held there. -inf where all rows of a cause are held at no effect.
+    Args: sets: N tuples of causes; rows {cause: rows of the quadratic}. A row that would leave its
+    bounds is held there. -inf where all rows of a cause are held at no effect.
     """
-    groups = [np.asarray(rows[cause], int) for cause in chosen]
-    free = np.concatenate([*groups, np.zeros(0, int)])
-    held = np.zeros(len(quadratic.now))
-    for _ in range(len(free) + 1):
-        found = held.copy()
-        if len(free):
-            found[free] = _solved(quadratic, free, held)
-        below, above = found < quadratic.lower, found > quadratic.upper
-        beyond = np.intersect1d(free, np.flatnonzero(below | above))
-        if not len(beyond):
-            break
-        held[beyond] = np.where(below, quadratic.lower, quadratic.upper)[beyond]
-        free = np.setdiff1d(free, beyond)
-    if any(not found[rows].any() for rows in groups):
-        return -np.inf, found
+    free = np.zeros((len(sets), len(quadratic.now)), bool)
+    for mine, chosen in zip(free, sets, strict=True):
+        for cause in chosen:
+            mine[rows[cause]] = True
+    found = np.zeros(free.shape)
+    going = np.arange(len(sets))
+    while len(going):
+        for which, places in _by_size(free, going):
+            found[which[:, None], places] = _solved(quadratic, found[which], places)
+        beyond = free[going] & ((found[going] < quadratic.lower)
+                                | (found[going] > quadratic.upper))
+        found[going] = np.where(beyond, np.clip(found[going], quadratic.lower, quadratic.upper),
+                                found[going])
+        free[going] &= ~beyond
+        going = going[beyond.any(axis=1)]
     change = found - quadratic.now
-    cost = (quadratic.cost - 2.0 * quadratic.gradient @ change
-            + change @ quadratic.information @ change)
-    wide = quadratic.wide[free]
-    value = -0.5 * cost / quadratic.scatter - 0.5 * np.sum((found[free] / wide) ** 2)
-    block = quadratic.information[np.ix_(free, free)]
-    return value + occam(block, wide, quadratic.scatter, chosen), found
+    cost = (quadratic.cost - 2.0 * change @ quadratic.gradient
+            + np.sum(change @ quadratic.information * change, axis=1))
+    distance = np.where(free, found / quadratic.wide, 0.0)
+    value = -0.5 * cost / quadratic.scatter - 0.5 * np.sum(distance ** 2, axis=1)
+    for which, places in _by_size(free, np.arange(len(sets))):
+        blocks = quadratic.information[places[:, :, None], places[:, None, :]]
+        value[which] += _volume(blocks, quadratic.wide[places], quadratic.scatter)
+    value += [_odds(chosen) if all(mine[rows[cause]].any() for cause in chosen) else -np.inf
+              for chosen, mine in zip(sets, found, strict=True)]
+    return value, found
 
 
-def _solved(quadratic, free, held):
-    """Return the distances of the free rows that fit best, the others held."""
-    change = held - quadratic.now
-    change[free] = 0.0
-    pull = (quadratic.gradient - quadratic.information @ change)[free]
-    block = quadratic.information[np.ix_(free, free)]
-    ridge = quadratic.scatter / quadratic.wide[free] ** 2
+def _by_size(free, going):
+    """Yield sets (n,) of those that go on which have as many free rows, and these rows (n, k)."""
+    sizes = free[going].sum(axis=1)
+    for size in np.unique(sizes):
+        which = going[sizes == size]
+        yield which, np.nonzero(free[which])[1].reshape(len(which), size)
+
+
+def _solved(quadratic, found, places):
+    """Return the distances (n, k) of free rows that fit best, the others held as found (n, C)."""
+    change = found - quadratic.now
+    np.put_along_axis(change, places, 0.0, axis=1)
+    pull = np.take_along_axis(quadratic.gradient - change @ quadratic.information, places, axis=1)
     # The prior pulls towards no effect, from where the point is now.
-    now = quadratic.now[free]
-    return now + np.linalg.solve(block + np.diag(ridge), pull - ridge * now)
+    ridge, now = quadratic.scatter / quadratic.wide[places] ** 2, quadratic.now[places]
+    blocks = quadratic.information[places[:, :, None], places[:, None, :]]
+    blocks += ridge[:, None, :] * np.eye(places.shape[1])
+    return now + np.linalg.solve(blocks, (pull - ridge * now)[..., None])[..., 0]
 
 
 def beam(quadratic, causes):
@@ -95,23 +115,22 @@ def beam(quadratic, causes):
     Args: causes: {cause: rows of the quadratic}. Sets grow by one cause at a time from each of the
     best of a size, and two causes of one effect never stand together.
     """
-    def entry(chosen):
-        value, found = linear_evidence(quadratic, chosen, causes)
-        return value, chosen, found
+    def entries(sets):
+        values, distances = linear_evidence(quadratic, sets, causes)
+        return dict(zip(sets, zip(values, sets, distances, strict=True), strict=True))
 
-    level = [entry(())]
-    seen = {(): level[0]}
+    seen = entries([()])
+    level = list(seen.values())
     while level:
-        grown = {}
+        grown = {}      # in the order in which they come up
         for _, chosen, _ in level:
             full = sum(cause.own is None for cause in chosen) >= MOST
             for cause in causes:
                 if full and cause.own is None or any(cause.effect == other.effect
                                                      for other in chosen):
                     continue
-                bigger = key_of((*chosen, cause))
-                if bigger not in seen and bigger not in grown:
-                    grown[bigger] = entry(bigger)
+                grown[key_of((*chosen, cause))] = None
+        grown = entries(list(grown))
         seen.update(grown)
         best = max(value for value, _, _ in seen.values())
         level = sorted(grown.values(), key=lambda one: -one[0])[:BEAM]
