@@ -9,7 +9,7 @@ import numpy as np
 from quad_ident_ros.diagnose.candidates import own_candidates
 from quad_ident_ros.diagnose.evidence import beam, occam, PRIOR, Quadratic
 from quad_ident_ros.greybox.estimate import estimate, weights_of
-from quad_ident_ros.greybox.linear import errors_along, linearise
+from quad_ident_ros.greybox.linear import errors_along, linear_of, slopes_at
 from quad_ident_ros.greybox.noise import quick_noise, whole_noise
 from quad_ident_ros.greybox.normal import normal_of, scatter_of
 from quad_ident_ros.greybox.own import Layout, Own
@@ -23,6 +23,7 @@ COLOURED = 2.0      # times the noise from sample to sample that all that is lef
 NEAR = 25.0         # log-evidence behind the best set by the slopes that may be made up for
 LOST = 1.01         # times the cost of a subset from which on a fit did not get where it belongs
 MISSED = 1.05       # times the cost from which on a cause is missed, whatever its standard errors
+CALM = 4.0          # times less scatter that a turn must leave to go on with that
 UNTRIED = -2.0      # log-evidence that the linear model alone may give a set, beside the best
 
 
@@ -94,7 +95,10 @@ def _select(flights, vehicle, causes, noise, known, on_progress):
                                       one.estimate.own, one.estimate.starts)
     best, scatter = (known[0].chosen if known else ()), 1.0
     for turn in range(ROUNDS):
-        quadratic = quadratic_at(flights, vehicle, tried[best], columns, own)
+        around = tried[best]
+        quadratic, slopes = quadratic_at(flights, vehicle, around, columns, own)
+        tried[best] = _refitted(flights, vehicle, around.z, best, noise, around.own,
+                                around.starts, slopes)
         scatter = quadratic.scatter
         ranked = beam(quadratic, rows)
         for chosen, found in _promising(ranked, tried):
@@ -105,8 +109,9 @@ def _select(flights, vehicle, causes, noise, known, on_progress):
             everyone = Own.of([one.own for one in own], len(flights))
             everyone.values.flat[:] = found[len(columns):]
             tried[chosen] = _refitted(flights, vehicle, start, chosen, noise, everyone,
-                                      tried[best].starts)
+                                      tried[best].starts, slopes)
             tried[chosen] = _found_again(flights, vehicle, chosen, tried, noise)
+        scatter = _calmed(scatter, tried)
         before, best = best, max(tried, key=lambda key: _evidence(tried[key], key, vehicle,
                                                                   scatter))
         on_progress((turn + 1) / ROUNDS)
@@ -124,6 +129,13 @@ def _select(flights, vehicle, causes, noise, known, on_progress):
     for cause, value in support.items():
         probability[cause] = min(probability[cause], float(1.0 / (1.0 + np.exp(-min(value, 50)))))
     return Selection(chosen, fitted, probability, quadratic, rows, noise)
+
+
+def _calmed(scatter, tried):
+    """Return the scatter that the closest fit leaves where it is far below that of the start."""
+    fit = min(tried.values(), key=lambda one: one.cost)
+    left = float(np.median(scatter_of(fit.normal)[:len(fit.columns)])) if fit.columns else scatter
+    return left if CALM * left < scatter else scatter
 
 
 def _promising(ranked, tried):
@@ -155,12 +167,12 @@ def _rows(causes, own, columns, count):
     return rows
 
 
-def _refitted(flights, vehicle, z, chosen, noise, own, starts):
+def _refitted(flights, vehicle, z, chosen, noise, own, starts, slopes=None):
     """Return the Estimate of a set, from a vector and an Own that has the values to start from."""
     free = sorted(column for cause in chosen if cause.own is None for column in cause.columns)
     own = Own.of([cause.own for cause in chosen if cause.own], len(flights), own)
     return estimate(flights, vehicle, z, free, noise=noise, own=own, starts=starts,
-                    iterations=FIT_STEPS)
+                    iterations=FIT_STEPS, slopes=slopes)
 
 
 def _found_again(flights, vehicle, chosen, tried, noise):
@@ -223,16 +235,17 @@ def support_of(fit, cause, vehicle):
 
 
 def quadratic_at(flights, vehicle, fit, columns, own):
-    """Return the Quadratic of the columns and the own ones of flights around an Estimate."""
+    """Return the Quadratic of columns and own ones of flights around an Estimate; the Slopes."""
     lower, upper, size = limits(vehicle)
     everyone = Own.of([one.own for one in own], len(flights), fit.own)
     layout = Layout(columns, everyone.columns, len(flights))
-    weights = [weights_of(raw, sigma, flight)
-               for raw, sigma, flight in zip(fit.left, fit.noise, flights, strict=True)]
-    normal = normal_of([linearise(flight, vehicle, z, start, layout.wanted, sigma, True, weight)
-                        for flight, z, start, sigma, weight in
-                        zip(flights, fit.vectors, fit.starts, fit.noise, weights, strict=True)],
-                       flights, layout)
+    slopes = slopes_at(flights, vehicle, fit.z, fit.vectors, fit.starts, layout.wanted)
+    normal = normal_of(
+        [linear_of(tangent, errors_along(flight, vehicle, z, start),
+                   weights_of(raw, sigma, flight) / sigma)
+         for tangent, flight, z, start, raw, sigma in
+         zip(slopes.tangents, flights, fit.vectors, fit.starts, fit.left, fit.noise, strict=True)],
+        flights, layout)
     null = nominal(vehicle)[columns]
     spreads = np.tile(everyone.spreads, len(flights))
     beyond = np.full(len(spreads), np.inf)
@@ -241,7 +254,7 @@ def quadratic_at(flights, vehicle, fit, columns, own):
                      np.append(fit.z[columns] - null, everyone.values),
                      np.append(PRIOR * size[columns], spreads),
                      np.append(lower[columns] - null, -beyond),
-                     np.append(upper[columns] - null, beyond), scatter)
+                     np.append(upper[columns] - null, beyond), scatter), slopes
 
 
 def _evidence(fit, chosen, vehicle, scatter):

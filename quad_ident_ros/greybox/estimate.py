@@ -12,8 +12,7 @@ from quad_ident_ros.greybox.linear import (
     linearise,
     new_starts,
     seen_along,
-    STEP,
-    tangent_of,
+    slopes_at,
 )
 from quad_ident_ros.greybox.noise import MAD, quick_noise, whole_noise
 from quad_ident_ros.greybox.normal import bounded_step, covariance_of, marginal, Normal, normal_of
@@ -74,7 +73,7 @@ def weights_of(raw, noise, flight):
 
 
 def estimate(flights, vehicle, z, columns, *, noise=None, own=None, starts=None,
-             iterations=ITERATIONS, clock=True):
+             iterations=ITERATIONS, clock=True, slopes=None):
     """
     Return the Estimate of the columns of z that predicts the flights best.
 
@@ -82,6 +81,7 @@ def estimate(flights, vehicle, z, columns, *, noise=None, own=None, starts=None,
     estimated along unless it is given; outliers count less; with `clock` each flight's pose may
     be off in time against the rest; own: what else flights have of their own (Own). Without
     `starts` (B, 13) per flight, the initial states, a few of the rollouts first bring z near.
+    slopes: the Slopes at a point nearby, used as long as the errors follow them.
     """
     columns = list(columns)
     own = own or Own.of((), len(flights))
@@ -93,7 +93,8 @@ def estimate(flights, vehicle, z, columns, *, noise=None, own=None, starts=None,
                             settled(few, vehicle, own.vectors(z), noise), iterations, clock, ROUGH)
             z, own = near.z, near.own
         starts = settled(flights, vehicle, own.vectors(z), noise)
-    return _descend(flights, vehicle, z, columns, box, noise, own, starts, iterations, clock, DONE)
+    return _descend(flights, vehicle, z, columns, box, noise, own, starts, iterations, clock, DONE,
+                    slopes)
 
 
 def _fewer(flight, count):
@@ -102,22 +103,22 @@ def _fewer(flight, count):
     return replace(flight, first=flight.first[skip // 2::skip])
 
 
-def _descend(flights, vehicle, z, columns, box, noise, own, starts, iterations, clock, done):
+def _descend(flights, vehicle, z, columns, box, noise, own, starts, iterations, clock, done,
+             slopes=None):
     """Return the Estimate from z by steps of Gauss and Newton that do not raise the cost."""
     layout = Layout(columns, own.columns, len(flights))
     shared, lower, upper, size, precision = _whole(box, own, len(flights))
-    usual = limits(vehicle)[2, layout.wanted]
     known, z = noise, np.array(z, float)
     raws = [errors_along(flight, vehicle, vector, start)
             for flight, vector, start in zip(flights, own.vectors(z), starts, strict=True)]
     noise = known or [quick_noise(raw) for raw in raws]
-    tangents, converged = None, False
+    tangents = slopes and slopes.of(layout.wanted)
+    at, converged = slopes.at if slopes else z, False
     for count in range(iterations):
         fresh = tangents is None
         if fresh:
-            tangents = [tangent_of(flight, vehicle, vector, start, layout.wanted, STEP * usual)
-                        for flight, vector, start in
-                        zip(flights, own.vectors(z), starts, strict=True)]
+            tangents = slopes_at(flights, vehicle, z, own.vectors(z), starts,
+                                 layout.wanted).tangents
             at = z
         scales = [weights_of(raw, sigma, flight) / sigma
                   for raw, sigma, flight in zip(raws, noise, flights, strict=True)]
@@ -164,8 +165,11 @@ def _descend(flights, vehicle, z, columns, box, noise, own, starts, iterations, 
         if share < 1.0 or abs(before - after - saved) > STRAIGHT * saved:
             tangents = None
     covariance = covariance_of(marginal(normal, shared, precision), size[:shared])
-    return Estimate(z, columns, covariance, noise, own, starts, normal, at, told,
-                    _cost(told, scales), free[:shared], converged)
+    # By the weights of these errors, not of those before the last step, to be held against others.
+    cost = _cost(told, [weights_of(raw, sigma, flight) / sigma
+                        for raw, sigma, flight in zip(raws, noise, flights, strict=True)])
+    return Estimate(z, columns, covariance, noise, own, starts, normal, at, told, cost,
+                    free[:shared], converged)
 
 
 def _whole(box, own, count):

@@ -33,6 +33,20 @@ class Tangent:
 
 
 @dataclass(frozen=True, eq=False)
+class Slopes:
+    """The Tangents of flights in some columns (places in z) around a vector `at` (Z,)."""
+
+    at: np.ndarray
+    columns: list
+    tangents: list
+
+    def of(self, columns):
+        """Return the Tangents in some of the columns."""
+        kept = [*range(ERRORS), *(ERRORS + self.columns.index(one) for one in columns), -1]
+        return [Tangent(tangent.table[:, kept]) for tangent in self.tangents]
+
+
+@dataclass(frozen=True, eq=False)
 class Linear:
     """
     A flight's errors around a parameter vector, in units of the noise.
@@ -86,6 +100,19 @@ def linearise(flight, vehicle, z, starts, columns, noise, clock=True, weight=Non
     steps = STEP * limits(vehicle)[2, columns]
     return linear_of(tangent_of(flight, vehicle, z, starts, columns, steps),
                      errors_along(flight, vehicle, z, starts), scale, clock)
+
+
+def slopes_at(flights, vehicle, z, vectors, starts, columns):
+    """
+    Return the Slopes of flights around z (Z,).
+
+    Args: vectors: z with what each flight has of its own; starts (B, 13) per flight; columns:
+    places in z.
+    """
+    steps = STEP * limits(vehicle)[2, columns]
+    return Slopes(z, columns, [tangent_of(flight, vehicle, vector, start, columns, steps)
+                               for flight, vector, start in
+                               zip(flights, vectors, starts, strict=True)])
 
 
 def tangent_of(flight, vehicle, z, starts, columns, steps):
