@@ -22,7 +22,7 @@ from quad_ident_ros.diagnose.select import select
 from quad_ident_ros.effects.registry import EFFECTS, mapping
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.greybox.errors import UNITS
-from quad_ident_ros.greybox.flights import highest_voltage
+from quad_ident_ros.greybox.flights import highest_voltage, track_of
 from quad_ident_ros.greybox.kinematics import measurement_noise
 from quad_ident_ros.greybox.near import near_flights
 from quad_ident_ros.greybox.noise import near_noise, quick_noise, whole_noise
@@ -42,8 +42,8 @@ class Diagnosis:
     What was found, as data (`data`: the JSON of the project) and as objects to go on with.
 
     selection: of the effects; z (Z,): the vehicle with those named; training: the flights that
-    were learnt from, with the nominal vehicle; held_out: the FlightRecord, of one clock, and
-    held_out_own (Z,) what is its own, added to z; whole (12,): all that the best model leaves.
+    were learnt from, with the nominal vehicle; held_out: the Track and held_out_own (Z,) what is
+    its own, added to z; whole (12,): all that the best model leaves.
     """
 
     data: dict
@@ -81,20 +81,20 @@ def diagnose(records, vehicle, *, hold_out=None, effects=None, on_progress=lambd
     training, late = zip(*(aligned(record) for record in training), strict=True)
     test, test_late = aligned(test)
     voltage = highest_voltage(training)
-    flights = near_flights(training, vehicle, nominal(vehicle), voltage)
+    *tracks, track = (track_of(record, vehicle, voltage) for record in (*training, test))
+    flights = near_flights(tracks, vehicle, nominal(vehicle))
     causes = candidates(flights, vehicle, effects)
     selection = select(flights, vehicle, causes, lambda share: on_progress(0.8 * share))
     z0, kinds = nominal(vehicle), selection.best.own
     noise = noise_of(selection, flights)
-    learnt = Training(tuple(zip(training, selection.best.estimate.own.vectors(np.zeros(len(z0))),
-                                strict=True)), vehicle, noise, voltage)
+    learnt = Training(tuple(zip(tracks, selection.best.estimate.own.vectors(np.zeros(len(z0))),
+                                strict=True)), vehicle, noise)
     whole = np.median([whole_noise(raw, 1.0 - 1.0 / raw.shape[1])
                        for raw in selection.best.estimate.left], axis=0)
     z, named, strength = named_of(selection.best, learnt)
-    left = leftovers([where.lacking(record, vehicle, z + own, whole, voltage)
-                      for record, own in learnt.flights])
-    lacks = [where.lacking(record, vehicle, z0 + own, noise, voltage)
-             for record, own in learnt.flights]
+    left = leftovers([where.lacking(one, vehicle, z + own, whole)
+                      for one, own in learnt.flights])
+    lacks = [where.lacking(one, vehicle, z0 + own, noise) for one, own in learnt.flights]
     on_progress(0.9)
     times = learnt.left_over(z)
     remains = np.sqrt(max(0.0, max(times.values()) ** 2 - 1.0))
@@ -103,10 +103,10 @@ def diagnose(records, vehicle, *, hold_out=None, effects=None, on_progress=lambd
     probability = believed(selection.probability, strength, remains if unknown else 0.0)
     if unknown:
         z, named = outstanding(z, named, strength, learnt)
-        left = left or [unstructured([where.lacking(record, vehicle, z + own, noise, voltage)
-                                      for record, own in learnt.flights], vehicle)]
-    test = test, own_of(test, vehicle, z, kinds, noise, voltage, flights[0].segment)
-    far = _how_far(test, vehicle, z0, z, named, noise, voltage)
+        left = left or [unstructured([where.lacking(one, vehicle, z + own, noise)
+                                      for one, own in learnt.flights], vehicle)]
+    test_own = own_of(track, vehicle, z, kinds, noise, flights[0].segment)
+    far = _how_far(track, test_own, vehicle, z0, z, named, noise)
     doubts = doubts_of(selection, named)
     sure = [cause for cause in named if cause not in doubts]
     known = list(dict.fromkeys(cause.effect for cause in sure))
@@ -121,17 +121,17 @@ def diagnose(records, vehicle, *, hold_out=None, effects=None, on_progress=lambd
     on_progress(1.0)
     data = {
         'schema': SCHEMA, 'version': __version__, 'vehicle': vehicle.name, 'verdict': verdict,
-        'ranking': _ranking(selection, causes, z, test, vehicle, voltage, probability),
+        'ranking': _ranking(selection, causes, z, track, test_own, vehicle, probability),
         'where': _where(lacks, vehicle), 'gap': far,
         'unknown': [{'channel': one.channel, 'depends_on': one.depends_on,
                      'share': one.share} for one in left] if unknown else None,
         'undetermined': open_ones or None, 'sure': known if doubts else None,
         'not_shown': unseen, 'fly_next': proposals,
-        'nuisances': as_data(kinds, [own for _, own in learnt.flights], test[1], late,
+        'nuisances': as_data(kinds, [own for _, own in learnt.flights], test_own, late,
                              test_late),
         'flights': [record.info.get('name') for record in training],
-        'held_out': test[0].info.get('name')}
-    return Diagnosis(data, selection, z, learnt, *test, whole)
+        'held_out': test.info.get('name')}
+    return Diagnosis(data, selection, z, learnt, track, test_own, whole)
 
 
 def split(records, hold_out):
@@ -158,21 +158,21 @@ def noise_of(selection, flights):
     return measurement_noise(flights, best.vectors, near, white)
 
 
-def _how_far(test, vehicle, z0, z, named, noise, voltage):
+def _how_far(test, own, vehicle, z0, z, named, noise):
     """Return the gap on the held-out flight: before, after, noise, intervals, by horizon."""
-    out, (test, own) = {}, test
+    out = {}
     for horizon in gaps.HORIZONS:
-        before = gaps.ends(test, vehicle, z0 + own, horizon, voltage)
-        after = gaps.ends(test, vehicle, z + own, horizon, voltage)
+        before = gaps.ends(test, vehicle, z0 + own, horizon)
+        after = gaps.ends(test, vehicle, z + own, horizon)
         out[horizon] = {'before': gaps.gap([before]), 'after': gaps.gap([after]),
-                        'noise': gaps.noise_gap(test, vehicle, z, noise, horizon, voltage),
+                        'noise': gaps.noise_gap(test, vehicle, z, noise, horizon),
                         'before_interval': gaps.interval([before]),
                         'after_interval': gaps.interval([after])}
     head = out[gaps.HEADLINE]
     contributions = {}
     for cause in named:
         contributions[cause.effect] = gaps.gap([gaps.ends(
-            test, vehicle, without(z, cause, vehicle) + own, gaps.HEADLINE, voltage)])
+            test, vehicle, without(z, cause, vehicle) + own, gaps.HEADLINE)])
     return {'horizon': gaps.HEADLINE, 'units': UNITS, **head,
             'closed': gaps.closed(head['before']['velocity'], head['after']['velocity'],
                                   head['noise']['velocity']),
@@ -180,12 +180,12 @@ def _how_far(test, vehicle, z0, z, named, noise, voltage):
             'horizons': {str(horizon): values for horizon, values in out.items()}}
 
 
-def _ranking(selection, causes, z, test, vehicle, voltage, probabilities):
+def _ranking(selection, causes, z, test, own, vehicle, probabilities):
     """Return every effect, the most probable first, with its parameters."""
-    z0, (test, own) = nominal(vehicle), test
+    z0 = nominal(vehicle)
     errors = dict(zip(selection.best.estimate.columns, selection.best.estimate.errors,
                       strict=True))
-    before = gaps.gap([gaps.ends(test, vehicle, z0 + own, gaps.HEADLINE, voltage)])
+    before = gaps.gap([gaps.ends(test, vehicle, z0 + own, gaps.HEADLINE)])
     rows = {}
     for cause in causes:
         row = rows.setdefault(cause.effect, {'effect': cause.effect, 'probability': 0.0,
@@ -201,8 +201,7 @@ def _ranking(selection, causes, z, test, vehicle, voltage, probabilities):
                                            'std': float(errors[column]), 'unit': units[name]}
             alone = z0.copy()
             alone[list(cause.columns)] = selection.best.estimate.z[list(cause.columns)]
-            row['gap_after'] = gaps.gap([gaps.ends(test, vehicle, alone + own, gaps.HEADLINE,
-                                                   voltage)])
+            row['gap_after'] = gaps.gap([gaps.ends(test, vehicle, alone + own, gaps.HEADLINE)])
     return sorted(rows.values(), key=lambda row: -row['probability'])
 
 

@@ -17,7 +17,7 @@ from quad_ident_ros.effects.registry import mapping
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.flight.fly import fly_closed_loop, FULL_VOLTAGE, RATES
 from quad_ident_ros.flight.trajectories import TRAJECTORIES
-from quad_ident_ros.greybox.flights import flight_of, RATE
+from quad_ident_ros.greybox.flights import flight_of, RATE, track_of
 from quad_ident_ros.greybox.linear import linearise
 from quad_ident_ros.greybox.normal import marginal, normal_of
 from quad_ident_ros.greybox.own import Layout, Own
@@ -70,7 +70,7 @@ def manoeuvres(selection, flights, vehicle, z):
                                      rate=rate, seed=SEED)
         except InputError:      # it leaves its course: not one to propose
             continue
-        flight = flight_of(record, vehicle, reference_voltage=FULL_VOLTAGE)
+        flight = flight_of(track_of(record, vehicle, FULL_VOLTAGE))
         few = np.linspace(0, len(flight.first) - 1, ROLLOUTS).round().astype(int)
         part = replace(flight, first=flight.first[few])
         normal = normal_of([linearise(part, vehicle, z, part.states[part.first], layout.wanted,

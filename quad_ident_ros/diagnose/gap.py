@@ -35,10 +35,9 @@ class Ends:
     t: np.ndarray
 
 
-def ends(record, vehicle, z, horizon, reference_voltage=None):
-    """Return the Ends of predictions along a flight record with a parameter vector z (Z,)."""
-    flight = flight_of(record, vehicle, reference_voltage=reference_voltage, segment=horizon,
-                       every=EVERY)
+def ends(track, vehicle, z, horizon):
+    """Return the Ends of predictions along a Track with a parameter vector z (Z,)."""
+    flight = flight_of(track, horizon, EVERY)
     first = flight.first[flight.seen[flight.first + flight.count].all(axis=1)]
     predicted = predict(vehicle, z[SPLIT:], flight.course, flight.states[first], first,
                         flight.count, constants=z[None, :SPLIT])
@@ -60,14 +59,13 @@ def usual_gap(all_ends):
             for name, part in GROUPS.items()}
 
 
-def noise_gap(record, vehicle, z, noise, horizon, reference_voltage=None):
+def noise_gap(track, vehicle, z, noise, horizon):
     """
     Return {group: what measurement noise alone would give}, for white noise (12,).
 
     The noise of the first state, carried along by the model, and that of the last one.
     """
-    flight = flight_of(record, vehicle, reference_voltage=reference_voltage, segment=horizon,
-                       every=EVERY)
+    flight = flight_of(track, horizon, EVERY)
     chosen = flight.first[np.linspace(0, len(flight.first) - 1, NOISE_STARTS).astype(int)]
     starts = flight.states[chosen]
     everything = np.concatenate([starts, *(moved(starts, move) for move in np.diag(STATE_STEP))])

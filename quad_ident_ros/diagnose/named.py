@@ -19,24 +19,22 @@ class Training:
     """
     Flights that were learnt from, and what their gap is made of.
 
-    flights: (FlightRecord, what is its own (Z,)) of each; noise (12,) of the measurement; voltage
-    V at which the vehicle holds, or None.
+    flights: (Track, what is its own (Z,)) of each; noise (12,) of the measurement.
     """
 
     flights: tuple
     vehicle: object
     noise: np.ndarray
-    voltage: float | None
 
     def ends(self, z):
         """Return the Ends of each flight with a vector z (Z,)."""
-        return [gaps.ends(record, self.vehicle, z + own, gaps.HEADLINE, self.voltage)
-                for record, own in self.flights]
+        return [gaps.ends(track, self.vehicle, z + own, gaps.HEADLINE)
+                for track, own in self.flights]
 
     def noise_gap(self, z):
         """Return {group: the gap of the noise alone} of all flights."""
-        found = [gaps.noise_gap(record, self.vehicle, z + own, self.noise, gaps.HEADLINE,
-                                self.voltage) for record, own in self.flights]
+        found = [gaps.noise_gap(track, self.vehicle, z + own, self.noise, gaps.HEADLINE)
+                 for track, own in self.flights]
         return {name: float(np.sqrt(np.mean([one[name] ** 2 for one in found])))
                 for name in found[0]}
 

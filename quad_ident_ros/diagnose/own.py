@@ -11,12 +11,12 @@ from quad_ident_ros.greybox.own import CLOCK, Own
 WIDE = 1.64     # standard errors below which 95 % lie
 
 
-def own_of(record, vehicle, z, kinds, noise, voltage, segment):
-    """Return what a flight that was not learnt from has of its own (Z,), beside a vector z."""
+def own_of(track, vehicle, z, kinds, noise, segment):
+    """Return what a Track that was not learnt from has of its own (Z,), beside a vector z."""
     if not kinds:
         return np.zeros(len(z))
-    flight = flight_of(record, vehicle, reference_voltage=voltage, segment=segment)
-    found = estimate([flight], vehicle, z, [], noise=[noise], own=Own.of(kinds, 1))
+    found = estimate([flight_of(track, segment)], vehicle, z, [], noise=[noise],
+                     own=Own.of(kinds, 1))
     return found.vectors[0] - z
 
 

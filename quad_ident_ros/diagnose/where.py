@@ -33,9 +33,9 @@ class Lacking:
     features: dict
 
 
-def lacking(record, vehicle, z, noise, reference_voltage=None):
-    """Return the Lacking of a flight record with a parameter vector z (Z,) and noise (12,)."""
-    flight = flight_of(record, vehicle, reference_voltage=reference_voltage, segment=WINDOW)
+def lacking(track, vehicle, z, noise):
+    """Return the Lacking of a Track with a parameter vector z (Z,) and noise (12,)."""
+    flight = flight_of(track, WINDOW)
     flight = replace(flight, first=flight.first[::-(-len(flight.first) // MOST)])
     [starts] = settled([flight], vehicle, [z], [noise])
     weight = weights_of(errors_along(flight, vehicle, z, starts), noise, flight)

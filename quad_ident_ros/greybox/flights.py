@@ -22,22 +22,27 @@ BRIDGED = 0.08      # s, the longest step in time over lost rows whose commands 
 
 
 @dataclass(frozen=True, eq=False)
-class Flight:
+class Track:
     """
-    A flight and where its rollouts begin.
+    A flight as models are held against it.
 
     course: of N samples; states (N, 13) recorded; seen (N, 12) whether each error counts, which
-    it does not in rows that were lost and in attitudes that are off; first (B,) samples at which
-    rollouts of `count` samples begin; period s, the usual one.
+    it does not in rows that were lost and in attitudes that are off; period s, the usual one.
     """
 
     name: str
     course: Course
     states: np.ndarray
     seen: np.ndarray
+    period: float
+
+
+@dataclass(frozen=True, eq=False)
+class Flight(Track):
+    """A Track and the samples (B,), `first`, at which its rollouts of `count` samples begin."""
+
     first: np.ndarray
     count: int
-    period: float
 
     @property
     def segment(self):
@@ -45,12 +50,11 @@ class Flight:
         return self.count * self.period
 
 
-def flight_of(record, vehicle, *, reference_voltage=None, segment=SEGMENT, every=None):
+def track_of(record, vehicle, reference_voltage=None):
     """
-    Return the Flight of a record; InputError where it lacks columns, is too short or too slow.
+    Return the Track of a record; InputError where it lacks columns or is too slow.
 
-    Args: reference_voltage V, see dynamics.course_of; segment s of each rollout; every s from one
-    start to the next, by default the length of a rollout, so that they do not overlap.
+    Args: reference_voltage V, see dynamics.course_of.
     """
     refuse_errors(record, timing.slow(record, vehicle))
     course, states = course_of(record, vehicle, reference_voltage), states_of(record)
@@ -62,14 +66,24 @@ def flight_of(record, vehicle, *, reference_voltage=None, segment=SEGMENT, every
     if skip > 1:
         course, states, seen = _thinned(course, states, seen, skip)
         period *= skip
+    return Track(record.info.get('name', 'flight'), course, states, seen, period)
+
+
+def flight_of(track, segment=SEGMENT, every=None):
+    """
+    Return the Flight of a Track; InputError where it is too short.
+
+    Args: segment s of each rollout; every s from one start to the next, by default the length of
+    a rollout, so that they do not overlap.
+    """
+    course, seen, period = track.course, track.seen, track.period
     count = max(2, round(segment / period))
     step = count if every is None else max(1, round(every / period))
     first = _starts(course.t, seen, period, count, step, round(WARM / period))
-    name = record.info.get('name', 'flight')
     if not len(first):
-        raise InputError(f'{name}: {course.t[-1]:.3g} s without a gap-free stretch of '
+        raise InputError(f'{track.name}: {course.t[-1]:.3g} s without a gap-free stretch of '
                          f'{segment:g} s are too short; give a longer flight')
-    return Flight(name, course, states, seen, first, count, period)
+    return Flight(track.name, course, track.states, seen, period, first, count)
 
 
 def highest_voltage(records):

@@ -15,16 +15,15 @@ MOST = 2000     # rollouts of all flights: 1000 s of 0.5 s each; of more, every 
 FAR = 0.8       # rad, of the attitude at the end: beyond it what the slopes say is not so
 
 
-def near_flights(records, vehicle, z, reference_voltage):
+def near_flights(tracks, vehicle, z):
     """
-    Return the Flights of records, with the longest rollouts of a vector z (Z,) that stay near.
+    Return the Flights of Tracks, with the longest rollouts of a vector z (Z,) that stay near.
 
     An attitude that is let go is soon anywhere: no fit finds its way back from there. Raises
-    InputError where a record is too short for them.
+    InputError where a flight is too short for them.
     """
     for segment in SEGMENTS:
-        flights = [flight_of(record, vehicle, reference_voltage=reference_voltage,
-                             segment=segment) for record in records]
+        flights = [flight_of(track, segment) for track in tracks]
         off = np.concatenate([
             errors_along(flight, vehicle, z, flight.states[flight.first])[:, -1]
             for flight in flights])[:, GROUPS['attitude']]

@@ -40,12 +40,12 @@ def save_pictures(found, folder):
     Args: found as that of `write`.
     """
     training, held_out, z = found.training, found.held_out, found.z
-    vehicle, voltage, z0 = training.vehicle, training.voltage, nominal(training.vehicle)
+    vehicle, z0 = training.vehicle, nominal(training.vehicle)
     gap, horizon = found.data['gap'], found.data['gap']['horizon']
-    before, after = (gaps.ends(held_out, vehicle, each + found.held_out_own, horizon, voltage)
+    before, after = (gaps.ends(held_out, vehicle, each + found.held_out_own, horizon)
                      for each in (z0, z))
-    lacks = [[where.lacking(record, vehicle, each + own, noise, voltage)
-              for record, own in training.flights]
+    lacks = [[where.lacking(track, vehicle, each + own, noise)
+              for track, own in training.flights]
              for each, noise in ((z0, training.noise), (z, found.whole))]
     made = {}
     for name, draw, caption in (

@@ -7,10 +7,11 @@ import numpy as np
 
 from quad_ident_ros.diagnose.where import CHANNELS, weights
 from quad_ident_ros.greybox.errors import GROUPS
+from quad_ident_ros.model.dynamics import STATES
 from quad_ident_ros.report.picture import MEASURED, pyplot, save
 
 BEFORE, AFTER, NOISE = '#d55e00', '#0072b2', '#555555'
-STATES = {'velocity': (('vx', 'vy', 'vz'), 'm/s'), 'rate': (('wx', 'wy', 'wz'), 'rad/s')}
+SHOWN = {'velocity': (('vx', 'vy', 'vz'), 'm/s'), 'rate': (('wx', 'wy', 'wz'), 'rad/s')}
 THIRDS = ('low', 'mid', 'high')
 HEADROOM = 1.5      # times the range of what was measured that is shown of predictions
 NARROW = 4.0        # times the lowest gap that its axis shows at least
@@ -21,17 +22,17 @@ def save_predictions(held_out, before, after, gap, path):
     """
     Save measured against predicted velocity and rates, and the errors beside them.
 
-    Args: held_out: its flight record; before, after: diagnose.gap.Ends of it with the nominal and
+    Args: held_out: its Track; before, after: diagnose.gap.Ends of it with the nominal and
     with the diagnosed vehicle; gap: that part of the diagnosis.
     """
     plt = pyplot(path)
-    rows = [(group, number, name, unit) for group, (names, unit) in STATES.items()
+    rows = [(group, number, name, unit) for group, (names, unit) in SHOWN.items()
             for number, name in enumerate(names)]
     figure, axes = plt.subplots(len(rows), 2, figsize=(11.4, 11.0), dpi=110, sharex=True,
                                 layout='constrained', gridspec_kw={'width_ratios': (1.5, 1)})
-    t = before.t + gap['horizon']
+    t, states = before.t + gap['horizon'], dict(zip(STATES, held_out.states.T, strict=True))
     for (left, right), (group, number, name, unit) in zip(axes, rows, strict=True):
-        measured = np.interp(t, held_out.t - held_out.t[0], held_out.columns[name])
+        measured = np.interp(t, held_out.course.t, states[name])
         left.plot(t, measured, color=MEASURED, linewidth=4, label='measured')
         noise = 2.0 * gap['noise'][group] / np.sqrt(3.0)
         right.axhspan(-noise, noise, color='0.88', linewidth=0, label='noise alone, 2 σ')

@@ -20,7 +20,7 @@ from quad_ident_ros.flight.measure import Noise, Sensors
 from quad_ident_ros.greybox.cautions import cautions
 from quad_ident_ros.greybox.errors import difference, moved
 from quad_ident_ros.greybox.fit import as_data, fit, fitted_vehicle
-from quad_ident_ros.greybox.flights import flight_of
+from quad_ident_ros.greybox.flights import flight_of, track_of
 from quad_ident_ros.greybox.identifiable import freedoms
 from quad_ident_ros.greybox.linear import errors_along, linearise
 from quad_ident_ros.greybox.normal import CHANCE, Normal, scatter_of
@@ -154,7 +154,7 @@ def test_outliers_hardly_move_the_estimate(problem):
 
 
 def test_the_slopes_are_differences_of_the_errors(problem):
-    flight = flight_of(problem.clean, VEHICLE)
+    flight = flight_of(track_of(problem.clean, VEHICLE))
     z, starts = nominal(VEHICLE), flight.states[flight.first]
     columns = [INDEX[name] for name in (*NAMES, 'motor_lag.time_constant', 'wind.x')]
     linear = linearise(flight, VEHICLE, z, starts, columns, NOISE, clock=False)

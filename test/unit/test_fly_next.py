@@ -17,7 +17,7 @@ from quad_ident_ros.diagnose.fly_next import fly_next, separation, visibility
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import MOCAP_IMU, Sensors
 from quad_ident_ros.flight.trajectories import TRAJECTORIES
-from quad_ident_ros.greybox.flights import flight_of
+from quad_ident_ros.greybox.flights import flight_of, track_of
 from quad_ident_ros.greybox.parameters import INDEX, nominal
 from quad_ident_ros.model.vehicle import load_vehicle
 from quad_ident_ros.report.diagnosis import show
@@ -145,7 +145,7 @@ def test_a_sure_verdict_asks_for_no_flight():
 
 def test_a_vehicle_that_cannot_fly_is_asked_for_nothing():
     """Three times as heavy it leaves every course."""
-    flights = [flight_of(flight, VEHICLE) for flight in hovers({})[:1]]
+    flights = [flight_of(track_of(flight, VEHICLE)) for flight in hovers({})[:1]]
     z = nominal(VEHICLE)
     z[INDEX['mass_offset.mass']] = 3.0 * VEHICLE.mass
     selection = pair(0.9)

@@ -13,6 +13,7 @@ from quad_ident_ros.data.csv import read_csv, write_csv
 from quad_ident_ros.diagnose import gap as gaps
 from quad_ident_ros.effects.registry import vector
 from quad_ident_ros.experiment import fly, load_experiment
+from quad_ident_ros.greybox.flights import track_of
 from quad_ident_ros.greybox.parameters import nominal, SPLIT
 from quad_ident_ros.model.vehicle import load_vehicle
 
@@ -41,7 +42,8 @@ def test_the_file_has_the_gap_that_was_reported(written):
     assert set(vehicle.effects) == set(data['verdict']) == set(TRUTH)
     z = nominal(NOMINAL.vehicle)
     z[SPLIT:SPLIT + len(vector({}, vehicle))] = vector(vehicle.effects, NOMINAL.vehicle)
-    after = gaps.gap([gaps.ends(flights[-1], NOMINAL.vehicle, z, gaps.HEADLINE, None)])
+    after = gaps.gap([gaps.ends(track_of(flights[-1], NOMINAL.vehicle), NOMINAL.vehicle, z,
+                               gaps.HEADLINE)])
     assert after['velocity'] == pytest.approx(data['gap']['after']['velocity'], rel=1e-3)
     assert data['gap']['closed'] > 0.95
 

@@ -13,7 +13,7 @@ from quad_ident_ros.data.quality.glitches import glitches
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.experiment import fly, load_experiment
-from quad_ident_ros.greybox.flights import flight_of
+from quad_ident_ros.greybox.flights import flight_of, track_of
 from quad_ident_ros.model.actuators import delayed
 from quad_ident_ros.model.attitude import rotation_matrix
 from quad_ident_ros.model.dynamics import STATES
@@ -188,7 +188,7 @@ def test_rows_that_were_lost_count_for_nothing(dragged):
     kept[[400, 401, 700]] = False
     short = FlightRecord(record.t[kept], {name: values[kept] for name, values in
                                           record.columns.items()}, record.info)
-    flight, whole = flight_of(short, VEHICLE), flight_of(record, VEHICLE)
+    flight, whole = (flight_of(track_of(one, VEHICLE)) for one in (short, record))
     np.testing.assert_allclose(flight.course.t, whole.course.t, atol=1e-12)
     np.testing.assert_array_equal(np.flatnonzero(~flight.seen.all(axis=1)), [400, 401, 700])
     np.testing.assert_allclose(flight.states[kept], whole.states[kept], atol=1e-12)
