@@ -17,11 +17,11 @@ from quad_ident_ros.greybox.parameters import limits, nominal
 
 ROUNDS = 5
 REFITS = 3          # sets that are refitted in a round
-FIT_STEPS = 5
+FIT_STEPS = 6
 KNOWN = 3           # sets found before that a second search begins with
 COLOURED = 2.0      # times the noise from sample to sample that all that is left may be
 NEAR = 25.0         # log-evidence behind the best set by the slopes that may be made up for
-LOST = 1.01         # times the cost of a subset from which on a fit did not get where it belongs
+LOST = 4.0          # times the scatter that a fit may cost more than a subset does
 MISSED = 1.05       # times the cost from which on a cause is missed, whatever its standard errors
 CALM = 4.0          # times less scatter that a turn must leave to go on with that
 UNTRIED = -2.0      # log-evidence that the linear model alone may give a set, beside the best
@@ -101,16 +101,15 @@ def _select(flights, vehicle, causes, noise, known, on_progress):
                                 around.starts, slopes)
         scatter = quadratic.scatter
         ranked = beam(quadratic, rows)
-        for chosen, found in _promising(ranked, tried):
+        around = tried[best]
+        for chosen in _promising(ranked, tried):
+            # From where the slopes are: the first step shows whether they lead anywhere.
             start = nominal(vehicle)
-            lower, upper, _ = limits(vehicle)
-            start[columns] += found[:len(columns)]
-            start = np.clip(start, lower, upper)
-            everyone = Own.of([one.own for one in own], len(flights))
-            everyone.values.flat[:] = found[len(columns):]
-            tried[chosen] = _refitted(flights, vehicle, start, chosen, noise, everyone,
-                                      tried[best].starts, slopes)
-            tried[chosen] = _found_again(flights, vehicle, chosen, tried, noise)
+            kept = [column for cause in chosen if cause in best for column in cause.columns]
+            start[kept] = around.z[kept]
+            tried[chosen] = _refitted(flights, vehicle, start, chosen, noise, around.own,
+                                      around.starts, slopes)
+            tried[chosen] = _found_again(flights, vehicle, chosen, tried, noise, scatter)
         scatter = _calmed(scatter, tried)
         before, best = best, max(tried, key=lambda key: _evidence(tried[key], key, vehicle,
                                                                   scatter))
@@ -140,19 +139,18 @@ def _calmed(scatter, tried):
 
 def _promising(ranked, tried):
     """
-    Return [(causes, distances)] of the untried sets that are worth refitting.
+    Return the untried sets of causes that are worth refitting.
 
     Those with the most evidence, and those with another cause in place of one of the best set's:
     slopes at a point tell little of which of two is there that do nearly the same.
     """
-    most, top, _ = ranked[0]
-    fresh = [(chosen, found) for _, chosen, found in ranked[:3 * REFITS] if chosen not in tried]
-    first = {chosen for chosen, _ in fresh[:REFITS]}
-    rivals = [(chosen, found) for value, chosen, found in ranked
-              if value > most - NEAR and chosen not in tried and chosen not in first
+    most, top = ranked[0]
+    fresh = [chosen for _, chosen in ranked[:3 * REFITS] if chosen not in tried][:REFITS]
+    rivals = [chosen for value, chosen in ranked
+              if value > most - NEAR and chosen not in tried and chosen not in fresh
               and len(chosen) == len(top)
               and [cause.own for cause in set(chosen) ^ set(top)] == [None, None]]
-    return [*fresh[:REFITS], *rivals[:REFITS]]
+    return [*fresh, *rivals[:REFITS]]
 
 
 def _rows(causes, own, columns, count):
@@ -175,7 +173,7 @@ def _refitted(flights, vehicle, z, chosen, noise, own, starts, slopes=None):
                     iterations=FIT_STEPS, slopes=slopes)
 
 
-def _found_again(flights, vehicle, chosen, tried, noise):
+def _found_again(flights, vehicle, chosen, tried, noise, scatter):
     """
     Return the Estimate of a set that fits about as well as its subsets.
 
@@ -184,7 +182,7 @@ def _found_again(flights, vehicle, chosen, tried, noise):
     lost = tried[chosen]
     known = [one for key, one in tried.items() if set(key) < set(chosen)]
     near = min(known, key=lambda one: one.cost, default=lost)
-    if LOST * near.cost >= lost.cost:
+    if lost.cost <= near.cost + LOST * scatter:
         return lost
     again = _refitted(flights, vehicle, near.z, chosen, noise, near.own, near.starts)
     return min(lost, again, key=lambda one: one.cost)
@@ -270,10 +268,10 @@ def _evidence(fit, chosen, vehicle, scatter):
 def _probabilities(fitted, ranked, causes, tried):
     """Return {cause: probability}: refitted sets, and of the others their linear evidence."""
     top = fitted[0]
-    base = next((value for value, chosen, _ in ranked if chosen == top.chosen), None)
+    base = next((value for value, chosen in ranked if chosen == top.chosen), None)
     weights = {one.chosen: one.evidence - top.evidence for one in fitted}
     if base is not None and np.isfinite(base):
-        for value, chosen, _ in ranked:
+        for value, chosen in ranked:
             if chosen not in tried and len(set(chosen) ^ set(top.chosen)) <= 2:
                 weights[chosen] = min(value - base, UNTRIED)
     values = np.array(list(weights.values()))

@@ -40,10 +40,19 @@ class Slopes:
     columns: list
     tangents: list
 
-    def of(self, columns):
-        """Return the Tangents in some of the columns."""
+    def of(self, columns, flights, vehicle, vectors, starts):
+        """
+        Return the Tangents in some of the columns, for flights that start elsewhere.
+
+        A pose that is off in time is off by the velocity there, which these columns know.
+        """
         kept = [*range(ERRORS), *(ERRORS + self.columns.index(one) for one in columns), -1]
-        return [Tangent(tangent.table[:, kept]) for tangent in self.tangents]
+        found = []
+        for tangent, flight, z, start in zip(self.tangents, flights, vectors, starts, strict=True):
+            table = tangent.table[:, kept]
+            table[:, -1] = _drift(flight, predicted_along(flight, vehicle, z, start))
+            found.append(Tangent(table))
+        return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,9 +92,13 @@ def seen_along(flight):
 
 def errors_along(flight, vehicle, z, starts):
     """Return recorded minus predicted along the rollouts, (B, count + 1, 12)."""
-    predicted = predict(vehicle, z[SPLIT:], flight.course, starts, flight.first, flight.count,
-                        constants=constants_of(z[None], vehicle))
-    return difference(recorded_along(flight), predicted)
+    return difference(recorded_along(flight), predicted_along(flight, vehicle, z, starts))
+
+
+def predicted_along(flight, vehicle, z, starts):
+    """Return the states predicted along the rollouts, (B, count + 1, 13)."""
+    return predict(vehicle, z[SPLIT:], flight.course, starts, flight.first, flight.count,
+                   constants=constants_of(z[None], vehicle))
 
 
 def linearise(flight, vehicle, z, starts, columns, noise, clock=True, weight=None):
@@ -143,12 +156,18 @@ def tangent_of(flight, vehicle, z, starts, columns, steps):
         table[:, axis, axis::ERRORS] = 1.0
     slopes(out[1:], base, 1.0 / np.concatenate([STATE_STEP[shifts:], steps]),
            table[:, shifts:-1])
-    drift = table[:, -1].reshape(batch, flight.count + 1, ERRORS)
+    table[:, -1] = _drift(flight, base)
+    return Tangent(table)
+
+
+def _drift(flight, states):
+    """Return what states along the rollouts change by per second of an offset of the pose."""
     t = flight.course.t[flight.first[:, None] + np.arange(flight.count + 1)]
-    drift[:, 1:-1] = difference(base[:, 2:], base[:, :-2]) / (t[:, 2:] - t[:, :-2])[..., None]
+    drift = np.empty((*t.shape, ERRORS))
+    drift[:, 1:-1] = difference(states[:, 2:], states[:, :-2]) / (t[:, 2:] - t[:, :-2])[..., None]
     drift[:, 0], drift[:, -1] = drift[:, 1], drift[:, -2]
     drift[..., 9:] = 0.0
-    return Tangent(table)
+    return drift.reshape(len(t), -1)
 
 
 def linear_of(tangent, raw, scale, clock=True):
