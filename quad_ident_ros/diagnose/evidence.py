@@ -55,7 +55,7 @@ def _odds(causes):
 
 def linear_evidence(quadratic, sets, rows):
     """
-    Return the log-evidence (N,) of sets of causes.
+    Return the log-evidence (N,) of sets of causes, and the distances (N, C) that fit then.
 
     Args: sets: N tuples of causes; rows {cause: rows of the quadratic}. A row that would leave its
     bounds is held there. -inf where all rows of a cause are held at no effect.
@@ -83,8 +83,9 @@ def linear_evidence(quadratic, sets, rows):
     for which, places in _by_size(free, np.arange(len(sets))):
         blocks = quadratic.information[places[:, :, None], places[:, None, :]]
         value[which] += _volume(blocks, quadratic.wide[places], quadratic.scatter)
-    return value + [_odds(chosen) if all(mine[rows[cause]].any() for cause in chosen) else -np.inf
-                    for chosen, mine in zip(sets, found, strict=True)]
+    value += [_odds(chosen) if all(mine[rows[cause]].any() for cause in chosen) else -np.inf
+              for chosen, mine in zip(sets, found, strict=True)]
+    return value, found
 
 
 def _by_size(free, going):
@@ -109,31 +110,32 @@ def _solved(quadratic, found, places):
 
 def beam(quadratic, causes):
     """
-    Return [(log-evidence, causes)] of the best sets of causes, best first.
+    Return [(log-evidence, causes, distances)] of the best sets of causes, best first.
 
     Args: causes: {cause: rows of the quadratic}. Sets grow by one cause at a time from each of the
     best of a size, and two causes of one effect never stand together.
     """
-    seen = level = _entries(quadratic, [()], causes)
+    def entries(sets):
+        values, distances = linear_evidence(quadratic, sets, causes)
+        return dict(zip(sets, zip(values, sets, distances, strict=True), strict=True))
+
+    seen = entries([()])
+    level = list(seen.values())
     while level:
         grown = {}      # in the order in which they come up
-        for _, chosen in level:
+        for _, chosen, _ in level:
             full = sum(cause.own is None for cause in chosen) >= MOST
             for cause in causes:
                 if full and cause.own is None or any(cause.effect == other.effect
                                                      for other in chosen):
                     continue
                 grown[key_of((*chosen, cause))] = None
-        level = _entries(quadratic, list(grown), causes)
-        seen = sorted([*seen, *level], key=lambda one: -one[0])
-        level = [one for one in level[:BEAM] if one[0] > seen[0][0] - BEHIND]
-    return seen
-
-
-def _entries(quadratic, sets, rows):
-    """Return [(log-evidence, causes)] of sets of causes, best first."""
-    values = linear_evidence(quadratic, sets, rows).tolist()
-    return sorted(zip(values, sets, strict=True), key=lambda one: -one[0])
+        grown = entries(list(grown))
+        seen.update(grown)
+        best = max(value for value, _, _ in seen.values())
+        level = sorted(grown.values(), key=lambda one: -one[0])[:BEAM]
+        level = [one for one in level if one[0] > best - BEHIND]
+    return sorted(seen.values(), key=lambda one: -one[0])
 
 
 def key_of(causes):

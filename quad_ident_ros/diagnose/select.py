@@ -17,7 +17,7 @@ from quad_ident_ros.greybox.parameters import limits, nominal
 
 ROUNDS = 5
 REFITS = 3          # sets that are refitted in a round
-FIT_STEPS = 6
+FIT_STEPS = 5
 KNOWN = 3           # sets found before that a second search begins with
 COLOURED = 2.0      # times the noise from sample to sample that all that is left may be
 NEAR = 25.0         # log-evidence behind the best set by the slopes that may be made up for
@@ -101,13 +101,14 @@ def _select(flights, vehicle, causes, noise, known, on_progress):
                                 around.starts, slopes)
         scatter = quadratic.scatter
         ranked = beam(quadratic, rows)
-        around = tried[best]
-        for chosen in _promising(ranked, tried):
-            # From where the slopes are: the first step shows whether they lead anywhere.
+        for chosen, found in _promising(ranked, tried):
             start = nominal(vehicle)
-            kept = [column for cause in chosen if cause in best for column in cause.columns]
-            start[kept] = around.z[kept]
-            tried[chosen] = _refitted(flights, vehicle, start, chosen, noise, around.own,
+            lower, upper, _ = limits(vehicle)
+            start[columns] += found[:len(columns)]
+            start = np.clip(start, lower, upper)
+            everyone = Own.of([one.own for one in own], len(flights))
+            everyone.values.flat[:] = found[len(columns):]
+            tried[chosen] = _refitted(flights, vehicle, start, chosen, noise, everyone,
                                       around.starts, slopes)
             tried[chosen] = _found_again(flights, vehicle, chosen, tried, noise, scatter)
         scatter = _calmed(scatter, tried)
@@ -139,18 +140,19 @@ def _calmed(scatter, tried):
 
 def _promising(ranked, tried):
     """
-    Return the untried sets of causes that are worth refitting.
+    Return [(causes, distances)] of the untried sets that are worth refitting.
 
     Those with the most evidence, and those with another cause in place of one of the best set's:
     slopes at a point tell little of which of two is there that do nearly the same.
     """
-    most, top = ranked[0]
-    fresh = [chosen for _, chosen in ranked[:3 * REFITS] if chosen not in tried][:REFITS]
-    rivals = [chosen for value, chosen in ranked
-              if value > most - NEAR and chosen not in tried and chosen not in fresh
+    most, top, _ = ranked[0]
+    fresh = [(chosen, found) for _, chosen, found in ranked[:3 * REFITS] if chosen not in tried]
+    first = {chosen for chosen, _ in fresh[:REFITS]}
+    rivals = [(chosen, found) for value, chosen, found in ranked
+              if value > most - NEAR and chosen not in tried and chosen not in first
               and len(chosen) == len(top)
               and [cause.own for cause in set(chosen) ^ set(top)] == [None, None]]
-    return [*fresh, *rivals[:REFITS]]
+    return [*fresh[:REFITS], *rivals[:REFITS]]
 
 
 def _rows(causes, own, columns, count):
@@ -237,13 +239,13 @@ def quadratic_at(flights, vehicle, fit, columns, own):
     lower, upper, size = limits(vehicle)
     everyone = Own.of([one.own for one in own], len(flights), fit.own)
     layout = Layout(columns, everyone.columns, len(flights))
-    slopes = slopes_at(flights, vehicle, fit.z, fit.vectors, fit.starts, layout.wanted)
-    normal = normal_of(
-        [linear_of(tangent, errors_along(flight, vehicle, z, start),
-                   weights_of(raw, sigma, flight) / sigma)
-         for tangent, flight, z, start, raw, sigma in
-         zip(slopes.tangents, flights, fit.vectors, fit.starts, fit.left, fit.noise, strict=True)],
-        flights, layout)
+    raws = [errors_along(flight, vehicle, z, start)
+            for flight, z, start in zip(flights, fit.vectors, fit.starts, strict=True)]
+    slopes = slopes_at(flights, vehicle, fit.z, fit.vectors, fit.starts, raws, layout.wanted)
+    normal = normal_of([linear_of(tangent, raw, weights_of(left, sigma, flight) / sigma)
+                        for tangent, raw, left, sigma, flight in
+                        zip(slopes.tangents, raws, fit.left, fit.noise, flights, strict=True)],
+                       flights, layout)
     null = nominal(vehicle)[columns]
     spreads = np.tile(everyone.spreads, len(flights))
     beyond = np.full(len(spreads), np.inf)
@@ -268,10 +270,10 @@ def _evidence(fit, chosen, vehicle, scatter):
 def _probabilities(fitted, ranked, causes, tried):
     """Return {cause: probability}: refitted sets, and of the others their linear evidence."""
     top = fitted[0]
-    base = next((value for value, chosen in ranked if chosen == top.chosen), None)
+    base = next((value for value, chosen, _ in ranked if chosen == top.chosen), None)
     weights = {one.chosen: one.evidence - top.evidence for one in fitted}
     if base is not None and np.isfinite(base):
-        for value, chosen in ranked:
+        for value, chosen, _ in ranked:
             if chosen not in tried and len(set(chosen) ^ set(top.chosen)) <= 2:
                 weights[chosen] = min(value - base, UNTRIED)
     values = np.array(list(weights.values()))

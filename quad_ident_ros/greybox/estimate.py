@@ -24,7 +24,7 @@ DONE = 0.2          # standard errors of a last step, which leaves a twentieth o
 ROUGH = 30.0        # standard errors where only a few rollouts are looked at
 FEW = 8             # rollouts that bring a start near
 STRAIGHT = 0.1      # of what a step should save that it may save more or less: slopes are kept
-NEARLY = 4.0        # of the cost in variances of the noise, for slopes that were found elsewhere
+NEARLY = 4.0        # variances of the noise that slopes found elsewhere may leave out, in all
 SHARES = tuple(0.5 ** k for k in range(7))  # of a step, tried until the cost does not rise
 SPARSE = 4          # every so many samples tell how far the bulk of them is off
 OUTLIER = 4.0       # noise deviations beyond which a sample counts less
@@ -82,7 +82,7 @@ def estimate(flights, vehicle, z, columns, *, noise=None, own=None, starts=None,
     estimated along unless it is given; outliers count less; with `clock` each flight's pose may
     be off in time against the rest; own: what else flights have of their own (Own). Without
     `starts` (B, 13) per flight, the initial states, a few of the rollouts first bring z near.
-    slopes: the Slopes at a point nearby, used as long as the errors follow them.
+    slopes: Slopes at the same starts, taken where the errors at z are what they say.
     """
     columns = list(columns)
     own = own or Own.of((), len(flights))
@@ -113,15 +113,15 @@ def _descend(flights, vehicle, z, columns, box, noise, own, starts, iterations, 
     raws = [errors_along(flight, vehicle, vector, start)
             for flight, vector, start in zip(flights, own.vectors(z), starts, strict=True)]
     noise = known or [quick_noise(raw) for raw in raws]
-    tangents = slopes and slopes.of(layout.wanted, flights, vehicle, own.vectors(z), starts)
-    at, converged = slopes.at if slopes else z, False
-    straight = NEARLY if slopes else np.inf
+    tangents, at, converged = None, z, False
+    if slopes and slopes.missed(own.vectors(z), raws, noise) < NEARLY:
+        tangents, at = slopes.of(layout.wanted), slopes.at
     for count in range(iterations):
         fresh = tangents is None
         if fresh:
-            tangents = slopes_at(flights, vehicle, z, own.vectors(z), starts,
+            tangents = slopes_at(flights, vehicle, z, own.vectors(z), starts, raws,
                                  layout.wanted).tangents
-            at, straight = z, np.inf
+            at = z
         scales = [weights_of(raw, sigma, flight) / sigma
                   for raw, sigma, flight in zip(raws, noise, flights, strict=True)]
         linears = [linear_of(tangent, raw, scale, clock)
@@ -164,7 +164,7 @@ def _descend(flights, vehicle, z, columns, box, noise, own, starts, iterations, 
             break
         # Where a step saves what the slopes say, they are what they were.
         saved = step @ (2.0 * gradient - information @ step)
-        if share < 1.0 or abs(before - after - saved) > min(STRAIGHT * saved, straight):
+        if share < 1.0 or abs(before - after - saved) > STRAIGHT * saved:
             tangents = None
     covariance = covariance_of(marginal(normal, shared, precision), size[:shared])
     # By the weights of these errors, not of those before the last step, to be held against others.

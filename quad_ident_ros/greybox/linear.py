@@ -34,25 +34,38 @@ class Tangent:
 
 @dataclass(frozen=True, eq=False)
 class Slopes:
-    """The Tangents of flights in some columns (places in z) around a vector `at` (Z,)."""
+    """
+    The Tangents of flights in some columns (places in z) around a vector `at` (Z,).
+
+    vectors: that of each flight, (Z,); starts (B, 13) and raws (B, count + 1, 12), recorded minus
+    predicted, of each.
+    """
 
     at: np.ndarray
     columns: list
+    vectors: list
+    starts: list
+    raws: list
     tangents: list
 
-    def of(self, columns, flights, vehicle, vectors, starts):
-        """
-        Return the Tangents in some of the columns, for flights that start elsewhere.
-
-        A pose that is off in time is off by the velocity there, which these columns know.
-        """
+    def of(self, columns):
+        """Return the Tangents in some of the columns."""
         kept = [*range(ERRORS), *(ERRORS + self.columns.index(one) for one in columns), -1]
-        found = []
-        for tangent, flight, z, start in zip(self.tangents, flights, vectors, starts, strict=True):
-            table = tangent.table[:, kept]
-            table[:, -1] = _drift(flight, predicted_along(flight, vehicle, z, start))
-            found.append(Tangent(table))
-        return found
+        return [Tangent(tangent.table[:, kept]) for tangent in self.tangents]
+
+    def missed(self, vectors, raws, noise):
+        """
+        Return what the slopes leave out of errors elsewhere: a sum of squares, over the noise.
+
+        Args: vectors (Z,), raws (B, count + 1, 12) there, of the same starts, and noise (12,).
+        """
+        total = 0.0
+        for k, (z, raw, sigma) in enumerate(zip(vectors, raws, noise, strict=True)):
+            move = (z - self.vectors[k])[self.columns]
+            rest = raw - self.raws[k] + np.tensordot(
+                move, self.tangents[k].table[:, ERRORS:-1], (0, 1)).reshape(raw.shape)
+            total += float(np.sum((rest / sigma) ** 2))
+        return total
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,13 +105,9 @@ def seen_along(flight):
 
 def errors_along(flight, vehicle, z, starts):
     """Return recorded minus predicted along the rollouts, (B, count + 1, 12)."""
-    return difference(recorded_along(flight), predicted_along(flight, vehicle, z, starts))
-
-
-def predicted_along(flight, vehicle, z, starts):
-    """Return the states predicted along the rollouts, (B, count + 1, 13)."""
-    return predict(vehicle, z[SPLIT:], flight.course, starts, flight.first, flight.count,
-                   constants=constants_of(z[None], vehicle))
+    predicted = predict(vehicle, z[SPLIT:], flight.course, starts, flight.first, flight.count,
+                        constants=constants_of(z[None], vehicle))
+    return difference(recorded_along(flight), predicted)
 
 
 def linearise(flight, vehicle, z, starts, columns, noise, clock=True, weight=None):
@@ -115,17 +124,17 @@ def linearise(flight, vehicle, z, starts, columns, noise, clock=True, weight=Non
                      errors_along(flight, vehicle, z, starts), scale, clock)
 
 
-def slopes_at(flights, vehicle, z, vectors, starts, columns):
+def slopes_at(flights, vehicle, z, vectors, starts, raws, columns):
     """
     Return the Slopes of flights around z (Z,).
 
-    Args: vectors: z with what each flight has of its own; starts (B, 13) per flight; columns:
-    places in z.
+    Args: vectors: z with what each flight has of its own; starts (B, 13) and raws of errors_along
+    per flight; columns: places in z.
     """
     steps = STEP * limits(vehicle)[2, columns]
-    return Slopes(z, columns, [tangent_of(flight, vehicle, vector, start, columns, steps)
-                               for flight, vector, start in
-                               zip(flights, vectors, starts, strict=True)])
+    return Slopes(z, columns, vectors, starts, raws,
+                  [tangent_of(flight, vehicle, vector, start, columns, steps)
+                   for flight, vector, start in zip(flights, vectors, starts, strict=True)])
 
 
 def tangent_of(flight, vehicle, z, starts, columns, steps):
@@ -156,18 +165,12 @@ def tangent_of(flight, vehicle, z, starts, columns, steps):
         table[:, axis, axis::ERRORS] = 1.0
     slopes(out[1:], base, 1.0 / np.concatenate([STATE_STEP[shifts:], steps]),
            table[:, shifts:-1])
-    table[:, -1] = _drift(flight, base)
-    return Tangent(table)
-
-
-def _drift(flight, states):
-    """Return what states along the rollouts change by per second of an offset of the pose."""
+    drift = table[:, -1].reshape(batch, flight.count + 1, ERRORS)
     t = flight.course.t[flight.first[:, None] + np.arange(flight.count + 1)]
-    drift = np.empty((*t.shape, ERRORS))
-    drift[:, 1:-1] = difference(states[:, 2:], states[:, :-2]) / (t[:, 2:] - t[:, :-2])[..., None]
+    drift[:, 1:-1] = difference(base[:, 2:], base[:, :-2]) / (t[:, 2:] - t[:, :-2])[..., None]
     drift[:, 0], drift[:, -1] = drift[:, 1], drift[:, -2]
     drift[..., 9:] = 0.0
-    return drift.reshape(len(t), -1)
+    return Tangent(table)
 
 
 def linear_of(tangent, raw, scale, clock=True):
