@@ -54,6 +54,9 @@ def quick_set(rng):
     cases += [Case('single', {str(name): 3.0}, i % VEHICLES, faulty=True)
               for i, name in enumerate(rng.choice(EFFECTS, 6, replace=False))]
     cases += [Case('none', {}, i, faulty=True) for i in range(VEHICLES)]
+    cases += [Case('pair', _several(2, rng), i % VEHICLES, faulty=True) for i in range(6)]
+    cases += [Case('mixture', _several(3 + i % 3, rng), i % VEHICLES, faulty=True)
+              for i in range(6)]
     return [cases[k] for k in rng.permutation(len(cases))]
 
 
@@ -72,8 +75,9 @@ def full_set(rng):
     faulty = [Case('single', {name: (1.0, 3.0)[i % 2]}, i % VEHICLES, faulty=True)
               for i, name in enumerate(EFFECTS)]
     faulty += [Case('none', {}, i % VEHICLES, faulty=True) for i in range(10)]
-    faulty += [Case('pair', _several(2, rng), i % VEHICLES, faulty=True) for i in range(6)]
-    faulty += [Case('mixture', _several(3, rng), i % VEHICLES, faulty=True) for i in range(3)]
+    faulty += [Case('pair', _several(2, rng), i % VEHICLES, faulty=True) for i in range(12)]
+    faulty += [Case('mixture', _several(3 + i % 3, rng), i % VEHICLES, faulty=True)
+               for i in range(12)]
     faulty += [Case('unknown', {}, i % VEHICLES, (kind, 3.0), faulty=True)
                for i, kind in enumerate(STRANGERS)]
     cases += faulty

@@ -183,8 +183,7 @@ def _how_far(test, own, vehicle, z0, z, named, noise):
 def _ranking(selection, causes, z, test, own, vehicle, probabilities):
     """Return every effect, the most probable first, with its parameters."""
     z0 = nominal(vehicle)
-    errors = dict(zip(selection.best.estimate.columns, selection.best.estimate.errors,
-                      strict=True))
+    errors = dict(zip(selection.best.estimate.columns, selection.errors, strict=True))
     before = gaps.gap([gaps.ends(test, vehicle, z0 + own, gaps.HEADLINE)])
     rows = {}
     for cause in causes:

@@ -63,6 +63,22 @@ class Selection:
     rows: dict
     noise: list
 
+    @property
+    def errors(self):
+        """
+        Return the standard errors (C,) of the best set's columns.
+
+        How far flights usually differ is not known either: of all sets with the same effects, by
+        their evidence.
+        """
+        same = [one for one in self.fitted if one.causes == self.best.causes]
+        evidences = np.array([one.evidence for one in same])
+        shares = np.exp(evidences - evidences.max())
+        squares = [one.estimate.errors ** 2
+                   + (one.estimate.z - self.best.estimate.z)[one.estimate.columns] ** 2
+                   for one in same]
+        return np.sqrt(np.average(squares, axis=0, weights=shares))
+
 
 def select(flights, vehicle, causes, on_progress=lambda share: None):
     """

@@ -14,6 +14,7 @@ from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.experiment import fly, load_experiment
 from quad_ident_ros.greybox.flights import flight_of, track_of
+from quad_ident_ros.greybox.own import nuisances
 from quad_ident_ros.model.actuators import delayed
 from quad_ident_ros.model.attitude import rotation_matrix
 from quad_ident_ros.model.dynamics import STATES
@@ -124,6 +125,24 @@ def test_biases_that_differ_from_flight_to_flight_are_no_effect(dragged):
     data = diagnose(flights, VEHICLE).data
     assert data['verdict'] == ['rotor_drag']
     assert 'rate_bias' in data['nuisances']
+
+
+def test_how_far_biases_differ_is_part_of_the_uncertainty_of_the_one_they_share(dragged):
+    """Where flights do not tell which of two spreads is theirs the error lies between both."""
+    shared, own = np.array([0.05, -0.03, 0.04]), np.array([0.0038, 0.0, -0.0038])
+    flights = []
+    for k, record in enumerate(dragged):
+        bias = shared + np.roll(own, k)
+        flights.append(changed(record, **{name: record.columns[name] + one
+                                          for name, one in zip(('wx', 'wy', 'wz'), bias,
+                                                               strict=True)}))
+    data = diagnose(flights, VEHICLE).data
+    assert data['verdict'] == ['rotor_drag', 'gyro_bias']
+    wide, narrow = sorted((kind.spreads[0] for kind in nuisances(VEHICLE)
+                           if kind.name == 'rate_bias'), reverse=True)
+    for true, (value, std) in zip(shared, parameters(data, 'gyro_bias').values(), strict=True):
+        assert 1.1 * narrow / np.sqrt(3) < std < 0.9 * wide / np.sqrt(3)
+        assert abs(value - true) < 4 * std
 
 
 def spoilt(record, rng):
