@@ -45,6 +45,11 @@ class Fitted:
         """Return the kinds of Nuisance that flights have of their own."""
         return tuple(cause.own for cause in self.chosen if cause.own)
 
+    @property
+    def kinds(self):
+        """Return all of it as a set, whatever the spreads of what flights have of their own."""
+        return {*self.causes, *(kind.name for kind in self.own)}
+
 
 @dataclass(frozen=True, eq=False)
 class Selection:
@@ -137,8 +142,9 @@ def _select(flights, vehicle, causes, noise, known, on_progress):
     fitted = tuple(sorted((Fitted(key, value, _evidence(value, key, vehicle, scatter))
                            for key, value in tried.items()), key=lambda one: -one.evidence))
     chosen = next(one for one in fitted if one.chosen == best)
-    fitted = (chosen, *(one for one in fitted if not set(best) < set(one.chosen)
-                        and one is not chosen))
+    # Sets with more were considered, and pruned.
+    fitted = (chosen, *(one for one in fitted if one is not chosen
+                        and not chosen.kinds < one.kinds))
     probability = _probabilities(fitted, ranked, causes, tried)
     support = pruned | {cause: support_of(chosen.estimate, cause, vehicle)
                         for cause in chosen.causes if cause not in missed}
