@@ -80,7 +80,9 @@ def predict(vehicle, thetas, course, starts, first, count, which=None, constants
     followed, speeds = actuated(course.t, course.commands, thetas)
     inputs = np.zeros((len(course.t), INPUT))
     inputs[:, 5] = course.volt_drop
-    x0 = _by_set(underlying, thetas, which, np.array(starts, float))
+    x0, elsewhere = np.array(starts, float), acts(thetas)[which]
+    own = thetas[which[elsewhere]]
+    x0[elsewhere] = underlying(own, x0[elsewhere])
     substeps = max(1, int(np.ceil(np.median(np.diff(course.t)) / LONGEST_STEP - 1e-6)))
     out = np.empty((len(x0), count + 1, STATE))
     kernel = roll_out if len(x0) > 1 else roll_out_one
@@ -89,13 +91,5 @@ def predict(vehicle, thetas, course, starts, first, count, which=None, constants
     kernel(np.ascontiguousarray(constants), rotor_table(vehicle), np.ascontiguousarray(thetas),
            which, np.ascontiguousarray(x0), course.t, followed, speeds, inputs, first, count,
            substeps, out)
-    return _by_set(recorded, thetas, which, out)
-
-
-def _by_set(function, thetas, which, states):
-    """Apply a function of a parameter set and states, in place, to the rollouts of each set."""
-    for k, theta in enumerate(thetas):
-        if acts(theta):
-            mine = which == k
-            states[mine] = function(theta, states[mine])
-    return states
+    out[elsewhere] = recorded(own, out[elsewhere])
+    return out

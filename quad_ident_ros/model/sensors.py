@@ -4,13 +4,14 @@
 Between the state of the centre of mass and what is recorded.
 
 A record is of the declared body origin; its attitude may be that of a tilted frame, its rate may
-have a bias. States (..., 13): position, velocity (world), quaternion, rate (body).
+have a bias. States (..., 13): position, velocity (world), quaternion, rate (body). Parameter sets
+theta (P,), or (B, P) for states (B, ..., 13).
 """
 
 import numpy as np
 
+from quad_ident_ros.compiled import compiled
 from quad_ident_ros.effects.registry import SLICES
-from quad_ident_ros.model.attitude import rotation_matrix
 
 COM, TILT, BIAS = (SLICES[name] for name in ('com_offset', 'attitude_misalignment', 'gyro_bias'))
 
@@ -34,37 +35,71 @@ def turn(vector):
 
 
 def acts(theta):
-    """Return whether what is recorded differs from the state of the centre of mass."""
-    return theta[COM].any() or theta[TILT].any() or theta[BIAS].any()
+    """Return whether what is recorded differs from the state of the centre of mass, (...)."""
+    return (theta[..., COM].any(axis=-1) | theta[..., TILT].any(axis=-1)
+            | theta[..., BIAS].any(axis=-1))
 
 
 def recorded(theta, states):
     """Return what is recorded of states of the centre of mass, (..., 13)."""
-    states = np.array(states)
-    if theta[COM].any():
-        _shift(states, -theta[COM])
-    if theta[TILT].any():
-        states[..., 6:10] = product(states[..., 6:10], turn(theta[TILT]))
-    if theta[BIAS].any():
-        states[..., 10:] += theta[BIAS]
-    return states
+    return _changed(theta, states, True)
 
 
 def underlying(theta, states):
     """Return the states of the centre of mass of recorded ones, (..., 13): recorded, undone."""
-    states = np.array(states)
-    if theta[BIAS].any():
-        states[..., 10:] -= theta[BIAS]
-    if theta[TILT].any():
-        states[..., 6:10] = product(states[..., 6:10], turn(-theta[TILT]))
-    if theta[COM].any():
-        _shift(states, theta[COM])
+    return _changed(theta, states, False)
+
+
+def _changed(theta, states, forward):
+    """Return recorded states of underlying ones, or, backward, those of recorded ones."""
+    states, theta = np.array(states, float), np.atleast_2d(theta)
+    if acts(theta).any():
+        arms, biases = (np.ascontiguousarray(theta[:, part]) for part in (COM, BIAS))
+        tilts = turn(theta[:, TILT] if forward else -theta[:, TILT])
+        _change(arms, tilts, biases, states.reshape(len(theta), -1, states.shape[-1]), forward)
     return states
 
 
-def _shift(states, arm):
-    """Move position and velocity by an arm (3,) in the body."""
-    rotation = rotation_matrix(states[..., 6:10])
-    states[..., :3] += rotation @ arm
-    swing = np.cross(states[..., 10:], arm)
-    states[..., 3:6] += np.einsum('...ij,...j->...i', rotation, swing)
+@compiled(fused=True)
+def _change(arms, tilts, biases, states, forward):
+    """Change states (B, N, 13) in place, by arms and biases (B, 3) and the turns tilts (B, 4)."""
+    for b in range(states.shape[0]):
+        for n in range(states.shape[1]):
+            x = states[b, n]
+            if not forward:
+                for i in range(3):
+                    x[10 + i] -= biases[b, i]
+                _tilt(x, tilts[b])
+            _shift(x, arms[b], -1.0 if forward else 1.0)
+            if forward:
+                _tilt(x, tilts[b])
+                for i in range(3):
+                    x[10 + i] += biases[b, i]
+
+
+@compiled(fused=True, inlined=True)
+def _tilt(x, tilt):
+    """Turn the attitude of a state (13,) by a quaternion (4,) in the body."""
+    w, a, b, c = x[6], x[7], x[8], x[9]
+    x[6] = w * tilt[0] - a * tilt[1] - b * tilt[2] - c * tilt[3]
+    x[7] = w * tilt[1] + a * tilt[0] + b * tilt[3] - c * tilt[2]
+    x[8] = w * tilt[2] - a * tilt[3] + b * tilt[0] + c * tilt[1]
+    x[9] = w * tilt[3] + a * tilt[2] - b * tilt[1] + c * tilt[0]
+
+
+@compiled(fused=True, inlined=True)
+def _shift(x, arm, share):
+    """Move position and velocity of a state (13,) by a share of an arm (3,) in the body."""
+    ax, ay, az = share * arm[0], share * arm[1], share * arm[2]
+    _add_turned(x, 0, ax, ay, az)
+    _add_turned(x, 3, x[11] * az - x[12] * ay, x[12] * ax - x[10] * az, x[10] * ay - x[11] * ax)
+
+
+@compiled(fused=True, inlined=True)
+def _add_turned(x, place, a, b, c):
+    """Add a vector of the body, in the world, to three elements of a state (13,)."""
+    w, i, j, k = x[6], x[7], x[8], x[9]
+    u, v, t = 2.0 * (j * c - k * b), 2.0 * (k * a - i * c), 2.0 * (i * b - j * a)
+    x[place] += a + w * u + j * t - k * v
+    x[place + 1] += b + w * v + k * u - i * t
+    x[place + 2] += c + w * t + i * v - j * u
