@@ -43,7 +43,9 @@ def find(kind, name_or_path):
         path = _existing(text)
         if path is None:
             said = text if text.isprintable() and len(text) < 300 else schema.shown(text)
-            raise InputError(f'{said}: there is no such file')
+            raise InputError(f'{said}: this is a folder; name a file in it'
+                             if Path(text).is_dir() else f'{said}: there is no such file; give '
+                             f'the path of one, or a name: {", ".join(names(kind))}')
         return path
     shipped = _existing(config_dir() / kind / f'{text}.yaml')
     if shipped is not None:

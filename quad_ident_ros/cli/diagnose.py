@@ -10,7 +10,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn
 
 from quad_ident_ros.cli.options import flights_from
-from quad_ident_ros.data.quality import refuse_unfit
+from quad_ident_ros.data.quality import cautions
 from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.diagnose.length import refuse_short
 from quad_ident_ros.effects.registry import EFFECTS
@@ -52,21 +52,24 @@ def add(commands):
 def run(options):
     """Read the flights, diagnose, and show what was found."""
     vehicle = load_nominal(options.vehicle)
-    effects = options.effects.split(',') if options.effects is not None else None
+    effects = ([name.strip() for name in options.effects.split(',')]
+               if options.effects is not None else None)
     records = [with_commands(record, vehicle) for path in options.flights
                for record in flights_from(path, options.mapping, options.vehicle)]
     held = None
     if options.hold_out:
         held = with_commands(
             flights_from(options.hold_out, options.mapping, options.vehicle)[-1], vehicle)
+    wary = []
     for record in [*records, *([held] if held else [])]:
         refuse_short(record)
-        refuse_unfit(record, vehicle)
+        wary += cautions(record, vehicle)
     with Progress(TextColumn('{task.description}'), BarColumn(),
                   console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task('comparing sets of effects', total=1.0)
         found = diagnose(records, vehicle, hold_out=held, effects=effects,
                          on_progress=lambda share: bar.update(task, completed=share))
+    found = replace(found, data={**found.data, 'findings': wary})
     if options.json != '-':
         show(found.data, sys.stdout)
     if options.json:

@@ -9,22 +9,31 @@ from quad_ident_ros.model.vehicle import check_ending
 
 INPUTS = ('flight', 'flights', 'hold_out', 'mapping', 'vehicle', 'experiment')
 OUTPUTS = ('out', 'output', 'out_vehicle', 'json', 'report', 'picture')
-"""Names of the options, of any command, that name files read and written."""
+FILES = ('out_vehicle', 'json', 'report', 'picture')
+"""Names of the options, of any command, that name files read, written, and never folders."""
 
 
 def check_outputs(options):
     """
     Check, before any work, where the options of a command have it write.
 
-    Raises InputError for an output that is an input or lies in a file, and for a vehicle file of
-    another ending.
+    Raises InputError for an output that is an input, another output, a folder or lies in a file,
+    and for a vehicle file of another ending.
     """
+    written = {}
     inputs = _named(options, INPUTS)
     for output in _named(options, OUTPUTS):
         refuse_overwriting(output, inputs)
+        other = written.setdefault(Path(output).resolve(), output)
+        if other is not output:
+            raise InputError(f'{output}: this would write over another output; give each a name '
+                             'of its own')
         for folder in Path(output).parents:
             if folder.exists() and not folder.is_dir():
                 raise InputError(f'{output}: {folder} is a file, no folder; give another path')
+    for output in _named(options, FILES):
+        if Path(output).is_dir():
+            raise InputError(f'{output}: this is a folder; name a file')
     for output in _named(options, ('out_vehicle',)):
         check_ending(output)
 

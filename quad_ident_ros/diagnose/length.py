@@ -15,5 +15,6 @@ def length_of(record):
 def refuse_short(record):
     """Raise InputError where a flight record is too short for a diagnosis."""
     if length_of(record) < SHORTEST:
-        raise InputError(f'{record.info.get("name", "a record")}: {length_of(record):.3g} s are '
+        name = record.info.get('source') or record.info.get('name', 'a record')
+        raise InputError(f'{name}: {length_of(record):.3g} s are '
                          f'too short for a diagnosis; at least {SHORTEST:g} s are needed')

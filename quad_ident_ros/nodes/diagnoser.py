@@ -8,7 +8,7 @@ import sys
 
 from std_msgs.msg import Float64MultiArray, String
 
-from quad_ident_ros.data.quality import refuse_unfit
+from quad_ident_ros.data.quality import cautions
 from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.diagnose.length import refuse_short, SHORTEST
 from quad_ident_ros.diagnose.where import CHANNELS
@@ -93,12 +93,13 @@ class Diagnoser(RecordWorker):
             vehicle = load_nominal(values['vehicle'])
             flights = [with_commands(record.last(values['window']) if values['window']
                                      else record, vehicle) for record in records]
+            wary = []
             for flight in flights:
                 refuse_short(flight)
-                refuse_unfit(flight, vehicle)
+                wary += cautions(flight, vehicle)
             found = diagnose(flights, vehicle, effects=values['effects'] or None,
                              on_progress=self._job.tell)
-            return found.data, flights
+            return {**found.data, 'findings': wary}, flights
 
         return run
 

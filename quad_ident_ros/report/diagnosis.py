@@ -20,13 +20,13 @@ def show(data, stream):
     say(f'verdict: {verdict_line(data)}', 'bold')
     gap = data['gap']
     say('')
+    say('where: what the nominal vehicle lacks')
+    screen.print(_where(data['where']))
+    say('which')
+    screen.print(_which(data['ranking']))
     say(f'how far, on {data["held_out"]} (held out), {gap["horizon"]:g} s ahead: '
         f'{100 * gap["closed"]:.0f} % of the velocity gap above the noise is closed')
     screen.print(_far(gap))
-    say('which')
-    screen.print(_which(data['ranking']))
-    say('where: what the nominal vehicle lacks')
-    screen.print(_where(data['where']))
     for name, own in (data['nuisances'] or {}).items():
         say(f"each flight's own {name} ({own['what']}) is no effect: {_own(own)}")
         if own.get('hidden_delay'):
@@ -37,6 +37,8 @@ def show(data, stream):
             f'({100 * row["share"]:.0f} % of what is left there)')
     if data['not_shown']:
         say(not_shown_line(data))
+    for line in caution_lines(data):
+        say(line)
     if data['fly_next']:
         say('what to fly next')
         screen.print(_next(data['fly_next']))
@@ -58,6 +60,16 @@ def verdict_line(data):
 def not_shown_line(data):
     """Return what the flights could not show, in words."""
     return f'would not show at their usual size: {", ".join(data["not_shown"])}'
+
+
+def caution_lines(data):
+    """Return what to be wary of in the records, if they were looked at: a line for each kind."""
+    alike = {}
+    for one in data.get('findings', ()):
+        alike.setdefault((one['code'], one['where'].partition(', t =')[0]), []).append(one)
+    return [f'be wary of {first["flight"]}'
+            + (f' ({", ".join(one["flight"] for one in others)} alike)' if others else '')
+            + f': {first["where"]}: {first["message"]}' for first, *others in alike.values()]
 
 
 NEXT = ('manoeuvre', 'to', 'standard errors now', 'with it', 'size', 'height', 'speed up to')
@@ -110,7 +122,7 @@ def _which(ranking):
     for row in ranking:
         if row['probability'] >= WORTH:
             values = ', '.join(f'{name} {one["value"]:.4g} ± {one["std"]:.2g} {one["unit"]}'
-                               for name, one in row['parameters'].items())
+                               .removesuffix(' 1') for name, one in row['parameters'].items())
             alone = row['gap_after']
             table.add_row(row['effect'], f'{row["probability"]:.2f}', values,
                           f'{alone["velocity"]:.3g}' if values else '')
@@ -123,11 +135,16 @@ def _where(rows):
     table = _table('channel', 'share', 'rms', 'noise alone', 'where most of it is', 'Hz')
     for row in rows:
         if row['share'] >= WORTH:
-            low, high = row['band']
             table.add_row(row['channel'], f'{100 * row["share"]:.0f} %',
                           f'{row["rms"]:.3g} {row["unit"]}', f'{row["noise_rms"]:.3g}',
-                          row['regime'], f'{low:.2g} to {high:.2g}')
+                          row['regime'], band_of(row))
     return table
+
+
+def band_of(row):
+    """Return the frequency band of a channel, Hz, in words."""
+    low, high = row['band']
+    return f'{low:.2g} to {high:.2g}' if high > 0.0 else 'constant'
 
 
 def _table(*names):

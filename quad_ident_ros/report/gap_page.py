@@ -9,7 +9,14 @@ from quad_ident_ros.diagnose import gap as gaps
 from quad_ident_ros.diagnose import where
 from quad_ident_ros.greybox.parameters import nominal
 from quad_ident_ros.report import gap_pictures
-from quad_ident_ros.report.diagnosis import NEXT, next_row, not_shown_line, verdict_line
+from quad_ident_ros.report.diagnosis import (
+    band_of,
+    caution_lines,
+    NEXT,
+    next_row,
+    not_shown_line,
+    verdict_line,
+)
 from quad_ident_ros.report.html import figure, join, Markup, table, tag, write_page
 
 WIDE = 1.96     # standard errors to the ends of a 95 % interval
@@ -28,8 +35,8 @@ def write(path, found):
         captions = save_pictures(found, Path(folder))
         pictures = {name: figure(Path(folder) / f'{name}.png', caption)
                     for name, caption in captions.items()}
-        body = [*_verdict(data), *_far(data, pictures), *_where(data, pictures),
-                *_which(data, pictures), *_open(data), *_provenance(data)]
+        body = [*_verdict(data), *_where(data, pictures), *_which(data, pictures),
+                *_far(data, pictures), *_open(data), *_provenance(data)]
     write_page(path, f'What {data["vehicle"]} lacks', join(body))
 
 
@@ -105,8 +112,7 @@ def _between(gap, stage, name):
 
 def _where(data, pictures):
     rows = [[row['channel'], f'{100 * row["share"]:.0f} %', f'{row["rms"]:.3g} {row["unit"]}',
-             f'{row["noise_rms"]:.3g}', row['regime'],
-             f'{row["band"][0]:.2g} to {row["band"][1]:.2g}'] for row in data['where']]
+             f'{row["noise_rms"]:.3g}', row['regime'], band_of(row)] for row in data['where']]
     return [tag('h2', 'Where'), pictures['map'],
             table(['channel', 'share', 'rms', 'noise alone', 'where most of it is', 'Hz'], rows,
                   kinds=('text', '', '', '', 'text', ''))]
@@ -141,6 +147,7 @@ def _open(data):
     if data['not_shown']:
         line = not_shown_line(data)
         lines.append(f'{line[0].upper()}{line[1:]}.')
+    lines += [f'{line[0].upper()}{line[1:]}.' for line in caution_lines(data)]
     parts = []
     if lines:
         items = join(tag('li', line) for line in lines)

@@ -6,6 +6,8 @@ The quality of a flight record: what is wrong with it, and how to mend it.
 One file per subject, each with checks (record, vehicle or None) -> findings, entered in CHECKS.
 """
 
+from dataclasses import asdict
+
 import numpy as np
 
 from quad_ident_ros.data.quality import (
@@ -17,6 +19,7 @@ from quad_ident_ros.data.quality import (
     rotors,
     saturation,
     stale,
+    thrust,
     timing,
     units,
 )
@@ -29,16 +32,17 @@ from quad_ident_ros.data.quality.clock import (
 from quad_ident_ros.data.quality.finding import Finding, SEVERITIES
 from quad_ident_ros.errors import InputError
 
-CHECKS = (columns.known, columns.incomplete, columns.frozen, columns.quaternions, columns.possible,
-          timing.slow, timing.gaps, timing.duplicates, timing.truncated, timing.reader_notes,
-          stale.held, stale.marked, glitches.attitude, units.rates_in_degrees,
-          units.euler_in_degrees, units.force_in_g, units.position_in_millimetres,
-          units.speeds_in_rpm, frames.quaternion, frames.world, frames.velocity_in_body,
-          rotors.hover, rotors.count, rotors.order_and_spin, clock.attitude, clock.velocity,
-          clock.commands, saturation.speeds, excitation.axes)
+CHECKS = (columns.known, columns.incomplete, columns.frozen, columns.dead, columns.quaternions,
+          columns.possible, columns.negative, timing.slow, timing.gaps, timing.duplicates,
+          timing.truncated, timing.reader_notes, stale.held, stale.marked, glitches.attitude,
+          units.rates_in_degrees, units.euler_in_degrees, units.force_in_g,
+          units.position_in_millimetres, units.speeds_in_rpm, frames.quaternion, frames.world,
+          frames.velocity_in_body, frames.signs, rotors.hover, rotors.count,
+          rotors.order_and_spin, thrust.carried, clock.attitude, clock.velocity, clock.commands,
+          saturation.speeds, excitation.axes)
 
-__all__ = ['CHECKS', 'clock_offset', 'ClockOffset', 'command_offset', 'Finding', 'findings',
-           'refuse_errors', 'refuse_unfit', 'SEVERITIES', 'velocity_offset']
+__all__ = ['cautions', 'CHECKS', 'clock_offset', 'ClockOffset', 'command_offset', 'Finding',
+           'findings', 'refuse_errors', 'refuse_unfit', 'SEVERITIES', 'velocity_offset']
 
 
 def findings(record, vehicle=None):
@@ -58,6 +62,16 @@ def refuse_unfit(record, vehicle):
     found = findings(record, vehicle)
     refuse_errors(record, found)
     return found
+
+
+def cautions(record, vehicle):
+    """
+    Return what to be wary of in a record that bears a verdict, as data: the Findings of warning.
+
+    Raises InputError for a fault that no verdict survives.
+    """
+    return [{'flight': record.info.get('name', 'flight'), **asdict(finding)}
+            for finding in refuse_unfit(record, vehicle) if finding.severity == 'warning']
 
 
 def refuse_errors(record, found):

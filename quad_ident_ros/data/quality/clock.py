@@ -18,6 +18,7 @@ REACH = 0.5       # s, the largest offset looked for
 LOCAL = 0.1       # s, how far a window may be from the whole
 SURE = 0.6        # correlation that an estimate needs
 SHAPE = 0.5       # correlation of the slopes, whose noise is larger
+FINEST = 1e-5     # s, the least standard error: one stream may be made of the other
 MEMORY = 0.4      # s, over which errors may depend on one another
 ANSWER = 1.0      # s, within which the motion may answer to errors of the attitude
 SEVERAL = 5.0     # standard errors from which on an offset of the attitude is one, to whose errors
@@ -178,7 +179,8 @@ def _refined(grid, spline, late, part, start):
     if _alike(-gain * slope, other) < SHAPE:
         return None
     score = np.sum(slope * rest, axis=1)
-    return offset, np.sqrt(_long_run(score, round(MEMORY / grid.period))) / curvature
+    std = np.sqrt(_long_run(score, round(MEMORY / grid.period))) / curvature
+    return offset, max(std, FINEST)
 
 
 def _displaced(grid, spline, late, offsets):

@@ -10,6 +10,8 @@ from quad_ident_ros.data.record import QUATERNION, unit
 GROUPS = (('px', 'py', 'pz'), ('vx', 'vy', 'vz'), QUATERNION, ('wx', 'wy', 'wz'))
 """Columns of the motion, of which one alone is of little use, but the height."""
 
+PAIRED = dict(zip(('position', 'velocity', 'attitude', 'rate'), GROUPS, strict=True))
+
 LARGEST = {'m': 1e8, '1': 1e3}      # by unit; beyond it a value is no measurement,
 LARGEST_OTHER = 1e6                 # in m/s, rad/s, V, ...; wrong units alone lie below
 SHORTEST, OFF = 0.5, 0.02           # length of a quaternion: none; off 1
@@ -46,6 +48,50 @@ def frozen(record, vehicle):
         return []
     return [Finding('frozen', 'error', ', '.join(names), 'none of these ever changes: a sensor '
                     'or the recorder stood still', 'see that the streams run, and record again')]
+
+
+def dead(record, vehicle):
+    """Find streams that never change while another that tells of the same motion does."""
+    found = []
+    for one, other in (('velocity', 'position'), ('rate', 'attitude'), ('position', 'velocity'),
+                       ('attitude', 'rate')):
+        mine, theirs = PAIRED[one], PAIRED[other]
+        if (record.has(*mine, *theirs) and not _changes(record, mine)
+                and _changes(record, theirs)):
+            found.append(Finding(
+                'dead', 'error', ', '.join(mine), f'the {one} never changes, but the {other} '
+                'does: the stream stood still, or its columns were filled up',
+                'see that the stream runs, or leave its columns out'))
+    names = record.numbered('cmd')
+    moving = [name for name in GROUPS[-1] if record.has(name)]
+    if names and moving and not _changes(record, names) and _changes(record, moving):
+        found.append(Finding(
+            'dead', 'warning', f'{names[0]} to {names[-1]}', 'the commands never change, but the '
+            'rate does: they stood still, or nobody steered',
+            'record the commands that the rotors follow'))
+    return found
+
+
+def _changes(record, names):
+    return bool(np.any(np.diff(record.stack(*names), axis=0)))
+
+
+def negative(record, vehicle):
+    """Find speeds of rotors and voltages below zero, and voltages that are zero throughout."""
+    found = []
+    for name, values in record.columns.items():
+        if unit(name) != 'rad/s' or not name.startswith(('cmd', 'rotor')):
+            continue
+        if np.any(values < 0.0):
+            first = int(np.argmax(values < 0.0))
+            found.append(Finding(
+                'negative', 'error', f'{name}, t = {record.t[first]:.3f} s',
+                f'a rotor speed of {values[first]:.4g} rad/s is below zero; the vehicle file says '
+                'which way a rotor turns', 'write speeds without a sign'))
+    if record.has('vbat') and not np.nanmedian(record.columns['vbat']) > 0.0:
+        found.append(Finding('no_voltage', 'error', 'vbat', 'the voltage is not above zero',
+                             'leave the column out where no voltage was measured'))
+    return found
 
 
 def quaternions(record, vehicle):

@@ -141,6 +141,20 @@ def _height(record):
                     'turn NED into ENU, or count pz from the ground')]
 
 
+def signs(record, vehicle):
+    """Find axes along which position and velocity have opposite signs."""
+    grid = Grid.of(record)
+    if grid is None or not record.has('px', 'py', 'pz', 'vx', 'vy', 'vz'):
+        return []
+    moved = grid.derivative(grid.signal('px', 'py', 'pz'))[grid.good]
+    velocity = grid.smooth(grid.signal('vx', 'vy', 'vz'))[grid.good]
+    return [Finding('frame_sign', 'error', f'p{axis}, v{axis}',
+                    f'the position falls along {axis} where the velocity is above zero: one of '
+                    'them has the other sign', 'turn both into ENU (x east, y north, z up)')
+            for k, axis in enumerate('xyz')
+            if correlation(moved[:, k:k + 1], velocity[:, k:k + 1])[0] < -SURE]
+
+
 def velocity_in_body(record, vehicle):
     """Find velocities in body axes: turned by the attitude they are what the position does."""
     grid = Grid.of(record)

@@ -8,6 +8,11 @@ from quad_ident_ros.data.quality import units
 from quad_ident_ros.data.quality.finding import Finding
 
 NEAR = 0.002   # of the range of speeds
+STUCK = 0.9    # of the samples of one rotor, which then tells of nothing but the limit
+
+
+def _grave(share, of_one):
+    return 'error' if of_one > STUCK else 'info' if share < 0.01 else 'warning'
 
 
 def speeds(record, vehicle):
@@ -27,7 +32,7 @@ def speeds(record, vehicle):
             share = rows.mean()
             worst = int(np.argmax(bad.sum(axis=0)))
             found.append(Finding(
-                'saturation', 'info' if share < 0.01 else 'warning',
+                'saturation', _grave(share, bad[:, worst].mean()),
                 f'{names[worst]}, t = {record.t[int(np.argmax(rows))]:.3f} s',
                 f'{100 * share:.2f} % of the samples have a command at or beyond {limit} = '
                 f'{getattr(vehicle, limit):g} rad/s',

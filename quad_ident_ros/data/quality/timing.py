@@ -8,14 +8,20 @@ from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.quality.series import GAP
 from quad_ident_ros.data.record import CUT
 
+COARSE = 0.025    # s between samples from which on commands change unseen between them
 SLOWEST = 0.25    # s between samples: of a rollout of 0.5 s no more than its end is then seen
 
 
 def slow(record, vehicle):
     """Find records that are sampled too slowly to be held against rollouts."""
     period = record.period()
-    if period <= SLOWEST:
+    if period <= COARSE:
         return []
+    if period <= SLOWEST:
+        return [Finding(
+            'coarse', 'warning', 't',
+            f'a sample every {period:.4g} s: rotors are faster, so that lags, delays and what '
+            'turns the vehicle cannot be told well', f'record at {1.0 / COARSE:.0f} Hz or more')]
     return [Finding(
         'slow', 'error', 't',
         f'a sample every {period:.4g} s is too slow to see a vehicle fly; at least every '

@@ -1,0 +1,40 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Whether the commands give about the thrust by which the vehicle flies."""
+
+import numpy as np
+
+from quad_ident_ros.data.quality import units
+from quad_ident_ros.data.quality.finding import Finding
+from quad_ident_ros.data.quality.series import GRAVITY, Grid
+
+APART = 10.0      # times too much or too little: no vehicle file is that wrong,
+LONGEST = 1.0     # s in all, in which motors may still follow
+MOVING = 0.2      # m/s: what stands on the ground needs no thrust
+FLYING = 0.5      # of the weight, from which on a thrust is needed
+
+
+def carried(record, vehicle):
+    """Find flights that the commands do not explain: they give far less thrust, or far more."""
+    names, grid = record.numbered('cmd'), Grid.of(record)
+    if (vehicle is None or grid is None or not names or not record.has('vx', 'vy', 'vz')
+            or units.speeds_in_rpm(record, vehicle)
+            or units.position_in_millimetres(record, vehicle)):
+        return []
+    velocity = grid.signal('vx', 'vy', 'vz')
+    needed = np.linalg.norm(grid.derivative(velocity) + [0.0, 0.0, GRAVITY], axis=1)
+    speed = np.linalg.norm(grid.smooth(velocity), axis=1)
+    flying = grid.good & (speed > MOVING) & (needed > FLYING * GRAVITY)
+    given = vehicle.thrust_coefficient / vehicle.mass * np.sum(grid.held(*names) ** 2, axis=1)
+    found = []
+    for bad, what in ((given * APART < needed, 'less than a tenth of'),
+                      (given > APART * needed, 'more than ten times')):
+        off = flying & bad
+        if off.sum() * grid.period > LONGEST:
+            found.append(Finding(
+                'thrust', 'error', f'{names[0]} to {names[-1]}, t = {grid.t[off][0]:.3f} s',
+                f'for {off.sum() * grid.period:.1f} s the commands give {what} the thrust by '
+                f'which {vehicle.name} flies: they stand still, are of something else, or the '
+                'vehicle file is of another vehicle',
+                'cut these samples out, or record the commands that the rotors follow in rad/s'))
+    return found
