@@ -45,11 +45,11 @@ def page(found, flights, tmp_path):
     return write
 
 
-def test_the_verdict_comes_first_then_how_far_where_and_which(page, found):
+def test_the_verdict_comes_first_then_where_which_and_how_far(page, found):
     text = page()
     places = [text.index(part) for part in ('<strong>Verdict: </strong>', '>rotor_drag</span>',
-                                            '<h2>How far</h2>', '<h2>Where</h2>',
-                                            '<h2>Which</h2>', '<h2>From what</h2>')]
+                                            '<h2>Where</h2>', '<h2>Which</h2>',
+                                            '<h2>How far</h2>', '<h2>From what</h2>')]
     assert places == sorted(places)
     assert text.count('<img src="data:image/png;base64,') == 4
     assert not re.search(r'(src|href)="(?!data:)', text)     # one file holds it all
