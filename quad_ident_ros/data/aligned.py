@@ -14,6 +14,7 @@ from quad_ident_ros.data.record import EULER, QUATERNION
 
 STREAMS = {'pose': ('px', 'py', 'pz', *QUATERNION, *EULER), 'velocity': ('vx', 'vy', 'vz'),
            'rate': ('wx', 'wy', 'wz', 'ax', 'ay', 'az')}
+ALIKE = 3.0         # standard errors within which offsets are of one clock
 LEAST = 0.0005      # s, of an offset that is worth moving a stream for
 GAP = 0.05          # s between two samples, or as many periods as below, from which on nothing
 PERIODS = 1.6       # is taken from between
@@ -23,11 +24,11 @@ def aligned(record):
     """
     Return a flight record with states of one clock, and {stream: s that it was stamped late}.
 
-    The slopes of the pose are velocity and rate. Where their stamps differ by more than three
-    standard errors, the one that comes first keeps its time, for a measurement may be late but
-    never early, and the others are moved onto it; one whose offset cannot be told stays where it
-    is. Rows whose new values lie in gaps or beyond the end are left out. Without such offsets the
-    record itself is returned, and {}.
+    The slopes of the pose are velocity and rate. Where their stamps clearly differ, the one that
+    comes first keeps its time, for a measurement may be late but never early, and the others are
+    moved onto it; one whose offset cannot be told stays where it is. Rows whose new values lie in
+    gaps or beyond the end are left out. Without such offsets the record itself is returned, and
+    {}.
     """
     late = lateness(record)
     if not late:
@@ -52,7 +53,7 @@ def lateness(record):
     known = {stream: (-one.offset, one.std) for stream, one in found.items() if one is not None}
     if len(known) == 2:
         (rate, wide), (velocity, narrow) = known.values()
-        if abs(rate - velocity) <= SEVERAL * np.hypot(wide, narrow):
+        if abs(rate - velocity) <= ALIKE * np.hypot(wide, narrow):
             # They are of one clock: the better known of the two tells the pose's.
             weights = np.array([wide, narrow]) ** -2.0
             both = float(np.average([rate, velocity], weights=weights)), weights.sum() ** -0.5

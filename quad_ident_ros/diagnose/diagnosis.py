@@ -81,7 +81,7 @@ def diagnose(records, vehicle, *, hold_out=None, effects=None, on_progress=lambd
     training, late = zip(*(aligned(record) for record in training), strict=True)
     test, test_late = aligned(test)
     voltage = highest_voltage(training)
-    *tracks, track = (track_of(record, vehicle, voltage) for record in (*training, test))
+    *tracks, held_out = (track_of(record, vehicle, voltage) for record in (*training, test))
     flights = near_flights(tracks, vehicle, nominal(vehicle))
     causes = candidates(flights, vehicle, effects)
     selection = select(flights, vehicle, causes, lambda share: on_progress(0.8 * share))
@@ -105,8 +105,8 @@ def diagnose(records, vehicle, *, hold_out=None, effects=None, on_progress=lambd
         z, named = outstanding(z, named, strength, learnt)
         left = left or [unstructured([where.lacking(one, vehicle, z + own, noise)
                                       for one, own in learnt.flights], vehicle)]
-    test_own = own_of(track, vehicle, z, kinds, noise, flights[0].segment)
-    far = _how_far(track, test_own, vehicle, z0, z, named, noise)
+    test_own = own_of(held_out, vehicle, z, kinds, noise, flights[0].segment)
+    far = _how_far(held_out, test_own, vehicle, z0, z, named, noise)
     doubts = doubts_of(selection, named)
     sure = [cause for cause in named if cause not in doubts]
     known = list(dict.fromkeys(cause.effect for cause in sure))
@@ -121,7 +121,7 @@ def diagnose(records, vehicle, *, hold_out=None, effects=None, on_progress=lambd
     on_progress(1.0)
     data = {
         'schema': SCHEMA, 'version': __version__, 'vehicle': vehicle.name, 'verdict': verdict,
-        'ranking': _ranking(selection, causes, z, track, test_own, vehicle, probability),
+        'ranking': _ranking(selection, causes, z, held_out, test_own, vehicle, probability),
         'where': _where(lacks, vehicle), 'gap': far,
         'unknown': [{'channel': one.channel, 'depends_on': one.depends_on,
                      'share': one.share} for one in left] if unknown else None,
@@ -131,7 +131,7 @@ def diagnose(records, vehicle, *, hold_out=None, effects=None, on_progress=lambd
                              test_late),
         'flights': [record.info.get('name') for record in training],
         'held_out': test.info.get('name')}
-    return Diagnosis(data, selection, z, learnt, track, test_own, whole)
+    return Diagnosis(data, selection, z, learnt, held_out, test_own, whole)
 
 
 def split(records, hold_out):

@@ -7,7 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from quad_ident_ros.diagnose.candidates import own_candidates
-from quad_ident_ros.diagnose.evidence import beam, occam, PRIOR, Quadratic
+from quad_ident_ros.diagnose.evidence import beam, PRIOR, Quadratic
+from quad_ident_ros.diagnose.fitted import evidence_of, Fitted, fitted_of, refitted, support_of
+from quad_ident_ros.diagnose.prune import best_pruned
 from quad_ident_ros.greybox.estimate import estimate, weights_of
 from quad_ident_ros.greybox.linear import errors_along, linear_of, slopes_at
 from quad_ident_ros.greybox.noise import quick_noise, whole_noise
@@ -17,38 +19,12 @@ from quad_ident_ros.greybox.parameters import limits, nominal
 
 ROUNDS = 5
 REFITS = 3          # sets that are refitted in a round
-FIT_STEPS = 5
 KNOWN = 3           # sets found before that a second search begins with
 COLOURED = 2.0      # times the noise from sample to sample that all that is left may be
 NEAR = 25.0         # log-evidence behind the best set by the slopes that may be made up for
 LOST = 4.0          # times the scatter that a fit may cost more than a subset does
-MISSED = 1.05       # times the cost from which on a cause is missed, whatever its standard errors
 CALM = 4.0          # times less scatter that a turn must leave to go on with that
 UNTRIED = -2.0      # log-evidence that the linear model alone may give a set, beside the best
-
-
-@dataclass(frozen=True, eq=False)
-class Fitted:
-    """A set of causes, with what flights have of their own; its Estimate and log-evidence."""
-
-    chosen: tuple
-    estimate: object
-    evidence: float
-
-    @property
-    def causes(self):
-        """Return the causes that are effects."""
-        return tuple(cause for cause in self.chosen if cause.own is None)
-
-    @property
-    def own(self):
-        """Return the kinds of Nuisance that flights have of their own."""
-        return tuple(cause.own for cause in self.chosen if cause.own)
-
-    @property
-    def kinds(self):
-        """Return all of it as a set, whatever the spreads of what flights have of their own."""
-        return {*self.causes, *(kind.name for kind in self.own)}
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,7 +32,8 @@ class Selection:
     """
     What the flights say of the causes.
 
-    best: the Fitted with the most evidence; fitted: all that were refitted; probability: of each
+    best: the Fitted with the most evidence; fitted: it and the others that were refitted, but for
+    those with more effects, which have less evidence or were pruned; probability: of each
     candidate being present; quadratic, rows: the cost around the best, with all causes free;
     noise: per flight (12,).
     """
@@ -112,14 +89,14 @@ def _select(flights, vehicle, causes, noise, known, on_progress):
                       for flight, start in zip(flights, starts, strict=True)]
     tried = {(): estimate(flights, vehicle, nominal(vehicle), [], noise=noise, iterations=2)}
     for one in known:
-        tried[one.chosen] = _refitted(flights, vehicle, one.estimate.z, one.chosen, noise,
+        tried[one.chosen] = refitted(flights, vehicle, one.estimate.z, one.chosen, noise,
                                       one.estimate.own, one.estimate.starts)
     best, scatter = (known[0].chosen if known else ()), 1.0
     for turn in range(ROUNDS):
         around = tried[best]
         quadratic, slopes = quadratic_at(flights, vehicle, around, columns, own)
-        tried[best] = _refitted(flights, vehicle, around.z, best, noise, around.own,
-                                around.starts, slopes)
+        tried[best] = refitted(flights, vehicle, around.z, best, noise, around.own,
+                               around.starts, slopes)
         scatter = quadratic.scatter
         ranked = beam(quadratic, rows)
         for chosen, found in _promising(ranked, tried):
@@ -129,22 +106,19 @@ def _select(flights, vehicle, causes, noise, known, on_progress):
             start = np.clip(start, lower, upper)
             everyone = Own.of([one.own for one in own], len(flights))
             everyone.values.flat[:] = found[len(columns):]
-            tried[chosen] = _refitted(flights, vehicle, start, chosen, noise, everyone,
-                                      around.starts, slopes)
+            tried[chosen] = refitted(flights, vehicle, start, chosen, noise, everyone,
+                                     around.starts, slopes)
             tried[chosen] = _found_again(flights, vehicle, chosen, tried, noise, scatter)
         scatter = _calmed(scatter, tried)
-        before, best = best, max(tried, key=lambda key: _evidence(tried[key], key, vehicle,
-                                                                  scatter))
+        before, best = best, max(tried, key=lambda key: evidence_of(tried[key], key, vehicle,
+                                                                    scatter))
         on_progress((turn + 1) / ROUNDS)
         if best == before:
             break
-    best, pruned, missed = _pruned(flights, vehicle, best, tried, noise)
-    fitted = tuple(sorted((Fitted(key, value, _evidence(value, key, vehicle, scatter))
-                           for key, value in tried.items()), key=lambda one: -one.evidence))
-    chosen = next(one for one in fitted if one.chosen == best)
-    # Sets with more were considered, and pruned.
-    fitted = (chosen, *(one for one in fitted if one is not chosen
-                        and not chosen.kinds < one.kinds))
+    chosen, pruned, missed = best_pruned(flights, vehicle, best, tried, noise, scatter)
+    others = sorted((fitted_of(key, tried[key], vehicle, scatter) for key in tried
+                     if key != chosen.chosen), key=lambda one: -one.evidence)
+    fitted = (chosen, *(one for one in others if not chosen.within(one)))
     probability = _probabilities(fitted, ranked, causes, tried)
     support = pruned | {cause: support_of(chosen.estimate, cause, vehicle)
                         for cause in chosen.causes if cause not in missed}
@@ -172,9 +146,14 @@ def _promising(ranked, tried):
     first = {chosen for chosen, _ in fresh[:REFITS]}
     rivals = [(chosen, found) for value, chosen, found in ranked
               if value > most - NEAR and chosen not in tried and chosen not in first
-              and len(chosen) == len(top)
-              and [cause.own for cause in set(chosen) ^ set(top)] == [None, None]]
+              and len(chosen) == len(top) and _swapped(chosen, top)]
     return [*fresh[:REFITS], *rivals[:REFITS]]
+
+
+def _swapped(chosen, top):
+    """Return whether sets differ by one effect, in whose place there is another or an own one."""
+    apart = set(chosen) ^ set(top)
+    return len(apart) == 2 and any(cause.own is None for cause in apart)
 
 
 def _rows(causes, own, columns, count):
@@ -189,14 +168,6 @@ def _rows(causes, own, columns, count):
     return rows
 
 
-def _refitted(flights, vehicle, z, chosen, noise, own, starts, slopes=None):
-    """Return the Estimate of a set, from a vector and an Own that has the values to start from."""
-    free = sorted(column for cause in chosen if cause.own is None for column in cause.columns)
-    own = Own.of([cause.own for cause in chosen if cause.own], len(flights), own)
-    return estimate(flights, vehicle, z, free, noise=noise, own=own, starts=starts,
-                    iterations=FIT_STEPS, slopes=slopes)
-
-
 def _found_again(flights, vehicle, chosen, tried, noise, scatter):
     """
     Return the Estimate of a set that fits about as well as its subsets.
@@ -208,52 +179,8 @@ def _found_again(flights, vehicle, chosen, tried, noise, scatter):
     near = min(known, key=lambda one: one.cost, default=lost)
     if lost.cost <= near.cost + LOST * scatter:
         return lost
-    again = _refitted(flights, vehicle, near.z, chosen, noise, near.own, near.starts)
+    again = refitted(flights, vehicle, near.z, chosen, noise, near.own, near.starts)
     return min(lost, again, key=lambda one: one.cost)
-
-
-def _pruned(flights, vehicle, best, tried, noise):
-    """
-    Return the causes of a set that its own standard errors support, refitted into tried.
-
-    And {cause: its support} of those that are left out; and those that are kept without any, for
-    much is missed without them, as where several could stand for one another.
-    """
-    pruned, missed = {}, set()
-    while True:
-        fit = tried[best]
-        weak = {cause: support for cause in best if cause.own is None and cause not in missed
-                if (support := support_of(fit, cause, vehicle)) <= 0.0}
-        if not weak:
-            return best, pruned, missed
-        weakest = min(weak, key=weak.get)
-        without = tuple(cause for cause in best if cause != weakest)
-        if without not in tried:
-            z = fit.z.copy()
-            z[list(weakest.columns)] = nominal(vehicle)[list(weakest.columns)]
-            tried[without] = _refitted(flights, vehicle, z, without, noise, fit.own, fit.starts)
-        if tried[without].cost > MISSED * fit.cost:
-            missed.add(weakest)
-        else:
-            pruned[weakest] = weak[weakest]
-            best, missed = without, set()
-
-
-def support_of(fit, cause, vehicle):
-    """
-    Return the log-evidence for one cause within a fit, by its standard errors.
-
-    These know how much the noise hangs together in just these directions, as the cost does not.
-    """
-    columns = list(cause.columns)
-    places = [fit.columns.index(column) for column in columns]
-    covariance = fit.covariance[np.ix_(places, places)]
-    size = limits(vehicle)[2][columns]
-    distance = (fit.z[columns] - nominal(vehicle)[columns]) / size
-    scaled = covariance / np.outer(size, size)
-    information = np.linalg.inv(scaled + 1e-12 * np.trace(scaled) * np.eye(len(columns)))
-    return (0.5 * distance @ information @ distance
-            + occam(information, np.full(len(columns), PRIOR), 1.0, [cause]))
 
 
 def quadratic_at(flights, vehicle, fit, columns, own):
@@ -277,16 +204,6 @@ def quadratic_at(flights, vehicle, fit, columns, own):
                      np.append(PRIOR * size[columns], spreads),
                      np.append(lower[columns] - null, -beyond),
                      np.append(upper[columns] - null, beyond), scatter), slopes
-
-
-def _evidence(fit, chosen, vehicle, scatter):
-    """Return the log-evidence of a refitted set."""
-    null, size = nominal(vehicle), limits(vehicle)[2]
-    spreads = np.tile(fit.own.spreads, len(fit.own.values))
-    wide = np.append(PRIOR * size[fit.columns], spreads)
-    distance = np.append((fit.z - null)[fit.columns], fit.own.values) / wide
-    return (-0.5 * fit.cost / scatter - 0.5 * np.sum(distance ** 2)
-            + occam(fit.normal.information, wide, scatter, chosen))
 
 
 def _probabilities(fitted, ranked, causes, tried):

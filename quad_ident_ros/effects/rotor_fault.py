@@ -19,7 +19,7 @@ def thrust(p, k, _, rotors):
 
 EFFECT = Effect(
     name='rotor_fault', title='weak rotor',
-    parameters=tuple(Parameter(f'loss_{j}', '1', -0.2, 1.0, 0.1,
+    parameters=tuple(Parameter(f'loss_{j}', '1', 0.0, 1.0, 0.1,
                                f'share of the thrust that rotor {j} lacks')
                      for j in range(1, MOST_ROTORS + 1)),
     source="loss of effectiveness of one rotor, thrust (1 - loss); e.g. Mueller and D'Andrea, "

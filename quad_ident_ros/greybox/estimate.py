@@ -113,7 +113,7 @@ def _descend(flights, vehicle, z, columns, box, noise, own, starts, iterations, 
     raws = [errors_along(flight, vehicle, vector, start)
             for flight, vector, start in zip(flights, own.vectors(z), starts, strict=True)]
     noise = known or [quick_noise(raw) for raw in raws]
-    tangents, at, converged = None, z, False
+    tangents, converged = None, False
     if slopes and slopes.missed(own.vectors(z), raws, noise) < NEARLY:
         tangents, at = slopes.of(layout.wanted), slopes.at
     for count in range(iterations):

@@ -70,6 +70,13 @@ def check(data, truth):
     assert before[most] - after[most] > 0.9 * (before[most] - noise[most]) > 0.0
 
 
+@pytest.mark.parametrize('loss, factor', [(0.01, 1.02), (0.05, 1.05), (0.1, 1.1)])
+def test_a_weak_rotor_is_not_the_opposite_one_that_is_strong(loss, factor):
+    """With other thrust of all rotors both do nearly the same."""
+    truth = {'rotor_fault': {'loss_1': loss}, 'thrust_scale': {'factor': factor}}
+    check(diagnose(flown(truth), VEHICLE).data, truth)
+
+
 def test_the_truths_are_of_every_effect():
     assert set(TRUTHS) == set(EFFECTS)
 
