@@ -21,8 +21,8 @@ SHAPE = 0.5       # correlation of the slopes, whose noise is larger
 FINEST = 1e-5     # s, the least standard error: one stream may be made of the other
 MEMORY = 0.4      # s, over which errors may depend on one another
 ANSWER = 1.0      # s, within which the motion may answer to errors of the attitude
-SEVERAL = 5.0     # standard errors from which on an offset of the attitude is one, to whose errors
-                  # the motion answers, which shifts it by one or two of them,
+SEVERAL = 5.0     # standard errors from which on an offset or a drift of the states is one: the
+                  # motion answers to errors of the attitude, which shifts it by one or two of them
 MANY = 4.0        # and one of the commands, whose errors know nothing of the motion
 FEW = 0.05        # share of samples that may be left out, as their attitude is off
 SCATTER = 4.0     # mean square of errors over standard errors from which on they wander

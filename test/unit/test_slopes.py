@@ -1,0 +1,60 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Slopes that were taken at one point, used at another."""
+
+import numpy as np
+import pytest
+
+from quad_ident_ros.flight.fly import fly_closed_loop
+from quad_ident_ros.greybox.flights import flight_of, track_of
+from quad_ident_ros.greybox.linear import errors_along, slopes_at
+from quad_ident_ros.greybox.parameters import INDEX, nominal
+from quad_ident_ros.model.vehicle import load_vehicle
+
+VEHICLE = load_vehicle('hummingbird')
+COLUMNS = sorted(INDEX[name] for name in ('rotor_drag.coefficient', 'thrust_scale.factor',
+                                          'motor_lag.time_constant'))
+NOISE = [np.repeat([1e-3, 1e-2, 3e-3, 1e-2], 3)]
+
+
+@pytest.fixture(scope='module')
+def flight():
+    record = fly_closed_loop(VEHICLE, {}, 'figure8', duration=6.0, seed=1)
+    return flight_of(track_of(record, VEHICLE))
+
+
+def errors(flight, z):
+    return [errors_along(flight, VEHICLE, z, flight.states[flight.first])]
+
+
+@pytest.fixture(scope='module')
+def slopes(flight):
+    z = nominal(VEHICLE)
+    return slopes_at([flight], VEHICLE, z, [z], [flight.states[flight.first]],
+                     errors(flight, z), COLUMNS)
+
+
+def missed(slopes, flight, move):
+    z = nominal(VEHICLE)
+    z[INDEX['rotor_drag.coefficient']] += move
+    return slopes.missed([z], errors(flight, z), NOISE)
+
+
+def test_nothing_is_missed_where_they_were_taken(slopes, flight):
+    assert missed(slopes, flight, 0.0) == pytest.approx(0.0, abs=1e-12)
+
+
+def test_what_is_missed_is_of_second_order(slopes, flight):
+    near, far = missed(slopes, flight, 0.1), missed(slopes, flight, 0.2)
+    assert far / near == pytest.approx(16.0, rel=0.3)
+    z = nominal(VEHICLE)
+    z[INDEX['rotor_drag.coefficient']] += 0.2
+    moved = errors(flight, z)[0] - errors(flight, nominal(VEHICLE))[0]
+    assert far < 0.05 * np.sum((moved / NOISE[0]) ** 2)
+
+
+def test_some_of_the_columns_are_what_they_are_in_all(slopes, flight):
+    [some], z = slopes.of(COLUMNS[1:2]), nominal(VEHICLE)
+    alone = slopes_at([flight], VEHICLE, z, [z], [flight.states[flight.first]],
+                      errors(flight, z), COLUMNS[1:2]).tangents[0]
+    assert some.table == pytest.approx(alone.table, rel=1e-12, abs=1e-15)
