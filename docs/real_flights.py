@@ -23,6 +23,7 @@ from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.vehicle import load_nominal
 from quad_ident_ros.report import gap_page
+from quad_ident_ros.report.diagnosis import WORTH
 
 DOCUMENT = 'real_flights.md'
 TRAINING = ('star_fast', 'oval_fast', 'helix_fast', 'lissajous_fast')
@@ -132,10 +133,10 @@ def effects_table(data):
     """Return the effects that were found, and what each is worth on the held-out flight."""
     rows = []
     for row in data['ranking']:
-        if not row['parameters']:
+        if not row['parameters'] and row['probability'] < WORTH:
             continue
         values = ', '.join(f'{name} {one["value"]:.3g} ± {one["std"]:.1g} {one["unit"]}'
-                           for name, one in row['parameters'].items())
+                           .removesuffix(' 1') for name, one in row['parameters'].items())
         without = data['gap']['without'].get(row['effect'])
         rows.append((f'`{row["effect"]}`', 'yes' if without else 'no',
                      f'{row["probability"]:.2f}', values,

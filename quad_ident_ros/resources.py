@@ -43,9 +43,10 @@ def find(kind, name_or_path):
         path = _existing(text)
         if path is None:
             said = text if text.isprintable() and len(text) < 300 else schema.shown(text)
-            raise InputError(f'{said}: this is a folder; name a file in it'
-                             if Path(text).is_dir() else f'{said}: there is no such file; give '
-                             f'the path of one, or a name: {", ".join(names(kind))}')
+            if _existing(text, Path.is_dir) is not None:
+                raise InputError(f'{said}: this is a folder; name a file in it')
+            raise InputError(f'{said}: there is no such file; give the path of one, or a name: '
+                             f'{", ".join(names(kind))}')
         return path
     shipped = _existing(config_dir() / kind / f'{text}.yaml')
     if shipped is not None:
@@ -54,11 +55,11 @@ def find(kind, name_or_path):
                      'give one of these or the path of a .yaml file')
 
 
-def _existing(path):
-    """Return the path of a file that is there, or None."""
+def _existing(path, kind=Path.is_file):
+    """Return the path of a file, or of another kind, that is there, or None."""
     try:
         path = Path(path).expanduser()
-        return path if path.is_file() else None
+        return path if kind(path) else None
     # No such user, no permission, a name that is too long or no name at all.
     except (OSError, RuntimeError, ValueError):
         return None

@@ -244,7 +244,7 @@ def test_what_is_no_vehicle_file_is_refused_with_the_file(tmp_path, content, wor
 
 def test_a_folder_is_no_file(tmp_path):
     (tmp_path / 'v.yaml').mkdir()
-    with pytest.raises(InputError, match='there is no such file'):
+    with pytest.raises(InputError, match='this is a folder; name a file'):
         load_vehicle(tmp_path / 'v.yaml')
 
 
