@@ -12,22 +12,25 @@ def best_pruned(flights, vehicle, best, tried, noise, scatter):
     """
     Return the Fitted set of the most evidence that is left when weak causes are pruned.
 
-    And {cause: its support} of what was pruned from it, and the causes that are missed. A set that
-    has more evidence than what is left of another has a say, too.
+    And {cause: its support} of what was pruned from it, the causes that are missed, and the sets
+    from which something was pruned. One that has more evidence than what is left of another has a
+    say, too.
     """
-    found, seen = None, set()
+    found, seen, gone = None, set(), set()
     while best is not None:
         seen.add(best)
         key, pruned, missed = _pruned(flights, vehicle, best, tried, noise, scatter)
         one = fitted_of(key, tried[key], vehicle, scatter)
         if found is None or one.evidence > found[0].evidence:
             found = one, pruned, missed
+        if key != best:
+            gone.add(best)
         seen.add(key)
         rivals = [fitted_of(key, tried[key], vehicle, scatter) for key in tried if key not in seen]
         rivals = [one for one in rivals if one.evidence > found[0].evidence
                   and not found[0].within(one)]
         best = max(rivals, key=lambda one: one.evidence).chosen if rivals else None
-    return found
+    return *found, gone
 
 
 def _pruned(flights, vehicle, best, tried, noise, scatter):

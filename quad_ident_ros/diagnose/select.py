@@ -33,8 +33,8 @@ class Selection:
     What the flights say of the causes.
 
     best: the Fitted with the most evidence; fitted: it and the others that were refitted, but for
-    those with more effects, which have less evidence or were pruned; probability: of each
-    candidate being present; quadratic, rows: the cost around the best, with all causes free;
+    those with more effects than it and those that were pruned; probability: of each candidate
+    being present; quadratic, rows: the cost around the best, with all causes free;
     noise: per flight (12,).
     """
 
@@ -115,9 +115,9 @@ def _select(flights, vehicle, causes, noise, known, on_progress):
         on_progress((turn + 1) / ROUNDS)
         if best == before:
             break
-    chosen, pruned, missed = best_pruned(flights, vehicle, best, tried, noise, scatter)
+    chosen, pruned, missed, gone = best_pruned(flights, vehicle, best, tried, noise, scatter)
     others = sorted((fitted_of(key, tried[key], vehicle, scatter) for key in tried
-                     if key != chosen.chosen), key=lambda one: -one.evidence)
+                     if key not in {chosen.chosen, *gone}), key=lambda one: -one.evidence)
     fitted = (chosen, *(one for one in others if not chosen.within(one)))
     probability = _probabilities(fitted, ranked, causes, tried)
     support = pruned | {cause: support_of(chosen.estimate, cause, vehicle)
