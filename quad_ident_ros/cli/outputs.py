@@ -20,14 +20,14 @@ def check_outputs(options):
     Raises InputError for an output that is an input, another output, a folder or lies in a file,
     and for a vehicle file of another ending.
     """
-    written = {}
-    inputs = _named(options, INPUTS)
+    inputs, written = _named(options, INPUTS), set()
     for output in _named(options, OUTPUTS):
         refuse_overwriting(output, inputs)
-        other = written.setdefault(Path(output).resolve(), output)
-        if other is not output:
+        place = Path(output).resolve()
+        if place in written:
             raise InputError(f'{output}: this would write over another output; give each a name '
                              'of its own')
+        written.add(place)
         for folder in Path(output).parents:
             if folder.exists() and not folder.is_dir():
                 raise InputError(f'{output}: {folder} is a file, no folder; give another path')

@@ -90,7 +90,7 @@ def _select(flights, vehicle, causes, noise, known, on_progress):
     tried = {(): estimate(flights, vehicle, nominal(vehicle), [], noise=noise, iterations=2)}
     for one in known:
         tried[one.chosen] = refitted(flights, vehicle, one.estimate.z, one.chosen, noise,
-                                      one.estimate.own, one.estimate.starts)
+                                     one.estimate.own, one.estimate.starts)
     best, scatter = (known[0].chosen if known else ()), 1.0
     for turn in range(ROUNDS):
         around = tried[best]

@@ -3,48 +3,22 @@
 """The quality of records: silent on clean flights, and each fault found where it is put in."""
 
 from dataclasses import replace
-from itertools import permutations, product
-from pathlib import Path
 
 from flightmaker import changed, flight, frd, ned, ned_attitude, VEHICLE, world_velocity_in_body
 import numpy as np
 import pytest
+from quality import A, CMD, codes, named, NANOBENCH, P, Q, V, W
 
 from quad_ident_ros.data.frames import conjugate, multiply, rotate
 from quad_ident_ros.data.load import load
-from quad_ident_ros.data.quality import clock_offset, command_offset, findings, SEVERITIES
+from quad_ident_ros.data.quality import clock_offset, findings, SEVERITIES
 from quad_ident_ros.data.quality.excitation import excitation
 from quad_ident_ros.data.record import FlightRecord
-from quad_ident_ros.errors import InputError
 from quad_ident_ros.experiment import fly, load_experiment
 from quad_ident_ros.flight.fly import fly_closed_loop
-from quad_ident_ros.flight.measure import FAULTY, MOCAP_IMU
+from quad_ident_ros.flight.measure import FAULTY
 from quad_ident_ros.model.attitude import euler_from_quaternion
 from quad_ident_ros.model.vehicle import load_vehicle
-
-NANOBENCH = Path(__file__).parents[1] / 'data' / 'nanobench'
-P, V, Q = ('px', 'py', 'pz'), ('vx', 'vy', 'vz'), ('qw', 'qx', 'qy', 'qz')
-W, A, CMD = ('wx', 'wy', 'wz'), ('ax', 'ay', 'az'), ('cmd1', 'cmd2', 'cmd3', 'cmd4')
-
-
-def named(names, table):
-    return dict(zip(names, np.asarray(table).T, strict=True))
-
-
-def codes(record, vehicle=VEHICLE):
-    return {finding.code for finding in findings(record, vehicle)}
-
-
-def late(record, names, offset, drift=0.0):
-    """Return the record with columns stamped late: by offset (s) in the middle and drift."""
-    t = record.t
-    at = t - offset - drift * (t - t.mean())
-    inside = (at > t[0]) & (at < t[-1])
-    shifted = {name: np.interp(at, t, record.columns[name]) for name in names}
-    moved = changed(record, **shifted)
-    return FlightRecord(t[inside], {name: values[inside] for name, values in
-                                    moved.columns.items()}, record.info)
-
 
 CLEAN = {
     'usual': {}, 'without noise': {'noise': 0.0}, 'noisy': {'noise': 2.0, 'seed': 1},
@@ -200,88 +174,6 @@ def test_what_a_reader_left_out_is_passed_on():
     assert finding.code == 'reader' and finding.message == 'topic /imu: 3 samples'
 
 
-# --- clocks
-
-@pytest.mark.parametrize('offset', [-0.2, -0.033, -0.0045, 0.0045, 0.0173, 0.12])
-def test_an_offset_is_estimated_to_a_fraction_of_a_sample(offset):
-    record = late(flight(seconds=30.0), (*P, *V, *Q), offset)
-    clock = clock_offset(record)
-    assert abs(clock.offset - offset) < 4 * clock.std < 0.004
-    [finding] = [f for f in findings(record, VEHICLE) if f.code == 'clock_offset']
-    assert ('later' in finding.message) == (offset > 0)
-    assert finding.severity == ('error' if abs(offset) > 0.1 else 'warning')
-
-
-def test_a_drift_is_estimated_with_its_uncertainty():
-    record = late(flight(seconds=60.0), (*P, *V, *Q), 0.02, 0.001)
-    clock = clock_offset(record)
-    assert abs(clock.drift - 0.001) < 4 * clock.drift_std < 2e-4
-    assert abs(clock.offset - 0.02) < 4 * clock.std
-    assert 'clock_drift' in codes(record)
-    truth = 0.02 + 0.001 * (clock.t - record.t.mean())
-    assert np.abs((clock.offsets - truth) / clock.stds).max() < 5
-
-
-def test_standard_errors_of_the_offset_are_honest():
-    """Over 60 draws of the noise the errors scatter as the standard errors say."""
-    pulls = []
-    for seed in range(60):
-        clock = clock_offset(flight(seconds=16.0, seed=100 + seed))
-        pulls.append(clock.offset / clock.std)
-    assert 0.6 < np.std(pulls) < 1.5 and abs(np.mean(pulls)) < 0.5
-
-
-@pytest.mark.parametrize('trajectory', ['figure8', 'lissajous', 'circle'])
-def test_standard_errors_know_that_an_autopilot_follows_errors_of_the_attitude(trajectory):
-    """Coloured errors of the attitude move the vehicle, and so hang together with its gyro."""
-    pulls = []
-    for seed in range(5):
-        record = fly_closed_loop(load_vehicle('crazyflie'), {}, trajectory, duration=20.0,
-                                 seed=seed, noise=MOCAP_IMU)
-        clock = clock_offset(record)
-        pulls.append(clock.offset / clock.std)
-        assert 'clock_offset' not in codes(record)
-    assert np.sqrt(np.mean(np.square(pulls))) < 1.5
-
-
-def test_a_wandering_offset_is_found():
-    record = flight(seconds=60.0)
-    at = record.t - 0.02 * np.sin(2 * np.pi * record.t / 30)
-    names = (*P, *V, *Q)
-    wander = changed(record, **{n: np.interp(at, record.t, record.columns[n]) for n in names})
-    assert 'clock_wander' in codes(wander)
-
-
-def test_commands_that_act_before_they_are_given_are_found():
-    record = late(flight(), CMD, 0.05)
-    clock = command_offset(record)
-    assert abs(clock.offset + 0.05) < 4 * clock.std
-    assert 'command_offset' in codes(record)
-
-
-def test_the_lag_of_motors_is_no_fault():
-    record = late(flight(), (*P, *V, *Q, *W, *A), 0.04)
-    assert abs(command_offset(record).offset - 0.04) < 0.008
-    assert 'command_offset' not in codes(record)
-
-
-@pytest.mark.parametrize('name', ['star_fast', 'oval_fast'])
-def test_an_offset_put_into_a_real_flight_is_found(name):
-    record = load(NANOBENCH / f'{name}.csv.gz')
-    moved = late(record, (*P, *V, *Q), 0.06)
-    before, after = clock_offset(record), clock_offset(moved)
-    assert 'clock_offset' in codes(moved)
-    assert abs(after.offset - before.offset - 0.06) < 2 * before.std
-    assert abs(before.offset) < 3 * before.std + 0.01
-
-
-def test_no_offset_is_made_up():
-    rest = flight()
-    assert clock_offset(changed(rest, wx=None)) is None
-    random = np.random.default_rng(0)
-    assert clock_offset(changed(rest, **named(W, random.normal(size=(len(rest), 3))))) is None
-
-
 # --- units
 
 def euler(record):
@@ -357,67 +249,6 @@ def test_ned_is_found_without_an_accelerometer_and_more(without):
 def test_a_flight_below_its_origin_is_no_fault():
     record = flight()
     assert codes(changed(record, pz=record.columns['pz'] - 30.0)) == set()
-
-
-# --- rotors
-
-@pytest.mark.parametrize('order', [p for p in permutations(range(4)) if p != (0, 1, 2, 3)])
-def test_every_wrong_order_of_the_rotors_is_found_and_named(order):
-    record = flight()
-    names = [CMD[k] for k in order]
-    [finding] = findings(changed(record, **named(CMD, record.stack(*names))), VEHICLE)
-    assert finding.code == 'rotor_order'
-    assert f'rotors {", ".join(str(k + 1) for k in order)} of' in finding.message
-
-
-@pytest.mark.parametrize('columns', [{'cmd4': None}, {'cmd5': flight().columns['cmd1']}])
-def test_the_commands_of_another_vehicle_are_found(columns):
-    [finding] = findings(changed(flight(), **columns), VEHICLE)
-    assert finding.code == 'rotor_count' and finding.severity == 'error'
-
-
-@pytest.mark.parametrize('name', ['star_fast', 'oval_fast'])
-def test_wrong_orders_are_found_in_real_flights(name):
-    record = load(NANOBENCH / f'{name}.csv.gz')
-    vehicle = load_vehicle(NANOBENCH / 'vehicle.yaml')
-    for order in permutations(range(4)):
-        mixed = changed(record, **named(CMD, record.stack(*[CMD[k] for k in order])))
-        found = [f for f in findings(mixed, vehicle) if f.code == 'rotor_order']
-        said = [f'rotors {", ".join(str(k + 1) for k in order)} of' in f.message for f in found]
-        assert said == ([] if order == (0, 1, 2, 3) else [True])
-
-
-@pytest.mark.parametrize('spins', [spins for spins in product((1, -1), repeat=4)
-                                   if spins != (1, -1, 1, -1)])
-def test_every_wrong_set_of_spins_is_found(spins):
-    wrong = replace(VEHICLE, rotors=tuple(replace(rotor, spin=spin) for rotor, spin in
-                                          zip(VEHICLE.rotors, spins, strict=True)))
-    [finding] = findings(flight(), wrong)
-    assert finding.code == 'rotor_spin'
-    assert str([rotor.spin for rotor in VEHICLE.rotors]) in finding.message
-
-
-@pytest.mark.parametrize('wrong, said', [
-    ({'mass': 500.0}, 'beyond its speed_max'), ({'mass': 0.0005}, 'below its speed_min'),
-    ({'thrust_coefficient': 1.2e-6 / 91, 'speed_max': 1700.0}, 'beyond its speed_max'),
-    ({'speed_max': 178.0}, 'beyond its speed_max'), ({'speed_max': 1e6}, '% of its speed_max')])
-def test_a_vehicle_that_cannot_hover_is_found(wrong, said):
-    vehicle = replace(VEHICLE, **wrong)
-    [finding] = [finding for finding in findings(flight(), vehicle) if finding.code == 'hover']
-    assert finding.severity == 'error' and said in finding.message and 'kg' in finding.remedy
-    with pytest.raises(InputError, match='half_kilogram would hover at'):
-        fly_closed_loop(vehicle, {}, 'hover', duration=10.0)
-
-
-def test_saturated_commands_are_found():
-    limit = 1080.0
-    record = flight()
-    clipped = np.minimum(record.stack(*CMD), limit)
-    [finding] = findings(changed(record, **named(CMD, clipped)),
-                         replace(VEHICLE, speed_max=limit))
-    assert finding.code == 'saturation' and 'speed_max = 1080' in finding.message
-    share = float(finding.message.split(' %')[0])
-    assert share == pytest.approx(100 * (clipped >= limit - 2.0).any(axis=1).mean(), abs=0.3)
 
 
 # --- excitation

@@ -5,12 +5,11 @@
 from flightmaker import changed, flight, VEHICLE
 import numpy as np
 import pytest
+from quality import CMD
 
 from quad_ident_ros.data.quality import cautions, findings
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.flight.fly import fly_closed_loop
-
-CMD = ('cmd1', 'cmd2', 'cmd3', 'cmd4')
 
 
 def columns(record, names, change):

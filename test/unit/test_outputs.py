@@ -1,0 +1,29 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Where commands may write, said before any work."""
+
+from argparse import Namespace
+
+import pytest
+
+from quad_ident_ros.cli.outputs import check_outputs
+from quad_ident_ros.errors import InputError
+
+
+@pytest.mark.parametrize('other', ['same', './same', '../{here}/same'])
+def test_two_outputs_do_not_write_over_one_another(tmp_path, monkeypatch, other):
+    monkeypatch.chdir(tmp_path)
+    options = Namespace(json='same', report=other.format(here=tmp_path.name))
+    with pytest.raises(InputError, match='over another output'):
+        check_outputs(options)
+
+
+def test_outputs_of_other_names_and_standard_output_are_fine(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    check_outputs(Namespace(json='-', report='a.html', out_vehicle='a.yaml'))
+
+
+@pytest.mark.parametrize('option', ['json', 'report', 'picture'])
+def test_a_folder_is_no_file_to_write(tmp_path, option):
+    with pytest.raises(InputError, match='this is a folder; name a file'):
+        check_outputs(Namespace(**{option: str(tmp_path)}))
