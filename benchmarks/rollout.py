@@ -42,7 +42,7 @@ class Problem:
                         / (4 * self.vehicle.thrust_coefficient))
         changes = random.uniform(0.95, 1.05, (len(self.t) // 8 + 1, 4))
         commands = hover * np.repeat(changes, 8, axis=0)[:len(self.t)]
-        self.followed, self.speeds = actuated(self.t, commands, self.theta[None])
+        self.acted = actuated(self.t, self.t, commands, self.theta[None])
         self.inputs = np.zeros((len(self.t), INPUT))
         self.inputs[:, 5] = 0.2 * self.t
         self.first = random.integers(0, samples, batch)
@@ -55,14 +55,15 @@ class Problem:
     def compiled(self, kernel):
         """Roll out by a compiled kernel into `out`."""
         kernel(vehicle_vector(self.vehicle)[None], rotor_table(self.vehicle), self.theta[None],
-               np.zeros(len(self.x0), np.int64), self.x0, self.t, self.followed, self.speeds,
-               self.inputs, self.first, self.samples, 1, self.out)
+               np.zeros(len(self.x0), np.int64), self.x0, self.t, *self.acted, self.inputs,
+               self.first, self.samples, 1, self.out)
         return self.out
 
     def in_numpy(self):
         """Return what plain NumPy rolls out."""
-        return rollout_numpy.roll_out(self.vehicle, self.theta, self.x0, self.t, self.followed[0],
-                                      self.speeds[0], self.inputs[:, 5], self.first, self.samples)
+        return rollout_numpy.roll_out(self.vehicle, self.theta, self.x0, self.t,
+                                      *(each[0] for each in self.acted), self.inputs[:, 5],
+                                      self.first, self.samples)
 
     def speed(self, function, repeats):
         """Return the steps per second of CPU time, the median of so many calls after a first."""

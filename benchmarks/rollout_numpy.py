@@ -11,12 +11,13 @@ import numpy as np
 from quad_ident_ros.effects.registry import mapping
 
 
-def roll_out(vehicle, theta, x0, t, followed, speeds, volt_drop, first, count):
+def roll_out(vehicle, theta, x0, t, followed, speeds, added, volt_drop, first, count):
     """
     Return the states of rollouts by Runge-Kutta, (B, count + 1, 13), one step per sample.
 
-    Args: theta (P,) one parameter set; x0 (B, 13); t (N,) s; followed, speeds (N, n) rad/s;
-    volt_drop (N,) V; first (B,) samples; all as quad_ident_ros.model.rollout takes them.
+    Args: theta (P,) one parameter set; x0 (B, 13); t (N,) s; followed, speeds (N, n),
+    added (N, 3, n) rad/s; volt_drop (N,) V; first (B,) samples; all as
+    quad_ident_ros.model.rollout takes them.
     """
     model = _Model(vehicle, theta)
     out = np.empty((len(x0), count + 1, 13))
@@ -26,14 +27,15 @@ def roll_out(vehicle, theta, x0, t, followed, speeds, volt_drop, first, count):
         row = first + k
         h = (t[row + 1] - t[row])[:, None]
         command, now, drop = followed[row], t[row][:, None], volt_drop[row][:, None]
+        extra = added[row]
         half = np.exp(-h / (2 * model.lag))
         full = half ** 2
         begin = 6 * (1 - full) * model.lag / h - 4 * half - full
         gap = speed - command
-        k1 = model.derivative(x, command, gap * begin, now, drop)
-        k2 = model.derivative(x + h / 2 * k1, command, gap * half, now + h / 2, drop)
-        k3 = model.derivative(x + h / 2 * k2, command, gap * half, now + h / 2, drop)
-        k4 = model.derivative(x + h * k3, command, gap * full, now + h, drop)
+        k1 = model.derivative(x, command, gap * begin, extra[:, 0], now, drop)
+        k2 = model.derivative(x + h / 2 * k1, command, gap * half, extra[:, 1], now + h / 2, drop)
+        k3 = model.derivative(x + h / 2 * k2, command, gap * half, extra[:, 1], now + h / 2, drop)
+        k4 = model.derivative(x + h * k3, command, gap * full, extra[:, 2], now + h, drop)
         x = x + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
         x[:, 6:10] /= np.linalg.norm(x[:, 6:10], axis=1, keepdims=True)
         speed = command + gap * full
@@ -66,12 +68,12 @@ class _Model:
         self.hover = len(self.spins) * np.sqrt(
             vehicle.mass * vehicle.gravity / (len(self.spins) * vehicle.thrust_coefficient))
 
-    def derivative(self, x, command, gap, t, drop):
+    def derivative(self, x, command, gap, extra, t, drop):
         """Return the derivatives of states x (B, 13)."""
         vehicle, rate = self.vehicle, x[:, 10:]
         rotation = _rotation(x[:, 6:10])
         air = np.einsum('bij,bi->bj', rotation, x[:, 3:6] - self.wind)
-        speed = command + gap
+        speed = command + gap + extra
         local = air[:, None] + np.cross(rate[:, None], self.arms)
         height = x[:, 2:3] + rotation[:, 2] @ self.arms.T
         radius = vehicle.rotor_radius

@@ -114,7 +114,8 @@ def _features(flight, middle, vehicle, z):
     wind = z[SPLIT + SLICES['wind'].start:SPLIT + SLICES['wind'].stop]
     air = np.einsum('bji,bj->bi', rotation, states[:, 3:6] - wind)
     rates = states[:, 10:13]
-    speeds = flight.course.commands[middle]
+    course = flight.course
+    speeds = course.commands[np.searchsorted(course.stamps, course.t[middle], side='right') - 1]
     thrust = vehicle.thrust_coefficient * np.sum(speeds ** 2, axis=1)
     return {
         'horizontal air speed': ('m/s', np.hypot(air[:, 0], air[:, 1])),

@@ -31,6 +31,7 @@ from quad_ident_ros.effects import (
     wind,
 )
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.model.situation import ROWS
 
 EFFECTS = {module.EFFECT.name: module.EFFECT for module in (
     motor_lag, actuation_delay, rotor_drag, body_drag, wind, inflow, ground_effect, battery_sag,
@@ -46,6 +47,10 @@ SLICES = {}
 for _position, (_effect, _) in enumerate(PARAMETERS):
     _first = SLICES.get(_effect, slice(_position, _position)).start
     SLICES[_effect] = slice(_first, _position + 1)
+# The rows of the table `s` of model.situation and, after them, one per effect: whether it acts.
+ROWS_OF = {name: ROWS + number for number, name in enumerate(SLICES)}
+TABLE = ROWS + len(ROWS_OF)
+OWNERS = np.array([ROWS_OF[name] for name, _ in PARAMETERS])
 
 
 def bounds(vehicle):
@@ -103,9 +108,19 @@ def from_entries(entries, start, where):
     return effects
 
 
+@compiled
+def mark(theta, s):
+    """Write into s which effects act in any lane: the others are passed over in flight."""
+    s[ROWS:] = 0.0
+    for n in range(len(NULL)):
+        for i in range(s.shape[1]):
+            if theta[n, i] != NULL[n]:
+                s[OWNERS[n]] = 1.0
+
+
 def _chain(hook):
     """Return one compiled function that does what all effects do at a hook, one after another."""
-    def first_then(function, place, rest):
+    def first_then(function, place, row, rest):
         if hook in BEFORE:
             @compiled(inlined=True)
             def both(theta, s):
@@ -114,7 +129,8 @@ def _chain(hook):
         else:
             @compiled(inlined=True)
             def both(theta, s, rotors):
-                function(theta, place, s, rotors)
+                if s[row, 0] != 0.0:
+                    function(theta, place, s, rotors)
                 rest(theta, s, rotors)
         return both
 
@@ -129,7 +145,7 @@ def _chain(hook):
     for effect in (LACKING, *reversed(EFFECTS.values())):
         function = getattr(effect, hook)
         if function is not None:
-            chain = first_then(function, SLICES[effect.name].start, chain)
+            chain = first_then(function, SLICES[effect.name].start, ROWS_OF[effect.name], chain)
     return chain
 
 

@@ -5,7 +5,7 @@
 import numpy as np
 
 from quad_ident_ros.compiled import compiled
-from quad_ident_ros.effects.registry import SLICES
+from quad_ident_ros.effects.registry import SLICES, TABLE
 from quad_ident_ros.flight.controller import control, SEEN
 from quad_ident_ros.model.rigid_body import derivative, INPUT, prepare, STATE
 from quad_ident_ros.model.rollout import step
@@ -15,7 +15,6 @@ from quad_ident_ros.model.situation import (
     MASS,
     PER_HOVER,
     ROTOR_ROWS,
-    ROWS,
     SPEED,
     TIME,
 )
@@ -54,10 +53,10 @@ def close_loop(v, places, theta, tilt, dt, clock, fall, longest, x, wanted, erro
     an integration step; wanted (N, WANTED), errors (N, 12), gains, mixer, memory: see controller.
     """
     count, n = len(wanted), len(places)
-    s, rotors = np.zeros((ROWS, 1)), np.zeros((n, ROTOR_ROWS, 1))
+    s, rotors = np.zeros((TABLE, 1)), np.zeros((n, ROTOR_ROWS, 1))
     state, change, work = np.empty((STATE, 1)), np.empty((STATE, 1)), np.empty((4, STATE, 1))
     u, h = np.zeros((INPUT, 1)), np.empty(1)
-    speed, command = np.empty((n, 1)), np.empty((n, 1))
+    speed, command, nothing = np.empty((n, 1)), np.empty((n, 1)), np.zeros((3, n, 1))
     seen, force, lever = np.empty(SEEN), np.empty(3), np.empty(3)
     state[:, 0] = x
     prepare(v, places, theta, s, rotors)
@@ -102,7 +101,8 @@ def close_loop(v, places, theta, tilt, dt, clock, fall, longest, x, wanted, erro
             pieces = int(np.ceil(length / longest - 1e-9))
             h[0] = length / pieces
             for _ in range(pieces):
-                step(state, h, u, v, places, theta, speed, command, theta[LAG], s, rotors, work)
+                step(state, h, u, v, places, theta, speed, command, nothing, theta[LAG], s, rotors,
+                     work)
                 if clock == 0.0:
                     s[TIME, 0] = 0.0
     x[:] = state[:, 0]

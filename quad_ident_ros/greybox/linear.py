@@ -62,8 +62,8 @@ class Slopes:
         total = 0.0
         for k, (z, raw, sigma) in enumerate(zip(vectors, raws, noise, strict=True)):
             move = (z - self.vectors[k])[self.columns]
-            rest = raw - self.raws[k] + np.tensordot(
-                move, self.tangents[k].table[:, ERRORS:-1], (0, 1)).reshape(raw.shape)
+            told = move @ self.tangents[k].table[:, ERRORS:-1]
+            rest = raw - self.raws[k] + told.reshape(raw.shape)
             total += float(np.sum((rest / sigma) ** 2))
         return total
 

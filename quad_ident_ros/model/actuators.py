@@ -2,67 +2,143 @@
 # SPDX-License-Identifier: Apache-2.0
 """Delay and lag between the commanded and the actual speed of the rotors."""
 
+from typing import NamedTuple
+
 import numpy as np
 
 from quad_ident_ros.compiled import compiled
 from quad_ident_ros.effects.registry import SLICES
 
 DELAY, LAG = SLICES['actuation_delay'].start, SLICES['motor_lag'].start
+CLOSE = 1e-9    # of a step, within which a command changes at a sample
 
 
-def delayed(t, commands, delay):
+class Actuation(NamedTuple):
     """
-    Return what the rotors follow from each sample to the next, (N, n) rad/s.
+    What rotors do along a flight under T parameter sets, rad/s.
 
-    Args: t (N,) s; commands (N, n) rad/s, each held to the next; delay s, negative where the
-    clock of the commands is late. Where a command changes between two samples its root mean square
-    is taken, which has the mean thrust; before the first one the first is held, after the last
-    one the last.
+    followed (T, N, n): what their speeds tend to from each sample to the next, so that those at
+    the next one are right; speeds (T, N, n) at each sample; added (T, N, 3, n) to the speeds at
+    the begin, the middle and the end of a step, see actuated.
     """
-    if delay == 0.0:
-        return commands
-    steps = np.diff(t)
-    squares = commands ** 2
-    # The time integral of the held command's square, of which differences are means.
-    beyond = abs(delay) + 1.0
-    widths = np.concatenate([[beyond], steps, [beyond]])[:, None]
-    held = np.concatenate([squares[:1], squares])
-    area = np.concatenate([np.zeros_like(squares[:1]), np.cumsum(held * widths, axis=0)])
-    at = np.concatenate([[t[0] - beyond], t, [t[-1] + beyond]])
-    shifted = np.stack([np.interp(t - delay, at, column) for column in area.T], axis=1)
-    means = np.sqrt(np.maximum(np.diff(shifted, axis=0) / steps[:, None], 0.0))
-    return np.concatenate([means, means[-1:]])
+
+    followed: np.ndarray
+    speeds: np.ndarray
+    added: np.ndarray
 
 
-@compiled
-def lagged(t, commands, time_constant):
+def actuated(t, stamps, commands, thetas):
     """
-    Return the speed of the rotors at each sample, (N, n) rad/s, from rest at the first command.
+    Return the Actuation at times t (N,) s of commands (M, n) rad/s, each held to the next.
 
-    Args: t (N,) s; commands (N, n) rad/s, each held to the next; time_constant s of the lag.
-    """
-    speeds = commands.copy()
-    if time_constant > 0.0:
-        for k in range(len(t) - 1):
-            left = np.exp(-(t[k + 1] - t[k]) / time_constant)
-            for j in range(commands.shape[1]):
-                speeds[k + 1, j] = commands[k, j] + (speeds[k, j] - commands[k, j]) * left
-    return speeds
-
-
-def actuated(t, commands, thetas):
-    """
-    Return what the rotors follow and how fast they turn at each sample, both (T, N, n) rad/s.
-
-    Args: t (N,) s; commands (N, n) rad/s; thetas (T, P) parameter sets.
+    Args: stamps (M,) s of the commands; thetas (T, P) parameter sets, whose delay is negative
+    where the clock of the commands is late. Before the first command that one is held, after the
+    last one the last; the rotors begin at what acts on them at t[0]. Where the command that acts
+    changes within a step, `added` makes the thrust's mean over the step, and where in the step it
+    lies, those of the true speeds: a mean command would smooth what it drives.
     """
     found = {}
-    followed = np.empty((len(thetas), *commands.shape))
-    speeds = np.empty_like(followed)
+    sets, shape = len(thetas), (len(t), commands.shape[1])
+    all_of = Actuation(np.empty((sets, *shape)), np.empty((sets, *shape)),
+                       np.empty((sets, shape[0], 3, shape[1])))
     for k, theta in enumerate(thetas):
         key = (theta[DELAY], theta[LAG])
         if key not in found:
-            command = np.ascontiguousarray(delayed(t, commands, theta[DELAY]))
-            found[key] = command, lagged(t, command, theta[LAG])
-        followed[k], speeds[k] = found[key]
-    return followed, speeds
+            own = Actuation(np.empty(shape), np.empty(shape), np.zeros((shape[0], 3, shape[1])))
+            _act(t, stamps, commands, *key, *own)
+            found[key] = own
+        for whole, own in zip(all_of, found[key], strict=True):
+            whole[k] = own
+    return all_of
+
+
+@compiled(fused=True, inlined=True)
+def shares(step, lag):
+    """
+    Return what is left of a gap to the command at begin, middle and end of a step s, lag s.
+
+    That at the begin is 1 but for terms of fourth order, so that the mean over the step, as the
+    integration weighs it, is that of the exponential however short the lag is beside the step.
+    """
+    if lag > 0.0:
+        half = np.exp(-0.5 * step / lag)
+        full = half * half
+        return 6.0 * (1.0 - full) * lag / step - 4.0 * half - full, half, full
+    return 0.0, 0.0, 0.0
+
+
+@compiled
+def _act(t, stamps, commands, delay, lag, followed, speeds, added):
+    """Write the Actuation of one delay and lag, s."""
+    count, last, n = len(t), len(stamps), commands.shape[1]
+    sums, same = np.empty((3, n)), np.empty((3, n))
+    at = 0
+    for k in range(count):
+        step = t[k + 1] - t[k] if k + 1 < count else t[k] - t[k - 1]
+        close = CLOSE * step
+        while at + 1 < last and stamps[at + 1] + delay <= t[k] + close:
+            at += 1
+        if k == 0 or lag == 0.0:
+            speeds[k] = commands[at]
+        followed[k] = commands[at]
+        if k + 1 == count:
+            break
+        now, done, first = speeds[k].copy(), 0.0, at
+        sums[:] = 0.0
+        while at + 1 < last and stamps[at + 1] + delay < t[k + 1] - close:
+            length = stamps[at + 1] + delay - t[k] - done
+            _advance(now, commands[at], length, step - done, lag, sums)
+            done += length
+            at += 1
+        if lag > 0.0 or at > first:
+            _advance(now, commands[at], step - done, step - done, lag, sums)
+        speeds[k + 1] = now
+        if at > first:
+            begin, half, full = shares(step, lag)
+            followed[k] = (now - speeds[k] * full) / (1.0 - full)
+            same[:] = 0.0
+            now[:] = speeds[k]
+            _advance(now, followed[k], step, step, lag, same)
+            for j in range(n):
+                mean = (sums[0, j] - same[0, j]) / step
+                once = (sums[1, j] - same[1, j]) / step ** 2
+                twice = (sums[2, j] - same[2, j]) / step ** 3
+                gap = speeds[k, j] - followed[k, j]
+                early, middle = followed[k, j] + gap * begin, followed[k, j] + gap * half
+                # Of squares the integration weighs 1 4 1 for the mean, which it integrates once,
+                # 1 2 0 for what it integrates twice, and 1 1 0 for what it does three times.
+                at_begin = early ** 2 + 12.0 * twice - 6.0 * once
+                at_middle = middle ** 2 + 6.0 * (once - twice)
+                at_end = now[j] ** 2 + 6.0 * (mean + 2.0 * twice - 3.0 * once)
+                if min(at_begin, at_middle, at_end) < 0.0:  # no speeds do that: the mean at least
+                    at_begin = at_middle = at_end = sums[0, j] / step
+                added[k, 0, j] = np.sqrt(at_begin) - early
+                added[k, 1, j] = np.sqrt(at_middle) - middle
+                added[k, 2, j] = np.sqrt(at_end) - now[j]
+
+
+@compiled
+def _advance(speed, command, length, left, lag, sums):
+    """
+    Advance speeds (n,) by length s, `left` s before the end of a step.
+
+    Adds the integrals of their squares times what is left of the step, to the power of 0, 1 and
+    2, to sums (3, n).
+    """
+    gone = np.exp(-length / lag) if lag > 0.0 else 0.0
+    one = lag * (1.0 - gone)                    # integrals of the exponential, of its square,
+    two = 0.5 * lag * (1.0 - gone * gone)
+    late_one = lag * (one - length * gone)      # of these times what has passed, and its square
+    late_two = 0.5 * lag * (two - length * gone * gone)
+    last_one = lag * (2.0 * late_one - length ** 2 * gone)
+    last_two = 0.5 * lag * (2.0 * late_two - length ** 2 * gone * gone)
+    for j in range(len(speed)):
+        target, gap = command[j], speed[j] - command[j]
+        still, mixed, moving = target * target, 2.0 * target * gap, gap * gap
+        area = still * length + mixed * one + moving * two
+        late = still * length ** 2 / 2.0 + mixed * late_one + moving * late_two
+        last = still * length ** 3 / 3.0 + mixed * last_one + moving * last_two
+        sums[0, j] += area
+        sums[1, j] += left * area - late
+        sums[2, j] += left * left * area - 2.0 * left * late + last
+        speed[j] = target + gap * gone

@@ -29,7 +29,7 @@ def contribution(vehicle, theta, course, states):
 def _accelerations(vehicle, theta, course, states):
     """Return those of the body origin, world, and those of the rate, body, (N, 3) each."""
     states = np.ascontiguousarray(underlying(theta, states))
-    (followed,), (speeds,) = actuated(course.t, course.commands, theta[None])
+    (followed,), (speeds,), _ = actuated(course.t, course.stamps, course.commands, theta[None])
     lag = theta[SLICES['motor_lag']][0]
     rising = (followed - speeds) / lag if lag > 0 else np.zeros_like(speeds)
     inputs = np.zeros((len(course.t), INPUT))

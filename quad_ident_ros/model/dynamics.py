@@ -22,13 +22,18 @@ class Course:
     """
     What is given along a flight.
 
-    t (N,) s from its start; commands (N, n) rad/s, the rotors', each held to the next sample;
-    volt_drop (N,) V below the voltage of reference.
+    t (N,) s from its start; commands (M, n) rad/s, the rotors', each held to the next; volt_drop
+    (N,) V below the voltage of reference; stamps (M,) s of the commands, t where none are given.
     """
 
     t: np.ndarray
     commands: np.ndarray
     volt_drop: np.ndarray
+    stamps: np.ndarray = None
+
+    def __post_init__(self):
+        if self.stamps is None:
+            object.__setattr__(self, 'stamps', self.t)
 
 
 def course_of(record, vehicle, reference_voltage=None):
@@ -77,19 +82,30 @@ def predict(vehicle, thetas, course, starts, first, count, which=None, constants
     thetas = np.atleast_2d(np.asarray(thetas, float))
     which = np.zeros(len(starts), np.int64) if which is None else np.asarray(which, np.int64)
     first = np.asarray(first, np.int64)
-    followed, speeds = actuated(course.t, course.commands, thetas)
-    inputs = np.zeros((len(course.t), INPUT))
-    inputs[:, 5] = course.volt_drop
+    # Records that are slower than that are rolled out along a finer grid.
+    steps = max(1, int(np.ceil(np.median(np.diff(course.t)) / LONGEST_STEP - 1e-6)))
+    t = _finer(course.t, steps)
+    acted = actuated(t, course.stamps, course.commands, thetas)
+    inputs = np.zeros((len(t), INPUT))
+    inputs[:, 5] = course.volt_drop[np.arange(len(t)) // steps]
     x0, elsewhere = np.array(starts, float), acts(thetas)[which]
     own = thetas[which[elsewhere]]
     x0[elsewhere] = underlying(own, x0[elsewhere])
-    substeps = max(1, int(np.ceil(np.median(np.diff(course.t)) / LONGEST_STEP - 1e-6)))
-    out = np.empty((len(x0), count + 1, STATE))
+    out = np.empty((len(x0), steps * count + 1, STATE))
     kernel = roll_out if len(x0) > 1 else roll_out_one
     if constants is None:
         constants = np.tile(vehicle_vector(vehicle), (len(thetas), 1))
     kernel(np.ascontiguousarray(constants), rotor_table(vehicle), np.ascontiguousarray(thetas),
-           which, np.ascontiguousarray(x0), course.t, followed, speeds, inputs, first, count,
-           substeps, out)
+           which, np.ascontiguousarray(x0), t, *acted, inputs, steps * first, steps * count, 1,
+           out)
+    out = out[:, ::steps]
     out[elsewhere] = recorded(own, out[elsewhere])
     return out
+
+
+def _finer(t, steps):
+    """Return times with so many steps between two of t (N,)."""
+    if steps == 1:
+        return t
+    between = np.diff(t)[:, None] * np.arange(steps) / steps
+    return np.append((t[:-1, None] + between).ravel(), t[-1])

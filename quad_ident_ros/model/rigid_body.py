@@ -12,7 +12,7 @@ sum of the hover speeds.
 import numpy as np
 
 from quad_ident_ros.compiled import compiled
-from quad_ident_ros.effects.registry import AIR, BODY, THRUST, WRENCH
+from quad_ident_ros.effects.registry import AIR, BODY, mark, TABLE, THRUST, WRENCH
 from quad_ident_ros.model.situation import (
     AX,
     AY,
@@ -53,7 +53,6 @@ from quad_ident_ros.model.situation import (
     R22,
     RADIUS,
     ROTOR_ROWS,
-    ROWS,
     RX,
     RY,
     RZ,
@@ -95,12 +94,13 @@ def rotor_table(vehicle):
 
 @compiled(fused=True, inlined=True)
 def prepare(v, places, theta, s, rotors):
-    """Write what stays the same along a flight: mass, inertia, centre of mass, lever arms."""
+    """Write what stays the same along a flight: what acts, mass, inertia, centre of mass, arms."""
     for i in range(s.shape[1]):
         s[MASS, i], s[IX, i], s[IY, i], s[IZ, i] = v[0, i], v[1, i], v[2, i], v[3, i]
         s[COM_X, i] = s[COM_Y, i] = s[COM_Z, i] = 0.0
         s[RADIUS, i], s[PER_HOVER, i] = v[7, i], 1.0 / v[15, i]
         s[WIND_X, i] = s[WIND_Y, i] = s[WIND_Z, i] = 0.0
+    mark(theta, s)
     BODY(theta, s)
     AIR(theta, s)
     for i in range(s.shape[1]):
@@ -234,7 +234,7 @@ def derivatives(v, places, theta, t, states, speeds, accelerations, inputs, out)
     mass; speeds (N, n) rad/s of the rotors and accelerations (N, n) rad/s^2; inputs (N, INPUT).
     """
     x, dx = np.empty((STATE, 1)), np.empty((STATE, 1))
-    s, rotors = np.zeros((ROWS, 1)), np.zeros((places.shape[0], ROTOR_ROWS, 1))
+    s, rotors = np.zeros((TABLE, 1)), np.zeros((places.shape[0], ROTOR_ROWS, 1))
     parameters, u = np.empty((len(theta), 1)), np.empty((INPUT, 1))
     for k in range(len(theta)):
         parameters[k, 0] = theta[k]

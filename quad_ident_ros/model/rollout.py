@@ -7,40 +7,40 @@ import math
 import numpy as np
 
 from quad_ident_ros.compiled import compiled
-from quad_ident_ros.effects.registry import SLICES
+from quad_ident_ros.effects.registry import SLICES, TABLE
+from quad_ident_ros.model.actuators import shares
 from quad_ident_ros.model.rigid_body import derivative, INPUT, prepare, STATE
-from quad_ident_ros.model.situation import ROTOR_ROWS, ROWS, SPEED, SPIN_UP, TIME, VOLT_DROP
+from quad_ident_ros.model.situation import ROTOR_ROWS, SPEED, SPIN_UP, TIME, VOLT_DROP
 
 LAG = SLICES['motor_lag'].start
 
 
 @compiled(fused=True, inlined=True)
-def _set_speeds(share, speed, command, places, period_rate, s, rotors):
+def _set_speeds(share, speed, command, added, places, period_rate, s, rotors):
     """Set the speeds that lie between `speed` and `command`; share (LANES,) is what is left."""
     for i in range(s.shape[1]):
         s[SPIN_UP, i] = 0.0
     for j in range(rotors.shape[0]):
         for i in range(s.shape[1]):
             gap = (speed[j, i] - command[j, i]) * share[i]
-            rotors[j, SPEED, i] = command[j, i] + gap
+            rotors[j, SPEED, i] = command[j, i] + gap + added[j, i]
             s[SPIN_UP, i] -= places[j, 3] * gap * period_rate[i]
 
 
 @compiled(fused=True, inlined=True)
-def step(x, h, u, v, places, theta, speed, command, lag, s, rotors, work):
-    """Advance the states x (13, LANES) by h (LANES,) s; speed becomes that at the end."""
+def step(x, h, u, v, places, theta, speed, command, added, lag, s, rotors, work):
+    """
+    Advance the states x (13, LANES) by h (LANES,) s; speed becomes that at the end.
+
+    What is added, (3, n, LANES), to the speeds at begin, middle and end is so for this step alone.
+    """
     k, y, total, half, full, rate, begin = (work[0], work[1], work[2], work[3, 0], work[3, 1],
                                             work[3, 2], work[3, 3])
     for i in range(s.shape[1]):
         rate[i] = 1.0 / lag[i] if lag[i] > 0.0 else 0.0
-        half[i] = math.exp(-0.5 * h[i] * rate[i]) if lag[i] > 0.0 else 0.0
-        full[i] = half[i] * half[i]
-        # 1 but for terms of fourth order, so that the mean over the step, as the integration
-        # weighs it, is that of the exponential however short the lag is beside the step.
-        begin[i] = (6.0 * (1.0 - full[i]) / (h[i] * rate[i]) - 4.0 * half[i] - full[i]
-                    if lag[i] > 0.0 else 0.0)
+        begin[i], half[i], full[i] = shares(h[i], lag[i])
         s[VOLT_DROP, i] = u[5, i]
-    _set_speeds(begin, speed, command, places, rate, s, rotors)
+    _set_speeds(begin, speed, command, added[0], places, rate, s, rotors)
     derivative(x, u, v, places, theta, s, rotors, k)
     for n in range(STATE):
         for i in range(s.shape[1]):
@@ -48,7 +48,7 @@ def step(x, h, u, v, places, theta, speed, command, lag, s, rotors, work):
             y[n, i] = x[n, i] + 0.5 * h[i] * k[n, i]
     for i in range(s.shape[1]):
         s[TIME, i] += 0.5 * h[i]
-    _set_speeds(half, speed, command, places, rate, s, rotors)
+    _set_speeds(half, speed, command, added[1], places, rate, s, rotors)
     derivative(y, u, v, places, theta, s, rotors, k)
     for n in range(STATE):
         for i in range(s.shape[1]):
@@ -61,7 +61,7 @@ def step(x, h, u, v, places, theta, speed, command, lag, s, rotors, work):
             y[n, i] = x[n, i] + h[i] * k[n, i]
     for i in range(s.shape[1]):
         s[TIME, i] += 0.5 * h[i]
-    _set_speeds(full, speed, command, places, rate, s, rotors)
+    _set_speeds(full, speed, command, added[2], places, rate, s, rotors)
     derivative(y, u, v, places, theta, s, rotors, k)
     for n in range(STATE):
         for i in range(s.shape[1]):
@@ -72,33 +72,34 @@ def step(x, h, u, v, places, theta, speed, command, lag, s, rotors, work):
             x[n, i] *= norm
     for j in range(rotors.shape[0]):
         for i in range(s.shape[1]):
-            speed[j, i] = rotors[j, SPEED, i]
+            speed[j, i] = rotors[j, SPEED, i] - added[2, j, i]
 
 
 def _kernel(lanes):
     """Return the integrator that does so many rollouts side by side."""
     @compiled(fused=True)
-    def roll_out(vehicles, places, thetas, which, x0, t, commands, speeds, inputs, first, count,
-                 substeps, out):
+    def roll_out(vehicles, places, thetas, which, x0, t, followed, speeds, added, inputs, first,
+                 count, substeps, out):
         """
         Integrate rollouts by Runge-Kutta and write their states into out (B, count + 1, 13).
 
         Args: vehicles (T, 16), places: see rigid_body; thetas (T, P) parameter sets; which (B,)
-        the set of each rollout; x0 (B, 13) states at the start; t (N,) s; commands, speeds
-        (T, N, n) rad/s, what the rotors follow from a sample on, and how fast they turn at it;
-        inputs (N, INPUT), what else acts; first (B,) the sample at which a rollout starts; count
-        of samples; substeps per sample.
+        the set of each rollout; x0 (B, 13) states at the start; t (N,) s; followed, speeds
+        (T, N, n), added (T, N, 3, n) to each step from a sample on: see actuators; inputs
+        (N, INPUT), what else acts; first (B,) the sample at which a rollout starts; count of
+        samples; substeps per sample.
         """
         rotor_count = places.shape[0]
         x = np.empty((STATE, lanes))
         work = np.empty((4, STATE, lanes))
-        s = np.zeros((ROWS, lanes))
+        s = np.zeros((TABLE, lanes))
         rotors = np.zeros((rotor_count, ROTOR_ROWS, lanes))
         theta = np.empty((thetas.shape[1], lanes))
         v = np.empty((vehicles.shape[1], lanes))
         u = np.zeros((INPUT, lanes))
         speed = np.empty((rotor_count, lanes))
         command = np.empty((rotor_count, lanes))
+        extra = np.empty((3, rotor_count, lanes))
         h = np.empty(lanes)
         batch = x0.shape[0]
         for begin in range(0, batch, lanes):
@@ -121,11 +122,14 @@ def _kernel(lanes):
                     s[TIME, i] = t[row]
                     h[i] = (t[row + 1] - t[row]) / substeps
                     for j in range(rotor_count):
-                        command[j, i] = commands[which[b], row, j]
+                        command[j, i] = followed[which[b], row, j]
+                        for place in range(3):
+                            extra[place, j, i] = added[which[b], row, place, j]
                     for n in range(INPUT):
                         u[n, i] = inputs[row, n]
                 for _ in range(substeps):
-                    step(x, h, u, v, places, theta, speed, command, theta[LAG], s, rotors, work)
+                    step(x, h, u, v, places, theta, speed, command, extra, theta[LAG], s, rotors,
+                         work)
                 for i in range(min(lanes, batch - begin)):
                     for n in range(STATE):
                         out[begin + i, k + 1, n] = x[n, i]
@@ -133,5 +137,5 @@ def _kernel(lanes):
     return roll_out
 
 
-roll_out = _kernel(32)
+roll_out = _kernel(48)
 roll_out_one = _kernel(1)

@@ -77,24 +77,32 @@ def simulate(vehicle, model, inputs, period, *, omega_r=0.0, altitude=0.0, step=
 
 def _newton_euler(vehicle, inputs, omega_r, period, substeps, altitude, on_progress):
     """Fly the vehicle model with the vehicle's effects; linear drag is along world axes."""
-    t = np.arange(len(inputs)) * period
+    stamps = np.arange(len(inputs)) * period
     theta = registry.vector(vehicle.effects, vehicle)
-    commands, others = _acting(vehicle, theta, inputs, omega_r, t)
-    followed, speeds = actuated(t, commands, theta[None])
+    commands, others = _acting(vehicle, theta, inputs, omega_r, stamps)
+    # Delayed commands may change within a sample: then there are two intervals to each.
+    within = theta[registry.SLICES['actuation_delay'].start] % period
+    between = 1e-9 * period < within < (1.0 - 1e-9) * period
+    every = 2 if between else 1
+    t = np.sort(np.append(stamps, stamps[:-1] + within)) if between else stamps
+    others = np.repeat(others, every, axis=0)
+    acted = actuated(t, stamps, commands, theta[None])
     constants = vehicle_vector(vehicle, drag_in_world=True)[None]
     places = rotor_table(vehicle)[:commands.shape[1]]
     one = np.zeros(1, np.int64)
 
     def advance(part, first, t, substeps):
         """Integrate from the state part[0], at a sample, and write what comes after it."""
-        roll_out_one(constants, places, theta[None], one, part[:1].copy(), t, followed[:, first:],
-                     speeds[:, first:], others[first:], one, len(part) - 1, substeps, part[None])
+        roll_out_one(constants, places, theta[None], one, part[:1].copy(), t,
+                     *(each[:, first:] for each in acted), others[first:], one, len(part) - 1,
+                     substeps, part[None])
 
     states = np.zeros((len(t), STATE))
     states[0, 2], states[0, 6] = altitude, 1.0
     states[0, :3] += theta[registry.SLICES['com_offset']]
     count, end = len(t), t[-1]
-    rows = max(1, STEPS_AT_ONCE // substeps)
+    rows = every * max(1, STEPS_AT_ONCE // substeps)
+    substeps = int(np.ceil(np.diff(t[:3]).max() / period * substeps - 1e-9))
     for first in range(0, len(t) - 1, rows):
         on_progress(first / len(t))
         part = states[first:first + rows + 1]
@@ -103,7 +111,8 @@ def _newton_euler(vehicle, inputs, omega_r, period, substeps, altitude, on_progr
         if lost.any():
             count = first + int(np.argmax(lost))
             # The step of this sample at which it is lost: by bisection, for it stays so.
-            kept, gone, step = 0, substeps, period / substeps
+            kept, gone = 0, substeps
+            step = (t[count] - t[count - 1]) / substeps
             while gone - kept > 1:
                 half = (kept + gone) // 2
                 pair = states[[count - 1, count]]
@@ -111,7 +120,8 @@ def _newton_euler(vehicle, inputs, omega_r, period, substeps, altitude, on_progr
                 kept, gone = (kept, half) if _lost(pair)[1] else (half, gone)
             end = t[count - 1] + gone * step
             break
-    states = recorded(theta, states[:count])
+    states = recorded(theta, states[:count:every])
+    count = len(states)
     euler = attitude.unwrap_euler(attitude.euler_from_quaternion(states[:, 6:10]))
     columns = _columns(states[:, :6], states[:, 6:10], states[:, 10:], inputs[:count], euler)
     columns |= {f'cmd{j}': values[:count] for j, values in enumerate(commands.T.copy(), 1)}

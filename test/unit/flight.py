@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from quad_ident_ros.effects.registry import EFFECTS, vector
+from quad_ident_ros.effects.registry import EFFECTS, NULL, SLICES, vector
+from quad_ident_ros.model.actuators import actuated
 from quad_ident_ros.model.attitude import quaternion_from_euler
 from quad_ident_ros.model.dynamics import Course, predict
 from quad_ident_ros.model.vehicle import load_vehicle, Rotor
@@ -67,3 +68,10 @@ def roll(vehicle, effects, course, start):
     """Return the recorded states (N, 13) of a flight along a course."""
     theta = vector(effects, vehicle)
     return predict(vehicle, theta, course, start[None], [0], len(course.t) - 1)[0]
+
+
+def acted(t, commands, delay=0.0, lag=0.0):
+    """Return what delayed and lagging rotors do: followed, speeds (N, n), added (N, 3, n)."""
+    theta = NULL.copy()
+    theta[SLICES['actuation_delay']], theta[SLICES['motor_lag']] = delay, lag
+    return tuple(each[0] for each in actuated(t, t, commands, theta[None]))

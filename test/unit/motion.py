@@ -34,7 +34,8 @@ def move(vehicle, state, t, substeps, omega_r=0.0):
     """Return the states (N, 13) at times t (N,) s of a motion without inputs from a state."""
     constants, theta, rows = parts(vehicle, (0, 0, 0, 0), omega_r, len(t))
     out, none = np.empty((1, len(t), 13)), np.empty((1, len(t), 0))
+    nothing = np.empty((1, len(t), 3, 0))
     one = np.zeros(1, np.int64)
     roll_out_one(constants[None], NO_ROTORS, theta[None], one, np.array([state], float), t, none,
-                 none, rows, one, len(t) - 1, substeps, out)
+                 none, nothing, rows, one, len(t) - 1, substeps, out)
     return out[0]

@@ -4,6 +4,7 @@
 
 from dataclasses import replace
 
+from flight import acted
 from flying import VEHICLES
 import numpy as np
 import pytest
@@ -15,7 +16,6 @@ from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.experiment import fly, load_experiment
 from quad_ident_ros.greybox.flights import flight_of, track_of
 from quad_ident_ros.greybox.own import nuisances
-from quad_ident_ros.model.actuators import delayed
 from quad_ident_ros.model.attitude import rotation_matrix
 from quad_ident_ros.model.dynamics import STATES
 from quad_ident_ros.model.sensors import product, turn
@@ -219,7 +219,8 @@ def test_a_negative_delay_undoes_a_positive_one(name):
     count = len(VEHICLES[name].rotors)
     t = 0.01 * np.arange(100)
     commands = 100.0 + np.cumsum(np.random.default_rng(0).normal(size=(100, count)), axis=0)
-    back = delayed(t, delayed(t, commands, 0.03), -0.03)
+    late, *_ = acted(t, commands, 0.03)
+    back, *_ = acted(t, late, -0.03)
     np.testing.assert_allclose(back[:96], commands[:96], rtol=1e-9)
     # What the delay has pushed out of the record is gone: the last that is left is held.
-    np.testing.assert_allclose(back[96:], np.tile(commands[95], (4, 1)), rtol=1e-9)
+    np.testing.assert_allclose(back[96:], np.tile(commands[96], (4, 1)), rtol=1e-9)

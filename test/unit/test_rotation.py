@@ -4,14 +4,13 @@
 
 from dataclasses import replace
 
-from flight import ALL, BARE, held, hover_speed, roll, state, steps, VEHICLE
+from flight import acted, ALL, BARE, held, hover_speed, roll, state, steps, VEHICLE
 from hypothesis import given, settings
 from hypothesis import strategies as st
 import numpy as np
 import pytest
 
 from quad_ident_ros.effects.registry import NULL, PARAMETERS, vector
-from quad_ident_ros.model.actuators import lagged
 from quad_ident_ros.model.attitude import rotation_matrix
 from quad_ident_ros.model.sensors import recorded, underlying
 from quad_ident_ros.model.vehicle import load_vehicle
@@ -46,7 +45,7 @@ def test_speeding_rotors_up_keeps_the_angular_momentum_about_their_axes(lag):
     course.commands[0] = hover
     effects = {'rotor_gyro': {'rotor_inertia': 3e-5}, 'motor_lag': {'time_constant': lag}}
     found = roll(vehicle, effects, course, state())
-    speeds = lagged(course.t, course.commands, lag)
+    _, speeds, _ = acted(course.t, course.commands, lag=lag)
     # A rotor turns against the reaction torque that its spin names.
     momentum = -3e-5 * speeds @ [rotor.spin for rotor in vehicle.rotors]
     total = vehicle.inertia[2] * found[:, 12] + momentum

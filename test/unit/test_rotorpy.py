@@ -2,12 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Agreement with rotorpy where both model the same; test/data/rotorpy/make.py flew it."""
 
+from flight import acted
 import numpy as np
 import pytest
 
 from docs.effects import differences, flown, NAMES
 from quad_ident_ros.effects.registry import NULL, vector
-from quad_ident_ros.model.actuators import lagged
 from quad_ident_ros.model.dynamics import course_of
 
 
@@ -39,6 +39,6 @@ def test_each_effect_is_needed(name):
 @pytest.mark.parametrize('name', NAMES)
 def test_the_rotors_turn_as_fast(name):
     vehicle, record = flown(name)
-    speeds = lagged(record.t, course_of(record, vehicle).commands,
-                    vehicle.effects['motor_lag']['time_constant'])
+    _, speeds, _ = acted(record.t, course_of(record, vehicle).commands,
+                         lag=vehicle.effects['motor_lag']['time_constant'])
     assert np.abs(speeds - record.stack('rotor1', 'rotor2', 'rotor3', 'rotor4')).max() < 1e-6

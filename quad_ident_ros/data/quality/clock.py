@@ -116,7 +116,7 @@ def _offset(grid, late, early, answers=False):
     answers: the motion may answer to the errors of the late one.
     """
     reach = round(REACH / grid.period)
-    whole = _whole_shift(late, early, grid.good, range(-reach, reach + 1))
+    whole = _whole_shift(late, early, grid.good, reach)
     if whole is None:
         return None
     spline = CubicSpline(grid.t, early)
@@ -138,19 +138,28 @@ def _offset(grid, late, early, answers=False):
     return ClockOffset(offset, wider * std, drift, wider * drift_std, t, offsets, wider * stds)
 
 
-def _whole_shift(late, early, good, shifts):
+def _whole_shift(late, early, good, reach):
     """Return the shift (samples) with the largest correlation, or None where it is small."""
-    index = np.flatnonzero(good)
-    index = index[::max(1, len(index) // 20_000)]   # enough to find a whole number
-    best, most = None, SURE
-    for shift in shifts:
-        other = index - shift
-        inside = (other >= 0) & (other < len(early))
-        a, b = _centred(late[index[inside]]), _centred(early[other[inside]])
-        sure = _alike(a, b)
-        if sure > most:
-            best, most = shift, sure
-    return best
+    late, early, middle = _centred(late), _centred(early), len(late) - 1
+    kept, all_of = good[:, None].astype(float), np.ones((len(early), 1))
+
+    def along(one, other):
+        """Return the sums of one at each sample times other before it, (2 reach + 1, k)."""
+        sums = fftconvolve(one, other[::-1], axes=0)
+        padded = np.pad(sums, ((reach, reach), (0, 0)))
+        return padded[middle:middle + 2 * reach + 1]
+
+    count = np.maximum(along(kept, all_of), 0.5)
+    a, b = along(kept * late, all_of), along(kept, early)
+    product = along(kept * late, early) - a * b / count
+    one = along(kept * late ** 2, all_of) - a * a / count
+    other = along(kept, early ** 2) - b * b / count
+    scale = np.maximum(one.sum(axis=1), 0.0) * np.maximum(other.sum(axis=1), 0.0)
+    # Beside what rounding leaves of sums over nothing.
+    least = 1e-12 * np.sum(late ** 2) * np.sum(early ** 2)
+    alike = product.sum(axis=1) / np.sqrt(np.maximum(scale, max(least, 1e-300)))
+    best = int(np.argmax(alike))
+    return best - reach if alike[best] > SURE else None
 
 
 def _refined(grid, spline, late, part, start):
