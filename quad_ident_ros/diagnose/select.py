@@ -19,6 +19,8 @@ from quad_ident_ros.greybox.parameters import limits, nominal
 
 ROUNDS = 5
 REFITS = 3          # sets that are refitted in a round
+PASSES = 2          # times that the noise is taken anew from what is left
+FAR = 1e4           # scatter from which on a first turn is only there to weigh the errors anew
 KNOWN = 3           # sets found before that a second search begins with
 COLOURED = 2.0      # times the noise from sample to sample that all that is left may be
 NEAR = 25.0         # log-evidence behind the best set by the slopes that may be made up for
@@ -67,15 +69,18 @@ def select(flights, vehicle, causes, on_progress=lambda share: None):
     Return the Selection among candidate causes for flights of a vehicle.
 
     The errors are weighed by the noise from sample to sample; where much more than that is left,
-    noise that hangs together or what no cause explains, by all that is left, once more.
+    noise that hangs together or what no cause explains, by all that is left, once or twice more.
     """
-    found = _select(flights, vehicle, causes, None, (), lambda share: on_progress(0.5 * share))
-    whole = [whole_noise(raw, 1.0 - 1.0 / raw.shape[1]) for raw in found.best.estimate.left]
-    ratio = np.median(np.array(whole) / found.noise, axis=0)
-    if np.max(ratio) > COLOURED or np.max(1.0 / ratio) > COLOURED:
+    done = 1.0 / (1 + PASSES)
+    found = _select(flights, vehicle, causes, None, (), lambda share: on_progress(done * share))
+    for again in range(1, 1 + PASSES):
+        whole = [whole_noise(raw, 1.0 - 1.0 / raw.shape[1]) for raw in found.best.estimate.left]
+        ratio = np.median(np.array(whole) / found.noise, axis=0)
+        if max(np.max(ratio), np.max(1.0 / ratio)) <= COLOURED:
+            break
         # What was found is where the search goes on from: from a far-off model it may get lost.
         found = _select(flights, vehicle, causes, whole, found.fitted[:KNOWN],
-                        lambda share: on_progress(0.5 + 0.5 * share))
+                        lambda share, before=again: on_progress(done * (before + share)))
     on_progress(1.0)
     return found
 
@@ -113,7 +118,7 @@ def _select(flights, vehicle, causes, noise, known, on_progress):
         before, best = best, max(tried, key=lambda key: evidence_of(tried[key], key, vehicle,
                                                                     scatter))
         on_progress((turn + 1) / ROUNDS)
-        if best == before:
+        if best == before or not known and scatter > FAR:
             break
     chosen, pruned, missed, gone = best_pruned(flights, vehicle, best, tried, noise, scatter)
     others = sorted((fitted_of(key, tried[key], vehicle, scatter) for key in tried
