@@ -16,7 +16,7 @@ VOLTAGE = 0.02      # V that the battery must fall for its voltage to tell anyth
 @dataclass(frozen=True)
 class Candidate:
     """
-    An effect, or for a weak rotor one of the rotors, and its columns.
+    An effect, or one of the rotors or of the ways in which it may act, and its columns.
 
     own: the greybox.own.Nuisance that it is instead of an effect, or None.
     """
@@ -40,7 +40,10 @@ def candidates(flights, vehicle, effects=None):
             found += [Candidate(name, f'{name} {j + 1}', (first + j,))
                       for j in range(len(vehicle.rotors))]
         elif name == 'battery_sag':
-            found.append(Candidate(name, name, (first if voltage else first + 1,)))
+            # By the volt where there are any, or by the second: one of the two.
+            kinds = list(zip(effect.parameters, columns, strict=True))
+            found += [Candidate(name, f'{name} {parameter.name}', (column,))
+                      for parameter, column in (kinds if voltage else kinds[1:])]
         else:
             found.append(Candidate(name, name, columns))
     return tuple(found)

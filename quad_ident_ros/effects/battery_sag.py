@@ -19,8 +19,8 @@ EFFECT = Effect(
     name='battery_sag', title='sag of the battery',
     parameters=(Parameter('per_volt', '1/V', 0.0, 2.0, 0.1, 'share of the thrust lost per volt '
                           'below the voltage of reference, where the voltage is recorded'),
-                Parameter('per_second', '1/s', 0.0, 0.05, 0.002,
-                          'share of the thrust lost per second of flight, where it is not')),
+                Parameter('per_second', '1/s', 0.0, 0.05, 0.002, 'share of the thrust lost per '
+                          'second of flight, where it is not or does not tell')),
     source='thrust (1 - per_volt drop - per_second t): motor speed at a given command is '
            'proportional to the voltage, thrust about to its square, linear over a flight',
     excitation='a flight long enough for the voltage to fall',

@@ -143,6 +143,14 @@ def test_what_is_learnt_does_not_depend_on_the_held_out_flight():
     assert one['where'] == other['where']
 
 
+def test_thrust_that_falls_by_the_second_is_told_beside_a_voltage():
+    flights = flown({'battery_sag': {'per_second': 0.003}})
+    assert all(np.ptp(flight.columns['vbat']) > 0.1 for flight in flights)
+    data = diagnose(flights, VEHICLE).data
+    check(data, {'battery_sag': {'per_second': 0.003}})
+    assert list(data['ranking'][0]['parameters']) == ['per_second']
+
+
 def test_a_vehicle_that_is_lost_within_half_a_second_is_found():
     """The model without effects turns over: no slope at it leads to what is there."""
     truth = {'com_offset': {'x': 0.006, 'y': -0.008, 'z': 0.004},
