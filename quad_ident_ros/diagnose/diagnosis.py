@@ -85,7 +85,7 @@ def diagnose(records, vehicle, *, hold_out=None, effects=None, on_progress=lambd
     flights = near_flights(tracks, vehicle, nominal(vehicle))
     causes = candidates(flights, vehicle, effects)
     selection = select(flights, vehicle, causes, lambda share: on_progress(0.8 * share))
-    z0 = nominal(vehicle)
+    z0, kinds = nominal(vehicle), selection.best.own
     noise = noise_of(selection, flights)
     learnt = Training(tuple(zip(tracks, selection.best.estimate.own.vectors(np.zeros(len(z0))),
                                 strict=True)), vehicle, noise)
@@ -105,8 +105,7 @@ def diagnose(records, vehicle, *, hold_out=None, effects=None, on_progress=lambd
         z, named = outstanding(z, named, strength, learnt)
         left = left or [unstructured([where.lacking(one, vehicle, z + own, noise)
                                       for one, own in learnt.flights], vehicle)]
-    test_own, kinds = own_of(held_out, vehicle, z, selection.best.own, noise,
-                             flights[0].segment)
+    test_own = own_of(held_out, vehicle, z, kinds, noise, flights[0].segment)
     far = _how_far(held_out, test_own, vehicle, z0, z, named, noise)
     doubts = doubts_of(selection, named)
     sure = [cause for cause in named if cause not in doubts]

@@ -80,20 +80,6 @@ def test_flights_without_anything_of_their_own_are_told_so(dragged):
     assert diagnose(dragged, VEHICLE).data['nuisances'] is None
 
 
-def test_what_the_held_out_flight_alone_has_of_its_own_is_no_gap(dragged):
-    last, bias = dragged[-1], (0.02, -0.015, 0.01)
-    biased = changed(last, **{name: last.columns[name] + value
-                              for name, value in zip(('wx', 'wy', 'wz'), bias, strict=True)})
-    data = diagnose([*dragged[:-1], biased], VEHICLE).data
-    assert data['verdict'] == ['rotor_drag']
-    rates = data['nuisances']['rate_bias']
-    assert not np.any(rates['values'])
-    assert rates['held_out'] == pytest.approx(bias, abs=0.003)
-    assert data['gap']['closed'] > 0.95
-    # Flights that are learnt from and have no clocks of their own hide no delay.
-    assert 'hidden_delay' not in data['nuisances'].get('clock_offset', {})
-
-
 def test_what_is_late_alike_in_all_flights_is_a_delay(dragged):
     data = diagnose([shifted(one, 2) for one in dragged], VEHICLE).data
     assert data['verdict'] == ['actuation_delay', 'rotor_drag']
