@@ -18,7 +18,7 @@ def check_outputs(options):
     Check, before any work, where the options of a command have it write.
 
     Raises InputError for an output that is an input, another output, a folder or lies in a file,
-    and for a vehicle file of another ending.
+    and for a vehicle file of another ending or in no folder.
     """
     inputs, written = _named(options, INPUTS), set()
     for output in _named(options, OUTPUTS):
@@ -36,6 +36,9 @@ def check_outputs(options):
             raise InputError(f'{output}: this is a folder; name a file')
     for output in _named(options, ('out_vehicle',)):
         check_ending(output)
+        if not Path(output).parent.is_dir():
+            raise InputError(f'{output}: there is no folder {Path(output).parent}; make it, or '
+                             'name another')
 
 
 def refuse_overwriting(output, inputs):

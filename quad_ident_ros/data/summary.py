@@ -23,6 +23,8 @@ def summarise(record, vehicle=None):
     fast one.
     """
     steps = np.diff(record.t)
+    with np.errstate(all='ignore'):     # values so large that nothing can be said of them
+        clocks = clock_offset(record), velocity_offset(record), command_offset(record)
     return {
         'schema': 'quad_ident/info/1',
         'source': record.info.get('source'),
@@ -37,9 +39,8 @@ def summarise(record, vehicle=None):
                     for name, values in record.columns.items()},
         'excitation': {name: {'value': value, 'unit': UNITS[name]}
                        for name, value in excitation(record).items()},
-        'clock': {'attitude_against_gyro': _clock(clock_offset(record)),
-                  'position_against_velocity': _clock(velocity_offset(record)),
-                  'accelerometer_against_commands': _clock(command_offset(record))},
+        'clock': dict(zip(('attitude_against_gyro', 'position_against_velocity',
+                           'accelerometer_against_commands'), map(_clock, clocks), strict=True)),
         'findings': [asdict(finding) for finding in findings(record, vehicle)],
     }
 

@@ -6,10 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from quad_ident_ros.greybox.own import CLOCK
+
 PRIOR = 3.0         # usual sizes that a parameter's prior is wide
 ODDS = 0.02         # of each cause being present, before looking,
-OWN_ODDS = 1e-4     # and of flights having anything of their own,
-MORE_ODDS = 0.5     # and one more kind of it
+OWN_ODDS = 1e-4     # and of flights having clocks or anything else of their own,
+MORE_ODDS = 0.5     # and one more kind of that
 BEAM = 12           # sets kept per size
 MOST = 8            # causes in a set, beside what flights have of their own
 BEHIND = 40.0       # log-evidence behind the best set from which on none grows
@@ -48,8 +50,11 @@ def _volume(information, wide, scatter):
 
 
 def _odds(causes):
-    own = sum(cause.own is not None for cause in causes)
-    shares = [ODDS] * (len(causes) - own) + [OWN_ODDS, *[MORE_ODDS] * (own - 1)][:own]
+    own = [cause.own.name for cause in causes if cause.own is not None]
+    # A sensor with one bias may have others. Clocks have nothing to do with them.
+    clocks = own.count(CLOCK)
+    biases = [OWN_ODDS, *[MORE_ODDS] * (len(own) - clocks - 1)][:len(own) - clocks]
+    shares = [ODDS] * (len(causes) - len(own)) + [OWN_ODDS] * clocks + biases
     return sum(np.log(share / (1.0 - share)) for share in shares)
 
 

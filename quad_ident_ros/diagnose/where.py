@@ -90,7 +90,7 @@ def regime(flights, channel):
                 share = energy[side].sum() / energy.sum()
                 excess = share - side.mean()
                 if excess > best[2]:
-                    best = (f'{name} {word} {level:.3g} {unit}', float(share), excess)
+                    best = (f'{name} {word} {level:.3g} {unit}', min(1.0, float(share)), excess)
     return best[:2]
 
 

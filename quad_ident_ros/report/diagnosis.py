@@ -27,16 +27,15 @@ def show(data, stream):
     say(f'how far, on {data["held_out"]} (held out), {gap["horizon"]:g} s ahead: '
         f'{100 * gap["closed"]:.0f} % of the velocity gap above the noise is closed')
     screen.print(_far(gap))
-    for name, own in (data['nuisances'] or {}).items():
-        say(f"each flight's own {name} ({own['what']}) is no effect: {_own(own)}")
-        if own.get('hidden_delay'):
-            say(f'a delay of all flights of up to {1e3 * own["hidden_delay"]:.0f} ms cannot be '
-                'told from the clocks')
+    for line in own_lines(data):
+        say(line)
     for row in data['unknown'] or ():
         say(f'unexplained: {row["channel"]} depends on {row["depends_on"]} '
             f'({100 * row["share"]:.0f} % of what is left there)')
     if data['not_shown']:
         say(not_shown_line(data))
+    if farther(data):
+        say(farther(data))
     for line in caution_lines(data):
         say(line)
     if data['fly_next']:
@@ -57,9 +56,28 @@ def verdict_line(data):
     return said
 
 
+def own_lines(data):
+    """Return what each flight has of its own, in words."""
+    lines = []
+    for name, own in (data['nuisances'] or {}).items():
+        lines.append(f"each flight's own {name} ({own['what']}) is no effect: {_own(own)}")
+        if own.get('hidden_delay'):
+            lines.append(f'a delay of all flights of up to {1e3 * own["hidden_delay"]:.0f} ms '
+                         'cannot be told from the clocks')
+    return lines
+
+
 def not_shown_line(data):
     """Return what the flights could not show, in words."""
     return f'would not show at their usual size: {", ".join(data["not_shown"])}'
+
+
+def farther(data):
+    """Return what to say of a held-out flight from which the effects found lead away, or None."""
+    if data['gap']['closed'] >= 0.0:
+        return None
+    return (f'be wary of {data["held_out"]} (held out): it is farther from the model with the '
+            'effects found than without: it was flown otherwise, or by another vehicle')
 
 
 def caution_lines(data):

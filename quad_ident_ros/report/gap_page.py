@@ -12,9 +12,11 @@ from quad_ident_ros.report import gap_pictures
 from quad_ident_ros.report.diagnosis import (
     band_of,
     caution_lines,
+    farther,
     NEXT,
     next_row,
     not_shown_line,
+    own_lines,
     verdict_line,
 )
 from quad_ident_ros.report.html import figure, join, Markup, table, tag, write_page
@@ -144,10 +146,9 @@ def _open(data):
              for row in data['unknown'] or ()]
     if data['undetermined']:
         lines.append(f'The flights cannot tell between {", ".join(data["undetermined"])}.')
-    if data['not_shown']:
-        line = not_shown_line(data)
-        lines.append(f'{line[0].upper()}{line[1:]}.')
-    lines += [f'{line[0].upper()}{line[1:]}.' for line in caution_lines(data)]
+    said = [*own_lines(data), *([not_shown_line(data)] if data['not_shown'] else []),
+            *([farther(data)] if farther(data) else []), *caution_lines(data)]
+    lines += [f'{line[0].upper()}{line[1:]}.' for line in said]
     parts = []
     if lines:
         items = join(tag('li', line) for line in lines)

@@ -3,6 +3,7 @@
 """Verdicts on simulated flights whose truth is known: each effect, none, several, unknown ones."""
 
 from dataclasses import replace
+import io
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from quad_ident_ros.errors import InputError
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import Noise, Sensors
 from quad_ident_ros.model.vehicle import load_vehicle
+from quad_ident_ros.report.diagnosis import show
 
 # With a drag that is known: without any no wind is felt.
 VEHICLE = replace(load_vehicle('hummingbird'), linear_drag=(0.15, 0.15, 0.15))
@@ -149,6 +151,19 @@ def test_thrust_that_falls_by_the_second_is_told_beside_a_voltage():
     data = diagnose(flights, VEHICLE).data
     check(data, {'battery_sag': {'per_second': 0.003}})
     assert list(data['ranking'][0]['parameters']) == ['per_second']
+
+
+def test_a_held_out_flight_of_another_vehicle_is_told():
+    other = replace(VEHICLE, mass=1.6 * VEHICLE.mass, inertia=tuple(1.5 * np.array(
+        VEHICLE.inertia)), thrust_coefficient=1.3 * VEHICLE.thrust_coefficient)
+    foreign = fly_closed_loop(other, {}, 'lissajous', duration=12.0, seed=9, noise=WHITE)
+    *training, own = flown({'thrust_scale': {'factor': 1.15}})
+    said = []
+    for held_out in (own, foreign):
+        stream = io.StringIO()
+        show(diagnose([*training, held_out], VEHICLE).data, stream)
+        said.append('by another vehicle' in stream.getvalue())
+    assert said == [False, True]
 
 
 def test_a_vehicle_that_is_lost_within_half_a_second_is_found():

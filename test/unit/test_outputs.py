@@ -27,3 +27,8 @@ def test_outputs_of_other_names_and_standard_output_are_fine(tmp_path, monkeypat
 def test_a_folder_is_no_file_to_write(tmp_path, option):
     with pytest.raises(InputError, match='this is a folder; name a file'):
         check_outputs(Namespace(**{option: str(tmp_path)}))
+
+
+def test_a_vehicle_file_in_no_folder_is_said_before_the_work(tmp_path):
+    with pytest.raises(InputError, match='there is no folder .*none; make it, or name another'):
+        check_outputs(Namespace(out_vehicle=str(tmp_path / 'none' / 'a.yaml')))

@@ -31,6 +31,8 @@ GRAVE = {
     'dead, attitude': (('qw', 'qx', 'qy', 'qz'), dead),
     'frame_sign, height': (('pz',), np.negative),
     'frame_sign, speed': (('vx',), np.negative),
+    'frame_sign, mirrored': (('px', 'vx'), np.negative),
+    'frame_sign, gyro': (('wy',), np.negative),
     'negative, speeds': (CMD, np.negative),
     'thrust, none': (CMD, lambda values: 1e-3 * values),
     'thrust, none in the end': (CMD, second_half),

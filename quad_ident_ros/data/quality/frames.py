@@ -75,11 +75,20 @@ def quaternion(record, vehicle):
     rate = grid.rate_of(attitude)[grid.good]
     gyro = grid.smooth(grid.signal('wx', 'wy', 'wz'))[grid.good]
     other = correlation(body_vector(rate, 'FRD'), gyro)[0]
-    if other < SURE or other < correlation(rate, gyro)[0] + BETTER:
-        return []
-    return [Finding('frame_rate', 'error', 'wx, wy, wz',
-                    'attitude and gyro disagree in the sign of y and z: one of them is in FRD',
-                    'turn y and z of the one in FRD')]
+    if other >= SURE and other >= correlation(rate, gyro)[0] + BETTER:
+        return [Finding('frame_rate', 'error', 'wx, wy, wz',
+                        'attitude and gyro disagree in the sign of y and z: one of them is in '
+                        'FRD', 'turn y and z of the one in FRD')]
+    return [Finding('frame_sign', 'error', f'w{axis}',
+                    f'the attitude turns the other way about {axis} than the gyro says',
+                    f'turn the sign of w{axis}, or the attitude to FLU')
+            for axis in _opposed(rate, gyro)]
+
+
+def _opposed(one, other):
+    """Return the axes, of x, y and z, along which signals (N, k) have opposite signs."""
+    return [axis for k, axis in zip(range(one.shape[1]), 'xyz', strict=False)
+            if correlation(one[:, k:k + 1], other[:, k:k + 1])[0] < -SURE]
 
 
 def world(record, vehicle):
@@ -124,7 +133,10 @@ def _motion(grid, attitude):
                         'turn the world into ENU (x east, y north, z up) and the body into FLU')]
     swapped = speeding[:, [1, 0]] if speeding.shape[1] == 2 else world_vector(speeding, 'NED')
     if correlation(swapped, force)[0] < max(SURE, sure + BETTER):
-        return _height(grid.record)
+        return [Finding('frame_sign', 'error', f'p{axis}, v{axis}',
+                        f'the velocity along {axis} changes the other way than the tilt and the '
+                        'thrust say', f'turn the sign of p{axis} and v{axis}, or the attitude')
+                for axis in _opposed(speeding, force)] or _height(grid.record)
     return [Finding('frame_ned', 'error', 'position, velocity',
                     'the velocity changes as the specific force says only where it is read as '
                     'NED', 'turn position and velocity into ENU (x east, y north, z up)')]
@@ -151,8 +163,7 @@ def signs(record, vehicle):
     return [Finding('frame_sign', 'error', f'p{axis}, v{axis}',
                     f'the position falls along {axis} where the velocity is above zero: one of '
                     'them has the other sign', 'turn both into ENU (x east, y north, z up)')
-            for k, axis in enumerate('xyz')
-            if correlation(moved[:, k:k + 1], velocity[:, k:k + 1])[0] < -SURE]
+            for axis in _opposed(moved, velocity)]
 
 
 def velocity_in_body(record, vehicle):

@@ -9,7 +9,7 @@ from quad_ident_ros.data.quality.series import GAP
 from quad_ident_ros.data.record import CUT
 
 COARSE = 0.025    # s between samples from which on commands change unseen between them
-SLOWEST = 0.25    # s between samples: of a rollout of 0.5 s no more than its end is then seen
+SLOWEST = 0.15    # s between samples: of a rollout of 0.5 s hardly more than its end is then seen
 
 
 def slow(record, vehicle):
