@@ -19,7 +19,7 @@ from quad_ident_ros.greybox.parameters import limits, nominal
 
 ROUNDS = 5
 REFITS = 3          # sets that are refitted in a round
-PASSES = 2          # times that the noise is taken anew from what is left
+PASSES = 4          # times, at most, that the noise is taken anew from what is left
 FAR = 1e4           # scatter from which on a first turn is only there to weigh the errors anew
 KNOWN = 3           # sets found before that a second search begins with
 COLOURED = 2.0      # times the noise from sample to sample that all that is left may be
@@ -69,10 +69,9 @@ def select(flights, vehicle, causes, on_progress=lambda share: None):
     Return the Selection among candidate causes for flights of a vehicle.
 
     The errors are weighed by the noise from sample to sample; where much more than that is left,
-    noise that hangs together or what no cause explains, by all that is left, once or twice more.
+    noise that hangs together or what no cause explains, by all that is left, until it is so.
     """
-    done = 1.0 / (1 + PASSES)
-    found = _select(flights, vehicle, causes, None, (), lambda share: on_progress(done * share))
+    found = _select(flights, vehicle, causes, None, (), lambda share: on_progress(0.5 * share))
     for again in range(1, 1 + PASSES):
         whole = [whole_noise(raw, 1.0 - 1.0 / raw.shape[1]) for raw in found.best.estimate.left]
         ratio = np.median(np.array(whole) / found.noise, axis=0)
@@ -80,7 +79,8 @@ def select(flights, vehicle, causes, on_progress=lambda share: None):
             break
         # What was found is where the search goes on from: from a far-off model it may get lost.
         found = _select(flights, vehicle, causes, whole, found.fitted[:KNOWN],
-                        lambda share, before=again: on_progress(done * (before + share)))
+                        lambda share, rest=0.5 ** again: on_progress(1.0 - rest + 0.5 * rest
+                                                                     * share))
     on_progress(1.0)
     return found
 

@@ -87,7 +87,7 @@ def _kernel(lanes):
         the set of each rollout; x0 (B, 13) states at the start; t (N,) s; followed, speeds
         (T, N, n), added (T, N, 3, n) to each step from a sample on: see actuators; inputs
         (N, INPUT), what else acts; first (B,) the sample at which a rollout starts; count of
-        samples; substeps per sample.
+        samples; substeps per sample, 1 where anything is added.
         """
         rotor_count = places.shape[0]
         x = np.empty((STATE, lanes))
