@@ -38,12 +38,12 @@ class Fitted:
                 and {kind.name for kind in self.own} <= {kind.name for kind in other.own})
 
 
-def refitted(flights, vehicle, z, chosen, noise, own, starts, slopes=None):
+def refitted(flights, vehicle, z, chosen, noise, own, starts, slopes=None, scatter=1.0):
     """Return the Estimate of a set, from a vector and an Own that has the values to start from."""
     free = sorted(column for cause in chosen if cause.own is None for column in cause.columns)
     own = Own.of([cause.own for cause in chosen if cause.own], len(flights), own)
     return estimate(flights, vehicle, z, free, noise=noise, own=own, starts=starts,
-                    iterations=FIT_STEPS, slopes=slopes)
+                    iterations=FIT_STEPS, slopes=slopes, scatter=scatter)
 
 
 def fitted_of(chosen, fit, vehicle, scatter):

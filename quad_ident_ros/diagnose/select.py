@@ -112,7 +112,7 @@ def _select(flights, vehicle, causes, noise, known, on_progress):
             everyone = Own.of([one.own for one in own], len(flights))
             everyone.values.flat[:] = found[len(columns):]
             tried[chosen] = refitted(flights, vehicle, start, chosen, noise, everyone,
-                                     around.starts, slopes)
+                                     around.starts, slopes, scatter)
             tried[chosen] = _found_again(flights, vehicle, chosen, tried, noise, scatter)
         scatter = _calmed(scatter, tried)
         before, best = best, max(tried, key=lambda key: evidence_of(tried[key], key, vehicle,

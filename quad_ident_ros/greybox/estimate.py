@@ -74,7 +74,7 @@ def weights_of(raw, noise, flight):
 
 
 def estimate(flights, vehicle, z, columns, *, noise=None, own=None, starts=None,
-             iterations=ITERATIONS, clock=True, slopes=None):
+             iterations=ITERATIONS, clock=True, slopes=None, scatter=1.0):
     """
     Return the Estimate of the columns of z that predicts the flights best.
 
@@ -82,7 +82,8 @@ def estimate(flights, vehicle, z, columns, *, noise=None, own=None, starts=None,
     estimated along unless it is given; outliers count less; with `clock` each flight's pose may
     be off in time against the rest; own: what else flights have of their own (Own). Without
     `starts` (B, 13) per flight, the initial states, a few of the rollouts first bring z near.
-    slopes: Slopes at the same starts, taken where the errors at z are what they say.
+    slopes: Slopes at the same starts, taken where the errors at z are what they say; scatter: what
+    differences of the cost are divided by: the more, the sooner a step is small.
     """
     columns = list(columns)
     own = own or Own.of((), len(flights))
@@ -94,8 +95,8 @@ def estimate(flights, vehicle, z, columns, *, noise=None, own=None, starts=None,
                             settled(few, vehicle, own.vectors(z), noise), iterations, clock, ROUGH)
             z, own = near.z, near.own
         starts = settled(flights, vehicle, own.vectors(z), noise)
-    return _descend(flights, vehicle, z, columns, box, noise, own, starts, iterations, clock, DONE,
-                    slopes)
+    return _descend(flights, vehicle, z, columns, box, noise, own, starts, iterations, clock,
+                    DONE * np.sqrt(max(1.0, scatter)), slopes)
 
 
 def _fewer(flight, count):
