@@ -7,9 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from quad_ident_ros.diagnose.candidates import own_candidates
-from quad_ident_ros.diagnose.evidence import beam, PRIOR, Quadratic
+from quad_ident_ros.diagnose.evidence import beam, key_of, PRIOR, Quadratic
 from quad_ident_ros.diagnose.fitted import evidence_of, Fitted, fitted_of, refitted, support_of
 from quad_ident_ros.diagnose.prune import best_pruned
+from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.greybox.estimate import estimate, weights_of
 from quad_ident_ros.greybox.linear import errors_along, linear_of, slopes_at
 from quad_ident_ros.greybox.noise import quick_noise, whole_noise
@@ -26,6 +27,7 @@ COLOURED = 2.0      # times the noise from sample to sample that all that is lef
 NEAR = 25.0         # log-evidence behind the best set by the slopes that may be made up for
 LOST = 4.0          # times the scatter that a fit may cost more than a subset does
 CALM = 4.0          # times less scatter that a turn must leave to go on with that
+LEFT = 5.0          # scatter from which on so much is left that what looks alike is tried, too
 UNTRIED = -2.0      # log-evidence that the linear model alone may give a set, beside the best
 
 
@@ -115,6 +117,11 @@ def _select(flights, vehicle, causes, noise, known, on_progress):
                                      around.starts, slopes, scatter)
             tried[chosen] = _found_again(flights, vehicle, chosen, tried, noise, scatter)
         scatter = _calmed(scatter, tried)
+        if scatter > LEFT:
+            for chosen, start in _alike(best, causes, around.z, vehicle):
+                if chosen not in tried:
+                    tried[chosen] = refitted(flights, vehicle, start, chosen, noise, around.own,
+                                             around.starts, scatter=scatter)
         before, best = best, max(tried, key=lambda key: evidence_of(tried[key], key, vehicle,
                                                                     scatter))
         on_progress((turn + 1) / ROUNDS)
@@ -153,6 +160,24 @@ def _promising(ranked, tried):
               if value > most - NEAR and chosen not in tried and chosen not in first
               and len(chosen) == len(top) and _swapped(chosen, top)]
     return [*fresh[:REFITS], *rivals[:REFITS]]
+
+
+def _alike(best, causes, z, vehicle):
+    """
+    Return [(causes, vector)] with a delay for a lag of a set and the reverse, at its usual size.
+
+    From a delay that does the work of a lag no slope leads to the lag.
+    """
+    found, size = [], limits(vehicle)[2]
+    actuators = [cause for cause in causes if EFFECTS[cause.effect].actuator]
+    for there in set(best) & set(actuators):
+        for other in set(actuators) - set(best):
+            start = z.copy()
+            start[list(there.columns)] = nominal(vehicle)[list(there.columns)]
+            start[list(other.columns)] += size[list(other.columns)]
+            found.append((key_of((other, *(cause for cause in best if cause is not there))),
+                          start))
+    return found
 
 
 def _swapped(chosen, top):
