@@ -27,7 +27,7 @@ COLOURED = 2.0      # times the noise from sample to sample that all that is lef
 NEAR = 25.0         # log-evidence behind the best set by the slopes that may be made up for
 LOST = 4.0          # times the scatter that a fit may cost more than a subset does
 CALM = 4.0          # times less scatter that a turn must leave to go on with that
-LEFT = 5.0          # scatter from which on so much is left that what looks alike is tried, too
+LEFT = 5.0          # scatter from which on so much is left that a lag is tried for a delay
 UNTRIED = -2.0      # log-evidence that the linear model alone may give a set, beside the best
 
 
@@ -118,7 +118,7 @@ def _select(flights, vehicle, causes, noise, known, on_progress):
             tried[chosen] = _found_again(flights, vehicle, chosen, tried, noise, scatter)
         scatter = _calmed(scatter, tried)
         if scatter > LEFT:
-            for chosen, start in _alike(best, causes, around.z, vehicle):
+            for chosen, start in _other_actuator(best, causes, around.z, vehicle):
                 if chosen not in tried:
                     tried[chosen] = refitted(flights, vehicle, start, chosen, noise, around.own,
                                              around.starts, scatter=scatter)
@@ -162,7 +162,7 @@ def _promising(ranked, tried):
     return [*fresh[:REFITS], *rivals[:REFITS]]
 
 
-def _alike(best, causes, z, vehicle):
+def _other_actuator(best, causes, z, vehicle):
     """
     Return [(causes, vector)] with a delay for a lag of a set and the reverse, at its usual size.
 
@@ -170,8 +170,8 @@ def _alike(best, causes, z, vehicle):
     """
     found, size = [], limits(vehicle)[2]
     actuators = [cause for cause in causes if EFFECTS[cause.effect].actuator]
-    for there in set(best) & set(actuators):
-        for other in set(actuators) - set(best):
+    for there in [cause for cause in actuators if cause in best]:
+        for other in [cause for cause in actuators if cause not in best]:
             start = z.copy()
             start[list(there.columns)] = nominal(vehicle)[list(there.columns)]
             start[list(other.columns)] += size[list(other.columns)]

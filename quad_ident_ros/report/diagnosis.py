@@ -34,8 +34,6 @@ def show(data, stream):
             f'({100 * row["share"]:.0f} % of what is left there)')
     if data['not_shown']:
         say(not_shown_line(data))
-    if farther(data):
-        say(farther(data))
     for line in caution_lines(data):
         say(line)
     if data['fly_next']:
@@ -72,22 +70,22 @@ def not_shown_line(data):
     return f'would not show at their usual size: {", ".join(data["not_shown"])}'
 
 
-def farther(data):
-    """Return what to say of a held-out flight from which the effects found lead away, or None."""
-    if data['gap']['closed'] >= 0.0:
-        return None
-    return (f'be wary of {data["held_out"]} (held out): it is farther from the model with the '
-            'effects found than without: it was flown otherwise, or by another vehicle')
-
-
 def caution_lines(data):
-    """Return what to be wary of in the records, if they were looked at: a line for each kind."""
+    """
+    Return what to be wary of, a line for each kind of it.
+
+    A held-out flight that the effects found lead away from, and what was found in the records, if
+    they were looked at.
+    """
+    farther = [f'be wary of {data["held_out"]} (held out): it is farther from the model with the '
+               'effects found than without: it was flown otherwise, or by another vehicle']
     alike = {}
     for one in data.get('findings', ()):
         alike.setdefault((one['code'], one['where'].partition(', t =')[0]), []).append(one)
-    return [f'be wary of {first["flight"]}'
-            + (f' ({", ".join(one["flight"] for one in others)} alike)' if others else '')
-            + f': {first["where"]}: {first["message"]}' for first, *others in alike.values()]
+    found = [f'be wary of {first["flight"]}'
+             + (f' ({", ".join(one["flight"] for one in others)} alike)' if others else '')
+             + f': {first["where"]}: {first["message"]}' for first, *others in alike.values()]
+    return [*(farther if data['gap']['closed'] < 0.0 else []), *found]
 
 
 NEXT = ('manoeuvre', 'to', 'standard errors now', 'with it', 'size', 'height', 'speed up to')

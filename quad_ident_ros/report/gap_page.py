@@ -12,7 +12,6 @@ from quad_ident_ros.report import gap_pictures
 from quad_ident_ros.report.diagnosis import (
     band_of,
     caution_lines,
-    farther,
     NEXT,
     next_row,
     not_shown_line,
@@ -147,7 +146,7 @@ def _open(data):
     if data['undetermined']:
         lines.append(f'The flights cannot tell between {", ".join(data["undetermined"])}.')
     said = [*own_lines(data), *([not_shown_line(data)] if data['not_shown'] else []),
-            *([farther(data)] if farther(data) else []), *caution_lines(data)]
+            *caution_lines(data)]
     lines += [f'{line[0].upper()}{line[1:]}.' for line in said]
     parts = []
     if lines:

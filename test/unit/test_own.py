@@ -221,6 +221,6 @@ def test_a_negative_delay_undoes_a_positive_one(name):
     commands = 100.0 + np.cumsum(np.random.default_rng(0).normal(size=(100, count)), axis=0)
     late, *_ = acted(t, commands, 0.03)
     back, *_ = acted(t, late, -0.03)
-    np.testing.assert_allclose(back[:96], commands[:96], rtol=1e-9)
+    np.testing.assert_allclose(back[:97], commands[:97], rtol=1e-9)
     # What the delay has pushed out of the record is gone: the last that is left is held.
     np.testing.assert_allclose(back[96:], np.tile(commands[96], (4, 1)), rtol=1e-9)

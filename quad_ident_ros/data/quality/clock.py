@@ -143,18 +143,18 @@ def _whole_shift(late, early, good, reach):
     late, early, middle = _centred(late), _centred(early), len(late) - 1
     kept, all_of = good[:, None].astype(float), np.ones((len(early), 1))
 
-    def along(one, other):
-        """Return the sums of one at each sample times other before it, (2 reach + 1, k)."""
-        sums = fftconvolve(one, other[::-1], axes=0)
+    def along(now, before):
+        """Return the sums of one signal times another one so much before, (2 reach + 1, k)."""
+        sums = fftconvolve(now, before[::-1], axes=0)
         padded = np.pad(sums, ((reach, reach), (0, 0)))
         return padded[middle:middle + 2 * reach + 1]
 
     count = np.maximum(along(kept, all_of), 0.5)
     a, b = along(kept * late, all_of), along(kept, early)
     product = along(kept * late, early) - a * b / count
-    one = along(kept * late ** 2, all_of) - a * a / count
-    other = along(kept, early ** 2) - b * b / count
-    scale = np.maximum(one.sum(axis=1), 0.0) * np.maximum(other.sum(axis=1), 0.0)
+    power = [along(kept * late ** 2, all_of) - a * a / count,
+             along(kept, early ** 2) - b * b / count]
+    scale = np.prod([np.maximum(one.sum(axis=1), 0.0) for one in power], axis=0)
     # Beside what rounding leaves of sums over nothing.
     least = 1e-12 * np.sum(late ** 2) * np.sum(early ** 2)
     alike = product.sum(axis=1) / np.sqrt(np.maximum(scale, max(least, 1e-300)))
