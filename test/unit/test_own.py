@@ -14,6 +14,8 @@ from quad_ident_ros.data.quality.glitches import glitches
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.experiment import fly, load_experiment
+from quad_ident_ros.flight.fly import fly_closed_loop
+from quad_ident_ros.flight.measure import SENSORS
 from quad_ident_ros.greybox.flights import flight_of, track_of
 from quad_ident_ros.greybox.own import nuisances
 from quad_ident_ros.model.attitude import rotation_matrix
@@ -78,6 +80,18 @@ def test_clocks_that_differ_from_flight_to_flight_are_no_delay(dragged):
 
 def test_flights_without_anything_of_their_own_are_told_so(dragged):
     assert diagnose(dragged, VEHICLE).data['nuisances'] is None
+
+
+@pytest.mark.parametrize('count', [1, 2])
+def test_few_late_flights_have_a_delay_though_their_sensors_have_biases(count):
+    """Their clocks would explain it as well, but nothing shows that these differ."""
+    vehicle, truth = VEHICLES['hummingbird'], {'actuation_delay': {'delay': 0.0137}}
+    flights = [fly_closed_loop(vehicle, truth, 'steps', duration=12.0, seed=seed,
+                               noise=SENSORS['mocap_imu']) for seed in (1, 2)][:count]
+    data = diagnose(flights, vehicle).data
+    assert data['verdict'] == ['actuation_delay']
+    value, std = parameters(data, 'actuation_delay')['delay']
+    assert abs(value - 0.0137) < 4 * std
 
 
 def test_what_is_late_alike_in_all_flights_is_a_delay(dragged):

@@ -1,16 +1,21 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Standard errors over sets that differ in what flights have of their own."""
+"""Which sets are tried, and standard errors over those that differ in what is a flight's own."""
 
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from quad_ident_ros.diagnose.candidates import Candidate
-from quad_ident_ros.diagnose.fitted import Fitted
-from quad_ident_ros.diagnose.select import Selection
-from quad_ident_ros.greybox.own import Nuisance
+from quad_ident_ros.diagnose.candidates import Candidate, candidates
+from quad_ident_ros.diagnose.fitted import Fitted, refitted
+from quad_ident_ros.diagnose.select import _other_actuator, Selection
+from quad_ident_ros.flight.fly import fly_closed_loop
+from quad_ident_ros.flight.measure import SENSORS
+from quad_ident_ros.greybox.flights import flight_of, track_of
+from quad_ident_ros.greybox.own import Nuisance, Own
+from quad_ident_ros.greybox.parameters import nominal
+from quad_ident_ros.model.vehicle import load_vehicle
 
 EFFECT, OTHER = Candidate('a', 'a', (0,)), Candidate('b', 'b', (1,))
 
@@ -56,3 +61,26 @@ def test_a_set_is_within_one_that_has_more_effects_and_no_less_of_anything():
     assert alone.within(both) and not both.within(alone) and not alone.within(alone)
     assert not NARROW.within(both)      # which has no bias of flights
     assert not alone.within(NARROW)     # which has no more effects
+
+
+def test_from_a_delay_that_does_the_work_of_a_lag_the_lag_is_found():
+    vehicle, lag = load_vehicle('hummingbird'), 0.05
+    record = fly_closed_loop(vehicle, {'motor_lag': {'time_constant': lag}}, 'lissajous',
+                             duration=12.0, seed=1, noise=SENSORS['mocap_imu'])
+    flights = [flight_of(track_of(record, vehicle))]
+    causes = {cause.effect: cause for cause in candidates(flights, vehicle)}
+
+    def fit(z, chosen, noise=None):
+        return refitted(flights, vehicle, z, chosen, noise, Own.of((), 1), None)
+
+    late = fit(nominal(vehicle), (causes['actuation_delay'],))
+    [(chosen, start)] = _other_actuator((causes['actuation_delay'],), list(causes.values()),
+                                        late.z, vehicle)
+    assert chosen == (causes['motor_lag'],)
+    found = fit(start, chosen)
+    [value], [std] = found.z[list(chosen[0].columns)], found.errors
+    assert abs(value - lag) < 4 * std
+    assert (found.z == nominal(vehicle))[list(causes['actuation_delay'].columns)].all()
+    # Both have one parameter: in variances of the noise, far more than chance leaves.
+    same = fit(late.z, (causes['actuation_delay'],), found.noise)
+    assert same.cost > found.cost + 30.0
