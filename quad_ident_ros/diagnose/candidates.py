@@ -49,7 +49,7 @@ def candidates(flights, vehicle, effects=None):
     return tuple(found)
 
 
-def own_candidates(vehicle):
-    """Return the Candidates for what flights have of their own, which is no effect."""
+def own_candidates(vehicle, tracks):
+    """Return the Candidates for what Tracks have of their own, which is no effect."""
     return tuple(Candidate(kind.name, kind.name, kind.columns, kind)
-                 for kind in nuisances(vehicle))
+                 for kind in nuisances(vehicle, tracks))

@@ -22,7 +22,7 @@ from quad_ident_ros.diagnose.select import select
 from quad_ident_ros.effects.registry import EFFECTS, mapping
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.greybox.errors import UNITS
-from quad_ident_ros.greybox.flights import highest_voltage, track_of
+from quad_ident_ros.greybox.flights import highest_voltage, tracks_of
 from quad_ident_ros.greybox.kinematics import measurement_noise
 from quad_ident_ros.greybox.near import near_flights
 from quad_ident_ros.greybox.noise import near_noise, quick_noise, whole_noise
@@ -81,7 +81,7 @@ def diagnose(records, vehicle, *, hold_out=None, effects=None, on_progress=lambd
     training, late = zip(*(aligned(record) for record in training), strict=True)
     test, test_late = aligned(test)
     voltage = highest_voltage(training)
-    *tracks, held_out = (track_of(record, vehicle, voltage) for record in (*training, test))
+    *tracks, held_out = tracks_of(training, vehicle, voltage, test)
     flights = near_flights(tracks, vehicle, nominal(vehicle))
     causes = candidates(flights, vehicle, effects)
     selection = select(flights, vehicle, causes, lambda share: on_progress(0.8 * share))
@@ -127,8 +127,9 @@ def diagnose(records, vehicle, *, hold_out=None, effects=None, on_progress=lambd
                      'share': one.share} for one in left] if unknown else None,
         'undetermined': open_ones or None, 'sure': known if doubts else None,
         'not_shown': unseen, 'fly_next': proposals,
-        'nuisances': as_data(kinds, [own for _, own in learnt.flights], test_own, late,
-                             test_late),
+        'nuisances': as_data(kinds, [own for _, own in learnt.flights], test_own,
+                             [*late, test_late],
+                             [track.late for track in (*tracks, held_out)]),
         'flights': [record.info.get('name') for record in training],
         'held_out': test.info.get('name')}
     return Diagnosis(data, selection, z, learnt, held_out, test_own, whole)

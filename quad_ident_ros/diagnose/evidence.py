@@ -6,12 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from quad_ident_ros.greybox.own import CLOCK
+from quad_ident_ros.greybox.own import CLOCK, LIKELY
 
 PRIOR = 3.0         # usual sizes that a parameter's prior is wide
-ODDS = 0.02         # of each cause being present, before looking,
-OWN_ODDS = 1e-4     # and of flights having clocks or anything else of their own,
-MORE_ODDS = 0.5     # and one more kind of that
+ODDS = 0.02         # of each cause being present, before looking
 BEAM = 12           # sets kept per size
 MOST = 8            # causes in a set, beside what flights have of their own
 BEHIND = 40.0       # log-evidence behind the best set from which on none grows
@@ -50,11 +48,12 @@ def _volume(information, wide, scatter):
 
 
 def _odds(causes):
-    own = [cause.own.name for cause in causes if cause.own is not None]
+    own = [cause.own for cause in causes if cause.own is not None]
     # A sensor with one bias may have others. Clocks have nothing to do with them.
-    clocks = own.count(CLOCK)
-    biases = [OWN_ODDS, *[MORE_ODDS] * (len(own) - clocks - 1)][:len(own) - clocks]
-    shares = [ODDS] * (len(causes) - len(own)) + [OWN_ODDS] * clocks + biases
+    clocks = [kind.odds for kind in own if kind.name == CLOCK]
+    biases = [kind.odds if k == 0 else LIKELY for k, kind in
+              enumerate(kind for kind in own if kind.name != CLOCK)]
+    shares = [ODDS] * (len(causes) - len(own)) + clocks + biases
     return sum(np.log(share / (1.0 - share)) for share in shares)
 
 

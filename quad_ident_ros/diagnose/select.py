@@ -88,7 +88,7 @@ def select(flights, vehicle, causes, on_progress=lambda share: None):
 
 
 def _select(flights, vehicle, causes, noise, known, on_progress):
-    own = own_candidates(vehicle)
+    own = own_candidates(vehicle, flights)
     columns = sorted({column for cause in causes for column in cause.columns})
     rows = _rows(causes, own, columns, len(flights))
     starts = [flight.states[flight.first] for flight in flights]

@@ -115,7 +115,8 @@ def _features(flight, middle, vehicle, z):
     air = np.einsum('bji,bj->bi', rotation, states[:, 3:6] - wind)
     rates = states[:, 10:13]
     course = flight.course
-    speeds = course.commands[np.searchsorted(course.stamps, course.t[middle], side='right') - 1]
+    given = np.searchsorted(course.stamps, course.t[middle], side='right') - 1
+    speeds = course.commands[np.maximum(given, 0)]
     thrust = vehicle.thrust_coefficient * np.sum(speeds ** 2, axis=1)
     return {
         'horizontal air speed': ('m/s', np.hypot(air[:, 0], air[:, 1])),

@@ -2,12 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Flights cut into the short rollouts that are held against them."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from quad_ident_ros.data.clocks import late_states, usual_lag
 from quad_ident_ros.data.frames import continuous
 from quad_ident_ros.data.quality import refuse_errors, timing
+from quad_ident_ros.data.quality.answer import answer_of
 from quad_ident_ros.data.quality.glitches import glitches
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.greybox.errors import ERRORS, GROUPS
@@ -27,7 +29,9 @@ class Track:
     A flight as models are held against it.
 
     course: of N samples; states (N, 13) recorded; seen (N, 12) whether each error counts, which
-    it does not in rows that were lost and in attitudes that are off; period s, the usual one.
+    it does not in rows that were lost and in attitudes that are off; period s, the usual one;
+    late: how much later than the commands the states were stamped, which is mended, s in the
+    middle of the flight and s/s by which it grows; None where it is not known.
     """
 
     name: str
@@ -35,6 +39,7 @@ class Track:
     states: np.ndarray
     seen: np.ndarray
     period: float
+    late: tuple | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,11 +55,26 @@ class Flight(Track):
         return self.count * self.period
 
 
-def track_of(record, vehicle, reference_voltage=None):
+def tracks_of(records, vehicle, reference_voltage=None, held_out=None):
+    """
+    Return the Tracks of records, and of the one held out, if any, as the last.
+
+    Their clocks are put right as far as the commands show them by what they answer, see
+    data/clocks.py. Raises InputError as track_of does.
+    """
+    answers = [answer_of(record) for record in records]
+    usual = usual_lag(answers)
+    if held_out is not None:
+        records, answers = [*records, held_out], [*answers, answer_of(held_out)]
+    return [track_of(record, vehicle, reference_voltage, late_states(answer, usual))
+            for record, answer in zip(records, answers, strict=True)]
+
+
+def track_of(record, vehicle, reference_voltage=None, late=None):
     """
     Return the Track of a record; InputError where it lacks columns or is too slow.
 
-    Args: reference_voltage V, see dynamics.course_of.
+    Args: reference_voltage V, see dynamics.course_of; late: of the Track, which is mended here.
     """
     refuse_errors(record, timing.slow(record, vehicle))
     course, states = course_of(record, vehicle, reference_voltage), states_of(record)
@@ -66,7 +86,11 @@ def track_of(record, vehicle, reference_voltage=None):
     if skip > 1:
         course, states, seen = _thinned(course, states, seen, skip)
         period *= skip
-    return Track(record.info.get('name', 'flight'), course, states, seen, period)
+    if late is not None:
+        stamps, (offset, drift) = course.stamps, late
+        middle = 0.5 * (stamps[0] + stamps[-1])
+        course = replace(course, stamps=stamps + offset + drift * (stamps - middle))
+    return Track(record.info.get('name', 'flight'), course, states, seen, period, late)
 
 
 def flight_of(track, segment=SEGMENT, every=None):
@@ -83,7 +107,7 @@ def flight_of(track, segment=SEGMENT, every=None):
     if not len(first):
         raise InputError(f'{track.name}: {course.t[-1]:.3g} s without a gap-free stretch of '
                          f'{segment:g} s are too short; give a longer flight')
-    return Flight(track.name, course, track.states, seen, period, first, count)
+    return Flight(track.name, course, track.states, seen, period, track.late, first, count)
 
 
 def highest_voltage(records):

@@ -14,24 +14,36 @@ import numpy as np
 from quad_ident_ros.greybox.parameters import INDEX
 
 CLOCK = 'clock_offset'
+CLOCK_TITLE = 'how much later than the commands the states are stamped'
+RARE, LIKELY = 1e-4, 0.5    # odds of flights having something of their own, before looking
+APART = 0.02        # s, how far clocks usually are apart where nothing shows it,
+REST = 0.001        # s, or
+REST_SHARE = 0.2    # periods, how far where they were put right
 
 
 @dataclass(frozen=True)
 class Nuisance:
-    """A kind of it: name, what it is, unit, places in z and its usual spread from 0 there, SI."""
+    """
+    A kind of it.
+
+    name, what it is, unit, places in z and its usual spread from 0 there, SI; odds of flights
+    having it, before looking.
+    """
 
     name: str
     title: str
     unit: str
     columns: tuple
     spreads: tuple
+    odds: float
 
 
-def nuisances(vehicle):
+def nuisances(vehicle, tracks):
     """
-    Return the Nuisances of flights of a vehicle.
+    Return the Nuisances of Tracks of a vehicle.
 
     Those with one name exclude one another: how far flights usually differ depends on who flies.
+    Records whose clocks were put right are likely to have a rest of their offset.
     """
     lever = vehicle.mass * vehicle.gravity * vehicle.arm_length
     twist = (vehicle.mass * vehicle.gravity * vehicle.torque_coefficient
@@ -39,16 +51,20 @@ def nuisances(vehicle):
     rate = tuple(f'gyro_bias.{axis}' for axis in 'xyz')
     tilt = tuple(f'attitude_misalignment.{axis}' for axis in ('roll', 'pitch', 'yaw'))
     moment = tuple(f'external_wrench.moment_{axis}' for axis in 'xyz')
-    kinds = [(CLOCK, 'how much later than the commands the states are stamped', 's',
-              ('actuation_delay.delay',), (0.02,))]
-    kinds += [('rate_bias', 'bias of the rate', 'rad/s', rate, (spread,) * 3)
+    known = all(track.late is not None for track in tracks)
+    if known and any(track.late[0] for track in tracks):
+        clock = max(REST, REST_SHARE * max(track.period for track in tracks)), LIKELY
+    else:
+        clock = APART, RARE
+    kinds = [(CLOCK, CLOCK_TITLE, 's', ('actuation_delay.delay',), clock[:1], clock[1])]
+    kinds += [('rate_bias', 'bias of the rate', 'rad/s', rate, (spread,) * 3, RARE)
               for spread in (0.01, 0.003)]
-    kinds += [('attitude_bias', 'tilt of the attitude', 'rad', tilt, (spread,) * 3)
+    kinds += [('attitude_bias', 'tilt of the attitude', 'rad', tilt, (spread,) * 3, RARE)
               for spread in (0.005, 0.0015)]
     kinds.append(('trim_moment', 'moment', 'N m', moment,
-                  (0.02 * lever, 0.02 * lever, 0.05 * twist)))
-    return tuple(Nuisance(name, title, unit, tuple(INDEX[one] for one in columns), spreads)
-                 for name, title, unit, columns, spreads in kinds)
+                  (0.02 * lever, 0.02 * lever, 0.05 * twist), RARE))
+    return tuple(Nuisance(name, title, unit, tuple(INDEX[one] for one in columns), *rest)
+                 for name, title, unit, columns, *rest in kinds)
 
 
 @dataclass(frozen=True, eq=False)

@@ -50,7 +50,7 @@ def told(states, error, z=None):
     count = len(TIMES)
     course = Course(TIMES, np.ones((count, 4)), np.zeros(count))
     flight = Flight('a', course, moved(states, error), np.ones((count, 12), bool),
-                    PERIOD, np.arange(0, count - 51, 50), 50)
+                    PERIOD, None, np.arange(0, count - 51, 50), 50)
     white = quick_noise(error.reshape(-1, 50, 12))
     found = measurement_noise([flight], [nominal(VEHICLE) if z is None else z], white, white)
     return np.array([np.sqrt(np.mean(found[part] ** 2)) for part in GROUPS.values()])

@@ -13,7 +13,7 @@ from quad_ident_ros.diagnose.select import _other_actuator, Selection
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import SENSORS
 from quad_ident_ros.greybox.flights import flight_of, track_of
-from quad_ident_ros.greybox.own import Nuisance, Own
+from quad_ident_ros.greybox.own import Nuisance, Own, RARE
 from quad_ident_ros.greybox.parameters import nominal
 from quad_ident_ros.model.vehicle import load_vehicle
 
@@ -21,7 +21,7 @@ EFFECT, OTHER = Candidate('a', 'a', (0,)), Candidate('b', 'b', (1,))
 
 
 def own(spread):
-    kind = Nuisance('bias', 'bias', 'rad/s', (0,), (spread,))
+    kind = Nuisance('bias', 'bias', 'rad/s', (0,), (spread,), RARE)
     return Candidate('bias', 'bias', (0,), kind)
 
 

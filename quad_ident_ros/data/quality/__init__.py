@@ -11,6 +11,7 @@ from dataclasses import asdict
 import numpy as np
 
 from quad_ident_ros.data.quality import (
+    answer,
     clock,
     columns,
     excitation,
@@ -39,7 +40,7 @@ CHECKS = (columns.known, columns.incomplete, columns.frozen, columns.dead, colum
           units.position_in_millimetres, units.speeds_in_rpm, frames.quaternion, frames.world,
           frames.velocity_in_body, frames.signs, rotors.hover, rotors.count,
           rotors.order_and_spin, thrust.carried, clock.attitude, clock.velocity, clock.commands,
-          saturation.speeds, excitation.axes)
+          answer.commands, saturation.speeds, excitation.axes)
 
 __all__ = ['cautions', 'CHECKS', 'clock_offset', 'ClockOffset', 'command_offset', 'Finding',
            'findings', 'refuse_errors', 'refuse_unfit', 'SEVERITIES', 'velocity_offset']

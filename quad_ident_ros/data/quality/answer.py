@@ -1,0 +1,195 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+How much later than the states the commands are stamped that answer them.
+
+A controller that flies on what is measured hands the noise of its measurements on to the commands.
+What changes from sample to sample in both is hardly motion, so that it tells the time between
+them whatever the vehicle does with the commands, and however late it does that.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from quad_ident_ros.data.frames import conjugate, continuous, multiply, rotate
+from quad_ident_ros.data.quality.finding import Finding
+from quad_ident_ros.data.quality.series import attitudes_of
+
+REACH = 0.1         # s, the largest lag looked for
+SPACING = 2         # samples of the second differences, which see most at a quarter of the rate
+EVEN = 0.05         # periods by which the time from one sample to the next may differ
+FAR = 6.0           # usual sizes from which on a difference is a jump, not noise
+TOLD = 0.5          # share of what changes in the commands that the answer has to explain,
+SHARP = 3.0         # times what is explained at any lag: motion is alike at many, noise at one
+LEAST = 200         # samples that it takes
+MOST = 20_000       # samples that are looked at, those in the middle
+PEAKS = 3           # whole lags from which one with parts of a sample is looked for
+STEPS = 6           # of Gauss-Newton
+WORST = 1e6         # condition of its matrix
+FINEST = 0.02       # samples, the least standard error: what lies between them was never measured
+LATEST = 1e-3       # s, the largest standard error of a lag that is told
+SEVERAL = 5.0       # standard errors, and
+EARLY = 0.002       # s by which commands come before what they answer, where that is a fault
+
+
+@dataclass(frozen=True)
+class Answer:
+    """
+    How much later than the states the commands are stamped that answer them, s.
+
+    lag in the middle of the flight, and std, its standard error; drift s/s by which it grows, 0
+    where none is seen; share: of what changes from sample to sample in the commands, how much the
+    answer explains.
+    """
+
+    lag: float
+    std: float
+    drift: float
+    share: float
+
+
+def answer_of(record):
+    """
+    Return the Answer of the commands of a record to its states, or None where there is none.
+
+    The second differences of the squared commands are regressed on those of position, velocity,
+    attitude and rate, in the body frame, at each lag: a whole number of samples by
+    cross-correlation, refined by Gauss-Newton.
+    """
+    series = _series(record)
+    if series is None:
+        return None
+    period, states, there, commands, told = series
+    reach = min(round(REACH / period), len(states) // 4)
+    shares = _whole_lags(np.where(there[:, None], states, 0.0),
+                         np.where(told[:, None], commands, 0.0), reach)
+    if not np.isfinite(shares).all():
+        return None
+    spline, found = CubicSpline(np.arange(len(states)), states), None
+    for lag in np.argsort(shares)[:-PEAKS - 1:-1] - reach:
+        one = _refined(spline, there, commands, told, float(lag))
+        if one is not None and (found is None or one[2] > found[2]):
+            found = one
+    if found is None or found[2] < max(TOLD, SHARP * np.median(shares)):
+        return None
+    (lag, turn), errors, share = found
+    std, span = max(float(errors[0]), FINEST) * period, 0.5 * len(states)
+    if std > LATEST:
+        return None
+    drift = turn / span if abs(turn) > SEVERAL * errors[1] else 0.0
+    return Answer(float(lag * period), std, float(drift), float(share))
+
+
+def _series(record):
+    """
+    Return what changes from sample to sample on an even grid, or None without a controller's.
+
+    Period s, states (N, 12) and whether they are known, commands (N, n) and whether they are.
+    """
+    names, q = record.numbered('cmd'), attitudes_of(record)
+    columns = ('px', 'py', 'pz', 'vx', 'vy', 'vz', 'wx', 'wy', 'wz')
+    if not names or q is None or not record.has(*columns) or len(record) < LEAST:
+        return None
+    middle = slice(max(0, (len(record) - MOST) // 2), (len(record) + MOST) // 2)
+    t, q = record.t[middle], continuous(q[middle])
+    values, squared = record.stack(*columns)[middle], record.stack(*names)[middle] ** 2
+    period, n = record.period(), SPACING
+    even = np.append(0, np.cumsum(np.abs(np.diff(t) - period) < EVEN * period))
+    told = even[2 * n:] - even[:-2 * n] == 2 * n
+    back = conjugate(q[n:-n])
+    turned = sum(2.0 * multiply(back, one)[:, 1:] for one in (q[2 * n:], q[:-2 * n]))
+    moved = _second(values)
+    states = np.hstack([rotate(back, moved[:, :3]), rotate(back, moved[:, 3:6]), turned,
+                        moved[:, 6:]])
+    usual = np.median(np.abs(states[told]), axis=0) if told.any() else np.zeros(12)
+    if told.sum() < LEAST or not (usual > 0.0).all():
+        return None
+    there = told & (np.abs(states) < FAR * 1.4826 * usual).all(axis=1)
+    place = np.round((t[n:-n] - t[n]) / period).astype(int)
+    if place[-1] > 5 * MOST:    # hardly any of it was recorded
+        return None
+    return (period, *_spread(states / usual, there, place),
+            *_spread(_second(squared), told, place))
+
+
+def _second(values):
+    """Return second differences (N - 2 SPACING, k) of values (N, k)."""
+    n = SPACING
+    return values[2 * n:] - 2.0 * values[n:-n] + values[:-2 * n]
+
+
+def _spread(values, known, place):
+    """Return values (N, k) at their places on a grid, 0 elsewhere, and whether known there."""
+    out, there = np.zeros((place[-1] + 1, values.shape[1])), np.zeros(place[-1] + 1, bool)
+    out[place[known]], there[place[known]] = values[known], True
+    return out, there
+
+
+def _whole_lags(states, commands, reach):
+    """Return the share of commands (N, n) that states (N, k) so much earlier explain, (R,)."""
+    size = len(states) + reach
+    ahead, after = np.fft.rfft(states, size, axis=0), np.fft.rfft(commands, size, axis=0)
+    cross = np.fft.irfft(ahead.conj()[:, :, None] * after[:, None, :], size, axis=0)
+    cross = np.concatenate([cross[size - reach:], cross[:reach + 1]])
+    gram = states.T @ states
+    gram += 1e-9 * np.trace(gram) * np.eye(len(gram))
+    power = np.sum(commands ** 2)
+    if not power > 0.0:
+        return np.full(len(cross), np.nan)
+    return np.sum(cross * np.linalg.solve(gram, cross), axis=(1, 2)) / power
+
+
+def _refined(spline, there, commands, told, lag):
+    """
+    Return what is found around a lag in samples, or None.
+
+    (2,) the lag in the middle and what is added to it at the end, their standard errors, and the
+    share explained there.
+    """
+    place, along = np.arange(len(there)), np.linspace(-1.0, 1.0, len(there))
+    begin, found, now = lag, None, np.array([lag, 0.0])
+    for _ in range(STEPS):
+        at = place - now[0] - now[1] * along
+        low = np.floor(at).astype(int)
+        known = told & (low >= 1) & (low < len(there) - 2)
+        for near in range(-1, 3):
+            known &= there[np.clip(low + near, 0, len(there) - 1)]
+        if known.sum() < LEAST:
+            return None
+        model, target = spline(at[known]), commands[known]
+        gain = np.linalg.lstsq(model, target, rcond=None)[0]
+        rest, slope = target - model @ gain, -spline(at[known], 1) @ gain
+        step, errors = _step(model, rest, [slope, slope * along[known, None]])
+        if step is None:
+            return None
+        found = now, errors, 1.0 - np.sum(rest ** 2) / np.sum(target ** 2)
+        now = now + np.clip(step, -0.5, 0.5)
+        if abs(now[0] - begin) > SPACING:
+            return None
+    return found
+
+
+def _step(model, rest, slopes):
+    """Return the step (2,) along slopes that lessens a rest most, and its standard errors."""
+    # What other gains explain as well says nothing.
+    slopes = np.stack([one - model @ np.linalg.lstsq(model, one, rcond=None)[0]
+                       for one in slopes])
+    curvature = np.tensordot(slopes, slopes, ([1, 2], [1, 2]))
+    if not np.linalg.cond(curvature) < WORST:
+        return None, None
+    inverse = np.linalg.inv(curvature)
+    return (inverse @ np.tensordot(slopes, rest, 2),
+            np.sqrt(np.mean(rest ** 2) * np.diag(inverse)))
+
+
+def commands(record, vehicle):
+    """Find commands that are stamped before the states that they answer."""
+    found = answer_of(record)
+    if found is None or found.lag > -max(EARLY, SEVERAL * found.std):
+        return []
+    return [Finding(
+        'clock_offset', 'warning', 'states against commands',
+        f'the commands answer the states {-1e3 * found.lag:.1f} ± {1e3 * found.std:.1f} ms before '
+        'these are stamped', 'stamp both by one clock; fit and diagnosis move the commands')]
