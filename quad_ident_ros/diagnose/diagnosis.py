@@ -29,7 +29,9 @@ from quad_ident_ros.greybox.noise import near_noise, quick_noise, whole_noise
 from quad_ident_ros.greybox.parameters import NAMES, nominal, SPLIT
 
 SCHEMA = 'quad_ident/diagnosis/1'
-REMAINS = 0.25      # of the noise's gap that structure must make to speak of an unknown effect
+REMAINS = 0.25      # of the noise's gap that structure must make to speak of an unknown effect,
+# where a force or a moment makes one: of a rate that is off no force is the cause.
+MOVES = {'F': ('position', 'velocity'), 'M': ('position', 'velocity', 'attitude', 'rate')}
 # Times the noise's gap from which on what is left is unknown without structure, too. Commands that
 # were lost and clocks that drift show in rates and attitude first.
 BEYOND = {'velocity': 1.25, 'attitude': 1.5}
@@ -97,10 +99,12 @@ def diagnose(records, vehicle, *, hold_out=None, effects=None, on_progress=lambd
     lacks = [where.lacking(one, vehicle, z0 + own, noise) for one, own in learnt.flights]
     on_progress(0.9)
     times = learnt.left_over(z)
-    remains = np.sqrt(max(0.0, max(times.values()) ** 2 - 1.0))
-    beyond = any(times[name] > limit for name, limit in BEYOND.items())
-    unknown = beyond or bool(left) and remains > REMAINS
-    probability = believed(selection.probability, strength, remains if unknown else 0.0)
+    remains = {name: np.sqrt(max(0.0, value ** 2 - 1.0)) for name, value in times.items()}
+    left = [one for one in left
+            if max(remains[name] for name in MOVES[one.channel[0]]) > REMAINS]
+    unknown = bool(left) or any(times[name] > limit for name, limit in BEYOND.items())
+    probability = believed(selection.probability, strength,
+                           max(remains.values()) if unknown else 0.0)
     if unknown:
         z, named = outstanding(z, named, strength, learnt)
         left = left or [unstructured([where.lacking(one, vehicle, z + own, noise)

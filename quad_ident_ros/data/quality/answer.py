@@ -100,18 +100,26 @@ def _series(record):
     told = even[2 * n:] - even[:-2 * n] == 2 * n
     back = conjugate(q[n:-n])
     turned = sum(2.0 * multiply(back, one)[:, 1:] for one in (q[2 * n:], q[:-2 * n]))
-    moved = _second(values)
+    moved, given = _second(values), _second(squared)
     states = np.hstack([rotate(back, moved[:, :3]), rotate(back, moved[:, 3:6]), turned,
                         moved[:, 6:]])
-    usual = np.median(np.abs(states[told]), axis=0) if told.any() else np.zeros(12)
-    if told.sum() < LEAST or not (usual > 0.0).all():
+    if told.sum() < LEAST:
         return None
-    there = told & (np.abs(states) < FAR * 1.4826 * usual).all(axis=1)
+    usual = np.median(np.abs(states[told]), axis=0)
+    if not (usual > 0.0).all():
+        return None
+    there, told = told & _calm(states, told), told & _calm(given, told)
     place = np.round((t[n:-n] - t[n]) / period).astype(int)
     if place[-1] > 5 * MOST:    # hardly any of it was recorded
         return None
     return (period, *_spread(states / usual, there, place),
-            *_spread(_second(squared), told, place))
+            *_spread(given, told, place))
+
+
+def _calm(values, known):
+    """Return which values (N, k) are no jumps beside the usual ones, (N,)."""
+    usual = np.median(np.abs(values[known]), axis=0)
+    return (np.abs(values) <= FAR * 1.4826 * usual).all(axis=1)
 
 
 def _second(values):
