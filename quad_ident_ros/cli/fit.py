@@ -8,7 +8,6 @@ import textwrap
 
 from quad_ident_ros.cli.identify import progress_bar
 from quad_ident_ros.cli.options import flights_from
-from quad_ident_ros.data.aligned import aligned
 from quad_ident_ros.data.quality import refuse_unfit
 from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.greybox.cautions import cautions
@@ -64,7 +63,6 @@ def run(options):
                         flights_from(path, options.mapping, options.vehicle)]
         bar.update(task, description='looking for faults')
         quality = [refuse_unfit(record, vehicle) for record in records]
-        records = [aligned(record)[0] for record in records]
         found = fit(records, vehicle, names, lambda share: bar.update(
             task, description='fitting', completed=share))
     found = replace(found, findings=(*found.findings, *cautions(

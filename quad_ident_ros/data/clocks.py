@@ -1,36 +1,78 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Clocks of states and commands, told by what the commands answer."""
+"""Clocks of states and commands of flights, told by what the commands answer."""
+
+from dataclasses import dataclass
 
 import numpy as np
 
-ALIKE = 0.001       # s within which the lags of flights are one
-LEAST = 0.0005      # s of an offset that is worth moving commands for
-PROMPT = 0.01       # s, a lag that a controller may well have
+from quad_ident_ros.data.aligned import aligned
+from quad_ident_ros.data.quality.answer import answer_of, CLEAR
+
+ALIKE = 0.001, 0.1      # s, or samples if that is more, within which the lags of flights are one
+LEAST = 0.0005          # s of an offset that is worth moving commands for
+PROMPT = 0.01, 1.2      # s, or samples if that is more, of a lag that a controller may well have
 
 
-def usual_lag(answers):
+@dataclass(frozen=True)
+class Clock:
     """
-    Return the lag (s) behind the states at which a controller answers, of Answers or None.
+    How much later than the commands the states of a flight are stamped, as the commands show.
 
-    The one that all flights share, or more than half of them where it is short: their clocks are
-    alike, so that it is the controller's own. Without such a one, and where commands come before
-    what they answer, 0.
+    late s in the middle of the flight, and the drift s/s by which it grows; period s of the
+    record.
     """
-    lags = np.array([one.lag for one in answers if one is not None])
-    near = [lags[np.abs(lags - lag) <= ALIKE] for lag in lags]
-    most = max(near, key=len, default=lags)
-    usual = float(np.mean(most)) if 2 * len(most) > len(answers) else 0.0
-    return max(0.0, usual) if len(most) == len(answers) or usual <= PROMPT else 0.0
+
+    late: float
+    drift: float
+    period: float
+
+    @property
+    def prompt(self):
+        """Return the longest lag, s, that a controller may well have of its own."""
+        return _longer(PROMPT, self.period)
 
 
-def late_states(answer, usual):
+def on_one_clock(records):
     """
-    Return how much later than the commands a flight's states are stamped, (s, s/s), or None.
+    Return for each record itself with its streams aligned, {stream: s} moved, and its Answer.
 
-    In the middle of the flight, and by how much it grows; None where the commands do not show it.
+    No Answer is looked for where streams were moved: which of them commands answer is not known.
     """
-    if answer is None:
-        return None
-    late = usual - answer.lag
-    return late if abs(late) > LEAST else 0.0, -answer.drift
+    found = [aligned(record) for record in records]
+    return [(record, late, None if late else answer_of(record)) for record, late in found]
+
+
+def clocks_of(answers, held_out=()):
+    """
+    Return the Clock, or None where it is not shown, of flights by their Answers or None.
+
+    Those of the flights held out come last; they have no part in those of the others. Lags that
+    are all alike are the controller's own, and so are those that most of the flights share where
+    they are short; beside others, or before what is answered, they are the clocks'.
+    """
+    told, every = [one for one in answers if one is not None], [*answers, *held_out]
+    if max((one.share for one in told), default=0.0) < CLEAR:
+        return [None] * len(every)
+    usual = _usual_lag(told)
+    return [None if one is None else Clock(_worth(usual - one.lag), -one.drift, one.period)
+            for one in every]
+
+
+def _usual_lag(told):
+    lags, period = np.array([one.lag for one in told]), max(one.period for one in told)
+    near = [lags[np.abs(lags - lag) <= _longer(ALIKE, period)] for lag in lags]
+    most = max(near, key=len)
+    usual = float(np.mean(most))
+    shared = len(most) == len(told) or (2 * len(most) > len(told)
+                                        and usual <= _longer(PROMPT, period))
+    return max(0.0, usual) if shared else 0.0
+
+
+def _worth(late):
+    return late if abs(late) > LEAST else 0.0
+
+
+def _longer(limits, period):
+    seconds, samples = limits
+    return max(seconds, samples * period)

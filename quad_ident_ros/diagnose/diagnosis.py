@@ -7,31 +7,28 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from quad_ident_ros import __version__
-from quad_ident_ros.data.aligned import aligned
+from quad_ident_ros.data.clocks import clocks_of, on_one_clock
 from quad_ident_ros.data.record import refuse_twice, same_flight
 from quad_ident_ros.diagnose import gap as gaps
 from quad_ident_ros.diagnose import where
 from quad_ident_ros.diagnose.candidates import candidates
 from quad_ident_ros.diagnose.doubts import doubts_of
 from quad_ident_ros.diagnose.fly_next import fly_next, hidden
-from quad_ident_ros.diagnose.leftover import leftovers, unstructured
+from quad_ident_ros.diagnose.leftover import beside_noise, leftovers, REMAINS, unstructured
 from quad_ident_ros.diagnose.length import refuse_short
 from quad_ident_ros.diagnose.named import believed, named_of, outstanding, Training, without
-from quad_ident_ros.diagnose.own import as_data, own_of
+from quad_ident_ros.diagnose.own import as_data, controllers_own, own_of
 from quad_ident_ros.diagnose.select import select
 from quad_ident_ros.effects.registry import EFFECTS, mapping
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.greybox.errors import UNITS
-from quad_ident_ros.greybox.flights import highest_voltage, tracks_of
+from quad_ident_ros.greybox.flights import highest_voltage, moved, track_of
 from quad_ident_ros.greybox.kinematics import measurement_noise
 from quad_ident_ros.greybox.near import near_flights
 from quad_ident_ros.greybox.noise import near_noise, quick_noise, whole_noise
 from quad_ident_ros.greybox.parameters import NAMES, nominal, SPLIT
 
 SCHEMA = 'quad_ident/diagnosis/1'
-REMAINS = 0.25      # of the noise's gap that structure must make to speak of an unknown effect,
-# where a force or a moment makes one: of a rate that is off no force is the cause.
-MOVES = {'F': ('position', 'velocity'), 'M': ('position', 'velocity', 'attitude', 'rate')}
 # Times the noise's gap from which on what is left is unknown without structure, too. Commands that
 # were lost and clocks that drift show in rates and attitude first.
 BEYOND = {'velocity': 1.25, 'attitude': 1.5}
@@ -80,13 +77,20 @@ def diagnose(records, vehicle, *, hold_out=None, effects=None, on_progress=lambd
         records = [record for record in records if not same_flight(record, hold_out)]
     refuse_twice(records)
     training, test = split(records, hold_out)
-    training, late = zip(*(aligned(record) for record in training), strict=True)
-    test, test_late = aligned(test)
+    records, late, answers = zip(*on_one_clock([*training, test]), strict=True)
+    *training, test = records
     voltage = highest_voltage(training)
-    *tracks, held_out = tracks_of(training, vehicle, voltage, test)
+    clocks = clocks_of(answers[:-1], answers[-1:])
+    *tracks, held_out = (track_of(record, vehicle, voltage, clock)
+                         for record, clock in zip(records, clocks, strict=True))
     flights = near_flights(tracks, vehicle, nominal(vehicle))
     causes = candidates(flights, vehicle, effects)
     selection = select(flights, vehicle, causes, lambda share: on_progress(0.8 * share))
+    prompt = controllers_own(selection, flights)
+    if prompt:
+        *tracks, held_out = (moved(track, prompt) for track in (*tracks, held_out))
+        flights = near_flights(tracks, vehicle, nominal(vehicle))
+        selection = select(flights, vehicle, causes, lambda share: on_progress(0.8 + 0.05 * share))
     z0, kinds = nominal(vehicle), selection.best.own
     noise = noise_of(selection, flights)
     learnt = Training(tuple(zip(tracks, selection.best.estimate.own.vectors(np.zeros(len(z0))),
@@ -99,12 +103,10 @@ def diagnose(records, vehicle, *, hold_out=None, effects=None, on_progress=lambd
     lacks = [where.lacking(one, vehicle, z0 + own, noise) for one, own in learnt.flights]
     on_progress(0.9)
     times = learnt.left_over(z)
-    remains = {name: np.sqrt(max(0.0, value ** 2 - 1.0)) for name, value in times.items()}
-    left = [one for one in left
-            if max(remains[name] for name in MOVES[one.channel[0]]) > REMAINS]
+    left = [one for one in left if one.remains(times) > REMAINS]
     unknown = bool(left) or any(times[name] > limit for name, limit in BEYOND.items())
     probability = believed(selection.probability, strength,
-                           max(remains.values()) if unknown else 0.0)
+                           beside_noise(max(times.values())) if unknown else 0.0)
     if unknown:
         z, named = outstanding(z, named, strength, learnt)
         left = left or [unstructured([where.lacking(one, vehicle, z + own, noise)
@@ -132,8 +134,7 @@ def diagnose(records, vehicle, *, hold_out=None, effects=None, on_progress=lambd
         'undetermined': open_ones or None, 'sure': known if doubts else None,
         'not_shown': unseen, 'fly_next': proposals,
         'nuisances': as_data(kinds, [own for _, own in learnt.flights], test_own,
-                             [*late, test_late],
-                             [track.late for track in (*tracks, held_out)]),
+                             late, clocks, prompt),
         'flights': [record.info.get('name') for record in training],
         'held_out': test.info.get('name')}
     return Diagnosis(data, selection, z, learnt, held_out, test_own, whole)

@@ -12,6 +12,9 @@ from quad_ident_ros.diagnose.where import CHANNELS, shares
 CHANCE = 1e-6       # of calling structure what is none, per channel
 LAGS = 6            # windows over which what is left may hang together
 FEWEST = 4 * LAGS   # windows from which on this can be told
+REMAINS = 0.25      # of the noise's gap that structure must make to speak of an unknown effect
+# Where a force and a moment make a gap: of a rate that is off no force is the cause.
+MOVES = {'F': ('position', 'velocity'), 'M': ('position', 'velocity', 'attitude', 'rate')}
 
 
 @dataclass(frozen=True)
@@ -22,6 +25,15 @@ class Leftover:
     depends_on: str
     share: float
     chance: float
+
+    def remains(self, times):
+        """Return the gap it may make, in times the noise's, of {group: the gap in these}."""
+        return max(beside_noise(times[name]) for name in MOVES[self.channel[0]])
+
+
+def beside_noise(times):
+    """Return what makes a gap so many times the noise's beside the noise, in times that."""
+    return float(np.sqrt(max(0.0, times ** 2 - 1.0)))
 
 
 def leftovers(flights):

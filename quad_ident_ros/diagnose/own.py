@@ -6,9 +6,11 @@ import numpy as np
 
 from quad_ident_ros.greybox.estimate import estimate
 from quad_ident_ros.greybox.flights import flight_of
-from quad_ident_ros.greybox.own import CLOCK, CLOCK_TITLE, Own
+from quad_ident_ros.greybox.own import APART, CLOCK, CLOCK_TITLE, Own, put_right
 
 WIDE = 1.64     # standard errors below which 95 % lie
+SURE = 2.0      # standard errors by which a delay must exceed what may be the controller's own
+DELAY = 'actuation_delay'
 
 
 def own_of(track, vehicle, z, kinds, noise, segment):
@@ -20,28 +22,47 @@ def own_of(track, vehicle, z, kinds, noise, segment):
     return found.vectors[0] - z
 
 
-def as_data(kinds, training, held_out, late, clocks):
+def controllers_own(selection, flights):
+    """
+    Return the delay (s) that a Selection found where it may be the controller's own lag, or 0.
+
+    Where clocks were put right by what commands answer, a controller that answers late looks like
+    commands that act late. It is counted among the clocks where controllers may well be that late.
+    """
+    best = selection.best
+    [columns] = [cause.columns for cause in best.causes if cause.effect == DELAY] or [()]
+    if not columns or not put_right(flights):
+        return 0.0
+    [column] = columns
+    error = selection.errors[best.estimate.columns.index(column)]
+    delay = best.estimate.z[column]
+    prompt = max(flight.clock.prompt for flight in flights)
+    return float(delay) if delay - SURE * error <= prompt else 0.0
+
+
+def as_data(kinds, training, held_out, late, clocks, prompt):
     """
     Return as data, by Nuisance, what flights and the held-out one have of their own, (Z,).
 
-    late: {stream: s}, what was moved as it was stamped late, and clocks: (s, s/s), how much later
-    than the commands all states are, None where the commands do not show it, of each flight, the
-    held-out one last. Of clocks that none shows also the longest delay (s) that they may hide.
+    late: {stream: s}, what was moved as it was stamped late, and clocks: the Clock, or None, of
+    each flight, the held-out one last; prompt: s of a delay that may be the controller's own lag
+    and is counted with the clocks. Of clocks also the longest delay (s) that they may hide.
     """
     flights = [*training, held_out]
     found = {kind.name: _each(kind.title, kind.unit, [own[list(kind.columns)] for own in flights])
              for kind in kinds}
-    shown = [clock for clock in clocks[:-1] if clock is not None]
-    if CLOCK in found and not shown:
-        [kind] = [kind for kind in kinds if kind.name == CLOCK]
-        fitted = np.ravel(found[CLOCK]['values'])
-        most = float(fitted.mean() + WIDE * kind.spreads[0] / np.sqrt(len(fitted)))
-        found[CLOCK]['hidden_delay'] = most if most > 0 else None
-    offsets = np.array([[clock[0] if clock else 0.0] for clock in clocks])
+    hidden = prompt
+    for kind in kinds:
+        if kind.name == CLOCK and kind.spreads == (APART,):
+            fitted = np.ravel(found[CLOCK]['values'])
+            hidden = float(fitted.mean() + WIDE * APART / np.sqrt(len(fitted)))
+    offsets = np.array([[clock.late + prompt if clock else prompt] for clock in clocks])
     if offsets.any():
         if CLOCK in found:
             offsets += [*found[CLOCK]['values'], found[CLOCK]['held_out']]
         found[CLOCK] = _each(CLOCK_TITLE, 's', offsets)
+    if CLOCK in found:
+        found[CLOCK]['hidden_delay'] = hidden if hidden > 0.0 else None
     for stream in dict.fromkeys(stream for one in late for stream in one):
         found[f'{stream}_clock'] = _each(
             f'how much later than the other states the {stream} is stamped', 's',

@@ -7,11 +7,12 @@ from dataclasses import asdict, dataclass, replace
 import numpy as np
 
 from quad_ident_ros import __version__
+from quad_ident_ros.data.clocks import clocks_of, on_one_clock
 from quad_ident_ros.data.record import refuse_twice
 from quad_ident_ros.effects.registry import mapping
 from quad_ident_ros.greybox.errors import GROUPS, UNITS
 from quad_ident_ros.greybox.estimate import Estimate, estimate
-from quad_ident_ros.greybox.flights import highest_voltage, tracks_of
+from quad_ident_ros.greybox.flights import highest_voltage, track_of
 from quad_ident_ros.greybox.free import columns_of_names, excitation_of, unit_of
 from quad_ident_ros.greybox.identifiable import correlated, freedoms
 from quad_ident_ros.greybox.near import near_flights
@@ -75,7 +76,9 @@ def fit(records, vehicle, names, on_progress=lambda share: None):
     refuse_twice(records)
     voltage = highest_voltage(records)
     start, sizes = as_described(vehicle), limits(vehicle)[2]
-    flights = near_flights(tracks_of(records, vehicle, voltage), vehicle, start)
+    records, _, answers = zip(*on_one_clock(records), strict=True)
+    flights = near_flights([track_of(record, vehicle, voltage, clock) for record, clock in
+                            zip(records, clocks_of(answers), strict=True)], vehicle, start)
     flights = [replace(flight, name=name) for flight, name in
                zip(flights, _apart([flight.name for flight in flights]), strict=True)]
     on_progress(READ)

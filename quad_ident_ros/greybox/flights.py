@@ -6,10 +6,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from quad_ident_ros.data.clocks import late_states, usual_lag
+from quad_ident_ros.data.clocks import Clock
 from quad_ident_ros.data.frames import continuous
 from quad_ident_ros.data.quality import refuse_errors, timing
-from quad_ident_ros.data.quality.answer import answer_of
 from quad_ident_ros.data.quality.glitches import glitches
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.greybox.errors import ERRORS, GROUPS
@@ -30,8 +29,7 @@ class Track:
 
     course: of N samples; states (N, 13) recorded; seen (N, 12) whether each error counts, which
     it does not in rows that were lost and in attitudes that are off; period s, the usual one;
-    late: how much later than the commands the states were stamped, which is mended, s in the
-    middle of the flight and s/s by which it grows; None where it is not known.
+    clock: the Clock by which its commands were moved onto the states, or None where none shows.
     """
 
     name: str
@@ -39,7 +37,7 @@ class Track:
     states: np.ndarray
     seen: np.ndarray
     period: float
-    late: tuple | None
+    clock: Clock | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,26 +53,11 @@ class Flight(Track):
         return self.count * self.period
 
 
-def tracks_of(records, vehicle, reference_voltage=None, held_out=None):
-    """
-    Return the Tracks of records, and of the one held out, if any, as the last.
-
-    Their clocks are put right as far as the commands show them by what they answer, see
-    data/clocks.py. Raises InputError as track_of does.
-    """
-    answers = [answer_of(record) for record in records]
-    usual = usual_lag(answers)
-    if held_out is not None:
-        records, answers = [*records, held_out], [*answers, answer_of(held_out)]
-    return [track_of(record, vehicle, reference_voltage, late_states(answer, usual))
-            for record, answer in zip(records, answers, strict=True)]
-
-
-def track_of(record, vehicle, reference_voltage=None, late=None):
+def track_of(record, vehicle, reference_voltage=None, clock=None):
     """
     Return the Track of a record; InputError where it lacks columns or is too slow.
 
-    Args: reference_voltage V, see dynamics.course_of; late: of the Track, which is mended here.
+    Args: reference_voltage V, see dynamics.course_of; clock: of the Track, put right here.
     """
     refuse_errors(record, timing.slow(record, vehicle))
     course, states = course_of(record, vehicle, reference_voltage), states_of(record)
@@ -86,11 +69,15 @@ def track_of(record, vehicle, reference_voltage=None, late=None):
     if skip > 1:
         course, states, seen = _thinned(course, states, seen, skip)
         period *= skip
-    if late is not None:
-        stamps, (offset, drift) = course.stamps, late
-        middle = 0.5 * (stamps[0] + stamps[-1])
-        course = replace(course, stamps=stamps + offset + drift * (stamps - middle))
-    return Track(record.info.get('name', 'flight'), course, states, seen, period, late)
+    track = Track(record.info.get('name', 'flight'), course, states, seen, period, clock)
+    return track if clock is None else moved(track, clock.late, clock.drift)
+
+
+def moved(track, late, drift=0.0):
+    """Return a Track with commands so many s later in the middle of the flight, and s/s."""
+    stamps = track.course.stamps
+    stamps = stamps + late + drift * (stamps - 0.5 * (stamps[0] + stamps[-1]))
+    return replace(track, course=replace(track.course, stamps=stamps))
 
 
 def flight_of(track, segment=SEGMENT, every=None):
@@ -107,7 +94,7 @@ def flight_of(track, segment=SEGMENT, every=None):
     if not len(first):
         raise InputError(f'{track.name}: {course.t[-1]:.3g} s without a gap-free stretch of '
                          f'{segment:g} s are too short; give a longer flight')
-    return Flight(track.name, course, track.states, seen, period, track.late, first, count)
+    return Flight(track.name, course, track.states, seen, period, track.clock, first, count)
 
 
 def highest_voltage(records):

@@ -38,6 +38,12 @@ class Nuisance:
     odds: float
 
 
+def put_right(tracks):
+    """Return whether the clocks of all Tracks are known and those of some were apart."""
+    clocks = [track.clock for track in tracks]
+    return None not in clocks and any(clock.late for clock in clocks)
+
+
 def nuisances(vehicle, tracks):
     """
     Return the Nuisances of Tracks of a vehicle.
@@ -51,12 +57,11 @@ def nuisances(vehicle, tracks):
     rate = tuple(f'gyro_bias.{axis}' for axis in 'xyz')
     tilt = tuple(f'attitude_misalignment.{axis}' for axis in ('roll', 'pitch', 'yaw'))
     moment = tuple(f'external_wrench.moment_{axis}' for axis in 'xyz')
-    known = all(track.late is not None for track in tracks)
-    if known and any(track.late[0] for track in tracks):
-        clock = max(REST, REST_SHARE * max(track.period for track in tracks)), LIKELY
-    else:
-        clock = APART, RARE
-    kinds = [(CLOCK, CLOCK_TITLE, 's', ('actuation_delay.delay',), clock[:1], clock[1])]
+    apart, odds = APART, RARE
+    if put_right(tracks):
+        apart = max(REST, REST_SHARE * max(track.clock.period for track in tracks))
+        odds = LIKELY
+    kinds = [(CLOCK, CLOCK_TITLE, 's', ('actuation_delay.delay',), (apart,), odds)]
     kinds += [('rate_bias', 'bias of the rate', 'rad/s', rate, (spread,) * 3, RARE)
               for spread in (0.01, 0.003)]
     kinds += [('attitude_bias', 'tilt of the attitude', 'rad', tilt, (spread,) * 3, RARE)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from quad_ident_ros.data.aligned import STREAMS
-from quad_ident_ros.data.clocks import late_states, usual_lag
+from quad_ident_ros.data.clocks import clocks_of, on_one_clock
 from quad_ident_ros.data.quality import findings
 from quad_ident_ros.data.quality.answer import Answer, answer_of
 from quad_ident_ros.diagnose.diagnosis import diagnose
@@ -92,28 +92,45 @@ def test_without_commands_or_in_a_short_record_there_is_no_answer():
     assert answer_of(record.slice(0, 150)) is None
 
 
-def of(*lags):
-    return [None if lag is None else Answer(lag, 2e-4, 0.0, 0.9) for lag in lags]
+def of(*lags, share=0.9, period=0.01):
+    return [None if lag is None else Answer(lag, 2e-4, 0.0, share, period) for lag in lags]
 
 
-@pytest.mark.parametrize(('lags', 'usual'), [
-    ((0.0, 0.0, 0.0), 0.0),
-    ((0.004, 0.004, 0.0042), 0.00407),      # the controller's own
-    ((0.015, 0.0152, 0.015), 0.01507),
-    ((0.004, 0.004, 0.024), 0.004),         # one flight has another clock
-    ((0.025, 0.0255, 0.015), 0.0),          # two are alike by chance
-    ((0.02, -0.015, 0.012), 0.0),
-    ((-0.02, -0.02, -0.02), 0.0),           # nobody answers beforehand
-    ((None, None, 0.004), 0.0), ((), 0.0)])
-def test_a_lag_that_flights_share_is_the_controllers_own(lags, usual):
-    assert usual_lag(of(*lags)) == pytest.approx(usual, abs=1e-4)
+@pytest.mark.parametrize(('lags', 'late'), [
+    ((0.0, 0.0, 0.0), (0, 0, 0)),
+    ((0.004, 0.004, 0.0042), (0, 0, 0)),            # the controller's own
+    ((0.015, 0.0152, 0.015), (0, 0, 0)),
+    ((0.004, 0.004, 0.024), (0, 0, -0.02)),         # one flight has another clock
+    ((0.01, 0.01, None, -0.01), (0, 0, None, 0.02)),
+    ((0.025, 0.0255, 0.015), (-0.025, -0.0255, -0.015)),    # two are alike by chance
+    ((0.02, -0.015, 0.012), (-0.02, 0.015, -0.012)),
+    ((-0.02, -0.02, -0.02), (0.02, 0.02, 0.02)),    # nobody answers beforehand
+    ((None, None, 0.004), (None, None, 0)), ((None, None), (None, None))])
+def test_a_lag_that_flights_share_is_the_controllers_own(lags, late):
+    clocks = clocks_of(of(*lags))
+    assert [clock and clock.late for clock in clocks] == [
+        one if one is None else pytest.approx(one, abs=2e-4) for one in late]
 
 
-def test_states_are_late_by_what_an_answer_comes_too_early():
-    [early, usual, unknown] = of(-0.02, 0.0043, None)
-    assert late_states(early, 0.004)[0] == pytest.approx(0.024)
-    assert late_states(usual, 0.004)[0] == 0.0
-    assert late_states(unknown, 0.004) is None
+def test_faint_answers_count_beside_a_clear_one_only():
+    clear, [faint] = of(0.0, -0.02), of(-0.015, share=0.55)
+    assert clocks_of([*clear, faint])[2].late == pytest.approx(0.015)
+    assert clocks_of([faint]) == [None]
+
+
+def test_the_flight_held_out_has_no_part_in_the_clocks_of_the_others():
+    first, second, held_out = of(0.004, 0.004, 0.03)
+    assert [one.late for one in clocks_of([first, second], [held_out])] == [
+        0.0, 0.0, pytest.approx(-0.026)]
+    assert clocks_of([None, None], [held_out]) == [None, None, None]
+    assert clocks_of([None, None], [None]) == [None, None, None]
+
+
+def test_streams_that_were_moved_leave_open_which_of_them_is_answered():
+    record = stamped(flown(), 0.02, streams=('pose', 'velocity'))
+    [(moved, late, answer)] = on_one_clock([record])
+    assert late.keys() == {'pose', 'velocity'} and answer is None
+    assert len(moved) < len(record)
 
 
 def test_a_delay_is_told_beside_clocks_that_differ():
@@ -125,7 +142,7 @@ def test_a_delay_is_told_beside_clocks_that_differ():
     assert abs(delay['value'] - 0.017) < 3 * delay['std'] < 0.006
     clocks = data['nuisances']['clock_offset']
     assert np.ravel([*clocks['values'], clocks['held_out']]) == pytest.approx(LATE, abs=0.003)
-    assert 'hidden_delay' not in clocks
+    assert clocks['hidden_delay'] is None
 
 
 def test_clocks_that_are_alike_in_all_flights_are_no_delay():
@@ -136,6 +153,36 @@ def test_clocks_that_are_alike_in_all_flights_are_no_delay():
     [finding] = [one for one in findings(flights[0], VEHICLE) if one.code == 'clock_offset']
     assert 'before these are stamped' in finding.message
     assert not [one for one in findings(flown(), VEHICLE) if one.code == 'clock_offset']
+
+
+def answering_late(seed):
+    """Return a flight whose commands come and act 0.01 s after what they answer."""
+    record = flown(seed, {'actuation_delay': {'delay': 0.01}})
+    columns = {name: values[:-1] if name[:3] == 'cmd' else values[1:]
+               for name, values in record.columns.items()}
+    return replace(record, t=record.t[1:], columns=columns)
+
+
+def test_a_lag_of_the_controller_is_no_delay_whatever_the_clocks():
+    """Beside clocks that differ no record tells it from commands that act late by as much."""
+    one_clock = [answering_late(seed) for seed in range(3)]
+    assert answer_of(one_clock[0]).lag == pytest.approx(0.01, abs=1e-3)
+    data = diagnose(one_clock, VEHICLE).data
+    assert data['verdict'] == ['none'] and data['nuisances'] is None
+    late = (0.0, 0.021, -0.014)
+    data = diagnose([stamped(record, one) for record, one in zip(one_clock, late, strict=True)],
+                    VEHICLE).data
+    assert data['verdict'] == ['none']
+    clocks = data['nuisances']['clock_offset']
+    assert np.ravel([*clocks['values'], clocks['held_out']]) == pytest.approx(late, abs=0.003)
+    assert clocks['hidden_delay'] == pytest.approx(0.01, abs=0.003)
+
+
+def test_clocks_that_drift_are_put_right():
+    flights = [stamped(flown(seed, duration=30.0), 0.012, drift=8e-4) for seed in range(3)]
+    data = diagnose(flights, VEHICLE).data
+    assert data['verdict'] == ['none']
+    assert data['gap']['after']['rate'] < 1.1 * data['gap']['noise']['rate']
 
 
 def test_a_fit_puts_the_clocks_right_too():

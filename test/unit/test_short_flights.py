@@ -8,7 +8,7 @@ import pytest
 from quad_ident_ros.cli.main import main
 from quad_ident_ros.data.csv import write_csv
 from quad_ident_ros.diagnose.diagnosis import diagnose
-from quad_ident_ros.diagnose.leftover import FEWEST, leftovers
+from quad_ident_ros.diagnose.leftover import FEWEST, Leftover, leftovers, REMAINS
 from quad_ident_ros.diagnose.length import SHORTEST
 from quad_ident_ros.diagnose.where import Lacking
 from quad_ident_ros.errors import InputError
@@ -66,3 +66,13 @@ def test_few_windows_tell_nothing_of_what_is_left(count):
     with_more = leftovers([structured(count), structured(100)])
     assert with_more == leftovers([structured(100)])
     assert with_more[0].channel == 'Fx' and with_more[0].depends_on == 'speed'
+
+
+@pytest.mark.parametrize(('channel', 'off', 'matters'), [
+    ('Fx', 'rate', False), ('Fx', 'attitude', False), ('Fx', 'velocity', True),
+    ('Mx', 'rate', True), ('Mx', 'velocity', True), ('Mx', None, False)])
+def test_structure_matters_where_it_makes_a_gap(channel, off, matters):
+    """Lost commands make rates that are off, which no force does."""
+    times = dict.fromkeys(('position', 'velocity', 'attitude', 'rate'), 1.02) | {off: 1.3}
+    one = Leftover(channel, 'the time', 0.6, 1e-9)
+    assert (one.remains(times) > REMAINS) is matters

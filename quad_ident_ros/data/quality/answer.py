@@ -22,12 +22,17 @@ SPACING = 2         # samples of the second differences, which see most at a qua
 EVEN = 0.05         # periods by which the time from one sample to the next may differ
 FAR = 6.0           # usual sizes from which on a difference is a jump, not noise
 TOLD = 0.5          # share of what changes in the commands that the answer has to explain,
+CLEAR = 0.7         # and that of the flight where it is clearest: the vehicle's response may be
+                    # taken for an answer, but explains less
 SHARP = 3.0         # times what is explained at any lag: motion is alike at many, noise at one
+SMOOTH = 0.7        # correlation with the next sample of what explains it: noise has less
 LEAST = 200         # samples that it takes
 MOST = 20_000       # samples that are looked at, those in the middle
+SPARSE = 4          # times as many as were recorded, from which on hardly any of them were
 PEAKS = 3           # whole lags from which one with parts of a sample is looked for
 STEPS = 6           # of Gauss-Newton
 WORST = 1e6         # condition of its matrix
+RIDGE = 1e-9        # of the trace, that keeps least squares solvable
 FINEST = 0.02       # samples, the least standard error: what lies between them was never measured
 LATEST = 1e-3       # s, the largest standard error of a lag that is told
 SEVERAL = 5.0       # standard errors, and
@@ -41,13 +46,14 @@ class Answer:
 
     lag in the middle of the flight, and std, its standard error; drift s/s by which it grows, 0
     where none is seen; share: of what changes from sample to sample in the commands, how much the
-    answer explains.
+    answer explains; period s of the record.
     """
 
     lag: float
     std: float
     drift: float
     share: float
+    period: float
 
 
 def answer_of(record):
@@ -79,7 +85,7 @@ def answer_of(record):
     if std > LATEST:
         return None
     drift = turn / span if abs(turn) > SEVERAL * errors[1] else 0.0
-    return Answer(float(lag * period), std, float(drift), float(share))
+    return Answer(float(lag * period), std, float(drift), float(share), period)
 
 
 def _series(record):
@@ -110,7 +116,7 @@ def _series(record):
         return None
     there, told = told & _calm(states, told), told & _calm(given, told)
     place = np.round((t[n:-n] - t[n]) / period).astype(int)
-    if place[-1] > 5 * MOST:    # hardly any of it was recorded
+    if place[-1] > SPARSE * len(t):
         return None
     return (period, *_spread(states / usual, there, place),
             *_spread(given, told, place))
@@ -142,7 +148,7 @@ def _whole_lags(states, commands, reach):
     cross = np.fft.irfft(ahead.conj()[:, :, None] * after[:, None, :], size, axis=0)
     cross = np.concatenate([cross[size - reach:], cross[:reach + 1]])
     gram = states.T @ states
-    gram += 1e-9 * np.trace(gram) * np.eye(len(gram))
+    gram += RIDGE * np.trace(gram) * np.eye(len(gram))
     power = np.sum(commands ** 2)
     if not power > 0.0:
         return np.full(len(cross), np.nan)
@@ -167,10 +173,11 @@ def _refined(spline, there, commands, told, lag):
         if known.sum() < LEAST:
             return None
         model, target = spline(at[known]), commands[known]
-        gain = np.linalg.lstsq(model, target, rcond=None)[0]
-        rest, slope = target - model @ gain, -spline(at[known], 1) @ gain
+        gain = _gain(model, target)
+        said, slope = model @ gain, -spline(at[known], 1) @ gain
+        rest = target - said
         step, errors = _step(model, rest, [slope, slope * along[known, None]])
-        if step is None:
+        if step is None or _smooth(said, known):
             return None
         found = now, errors, 1.0 - np.sum(rest ** 2) / np.sum(target ** 2)
         now = now + np.clip(step, -0.5, 0.5)
@@ -179,11 +186,25 @@ def _refined(spline, there, commands, told, lag):
     return found
 
 
+def _gain(model, target):
+    """Return what a target (N, n) is in terms of a model (N, k) by least squares, (k, n)."""
+    gram = model.T @ model
+    gram += RIDGE * np.trace(gram) * np.eye(len(gram))
+    return np.linalg.solve(gram, model.T @ target)
+
+
+def _smooth(said, known):
+    """Return whether what was said (K, n), at the known ones of samples (N,), is motion."""
+    next_to = np.flatnonzero(known[:-1] & known[1:])
+    row = np.cumsum(known) - 1
+    one, other = said[row[next_to]], said[row[next_to + 1]]
+    return np.sum(one * other) > SMOOTH * np.sqrt(np.sum(one ** 2) * np.sum(other ** 2))
+
+
 def _step(model, rest, slopes):
     """Return the step (2,) along slopes that lessens a rest most, and its standard errors."""
     # What other gains explain as well says nothing.
-    slopes = np.stack([one - model @ np.linalg.lstsq(model, one, rcond=None)[0]
-                       for one in slopes])
+    slopes = np.stack([one - model @ _gain(model, one) for one in slopes])
     curvature = np.tensordot(slopes, slopes, ([1, 2], [1, 2]))
     if not np.linalg.cond(curvature) < WORST:
         return None, None
@@ -195,7 +216,8 @@ def _step(model, rest, slopes):
 def commands(record, vehicle):
     """Find commands that are stamped before the states that they answer."""
     found = answer_of(record)
-    if found is None or found.lag > -max(EARLY, SEVERAL * found.std):
+    if (found is None or found.share < CLEAR
+            or found.lag > -max(EARLY, SEVERAL * found.std)):
         return []
     return [Finding(
         'clock_offset', 'warning', 'states against commands',
