@@ -78,6 +78,8 @@ def answer_of(record):
         one = _refined(spline, there, commands, told, float(lag))
         if one is not None and (found is None or one[2] > found[2]):
             found = one
+        if found is not None and found[2] > CLEAR:   # the sides of a peak explain less
+            break
     if found is None or found[2] < max(TOLD, SHARP * np.median(shares)):
         return None
     (lag, turn), errors, share = found
