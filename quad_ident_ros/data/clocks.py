@@ -11,7 +11,8 @@ from quad_ident_ros.data.quality.answer import answer_of, CLEAR
 
 ALIKE = 0.001, 0.1      # s, or samples if that is more, within which the lags of flights are one
 LEAST = 0.0005          # s of an offset that is worth moving commands for
-PROMPT = 0.01, 1.2      # s, or samples if that is more, of a lag that a controller may well have
+PROMPT = 0.005          # s, the longest lag that controllers usually have of their own
+SURE = 2.0              # standard errors that tell two lags apart
 
 
 @dataclass(frozen=True)
@@ -26,11 +27,6 @@ class Clock:
     late: float
     drift: float
     period: float
-
-    @property
-    def prompt(self):
-        """Return the longest lag, s, that a controller may well have of its own."""
-        return _longer(PROMPT, self.period)
 
 
 def on_one_clock(records):
@@ -61,18 +57,29 @@ def clocks_of(answers, held_out=()):
 
 def _usual_lag(told):
     lags, period = np.array([one.lag for one in told]), max(one.period for one in told)
-    near = [lags[np.abs(lags - lag) <= _longer(ALIKE, period)] for lag in lags]
+    near = [lags[np.abs(lags - lag) <= _alike(period)] for lag in lags]
     most = max(near, key=len)
     usual = float(np.mean(most))
-    shared = len(most) == len(told) or (2 * len(most) > len(told)
-                                        and usual <= _longer(PROMPT, period))
+    shared = len(most) == len(told) or (
+        2 * len(most) > len(told) and controllers_own(usual, max(one.std for one in told), period))
     return max(0.0, usual) if shared else 0.0
+
+
+def controllers_own(lag, error, period):
+    """
+    Return whether a lag and its standard error (s) may be those of a controller.
+
+    They are short, or of one sample: then a row of the record has a command and what it answers
+    in the row before.
+    """
+    return (lag - SURE * error <= PROMPT
+            or abs(lag - period) <= SURE * error + _alike(period))
 
 
 def _worth(late):
     return late if abs(late) > LEAST else 0.0
 
 
-def _longer(limits, period):
-    seconds, samples = limits
+def _alike(period):
+    seconds, samples = ALIKE
     return max(seconds, samples * period)

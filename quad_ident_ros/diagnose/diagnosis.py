@@ -17,7 +17,7 @@ from quad_ident_ros.diagnose.fly_next import fly_next, hidden
 from quad_ident_ros.diagnose.leftover import beside_noise, leftovers, REMAINS, unstructured
 from quad_ident_ros.diagnose.length import refuse_short
 from quad_ident_ros.diagnose.named import believed, named_of, outstanding, Training, without
-from quad_ident_ros.diagnose.own import as_data, controllers_own, own_of
+from quad_ident_ros.diagnose.own import as_data, late_controller, own_of
 from quad_ident_ros.diagnose.select import select
 from quad_ident_ros.effects.registry import EFFECTS, mapping
 from quad_ident_ros.errors import InputError
@@ -86,7 +86,7 @@ def diagnose(records, vehicle, *, hold_out=None, effects=None, on_progress=lambd
     flights = near_flights(tracks, vehicle, nominal(vehicle))
     causes = candidates(flights, vehicle, effects)
     selection = select(flights, vehicle, causes, lambda share: on_progress(0.8 * share))
-    prompt = controllers_own(selection, flights)
+    prompt = late_controller(selection, flights)
     if prompt:
         *tracks, held_out = (moved(track, prompt) for track in (*tracks, held_out))
         flights = near_flights(tracks, vehicle, nominal(vehicle))

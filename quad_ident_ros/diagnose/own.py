@@ -4,12 +4,12 @@
 
 import numpy as np
 
+from quad_ident_ros.data.clocks import controllers_own
 from quad_ident_ros.greybox.estimate import estimate
 from quad_ident_ros.greybox.flights import flight_of
 from quad_ident_ros.greybox.own import APART, CLOCK, CLOCK_TITLE, Own, put_right
 
 WIDE = 1.64     # standard errors below which 95 % lie
-SURE = 2.0      # standard errors by which a delay must exceed what may be the controller's own
 DELAY = 'actuation_delay'
 
 
@@ -22,12 +22,12 @@ def own_of(track, vehicle, z, kinds, noise, segment):
     return found.vectors[0] - z
 
 
-def controllers_own(selection, flights):
+def late_controller(selection, flights):
     """
     Return the delay (s) that a Selection found where it may be the controller's own lag, or 0.
 
     Where clocks were put right by what commands answer, a controller that answers late looks like
-    commands that act late. It is counted among the clocks where controllers may well be that late.
+    commands that act late. It is counted among the clocks where controllers may be that late.
     """
     best = selection.best
     [columns] = [cause.columns for cause in best.causes if cause.effect == DELAY] or [()]
@@ -36,8 +36,8 @@ def controllers_own(selection, flights):
     [column] = columns
     error = selection.errors[best.estimate.columns.index(column)]
     delay = best.estimate.z[column]
-    prompt = max(flight.clock.prompt for flight in flights)
-    return float(delay) if delay - SURE * error <= prompt else 0.0
+    period = max(flight.clock.period for flight in flights)
+    return float(delay) if controllers_own(delay, error, period) else 0.0
 
 
 def as_data(kinds, training, held_out, late, clocks, prompt):

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from quad_ident_ros.data.aligned import STREAMS
-from quad_ident_ros.data.clocks import clocks_of, on_one_clock
+from quad_ident_ros.data.clocks import clocks_of, controllers_own, on_one_clock
 from quad_ident_ros.data.quality import findings
 from quad_ident_ros.data.quality.answer import Answer, answer_of
 from quad_ident_ros.diagnose.diagnosis import diagnose
@@ -110,6 +110,13 @@ def test_a_lag_that_flights_share_is_the_controllers_own(lags, late):
     clocks = clocks_of(of(*lags))
     assert [clock and clock.late for clock in clocks] == [
         one if one is None else pytest.approx(one, abs=2e-4) for one in late]
+
+
+@pytest.mark.parametrize(('lag', 'error', 'own'), [
+    (0.004, 1e-4, True), (0.0093, 1e-4, True), (0.0075, 2e-4, False), (0.0075, 0.002, True),
+    (0.017, 1e-3, False), (0.0002, 1e-4, True)])
+def test_controllers_answer_soon_or_a_row_later(lag, error, own):
+    assert controllers_own(lag, error, period=0.01) is own
 
 
 def test_faint_answers_count_beside_a_clear_one_only():
