@@ -43,12 +43,22 @@ def course_of(record, vehicle, reference_voltage=None):
     Args: reference_voltage V at which the vehicle file holds; without it, or without the column
     vbat, the voltage is taken not to fall. Raises InputError without the commands of all rotors.
     """
-    commands = record.stack(*(f'cmd{j}' for j in range(1, len(vehicle.rotors) + 1)))
+    names = [f'cmd{j}' for j in range(1, len(vehicle.rotors) + 1)]
+    _refuse_without(record, names, 'or u1, u2, u3, u4, the thrust and moments')
+    commands = record.stack(*names)
     drop = np.zeros(len(record))
     if reference_voltage is not None and record.has('vbat'):
         drop = reference_voltage - record.columns['vbat']
     began = record.info.get('began', record.t[0])
     return Course(record.t - began, np.ascontiguousarray(commands), drop)
+
+
+def _refuse_without(record, names, instead):
+    missing = [name for name in names if not record.has(name)]
+    if missing:
+        name = record.info.get('source') or record.info.get('name', 'flight')
+        raise InputError(f'{name} has no column {", ".join(missing)}; give {", ".join(names)}, '
+                         f'{instead}; it has: {", ".join(["t", *record.columns])}')
 
 
 def states_of(record):
@@ -58,6 +68,7 @@ def states_of(record):
     Where the record has phi, theta, psi instead of the quaternion, that is made from them.
     """
     if record.has(*STATES[6:10]) or not record.has('phi', 'theta', 'psi'):
+        _refuse_without(record, STATES[6:10], 'or phi, theta, psi')
         states = record.stack(*STATES)
     else:
         attitude = quaternion_from_euler(record.stack('phi', 'theta', 'psi'))

@@ -65,6 +65,18 @@ def test_a_vehicle_that_cannot_hover_is_found(wrong, said):
         fly_closed_loop(vehicle, {}, 'hover', duration=10.0)
 
 
+@pytest.mark.parametrize(('arms', 'inertia'), [(100.0, 1.0), (1000.0, 1.0), (1.0, 1e3),
+                                                (1.0, 1e4)],
+                         ids=['cm', 'mm', 'g m^2', 'kg cm^2'])
+def test_arms_or_inertia_in_another_unit_are_found(arms, inertia):
+    wrong = replace(VEHICLE, inertia=tuple(inertia * one for one in VEHICLE.inertia), rotors=tuple(
+        replace(rotor, position=tuple(arms * one for one in rotor.position))
+        for rotor in VEHICLE.rotors))
+    [found] = [one for one in findings(flight(), wrong) if one.code == 'vehicle_size']
+    assert found.severity == 'error' and 'kg m^2' in found.remedy
+    assert not [one for one in findings(flight(), VEHICLE) if one.code == 'vehicle_size']
+
+
 def test_saturated_commands_are_found():
     limit = 1080.0
     record = flight()

@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Flights that are too short for a diagnosis, and those that are just long enough."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -76,3 +78,12 @@ def test_structure_matters_where_it_makes_a_gap(channel, off, matters):
     times = dict.fromkeys(('position', 'velocity', 'attitude', 'rate'), 1.02) | {off: 1.3}
     one = Leftover(channel, 'the time', 0.6, 1e-9)
     assert (one.remains(times) > REMAINS) is matters
+
+
+@pytest.mark.parametrize(('gone', 'instead'), [
+    (('qw', 'qx', 'qy', 'qz'), 'phi, theta, psi'),
+    (('cmd1', 'cmd2', 'cmd3', 'cmd4'), 'u1, u2, u3, u4')])
+def test_of_columns_that_are_missing_it_is_said_what_would_do(flight, gone, instead):
+    columns = {name: values for name, values in flight.columns.items() if name not in gone}
+    with pytest.raises(InputError, match=f'has no column {", ".join(gone)}; .*{instead}'):
+        diagnose([replace(flight, columns=columns)], VEHICLE)

@@ -38,7 +38,7 @@ CHECKS = (columns.known, columns.incomplete, columns.frozen, columns.dead, colum
           timing.truncated, timing.reader_notes, stale.held, stale.marked, glitches.attitude,
           units.rates_in_degrees, units.euler_in_degrees, units.force_in_g,
           units.position_in_millimetres, units.speeds_in_rpm, frames.quaternion, frames.world,
-          frames.velocity_in_body, frames.signs, rotors.hover, rotors.count,
+          frames.velocity_in_body, frames.signs, rotors.hover, rotors.size, rotors.count,
           rotors.order_and_spin, thrust.carried, clock.attitude, clock.velocity, clock.commands,
           answer.commands, saturation.speeds, excitation.axes)
 

@@ -15,6 +15,8 @@ SURE, BETTER = 0.5, 0.2   # mean correlation that an explanation needs, and its 
 SLOW = 1.0                # s; what changes more slowly is trim, aerodynamics and battery
 LATEST = 0.08             # s, motors follow their commands within
 ROUNDING = 1e-12          # of a power: less is none
+COMPACT, WIDE = 0.01, 3.0   # moments of inertia over mass arm^2, beyond which no vehicle is built:
+                            # those of known quadrotors lie between 0.16 and 0.32
 MOST_ROTORS = 6           # of which all orders are tried
 
 
@@ -33,6 +35,20 @@ def hover(record, vehicle):
     """Find vehicle files whose vehicle could not hover."""
     fault = hover_fault(vehicle) if vehicle is not None else None
     return [Finding('hover', 'error', 'vehicle file', *fault)] if fault else []
+
+
+def size(record, vehicle):
+    """Find vehicle files whose moments of inertia do not go with mass and arms."""
+    if vehicle is None or not vehicle.arm_length > 0.0:
+        return []
+    shares = np.array(vehicle.inertia[:2]) / (vehicle.mass * vehicle.arm_length ** 2)
+    if COMPACT < shares.min() and shares.max() < WIDE:
+        return []
+    return [Finding(
+        'vehicle_size', 'error', 'vehicle file',
+        f'the moments of inertia about x and y are {shares[0]:.2g} and {shares[1]:.2g} times mass '
+        f'times arm length squared, with arms of {vehicle.arm_length:.3g} m; usual are 0.1 to 0.5',
+        'give the positions of the rotors in m and the inertia in kg m^2')]
 
 
 def order_and_spin(record, vehicle):
