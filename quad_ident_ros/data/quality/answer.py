@@ -86,7 +86,7 @@ def answer_of(record):
     std, span = max(float(errors[0]), FINEST) * period, 0.5 * len(states)
     if std > LATEST:
         return None
-    drift = turn / span if abs(turn) > SEVERAL * errors[1] else 0.0
+    drift = turn / span if abs(turn) > SEVERAL * max(errors[1], FINEST) else 0.0
     return Answer(float(lag * period), std, float(drift), float(share), period)
 
 
