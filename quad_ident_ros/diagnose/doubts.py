@@ -4,12 +4,8 @@
 
 import numpy as np
 
-DOUBT = 0.12        # probability of another effect from which on it is not ruled out
-SURE = 0.88         # probability of an effect from which on it is named without doubt
-INSTEAD = 2.0       # times as probable without a cause as with it that its rival must be
 
-
-def doubts_of(selection, named):
+def doubts_of(selection, named, rules):
     """
     Return the causes between which the flights of a Selection cannot tell; none where they can.
 
@@ -21,16 +17,17 @@ def doubts_of(selection, named):
         total[cause.effect] = total.get(cause.effect, 0.0) + value
     present = {cause.effect for cause in named}
     others = [cause for cause in selection.probability
-              if cause.effect not in present and total[cause.effect] > DOUBT]
+              if cause.effect not in present and total[cause.effect] > rules.doubt]
     found = {}
     for cause in named:
-        rivals = rivals_of(selection, cause, others) if total[cause.effect] < SURE else {}
+        rivals = ({} if total[cause.effect] >= 1.0 - rules.doubt else
+                  rivals_of(selection, cause, others, rules))
         if rivals:
             found |= {cause: selection.best, **rivals}
     return found
 
 
-def rivals_of(selection, cause, others):
+def rivals_of(selection, cause, others, rules):
     """Return {rival: Fitted} of other causes that are there rather where a cause is not."""
     top = max(one.evidence for one in selection.fitted)
     weights = [np.exp(max(one.evidence - top, -700.0)) for one in selection.fitted]
@@ -45,6 +42,6 @@ def rivals_of(selection, cause, others):
     found = {}
     for other in others:
         sets = [one for one in selection.fitted if other in one.causes and cause not in one.causes]
-        if sets and share(other, False) > INSTEAD * share(other, True):
+        if sets and share(other, False) > rules.instead * share(other, True):
             found[other] = max(sets, key=lambda one: one.evidence)
     return found

@@ -8,8 +8,6 @@ import numpy as np
 
 from quad_ident_ros.greybox.own import CLOCK, LIKELY
 
-PRIOR = 3.0         # usual sizes that a parameter's prior is wide
-ODDS = 0.02         # of each cause being present, before looking
 BEAM = 12           # sets kept per size
 MOST = 8            # causes in a set, beside what flights have of their own
 BEHIND = 40.0       # log-evidence behind the best set from which on none grows
@@ -36,9 +34,9 @@ class Quadratic:
     scatter: float
 
 
-def occam(information, wide, scatter, causes):
+def occam(information, wide, scatter, causes, rules):
     """Return the log-evidence that free columns and causes cost."""
-    return _volume(information, wide, scatter) + _odds(causes)
+    return _volume(information, wide, scatter) + _odds(causes, rules)
 
 
 def _volume(information, wide, scatter):
@@ -47,17 +45,17 @@ def _volume(information, wide, scatter):
     return -0.5 * np.linalg.slogdet(np.eye(wide.shape[-1]) + scaled)[1]
 
 
-def _odds(causes):
+def _odds(causes, rules):
     own = [cause.own for cause in causes if cause.own is not None]
     # A sensor with one bias may have others. Clocks have nothing to do with them.
     clocks = [kind.odds for kind in own if kind.name == CLOCK]
     biases = [kind.odds if k == 0 else LIKELY for k, kind in
               enumerate(kind for kind in own if kind.name != CLOCK)]
-    shares = [ODDS] * (len(causes) - len(own)) + clocks + biases
+    shares = [rules.prior_odds] * (len(causes) - len(own)) + clocks + biases
     return sum(np.log(share / (1.0 - share)) for share in shares)
 
 
-def linear_evidence(quadratic, sets, rows):
+def linear_evidence(quadratic, sets, rows, rules):
     """
     Return the log-evidence (N,) of sets of causes, and the distances (N, C) that fit then.
 
@@ -87,7 +85,7 @@ def linear_evidence(quadratic, sets, rows):
     for which, places in _by_size(free, np.arange(len(sets))):
         blocks = quadratic.information[places[:, :, None], places[:, None, :]]
         value[which] += _volume(blocks, quadratic.wide[places], quadratic.scatter)
-    value += [_odds(chosen) if all(mine[rows[cause]].any() for cause in chosen) else -np.inf
+    value += [_odds(chosen, rules) if all(mine[rows[cause]].any() for cause in chosen) else -np.inf
               for chosen, mine in zip(sets, found, strict=True)]
     return value, found
 
@@ -112,7 +110,7 @@ def _solved(quadratic, found, places):
     return now + np.linalg.solve(blocks, (pull - ridge * now)[..., None])[..., 0]
 
 
-def beam(quadratic, causes):
+def beam(quadratic, causes, rules):
     """
     Return [(log-evidence, causes, distances)] of the best sets of causes, best first.
 
@@ -120,7 +118,7 @@ def beam(quadratic, causes):
     best of a size, and two causes of one effect never stand together.
     """
     def entries(sets):
-        values, distances = linear_evidence(quadratic, sets, causes)
+        values, distances = linear_evidence(quadratic, sets, causes, rules)
         return dict(zip(sets, zip(values, sets, distances, strict=True), strict=True))
 
     seen = entries([()])

@@ -1,78 +1,98 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""A set of causes fitted to flights, and how well it explains them."""
+"""A set of effects fitted to flights, and its log evidence."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from quad_ident_ros.diagnose.evidence import occam, PRIOR
-from quad_ident_ros.greybox.estimate import estimate
+from quad_ident_ros.diagnose.candidates import Candidate
+from quad_ident_ros.diagnose.discrepancy import fitted_sizes
+from quad_ident_ros.diagnose.evidence import occam, Quadratic
+from quad_ident_ros.diagnose.frame import blocks_at, Frame
+from quad_ident_ros.diagnose.rules import Rules
+from quad_ident_ros.greybox.estimate import Estimate, estimate
 from quad_ident_ros.greybox.own import Own
 from quad_ident_ros.greybox.parameters import limits, nominal
 
-FIT_STEPS = 5
+FIT_STEPS = 5       # of Gauss and Newton: sets start near where they end
 
 
 @dataclass(frozen=True, eq=False)
 class Fitted:
-    """A set of causes, with what flights have of their own; its Estimate and log-evidence."""
+    """
+    A set of candidates (effects and nuisances), its Estimate and its log evidence.
+
+    sizes: places in the grids of force and moment of the discrepancy that is likeliest with it.
+    """
 
     chosen: tuple
-    estimate: object
+    estimate: Estimate
     evidence: float
+    sizes: tuple
 
     @property
-    def causes(self):
-        """Return the causes that are effects."""
-        return tuple(cause for cause in self.chosen if cause.own is None)
+    def causes(self) -> tuple:
+        """Return the candidates that are effects."""
+        return effects_in(self.chosen)
 
     @property
-    def own(self):
+    def own(self) -> tuple:
         """Return the kinds of Nuisance that flights have of their own."""
         return tuple(cause.own for cause in self.chosen if cause.own)
 
-    def within(self, other):
-        """Return whether another set has more effects, and no less of anything."""
-        return (set(self.causes) < set(other.causes)
-                and {kind.name for kind in self.own} <= {kind.name for kind in other.own})
+
+def effects_in(chosen: tuple) -> tuple:
+    """Return those of a set of candidates that are effects."""
+    return tuple(cause for cause in chosen if cause.own is None)
 
 
-def refitted(flights, vehicle, z, chosen, noise, own, starts, slopes=None, scatter=1.0):
-    """Return the Estimate of a set, from a vector and an Own that has the values to start from."""
-    free = sorted(column for cause in chosen if cause.own is None for column in cause.columns)
-    own = Own.of([cause.own for cause in chosen if cause.own], len(flights), own)
+def refitted(flights, vehicle, z, chosen, noise, own, starts, slopes=None,
+             scatter=1.0, fixed=None) -> Estimate:
+    """
+    Return the Estimate of a set, from a vector and an Own that has the values to start from.
+
+    fixed (F, Z): what is added to each flight's vector, as in Own.
+    """
+    free = sorted(column for cause in effects_in(chosen) for column in cause.columns)
+    own = replace(Own.of([cause.own for cause in chosen if cause.own], len(flights), own),
+                  fixed=fixed)
     return estimate(flights, vehicle, z, free, noise=noise, own=own, starts=starts,
                     iterations=FIT_STEPS, slopes=slopes, scatter=scatter)
 
 
-def fitted_of(chosen, fit, vehicle, scatter):
-    """Return the Fitted of a set and its Estimate."""
-    return Fitted(chosen, fit, evidence_of(fit, chosen, vehicle, scatter))
+def distances_of(chosen: tuple, z: np.ndarray, vehicle) -> dict:
+    """Return {columns: distance of their parameters from no effect} of a set's effects."""
+    away = z - nominal(vehicle)
+    return {cause.columns: away[list(cause.columns)] for cause in effects_in(chosen)}
 
 
-def evidence_of(fit, chosen, vehicle, scatter):
-    """Return the log-evidence of a refitted set."""
-    null, size = nominal(vehicle), limits(vehicle)[2]
+def size_grids(vehicle, noise: list, rules: Rules) -> tuple:
+    """
+    Return rising sizes of an unexplained force (N) and moment (N m), 0 first.
+
+    In steps of 3 about what makes the velocity's and the rate's noise in half a second.
+    """
+    sigma = np.median(noise, axis=0)
+    steps = np.append(0.0, 3.0 ** np.arange(-2.0, 6.0))
+    return (2.0 * vehicle.mass * float(np.mean(sigma[3:6])) * steps,
+            2.0 * float(np.mean(vehicle.inertia)) * float(np.mean(sigma[9:12])) * steps)
+
+
+def fitted_of(chosen: tuple, fit: Estimate, vehicle, frame: Frame, quadratic: Quadratic,
+              rows: dict, grids: tuple, rules: Rules, start: tuple = (0, 0)) -> Fitted:
+    """
+    Return the Fitted of a set and its Estimate: Laplace's approximation of the evidence.
+
+    The residuals count by the likelihood with the discrepancy marginalised out, the volume of the
+    parameters by the information around the Frame's point.
+    """
+    blocks = blocks_at(frame, fit, distances_of(chosen, fit.z, vehicle))
+    value, sizes = fitted_sizes(blocks, rules.form_error, grids, quadratic.scatter, start)
     spreads = np.tile(fit.own.spreads, len(fit.own.values))
-    wide = np.append(PRIOR * size[fit.columns], spreads)
-    distance = np.append((fit.z - null)[fit.columns], fit.own.values) / wide
-    return (-0.5 * fit.cost / scatter - 0.5 * np.sum(distance ** 2)
-            + occam(fit.normal.information, wide, scatter, chosen))
-
-
-def support_of(fit, cause, vehicle):
-    """
-    Return the log-evidence for one cause within a fit, by its standard errors.
-
-    These know how much the noise hangs together in just these directions, as the cost does not.
-    """
-    columns = list(cause.columns)
-    places = [fit.columns.index(column) for column in columns]
-    covariance = fit.covariance[np.ix_(places, places)]
-    size = limits(vehicle)[2][columns]
-    distance = (fit.z[columns] - nominal(vehicle)[columns]) / size
-    scaled = covariance / np.outer(size, size)
-    information = np.linalg.inv(scaled + 1e-12 * np.trace(scaled) * np.eye(len(columns)))
-    return (0.5 * distance @ information @ distance
-            + occam(information, np.full(len(columns), PRIOR), 1.0, [cause]))
+    wide = np.append(rules.prior_width * limits(vehicle)[2][fit.columns], spreads)
+    distance = np.append((fit.z - nominal(vehicle))[fit.columns], fit.own.values) / wide
+    places = [row for cause in chosen for row in rows[cause]]
+    block = quadratic.information[np.ix_(places, places)]
+    return Fitted(chosen, fit, value - 0.5 * float(np.sum(distance ** 2))
+                  + occam(block, quadratic.wide[places], quadratic.scatter, chosen, rules), sizes)

@@ -12,7 +12,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from quad_ident_ros.diagnose.evidence import occam, PRIOR
+from quad_ident_ros.diagnose.evidence import occam
+from quad_ident_ros.diagnose.rules import RULES
 from quad_ident_ros.effects.registry import mapping
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.flight.fly import fly_closed_loop, FULL_VOLTAGE, RATES
@@ -112,7 +113,7 @@ def _with_another(information, selection, one, other):
         if cause.effect not in effects:
             places = _places(selection, [cause])
             block = _left(information, places, known, selection.quadratic)
-            cost = -2.0 * occam(block, selection.quadratic.wide[places], 1.0, [cause])
+            cost = -2.0 * occam(block, selection.quadratic.wide[places], 1.0, [cause], RULES)
             found.append((cost, (*other, cause)))
     return found
 
@@ -130,7 +131,7 @@ def visibility(information, selection, causes, present):
 
     Args: information (C, C); causes looked at; present: those that are known to be there.
     """
-    size, found = selection.quadratic.wide / PRIOR, {}
+    size, found = selection.quadratic.wide / RULES.prior_width, {}
     for cause in causes:
         places = _places(selection, [cause])
         known = _places(selection, [one for one in present if one.effect != cause.effect])

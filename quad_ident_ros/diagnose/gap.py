@@ -14,7 +14,7 @@ import numpy as np
 from quad_ident_ros.greybox.errors import difference, ERRORS, GROUPS, moved
 from quad_ident_ros.greybox.flights import flight_of
 from quad_ident_ros.greybox.linear import STATE_STEP
-from quad_ident_ros.greybox.parameters import SPLIT
+from quad_ident_ros.greybox.parameters import constants_of, SPLIT
 from quad_ident_ros.model.dynamics import predict
 
 HORIZONS = (0.1, 0.5, 1.0)      # s
@@ -36,11 +36,16 @@ class Ends:
 
 
 def ends(track, vehicle, z, horizon):
-    """Return the Ends of predictions along a Track with a parameter vector z (Z,)."""
+    """
+    Return the Ends of predictions along a Track with a parameter vector z (Z,).
+
+    Position and velocity are those given the recorded attitude where the Track has a guide.
+    """
     flight = flight_of(track, horizon, EVERY)
     first = flight.first[flight.seen[flight.first + flight.count].all(axis=1)]
     predicted = predict(vehicle, z[SPLIT:], flight.course, flight.states[first], first,
-                        flight.count, constants=z[None, :SPLIT])
+                        flight.count, constants=constants_of(z[None], vehicle),
+                        guide=flight.guide)
     return Ends(difference(flight.states[first + flight.count], predicted[:, -1]),
                 flight.course.t[first])
 
@@ -70,7 +75,8 @@ def noise_gap(track, vehicle, z, noise, horizon):
     starts = flight.states[chosen]
     everything = np.concatenate([starts, *(moved(starts, move) for move in np.diag(STATE_STEP))])
     out = predict(vehicle, z[SPLIT:], flight.course, everything, np.tile(chosen, 1 + ERRORS),
-                  flight.count, constants=z[None, :SPLIT])[:, -1]
+                  flight.count, constants=constants_of(z[None], vehicle),
+                  guide=flight.guide)[:, -1]
     out = out.reshape(1 + ERRORS, len(chosen), -1)
     carried = difference(out[1:], out[0]) / STATE_STEP[:, None, None] * noise[:, None, None]
     variance = np.sum(carried ** 2, axis=0) + noise ** 2

@@ -1,45 +1,49 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Which effects explain flights: sets of causes compared jointly, each refitted."""
+"""Which effects explain flights: sets of candidates compared jointly, each refitted."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
 from quad_ident_ros.diagnose.candidates import own_candidates
-from quad_ident_ros.diagnose.evidence import beam, key_of, PRIOR, Quadratic
-from quad_ident_ros.diagnose.fitted import evidence_of, Fitted, fitted_of, refitted, support_of
-from quad_ident_ros.diagnose.prune import best_pruned
+from quad_ident_ros.diagnose.evidence import beam, key_of, Quadratic
+from quad_ident_ros.diagnose.fitted import (
+    distances_of,
+    effects_in,
+    Fitted,
+    fitted_of,
+    refitted,
+    size_grids,
+)
+from quad_ident_ros.diagnose.frame import Frame, frame_at, normal_at
+from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.effects.registry import EFFECTS
-from quad_ident_ros.greybox.estimate import estimate, weights_of
-from quad_ident_ros.greybox.linear import errors_along, linear_of, slopes_at
+from quad_ident_ros.greybox.estimate import Estimate, estimate
+from quad_ident_ros.greybox.linear import errors_along
 from quad_ident_ros.greybox.noise import quick_noise, whole_noise
-from quad_ident_ros.greybox.normal import normal_of, scatter_of
+from quad_ident_ros.greybox.normal import scatter_of
 from quad_ident_ros.greybox.own import Layout, Own
 from quad_ident_ros.greybox.parameters import limits, nominal
 
-ROUNDS = 5
+ROUNDS = 6
 REFITS = 3          # sets that are refitted in a round
-PASSES = 4          # times, at most, that the noise is taken anew from what is left
-FAR = 1e4           # scatter from which on a first turn is only there to weigh the errors anew
-KNOWN = 3           # sets found before that a second search begins with
+KEPT = 10           # fitted sets that are judged anew around each new best one
+PASSES = 3          # times, at most, that the noise is taken anew from what is left
 COLOURED = 2.0      # times the noise from sample to sample that all that is left may be
 NEAR = 25.0         # log-evidence behind the best set by the slopes that may be made up for
 LOST = 4.0          # times the scatter that a fit may cost more than a subset does
-CALM = 4.0          # times less scatter that a turn must leave to go on with that
-LEFT = 5.0          # scatter from which on so much is left that a lag is tried for a delay
 UNTRIED = -2.0      # log-evidence that the linear model alone may give a set, beside the best
 
 
 @dataclass(frozen=True, eq=False)
 class Selection:
     """
-    What the flights say of the causes.
+    What the flights say of the candidates.
 
-    best: the Fitted with the most evidence; fitted: it and the others that were refitted, but for
-    those with more effects than it and those that were pruned; probability: of each candidate
-    being present; quadratic, rows: the cost around the best, with all causes free;
-    noise: per flight (12,).
+    best: the Fitted with the most evidence; fitted: it and the others that were refitted;
+    probability: of each candidate effect being present; quadratic, rows: the cost around the
+    best, with all candidates free; noise: per flight (12,); frame: the flights around the best.
     """
 
     best: Fitted
@@ -48,9 +52,10 @@ class Selection:
     quadratic: Quadratic
     rows: dict
     noise: list
+    frame: Frame
 
     @property
-    def errors(self):
+    def errors(self) -> np.ndarray:
         """
         Return the standard errors (C,) of the best set's columns.
 
@@ -66,97 +71,189 @@ class Selection:
         return np.sqrt(np.average(squares, axis=0, weights=shares))
 
 
-def select(flights, vehicle, causes, on_progress=lambda share: None):
+def select(flights, vehicle, causes, rules, on_progress=lambda share: None) -> Selection:
     """
-    Return the Selection among candidate causes for flights of a vehicle.
+    Return the Selection among candidate effects for flights of a vehicle.
 
     The errors are weighed by the noise from sample to sample; where much more than that is left,
-    noise that hangs together or what no cause explains, by all that is left, until it is so.
+    noise that hangs together or what no effect explains, by all that is left, until it is so.
     """
-    found = _select(flights, vehicle, causes, None, (), lambda share: on_progress(0.5 * share))
+    search = _Search(flights, vehicle, causes, rules)
+    search.run(lambda share: on_progress(0.5 * share))
     for again in range(1, 1 + PASSES):
-        whole = [whole_noise(raw, 1.0 - 1.0 / raw.shape[1]) for raw in found.best.estimate.left]
-        ratio = np.median(np.array(whole) / found.noise, axis=0)
+        whole = [whole_noise(raw, 1.0 - 1.0 / raw.shape[1])
+                 for raw in search.best.estimate.left]
+        ratio = np.median(np.array(whole) / search.noise, axis=0)
         if max(np.max(ratio), np.max(1.0 / ratio)) <= COLOURED:
             break
-        # What was found is where the search goes on from: from a far-off model it may get lost.
-        found = _select(flights, vehicle, causes, whole, found.fitted[:KNOWN],
-                        lambda share, rest=0.5 ** again: on_progress(1.0 - rest + 0.5 * rest
-                                                                     * share))
+        search.weigh(whole)
+        search.run(lambda share, rest=0.5 ** again: on_progress(1.0 - rest + 0.5 * rest * share))
     on_progress(1.0)
-    return found
+    return search.selection()
 
 
-def _select(flights, vehicle, causes, noise, known, on_progress):
-    own = own_candidates(vehicle, flights)
-    columns = sorted({column for cause in causes for column in cause.columns})
-    rows = _rows(causes, own, columns, len(flights))
-    starts = [flight.states[flight.first] for flight in flights]
-    noise = noise or [quick_noise(errors_along(flight, vehicle, nominal(vehicle), start))
+class _Search:
+    """Sets of candidates that were fitted, and the best of them."""
+
+    def __init__(self, flights, vehicle, causes, rules):
+        self.flights, self.vehicle, self.causes, self.rules = flights, vehicle, causes, rules
+        self.nuisances = own_candidates(vehicle, flights)
+        self.columns = sorted({column for cause in causes for column in cause.columns})
+        self.rows = _rows(causes, self.nuisances, self.columns, len(flights))
+        starts = [flight.states[flight.first] for flight in flights]
+        self.noise = [quick_noise(errors_along(flight, vehicle, nominal(vehicle), start))
                       for flight, start in zip(flights, starts, strict=True)]
-    tried = {(): estimate(flights, vehicle, nominal(vehicle), [], noise=noise, iterations=2)}
-    for one in known:
-        tried[one.chosen] = refitted(flights, vehicle, one.estimate.z, one.chosen, noise,
-                                     one.estimate.own, one.estimate.starts)
-    best, scatter = (known[0].chosen if known else ()), 1.0
-    for turn in range(ROUNDS):
-        around = tried[best]
-        quadratic, slopes = quadratic_at(flights, vehicle, around, columns, own)
-        tried[best] = refitted(flights, vehicle, around.z, best, noise, around.own,
-                               around.starts, slopes)
-        scatter = quadratic.scatter
-        ranked = beam(quadratic, rows)
-        for chosen, found in _promising(ranked, tried):
-            start = nominal(vehicle)
-            lower, upper, _ = limits(vehicle)
-            start[columns] += found[:len(columns)]
+        self.tried = {(): estimate(flights, vehicle, nominal(vehicle), [], noise=self.noise,
+                                   iterations=2)}
+        self.best, self.judged, self.ranked = None, {}, []
+        self.frame = self.quadratic = None
+
+    def weigh(self, noise):
+        """Weigh the residuals by another noise; the best sets so far are where to go on from."""
+        self.noise = noise
+        known = self.order()[:REFITS]
+        self.tried = {(): self.tried[()]} | {one.chosen: one.estimate for one in known}
+        self.tried = {key: refitted(self.flights, self.vehicle, fit.z, key, noise, fit.own,
+                                    fit.starts) for key, fit in self.tried.items()}
+
+    def run(self, on_progress):
+        """Look for better sets around the best one until there is none."""
+        best = self.best.chosen if self.best else ()
+        self.judged = {}
+        for turn in range(ROUNDS):
+            self.stand_at(best)
+            self.judge(best)
+            self.ranked = beam(self.quadratic, self.rows, self.rules)
+            self.try_promising()
+            self.best = self.order()[0]
+            on_progress((turn + 1) / ROUNDS)
+            if self.best.chosen == best:
+                break
+            best = self.best.chosen
+
+    def stand_at(self, chosen):
+        """Linearise around a fitted set; those judged before are judged anew, the best of them."""
+        fit = self.tried[chosen]
+        everyone = Own.of([one.own for one in self.nuisances], len(self.flights), fit.own)
+        layout = Layout(self.columns, everyone.columns, len(self.flights))
+        self.frame = frame_at(self.flights, self.vehicle, fit, layout.wanted, self.rules)
+        grids = size_grids(self.vehicle, self.noise, self.rules)
+        before = [one.chosen for one in self.order()[:KEPT]]
+        sizes = self.judged[chosen].sizes if chosen in self.judged else (0, 0)
+        self.quadratic = self.quadratic_of(fit, chosen, layout, everyone, grids, sizes)
+        self.grids, self.judged = grids, {}
+        self.judge(chosen)
+        # Now that the size of the discrepancy is known around here.
+        self.quadratic = self.quadratic_of(fit, chosen, layout, everyone, grids,
+                                           self.judged[chosen].sizes)
+        self.judged = {}
+        for key in before:
+            self.judge(key)
+
+    def quadratic_of(self, fit, chosen, layout, everyone, grids, sizes):
+        """Return the Quadratic around an Estimate, all candidates free."""
+        normal = normal_at(self.frame, self.flights, fit, layout,
+                           distances_of(chosen, fit.z, self.vehicle),
+                           tuple(grid[k] for grid, k in zip(grids, sizes, strict=True)),
+                           self.rules)
+        lower, upper, size = limits(self.vehicle)
+        null = nominal(self.vehicle)[self.columns]
+        spreads = np.tile(everyone.spreads, len(self.flights))
+        beyond = np.full(len(spreads), np.inf)
+        scatter = float(np.median(scatter_of(normal)[:len(self.columns)]))
+        return Quadratic(normal.information, normal.gradient, normal.cost,
+                         np.append(fit.z[self.columns] - null, everyone.values),
+                         np.append(self.rules.prior_width * size[self.columns], spreads),
+                         np.append(lower[self.columns] - null, -beyond),
+                         np.append(upper[self.columns] - null, beyond), scatter)
+
+    def judge(self, chosen):
+        """Find the log evidence of a set that was fitted."""
+        if chosen not in self.judged:
+            start = self.best.sizes if self.best else (0, 0)
+            self.judged[chosen] = fitted_of(chosen, self.tried[chosen], self.vehicle, self.frame,
+                                            self.quadratic, self.rows, self.grids, self.rules,
+                                            start)
+        return self.judged[chosen]
+
+    def order(self):
+        """Return the Fitted sets, the one with the most evidence first."""
+        return sorted(self.judged.values(), key=lambda one: -one.evidence)
+
+    def try_promising(self):
+        """Fit the sets that the linear model finds promising, and judge them."""
+        around, slopes = self.frame.slopes, self.frame.slopes
+        for chosen, distances in _promising(self.ranked, self.tried):
+            start = nominal(self.vehicle)
+            lower, upper, _ = limits(self.vehicle)
+            start[self.columns] += distances[:len(self.columns)]
             start = np.clip(start, lower, upper)
-            everyone = Own.of([one.own for one in own], len(flights))
-            everyone.values.flat[:] = found[len(columns):]
-            tried[chosen] = refitted(flights, vehicle, start, chosen, noise, everyone,
-                                     around.starts, slopes, scatter)
-            tried[chosen] = _found_again(flights, vehicle, chosen, tried, noise, scatter)
-        scatter = _calmed(scatter, tried)
-        if scatter > LEFT:
-            for chosen, start in _other_actuator(best, causes, around.z, vehicle):
-                if chosen not in tried:
-                    tried[chosen] = refitted(flights, vehicle, start, chosen, noise, around.own,
-                                             around.starts, scatter=scatter)
-        before, best = best, max(tried, key=lambda key: evidence_of(tried[key], key, vehicle,
-                                                                    scatter))
-        on_progress((turn + 1) / ROUNDS)
-        if best == before or not known and scatter > FAR:
-            break
-    chosen, pruned, missed, gone = best_pruned(flights, vehicle, best, tried, noise, scatter)
-    others = sorted((fitted_of(key, tried[key], vehicle, scatter) for key in tried
-                     if key not in {chosen.chosen, *gone}), key=lambda one: -one.evidence)
-    fitted = (chosen, *(one for one in others if not chosen.within(one)))
-    probability = _probabilities(fitted, ranked, causes, tried)
-    support = pruned | {cause: support_of(chosen.estimate, cause, vehicle)
-                        for cause in chosen.causes if cause not in missed}
-    for cause, value in support.items():
-        probability[cause] = min(probability[cause], float(1.0 / (1.0 + np.exp(-min(value, 50)))))
-    return Selection(chosen, fitted, probability, quadratic, rows, noise)
+            everyone = Own.of([one.own for one in self.nuisances], len(self.flights))
+            everyone.values.flat[:] = distances[len(self.columns):]
+            self.fit(chosen, start, everyone, around.starts, slopes)
+        for chosen, start in _other_actuator(self.best_key(), self.causes,
+                                             self.tried[self.best_key()].z, self.vehicle):
+            if chosen not in self.tried and self.quadratic.scatter > LOST:
+                fit = self.tried[self.best_key()]
+                self.fit(chosen, start, fit.own, fit.starts, None)
+
+    def best_key(self):
+        """Return the set around which the flights are linearised."""
+        return self.order()[0].chosen
+
+    def fit(self, chosen, z, own, starts, slopes):
+        """Fit a set from a vector, and once more from its best subset where it gets lost."""
+        scatter = self.quadratic.scatter
+        fit = refitted(self.flights, self.vehicle, z, chosen, self.noise, own, starts, slopes,
+                       scatter)
+        subsets = [one for key, one in self.tried.items() if set(key) < set(chosen)]
+        near = min(subsets, key=lambda one: one.cost, default=fit)
+        if fit.cost > near.cost + LOST * scatter:
+            again = refitted(self.flights, self.vehicle, near.z, chosen, self.noise, near.own,
+                             near.starts)
+            fit = min(fit, again, key=lambda one: one.cost)
+        self.tried[chosen] = fit
+        self.judge(chosen)
+
+    def selection(self):
+        """Return the Selection."""
+        fitted = tuple(self.order())
+        return Selection(fitted[0], fitted,
+                         probabilities(fitted, self.ranked, self.causes, set(self.tried)),
+                         self.quadratic, self.rows, self.noise, self.frame)
 
 
-def _calmed(scatter, tried):
-    """Return the scatter that the closest fit leaves where it is far below that of the start."""
-    fit = min(tried.values(), key=lambda one: one.cost)
-    left = float(np.median(scatter_of(fit.normal)[:len(fit.columns)])) if fit.columns else scatter
-    return left if CALM * left < scatter else scatter
+def probabilities(fitted, ranked, causes, tried) -> dict:
+    """
+    Return {effect candidate: probability of being present}: the evidence of sets that have it.
+
+    Sets that were not refitted count by the linear model, beside the best one, for little.
+    """
+    top = fitted[0]
+    base = next((value for value, chosen, _ in ranked if chosen == top.chosen), None)
+    weights = {one.chosen: one.evidence - top.evidence for one in fitted}
+    if base is not None and np.isfinite(base):
+        for value, chosen, _ in ranked:
+            if chosen not in tried and len(set(chosen) ^ set(top.chosen)) <= 2:
+                weights[chosen] = min(value - base, UNTRIED)
+    values = np.array(list(weights.values()))
+    shares = np.exp(np.clip(values - values.max(), -700, 0))
+    shares /= shares.sum()
+    return {cause: float(sum(share for share, chosen in zip(shares, weights, strict=True)
+                             if cause in chosen)) for cause in causes}
 
 
 def _promising(ranked, tried):
     """
-    Return [(causes, distances)] of the untried sets that are worth refitting.
+    Return [(set, distances)] of the untried sets that are worth refitting.
 
-    Those with the most evidence, and those with another cause in place of one of the best set's:
-    slopes at a point tell little of which of two is there that do nearly the same.
+    Those with the most evidence, and those with another candidate in place of one of the best
+    set's: slopes at a point tell little of which of two is there that do nearly the same.
     """
     most, top, _ = ranked[0]
-    fresh = [(chosen, found) for _, chosen, found in ranked[:3 * REFITS] if chosen not in tried]
+    fresh = [(chosen, away) for _, chosen, away in ranked[:3 * REFITS] if chosen not in tried]
     first = {chosen for chosen, _ in fresh[:REFITS]}
-    rivals = [(chosen, found) for value, chosen, found in ranked
+    rivals = [(chosen, away) for value, chosen, away in ranked
               if value > most - NEAR and chosen not in tried and chosen not in first
               and len(chosen) == len(top) and _swapped(chosen, top)]
     return [*fresh[:REFITS], *rivals[:REFITS]]
@@ -164,7 +261,7 @@ def _promising(ranked, tried):
 
 def _other_actuator(best, causes, z, vehicle):
     """
-    Return [(causes, vector)] with a delay for a lag of a set and the reverse, at its usual size.
+    Return [(set, vector)] with a delay for a lag of a set and the reverse, at its usual size.
 
     From a delay that does the work of a lag no slope leads to the lag.
     """
@@ -181,13 +278,13 @@ def _other_actuator(best, causes, z, vehicle):
 
 
 def _swapped(chosen, top):
-    """Return whether sets differ by one effect, in whose place there is another or an own one."""
+    """Return whether sets differ by one effect, in whose place there is another candidate."""
     apart = set(chosen) ^ set(top)
-    return len(apart) == 2 and any(cause.own is None for cause in apart)
+    return len(apart) == 2 and bool(effects_in(tuple(apart)))
 
 
 def _rows(causes, own, columns, count):
-    """Return {cause: its rows of the quadratic}, in each flight of what is its own."""
+    """Return {candidate: its rows of the quadratic}, in each flight of what is its own."""
     rows = {cause: [columns.index(column) for column in cause.columns] for cause in causes}
     order = [column for one in own for column in one.columns]
     first = 0
@@ -196,57 +293,3 @@ def _rows(causes, own, columns, count):
                      for k in range(len(one.columns))]
         first += len(one.columns)
     return rows
-
-
-def _found_again(flights, vehicle, chosen, tried, noise, scatter):
-    """
-    Return the Estimate of a set that fits about as well as its subsets.
-
-    One that fits clearly worse got lost on its way, and starts once more from the best of these.
-    """
-    lost = tried[chosen]
-    known = [one for key, one in tried.items() if set(key) < set(chosen)]
-    near = min(known, key=lambda one: one.cost, default=lost)
-    if lost.cost <= near.cost + LOST * scatter:
-        return lost
-    again = refitted(flights, vehicle, near.z, chosen, noise, near.own, near.starts)
-    return min(lost, again, key=lambda one: one.cost)
-
-
-def quadratic_at(flights, vehicle, fit, columns, own):
-    """Return the Quadratic of columns and own ones of flights around an Estimate; the Slopes."""
-    lower, upper, size = limits(vehicle)
-    everyone = Own.of([one.own for one in own], len(flights), fit.own)
-    layout = Layout(columns, everyone.columns, len(flights))
-    raws = [errors_along(flight, vehicle, z, start)
-            for flight, z, start in zip(flights, fit.vectors, fit.starts, strict=True)]
-    slopes = slopes_at(flights, vehicle, fit.z, fit.vectors, fit.starts, raws, layout.wanted)
-    normal = normal_of([linear_of(tangent, raw, weights_of(left, sigma, flight) / sigma)
-                        for tangent, raw, left, sigma, flight in
-                        zip(slopes.tangents, raws, fit.left, fit.noise, flights, strict=True)],
-                       flights, layout)
-    null = nominal(vehicle)[columns]
-    spreads = np.tile(everyone.spreads, len(flights))
-    beyond = np.full(len(spreads), np.inf)
-    scatter = float(np.median(scatter_of(normal)[:len(columns)]))
-    return Quadratic(normal.information, normal.gradient, normal.cost,
-                     np.append(fit.z[columns] - null, everyone.values),
-                     np.append(PRIOR * size[columns], spreads),
-                     np.append(lower[columns] - null, -beyond),
-                     np.append(upper[columns] - null, beyond), scatter), slopes
-
-
-def _probabilities(fitted, ranked, causes, tried):
-    """Return {cause: probability}: refitted sets, and of the others their linear evidence."""
-    top = fitted[0]
-    base = next((value for value, chosen, _ in ranked if chosen == top.chosen), None)
-    weights = {one.chosen: one.evidence - top.evidence for one in fitted}
-    if base is not None and np.isfinite(base):
-        for value, chosen, _ in ranked:
-            if chosen not in tried and len(set(chosen) ^ set(top.chosen)) <= 2:
-                weights[chosen] = min(value - base, UNTRIED)
-    values = np.array(list(weights.values()))
-    shares = np.exp(np.clip(values - values.max(), -700, 0))
-    shares /= shares.sum()
-    return {cause: float(sum(share for share, chosen in zip(shares, weights, strict=True)
-                             if cause in chosen)) for cause in causes}

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Flights cut into the short rollouts that are held against them."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -29,7 +29,9 @@ class Track:
 
     course: of N samples; states (N, 13) recorded; seen (N, 12) whether each error counts, which
     it does not in rows that were lost and in attitudes that are off; period s, the usual one;
-    clock: the Clock by which its commands were moved onto the states, or None where none shows.
+    clock: the Clock by which its commands were moved onto the states, or None where none shows;
+    guide (N, 13): the states with attitudes that are off replaced, see dynamics.predict, or None
+    where the motion of the centre of mass is to follow from the predicted attitude.
     """
 
     name: str
@@ -38,6 +40,7 @@ class Track:
     seen: np.ndarray
     period: float
     clock: Clock | None
+    guide: np.ndarray | None = field(default=None, kw_only=True)
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,7 +97,22 @@ def flight_of(track, segment=SEGMENT, every=None):
     if not len(first):
         raise InputError(f'{track.name}: {course.t[-1]:.3g} s without a gap-free stretch of '
                          f'{segment:g} s are too short; give a longer flight')
-    return Flight(track.name, course, track.states, seen, period, track.clock, first, count)
+    return Flight(track.name, course, track.states, seen, period, track.clock, first, count,
+                  guide=track.guide)
+
+
+def guided(track: Track) -> Track:
+    """
+    Return a Track whose recorded attitude guides the motion of the centre of mass.
+
+    Attitudes that are off are interpolated between those around them.
+    """
+    t, states = track.course.t, track.states.copy()
+    good = np.flatnonzero(track.seen[:, GROUPS['attitude']].all(axis=1))
+    q = continuous(states[good, 6:10])
+    q = np.stack([np.interp(t, t[good], column) for column in q.T], axis=1)
+    states[:, 6:10] = q / np.linalg.norm(q, axis=1, keepdims=True)
+    return replace(track, guide=states)
 
 
 def highest_voltage(records):

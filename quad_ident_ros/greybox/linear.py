@@ -106,7 +106,7 @@ def seen_along(flight):
 def errors_along(flight, vehicle, z, starts):
     """Return recorded minus predicted along the rollouts, (B, count + 1, 12)."""
     predicted = predict(vehicle, z[SPLIT:], flight.course, starts, flight.first, flight.count,
-                        constants=constants_of(z[None], vehicle))
+                        constants=constants_of(z[None], vehicle), guide=flight.guide)
     return difference(recorded_along(flight), predicted)
 
 
@@ -157,7 +157,7 @@ def tangent_of(flight, vehicle, z, starts, columns, steps):
         np.tile(starts, (len(columns), 1))])
     first = np.tile(flight.first, 1 + turned + len(columns))
     out = predict(vehicle, sets[:, SPLIT:], flight.course, all_starts, first, flight.count, which,
-                  constants=constants_of(sets, vehicle))
+                  constants=constants_of(sets, vehicle), guide=flight.guide)
     out = out.reshape(1 + turned + len(columns), batch, flight.count + 1, -1)
     base = out[0]
     table = np.zeros((batch, ERRORS + len(columns) + 1, (flight.count + 1) * ERRORS))

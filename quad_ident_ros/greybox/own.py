@@ -74,11 +74,16 @@ def nuisances(vehicle, tracks):
 
 @dataclass(frozen=True, eq=False)
 class Own:
-    """Places in z (K,) where flights have something of their own, spreads (K,), values (F, K)."""
+    """
+    Places in z (K,) where flights have something of their own, spreads (K,), values (F, K).
+
+    fixed (F, Z): what is added to the vector of each flight and is not estimated, or None.
+    """
 
     columns: tuple
     spreads: np.ndarray
     values: np.ndarray
+    fixed: np.ndarray | None = None
 
     @classmethod
     def of(cls, kinds, count, known=None):
@@ -99,9 +104,9 @@ class Own:
     def vectors(self, z):
         """Return z (Z,) with what each flight has of its own, a list of (Z,)."""
         found = []
-        for values in self.values:
-            own = np.array(z, float)
-            own[list(self.columns)] += values
+        for k, values in enumerate(self.values):
+            own = np.array(z, float) if self.fixed is None else z + self.fixed[k]
+            np.add.at(own, list(self.columns), values)
             found.append(own)
         return found
 

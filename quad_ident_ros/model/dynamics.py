@@ -5,13 +5,15 @@
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.interpolate import CubicHermiteSpline
 
+from quad_ident_ros.data.frames import continuous
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.actuators import actuated
 from quad_ident_ros.model.attitude import quaternion_from_euler
 from quad_ident_ros.model.rigid_body import INPUT, rotor_table, STATE, vehicle_vector
-from quad_ident_ros.model.rollout import roll_out, roll_out_one
-from quad_ident_ros.model.sensors import acts, recorded, underlying
+from quad_ident_ros.model.rollout import NO_GUIDE, roll_out, roll_out_one
+from quad_ident_ros.model.sensors import acts, BIAS, COM, product, recorded, TILT, underlying
 
 STATES = ('px', 'py', 'pz', 'vx', 'vy', 'vz', 'qw', 'qx', 'qy', 'qz', 'wx', 'wy', 'wz')
 LONGEST_STEP = 0.01     # s, of the integration: errors of about 1e-6 of what happens in it
@@ -82,13 +84,16 @@ def states_of(record):
     return states
 
 
-def predict(vehicle, thetas, course, starts, first, count, which=None, constants=None):
+def predict(vehicle, thetas, course, starts, first, count, which=None, constants=None,
+            guide=None):
     """
     Return what rollouts along a flight would record, (B, count + 1, 13).
 
     Args: thetas (T, P) parameter sets; starts (B, 13) recorded states at the samples first (B,);
     count: samples to go; which (B,) the set of each rollout, by default the first for all;
-    constants (T, 16) of rigid_body that replace the vehicle's.
+    constants (T, 16) of rigid_body that replace the vehicle's; guide (N, 13): recorded states
+    whose attitude and rate are given to the motion of the centre of mass, so that errors of the
+    predicted rotation do not enter it; by default it follows from the predicted ones.
     """
     thetas = np.atleast_2d(np.asarray(thetas, float))
     which = np.zeros(len(starts), np.int64) if which is None else np.asarray(which, np.int64)
@@ -100,18 +105,53 @@ def predict(vehicle, thetas, course, starts, first, count, which=None, constants
     inputs = np.zeros((len(t), INPUT))
     inputs[:, 5] = course.volt_drop[np.arange(len(t)) // steps]
     x0, elsewhere = np.array(starts, float), acts(thetas)[which]
-    own = thetas[which[elsewhere]]
-    x0[elsewhere] = underlying(own, x0[elsewhere])
+    shown = thetas[which[elsewhere]]
+    x0[elsewhere] = underlying(shown, x0[elsewhere])
+    guides = NO_GUIDE
+    if guide is not None:
+        guides = _guides(thetas, guide, course.t, t)
+        x0[elsewhere, :6] = underlying(shown, np.hstack(
+            [starts[elsewhere, :6], guide[first[elsewhere], 6:]]))[:, :6]
     out = np.empty((len(x0), steps * count + 1, STATE))
     kernel = roll_out if len(x0) > 1 else roll_out_one
     if constants is None:
         constants = np.tile(vehicle_vector(vehicle), (len(thetas), 1))
     kernel(np.ascontiguousarray(constants), rotor_table(vehicle), np.ascontiguousarray(thetas),
            which, np.ascontiguousarray(x0), t, *acted, inputs, steps * first, steps * count, 1,
-           out)
+           *guides, out)
     out = out[:, ::steps]
-    out[elsewhere] = recorded(own, out[elsewhere])
+    if elsewhere.any():
+        moved = recorded(shown, out[elsewhere])
+        if guide is not None:
+            rows = first[elsewhere, None] + np.arange(count + 1)
+            leads, lead_of = guides
+            given = leads[lead_of[which[elsewhere]][:, None], steps * rows]
+            moved[..., :6] = recorded(shown, np.concatenate(
+                [out[elsewhere][..., :6], given], axis=-1))[..., :6]
+        out[elsewhere] = moved
     return out
+
+
+def _guides(thetas, guide, t, fine):
+    """
+    Return the underlying attitudes and rates of a guide, (G, M, 7), and each set's one, (T,).
+
+    Args: thetas (T, P); guide (N, 13) at t (N,) s; fine (M,) s of the integration.
+    """
+    tilted = thetas[:, TILT].any(axis=1) | thetas[:, BIAS].any(axis=1)
+    which = np.where(tilted, np.cumsum(tilted), 0)
+    rows = np.concatenate([[np.zeros(thetas.shape[1])], thetas[tilted]])
+    rows[:, COM] = 0.0
+    states = underlying(rows, np.broadcast_to(guide, (len(rows), *guide.shape)))
+    q, rate = states[..., 6:10], states[..., 10:]
+    q = np.stack([continuous(each) for each in q])
+    if len(fine) > len(t):
+        slope = 0.5 * product(q, np.concatenate([np.zeros((*rate.shape[:-1], 1)), rate], axis=-1))
+        q = CubicHermiteSpline(t, q, slope, axis=1)(fine)
+        place = np.searchsorted(t, fine, side='right').clip(1, len(t) - 1)
+        share = ((fine - t[place - 1]) / (t[place] - t[place - 1]))[:, None]
+        rate = (1.0 - share) * rate[:, place - 1] + share * rate[:, place]
+    return np.ascontiguousarray(np.concatenate([q, rate], axis=-1)), which
 
 
 def _finer(t, steps):

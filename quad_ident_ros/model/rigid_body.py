@@ -24,6 +24,9 @@ from quad_ident_ros.model.situation import (
     FY,
     FZ,
     GAIN,
+    GUIDE_BEGIN,
+    GUIDE_END,
+    GUIDED,
     HEIGHT,
     HX,
     HY,
@@ -59,7 +62,11 @@ from quad_ident_ros.model.situation import (
     SPEED,
     SPIN_UP,
     SPINS,
+    STAGE,
     TIME,
+    TX,
+    TY,
+    TZ,
     UX,
     UY,
     UZ,
@@ -115,11 +122,26 @@ def prepare(v, places, theta, s, rotors):
 
 @compiled(fused=True, inlined=True)
 def _place(x, s):
-    """Write position, velocity, rotation, rate and air velocity of the states x (13, LANES)."""
+    """
+    Write position, velocity, rotation, rates and air velocity of the states x (13, LANES).
+
+    A guided lane has its rotation, and the rate of its rotors against the air, from the guide.
+    """
     for i in range(s.shape[1]):
         for k in range(6):
             s[PX + k, i] = x[k, i]
-        w, a, b, c = x[6, i], x[7, i], x[8, i], x[9, i]
+        if s[GUIDED, i] != 0.0:
+            share = s[STAGE, i]
+            w = (1.0 - share) * s[GUIDE_BEGIN, i] + share * s[GUIDE_END, i]
+            a = (1.0 - share) * s[GUIDE_BEGIN + 1, i] + share * s[GUIDE_END + 1, i]
+            b = (1.0 - share) * s[GUIDE_BEGIN + 2, i] + share * s[GUIDE_END + 2, i]
+            c = (1.0 - share) * s[GUIDE_BEGIN + 3, i] + share * s[GUIDE_END + 3, i]
+            for k in range(3):
+                s[TX + k, i] = ((1.0 - share) * s[GUIDE_BEGIN + 4 + k, i]
+                                + share * s[GUIDE_END + 4 + k, i])
+        else:
+            w, a, b, c = x[6, i], x[7, i], x[8, i], x[9, i]
+            s[TX, i], s[TY, i], s[TZ, i] = x[10, i], x[11, i], x[12, i]
         # Within a step a quaternion is not of unit length; its rotation is one all the same, or
         # the error of a step would depend on where the world's axes point.
         two = 2.0 / (w * w + a * a + b * b + c * c)
@@ -148,9 +170,9 @@ def _rotors(s, rotors, places):
         spin = places[j, 3]
         for i in range(s.shape[1]):
             x, y, z = rotors[j, RX, i], rotors[j, RY, i], rotors[j, RZ, i]
-            rotors[j, UX, i] = s[AX, i] + s[WY, i] * z - s[WZ, i] * y
-            rotors[j, UY, i] = s[AY, i] + s[WZ, i] * x - s[WX, i] * z
-            rotors[j, UZ, i] = s[AZ, i] + s[WX, i] * y - s[WY, i] * x
+            rotors[j, UX, i] = s[AX, i] + s[TY, i] * z - s[TZ, i] * y
+            rotors[j, UY, i] = s[AY, i] + s[TZ, i] * x - s[TX, i] * z
+            rotors[j, UZ, i] = s[AZ, i] + s[TX, i] * y - s[TY, i] * x
             rotors[j, HEIGHT, i] = (s[PZ, i] + s[R20, i] * x + s[R21, i] * y + s[R22, i] * z)
             rotors[j, GAIN, i] = 1.0
             s[SPINS, i] += spin * rotors[j, SPEED, i]

@@ -10,7 +10,17 @@ from quad_ident_ros.compiled import compiled
 from quad_ident_ros.effects.registry import SLICES, TABLE
 from quad_ident_ros.model.actuators import shares
 from quad_ident_ros.model.rigid_body import derivative, INPUT, prepare, STATE
-from quad_ident_ros.model.situation import ROTOR_ROWS, SPEED, SPIN_UP, TIME, VOLT_DROP
+from quad_ident_ros.model.situation import (
+    GUIDE,
+    GUIDE_BEGIN,
+    GUIDED,
+    ROTOR_ROWS,
+    SPEED,
+    SPIN_UP,
+    STAGE,
+    TIME,
+    VOLT_DROP,
+)
 
 LAG = SLICES['motor_lag'].start
 
@@ -40,6 +50,7 @@ def step(x, h, u, v, places, theta, speed, command, added, lag, s, rotors, work)
         rate[i] = 1.0 / lag[i] if lag[i] > 0.0 else 0.0
         begin[i], half[i], full[i] = shares(h[i], lag[i])
         s[VOLT_DROP, i] = u[5, i]
+        s[STAGE, i] = 0.0
     _set_speeds(begin, speed, command, added[0], places, rate, s, rotors)
     derivative(x, u, v, places, theta, s, rotors, k)
     for n in range(STATE):
@@ -48,6 +59,7 @@ def step(x, h, u, v, places, theta, speed, command, added, lag, s, rotors, work)
             y[n, i] = x[n, i] + 0.5 * h[i] * k[n, i]
     for i in range(s.shape[1]):
         s[TIME, i] += 0.5 * h[i]
+        s[STAGE, i] = 0.5
     _set_speeds(half, speed, command, added[1], places, rate, s, rotors)
     derivative(y, u, v, places, theta, s, rotors, k)
     for n in range(STATE):
@@ -61,6 +73,7 @@ def step(x, h, u, v, places, theta, speed, command, added, lag, s, rotors, work)
             y[n, i] = x[n, i] + h[i] * k[n, i]
     for i in range(s.shape[1]):
         s[TIME, i] += 0.5 * h[i]
+        s[STAGE, i] = 1.0
     _set_speeds(full, speed, command, added[2], places, rate, s, rotors)
     derivative(y, u, v, places, theta, s, rotors, k)
     for n in range(STATE):
@@ -79,7 +92,7 @@ def _kernel(lanes):
     """Return the integrator that does so many rollouts side by side."""
     @compiled(fused=True)
     def roll_out(vehicles, places, thetas, which, x0, t, followed, speeds, added, inputs, first,
-                 count, substeps, out):
+                 count, substeps, guides, guide_of, out):
         """
         Integrate rollouts by Runge-Kutta and write their states into out (B, count + 1, 13).
 
@@ -87,7 +100,9 @@ def _kernel(lanes):
         the set of each rollout; x0 (B, 13) states at the start; t (N,) s; followed, speeds
         (T, N, n), added (T, N, 3, n) to each step from a sample on: see actuators; inputs
         (N, INPUT), what else acts; first (B,) the sample at which a rollout starts; count of
-        samples; substeps per sample, 1 where anything is added.
+        samples; substeps per sample, 1 where anything is added or guided; guides (G, N, GUIDE):
+        quaternions and rates that a record gives, by which the centre of mass moves instead of by
+        the predicted ones; without any, G is 0; guide_of (T,) the guide of each parameter set.
         """
         rotor_count = places.shape[0]
         x = np.empty((STATE, lanes))
@@ -115,6 +130,8 @@ def _kernel(lanes):
                 for j in range(rotor_count):
                     speed[j, i] = speeds[which[b], first[b], j]
             prepare(v, places, theta, s, rotors)
+            for i in range(lanes):
+                s[GUIDED, i] = 1.0 if guides.shape[0] else 0.0
             for k in range(count):
                 for i in range(lanes):
                     b = min(begin + i, batch - 1)
@@ -127,6 +144,10 @@ def _kernel(lanes):
                             extra[place, j, i] = added[which[b], row, place, j]
                     for n in range(INPUT):
                         u[n, i] = inputs[row, n]
+                    if guides.shape[0]:
+                        lead = guide_of[which[b]]
+                        for n in range(2 * GUIDE):
+                            s[GUIDE_BEGIN + n, i] = guides[lead, row + n // GUIDE, n % GUIDE]
                 for _ in range(substeps):
                     step(x, h, u, v, places, theta, speed, command, extra, theta[LAG], s, rotors,
                          work)
@@ -137,5 +158,6 @@ def _kernel(lanes):
     return roll_out
 
 
+NO_GUIDE = (np.zeros((0, 0, GUIDE)), np.zeros(0, np.int64))
 roll_out = _kernel(48)
 roll_out_one = _kernel(1)

@@ -12,7 +12,7 @@ from quad_ident_ros.errors import InputError
 from quad_ident_ros.model import attitude, equations, mixing
 from quad_ident_ros.model.actuators import actuated
 from quad_ident_ros.model.rigid_body import INPUT, rotor_table, STATE, vehicle_vector
-from quad_ident_ros.model.rollout import roll_out_one
+from quad_ident_ros.model.rollout import NO_GUIDE, roll_out_one
 from quad_ident_ros.model.sensors import recorded
 
 # Longest integration step, s. The errors that they leave are stated in docs/paper.md and shown

@@ -17,10 +17,20 @@ A lane is one rollout of the batch. `s` (ROWS, LANES) holds the vehicle, the row
  AX, AY, AZ, WIND_X, WIND_Y, WIND_Z,
  # Sums over the rotors: spin * speed, and its rate of change.
  SPINS, SPIN_UP,
+ # Rate of the body with which its rotors meet the air: the state's, or a record's.
+ TX, TY, TZ,
  # Constants of the vehicle and of its flight; reciprocals of mass, of inertia, and of the sum of
  # the hover speeds.
  MASS, IX, IY, IZ, COM_X, COM_Y, COM_Z, RADIUS, TIME, VOLT_DROP, PER_MASS, PER_IX, PER_IY, PER_IZ,
- PER_HOVER, ROWS) = range(48)
+ PER_HOVER,
+ # 1 where a record gives attitude and rate for the motion of the centre of mass, see
+ # rollout.roll_out; how far the integration is in its step, 0 to 1.
+ GUIDED, STAGE) = range(52)
+
+# The quaternion and the rate that the record gives, at the begin and at the end of a step.
+GUIDE = 7
+GUIDE_BEGIN, GUIDE_END = 52, 52 + GUIDE
+ROWS = GUIDE_END + GUIDE
 
 # A rotor: speed; its velocity against the air, body; factor on its thrust; its force, body; its
 # place from the centre of mass, body; its height over ground.

@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """What each flight has of its own, told: clocks, trims and biases, which are no effects."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from quad_ident_ros.data.clocks import controllers_own
@@ -13,12 +15,17 @@ WIDE = 1.64     # standard errors below which 95 % lie
 DELAY = 'actuation_delay'
 
 
-def own_of(track, vehicle, z, kinds, noise, segment):
-    """Return what a Track that was not learnt from has of its own (Z,), beside a vector z."""
+def own_of(track, vehicle, z, kinds, noise, segment, fixed=None):
+    """
+    Return what a Track that was not learnt from has of its own (Z,), beside a vector z.
+
+    fixed (Z,): what is known of it beforehand.
+    """
+    fixed = np.zeros(len(z)) if fixed is None else fixed
     if not kinds:
-        return np.zeros(len(z))
+        return fixed
     found = estimate([flight_of(track, segment)], vehicle, z, [], noise=[noise],
-                     own=Own.of(kinds, 1))
+                     own=replace(Own.of(kinds, 1), fixed=fixed[None]))
     return found.vectors[0] - z
 
 
@@ -40,15 +47,14 @@ def late_controller(selection, flights):
     return float(delay) if controllers_own(delay, error, period) else 0.0
 
 
-def as_data(kinds, training, held_out, late, clocks, prompt):
+def as_data(kinds, flights, late, clocks, prompt):
     """
-    Return as data, by Nuisance, what flights and the held-out one have of their own, (Z,).
+    Return as data, by Nuisance, what flights (the held-out one last) have of their own, (Z,).
 
     late: {stream: s}, what was moved as it was stamped late, and clocks: the Clock, or None, of
     each flight, the held-out one last; prompt: s of a delay that may be the controller's own lag
     and is counted with the clocks. Of clocks also the longest delay (s) that they may hide.
     """
-    flights = [*training, held_out]
     found = {kind.name: _each(kind.title, kind.unit, [own[list(kind.columns)] for own in flights])
              for kind in kinds}
     hidden = prompt

@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Where the gap lies: the force and moment that the model lacks, by channel, regime and band."""
+"""Where the gap lies: the force and moment that the model does not explain."""
 
 from dataclasses import dataclass, replace
 
@@ -14,29 +14,36 @@ from quad_ident_ros.greybox.parameters import SPLIT
 from quad_ident_ros.model.attitude import rotation_matrix
 
 CHANNELS = ('Fx', 'Fy', 'Fz', 'Mx', 'My', 'Mz')
-MOST = 2000         # windows of a flight; of more, every so many
-WINDOW = 0.25       # s over which force and moment are taken as constant
+WINDOW = 0.2        # s over which force and moment are taken as constant,
+EVERY = 0.05        # s from one such window to the next: up to 5 Hz are seen
+STRETCH = 25.0      # s without a break that spectra are taken of,
+STRETCHES = 4       # and how many of them, spread over a longer flight
+FEWEST = 8          # windows of a stretch that has a spectrum
+EXCESS = 0.35       # of the energy that a regime must have beyond its share of the time
 COLUMNS = list(range(SPLIT + SLICES[LACKING.name].start, SPLIT + SLICES[LACKING.name].stop))
 
 
 @dataclass(frozen=True, eq=False)
-class Lacking:
+class ResidualWrench:
     """
-    Force (N) and moment (N m), body, that the model lacks in each window of a flight.
+    Force (N) and moment (N m), body, that the model does not explain, in each window of a flight.
 
-    values, errors (B, 6); t (B,) s; features {name: (unit, (B,))}, the regime of each window.
+    values, errors (B, 6); t (B,) s; features {name: (unit, (B,))}, the regime of each window;
+    stretch (B,): the number of the unbroken stretch that a window is of.
     """
 
     values: np.ndarray
     errors: np.ndarray
     t: np.ndarray
     features: dict
+    stretch: np.ndarray
 
 
-def lacking(track, vehicle, z, noise):
-    """Return the Lacking of a Track with a parameter vector z (Z,) and noise (12,)."""
-    flight = flight_of(track, WINDOW)
-    flight = replace(flight, first=flight.first[::-(-len(flight.first) // MOST)])
+def residual_wrench(track, vehicle, z, noise):
+    """Return the ResidualWrench of a Track with a parameter vector z (Z,) and noise (12,)."""
+    flight = flight_of(track, WINDOW, EVERY)
+    first, stretch = _stretches(flight)
+    flight = replace(flight, first=first)
     [starts] = settled([flight], vehicle, [z], [noise])
     weight = weights_of(errors_along(flight, vehicle, z, starts), noise, flight)
     linear = linearise(flight, vehicle, z, starts, COLUMNS, noise, False, weight)
@@ -44,13 +51,24 @@ def lacking(track, vehicle, z, noise):
     inverse = np.linalg.inv(information)
     values = np.einsum('bcd,bmd,bm->bc', inverse, linear.slope, linear.error)
     middle = flight.first + flight.count // 2
-    return Lacking(values, np.sqrt(np.einsum('bcc->bc', inverse)), flight.course.t[middle],
-                   _features(flight, middle, vehicle, z))
+    return ResidualWrench(values, np.sqrt(np.einsum('bcc->bc', inverse)), flight.course.t[middle],
+                          _features(flight, middle, vehicle, z), stretch)
+
+
+def _stretches(flight):
+    """Return the starts of windows, at most STRETCHES times STRETCH s, and their stretches."""
+    first, t = flight.first, flight.course.t
+    if t[first[-1]] - t[first[0]] > STRETCHES * STRETCH:
+        begins = np.linspace(t[first[0]], t[first[-1]] - STRETCH, STRETCHES)
+        inside = (t[first] >= begins[:, None]) & (t[first] < begins[:, None] + STRETCH)
+        first = first[inside.any(axis=0)]
+    breaks = np.diff(t[first]) > 1.5 * np.median(np.diff(t[first]))
+    return first, np.append(0, np.cumsum(breaks))
 
 
 def shares(flights, vehicle):
     """
-    Return {channel: share of the gap}, of the Lacking of flights, noise taken off.
+    Return {channel: share of the gap}, of the ResidualWrench of flights, noise taken off.
 
     Forces and moments count by the velocity that they make in half a second.
     """
@@ -79,7 +97,7 @@ def regime(flights, channel):
                              for flight in flights])
     if energy.sum() <= 0:
         return 'nowhere above the noise', 0.0
-    best = ('everywhere', 1.0, 0.35)
+    best = ('everywhere', 1.0, EXCESS)
     for name in flights[0].features:
         unit = flights[0].features[name][0]
         values = np.concatenate([flight.features[name][1] for flight in flights])
@@ -95,17 +113,31 @@ def regime(flights, channel):
 
 
 def band(flights, channel):
-    """Return the frequencies (low, high) Hz between which half of a channel's energy lies."""
+    """
+    Return the frequencies (low, high) Hz between which half of a channel's energy lies.
+
+    Of what is above the noise, whose power is taken as the same at all frequencies.
+    """
     column = CHANNELS.index(channel)
-    spectrum, frequency = 0.0, np.linspace(0.0, 0.5 / WINDOW, 33)
+    frequency = np.linspace(0.0, 0.5 / EVERY, 201)
+    spectrum = np.zeros(len(frequency))
     for flight in flights:
-        values = flight.values[:, column]
-        power = np.abs(np.fft.rfft(values, 64 * max(1, len(values) // 64 + 1))) ** 2
-        grid = np.linspace(0.0, 0.5 / WINDOW, len(power))
-        spectrum = spectrum + np.interp(frequency, grid, power)
+        for number in range(flight.stretch[-1] + 1):
+            inside = flight.stretch == number
+            values = flight.values[inside, column]
+            if len(values) < FEWEST:
+                continue
+            step = float(np.median(np.diff(flight.t[inside])))
+            length = 1 << (2 * len(values) - 1).bit_length()
+            power = np.abs(np.fft.rfft(values, length)) ** 2
+            noise = np.sum(flight.errors[inside, column] ** 2)
+            grid = np.fft.rfftfreq(length, step)
+            spectrum += np.interp(frequency, grid, np.maximum(power - noise, 0.0), right=0.0)
+    if not spectrum.sum():
+        return 0.0, 0.0
     share = np.cumsum(spectrum) / np.sum(spectrum)
-    return float(frequency[np.searchsorted(share, 0.25)]), \
-        float(frequency[min(np.searchsorted(share, 0.75), 32)])
+    return (float(frequency[np.searchsorted(share, 0.25)]),
+            float(frequency[min(np.searchsorted(share, 0.75), len(frequency) - 1)]))
 
 
 def _features(flight, middle, vehicle, z):

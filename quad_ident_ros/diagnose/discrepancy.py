@@ -1,0 +1,126 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+What the model cannot be right about: the error of form, marginalised out of the likelihood.
+
+After Kennedy and O'Hagan (J. R. Stat. Soc. B 63, 2001) a residual is noise and a discrepancy of
+the model. Over each block of about a second the discrepancy has two parts, both normal about zero:
+every effect does what its formula says times one plus a relative error, apart for translation and
+rotation; and a force and a moment act that nothing explains. The relative error is given, the size
+of force and moment is estimated with the effects. Within a block its errors are the same, from
+block to block they are independent.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from quad_ident_ros.greybox.errors import ERRORS
+
+TRANSLATION = 6     # of the errors: position and velocity, then rotation and rate
+AXES = 3            # of force and of moment
+
+
+@dataclass(frozen=True, eq=False)
+class Blocks:
+    """
+    Residuals r and discrepancy directions U of blocks of rollouts, as their products.
+
+    gram (K, D, D) of U, cross (K, D) of U with r, power: the sum of r squared. The first AXES
+    directions are forces, the next AXES moments, the others what effects do.
+    """
+
+    gram: np.ndarray
+    cross: np.ndarray
+    power: float
+
+
+def directions(wrench: np.ndarray, contributions: np.ndarray) -> np.ndarray:
+    """
+    Return the directions (B, M, D) of the discrepancy of rollouts.
+
+    Args: wrench (B, M, 6): what a force and a moment, each of 1, change in the errors;
+    contributions (B, M, E): what each effect does to them. M = samples * 12.
+    """
+    batch, length, count = contributions.shape
+    samples = length // ERRORS
+    parts = np.zeros((batch, samples, ERRORS, 2 * count))
+    shaped = contributions.reshape(batch, samples, ERRORS, count)
+    parts[:, :, :TRANSLATION, :count] = shaped[:, :, :TRANSLATION]
+    parts[:, :, TRANSLATION:, count:] = shaped[:, :, TRANSLATION:]
+    return np.concatenate([wrench, parts.reshape(batch, length, 2 * count)], axis=2)
+
+
+def scales(force: float, moment: float, form_error: float, count: int) -> np.ndarray:
+    """Return the prior standard deviation (D,) along each direction."""
+    return np.concatenate([np.full(AXES, force), np.full(AXES, moment),
+                           np.full(count - 2 * AXES, form_error)])
+
+
+def blocks_of(parts: list) -> Blocks:
+    """
+    Return the Blocks of flights.
+
+    Args: parts: for each flight U (B, M, D), r (B, M) and the block (B,) of each rollout.
+    """
+    gram, cross, power = [], [], 0.0
+    for basis, residual, block in parts:
+        across = basis.transpose(0, 2, 1)
+        gram.append(summed(across @ basis, block))
+        cross.append(summed((across @ residual[..., None])[..., 0], block))
+        power += float(np.sum(residual ** 2))
+    return Blocks(np.concatenate(gram), np.concatenate(cross), power)
+
+
+def summed(values: np.ndarray, block: np.ndarray) -> np.ndarray:
+    """Return the sums (K, ...) of values (B, ...) over blocks numbered from 0 in rising order."""
+    return np.add.reduceat(values, np.flatnonzero(np.diff(block, prepend=-1)), axis=0)
+
+
+def log_likelihood(blocks: Blocks, deviation: np.ndarray, scatter: float = 1.0) -> float:
+    """
+    Return the log-likelihood of residuals with the discrepancy marginalised out.
+
+    Up to what no set of effects changes. Args: deviation (D,): prior standard deviation along
+    each direction, of residuals in units of the noise; scatter: what the cost is divided by.
+    """
+    used = deviation > 0.0
+    if not used.any():
+        return -0.5 * blocks.power / scatter
+    width = deviation[used]
+    scaled = blocks.gram[:, used][:, :, used] * np.outer(width, width) / scatter
+    cross = blocks.cross[:, used] * width / scatter
+    factor = np.linalg.cholesky(np.eye(len(width)) + scaled)
+    white = np.linalg.solve(factor, cross[..., None])[..., 0]
+    logs = np.log(np.einsum('kii->ki', factor))
+    return float(-0.5 * blocks.power / scatter + 0.5 * np.sum(white ** 2) - np.sum(logs))
+
+
+def fitted_sizes(blocks: Blocks, form_error: float, grids: tuple, scatter: float = 1.0,
+                 start: tuple = (0, 0)) -> tuple:
+    """
+    Return (log-likelihood, (force, moment)) at the likeliest sizes on two grids of them.
+
+    Args: grids: rising sizes of the force and of the moment, 0 first; start: where the search
+    begins in each.
+    """
+    count = blocks.gram.shape[1]
+    known = {}
+
+    def value(place: tuple) -> float:
+        if place not in known:
+            force, moment = (grid[k] for grid, k in zip(grids, place, strict=True))
+            known[place] = log_likelihood(blocks, scales(force, moment, form_error, count),
+                                          scatter)
+        return known[place]
+
+    best = start
+    while True:
+        near = [tuple(best[k] + (step if k == axis else 0) for k in range(2))
+                for axis in range(2) for step in (-1, 1)]
+        near = [place for place in near
+                if all(0 <= k < len(grid) for k, grid in zip(place, grids, strict=True))]
+        top = max((best, *near), key=value)
+        if top == best:
+            return value(best), best
+        best = top

@@ -1,0 +1,107 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Flight records on their way into a diagnosis: commands, checks, clocks, one split, once."""
+
+from dataclasses import dataclass, replace
+
+from quad_ident_ros.data.clocks import clocks_of, on_one_clock
+from quad_ident_ros.data.quality import cautions
+from quad_ident_ros.data.record import FlightRecord, refuse_twice, same_flight
+from quad_ident_ros.diagnose.rules import Rules
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.greybox.flights import Flight, guided, highest_voltage, moved, track_of, Track
+from quad_ident_ros.greybox.near import near_flights
+from quad_ident_ros.greybox.parameters import nominal
+from quad_ident_ros.model.mixing import with_commands
+from quad_ident_ros.model.vehicle import Vehicle
+
+
+@dataclass(frozen=True, eq=False)
+class Intake:
+    """
+    Flights as a diagnosis takes them.
+
+    tracks: those learnt from; held_out: that which takes no part; flights: the tracks cut into
+    rollouts; late: {stream: s} that was moved in each, and clocks: the Clock, or None, of each,
+    the one held out last; findings: what to be wary of, as data.
+    """
+
+    vehicle: Vehicle
+    tracks: tuple
+    held_out: Track
+    flights: list
+    late: tuple
+    clocks: tuple
+    findings: list
+
+    @property
+    def names(self) -> tuple:
+        """Return the names of the flights, the one held out last."""
+        return tuple(track.name for track in (*self.tracks, self.held_out))
+
+    def shifted(self, prompt: float) -> 'Intake':
+        """Return the Intake with all commands so many s later."""
+        tracks = tuple(moved(track, prompt) for track in self.tracks)
+        return replace(self, tracks=tracks, held_out=moved(self.held_out, prompt),
+                       flights=rollouts(tracks, self.vehicle))
+
+
+def take_in(records: list, vehicle: Vehicle, hold_out: FlightRecord | None,
+            rules: Rules) -> Intake:
+    """
+    Return the Intake of flight records.
+
+    The last one is held out, or hold_out, or the second half of a single one. Raises InputError
+    for a fault that no verdict survives, and where there is too little.
+    """
+    if hold_out is not None:    # among others it would take part in fit and choice
+        records = [record for record in records if not same_flight(record, hold_out)]
+    refuse_twice(records)
+    records = [with_commands(record, vehicle) for record in records]
+    hold_out = None if hold_out is None else with_commands(hold_out, vehicle)
+    findings = []
+    for record in records if hold_out is None else [*records, hold_out]:
+        refuse_short(record, rules)
+        findings += cautions(record, vehicle)
+    training, test = split(records, hold_out)
+    records, late, answers = zip(*on_one_clock([*training, test]), strict=True)
+    voltage = highest_voltage(records[:-1])
+    clocks = clocks_of(answers[:-1], answers[-1:])
+    *tracks, held_out = (guided(track_of(record, vehicle, voltage, clock))
+                         for record, clock in zip(records, clocks, strict=True))
+    return Intake(vehicle, tuple(tracks), held_out, rollouts(tracks, vehicle), late, clocks,
+                  findings)
+
+
+def rollouts(tracks: tuple, vehicle: Vehicle) -> list[Flight]:
+    """Return the Flights of Tracks, cut so that the nominal vehicle stays near the record."""
+    return near_flights(tracks, vehicle, nominal(vehicle))
+
+
+def split(records: list, hold_out: FlightRecord | None) -> tuple:
+    """Return the records to learn from and the one held out; InputError without a record."""
+    if not records:
+        raise InputError('no flight to learn from: name at least one flight record beside the one '
+                         'that is held out')
+    if hold_out is not None:
+        return records, hold_out
+    if len(records) > 1:
+        return records[:-1], records[-1]
+    record = records[0]
+    half = len(record) // 2
+    later = record.slice(half, len(record))
+    # The battery goes on emptying from the start of the flight.
+    return [record.slice(0, half)], replace(later, info={**later.info, 'began': record.t[0]})
+
+
+def length_of(record: FlightRecord) -> float:
+    """Return the length of a flight record, s; a nanosecond counts for nothing."""
+    return round(float(record.t[-1] - record.t[0]) + record.period(), 6)
+
+
+def refuse_short(record: FlightRecord, rules: Rules) -> None:
+    """Raise InputError where a flight record is too short for a diagnosis."""
+    if length_of(record) < rules.shortest:
+        name = record.info.get('source') or record.info.get('name', 'a record')
+        raise InputError(f'{name}: {length_of(record):.3g} s are '
+                         f'too short for a diagnosis; at least {rules.shortest:g} s are needed')

@@ -1,0 +1,208 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What each effect contributes, which effects matter, and whether something unknown remains."""
+
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+
+from quad_ident_ros.diagnose import gap as gaps
+from quad_ident_ros.diagnose.fitted import effects_in, refitted
+from quad_ident_ros.diagnose.nuisances import own_of
+from quad_ident_ros.diagnose.rules import Rules
+from quad_ident_ros.diagnose.select import Selection
+from quad_ident_ros.greybox.estimate import Estimate
+from quad_ident_ros.greybox.parameters import nominal
+
+SCALING = ('thrust_scale', 'mass_offset', 'inertia_mismatch')
+TIED = 0.9      # correlation of two effects' parameters from which on they are taken out together
+
+
+@dataclass(frozen=True, eq=False)
+class Model:
+    """
+    A set of effects fitted to all flights but the one held out, and the gap that it leaves.
+
+    z (Z,): with the effects; vectors: z with each flight's nuisances, that of the flight held out
+    last; gap {group: ...}: over all flights, position and velocity given the recorded attitude.
+    """
+
+    chosen: tuple
+    estimate: Estimate
+    vectors: tuple
+    gap: dict
+
+    @property
+    def z(self) -> np.ndarray:
+        """Return the vector (Z,) that the flights share."""
+        return self.estimate.z
+
+    @property
+    def effects(self) -> tuple:
+        """Return the candidates that are effects."""
+        return effects_in(self.chosen)
+
+
+@dataclass(frozen=True, eq=False)
+class Bench:
+    """
+    Flights on which models are refitted and measured.
+
+    flights: those learnt from, cut into rollouts; tracks: these and, last, the one held out;
+    noise (12,) of the measurement.
+    """
+
+    flights: list
+    tracks: tuple
+    vehicle: object
+    selection: Selection
+    noise: np.ndarray
+    rules: Rules
+
+    def model(self, chosen: tuple, estimate: Estimate, fixed: np.ndarray | None = None) -> Model:
+        """
+        Return the Model of a set and its Estimate.
+
+        fixed (Z,): nuisances that are not free in the flight that was held out.
+        """
+        held_out = own_of(self.tracks[-1], self.vehicle, estimate.z,
+                          tuple(cause.own for cause in chosen if cause.own), self.noise,
+                          self.flights[0].segment, fixed)
+        vectors = (*estimate.vectors, estimate.z + held_out)
+        return Model(chosen, estimate, vectors, self.gap(vectors))
+
+    def gap(self, vectors: tuple) -> dict:
+        """Return {group: gap} of all flights with a vector (Z,) each."""
+        return gaps.gap(self.ends(vectors))
+
+    def ends(self, vectors: tuple) -> list:
+        """Return the Ends of all flights with a vector (Z,) each."""
+        return [gaps.ends(track, self.vehicle, z, gaps.HEADLINE)
+                for track, z in zip(self.tracks, vectors, strict=True)]
+
+    def noise_gap(self, model: Model) -> dict:
+        """Return {group: the gap that the noise makes} of all flights."""
+        found = [gaps.noise_gap(track, self.vehicle, z, self.noise, gaps.HEADLINE)
+                 for track, z in zip(self.tracks, model.vectors, strict=True)]
+        return {name: float(np.sqrt(np.mean([one[name] ** 2 for one in found])))
+                for name in found[0]}
+
+    def without(self, model: Model, removed: tuple) -> Model:
+        """
+        Return a Model with some of its effects taken out and everything else refitted.
+
+        What is alike in all flights must not hide in nuisances: those in the same parameters as
+        an effect that is taken out may only differ between flights, as they do beside it.
+        """
+        fit, z = model.estimate, model.z.copy()
+        columns = [column for cause in removed for column in cause.columns]
+        z[columns] = nominal(self.vehicle)[columns]
+        fixed = np.stack(model.vectors) - model.z
+        shared = [column for column in columns if fixed[:, column].any()]
+        others = [column for cause in model.chosen if cause.own is not None
+                  and not set(cause.own.columns) & set(shared) for column in cause.own.columns]
+        fixed[:, others] = 0.0
+        fixed[:, shared] -= fixed[:-1, shared].mean(axis=0)
+        chosen = tuple(cause for cause in model.chosen if cause not in removed and not (
+            cause.own is not None and set(shared) & set(cause.own.columns)))
+        estimate = refitted(self.flights, self.vehicle, z, chosen, self.selection.noise, fit.own,
+                            fit.starts, scatter=self.selection.quadratic.scatter,
+                            fixed=fixed[:-1])
+        return self.model(chosen, estimate, fixed[-1])
+
+
+@dataclass(frozen=True, eq=False)
+class Judgement:
+    """
+    What was judged of a Selection.
+
+    model: the effects that matter; full: all that the evidence is for; contribution: {candidate:
+    share of the closable gap that is lost without it}, of those in either; without: {candidate:
+    Model without it}; noise {group: gap}; unknown: {group: gap beyond tolerance and error of form}.
+    """
+
+    full: Model
+    model: Model
+    before: dict
+    noise: dict
+    contribution: dict
+    without: dict
+    unexplained: dict
+
+
+def judge(bench: Bench) -> Judgement:
+    """Return the Judgement of the best set of a Selection on the flights of a Bench."""
+    best = bench.selection.best
+    full = model = bench.model(best.chosen, best.estimate)
+    null = nominal(bench.vehicle)
+    before = bench.gap(tuple(null + vector - full.z for vector in full.vectors))
+    noise = bench.noise_gap(full)
+    contribution, without = {}, {}
+    while model.effects:
+        smaller = {removed: bench.without(model, removed) for removed in _subsets(model)}
+        lost = {removed: lost_share(model.gap, one.gap, before, noise, bench.rules)
+                for removed, one in smaller.items()}
+        contribution |= {removed[0]: lost[removed] for removed in smaller if len(removed) == 1}
+        without |= {removed[0]: smaller[removed] for removed in smaller if len(removed) == 1}
+        idle = [removed for removed in smaller if lost[removed] < bench.rules.material]
+        if not idle:
+            break
+        first = max(idle, key=lambda removed: (len(removed), -lost[removed]))
+        model = smaller[first]
+    return Judgement(full, model, before, noise, contribution, without,
+                     unexplained(model, before, noise, bench.rules))
+
+
+def lost_share(after: dict, without: dict, before: dict, noise: dict, rules: Rules) -> float:
+    """
+    Return the share of the closable gap that is lost, in the group of outputs where it is most.
+
+    Args: {group: gap} with all effects, without some, of the nominal vehicle, of the noise.
+    """
+    shares = []
+    for name in after:
+        closable = before[name] - min(noise[name], after[name])
+        shares.append((without[name] - after[name])
+                      / max(closable, rules.visible * noise[name], 1e-300))
+    return float(max(shares))
+
+
+def unexplained(model: Model, before: dict, noise: dict, rules: Rules) -> dict:
+    """
+    Return {group: gap} of what remains beyond the noise, where that matters.
+
+    It matters where it is more than the tolerance, and more than the error of form of the effects
+    that are named may be.
+    """
+    found = {}
+    for name, gap in model.gap.items():
+        remains = beyond(gap, noise[name])
+        closed = beyond(before[name], gap) if model.effects else 0.0
+        if remains > max(rules.tolerance(name, noise[name]), rules.unexplained * closed):
+            found[name] = remains
+    return found
+
+
+def beyond(gap: float, noise: float) -> float:
+    """Return what makes a gap together with an independent other one."""
+    return float(np.sqrt(max(0.0, gap ** 2 - noise ** 2)))
+
+
+def _subsets(model: Model) -> list:
+    """Return the effects that are taken out: each one, and those together that may cancel."""
+    effects = model.effects
+    scaling = [cause for cause in effects if cause.effect in SCALING]
+    groups = [tuple(group) for size in range(2, len(scaling) + 1)
+              for group in combinations(scaling, size)]
+    pairs = [pair for pair in combinations(effects, 2)
+             if pair not in groups and _tie(model.estimate, *pair) > TIED]
+    return [*((cause,) for cause in effects), *groups, *pairs]
+
+
+def _tie(fit: Estimate, one, other) -> float:
+    """Return the largest correlation between the parameters of two effects."""
+    errors = np.sqrt(np.maximum(np.diag(fit.covariance), 1e-300))
+    table = np.abs(fit.covariance / np.outer(errors, errors))
+    places = [[fit.columns.index(column) for column in cause.columns] for cause in (one, other)]
+    return float(table[np.ix_(*places)].max())

@@ -1,0 +1,203 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""A diagnosis as typed values, and as the data of the project's JSON (version 2)."""
+
+from dataclasses import asdict, dataclass, field
+
+import numpy as np
+
+from quad_ident_ros import __version__
+from quad_ident_ros.diagnose.gap import Ends
+from quad_ident_ros.diagnose.residual_wrench import ResidualWrench
+from quad_ident_ros.effects.registry import mapping
+from quad_ident_ros.greybox.parameters import SPLIT
+from quad_ident_ros.model.vehicle import Vehicle
+
+SCHEMA = 'quad_ident/diagnosis/2'
+
+
+@dataclass(frozen=True)
+class Value:
+    """A parameter of an effect, with its standard error."""
+
+    value: float
+    std: float
+    unit: str
+
+
+@dataclass(frozen=True)
+class Ranked:
+    """
+    An effect as the flights speak of it.
+
+    probability that it is present; form: the law by which it was fitted, and explained: the share
+    of its contribution that this law explains, or None; contribution: the share of the closable
+    gap that is lost without it, everything else refitted, and without {group: gap} then; gap_after
+    {group: gap} on the flight held out with this effect alone.
+    """
+
+    effect: str
+    probability: float
+    form: str | None
+    explained: float | None
+    contribution: float | None
+    parameters: dict
+    gap_after: dict
+    without: dict | None
+
+
+@dataclass(frozen=True)
+class Minor:
+    """An effect that is surely there and closes less than what is material."""
+
+    effect: str
+    probability: float
+    contribution: float
+
+
+@dataclass(frozen=True)
+class Channel:
+    """
+    A body force or moment that the nominal vehicle does not explain.
+
+    share of the gap; regime in which most of it lies, and the share of it that does; band
+    (low, high) Hz of half of it; rms, and what noise alone gives, in unit.
+    """
+
+    channel: str
+    share: float
+    regime: str
+    share_in_regime: float
+    band: tuple
+    rms: float
+    noise_rms: float
+    unit: str
+
+
+@dataclass(frozen=True)
+class Gap:
+    """
+    The gap on the flight held out, {group: ...} in units.
+
+    before: the nominal vehicle and nothing else; before_own: with the nuisances of the flight
+    taken out; after: with the effects named; noise: what a perfect model leaves; closed: the share
+    that the effects close of what is above the noise; horizons: the same {seconds: ...}.
+    """
+
+    horizon: float
+    units: dict
+    before: dict
+    before_own: dict
+    after: dict
+    noise: dict
+    before_interval: dict
+    after_interval: dict
+    closed: float
+    horizons: dict
+    without: dict = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class GapGivenAttitude:
+    """The gap of position and velocity on the flight held out, given its recorded attitude."""
+
+    horizon: float
+    before: dict
+    before_own: dict
+    after: dict
+    noise: dict
+    closed: float
+
+
+@dataclass(frozen=True)
+class Unexplained:
+    """What no effect explains: its channel, the regime in which it lies, its size in unit."""
+
+    channel: str
+    depends_on: str
+    share: float
+    band: tuple
+    rms: float
+    unit: str
+
+
+@dataclass(frozen=True)
+class FlightCheck:
+    """How well the verdict's model predicts one flight: {group: gap over that of the noise}."""
+
+    flight: str
+    gap_over_noise: dict
+    differs: bool
+
+
+@dataclass(frozen=True)
+class Pictures:
+    """
+    What the pictures of a diagnosis are drawn from.
+
+    t (B,) s at which predictions end; states (B, 13) measured there; before, after: the Ends of
+    open-loop predictions; wrenches: the ResidualWrenches of flights, before and after.
+    """
+
+    t: np.ndarray
+    states: np.ndarray
+    before: Ends
+    after: Ends
+    wrench_before: tuple[ResidualWrench, ...]
+    wrench_after: tuple[ResidualWrench, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Diagnosis:
+    """
+    The verdict on flights of a vehicle, and what it rests on.
+
+    verdict: what matters, the largest contribution first, or none, unknown, undetermined; minor:
+    what is there and does not matter; z (Z,): the parameter vector with the effects named.
+    """
+
+    vehicle: Vehicle
+    verdict: tuple[str, ...]
+    minor: tuple[Minor, ...]
+    ranking: tuple[Ranked, ...]
+    where: tuple[Channel, ...]
+    gap: Gap
+    gap_given_attitude: GapGivenAttitude
+    tolerance: dict
+    unknown: tuple[Unexplained, ...]
+    undetermined: tuple[str, ...]
+    sure: tuple[str, ...]
+    one_finding: tuple[dict, ...]
+    not_shown: tuple[str, ...]
+    fly_next: list | None
+    nuisances: dict | None
+    flights: tuple[str, ...]
+    held_out: str
+    flight_checks: tuple[FlightCheck, ...]
+    findings: tuple
+    z: np.ndarray
+    pictures: Pictures
+
+    def effects(self) -> dict:
+        """Return {effect: {parameter: value}} of the effects named."""
+        return mapping(self.z[SPLIT:])
+
+    def as_data(self) -> dict:
+        """Return the JSON of the project as data."""
+        return {
+            'schema': SCHEMA, 'version': __version__, 'vehicle': self.vehicle.name,
+            'verdict': list(self.verdict),
+            'minor': [asdict(one) for one in self.minor],
+            'ranking': [asdict(one) for one in self.ranking],
+            'where': [asdict(one) for one in self.where],
+            'gap': asdict(self.gap), 'gap_given_attitude': asdict(self.gap_given_attitude),
+            'tolerance': dict(self.tolerance),
+            'unknown': [asdict(one) for one in self.unknown] or None,
+            'undetermined': list(self.undetermined) or None,
+            'sure': list(self.sure) if self.undetermined else None,
+            'one_finding': [dict(one) for one in self.one_finding],
+            'not_shown': list(self.not_shown), 'fly_next': self.fly_next,
+            'nuisances': self.nuisances, 'flights': list(self.flights),
+            'held_out': self.held_out,
+            'flight_checks': [asdict(one) for one in self.flight_checks],
+            'findings': list(self.findings)}

@@ -1,0 +1,63 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Every threshold of a verdict, with its reason and source; docs/method.md shows where each acts."""
+
+from dataclasses import dataclass, field
+
+
+@dataclass(frozen=True)
+class Rules:
+    """
+    The thresholds by which a verdict is reached.
+
+    Intake:
+      shortest: s of a flight. Half of a single one is held out: four rollouts of half a second
+        for each half; whether that tells anything is a matter of information, see `not_shown`.
+    Prior:
+      prior_odds: probability of each effect before looking. One to three of some seventeen are
+        there in vehicles that are looked at; less, for the many that may be named by chance
+        (multiplicity: Scott and Berger, Annals of Statistics 38, 2010).
+      prior_width: usual sizes of a parameter that are one standard deviation of its prior about
+        no effect: wide enough for the largest that is flown.
+    Discrepancy (see discrepancy.py):
+      form_error: relative error of an effect's formula. Published laws of one effect differ from
+        one another by 10 to 30 % over the range in which they are used.
+      form_time: s over which that error stays the same: that of a turn or a stop of a flight.
+    Naming:
+      present: probability from which on an effect is named: more likely there than not.
+      doubt: probability of a rival from which on it is not ruled out; an effect of 1 - doubt is
+        sure. instead: how many times likelier a rival must be without an effect than with it.
+      material: share of the closable gap that an effect must close to be in the verdict: less is
+        below what a change of the weather or of a battery does.
+      visible: of the noise's gap: where less can be closed, shares of it mean nothing.
+    Tolerance (a gap that matters, by group of outputs, at 0.5 s):
+      noise_share: of the noise's gap: what is less cannot be seen in one prediction.
+      floors: m, m/s, rad, rad/s that no user of a simulation at 0.5 s minds.
+    Unknown:
+      differs: times the gap that remains in the other flights from which on one flight differs.
+      unexplained: share of the gap that the named effects close which may remain as error of
+        their form before something unknown is named.
+    """
+
+    shortest: float = 4.0
+    prior_odds: float = 0.02
+    prior_width: float = 3.0
+    form_error: float = 0.2
+    form_time: float = 1.0
+    present: float = 0.5
+    doubt: float = 0.12
+    instead: float = 2.0
+    material: float = 0.05
+    visible: float = 0.1
+    noise_share: float = 0.25
+    floors: dict = field(default_factory=lambda: {
+        'position': 0.005, 'velocity': 0.02, 'attitude': 0.01, 'rate': 0.05})
+    unexplained: float = 0.5
+    differs: float = 2.0
+
+    def tolerance(self, group: str, noise: float) -> float:
+        """Return the gap of a group of outputs that does not matter, beside its noise's gap."""
+        return max(self.noise_share * noise, self.floors[group])
+
+
+RULES = Rules()
