@@ -61,10 +61,17 @@ def refitted(flights, vehicle, z, chosen, noise, own, starts, slopes=None,
                     iterations=FIT_STEPS, slopes=slopes, scatter=scatter)
 
 
-def distances_of(chosen: tuple, z: np.ndarray, vehicle) -> dict:
-    """Return {columns: distance of their parameters from no effect} of a set's effects."""
-    away = z - nominal(vehicle)
-    return {cause.columns: away[list(cause.columns)] for cause in effects_in(chosen)}
+def distances_of(chosen: tuple, fit: Estimate, vehicle) -> dict:
+    """
+    Return {columns: distance (F, K) of their parameters from none in each flight}.
+
+    Of each effect and nuisance of a set: what a nuisance does is a formula, too.
+    """
+    vectors = np.stack(fit.vectors)
+    shared = np.broadcast_to(fit.z - nominal(vehicle), vectors.shape)
+    return {('nuisance' if cause.own else 'effect', cause.columns):
+            (vectors - fit.z if cause.own else shared)[:, list(cause.columns)]
+            for cause in chosen}
 
 
 def size_grids(vehicle, noise: list, rules: Rules) -> tuple:
@@ -87,7 +94,7 @@ def fitted_of(chosen: tuple, fit: Estimate, vehicle, frame: Frame, quadratic: Qu
     The residuals count by the likelihood with the discrepancy marginalised out, the volume of the
     parameters by the information around the Frame's point.
     """
-    blocks = blocks_at(frame, fit, distances_of(chosen, fit.z, vehicle))
+    blocks = blocks_at(frame, fit, distances_of(chosen, fit, vehicle))
     value, sizes = fitted_sizes(blocks, rules.form_error, grids, quadratic.scatter, start)
     spreads = np.tile(fit.own.spreads, len(fit.own.values))
     wide = np.append(rules.prior_width * limits(vehicle)[2][fit.columns], spreads)

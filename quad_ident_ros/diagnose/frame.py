@@ -76,11 +76,12 @@ def discrepancy_of(frame: Frame, distances: dict) -> list:
     """
     Return the directions (B, M, D) of the discrepancy of each flight.
 
-    Args: distances: {columns: distance (K,) of their parameters from no effect} of each effect.
+    Args: distances: {(kind, columns): distance (F, K) of their parameters from none in each flight} of
+    each effect and nuisance.
     """
     found = []
     for k in range(len(frame.slope)):
-        each = [frame.columns(list(columns), k) @ away for columns, away in distances.items()]
+        each = [frame.columns(list(columns), k) @ away[k] for (_, columns), away in distances.items()]
         shape = frame.slope[k].shape[:2]
         found.append(directions(frame.columns(list(WRENCH), k),
                                 np.stack(each, axis=2) if each else np.zeros((*shape, 0))))

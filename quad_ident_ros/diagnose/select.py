@@ -153,7 +153,7 @@ class _Search:
     def quadratic_of(self, fit, chosen, layout, everyone, grids, sizes):
         """Return the Quadratic around an Estimate, all candidates free."""
         normal = normal_at(self.frame, self.flights, fit, layout,
-                           distances_of(chosen, fit.z, self.vehicle),
+                           distances_of(chosen, fit, self.vehicle),
                            tuple(grid[k] for grid, k in zip(grids, sizes, strict=True)),
                            self.rules)
         lower, upper, size = limits(self.vehicle)
