@@ -10,7 +10,7 @@ from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.diagnose import advice, measure
 from quad_ident_ros.diagnose.candidates import candidates
 from quad_ident_ros.diagnose.intake import Intake, take_in
-from quad_ident_ros.diagnose.judgement import Bench, judge
+from quad_ident_ros.diagnose.judgement import Bench, judge, pooled
 from quad_ident_ros.diagnose.nuisances import late_controller
 from quad_ident_ros.diagnose.nuisances import as_data as nuisances_as_data
 from quad_ident_ros.diagnose.result import Diagnosis
@@ -66,7 +66,8 @@ def diagnose(records: list[FlightRecord], vehicle: Vehicle, *,
         vehicle=vehicle, verdict=verdict.names, minor=verdict.minor, ranking=verdict.ranking,
         where=measure.channels(before, vehicle), gap=measure.open_loop_gap(bench, judged),
         gap_given_attitude=measure.gap_given_attitude(bench, judged),
-        tolerance={name: rules.tolerance(name, judged.noise[name]) for name in judged.noise},
+        tolerance={name: rules.tolerance(name, gap)
+                   for name, gap in pooled(judged.noise).items()},
         unknown=measure.unexplained(judged, measure.channels(after, vehicle)),
         undetermined=verdict.undetermined, sure=verdict.sure,
         one_finding=advice.one_finding(verdict), not_shown=unseen,

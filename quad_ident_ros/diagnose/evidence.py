@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.greybox.own import CLOCK, LIKELY
 
 BEAM = 12           # sets kept per size
@@ -115,7 +116,7 @@ def beam(quadratic, causes, rules):
     Return [(log-evidence, causes, distances)] of the best sets of causes, best first.
 
     Args: causes: {cause: rows of the quadratic}. Sets grow by one cause at a time from each of the
-    best of a size, and two causes of one effect never stand together.
+    best of a size; of two causes that exclude one another only one is in a set.
     """
     def entries(sets):
         values, distances = linear_evidence(quadratic, sets, causes, rules)
@@ -128,7 +129,7 @@ def beam(quadratic, causes, rules):
         for _, chosen, _ in level:
             full = sum(cause.own is None for cause in chosen) >= MOST
             for cause in causes:
-                if full and cause.own is None or any(cause.effect == other.effect
+                if full and cause.own is None or any(excludes(cause, other)
                                                      for other in chosen):
                     continue
                 grown[key_of((*chosen, cause))] = None
@@ -138,6 +139,20 @@ def beam(quadratic, causes, rules):
         level = sorted(grown.values(), key=lambda one: -one[0])[:BEAM]
         level = [one for one in level if one[0] > best - BEHIND]
     return sorted(seen.values(), key=lambda one: -one[0])
+
+
+def excludes(cause, other):
+    """
+    Return whether two causes never stand together.
+
+    Two of one effect, and two whose ratio alone shows: thrust and mass, multiplied by one factor
+    with the inertia, move a vehicle alike.
+    """
+    if cause.own is not None or other.own is not None:
+        return cause.effect == other.effect
+    ratio = EFFECTS[cause.effect].ratio
+    return cause.effect == other.effect or (ratio is not None
+                                            and ratio == EFFECTS[other.effect].ratio)
 
 
 def key_of(causes):

@@ -12,6 +12,7 @@ from quad_ident_ros.diagnose.fitted import effects_in, refitted
 from quad_ident_ros.diagnose.nuisances import own_of
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.diagnose.select import Selection
+from quad_ident_ros.greybox.errors import ERRORS, GROUPS
 from quad_ident_ros.greybox.estimate import Estimate
 from quad_ident_ros.greybox.parameters import nominal
 
@@ -25,13 +26,19 @@ class Model:
     A set of effects fitted to all flights but the one held out, and the gap that it leaves.
 
     z (Z,): with the effects; vectors: z with each flight's nuisances, that of the flight held out
-    last; gap {group: ...}: over all flights, position and velocity given the recorded attitude.
+    last; ends: the Ends of predictions along each, position and velocity given the recorded
+    attitude.
     """
 
     chosen: tuple
     estimate: Estimate
     vectors: tuple
-    gap: dict
+    ends: tuple
+
+    @property
+    def gap(self) -> dict:
+        """Return {group: gap} of all flights."""
+        return gaps.gap(self.ends)
 
     @property
     def z(self) -> np.ndarray:
@@ -70,23 +77,17 @@ class Bench:
                           tuple(cause.own for cause in chosen if cause.own), self.noise,
                           self.flights[0].segment, fixed)
         vectors = (*estimate.vectors, estimate.z + held_out)
-        return Model(chosen, estimate, vectors, self.gap(vectors))
+        return Model(chosen, estimate, vectors, self.ends(vectors))
 
-    def gap(self, vectors: tuple) -> dict:
-        """Return {group: gap} of all flights with a vector (Z,) each."""
-        return gaps.gap(self.ends(vectors))
-
-    def ends(self, vectors: tuple) -> list:
+    def ends(self, vectors: tuple) -> tuple:
         """Return the Ends of all flights with a vector (Z,) each."""
-        return [gaps.ends(track, self.vehicle, z, gaps.HEADLINE)
-                for track, z in zip(self.tracks, vectors, strict=True)]
+        return tuple(gaps.ends(track, self.vehicle, z, gaps.HEADLINE)
+                     for track, z in zip(self.tracks, vectors, strict=True))
 
-    def noise_gap(self, model: Model) -> dict:
-        """Return {group: the gap that the noise makes} of all flights."""
-        found = [gaps.noise_gap(track, self.vehicle, z, self.noise, gaps.HEADLINE)
-                 for track, z in zip(self.tracks, model.vectors, strict=True)]
-        return {name: float(np.sqrt(np.mean([one[name] ** 2 for one in found])))
-                for name in found[0]}
+    def noise_gaps(self, model: Model) -> list:
+        """Return {group: the gap that the noise makes} of each flight."""
+        return [gaps.noise_gap(track, self.vehicle, z, self.noise, gaps.HEADLINE)
+                for track, z in zip(self.tracks, model.vectors, strict=True)]
 
     def without(self, model: Model, removed: tuple) -> Model:
         """
@@ -118,15 +119,18 @@ class Judgement:
     What was judged of a Selection.
 
     model: the effects that matter; full: all that the evidence is for; contribution: {candidate:
-    share of the closable gap that is lost without it}, of those in either; without: {candidate:
-    Model without it}; noise {group: gap}; unknown: {group: gap beyond tolerance and error of form}.
+    share of the closable gap that is lost without it}, of those in either; stability: {candidate:
+    how steadily it helps, see `stability`}; without: {candidate: Model without it}; before: the
+    Ends of the nominal vehicle with the nuisances of each flight; noise: {group: gap} of each
+    flight; unexplained: {group: gap beyond tolerance and error of form}.
     """
 
     full: Model
     model: Model
-    before: dict
-    noise: dict
+    before: tuple
+    noise: list
     contribution: dict
+    stability: dict
     without: dict
     unexplained: dict
 
@@ -136,49 +140,96 @@ def judge(bench: Bench) -> Judgement:
     best = bench.selection.best
     full = model = bench.model(best.chosen, best.estimate)
     null = nominal(bench.vehicle)
-    before = bench.gap(tuple(null + vector - full.z for vector in full.vectors))
-    noise = bench.noise_gap(full)
-    contribution, without = {}, {}
+    ends = bench.ends(tuple(null + vector - full.z for vector in full.vectors))
+    noises = bench.noise_gaps(full)
+    before, noise = gaps.gap(ends), pooled(noises)
+    contribution, steady, without = {}, {}, {}
     while model.effects:
         smaller = {removed: bench.without(model, removed) for removed in _subsets(model)}
         lost = {removed: lost_share(model.gap, one.gap, before, noise, bench.rules)
                 for removed, one in smaller.items()}
-        contribution |= {removed[0]: lost[removed] for removed in smaller if len(removed) == 1}
-        without |= {removed[0]: smaller[removed] for removed in smaller if len(removed) == 1}
-        idle = [removed for removed in smaller if lost[removed] < bench.rules.material]
+        for removed, one in smaller.items():
+            if len(removed) == 1:
+                [cause] = removed
+                contribution[cause], without[cause] = lost[removed], one
+                steady[cause] = stability(model.ends, one.ends, noise)
+        idle = [removed for removed, one in smaller.items()
+                if not matters(model.gap, one.gap, before, noise, bench.rules)]
         if not idle:
             break
         first = max(idle, key=lambda removed: (len(removed), -lost[removed]))
         model = smaller[first]
-    return Judgement(full, model, before, noise, contribution, without,
-                     unexplained(model, before, noise, bench.rules))
+    return Judgement(full, model, ends, noises, contribution, steady, without,
+                     unexplained(model.gap, before, noise, bool(model.effects), bench.rules))
 
 
-def lost_share(after: dict, without: dict, before: dict, noise: dict, rules: Rules) -> float:
+def pooled(gap: list) -> dict:
+    """Return {group: root mean square} of the gaps {group: ...} of flights."""
+    return {name: float(np.sqrt(np.mean([one[name] ** 2 for one in gap]))) for name in gap[0]}
+
+
+def stability(with_it: tuple, without: tuple, noise: dict) -> float:
     """
-    Return the share of the closable gap that is lost, in the group of outputs where it is most.
+    Return how steadily an effect helps: what it saves per block of time over its standard error.
+
+    The statistic of Vuong (Econometrica 57, 1989) for two models, over blocks of 2 s of all
+    flights, the one held out among them. Squared errors count in units of what remains.
+    Args: the Ends of all flights with and without the effect; noise {group: gap}.
+    """
+    scale = np.empty(ERRORS)
+    for name, gap in gaps.gap(with_it).items():
+        scale[GROUPS[name]] = max(gap, noise[name])
+    saved = []
+    for one, other in zip(with_it, without, strict=True):
+        change = np.sum((other.errors ** 2 - one.errors ** 2) / scale ** 2, axis=1)
+        block = np.unique((one.t // gaps.BLOCK).astype(int), return_inverse=True)[1]
+        saved.append(np.bincount(block, change))
+    saved = np.concatenate(saved)
+    error = np.std(saved) * np.sqrt(len(saved))
+    return float(np.sum(saved) / max(error, 1e-300))
+
+
+def lost_shares(after: dict, without: dict, before: dict, noise: dict, rules: Rules) -> dict:
+    """
+    Return {group: share of the closable gap that is lost}.
 
     Args: {group: gap} with all effects, without some, of the nominal vehicle, of the noise.
     """
-    shares = []
-    for name in after:
-        closable = before[name] - min(noise[name], after[name])
-        shares.append((without[name] - after[name])
-                      / max(closable, rules.visible * noise[name], 1e-300))
-    return float(max(shares))
+    return {name: (without[name] - after[name]) / max(
+        before[name] - min(noise[name], after[name]), rules.tolerance(name, noise[name]))
+        for name in after}
 
 
-def unexplained(model: Model, before: dict, noise: dict, rules: Rules) -> dict:
+def lost_share(after: dict, without: dict, before: dict, noise: dict, rules: Rules) -> float:
+    """Return the share that is lost in the group of outputs where it is most."""
+    return float(max(lost_shares(after, without, before, noise, rules).values()))
+
+
+def matters(after: dict, without: dict, before: dict, noise: dict, rules: Rules) -> bool:
+    """
+    Return whether effects matter, by the gap with and without them.
+
+    In some group of outputs the share that is lost without them is material, and more than the
+    error of form of the other effects may be.
+    """
+    shares = lost_shares(after, without, before, noise, rules)
+    return any(share >= rules.material
+               and beyond(without[name], after[name])
+               >= rules.form_error * beyond(before[name], without[name])
+               for name, share in shares.items())
+
+
+def unexplained(gap: dict, before: dict, noise: dict, named: bool, rules: Rules) -> dict:
     """
     Return {group: gap} of what remains beyond the noise, where that matters.
 
     It matters where it is more than the tolerance, and more than the error of form of the effects
-    that are named may be.
+    that are named, if any, may be.
     """
     found = {}
-    for name, gap in model.gap.items():
-        remains = beyond(gap, noise[name])
-        closed = beyond(before[name], gap) if model.effects else 0.0
+    for name in gap:
+        remains = beyond(gap[name], noise[name])
+        closed = beyond(before[name], gap[name]) if named else 0.0
         if remains > max(rules.tolerance(name, noise[name]), rules.unexplained * closed):
             found[name] = remains
     return found

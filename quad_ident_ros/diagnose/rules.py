@@ -29,7 +29,6 @@ class Rules:
         sure. instead: how many times likelier a rival must be without an effect than with it.
       material: share of the closable gap that an effect must close to be in the verdict: less is
         below what a change of the weather or of a battery does.
-      visible: of the noise's gap: where less can be closed, shares of it mean nothing.
     Tolerance (a gap that matters, by group of outputs, at 0.5 s):
       noise_share: of the noise's gap: what is less cannot be seen in one prediction.
       floors: m, m/s, rad, rad/s that no user of a simulation at 0.5 s minds.
@@ -48,10 +47,9 @@ class Rules:
     doubt: float = 0.12
     instead: float = 2.0
     material: float = 0.05
-    visible: float = 0.1
     noise_share: float = 0.25
     floors: dict = field(default_factory=lambda: {
-        'position': 0.005, 'velocity': 0.02, 'attitude': 0.01, 'rate': 0.05})
+        'position': 0.01, 'velocity': 0.02, 'attitude': 0.01, 'rate': 0.05})
     unexplained: float = 0.5
     differs: float = 2.0
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from quad_ident_ros.diagnose import gap as gaps
 from quad_ident_ros.diagnose.doubts import doubts_of
-from quad_ident_ros.diagnose.judgement import Bench, beyond, Judgement
+from quad_ident_ros.diagnose.judgement import Bench, beyond, Judgement, unexplained
 from quad_ident_ros.diagnose.result import FlightCheck, Minor, Ranked, Value
 from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.greybox.parameters import NAMES, nominal
@@ -62,23 +62,17 @@ def flight_checks(bench: Bench, judged: Judgement) -> tuple[FlightCheck, ...]:
 
     It differs where a gap remains that matters and is twice that of the other flights.
     """
-    model = judged.model
-    found = [gaps.gap([ends]) for ends in bench.ends(model.vectors)]
-    own = [gaps.noise_gap(track, bench.vehicle, z, bench.noise, gaps.HEADLINE)
-           for track, z in zip(bench.tracks, model.vectors, strict=True)]
-    rows = []
-    for k, (track, gap, noise) in enumerate(zip(bench.tracks, found, own, strict=True)):
-        differs = False
-        for name in gap:
-            others = np.median([beyond(one[name], each[name]) for j, (one, each) in
-                                enumerate(zip(found, own, strict=True)) if j != k])
-            closed = beyond(judged.before[name], model.gap[name]) if model.effects else 0.0
-            remains = beyond(gap[name], noise[name])
-            differs |= remains > max(bench.rules.tolerance(name, noise[name]),
-                                     bench.rules.unexplained * closed,
-                                     bench.rules.differs * others)
+    found, before = ([gaps.gap([one]) for one in ends]
+                     for ends in (judged.model.ends, judged.before))
+    named, rows = bool(judged.model.effects), []
+    for k, (track, gap, noise) in enumerate(zip(bench.tracks, found, judged.noise, strict=True)):
+        remains = unexplained(gap, before[k], noise, named, bench.rules)
+        others = {name: np.median([beyond(one[name], other[name]) for j, (one, other) in enumerate(
+            zip(found, judged.noise, strict=True)) if j != k]) for name in remains}
+        differs = any(value > bench.rules.differs * others[name]
+                      for name, value in remains.items())
         rows.append(FlightCheck(track.name, {name: gap[name] / noise[name] for name in gap},
-                                bool(differs)))
+                                differs))
     return tuple(rows)
 
 
@@ -108,7 +102,7 @@ def _ranking(bench: Bench, judged: Judgement, causes: tuple, total: dict) -> tup
                                             gaps.HEADLINE)])
             contribution, form = judged.contribution[cause], cause.label
         rows[cause.effect] = Ranked(
-            cause.effect, total[cause.effect], form, None, contribution, parameters, gap_after,
+            cause.effect, total[cause.effect], form, judged.stability.get(cause), contribution, parameters, gap_after,
             judged.without[cause].gap if cause in model.effects else None)
     named = {cause.effect for cause in model.effects}
     return tuple(sorted(rows.values(), key=lambda row: (

@@ -42,7 +42,8 @@ class Effect:
     body(p, k, s): mass, inertia, centre of mass, before the flight; air(p, k, s): the wind;
     thrust(p, k, s, rotors): factors on the rotors' thrust; wrench(p, k, s, rotors): forces of
     the rotors, forces and moments on the body. actuator: 'delay' or 'lag', where its parameter is
-    one of the actuators; sensor: 'attitude' or 'rate', where its parameters are those of a sensor;
+    one of the actuators; ratio: the quotient that alone shows in motion, of two effects with one
+    of it only one is named; sensor: 'attitude' or 'rate', where its parameters are those of a sensor;
     per_rotor: each parameter belongs to one rotor, and one at a time is off.
     """
 
@@ -59,3 +60,4 @@ class Effect:
     actuator: str | None = None
     sensor: str | None = None
     per_rotor: bool = False
+    ratio: str | None = None

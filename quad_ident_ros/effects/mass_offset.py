@@ -20,4 +20,5 @@ EFFECT = Effect(
     source='nominal mass + mass: a payload at the centre of mass, without inertia of its own',
     excitation='any flight, with roll or pitch manoeuvres to tell it from thrust',
     confused_with=('thrust_scale',),
-    body=body)
+    body=body,
+    ratio='thrust per mass')

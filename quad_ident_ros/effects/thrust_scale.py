@@ -21,4 +21,5 @@ EFFECT = Effect(
     source='thrust = factor thrust_coefficient speed^2',
     excitation='any flight, with roll or pitch manoeuvres to tell it from mass',
     confused_with=('mass_offset', 'battery_sag', 'inflow'),
-    thrust=thrust)
+    thrust=thrust,
+    ratio='thrust per mass')
