@@ -50,7 +50,7 @@ def truths(vehicle: Vehicle) -> dict:
         'thrust_scale': {'factor': 0.95}, 'mass_offset': {'mass': 0.06 * mass},
         'inertia_mismatch': {'factor_x': 1.4, 'factor_y': 1.3, 'factor_z': 1.4},
         'com_offset': {'x': 0.02 * arm, 'y': -0.015 * arm, 'z': 0.02 * arm},
-        'rotor_fault': {'loss_2': 0.05}, 'rotor_gyro': {'rotor_inertia': 0.02 * inertia},
+        'rotor_fault': {'loss_2': 0.05}, 'rotor_gyro': {'rotor_inertia': 0.003 * inertia},
         'blade_flapping': {'coefficient': 0.1 * mass * arm},
         'attitude_misalignment': {'roll': 0.03, 'pitch': -0.02, 'yaw': 0.04},
         'gyro_bias': {'x': 0.04, 'y': -0.03, 'z': 0.05}}
