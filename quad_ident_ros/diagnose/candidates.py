@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from quad_ident_ros.effects.registry import EFFECTS, SLICES
+from quad_ident_ros.effects.registry import EFFECTS, PLACE, SLICES
 from quad_ident_ros.greybox.own import nuisances
 from quad_ident_ros.greybox.parameters import SPLIT
 
@@ -41,9 +41,8 @@ def candidates(flights, vehicle, effects=None):
                       for j in range(len(vehicle.rotors))]
         elif name == 'battery_sag':
             # By the volt where there are any, or by the second: one of the two.
-            kinds = list(zip(effect.parameters, columns, strict=True))
-            found += [Candidate(name, f'{name} {parameter.name}', (column,))
-                      for parameter, column in (kinds if voltage else kinds[1:])]
+            found += [Candidate(name, f'{name} {key}', (SPLIT + PLACE[name, key],))
+                      for key in (('per_volt', 'per_second') if voltage else ('per_second',))]
         else:
             found.append(Candidate(name, name, columns))
     return tuple(found)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.model.actuators import actuated
+from quad_ident_ros.model.actuators import actuated, without_lag
 from quad_ident_ros.model.attitude import quaternion_from_euler
 from quad_ident_ros.model.rigid_body import INPUT, rotor_table, STATE, vehicle_vector
 from quad_ident_ros.model.rollout import roll_out, roll_out_one
@@ -23,17 +23,23 @@ class Course:
     What is given along a flight.
 
     t (N,) s from its start; commands (M, n) rad/s, the rotors', each held to the next; volt_drop
-    (N,) V below the voltage of reference; stamps (M,) s of the commands, t where none are given.
+    (N,) V below reference_voltage, V; stamps (M,) s of the commands, t where none are given.
     """
 
     t: np.ndarray
     commands: np.ndarray
     volt_drop: np.ndarray
     stamps: np.ndarray = None
+    reference_voltage: float = np.inf
 
     def __post_init__(self):
         if self.stamps is None:
             object.__setattr__(self, 'stamps', self.t)
+
+    @property
+    def volt_share(self) -> np.ndarray:
+        """Fall of the voltage as a share of that of reference, (N,)."""
+        return self.volt_drop / self.reference_voltage
 
 
 def course_of(record, vehicle, reference_voltage=None):
@@ -46,11 +52,12 @@ def course_of(record, vehicle, reference_voltage=None):
     names = [f'cmd{j}' for j in range(1, len(vehicle.rotors) + 1)]
     _refuse_without(record, names, 'or u1, u2, u3, u4, the thrust and moments')
     commands = record.stack(*names)
-    drop = np.zeros(len(record))
-    if reference_voltage is not None and record.has('vbat'):
+    drop, known = np.zeros(len(record)), reference_voltage is not None and record.has('vbat')
+    if known:
         drop = reference_voltage - record.columns['vbat']
     began = record.info.get('began', record.t[0])
-    return Course(record.t - began, np.ascontiguousarray(commands), drop)
+    return Course(record.t - began, np.ascontiguousarray(commands), drop,
+                  reference_voltage=reference_voltage if known else np.inf)
 
 
 def _refuse_without(record, names, instead):
@@ -98,7 +105,8 @@ def predict(vehicle, thetas, course, starts, first, count, which=None, constants
     t = _finer(course.t, steps)
     acted = actuated(t, course.stamps, course.commands, thetas)
     inputs = np.zeros((len(t), INPUT))
-    inputs[:, 5] = course.volt_drop[np.arange(len(t)) // steps]
+    rows = np.arange(len(t)) // steps
+    inputs[:, 5], inputs[:, 6] = course.volt_drop[rows], course.volt_share[rows]
     x0, elsewhere = np.array(starts, float), acts(thetas)[which]
     own = thetas[which[elsewhere]]
     x0[elsewhere] = underlying(own, x0[elsewhere])
@@ -106,9 +114,8 @@ def predict(vehicle, thetas, course, starts, first, count, which=None, constants
     kernel = roll_out if len(x0) > 1 else roll_out_one
     if constants is None:
         constants = np.tile(vehicle_vector(vehicle), (len(thetas), 1))
-    kernel(np.ascontiguousarray(constants), rotor_table(vehicle), np.ascontiguousarray(thetas),
-           which, np.ascontiguousarray(x0), t, *acted, inputs, steps * first, steps * count, 1,
-           out)
+    kernel(np.ascontiguousarray(constants), rotor_table(vehicle), without_lag(thetas), which,
+           np.ascontiguousarray(x0), t, *acted, inputs, steps * first, steps * count, 1, out)
     out = out[:, ::steps]
     out[elsewhere] = recorded(own, out[elsewhere])
     return out

@@ -64,6 +64,7 @@ from quad_ident_ros.model.situation import (
     UY,
     UZ,
     VOLT_DROP,
+    VOLT_SHARE,
     VX,
     VY,
     VZ,
@@ -76,7 +77,8 @@ from quad_ident_ros.model.situation import (
 )
 
 STATE = 13      # position, velocity (world), quaternion (body to world), rate (body)
-INPUT = 6       # besides the rotors: force z, moment x, y, z (body), spin sum, volt drop
+# Besides the rotors: force z, moment x, y, z (body), spin sum, fall of the voltage, V and share.
+INPUT = 7
 
 
 def vehicle_vector(vehicle, drag_in_world=False):
@@ -245,6 +247,7 @@ def derivatives(v, places, theta, t, states, speeds, accelerations, inputs, out)
         for k in range(INPUT):
             u[k, 0] = inputs[n, k]
         s[TIME, 0], s[VOLT_DROP, 0], s[SPIN_UP, 0] = t[n], inputs[n, 5], 0.0
+        s[VOLT_SHARE, 0] = inputs[n, 6]
         for j in range(places.shape[0]):
             rotors[j, SPEED, 0] = speeds[n, j]
             s[SPIN_UP, 0] += places[j, 3] * accelerations[n, j]

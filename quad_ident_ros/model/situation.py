@@ -17,10 +17,11 @@ A lane is one rollout of the batch. `s` (ROWS, LANES) holds the vehicle, the row
  AX, AY, AZ, WIND_X, WIND_Y, WIND_Z,
  # Sums over the rotors: spin * speed, and its rate of change.
  SPINS, SPIN_UP,
- # Constants of the vehicle and of its flight; reciprocals of mass, of inertia, and of the sum of
+ # Constants of the vehicle and of its flight, the fall of the voltage in V and as a share of
+ # that of reference; reciprocals of mass, of inertia, and of the sum of
  # the hover speeds.
- MASS, IX, IY, IZ, COM_X, COM_Y, COM_Z, RADIUS, TIME, VOLT_DROP, PER_MASS, PER_IX, PER_IY, PER_IZ,
- PER_HOVER, ROWS) = range(48)
+ MASS, IX, IY, IZ, COM_X, COM_Y, COM_Z, RADIUS, TIME, VOLT_DROP, VOLT_SHARE, PER_MASS, PER_IX,
+ PER_IY, PER_IZ, PER_HOVER, ROWS) = range(49)
 
 # A rotor: speed; its velocity against the air, body; factor on its thrust; its force, body; its
 # place from the centre of mass, body; its height over ground.
