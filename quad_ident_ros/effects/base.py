@@ -46,9 +46,11 @@ class Parameter:
         """Return the vehicle's own measure of this parameter's unit: its mass, arm or inertia."""
         mass, arm = vehicle.mass, vehicle.arm_length
         weight = mass * vehicle.gravity
-        return {'kg': mass, 'kg/s': mass, 'kg/m': mass, 'kg m/s': mass * arm, 'm': arm,
-                'kg m^2': vehicle.inertia[0], 's^2/rad': 1.0 / vehicle.hover_speed,
-                'N': weight, 'N m': weight * arm}.get(self.unit, 1.0)
+        scales: dict[str, float] = {
+            'kg': mass, 'kg/s': mass, 'kg/m': mass, 'kg m/s': mass * arm, 'm': arm,
+            'kg m^2': vehicle.inertia[0], 's^2/rad': 1.0 / vehicle.hover_speed,
+            'N': weight, 'N m': weight * arm}
+        return scales.get(self.unit, 1.0)
 
 
 @dataclass(frozen=True)
@@ -108,3 +110,8 @@ class Effect:
     def parameters(self) -> tuple[Parameter, ...]:
         """Parameters of all forms; their names differ."""
         return tuple(parameter for form in self.forms for parameter in form.parameters)
+
+    @property
+    def actuator(self) -> Literal['delay', 'lag'] | None:
+        """What of the actuators it is, in whichever form."""
+        return self.forms[0].actuator

@@ -144,35 +144,46 @@ def mark(theta: Table, s: Table) -> None:
 
 def _chain(hook: str) -> Hook:
     """Return one compiled function that does what all forms do at a hook, one after another."""
-    def first_then(function: Hook, place: int, row: int, rest: Hook) -> Hook:
-        if hook in BEFORE:
-            @compiled(inlined=True)
-            def both(theta, s):
-                function(theta, place, s)
-                rest(theta, s)
-        else:
-            @compiled(inlined=True)
-            def both(theta, s, rotors):
-                if s[row, 0] != 0.0:
-                    function(theta, place, s, rotors)
-                rest(theta, s, rotors)
-        return both
-
-    if hook in BEFORE:
-        @compiled(inlined=True)
-        def chain(_theta, _s):
-            pass
-    else:
-        @compiled(inlined=True)
-        def chain(_theta, _s, _rotors):
-            pass
+    early = hook in BEFORE
+    chain: Hook = _nothing_early if early else _nothing
     for effect in (LACKING, *reversed(EFFECTS.values())):
         for form in reversed(effect.forms):
             key = effect.name, form.name
             function = getattr(form, hook)
             if function is not None:
-                chain = first_then(function, PLACES[key].start, ROWS_OF[key], chain)
+                place, row = PLACES[key].start, ROWS_OF[key]
+                chain = (_early_then(function, place, chain) if early else
+                         _then(function, place, row, chain))
     return chain
+
+
+@compiled(inlined=True)
+def _nothing_early(_theta: Table, _s: Table) -> None:
+    pass
+
+
+@compiled(inlined=True)
+def _nothing(_theta: Table, _s: Table, _rotors: Table) -> None:
+    pass
+
+
+def _early_then(function: Hook, place: int, rest: Hook) -> Hook:
+    @compiled(inlined=True)
+    def both(theta: Table, s: Table) -> None:
+        function(theta, place, s)
+        rest(theta, s)
+
+    return both
+
+
+def _then(function: Hook, place: int, row: int, rest: Hook) -> Hook:
+    @compiled(inlined=True)
+    def both(theta: Table, s: Table, rotors: Table) -> None:
+        if s[row, 0] != 0.0:
+            function(theta, place, s, rotors)
+        rest(theta, s, rotors)
+
+    return both
 
 
 BEFORE = ('body', 'air')    # hooks that act before the flight, and know nothing of the rotors
