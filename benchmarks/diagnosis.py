@@ -45,7 +45,7 @@ def usual(vehicle, *names):
     sizes = bounds(vehicle)[2]
     effects = {}
     for name in names:
-        known = zip(EFFECTS[name].parameters, sizes[SLICES[name]], strict=True)
+        known = zip(EFFECTS[name].forms[0].parameters, sizes[SLICES[name]], strict=True)
         values = {parameter.name: parameter.null + size for parameter, size in known}
         effects[name] = dict(list(values.items())[:1]) if EFFECTS[name].per_rotor else values
     return effects

@@ -16,7 +16,7 @@ from benchmarks import rollout_numpy
 from benchmarks.machine import timed
 from benchmarks.tables import markdown, number, targets
 from docs.effects import flown
-from quad_ident_ros.effects.registry import bounds, LACKING, NULL, SLICES, vector
+from quad_ident_ros.effects.registry import bounds, EFFECTS, NULL, PLACES, SLICES, vector
 from quad_ident_ros.model.actuators import actuated
 from quad_ident_ros.model.dynamics import Course, predict, states_of
 from quad_ident_ros.model.rigid_body import INPUT, rotor_table, STATE, vehicle_vector
@@ -73,11 +73,12 @@ class Problem:
 
 
 def _with_everything(vehicle):
-    theta = NULL + 2 * bounds(vehicle)[2]
+    sizes, theta = 2 * bounds(vehicle)[2], NULL.copy()
+    for part in (*(SLICES[name] for name in EFFECTS if name not in SENSORS),
+                 PLACES['battery_sag', 'time']):
+        theta[part] += sizes[part]
     losses = SLICES['rotor_fault']
     theta[losses.start + 1:losses.stop] = 0.0
-    for name in (*SENSORS, LACKING.name):
-        theta[SLICES[name]] = 0.0
     return theta
 
 

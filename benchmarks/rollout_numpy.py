@@ -78,7 +78,7 @@ class _Model:
         height = x[:, 2:3] + rotation[:, 2] @ self.arms.T
         radius = vehicle.rotor_radius
         ratio = radius / (4 * np.maximum(height, radius / 2 + 1e-9))
-        gain = self.gains * (1 - self.per_volt * drop - self.per_second * t)
+        gain = self.gains * (1 - self.per_volt * drop) * (1 - self.per_second * t)
         gain = gain / (1 - np.minimum(self.ground * ratio ** 2, 0.75))
         share = speed / self.hover
         force = np.empty((*speed.shape, 3))

@@ -19,32 +19,45 @@ FINER = (1, 4, 10, 100)
 
 
 def effects_table():
-    """Return what each effect is: formula, source, and what shows and what resembles it."""
-    lines = ['| effect | what it is: formula and source | what a flight must do to show it | '
-             'looks like |', '| --- | --- | --- | --- |']
+    """Return what each effect is, what shows it, and what resembles it."""
+    lines = ['| effect | what it is | forms | what a flight must do to show it | looks like |',
+             '| --- | --- | --- | --- | --- |']
     for effect in EFFECTS.values():
         alike = ', '.join(f'`{name}`' for name in effect.confused_with) or '–'
-        lines.append(f'| `{effect.name}` | **{effect.title}**: {_escaped(effect.source)} | '
-                     f'{effect.excitation} | {alike} |')
+        forms = ', '.join(f'`{form.name}`' for form in effect.forms)
+        lines.append(f'| `{effect.name}` | {effect.title} | {forms} | {effect.excitation} | '
+                     f'{alike} |')
+    return '\n'.join(lines)
+
+
+def forms_table():
+    """Return the forms of each effect, the usual one first: what they are, formula and source."""
+    lines = ['| effect | form | formula and source |', '| --- | --- | --- |']
+    for effect in EFFECTS.values():
+        for k, form in enumerate(effect.forms):
+            lines.append(f'| {f"`{effect.name}`" if k == 0 else ""} | `{form.name}` | '
+                         f'**{form.title}**: {_escaped(form.source)} |')
     return '\n'.join(lines)
 
 
 def parameters_table():
-    """Return the parameters of all effects: unit, value without effect, bounds and meaning."""
-    lines = ['| effect | parameter | unit | none | bounds | usual | what |',
-             '| --- | --- | --- | --: | --: | --: | --- |']
+    """Return the parameters of all forms: unit, value without effect, bounds and meaning."""
+    lines = ['| effect | form | parameter | unit | none | bounds | usual | what |',
+             '| --- | --- | --- | --- | --: | --: | --: | --- |']
     for effect in EFFECTS.values():
-        parameters = effect.parameters
-        if effect.per_rotor:
-            first, last = parameters[0], parameters[-1]
-            rows = [(first, f'`{first.name}` … `{last.name}`',
-                     first.description.replace('rotor 1', 'the rotor of this number'))]
-        else:
-            rows = [(each, f'`{each.name}`', each.description) for each in parameters]
-        for k, (parameter, name, what) in enumerate(rows):
-            lines.append(f'| {f"`{effect.name}`" if k == 0 else ""} | {name} | {parameter.unit} | '
-                         f'{parameter.null:g} | {parameter.lower:g} to {parameter.upper:g} | '
-                         f'{parameter.size:g} | {what} |')
+        for form in effect.forms:
+            parameters = form.parameters
+            if effect.per_rotor:
+                first, last = parameters[0], parameters[-1]
+                rows = [(first, f'`{first.name}` … `{last.name}`',
+                         first.description.replace('rotor 1', 'the rotor of this number'))]
+            else:
+                rows = [(each, f'`{each.name}`', each.description) for each in parameters]
+            for k, (parameter, name, what) in enumerate(rows):
+                whose = f'`{effect.name}`' if k == 0 and form is effect.forms[0] else ''
+                lines.append(f'| {whose} | {f"`{form.name}`" if k == 0 else ""} | {name} | '
+                             f'{parameter.unit} | {parameter.null:g} | {parameter.lower:g} to '
+                             f'{parameter.upper:g} | {parameter.size:g} | {what} |')
     return '\n'.join(lines)
 
 
@@ -92,8 +105,8 @@ def rotorpy_table():
 
 def main():
     """Write the tables into the page."""
-    for name, table in (('effects', effects_table()), ('parameters', parameters_table()),
-                        ('rotorpy', rotorpy_table())):
+    for name, table in (('effects', effects_table()), ('forms', forms_table()),
+                        ('parameters', parameters_table()), ('rotorpy', rotorpy_table())):
         keep('effects.md', name, table)
 
 

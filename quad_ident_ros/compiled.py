@@ -2,15 +2,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """Compilation of the inner loops to machine code, kept on disk between starts."""
 
+from collections.abc import Callable
 import hashlib
 from pathlib import Path
+from typing import Any, overload, TypeVar
 
 import numba
 
 FOLDERS = ('effects', 'flight', 'greybox', 'identify', 'model')   # with compiled functions
 
 
-def _stamp():
+def _stamp() -> str:
     """Return what changes with any file of these folders."""
     package = Path(__file__).parent
     files = sorted((str(path.relative_to(package)), path.stat().st_mtime_ns, path.stat().st_size)
@@ -23,7 +25,20 @@ def _stamp():
 STAMP = _stamp()
 
 
-def compiled(function=None, *, fused=False, reordered=False, inlined=False):
+Function = TypeVar('Function', bound=Callable[..., Any])
+
+
+@overload
+def compiled(function: Function) -> Function: ...
+
+
+@overload
+def compiled(function: None = None, *, fused: bool = False, reordered: bool = False,
+             inlined: bool = False) -> Callable[[Function], Function]: ...
+
+
+def compiled(function: Any = None, *, fused: bool = False, reordered: bool = False,
+             inlined: bool = False) -> Any:
     """
     Compile a numerical function, without the interpreter's lock and with an on-disk cache.
 

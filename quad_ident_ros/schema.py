@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks of values that come from files, parameters and the command line."""
 
+from collections.abc import Container, Iterable
 import difflib
 import math
 import reprlib
@@ -13,12 +14,12 @@ _short.maxlevel = 1
 _short.maxstring = _short.maxother = 60
 
 
-def shown(value):
+def shown(value: object) -> str:
     """Return a value as one short line for a message."""
     return _short.repr(value)
 
 
-def unknown_key(where, key, known):
+def unknown_key(where: str, key: object, known: Container[str]) -> InputError:
     """Return the InputError for a key that is not known, with the nearest known one."""
     lower = {str(name).lower(): name for name in known}
     near = difflib.get_close_matches(str(key).lower(), list(lower), n=1)
@@ -26,7 +27,8 @@ def unknown_key(where, key, known):
     return InputError(f'{where}: {shown(key)} is not known here; {hint}')
 
 
-def check_keys(where, mapping, known, required=()):
+def check_keys(where: str, mapping: object, known: Container[str],
+               required: Iterable[str] = ()) -> None:
     """Raise InputError where `mapping` is none, lacks a required key or has an unknown one."""
     if not isinstance(mapping, dict):
         raise InputError(f'{where}: expected `key: value` lines, got {shown(mapping)}')
@@ -38,7 +40,8 @@ def check_keys(where, mapping, known, required=()):
             raise InputError(f'{where}: {key!r} is missing')
 
 
-def number(where, value, minimum=-math.inf, maximum=math.inf, exclusive=False):
+def number(where: str, value: object, minimum: float = -math.inf, maximum: float = math.inf,
+           exclusive: bool = False) -> float:
     """Return a finite float within bounds, or raise InputError that says where and what."""
     # YAML 1.1 reads 1e-3 (no dot) as text; it is a number to everybody else.
     if isinstance(value, str):

@@ -6,9 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from quad_ident_ros.effects.registry import EFFECTS, SLICES
-from quad_ident_ros.greybox.own import nuisances
+from quad_ident_ros.effects.registry import EFFECTS, PLACES
+from quad_ident_ros.greybox.own import Nuisance, nuisances
 from quad_ident_ros.greybox.parameters import SPLIT
+from quad_ident_ros.model.vehicle import Vehicle
 
 VOLTAGE = 0.02      # V that the battery must fall for its voltage to tell anything
 
@@ -16,40 +17,42 @@ VOLTAGE = 0.02      # V that the battery must fall for its voltage to tell anyth
 @dataclass(frozen=True)
 class Candidate:
     """
-    An effect, or one of the rotors or of the ways in which it may act, and its columns.
+    An effect in one of its forms, or of one rotor, and its columns.
 
-    own: the greybox.own.Nuisance that it is instead of an effect, or None.
+    form: the name of the form; share: its part of the effect's prior probability; own: the
+    greybox.own.Nuisance that it is instead of an effect, or None.
     """
 
     effect: str
     label: str
-    columns: tuple
-    own: object = None
+    columns: tuple[int, ...]
+    form: str = ''
+    share: float = 1.0
+    own: Nuisance | None = None
 
 
-def candidates(flights, vehicle, effects=None):
+def candidates(flights: list, vehicle: Vehicle,
+               effects: list[str] | None = None) -> tuple[Candidate, ...]:
     """Return the Candidates, in the order of the registry; effects: names, by default all."""
     found = []
     voltage = any(np.ptp(flight.course.volt_drop) > VOLTAGE for flight in flights)
     for name, effect in EFFECTS.items():
         if effects is not None and name not in effects:
             continue
-        first = SPLIT + SLICES[name].start
-        columns = tuple(range(first, SPLIT + SLICES[name].stop))
-        if effect.per_rotor:
-            found += [Candidate(name, f'{name} {j + 1}', (first + j,))
-                      for j in range(len(vehicle.rotors))]
-        elif name == 'battery_sag':
-            # By the volt where there are any, or by the second: one of the two.
-            kinds = list(zip(effect.parameters, columns, strict=True))
-            found += [Candidate(name, f'{name} {parameter.name}', (column,))
-                      for parameter, column in (kinds if voltage else kinds[1:])]
-        else:
-            found.append(Candidate(name, name, columns))
+        forms = [form for form in effect.forms if voltage or not form.needs_voltage]
+        for form in forms:
+            place = PLACES[name, form.name]
+            columns = tuple(range(SPLIT + place.start, SPLIT + place.stop))
+            if effect.per_rotor:
+                found += [Candidate(name, f'{name} {j + 1}', columns[j:j + 1], form.name)
+                          for j in range(len(vehicle.rotors))]
+            else:
+                found.append(Candidate(name, f'{name} {form.name}', columns, form.name,
+                                       1.0 / len(forms)))
     return tuple(found)
 
 
-def own_candidates(vehicle, tracks):
+def own_candidates(vehicle: Vehicle, tracks: list) -> tuple[Candidate, ...]:
     """Return the Candidates for what Tracks have of their own, which is no effect."""
-    return tuple(Candidate(kind.name, kind.name, kind.columns, kind)
+    return tuple(Candidate(kind.name, kind.name, kind.columns, own=kind)
                  for kind in nuisances(vehicle, tracks))

@@ -52,7 +52,8 @@ def _odds(causes, rules):
     clocks = [kind.odds for kind in own if kind.name == CLOCK]
     biases = [kind.odds if k == 0 else LIKELY for k, kind in
               enumerate(kind for kind in own if kind.name != CLOCK)]
-    shares = [rules.prior_odds] * (len(causes) - len(own)) + clocks + biases
+    effects = [rules.prior_odds * cause.share for cause in causes if cause.own is None]
+    shares = effects + clocks + biases
     return sum(np.log(share / (1.0 - share)) for share in shares)
 
 

@@ -100,7 +100,7 @@ def _ranking(bench: Bench, judged: Judgement, causes: tuple, total: dict) -> tup
             alone[list(cause.columns)] = source.z[list(cause.columns)]
             gap_after = gaps.gap([gaps.ends(track, bench.vehicle, alone + nuisance,
                                             gaps.HEADLINE)])
-            contribution, form = judged.contribution[cause], cause.label
+            contribution, form = judged.contribution[cause], cause.form
         rows[cause.effect] = Ranked(
             cause.effect, total[cause.effect], form, judged.stability.get(cause), contribution, parameters, gap_after,
             judged.without[cause].gap if cause in model.effects else None)

@@ -2,14 +2,19 @@
 # SPDX-License-Identifier: Apache-2.0
 """Attitude measured in a tilted frame."""
 
-from quad_ident_ros.effects.base import Effect, Parameter
+from quad_ident_ros.effects import attitude_misalignment_block, attitude_misalignment_gyro
+from quad_ident_ros.effects.base import Effect, Form, Parameter
 
-EFFECT = Effect(
-    name='attitude_misalignment', title='tilt of the measured attitude',
+FORM = Form(
+    name='attitude', title='tilt of the attitude alone',
     parameters=tuple(Parameter(name, 'rad', -0.5, 0.5, 0.02, f'rotation about body {axis} from '
                                'the body to the frame whose attitude is recorded')
                      for name, axis in zip(('roll', 'pitch', 'yaw'), 'xyz', strict=True)),
     source='measured attitude = attitude * tilt',
-    excitation='any flight; turns of the heading to tell it from wind',
-    confused_with=('wind', 'com_offset'),
+    on_rotors=False,
     sensor='attitude')
+EFFECT = Effect(
+    name='attitude_misalignment', title='tilt of the measured attitude',
+    forms=(FORM, attitude_misalignment_block.FORM, attitude_misalignment_gyro.FORM),
+    excitation='any flight; turns of the heading to tell it from wind',
+    confused_with=('wind', 'com_offset'))

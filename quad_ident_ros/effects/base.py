@@ -1,17 +1,36 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What an effect is: a name, parameters, and what it changes in the vehicle model."""
+"""What an effect is: a cause with a name, and the forms (laws) in which it may act."""
 
+from __future__ import annotations
+
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Literal, TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from quad_ident_ros.model.vehicle import Vehicle
+
+Table = NDArray[np.float64]
+"""Rows of what model.situation names, one column per lane."""
+
+Hook = Callable[..., None]
+Axis = Literal['roll', 'pitch', 'yaw', 'vertical', 'horizontal']
+"""Axes of motion as data.quality.excitation names them."""
 
 
 @dataclass(frozen=True)
 class Parameter:
     """
-    A number of an effect: its unit, the value at which there is no effect, bounds, usual size.
+    A number of a form: its unit, the value at which there is no effect, bounds, usual size.
 
     Bounds and size (what the parameter is usually about) are in units of the vehicle's own scale
     where the unit has mass or length in it, so that they hold for 30 g and for 3 kg: see scale.
+    excited_by: the axis without whose motion no flight shows it, or None. A parameter that only
+    shapes a form (a length, an exponent) has no effect while the form's strength is null.
     """
 
     name: str
@@ -21,43 +40,80 @@ class Parameter:
     size: float
     description: str
     null: float = 0.0
+    excited_by: Axis | None = None
 
-    def scale(self, vehicle):
+    def scale(self, vehicle: Vehicle) -> float:
         """Return the vehicle's own measure of this parameter's unit: its mass, arm or inertia."""
         mass, arm = vehicle.mass, vehicle.arm_length
         weight = mass * vehicle.gravity
-        return {'kg': mass, 'kg/s': mass, 'kg/m': mass, 'kg m/s': mass * arm, 'm': arm,
-                'kg m^2': vehicle.inertia[0],
-                'N': weight, 'N m': weight * arm}.get(self.unit, 1.0)
+        scales: dict[str, float] = {
+            'kg': mass, 'kg/s': mass, 'kg/m': mass, 'kg m/s': mass * arm, 'm': arm,
+            'kg m^2': vehicle.inertia[0], 's^2/rad': 1.0 / vehicle.hover_speed,
+            'N': weight, 'N m': weight * arm}
+        return scales.get(self.unit, 1.0)
+
+
+@dataclass(frozen=True)
+class Form:
+    """
+    One law by which an effect may act.
+
+    parameters: of Parameter; source: where the formula stands. What it changes, each a function
+    or None (rows of the tables: model.situation; p (P, LANES) has its parameters from row k on):
+    body(p, k, s): mass, inertia, centre of mass, before the flight; air(p, k, s): the wind;
+    thrust(p, k, s, rotors): factors on the rotors' thrust; wrench(p, k, s, rotors): forces of
+    the rotors, forces and moments on the body. actuator: 'delay' or 'lag', where its parameters
+    are those of the actuators; sensor: 'attitude' or 'rate' or 'block' (both), where they are
+    those of a sensor. acts_on: what it changes first, translation (forces), rotation (moments and
+    what is measured of the rate) or both; on_rotors: it acts on rotors, so that a vehicle flown
+    from U1..U4 needs some; needs_voltage: it acts only where the voltage is recorded.
+    """
+
+    name: str
+    title: str
+    parameters: tuple[Parameter, ...]
+    source: str
+    acts_on: Literal['translation', 'rotation', 'both'] = 'both'
+    body: Hook | None = field(default=None, repr=False)
+    air: Hook | None = field(default=None, repr=False)
+    thrust: Hook | None = field(default=None, repr=False)
+    wrench: Hook | None = field(default=None, repr=False)
+    actuator: Literal['delay', 'lag'] | None = None
+    sensor: Literal['attitude', 'rate', 'block'] | None = None
+    on_rotors: bool = True
+    needs_voltage: bool = False
 
 
 @dataclass(frozen=True)
 class Effect:
     """
-    Something that reality has and the nominal model lacks.
+    Something that reality has and the nominal model lacks, in one of several forms.
 
-    parameters: of Parameter; source: where the formula stands; excitation: what a flight must do
-    to show it; confused_with: names of effects that look alike. What it changes, each a function
-    or None (rows of the tables: model.situation; p (P, LANES) has its parameters from row k on):
-    body(p, k, s): mass, inertia, centre of mass, before the flight; air(p, k, s): the wind;
-    thrust(p, k, s, rotors): factors on the rotors' thrust; wrench(p, k, s, rotors): forces of
-    the rotors, forces and moments on the body. actuator: 'delay' or 'lag', where its parameter is
-    one of the actuators; ratio: the quotient that alone shows in motion, of two effects with one
-    of it only one is named; sensor: 'attitude' or 'rate', where its parameters are those of a sensor;
-    per_rotor: each parameter belongs to one rotor, and one at a time is off.
+    forms: of Form, the first the usual one; excitation: what a flight must do to show it;
+    confused_with: names of effects that look alike; per_rotor: each parameter belongs to one
+    rotor, and one at a time is off; scale_group: one of those that scale the whole motion, of
+    which only ratios show without a force sensor; ratio: the quotient that shows, of two effects
+    with one of it only one is named; per_flight: it may differ from flight to flight;
+    needs_air: it is felt only by what depends on the velocity of the air.
     """
 
     name: str
     title: str
-    parameters: tuple
-    source: str
+    forms: tuple[Form, ...]
     excitation: str
-    confused_with: tuple = ()
-    body: object = field(default=None, repr=False)
-    air: object = field(default=None, repr=False)
-    thrust: object = field(default=None, repr=False)
-    wrench: object = field(default=None, repr=False)
-    actuator: str | None = None
-    sensor: str | None = None
+    confused_with: tuple[str, ...] = ()
     per_rotor: bool = False
+    scale_group: bool = False
+    per_flight: bool = False
+    needs_air: bool = False
     ratio: str | None = None
+
+    @property
+    def parameters(self) -> tuple[Parameter, ...]:
+        """Parameters of all forms; their names differ."""
+        return tuple(parameter for form in self.forms for parameter in form.parameters)
+
+    @property
+    def actuator(self) -> Literal['delay', 'lag'] | None:
+        """What of the actuators it is, in whichever form."""
+        return self.forms[0].actuator

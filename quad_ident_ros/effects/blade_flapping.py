@@ -3,12 +3,13 @@
 """Pitching and rolling moments that grow with air velocity."""
 
 from quad_ident_ros.compiled import compiled
-from quad_ident_ros.effects.base import Effect, Parameter
+from quad_ident_ros.effects import blade_flapping_drag_centre
+from quad_ident_ros.effects.base import Effect, Form, Parameter, Table
 from quad_ident_ros.model.situation import MX, MY, PER_HOVER, SPEED, UX, UY
 
 
 @compiled(fused=True, inlined=True)
-def wrench(p, k, s, rotors):
+def wrench(p: Table, k: int, s: Table, rotors: Table) -> None:
     """Add the moment of each rotor."""
     for j in range(rotors.shape[0]):
         for i in range(s.shape[1]):
@@ -17,12 +18,17 @@ def wrench(p, k, s, rotors):
             s[MY, i] += share * rotors[j, UX, i]
 
 
-EFFECT = Effect(
-    name='blade_flapping', title='flapping of the blades',
+FORM = Form(
+    name='hub_moment', title='moment at each rotor',
     parameters=(Parameter('coefficient', 'kg m/s', -5.0, 5.0, 0.05,
-                          'moment of all rotors per air velocity across body z, at hover speed'),),
+                          'moment of all rotors per air velocity across body z, at hover speed',
+                          excited_by='horizontal'),),
     source='moment -c (speed / sum of hover speeds) v x z at each rotor; Pounds, Mahony, Corke, '
            'Control Engineering Practice 18, 2010',
-    excitation='horizontal flight at different speeds',
-    confused_with=('com_offset', 'rotor_drag'),
+    acts_on='rotation',
     wrench=wrench)
+EFFECT = Effect(
+    name='blade_flapping', title='flapping of the blades',
+    forms=(FORM, blade_flapping_drag_centre.FORM),
+    excitation='horizontal flight at different speeds',
+    confused_with=('com_offset', 'rotor_drag'))

@@ -3,12 +3,15 @@
 """Different moments of inertia."""
 
 from quad_ident_ros.compiled import compiled
-from quad_ident_ros.effects.base import Effect, Parameter
+from quad_ident_ros.effects import inertia_mismatch_moments
+from quad_ident_ros.effects.base import Axis, Effect, Form, Parameter, Table
 from quad_ident_ros.model.situation import IX, IY, IZ
+
+TURNS: dict[str, Axis] = {'x': 'roll', 'y': 'pitch', 'z': 'yaw'}
 
 
 @compiled(fused=True, inlined=True)
-def body(p, k, s):
+def body(p: Table, k: int, s: Table) -> None:
     """Scale the moments of inertia."""
     for i in range(s.shape[1]):
         s[IX, i] *= p[k, i]
@@ -16,12 +19,17 @@ def body(p, k, s):
         s[IZ, i] *= p[k + 2, i]
 
 
-EFFECT = Effect(
-    name='inertia_mismatch', title='mismatch of the inertia',
+FORM = Form(
+    name='factors', title='a factor about each axis',
     parameters=tuple(Parameter(f'factor_{axis}', '1', 0.2, 5.0, 0.1,
-                               f'on the moment of inertia about body {axis}', null=1.0)
-                     for axis in 'xyz'),
+                               f'on the moment of inertia about body {axis}', null=1.0,
+                               excited_by=turn)
+                     for axis, turn in TURNS.items()),
     source='inertia times factor, about each body axis',
+    acts_on='rotation', on_rotors=False,
+    body=body)
+EFFECT = Effect(
+    name='inertia_mismatch', title='mismatch of the inertia', forms=(FORM, inertia_mismatch_moments.FORM),
     excitation='fast turns about each axis',
     confused_with=('motor_lag', 'thrust_scale'),
-    body=body)
+    scale_group=True)

@@ -3,12 +3,13 @@
 """Thrust depends on the axial and the horizontal air velocity of the rotor."""
 
 from quad_ident_ros.compiled import compiled
-from quad_ident_ros.effects.base import Effect, Parameter
+from quad_ident_ros.effects import inflow_momentum
+from quad_ident_ros.effects.base import Effect, Form, Parameter, Table
 from quad_ident_ros.model.situation import HZ, PER_HOVER, SPEED, UX, UY, UZ
 
 
 @compiled(fused=True, inlined=True)
-def wrench(p, k, s, rotors):
+def wrench(p: Table, k: int, s: Table, rotors: Table) -> None:
     """Change the thrust of each rotor."""
     for j in range(rotors.shape[0]):
         for i in range(s.shape[1]):
@@ -17,15 +18,18 @@ def wrench(p, k, s, rotors):
                                  - p[k, i] * rotors[j, SPEED, i] * s[PER_HOVER, i] * z)
 
 
-EFFECT = Effect(
-    name='inflow', title='inflow and translational lift',
+FORM = Form(
+    name='linear', title='linear in the axial velocity',
     parameters=(Parameter('axial', 'kg/s', 0.0, 5.0, 0.1, 'thrust of all rotors lost per velocity '
-                          'along body z, at hover speed'),
+                          'along body z, at hover speed', excited_by='vertical'),
                 Parameter('translational', 'kg/m', 0.0, 1.0, 0.01, 'thrust of all rotors won per '
-                          'square of the velocity across body z')),
+                          'square of the velocity across body z', excited_by='horizontal')),
     source='thrust - axial (speed / sum of hover speeds) vz + translational (vx^2 + vy^2) / '
            'rotors at each rotor: blade-element and momentum thrust to first order in the inflow, '
            'and translational lift; Mahony, Kumar, Corke 2012; Svacha et al., ICUAS 2017',
-    excitation='climbs and descents; fast horizontal flight for the second parameter',
-    confused_with=('body_drag', 'thrust_scale'),
     wrench=wrench)
+EFFECT = Effect(
+    name='inflow', title='inflow and translational lift',
+    forms=(FORM, inflow_momentum.FORM),
+    excitation='climbs and descents; fast horizontal flight for the second parameter',
+    confused_with=('body_drag', 'thrust_scale'))

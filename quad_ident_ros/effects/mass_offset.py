@@ -3,22 +3,25 @@
 """A different mass, at the centre of mass."""
 
 from quad_ident_ros.compiled import compiled
-from quad_ident_ros.effects.base import Effect, Parameter
+from quad_ident_ros.effects.base import Effect, Form, Parameter, Table
 from quad_ident_ros.model.situation import MASS
 
 
 @compiled(fused=True, inlined=True)
-def body(p, k, s):
+def body(p: Table, k: int, s: Table) -> None:
     """Add the mass."""
     for i in range(s.shape[1]):
         s[MASS, i] += p[k, i]
 
 
-EFFECT = Effect(
-    name='mass_offset', title='offset of the mass',
+FORM = Form(
+    name='at_centre', title='at the centre of mass',
     parameters=(Parameter('mass', 'kg', -0.6, 3.0, 0.1, 'added to the nominal mass'),),
     source='nominal mass + mass: a payload at the centre of mass, without inertia of its own',
+    acts_on='translation', on_rotors=False,
+    body=body)
+EFFECT = Effect(
+    name='mass_offset', title='offset of the mass', forms=(FORM,),
     excitation='any flight, with roll or pitch manoeuvres to tell it from thrust',
     confused_with=('thrust_scale',),
-    body=body,
-    ratio='thrust per mass')
+    scale_group=True, ratio='thrust per mass')

@@ -1,10 +1,15 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Every effect by name, and the vector that holds the parameters of all of them.
+Every effect by name, and the vector that holds the parameters of all their forms.
 
-The order of EFFECTS is the order in which they act.
+The order of EFFECTS is the order in which they act, form by form.
 """
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -30,37 +35,56 @@ from quad_ident_ros.effects import (
     thrust_scale,
     wind,
 )
+from quad_ident_ros.effects.base import Effect, Form, Hook, Parameter, Table
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.situation import ROWS
 
-EFFECTS = {module.EFFECT.name: module.EFFECT for module in (
+if TYPE_CHECKING:
+    from quad_ident_ros.model.vehicle import Vehicle
+
+Values = dict[str, dict[str, float]]
+"""{effect: {parameter: value}}."""
+
+EFFECTS: dict[str, Effect] = {module.EFFECT.name: module.EFFECT for module in (
     motor_lag, actuation_delay, rotor_drag, body_drag, wind, inflow, ground_effect, battery_sag,
     thrust_scale, mass_offset, inertia_mismatch, com_offset, rotor_fault, rotor_gyro,
     blade_flapping, attitude_misalignment, gyro_bias)}
 # Not a cause but a measure: the force and the moment that are lacking, whatever they come from.
 LACKING = external_wrench.EFFECT
 
-PARAMETERS = tuple((effect.name, parameter) for effect in (*EFFECTS.values(), LACKING)
-                   for parameter in effect.parameters)
+# The usual form of each effect first, so that the vector begins with what most know of it.
+FORMS: tuple[tuple[str, Form], ...] = (
+    *((effect.name, effect.forms[0]) for effect in (*EFFECTS.values(), LACKING)),
+    *((effect.name, form) for effect in EFFECTS.values() for form in effect.forms[1:]))
+PARAMETERS: tuple[tuple[str, Parameter], ...] = tuple(
+    (name, parameter) for name, form in FORMS for parameter in form.parameters)
 NULL = np.array([parameter.null for _, parameter in PARAMETERS])
-SLICES = {}
-for _position, (_effect, _) in enumerate(PARAMETERS):
-    _first = SLICES.get(_effect, slice(_position, _position)).start
-    SLICES[_effect] = slice(_first, _position + 1)
-# The rows of the table `s` of model.situation and, after them, one per effect: whether it acts.
-ROWS_OF = {name: ROWS + number for number, name in enumerate(SLICES)}
+PLACES: dict[tuple[str, str], slice] = {}
+"""Where in the vector the parameters of a form stand, by effect and form."""
+for _name, _form in FORMS:
+    _first = max((part.stop for part in PLACES.values()), default=0)
+    PLACES[_name, _form.name] = slice(_first, _first + len(_form.parameters))
+SLICES: dict[str, slice] = {effect.name: PLACES[effect.name, effect.forms[0].name]
+                            for effect in (*EFFECTS.values(), LACKING)}
+"""Where those of an effect's usual form stand."""
+PLACE: dict[tuple[str, str], int] = {(name, parameter.name): place for place, (name, parameter)
+                                     in enumerate(PARAMETERS)}
+"""Where one parameter stands, by effect and parameter."""
+# The rows of the table `s` of model.situation and, after them, one per form: whether it acts.
+ROWS_OF: dict[tuple[str, str], int] = {key: ROWS + number for number, key in enumerate(PLACES)}
 TABLE = ROWS + len(ROWS_OF)
-OWNERS = np.array([ROWS_OF[name] for name, _ in PARAMETERS])
+OWNERS = np.array([ROWS_OF[name, form.name] for name, form in FORMS for _ in form.parameters])
 
 
-def bounds(vehicle):
+def bounds(vehicle: Vehicle) -> Table:
     """Return the lower and upper bounds and the usual sizes of all parameters, (3, P), SI."""
     table = np.array([[parameter.lower, parameter.upper, parameter.size]
                       for _, parameter in PARAMETERS])
     return table.T * [parameter.scale(vehicle) for _, parameter in PARAMETERS]
 
 
-def vector(effects, vehicle, where='effects'):
+def vector(effects: Mapping[str, Mapping[str, float]], vehicle: Vehicle,
+           where: str = 'effects') -> Table:
     """
     Return the parameter vector (P,) of {effect: {parameter: value}}; absent ones have no effect.
 
@@ -76,22 +100,22 @@ def vector(effects, vehicle, where='effects'):
             known = known[:len(vehicle.rotors)]
         schema.check_keys(f'{where}: {name}', values, known)
         for key, value in values.items():
-            k = known.index(key)
-            place = SLICES[name].start + k
+            place = PLACE[name, key]
             theta[place] = schema.number(f'{where}: {name}: {key}', value, low[place], high[place])
     return theta
 
 
-def mapping(theta):
+def mapping(theta: Table) -> Values:
     """Return {effect: {parameter: value}} of what in a parameter vector (P,) is not null."""
-    effects = {}
+    effects: Values = {}
     for value, null, (effect, parameter) in zip(theta, NULL, PARAMETERS, strict=True):
         if value != null:
             effects.setdefault(effect, {})[parameter.name] = float(value)
     return effects
 
 
-def from_entries(entries, start, where):
+def from_entries(entries: Iterable[str], start: Mapping[str, Mapping[str, float]],
+                 where: str) -> Values:
     """
     Return {effect: {parameter: value}} of entries NAME:PARAMETER=VALUE over those of start.
 
@@ -109,8 +133,8 @@ def from_entries(entries, start, where):
 
 
 @compiled
-def mark(theta, s):
-    """Write into s which effects act in any lane: the others are passed over in flight."""
+def mark(theta: Table, s: Table) -> None:
+    """Write into s which forms act in any lane: the others are passed over in flight."""
     s[ROWS:] = 0.0
     for n in range(len(NULL)):
         for i in range(s.shape[1]):
@@ -118,35 +142,48 @@ def mark(theta, s):
                 s[OWNERS[n]] = 1.0
 
 
-def _chain(hook):
-    """Return one compiled function that does what all effects do at a hook, one after another."""
-    def first_then(function, place, row, rest):
-        if hook in BEFORE:
-            @compiled(inlined=True)
-            def both(theta, s):
-                function(theta, place, s)
-                rest(theta, s)
-        else:
-            @compiled(inlined=True)
-            def both(theta, s, rotors):
-                if s[row, 0] != 0.0:
-                    function(theta, place, s, rotors)
-                rest(theta, s, rotors)
-        return both
-
-    if hook in BEFORE:
-        @compiled(inlined=True)
-        def chain(_theta, _s):
-            pass
-    else:
-        @compiled(inlined=True)
-        def chain(_theta, _s, _rotors):
-            pass
+def _chain(hook: str) -> Hook:
+    """Return one compiled function that does what all forms do at a hook, one after another."""
+    early = hook in BEFORE
+    chain: Hook = _nothing_early if early else _nothing
     for effect in (LACKING, *reversed(EFFECTS.values())):
-        function = getattr(effect, hook)
-        if function is not None:
-            chain = first_then(function, SLICES[effect.name].start, ROWS_OF[effect.name], chain)
+        for form in reversed(effect.forms):
+            key = effect.name, form.name
+            function = getattr(form, hook)
+            if function is not None:
+                place, row = PLACES[key].start, ROWS_OF[key]
+                chain = (_early_then(function, place, chain) if early else
+                         _then(function, place, row, chain))
     return chain
+
+
+@compiled(inlined=True)
+def _nothing_early(_theta: Table, _s: Table) -> None:
+    pass
+
+
+@compiled(inlined=True)
+def _nothing(_theta: Table, _s: Table, _rotors: Table) -> None:
+    pass
+
+
+def _early_then(function: Hook, place: int, rest: Hook) -> Hook:
+    @compiled(inlined=True)
+    def both(theta: Table, s: Table) -> None:
+        function(theta, place, s)
+        rest(theta, s)
+
+    return both
+
+
+def _then(function: Hook, place: int, row: int, rest: Hook) -> Hook:
+    @compiled(inlined=True)
+    def both(theta: Table, s: Table, rotors: Table) -> None:
+        if s[row, 0] != 0.0:
+            function(theta, place, s, rotors)
+        rest(theta, s, rotors)
+
+    return both
 
 
 BEFORE = ('body', 'air')    # hooks that act before the flight, and know nothing of the rotors

@@ -3,12 +3,13 @@
 """In-plane force on each rotor, linear in its air velocity and in its speed."""
 
 from quad_ident_ros.compiled import compiled
-from quad_ident_ros.effects.base import Effect, Parameter
+from quad_ident_ros.effects import rotor_drag_axes, rotor_drag_axes_by_speed
+from quad_ident_ros.effects.base import Effect, Form, Parameter, Table
 from quad_ident_ros.model.situation import HX, HY, PER_HOVER, SPEED, UX, UY
 
 
 @compiled(fused=True, inlined=True)
-def wrench(p, k, s, rotors):
+def wrench(p: Table, k: int, s: Table, rotors: Table) -> None:
     """Take the drag from the force of each rotor."""
     for j in range(rotors.shape[0]):
         for i in range(s.shape[1]):
@@ -17,12 +18,17 @@ def wrench(p, k, s, rotors):
             rotors[j, HY, i] -= share * rotors[j, UY, i]
 
 
-EFFECT = Effect(
-    name='rotor_drag', title='drag of the rotors',
+FORM = Form(
+    name='by_speed', title='in the plane, scaled by rotor speed',
     parameters=(Parameter('coefficient', 'kg/s', 0.0, 5.0, 0.1,
-                          'in-plane force of all rotors per air velocity at hover speed'),),
+                          'in-plane force of all rotors per air velocity at hover speed',
+                          excited_by='horizontal'),),
     source='force -c (speed / sum of hover speeds) v at each rotor: blade drag and induced drag, '
            'Martin and Salaun, ICRA 2010; Kai et al., IFAC 2017; Faessler et al., RA-L 2018',
-    excitation='horizontal flight at different speeds',
-    confused_with=('body_drag', 'wind', 'attitude_misalignment'),
+    acts_on='translation',
     wrench=wrench)
+EFFECT = Effect(
+    name='rotor_drag', title='drag of the rotors',
+    forms=(FORM, rotor_drag_axes.FORM, rotor_drag_axes_by_speed.FORM),
+    excitation='horizontal flight at different speeds',
+    confused_with=('body_drag', 'wind', 'attitude_misalignment'))

@@ -3,27 +3,30 @@
 """One rotor gives less thrust than the others."""
 
 from quad_ident_ros.compiled import compiled
-from quad_ident_ros.effects.base import Effect, Parameter
+from quad_ident_ros.effects.base import Effect, Form, Parameter, Table
 from quad_ident_ros.model.situation import GAIN
 
 MOST_ROTORS = 8
 
 
 @compiled(fused=True, inlined=True)
-def thrust(p, k, _, rotors):
+def thrust(p: Table, k: int, _: Table, rotors: Table) -> None:
     """Lower the thrust of each rotor by its loss."""
     for j in range(min(rotors.shape[0], MOST_ROTORS)):
         for i in range(rotors.shape[2]):
             rotors[j, GAIN, i] *= 1.0 - p[k + j, i]
 
 
-EFFECT = Effect(
-    name='rotor_fault', title='weak rotor',
+FORM = Form(
+    name='thrust', title='thrust alone',
     parameters=tuple(Parameter(f'loss_{j}', '1', 0.0, 1.0, 0.1,
                                f'share of the thrust that rotor {j} lacks')
                      for j in range(1, MOST_ROTORS + 1)),
     source="loss of effectiveness of one rotor, thrust (1 - loss); e.g. Mueller and D'Andrea, "
            'ICRA 2014',
+    thrust=thrust)
+EFFECT = Effect(
+    name='rotor_fault', title='weak rotor', forms=(FORM,),
     excitation='any flight',
     confused_with=('com_offset',),
-    thrust=thrust, per_rotor=True)
+    per_rotor=True)

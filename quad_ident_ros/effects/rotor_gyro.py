@@ -3,12 +3,12 @@
 """Angular momentum of the rotors."""
 
 from quad_ident_ros.compiled import compiled
-from quad_ident_ros.effects.base import Effect, Parameter
+from quad_ident_ros.effects.base import Effect, Form, Parameter, Table
 from quad_ident_ros.model.situation import MX, MY, MZ, SPIN_UP, SPINS, WX, WY
 
 
 @compiled(fused=True, inlined=True)
-def wrench(p, k, s, _):
+def wrench(p: Table, k: int, s: Table, _: Table) -> None:
     """Add the moment of turning the rotors' axes, and of speeding them up."""
     for i in range(s.shape[1]):
         # A rotor turns against the reaction torque that its spin names.
@@ -18,12 +18,15 @@ def wrench(p, k, s, _):
         s[MZ, i] += p[k, i] * s[SPIN_UP, i]
 
 
-EFFECT = Effect(
-    name='rotor_gyro', title='angular momentum of the rotors',
-    parameters=(Parameter('rotor_inertia', 'kg m^2', 0.0, 0.5, 0.005,
+FORM = Form(
+    name='momentum', title='angular momentum',
+    parameters=(Parameter('rotor_inertia', 'kg m^2', 0.0, 0.5, 0.002,
                           'of one rotor about its axis, with what turns with it'),),
     source='moment -w x h - dh/dt with h = -sum(spin J speed) along body z; eqs. (10), (11) of '
            'the paper with the sign of the errata',
-    excitation='roll and pitch while the rotors of the two spins turn unequally fast; yaw steps',
-    confused_with=('inertia_mismatch',),
+    acts_on='rotation',
     wrench=wrench)
+EFFECT = Effect(
+    name='rotor_gyro', title='angular momentum of the rotors', forms=(FORM,),
+    excitation='roll and pitch while the rotors of the two spins turn unequally fast; yaw steps',
+    confused_with=('inertia_mismatch',))

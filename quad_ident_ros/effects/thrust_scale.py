@@ -3,23 +3,27 @@
 """Thrust coefficient off by a constant factor."""
 
 from quad_ident_ros.compiled import compiled
-from quad_ident_ros.effects.base import Effect, Parameter
+from quad_ident_ros.effects import thrust_scale_exponent, thrust_scale_offset
+from quad_ident_ros.effects.base import Effect, Form, Parameter, Table
 from quad_ident_ros.model.situation import GAIN
 
 
 @compiled(fused=True, inlined=True)
-def thrust(p, k, _, rotors):
+def thrust(p: Table, k: int, _: Table, rotors: Table) -> None:
     """Scale the thrust of all rotors."""
     for j in range(rotors.shape[0]):
         for i in range(rotors.shape[2]):
             rotors[j, GAIN, i] *= p[k, i]
 
 
-EFFECT = Effect(
-    name='thrust_scale', title='scale of the thrust',
+FORM = Form(
+    name='factor', title='constant factor',
     parameters=(Parameter('factor', '1', 0.2, 3.0, 0.1, 'on the thrust coefficient', null=1.0),),
     source='thrust = factor thrust_coefficient speed^2',
+    thrust=thrust)
+EFFECT = Effect(
+    name='thrust_scale', title='scale of the thrust',
+    forms=(FORM, thrust_scale_offset.FORM, thrust_scale_exponent.FORM),
     excitation='any flight, with roll or pitch manoeuvres to tell it from mass',
     confused_with=('mass_offset', 'battery_sag', 'inflow'),
-    thrust=thrust,
-    ratio='thrust per mass')
+    scale_group=True, per_flight=True, ratio='thrust per mass')

@@ -3,12 +3,12 @@
 """Steady wind."""
 
 from quad_ident_ros.compiled import compiled
-from quad_ident_ros.effects.base import Effect, Parameter
+from quad_ident_ros.effects.base import Effect, Form, Parameter, Table
 from quad_ident_ros.model.situation import WIND_X, WIND_Y, WIND_Z
 
 
 @compiled(fused=True, inlined=True)
-def air(p, k, s):
+def air(p: Table, k: int, s: Table) -> None:
     """Set the wind."""
     for i in range(s.shape[1]):
         s[WIND_X, i] = p[k, i]
@@ -16,11 +16,15 @@ def air(p, k, s):
         s[WIND_Z, i] = p[k + 2, i]
 
 
-EFFECT = Effect(
-    name='wind', title='steady wind',
+FORM = Form(
+    name='steady', title='steady wind',
     parameters=tuple(Parameter(axis, 'm/s', -20.0, 20.0, 1.0,
                                f'velocity of the air along world {axis}') for axis in 'xyz'),
     source='air velocity = velocity - wind, in everything that depends on it',
+    acts_on='translation', on_rotors=False,
+    air=air)
+EFFECT = Effect(
+    name='wind', title='steady wind', forms=(FORM,),
     excitation='flight in several directions or headings; it acts through drag, known or found',
     confused_with=('attitude_misalignment', 'rotor_drag', 'body_drag'),
-    air=air)
+    per_flight=True, needs_air=True)

@@ -6,7 +6,7 @@ import numpy as np
 
 from quad_ident_ros import schema
 from quad_ident_ros.data.record import FlightRecord
-from quad_ident_ros.effects.registry import SLICES, vector
+from quad_ident_ros.effects.registry import vector
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.flight.controller import gains_of, MEMORY, mixer_of
 from quad_ident_ros.flight.loop import close_loop
@@ -15,7 +15,7 @@ from quad_ident_ros.flight.trajectories import plan, scale_of
 from quad_ident_ros.model.attitude import quaternion_from_euler, rotation_matrix
 from quad_ident_ros.model.dynamics import STATES
 from quad_ident_ros.model.rigid_body import rotor_table, STATE, vehicle_vector
-from quad_ident_ros.model.sensors import recorded, turn
+from quad_ident_ros.model.sensors import BLOCK, recorded, tilts_of, turn
 from quad_ident_ros.model.vehicle import hover_fault
 
 FULL_VOLTAGE = 16.8     # V at the start of every flight: the voltage of reference
@@ -57,6 +57,7 @@ def fly_closed_loop(vehicle, effects, trajectory, *, duration=30.0, rate=100.0, 
     errors = errors_of(noise, len(t), 1 / rate, seed)
     states, commands, speeds, forces, drop = _flown(vehicle, theta, wanted, errors[:, :12], rate)
     states = recorded(theta, states)
+    forces = forces @ rotation_matrix(turn(theta[BLOCK]))   # the accelerometer is in the block
     _check_course(vehicle, states, wanted, t)
     states, forces, rows = measured(noise, t, states, forces, errors, seed)
     rng = np.random.default_rng([seed, 4])
@@ -76,7 +77,7 @@ def fly_closed_loop(vehicle, effects, trajectory, *, duration=30.0, rate=100.0, 
 
 def _flown(vehicle, theta, wanted, errors, rate):
     """Return true states, commands, rotor speeds, forces and fall of the voltage by sample."""
-    tilt = rotation_matrix(turn(theta[SLICES['attitude_misalignment']]))
+    tilt, rate_tilt = (rotation_matrix(each) for each in tilts_of(theta))
     x, memory = np.zeros(STATE), np.zeros(MEMORY)
     x[:3] = wanted[0, :3]
     x[6:10] = quaternion_from_euler([0.0, 0.0, wanted[0, 12]])
@@ -86,9 +87,9 @@ def _flown(vehicle, theta, wanted, errors, rate):
         out = (np.empty((count, STATE)), np.empty((count, n)), np.empty((count, n)),
                np.empty((count, 3)), np.empty(count))
         close_loop(vehicle_vector(vehicle)[:, None], rotor_table(vehicle),
-                   theta[:, None].copy(), tilt, 1 / rate, clock, clock * FALL, LONGEST_STEP, x,
-                   phase, np.ascontiguousarray(seen), gains_of(vehicle), mixer_of(vehicle),
-                   memory, *out)
+                   theta[:, None].copy(), tilt, rate_tilt, 1 / rate, clock, clock * FALL,
+                   FULL_VOLTAGE, LONGEST_STEP, x, phase, np.ascontiguousarray(seen),
+                   gains_of(vehicle), mixer_of(vehicle), memory, *out)
     return out
 
 

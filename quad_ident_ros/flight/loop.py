@@ -7,8 +7,9 @@ import numpy as np
 from quad_ident_ros.compiled import compiled
 from quad_ident_ros.effects.registry import SLICES, TABLE
 from quad_ident_ros.flight.controller import control, SEEN
+from quad_ident_ros.model.actuators import FALL, follow, RISE, SLEW
 from quad_ident_ros.model.rigid_body import derivative, INPUT, prepare, STATE
-from quad_ident_ros.model.rollout import step
+from quad_ident_ros.model.rollout import step, take_up
 from quad_ident_ros.model.situation import (
     COM_X,
     FX,
@@ -24,7 +25,7 @@ BIAS = SLICES['gyro_bias'].start
 
 
 @compiled
-def _look(x, arm, tilt, bias, error, seen):
+def _look(x, arm, tilt, rate_tilt, bias, error, seen):
     """Write what the controller sees (SEEN,) of the centre of mass's state x: model.sensors."""
     w, a, b, c = x[6:10]
     rotation = np.array([
@@ -36,27 +37,38 @@ def _look(x, arm, tilt, bias, error, seen):
     small = np.array([[1.0, -error[8], error[7]], [error[8], 1.0, -error[6]],
                       [-error[7], error[6], 1.0]])
     seen[6:15] = (rotation @ tilt @ small).ravel()
-    seen[15:18] = x[10:13] + bias + error[9:12]
+    for i in range(3):
+        seen[15 + i] = bias[i] + error[9 + i]
+        for j in range(3):
+            seen[15 + i] += x[10 + j] * rate_tilt[j, i]
 
 
 @compiled(fused=True)
-def close_loop(v, places, theta, tilt, dt, clock, fall, longest, x, wanted, errors, gains, mixer,
-               memory, states, commands, speeds, forces, drop):
+def close_loop(v, places, theta, tilt, rate_tilt, dt, clock, fall, full, longest, x, wanted,
+               errors, gains, mixer, memory, states, commands, speeds, forces, drop):
     """
     Fly and write what is at each sample: true states (N, 13), commands and speeds (N, n) rad/s.
 
     The controller acts at each sample, and its command is held to the next. forces (N, 3) m/s^2 is
     the specific force at the body origin just after, drop (N,) V how far the voltage fell. Before
     the first sample the first command is held. x (13,) is the state at the start and at the end.
-    Args: v, places: see rigid_body; theta (P, 1); tilt (3, 3) from body to attitude frame; dt s
-    between samples; clock 0 where the time of flight stands still; fall V/s at hover; longest s of
-    an integration step; wanted (N, WANTED), errors (N, 12), gains, mixer, memory: see controller.
+    Args: v, places: see rigid_body; theta (P, 1); tilt, rate_tilt (3, 3) from the body to the
+    frames of attitude and rate; dt s between samples; clock 0 where the time of flight stands
+    still; fall V/s at hover from full V; longest s of an integration step; wanted (N, WANTED),
+    errors (N, 12), gains, mixer, memory: see controller.
     """
     count, n = len(wanted), len(places)
     s, rotors = np.zeros((TABLE, 1)), np.zeros((n, ROTOR_ROWS, 1))
     state, change, work = np.empty((STATE, 1)), np.empty((STATE, 1)), np.empty((4, STATE, 1))
     u, h = np.zeros((INPUT, 1)), np.empty(1)
-    speed, command, nothing = np.empty((n, 1)), np.empty((n, 1)), np.zeros((3, n, 1))
+    speed, command, extra = np.empty((n, 1)), np.empty((n, 1)), np.zeros((3, n, 1))
+    up, down, slew = theta[LAG, 0] + theta[RISE, 0], theta[LAG, 0] + theta[FALL, 0], theta[SLEW, 0]
+    by_law = theta[RISE, 0] > 0.0 or theta[FALL, 0] > 0.0 or slew > 0.0
+    acting = theta.copy()
+    if by_law:
+        acting[LAG, 0] = 0.0
+    lag = acting[LAG]
+    end, added = np.empty(n), np.zeros((3, n))
     seen, force, lever = np.empty(SEEN), np.empty(3), np.empty(3)
     state[:, 0] = x
     prepare(v, places, theta, s, rotors)
@@ -69,18 +81,18 @@ def close_loop(v, places, theta, tilt, dt, clock, fall, longest, x, wanted, erro
     energy = 0.0
     for k in range(count):
         states[k] = state[:, 0]
-        _look(state[:, 0], arm, tilt, bias, errors[k], seen)
+        _look(state[:, 0], arm, tilt, rate_tilt, bias, errors[k], seen)
         control(seen, wanted[k], dt, gains, mixer, memory, commands[k])
         if k == 0:
             speed[:, 0] = commands[0]
         drop[k] = fall * energy
-        u[5, 0] = drop[k]
+        u[5, 0], u[6, 0] = drop[k], drop[k] / full
         s[TIME, 0] = clock * k * dt
         # The command that acts changes within the sample where the delay is no multiple of it.
         before = max(k - whole - (1 if part > 0.0 else 0), 0)
         for j in range(n):
             command[j, 0] = commands[before, j]
-            rotors[j, SPEED, 0] = speed[j, 0] if theta[LAG, 0] > 0.0 else command[j, 0]
+            rotors[j, SPEED, 0] = speed[j, 0] if by_law or lag[0] > 0.0 else command[j, 0]
             speeds[k, j] = rotors[j, SPEED, 0]
         derivative(state, u, v, places, theta, s, rotors, change)
         for i in range(3):
@@ -101,8 +113,13 @@ def close_loop(v, places, theta, tilt, dt, clock, fall, longest, x, wanted, erro
             pieces = int(np.ceil(length / longest - 1e-9))
             h[0] = length / pieces
             for _ in range(pieces):
-                step(state, h, u, v, places, theta, speed, command, nothing, theta[LAG], s, rotors,
-                     work)
+                if by_law:
+                    end[:] = speed[:, 0]
+                    follow(end, commands[before if piece == 0 else max(k - whole, 0)], h[0], up,
+                           down, slew, added)
+                    command[:, 0], extra[:, :, 0] = end, added
+                take_up(state, speed, command, h, acting, places, s, rotors, work)
+                step(state, h, u, v, places, theta, speed, command, extra, lag, s, rotors, work)
                 if clock == 0.0:
                     s[TIME, 0] = 0.0
     x[:] = state[:, 0]

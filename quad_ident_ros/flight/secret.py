@@ -19,7 +19,7 @@ def draw_reality(vehicle, seed):
     """
     rng = np.random.default_rng([seed, 5])
     name = str(rng.choice(list(EFFECTS)))
-    names = [name, 'rotor_drag'] if name == 'wind' else [name]
+    names = [name, 'rotor_drag'] if EFFECTS[name].needs_air else [name]
     effects = {}
     for each in names:
         effects |= mapping(strengthened(EFFECTS[each], vehicle, rng))

@@ -2,14 +2,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """What is wrong with flights and bears on a fit: said beside its values."""
 
-SHOWS = {
-    'roll': ('inertia_x', 'rotational_drag_x', 'inertia_mismatch.factor_x'),
-    'pitch': ('inertia_y', 'rotational_drag_y', 'inertia_mismatch.factor_y'),
-    'yaw': ('inertia_z', 'rotational_drag_z', 'inertia_mismatch.factor_z', 'torque_coefficient'),
-    'vertical': ('linear_drag_z', 'body_drag.vertical', 'inflow.axial'),
-    'horizontal': ('linear_drag_x', 'linear_drag_y', 'rotor_drag.coefficient',
-                   'body_drag.horizontal', 'inflow.translational', 'blade_flapping.coefficient'),
+from quad_ident_ros.effects.registry import PARAMETERS
+
+CONSTANTS = {
+    'roll': ('inertia_x', 'rotational_drag_x'),
+    'pitch': ('inertia_y', 'rotational_drag_y'),
+    'yaw': ('inertia_z', 'rotational_drag_z', 'torque_coefficient'),
+    'vertical': ('linear_drag_z',),
+    'horizontal': ('linear_drag_x', 'linear_drag_y'),
 }
+SHOWS = {axis: (*constants, *(f'{effect}.{parameter.name}' for effect, parameter in PARAMETERS
+                              if parameter.excited_by == axis))
+         for axis, constants in CONSTANTS.items()}
 """What the motion along each axis shows; axes as data.quality.excitation names them."""
 
 

@@ -151,7 +151,8 @@ def _bridged(course, states, seen, period):
     filled[:, 6:10] /= np.linalg.norm(filled[:, 6:10], axis=1, keepdims=True)
     rows = np.where(share == 1.0, before + 1, before)
     there = (share == 0.0) | (share == 1.0)
-    return (Course(between(course.t), between(course.commands), between(course.volt_drop)),
+    return (Course(between(course.t), between(course.commands), between(course.volt_drop),
+                   reference_voltage=course.reference_voltage),
             filled, seen[rows] & there[:, None])
 
 
@@ -160,7 +161,8 @@ def _thinned(course, states, seen, skip):
     rows = len(course.t) // skip * skip
     drop = course.volt_drop[:rows].reshape(-1, skip).mean(axis=1)
     # A copy: an array with gaps would have the integrator compiled anew.
-    return (Course(course.t[:rows:skip].copy(), course.commands, drop, course.stamps),
+    return (Course(course.t[:rows:skip].copy(), course.commands, drop, course.stamps,
+                   course.reference_voltage),
             states[:rows:skip], seen[:rows:skip])
 
 

@@ -86,5 +86,7 @@ def _table(vehicle):
         places = columns_of([effect], len(vehicle.rotors))
         table[effect] = {f'{effect}.{registry.PARAMETERS[place - SPLIT][1].name}': place
                          for place in places}
-        table |= {name: {name: place} for name, place in table[effect].items()}
+        single = {f'{effect}.{parameter.name}': SPLIT + registry.PLACE[effect, parameter.name]
+                  for form in registry.EFFECTS[effect].forms[1:] for parameter in form.parameters}
+        table |= {name: {name: place} for name, place in (table[effect] | single).items()}
     return table

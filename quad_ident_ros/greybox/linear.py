@@ -13,7 +13,8 @@ from quad_ident_ros.model.dynamics import predict
 
 STATE_STEP = np.repeat([1e-4, 1e-4, 1e-5, 1e-4], 3)     # of differences in the initial state
 STEP = 1e-4                                             # of a parameter's usual size
-GROUND = registry.SLICES['ground_effect']
+GROUND = [place for (name, _), part in registry.PLACES.items() if name == 'ground_effect'
+          for place in range(part.start, part.stop)]
 
 
 @dataclass(frozen=True, eq=False)

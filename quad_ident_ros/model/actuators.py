@@ -1,15 +1,22 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Delay and lag between the commanded and the actual speed of the rotors."""
+"""
+Delay and lag between the commanded and the actual speed of the rotors.
+
+A lag that is the same up and down is a part of the integration; the speeds of any other form are
+followed here, exactly, and given to the integration as they are.
+"""
 
 from typing import NamedTuple
 
 import numpy as np
 
 from quad_ident_ros.compiled import compiled
-from quad_ident_ros.effects.registry import SLICES
+from quad_ident_ros.effects.registry import PLACE, SLICES
 
 DELAY, LAG = SLICES['actuation_delay'].start, SLICES['motor_lag'].start
+RISE, FALL, SLEW = (PLACE['motor_lag', name] for name in ('rise', 'fall', 'slew'))
+FOLLOWED = [RISE, FALL, SLEW]
 CLOSE = 1e-9    # of a step, within which a command changes at a sample
 
 
@@ -42,14 +49,43 @@ def actuated(t, stamps, commands, thetas):
     all_of = Actuation(np.empty((sets, *shape)), np.empty((sets, *shape)),
                        np.empty((sets, shape[0], 3, shape[1])))
     for k, theta in enumerate(thetas):
-        key = (theta[DELAY], theta[LAG])
+        key = (theta[DELAY], *law_of(theta))
         if key not in found:
             own = Actuation(np.empty(shape), np.empty(shape), np.zeros((shape[0], 3, shape[1])))
-            _act(t, stamps, commands, *key, *own)
+            if theta[FOLLOWED].any():
+                _act_by_law(t, stamps, commands, *key, *own)
+            else:
+                _act(t, stamps, commands, *key[:2], *own)
             found[key] = own
         for whole, own in zip(all_of, found[key], strict=True):
             whole[k] = own
     return all_of
+
+
+def law_of(theta: np.ndarray) -> tuple[float, float, float]:
+    """Return the lags up and down, s, and the reciprocal of the fastest change of the speed."""
+    return theta[LAG] + theta[RISE], theta[LAG] + theta[FALL], theta[SLEW]
+
+
+def without_lag(thetas: np.ndarray) -> np.ndarray:
+    """Return parameter sets (T, P), those without the lag whose speeds are followed here."""
+    thetas = np.array(thetas, float)
+    thetas[thetas[:, FOLLOWED].any(axis=1), LAG] = 0.0
+    return thetas
+
+
+def accelerations(t: np.ndarray, acted: Actuation, thetas: np.ndarray) -> np.ndarray:
+    """
+    Return those of the rotors at times t (N,) s of an Actuation, (T, N, n) rad/s^2.
+
+    Where they are no part of the integration, the mean over the step that begins there.
+    """
+    lags = without_lag(thetas)[:, LAG]
+    before = np.concatenate([acted.speeds[:, :1], acted.followed[:, :-1]], axis=1)
+    steps = np.append(np.diff(t), t[-1] - t[-2])[:, None]
+    return np.array([(followed - speeds) / lag if lag > 0.0 else (followed - last) / steps
+                     for followed, speeds, last, lag in zip(
+                         acted.followed, acted.speeds, before, lags, strict=True)])
 
 
 @compiled(fused=True, inlined=True)
@@ -142,3 +178,87 @@ def _advance(speed, command, length, left, lag, sums):
         sums[1, j] += left * area - late
         sums[2, j] += left * left * area - 2.0 * left * late + last
         speed[j] = target + gap * gone
+
+
+@compiled
+def _act_by_law(t, stamps, commands, delay, up, down, slew, followed, speeds, added):
+    """Write the Actuation of one delay and any law: see law_of."""
+    count, last = len(t), len(stamps)
+    sums = np.empty((3, commands.shape[1]))
+    at = 0
+    for k in range(count):
+        step = t[k + 1] - t[k] if k + 1 < count else t[k] - t[k - 1]
+        close = CLOSE * step
+        while at + 1 < last and stamps[at + 1] + delay <= t[k] + close:
+            at += 1
+        if k == 0:
+            speeds[k] = commands[at]
+        followed[k] = speeds[k]
+        if k + 1 == count:
+            break
+        done = 0.0
+        sums[:] = 0.0
+        while at + 1 < last and stamps[at + 1] + delay < t[k + 1] - close:
+            length = stamps[at + 1] + delay - t[k] - done
+            _follow(followed[k], commands[at], length, step - done, up, down, slew, sums)
+            done += length
+            at += 1
+        _follow(followed[k], commands[at], step - done, step - done, up, down, slew, sums)
+        _match(sums, step, followed[k], added[k])
+        speeds[k + 1] = followed[k]
+
+
+@compiled
+def follow(speed, command, step, up, down, slew, added):
+    """
+    Advance speeds (n,) by a step s towards commands (n,), by any law: see law_of.
+
+    Writes into added (3, n) what is to be added to the speeds at the end to have those at the
+    begin, the middle and the end of the step as its integration takes them.
+    """
+    sums = np.zeros((3, len(speed)))
+    _follow(speed, command, step, step, up, down, slew, sums)
+    _match(sums, step, speed, added)
+
+
+@compiled
+def _follow(speed, command, length, left, up, down, slew, sums):
+    """Advance speeds (n,) as _advance does, by a lag up, another one down and a limited rate."""
+    for j in range(len(speed)):
+        gap = speed[j] - command[j]
+        lag = down if gap > 0.0 else up
+        # At its limit the speed changes until its lag alone is slower.
+        straight = min(max(abs(gap) * slew - lag, 0.0), length)
+        if straight > 0.0:
+            begin = speed[j]
+            still = max(abs(gap) - straight / slew, 0.0)
+            speed[j] = end = command[j] + (still if gap > 0.0 else -still)
+            area = straight * (begin ** 2 + begin * end + end ** 2) / 3.0
+            late = straight ** 2 * (begin ** 2 + 2.0 * begin * end + 3.0 * end ** 2) / 12.0
+            last = straight ** 3 * (begin ** 2 + 3.0 * begin * end + 6.0 * end ** 2) / 30.0
+            sums[0, j] += area
+            sums[1, j] += left * area - late
+            sums[2, j] += left * left * area - 2.0 * left * late + last
+        if straight < length:
+            _advance(speed[j:j + 1], command[j:j + 1], length - straight, left - straight, lag,
+                     sums[:, j:j + 1])
+
+
+@compiled
+def _match(sums, step, end, added):
+    """Write what added to the speeds `end` (n,) has the sums (3, n) of a step s: see actuated."""
+    same = np.zeros(sums.shape)
+    _advance(end.copy(), end, step, step, 0.0, same)
+    for j in range(len(end)):
+        square = end[j] * end[j]
+        mean = (sums[0, j] - same[0, j]) / step
+        once = (sums[1, j] - same[1, j]) / step ** 2
+        twice = (sums[2, j] - same[2, j]) / step ** 3
+        at_begin = square + 12.0 * twice - 6.0 * once
+        at_middle = square + 6.0 * (once - twice)
+        at_end = square + 6.0 * (mean + 2.0 * twice - 3.0 * once)
+        if min(at_begin, at_middle, at_end) < 0.0:  # no speeds do that: the mean at least
+            at_begin = at_middle = at_end = sums[0, j] / step
+        added[0, j] = np.sqrt(at_begin) - end[j]
+        added[1, j] = np.sqrt(at_middle) - end[j]
+        added[2, j] = np.sqrt(at_end) - end[j]

@@ -5,7 +5,7 @@
 import numpy as np
 
 from quad_ident_ros.effects.registry import NULL, SLICES
-from quad_ident_ros.model.actuators import actuated
+from quad_ident_ros.model.actuators import accelerations, actuated
 from quad_ident_ros.model.attitude import rotation_matrix
 from quad_ident_ros.model.rigid_body import derivatives, INPUT, rotor_table, vehicle_vector
 from quad_ident_ros.model.sensors import underlying
@@ -29,11 +29,10 @@ def contribution(vehicle, theta, course, states):
 def _accelerations(vehicle, theta, course, states):
     """Return those of the body origin, world, and those of the rate, body, (N, 3) each."""
     states = np.ascontiguousarray(underlying(theta, states))
-    (followed,), (speeds,), _ = actuated(course.t, course.stamps, course.commands, theta[None])
-    lag = theta[SLICES['motor_lag']][0]
-    rising = (followed - speeds) / lag if lag > 0 else np.zeros_like(speeds)
+    acted = actuated(course.t, course.stamps, course.commands, theta[None])
+    (speeds,), (rising,) = acted.speeds, accelerations(course.t, acted, theta[None])
     inputs = np.zeros((len(course.t), INPUT))
-    inputs[:, 5] = course.volt_drop
+    inputs[:, 5], inputs[:, 6] = course.volt_drop, course.volt_share
     change = np.empty_like(states)
     derivatives(vehicle_vector(vehicle)[:, None], rotor_table(vehicle), theta, course.t, states,
                 speeds, rising, inputs, change)

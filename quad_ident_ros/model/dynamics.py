@@ -9,11 +9,11 @@ from scipy.interpolate import CubicHermiteSpline
 
 from quad_ident_ros.data.frames import continuous
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.model.actuators import actuated
+from quad_ident_ros.model.actuators import actuated, without_lag
 from quad_ident_ros.model.attitude import quaternion_from_euler
 from quad_ident_ros.model.rigid_body import INPUT, rotor_table, STATE, vehicle_vector
 from quad_ident_ros.model.rollout import NO_GUIDE, roll_out, roll_out_one
-from quad_ident_ros.model.sensors import acts, BIAS, COM, product, recorded, TILT, underlying
+from quad_ident_ros.model.sensors import acts, COM, product, recorded, SEEN, underlying
 
 STATES = ('px', 'py', 'pz', 'vx', 'vy', 'vz', 'qw', 'qx', 'qy', 'qz', 'wx', 'wy', 'wz')
 LONGEST_STEP = 0.01     # s, of the integration: errors of about 1e-6 of what happens in it
@@ -25,17 +25,23 @@ class Course:
     What is given along a flight.
 
     t (N,) s from its start; commands (M, n) rad/s, the rotors', each held to the next; volt_drop
-    (N,) V below the voltage of reference; stamps (M,) s of the commands, t where none are given.
+    (N,) V below reference_voltage, V; stamps (M,) s of the commands, t where none are given.
     """
 
     t: np.ndarray
     commands: np.ndarray
     volt_drop: np.ndarray
     stamps: np.ndarray = None
+    reference_voltage: float = np.inf
 
     def __post_init__(self):
         if self.stamps is None:
             object.__setattr__(self, 'stamps', self.t)
+
+    @property
+    def volt_share(self) -> np.ndarray:
+        """Fall of the voltage as a share of that of reference, (N,)."""
+        return self.volt_drop / self.reference_voltage
 
 
 def course_of(record, vehicle, reference_voltage=None):
@@ -48,11 +54,12 @@ def course_of(record, vehicle, reference_voltage=None):
     names = [f'cmd{j}' for j in range(1, len(vehicle.rotors) + 1)]
     _refuse_without(record, names, 'or u1, u2, u3, u4, the thrust and moments')
     commands = record.stack(*names)
-    drop = np.zeros(len(record))
-    if reference_voltage is not None and record.has('vbat'):
+    drop, known = np.zeros(len(record)), reference_voltage is not None and record.has('vbat')
+    if known:
         drop = reference_voltage - record.columns['vbat']
     began = record.info.get('began', record.t[0])
-    return Course(record.t - began, np.ascontiguousarray(commands), drop)
+    return Course(record.t - began, np.ascontiguousarray(commands), drop,
+                  reference_voltage=reference_voltage if known else np.inf)
 
 
 def _refuse_without(record, names, instead):
@@ -103,7 +110,8 @@ def predict(vehicle, thetas, course, starts, first, count, which=None, constants
     t = _finer(course.t, steps)
     acted = actuated(t, course.stamps, course.commands, thetas)
     inputs = np.zeros((len(t), INPUT))
-    inputs[:, 5] = course.volt_drop[np.arange(len(t)) // steps]
+    rows = np.arange(len(t)) // steps
+    inputs[:, 5], inputs[:, 6] = course.volt_drop[rows], course.volt_share[rows]
     x0, elsewhere = np.array(starts, float), acts(thetas)[which]
     shown = thetas[which[elsewhere]]
     x0[elsewhere] = underlying(shown, x0[elsewhere])
@@ -116,9 +124,9 @@ def predict(vehicle, thetas, course, starts, first, count, which=None, constants
     kernel = roll_out if len(x0) > 1 else roll_out_one
     if constants is None:
         constants = np.tile(vehicle_vector(vehicle), (len(thetas), 1))
-    kernel(np.ascontiguousarray(constants), rotor_table(vehicle), np.ascontiguousarray(thetas),
-           which, np.ascontiguousarray(x0), t, *acted, inputs, steps * first, steps * count, 1,
-           *guides, out)
+    kernel(np.ascontiguousarray(constants), rotor_table(vehicle), without_lag(thetas), which,
+           np.ascontiguousarray(x0), t, *acted, inputs, steps * first, steps * count, 1, *guides,
+           out)
     out = out[:, ::steps]
     if elsewhere.any():
         moved = recorded(shown, out[elsewhere])
@@ -138,7 +146,7 @@ def _guides(thetas, guide, t, fine):
 
     Args: thetas (T, P); guide (N, 13) at t (N,) s; fine (M,) s of the integration.
     """
-    tilted = thetas[:, TILT].any(axis=1) | thetas[:, BIAS].any(axis=1)
+    tilted = thetas[:, [place for place in SEEN if not COM.start <= place < COM.stop]].any(axis=1)
     which = np.where(tilted, np.cumsum(tilted), 0)
     rows = np.concatenate([[np.zeros(thetas.shape[1])], thetas[tilted]])
     rows[:, COM] = 0.0

@@ -14,6 +14,8 @@ import numpy as np
 from quad_ident_ros.compiled import compiled
 from quad_ident_ros.effects.registry import AIR, BODY, mark, TABLE, THRUST, WRENCH
 from quad_ident_ros.model.situation import (
+    ARMS_X,
+    ARMS_Y,
     AX,
     AY,
     AZ,
@@ -64,6 +66,7 @@ from quad_ident_ros.model.situation import (
     SPINS,
     STAGE,
     TIME,
+    TORQUE,
     TX,
     TY,
     TZ,
@@ -71,6 +74,7 @@ from quad_ident_ros.model.situation import (
     UY,
     UZ,
     VOLT_DROP,
+    VOLT_SHARE,
     VX,
     VY,
     VZ,
@@ -83,7 +87,8 @@ from quad_ident_ros.model.situation import (
 )
 
 STATE = 13      # position, velocity (world), quaternion (body to world), rate (body)
-INPUT = 6       # besides the rotors: force z, moment x, y, z (body), spin sum, volt drop
+# Besides the rotors: force z, moment x, y, z (body), spin sum, fall of the voltage, V and share.
+INPUT = 7
 
 
 def vehicle_vector(vehicle, drag_in_world=False):
@@ -107,6 +112,7 @@ def prepare(v, places, theta, s, rotors):
         s[COM_X, i] = s[COM_Y, i] = s[COM_Z, i] = 0.0
         s[RADIUS, i], s[PER_HOVER, i] = v[7, i], 1.0 / v[15, i]
         s[WIND_X, i] = s[WIND_Y, i] = s[WIND_Z, i] = 0.0
+        s[ARMS_X, i] = s[ARMS_Y, i] = s[TORQUE, i] = 1.0
     mark(theta, s)
     BODY(theta, s)
     AIR(theta, s)
@@ -115,8 +121,8 @@ def prepare(v, places, theta, s, rotors):
         s[PER_IX, i], s[PER_IY, i], s[PER_IZ, i] = 1.0 / s[IX, i], 1.0 / s[IY, i], 1.0 / s[IZ, i]
     for j in range(places.shape[0]):
         for i in range(s.shape[1]):
-            rotors[j, RX, i] = places[j, 0] - s[COM_X, i]
-            rotors[j, RY, i] = places[j, 1] - s[COM_Y, i]
+            rotors[j, RX, i] = s[ARMS_X, i] * places[j, 0] - s[COM_X, i]
+            rotors[j, RY, i] = s[ARMS_Y, i] * places[j, 1] - s[COM_Y, i]
             rotors[j, RZ, i] = places[j, 2] - s[COM_Z, i]
 
 
@@ -198,7 +204,8 @@ def wrench(v, places, theta, s, rotors):
             s[FZ, i] += hz
             s[MX, i] += y * hz - z * hy
             s[MY, i] += z * hx - x * hz
-            s[MZ, i] += x * hy - y * hx + spin * v[6, i] * rotors[j, SPEED, i] ** 2
+            torque = s[TORQUE, i] * v[6, i] * rotors[j, SPEED, i] ** 2
+            s[MZ, i] += x * hy - y * hx + spin * torque
 
 
 @compiled(fused=True, inlined=True)
@@ -267,6 +274,7 @@ def derivatives(v, places, theta, t, states, speeds, accelerations, inputs, out)
         for k in range(INPUT):
             u[k, 0] = inputs[n, k]
         s[TIME, 0], s[VOLT_DROP, 0], s[SPIN_UP, 0] = t[n], inputs[n, 5], 0.0
+        s[VOLT_SHARE, 0] = inputs[n, 6]
         for j in range(places.shape[0]):
             rotors[j, SPEED, 0] = speeds[n, j]
             s[SPIN_UP, 0] += places[j, 3] * accelerations[n, j]

@@ -7,29 +7,33 @@ import math
 import numpy as np
 
 from quad_ident_ros.compiled import compiled
-from quad_ident_ros.effects.registry import SLICES, TABLE
-from quad_ident_ros.model.actuators import shares
+from quad_ident_ros.effects.registry import ROWS_OF, SLICES, TABLE
+from quad_ident_ros.model.actuators import FALL, RISE, shares, SLEW
 from quad_ident_ros.model.rigid_body import derivative, INPUT, prepare, STATE
 from quad_ident_ros.model.situation import (
     GUIDE,
     GUIDE_BEGIN,
     GUIDED,
+    PER_IZ,
     ROTOR_ROWS,
     SPEED,
     SPIN_UP,
     STAGE,
     TIME,
     VOLT_DROP,
+    VOLT_SHARE,
 )
 
 LAG = SLICES['motor_lag'].start
+GYRO, GYRO_ROW = SLICES['rotor_gyro'].start, ROWS_OF['rotor_gyro', 'momentum']
+CHANGE = 4  # row of work[3]: what of the rate of change of the rotors' spin no lag gives
 
 
 @compiled(fused=True, inlined=True)
-def _set_speeds(share, speed, command, added, places, period_rate, s, rotors):
+def _set_speeds(share, speed, command, added, places, period_rate, change, s, rotors):
     """Set the speeds that lie between `speed` and `command`; share (LANES,) is what is left."""
     for i in range(s.shape[1]):
-        s[SPIN_UP, i] = 0.0
+        s[SPIN_UP, i] = change[i]
     for j in range(rotors.shape[0]):
         for i in range(s.shape[1]):
             gap = (speed[j, i] - command[j, i]) * share[i]
@@ -38,20 +42,46 @@ def _set_speeds(share, speed, command, added, places, period_rate, s, rotors):
 
 
 @compiled(fused=True, inlined=True)
+def take_up(x, speed, command, span, theta, places, s, rotors, work):
+    """
+    Hand the momentum of rotors that change their speed without a lag of their own to the body.
+
+    Those that jump do so at once, which turns the states x (13, LANES); those whose speeds are
+    followed elsewhere (model.actuators) evenly over span (LANES,) s, which is written into work.
+    """
+    change = work[3, CHANGE]
+    for i in range(s.shape[1]):
+        change[i] = 0.0
+    if s[GYRO_ROW, 0] != 0.0:
+        for j in range(rotors.shape[0]):
+            for i in range(s.shape[1]):
+                if theta[LAG, i] == 0.0:
+                    change[i] += places[j, 3] * (command[j, i] - speed[j, i])
+        for i in range(s.shape[1]):
+            if theta[RISE, i] > 0.0 or theta[FALL, i] > 0.0 or theta[SLEW, i] > 0.0:
+                change[i] /= span[i]
+            else:
+                x[12, i] += theta[GYRO, i] * change[i] * s[PER_IZ, i]
+                change[i] = 0.0
+
+
+@compiled(fused=True, inlined=True)
 def step(x, h, u, v, places, theta, speed, command, added, lag, s, rotors, work):
     """
     Advance the states x (13, LANES) by h (LANES,) s; speed becomes that at the end.
 
-    What is added, (3, n, LANES), to the speeds at begin, middle and end is so for this step alone.
+    What is added, (3, n, LANES), to the speeds at begin, middle and end is so for this step alone;
+    work has what take_up wrote.
     """
-    k, y, total, half, full, rate, begin = (work[0], work[1], work[2], work[3, 0], work[3, 1],
-                                            work[3, 2], work[3, 3])
+    k, y, total = work[0], work[1], work[2]
+    half, full, rate, begin, change = (work[3, 0], work[3, 1], work[3, 2], work[3, 3],
+                                       work[3, CHANGE])
     for i in range(s.shape[1]):
         rate[i] = 1.0 / lag[i] if lag[i] > 0.0 else 0.0
         begin[i], half[i], full[i] = shares(h[i], lag[i])
-        s[VOLT_DROP, i] = u[5, i]
+        s[VOLT_DROP, i], s[VOLT_SHARE, i] = u[5, i], u[6, i]
         s[STAGE, i] = 0.0
-    _set_speeds(begin, speed, command, added[0], places, rate, s, rotors)
+    _set_speeds(begin, speed, command, added[0], places, rate, change, s, rotors)
     derivative(x, u, v, places, theta, s, rotors, k)
     for n in range(STATE):
         for i in range(s.shape[1]):
@@ -60,7 +90,7 @@ def step(x, h, u, v, places, theta, speed, command, added, lag, s, rotors, work)
     for i in range(s.shape[1]):
         s[TIME, i] += 0.5 * h[i]
         s[STAGE, i] = 0.5
-    _set_speeds(half, speed, command, added[1], places, rate, s, rotors)
+    _set_speeds(half, speed, command, added[1], places, rate, change, s, rotors)
     derivative(y, u, v, places, theta, s, rotors, k)
     for n in range(STATE):
         for i in range(s.shape[1]):
@@ -74,7 +104,7 @@ def step(x, h, u, v, places, theta, speed, command, added, lag, s, rotors, work)
     for i in range(s.shape[1]):
         s[TIME, i] += 0.5 * h[i]
         s[STAGE, i] = 1.0
-    _set_speeds(full, speed, command, added[2], places, rate, s, rotors)
+    _set_speeds(full, speed, command, added[2], places, rate, change, s, rotors)
     derivative(y, u, v, places, theta, s, rotors, k)
     for n in range(STATE):
         for i in range(s.shape[1]):
@@ -115,7 +145,7 @@ def _kernel(lanes):
         speed = np.empty((rotor_count, lanes))
         command = np.empty((rotor_count, lanes))
         extra = np.empty((3, rotor_count, lanes))
-        h = np.empty(lanes)
+        h, span = np.empty(lanes), np.empty(lanes)
         batch = x0.shape[0]
         for begin in range(0, batch, lanes):
             for i in range(lanes):
@@ -127,8 +157,11 @@ def _kernel(lanes):
                     v[n, i] = vehicles[which[b], n]
                 for n in range(thetas.shape[1]):
                     theta[n, i] = thetas[which[b], n]
+                # Without lag the rotors still turn as before the command given there.
+                before = first[b] > 0 and thetas[which[b], LAG] == 0.0
                 for j in range(rotor_count):
-                    speed[j, i] = speeds[which[b], first[b], j]
+                    speed[j, i] = (followed[which[b], first[b] - 1, j] if before else
+                                   speeds[which[b], first[b], j])
             prepare(v, places, theta, s, rotors)
             for i in range(lanes):
                 s[GUIDED, i] = 1.0 if guides.shape[0] else 0.0
@@ -137,7 +170,8 @@ def _kernel(lanes):
                     b = min(begin + i, batch - 1)
                     row = first[b] + k
                     s[TIME, i] = t[row]
-                    h[i] = (t[row + 1] - t[row]) / substeps
+                    span[i] = t[row + 1] - t[row]
+                    h[i] = span[i] / substeps
                     for j in range(rotor_count):
                         command[j, i] = followed[which[b], row, j]
                         for place in range(3):
@@ -148,6 +182,7 @@ def _kernel(lanes):
                         lead = guide_of[which[b]]
                         for n in range(2 * GUIDE):
                             s[GUIDE_BEGIN + n, i] = guides[lead, row + n // GUIDE, n % GUIDE]
+                take_up(x, speed, command, span, theta, places, s, rotors, work)
                 for _ in range(substeps):
                     step(x, h, u, v, places, theta, speed, command, extra, theta[LAG], s, rotors,
                          work)

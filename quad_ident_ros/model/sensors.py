@@ -3,17 +3,20 @@
 """
 Between the state of the centre of mass and what is recorded.
 
-A record is of the declared body origin; its attitude may be that of a tilted frame, its rate may
-have a bias. States (..., 13): position, velocity (world), quaternion, rate (body). Parameter sets
-theta (P,), or (B, P) for states (B, ..., 13).
+A record is of the declared body origin; its attitude and its rate may be those of tilted frames,
+its rate may have a bias. States (..., 13): position, velocity (world), quaternion, rate (body).
+Parameter sets theta (P,), or (B, P) for states (B, ..., 13).
 """
 
 import numpy as np
 
 from quad_ident_ros.compiled import compiled
-from quad_ident_ros.effects.registry import SLICES
+from quad_ident_ros.effects.registry import PLACES, SLICES
 
 COM, TILT, BIAS = (SLICES[name] for name in ('com_offset', 'attitude_misalignment', 'gyro_bias'))
+BLOCK, GYRO = (PLACES['attitude_misalignment', form] for form in ('sensor_block', 'gyro'))
+SEEN = [place for part in (COM, TILT, BIAS, BLOCK, GYRO)
+        for place in range(part.start, part.stop)]
 
 
 def product(a, b):
@@ -36,8 +39,13 @@ def turn(vector):
 
 def acts(theta):
     """Return whether what is recorded differs from the state of the centre of mass, (...)."""
-    return (theta[..., COM].any(axis=-1) | theta[..., TILT].any(axis=-1)
-            | theta[..., BIAS].any(axis=-1))
+    return theta[..., SEEN].any(axis=-1)
+
+
+def tilts_of(theta: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the turns (..., 4) from the body to the frames of attitude and of rate."""
+    block = turn(theta[..., BLOCK])
+    return product(block, turn(theta[..., TILT])), product(block, turn(theta[..., GYRO]))
 
 
 def recorded(theta, states):
@@ -55,24 +63,36 @@ def _changed(theta, states, forward):
     states, theta = np.array(states, float), np.atleast_2d(theta)
     if acts(theta).any():
         arms, biases = (np.ascontiguousarray(theta[:, part]) for part in (COM, BIAS))
-        tilts = turn(theta[:, TILT] if forward else -theta[:, TILT])
-        _change(arms, tilts, biases, states.reshape(len(theta), -1, states.shape[-1]), forward)
+        attitudes, rates = tilts_of(theta)
+        if not forward:
+            attitudes[:, 1:] *= -1.0
+        turned = bool(theta[:, BLOCK].any() or theta[:, GYRO].any())
+        _change(arms, attitudes, rates, turned, biases,
+                states.reshape(len(theta), -1, states.shape[-1]), forward)
     return states
 
 
 @compiled(fused=True)
-def _change(arms, tilts, biases, states, forward):
-    """Change states (B, N, 13) in place, by arms and biases (B, 3) and the turns tilts (B, 4)."""
+def _change(arms, tilts, rates, turned, biases, states, forward):
+    """
+    Change states (B, N, 13) in place, by arms and biases (B, 3) and turns (B, 4).
+
+    tilts: of the attitude, forward or back; rates: of the rate sensor, where any is turned.
+    """
     for b in range(states.shape[0]):
         for n in range(states.shape[1]):
             x = states[b, n]
             if not forward:
                 for i in range(3):
                     x[10 + i] -= biases[b, i]
+                if turned:
+                    _turn_rate(x, rates[b], 1.0)
                 _tilt(x, tilts[b])
             _shift(x, arms[b], -1.0 if forward else 1.0)
             if forward:
                 _tilt(x, tilts[b])
+                if turned:
+                    _turn_rate(x, rates[b], -1.0)
                 for i in range(3):
                     x[10 + i] += biases[b, i]
 
@@ -85,6 +105,17 @@ def _tilt(x, tilt):
     x[7] = w * tilt[1] + a * tilt[0] + b * tilt[3] - c * tilt[2]
     x[8] = w * tilt[2] - a * tilt[3] + b * tilt[0] + c * tilt[1]
     x[9] = w * tilt[3] + a * tilt[2] - b * tilt[1] + c * tilt[0]
+
+
+@compiled(fused=True, inlined=True)
+def _turn_rate(x, turned, sense):
+    """Turn the rate of a state (13,) by a quaternion (4,), or back where sense is -1."""
+    w, i, j, k = turned[0], sense * turned[1], sense * turned[2], sense * turned[3]
+    a, b, c = x[10], x[11], x[12]
+    u, v, t = 2.0 * (j * c - k * b), 2.0 * (k * a - i * c), 2.0 * (i * b - j * a)
+    x[10] += w * u + j * t - k * v
+    x[11] += w * v + k * u - i * t
+    x[12] += w * t + i * v - j * u
 
 
 @compiled(fused=True, inlined=True)

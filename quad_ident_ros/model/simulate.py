@@ -10,7 +10,7 @@ from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.effects import registry
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model import attitude, equations, mixing
-from quad_ident_ros.model.actuators import actuated
+from quad_ident_ros.model.actuators import actuated, FOLLOWED, without_lag
 from quad_ident_ros.model.rigid_body import INPUT, rotor_table, STATE, vehicle_vector
 from quad_ident_ros.model.rollout import NO_GUIDE, roll_out_one
 from quad_ident_ros.model.sensors import recorded
@@ -23,10 +23,8 @@ STEPS_AT_ONCE = 1_000_000   # integrated before a signal or a cancel can act: ab
 
 RATE_LIMIT = 1e6  # rad/s; beyond it a run counts as diverged
 MOST_STEPS = 10 ** 9    # of the integration: some minutes
-
-# Effects that act on U1..U4 as they are; all others act on rotors, which then give U1..U4.
-WITHOUT_ROTORS = ('body_drag', 'wind', 'mass_offset', 'inertia_mismatch',
-                  'attitude_misalignment', 'gyro_bias')
+# s, of speeds that model.actuators follows: what they drive is then right to fifth order in it.
+FOLLOWED_STEP = 1e-3
 
 
 @dataclass(frozen=True)
@@ -83,40 +81,44 @@ def _newton_euler(vehicle, inputs, omega_r, period, substeps, altitude, on_progr
     # Delayed commands may change within a sample: then there are two intervals to each.
     within = theta[registry.SLICES['actuation_delay'].start] % period
     between = 1e-9 * period < within < (1.0 - 1e-9) * period
+    by_law = theta[FOLLOWED].any()
     every = 2 if between else 1
     t = np.sort(np.append(stamps, stamps[:-1] + within)) if between else stamps
+    if by_law:
+        every = int(np.ceil(period / FOLLOWED_STEP - 1e-9))
+        t = np.append((stamps[:-1, None] + period / every * np.arange(every)).ravel(), stamps[-1])
     others = np.repeat(others, every, axis=0)
     acted = actuated(t, stamps, commands, theta[None])
     constants = vehicle_vector(vehicle, drag_in_world=True)[None]
     places = rotor_table(vehicle)[:commands.shape[1]]
-    one = np.zeros(1, np.int64)
+    acting, one = without_lag(theta[None]), np.zeros(1, np.int64)
 
     def advance(part, first, t, substeps):
-        """Integrate from the state part[0], at a sample, and write what comes after it."""
-        roll_out_one(constants, places, theta[None], one, part[:1].copy(), t,
-                     *(each[:, first:] for each in acted), others[first:], one, len(part) - 1,
-                     substeps, part[None])
+        """Integrate from the state part[0], at the sample first, and write what comes after it."""
+        roll_out_one(constants, places, acting, one, part[:1].copy(), t, *acted, others,
+                     np.array([first]), len(part) - 1, substeps, part[None])
 
     states = np.zeros((len(t), STATE))
     states[0, 2], states[0, 6] = altitude, 1.0
     states[0, :3] += theta[registry.SLICES['com_offset']]
     count, end = len(t), t[-1]
     rows = every * max(1, STEPS_AT_ONCE // substeps)
-    substeps = int(np.ceil(np.diff(t[:3]).max() / period * substeps - 1e-9))
+    substeps = 1 if by_law else int(np.ceil(np.diff(t[:3]).max() / period * substeps - 1e-9))
     for first in range(0, len(t) - 1, rows):
         on_progress(first / len(t))
         part = states[first:first + rows + 1]
-        advance(part, first, t[first:], substeps)
+        advance(part, first, t, substeps)
         lost = _lost(part)
         if lost.any():
             count = first + int(np.argmax(lost))
             # The step of this sample at which it is lost: by bisection, for it stays so.
             kept, gone = 0, substeps
-            step = (t[count] - t[count - 1]) / substeps
+            step, clock = (t[count] - t[count - 1]) / substeps, t.copy()
             while gone - kept > 1:
                 half = (kept + gone) // 2
                 pair = states[[count - 1, count]]
-                advance(pair, count - 1, t[count - 1] + [0.0, half * step], half)
+                clock[count] = t[count - 1] + half * step
+                advance(pair, count - 1, clock, half)
                 kept, gone = (kept, half) if _lost(pair)[1] else (half, gone)
             end = t[count - 1] + gone * step
             break
@@ -138,8 +140,9 @@ def _acting(vehicle, theta, inputs, omega_r, t):
     gyro = registry.SLICES['rotor_gyro']
     if omega_r.any() and not theta[gyro]:
         theta[gyro] = vehicle.rotor_inertia
-    names = [name for name in registry.mapping(theta) if name not in WITHOUT_ROTORS
-             and name in vehicle.effects]
+    names = list(dict.fromkeys(
+        name for name, form in registry.FORMS if form.on_rotors and name in vehicle.effects
+        and (theta != registry.NULL)[registry.PLACES[name, form.name]].any()))
     if names:
         problem = mixing.infeasibility(vehicle, inputs, t)
         if problem:

@@ -31,7 +31,7 @@ VEHICLES = {vehicle.name: vehicle for vehicle in (
 def usual(name, vehicle):
     """Return {effect: {parameter: value}} of an effect at its usual size; of one rotor alone."""
     sizes = bounds(vehicle)[2][SLICES[name]]
-    known = zip(EFFECTS[name].parameters, sizes, strict=True)
+    known = zip(EFFECTS[name].forms[0].parameters, sizes, strict=True)
     values = {parameter.name: parameter.null + size for parameter, size in known}
     if EFFECTS[name].per_rotor:
         values = dict([next(iter(values.items()))])

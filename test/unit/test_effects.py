@@ -27,10 +27,15 @@ def test_every_effect_of_the_format_is_registered_and_no_other():
 @pytest.mark.parametrize('name', EFFECTS)
 def test_an_effect_says_what_it_is(name):
     effect = EFFECTS[name]
-    assert effect.title and effect.source and effect.excitation and effect.parameters
+    assert effect.title and effect.excitation and effect.parameters
     assert set(effect.confused_with) <= set(EFFECTS) - {name}
-    acts = [effect.body, effect.air, effect.thrust, effect.wrench, effect.actuator, effect.sensor]
-    assert sum(part is not None for part in acts) == 1
+    names = [parameter.name for parameter in effect.parameters]
+    assert len(set(names)) == len(names)
+    assert len({form.name for form in effect.forms}) == len(effect.forms)
+    for form in effect.forms:
+        assert form.name and form.title and form.source and form.parameters
+        acts = [form.body, form.air, form.thrust, form.wrench, form.actuator, form.sensor]
+        assert sum(part is not None for part in acts) == 1
     for parameter in effect.parameters:
         assert parameter.lower <= parameter.null < parameter.upper
         assert 0 < parameter.size < parameter.upper
@@ -39,7 +44,9 @@ def test_an_effect_says_what_it_is(name):
 def test_bounds_go_with_the_size_of_the_vehicle():
     small = replace(BARE, mass=BARE.mass / 10, inertia=tuple(np.array(BARE.inertia) / 10))
     units = [parameter.unit for _, parameter in PARAMETERS]
-    ratio = [10 if 'kg' in unit or 'N' in unit else 1 for unit in units]
+    # The hover speed goes with the root of the mass.
+    ratio = [10 if 'kg' in unit or 'N' in unit else 10 ** -0.5 if unit == 's^2/rad' else 1
+             for unit in units]
     assert np.allclose(bounds(BARE), bounds(small) * ratio, rtol=1e-12, atol=0)
 
 

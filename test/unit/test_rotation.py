@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 
-from quad_ident_ros.effects.registry import NULL, PARAMETERS, vector
+from quad_ident_ros.effects.registry import NULL, SLICES, vector
 from quad_ident_ros.model.attitude import rotation_matrix
 from quad_ident_ros.model.sensors import recorded, underlying
 from quad_ident_ros.model.vehicle import load_vehicle
@@ -99,10 +99,9 @@ def test_a_tilted_attitude_and_a_biased_rate_are_recorded_and_change_no_motion()
 @given(st.tuples(*[st.floats(-0.5, 0.5)] * 9), st.tuples(*[st.floats(-5, 5)] * 12))
 def test_what_is_recorded_and_what_underlies_it_are_one_another_s_inverse(values, motion):
     theta = NULL.copy()
-    names = [name for name, _ in PARAMETERS]
     for name, part in zip(('com_offset', 'attitude_misalignment', 'gyro_bias'),
                           (values[:3], values[3:6], values[6:]), strict=True):
-        theta[[k for k, each in enumerate(names) if each == name]] = part
+        theta[SLICES[name]] = part
     start = state(motion[:3], motion[3:6], motion[6:9], motion[9:])
     assert np.abs(underlying(theta, recorded(theta, start)) - start).max() < 1e-12
     assert np.abs(recorded(theta, underlying(theta, start)) - start).max() < 1e-12

@@ -12,7 +12,7 @@ from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model import simulate as simulation
 from quad_ident_ros.model.dynamics import course_of
-from quad_ident_ros.model.simulate import simulate, WITHOUT_ROTORS
+from quad_ident_ros.model.simulate import simulate
 from quad_ident_ros.model.vehicle import load_vehicle
 
 PERIOD = 0.01
@@ -39,7 +39,7 @@ def test_a_flight_is_that_of_the_rotors_commanded(name):
     # The record has the commands where rotors were flown; predicted from them it is the same.
     effects = {name: ALL[name]}
     record = fly(effects, altitude=0.5).record
-    assert record.has('cmd1') == (name not in WITHOUT_ROTORS)
+    assert record.has('cmd1') == EFFECTS[name].forms[0].on_rotors
     if record.has('cmd1'):
         start = record.stack(*STATES)[0]
         # The voltage is not simulated: what sags by the volt does not, what sags by the second.

@@ -1,0 +1,30 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Mismatch of the inertia, which acts alike: other arms, and another torque coefficient."""
+
+from quad_ident_ros.compiled import compiled
+from quad_ident_ros.effects.base import Form, Parameter, Table
+from quad_ident_ros.model.situation import ARMS_X, ARMS_Y, TORQUE
+
+
+@compiled(fused=True, inlined=True)
+def body(p: Table, k: int, s: Table) -> None:
+    """Scale the arms and the reaction torque."""
+    for i in range(s.shape[1]):
+        s[ARMS_Y, i] *= p[k, i]
+        s[ARMS_X, i] *= p[k + 1, i]
+        s[TORQUE, i] *= p[k + 2, i]
+
+
+FORM = Form(
+    name='moments', title='other arms or torque coefficient',
+    parameters=tuple(Parameter(name, '1', 0.2, 5.0, 0.1, f'on {what}', null=1.0,
+                               excited_by=turn)
+                     for name, what, turn in (
+                         ('arms_y', "the rotors' arms along body y: moment about x", 'roll'),
+                         ('arms_x', "the rotors' arms along body x: moment about y", 'pitch'),
+                         ('torque', 'the torque coefficient: moment about z', 'yaw'))),
+    source='moments of the rotors times a factor, about each body axis; apart from the reciprocal '
+           'of a factor on the inertia it differs in the gyroscopic moment alone',
+    acts_on='rotation', on_rotors=True,
+    body=body)
