@@ -31,7 +31,7 @@ TRUTHS = {
     'thrust_scale': {'factor': 0.97}, 'mass_offset': {'mass': 0.03},
     'inertia_mismatch': {'factor_x': 1.3, 'factor_y': 1.2, 'factor_z': 1.3},
     'com_offset': {'x': 0.003, 'y': -0.002, 'z': 0.002}, 'rotor_fault': {'loss_2': 0.04},
-    'rotor_gyro': {'rotor_inertia': 6e-5}, 'blade_flapping': {'coefficient': 0.01},
+    'rotor_gyro': {'rotor_inertia': 1.5e-5}, 'blade_flapping': {'coefficient': 0.01},
     'attitude_misalignment': {'roll': 0.03, 'pitch': -0.02, 'yaw': 0.03},
     'gyro_bias': {'x': 0.04, 'y': -0.03, 'z': 0.05}}
 SEVERAL = ('motor_lag', 'rotor_drag', 'battery_sag')
