@@ -96,7 +96,6 @@ class Gusts(Influence):
         self.lengths, self.deviations = lengths(height), intensities(height, size * LIGHT)
         self.speed = max(PASSING, float(np.linalg.norm(self.steady)))
         self.parameters = {'deviation': float(self.deviations[0])}
-        self.begin(rng)
 
     def begin(self, rng):
         """Draw the gusts of a flight."""

@@ -9,6 +9,12 @@ from scipy.signal import welch
 from withheld import gusts
 
 
+def blowing(size, **options):
+    made = gusts.Gusts(size, {}, np.random.default_rng(1), **options)
+    made.begin(np.random.default_rng(2))
+    return made
+
+
 @pytest.mark.parametrize('along', [True, False])
 def test_the_spectrum_holds_the_variance(along):
     frequency = np.concatenate([[0.0], np.geomspace(1e-5, 1e4, 20000)])
@@ -48,13 +54,13 @@ def test_light_turbulence_grows_with_the_wind():
     # A tenth of 15 knots upwards.
     upwards = gusts.intensities(5.0, gusts.LIGHT)[2]
     assert upwards == pytest.approx(0.1 * 15 * 1852 / 3600, rel=1e-3)
-    one, two = (gusts.Gusts(size, {}, np.random.default_rng(1)) for size in (0.5, 1.0))
+    one, two = (blowing(size) for size in (0.5, 1.0))
     assert 2.0 * one.series == pytest.approx(two.series)
 
 
 def test_gusts_blow_about_a_steady_wind():
     steady = np.array([1.0, -2.0, 0.0])
-    blown = gusts.Gusts(0.3, {}, np.random.default_rng(2), steady=steady)
+    blown = blowing(0.3, steady=steady)
     assert blown.wind(0.0, np.zeros(3)) == pytest.approx(steady + blown.series[0])
     between = blown.wind(0.015, np.zeros(3))
     assert between == pytest.approx(steady + 0.5 * (blown.series[1] + blown.series[2]))
@@ -62,7 +68,7 @@ def test_gusts_blow_about_a_steady_wind():
 
 
 def test_each_flight_has_its_own():
-    blown = gusts.Gusts(1.0, {}, np.random.default_rng(2))
+    blown = blowing(1.0)
     before = blown.series
     blown.begin(np.random.default_rng(3))
     assert np.abs(np.corrcoef(before[:, 0], blown.series[:, 0])[0, 1]) < 0.9
