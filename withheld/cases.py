@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the sets are made of: which effects, how strong, on which vehicle, how flown."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -24,8 +24,10 @@ class Case:
     """
     One reality to make.
 
-    kind: single, none, pair, mixture, unknown or poor; effects {name: strength}; stranger
-    (kind, strength) or None; vehicle of the three; faulty: with the faults of real records.
+    kind: single, none, pair, mixture, unknown, poor or datasheet; effects {name: strength};
+    stranger (kind, strength) or None; vehicle of the three; faulty: with the faults of real
+    records; forms {effect: form} of those that have another than the library's; wrong_file: every
+    constant of the vehicle file is a little off; log: one of logs.LOGS.
     """
 
     kind: str
@@ -33,6 +35,9 @@ class Case:
     vehicle: int
     stranger: tuple | None = None
     faulty: bool = False
+    forms: dict = field(default_factory=dict)
+    wrong_file: bool = False
+    log: str = ''
 
 
 def _several(count, rng):

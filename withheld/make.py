@@ -14,9 +14,20 @@ import numpy as np
 
 from withheld.cases import SETS
 from withheld.faults import csv_text, draw_faults, Faults, record_of
+from withheld.files import misread
 from withheld.fly import Lost
+from withheld.logs import Grounded, LOGS, PERIODS
 from withheld.paths import Hover, Sines, Waypoints
-from withheld.realities import gaps_of, LARGEST, shape_of, size_of, World
+from withheld.realities import (
+    DATASHEET,
+    gaps_of,
+    LARGEST,
+    Setting,
+    shape_of,
+    size_of,
+    strength_of_gap,
+    World,
+)
 from withheld.seal import seal
 from withheld.sensors import Noise
 from withheld.vehicles import nominal_file, vehicle_of, yaw_authority
@@ -24,6 +35,10 @@ from withheld.vehicles import nominal_file, vehicle_of, yaw_authority
 STEP = 0.01         # s, of the controller and of the record
 RATES = (50.0, 100.0, 100.0, 200.0, 200.0, 500.0)      # Hz, of faulty records
 ATTEMPTS = 8
+FLOOR = 0.7         # rotor radii from the floor to the body origin of what stands on it
+CONTROLLER = {'development': 'geometric', 'evaluation': 'cascade'}
+# A mass that goes in flight is no constant of the vehicle: to call it unknown is right, too.
+INSTEAD = {'dropped': ('unknown',)}
 MOST = 30.0         # the largest size of an effect that has no limit of its own
 
 
@@ -48,46 +63,81 @@ def make_case(case, part, flights, seconds, folder, rng):
 def _attempt(case, part, flights, seconds, folder, rng):
     drag = bool(rng.random() < 0.5) or 'wind' in case.effects
     params = vehicle_of(part, case.vehicle, rng, drag)
-    noise, step = Noise(), STEP
+    told, factors = misread(params, rng) if case.wrong_file else (params, {})
+    log = LOGS[case.log]
+    noise, step = Noise(), PERIODS.get(case.log, STEP)
     if case.faulty:
         step = 1.0 / rng.choice(RATES)
         noise = replace(noise, correlation=rng.uniform(0.05, 0.3), bias=0.5)
-    paths = [_path(case, params, part, rng) for _ in range(flights)]
+    setting = Setting(told, CONTROLLER[part], log.logging, fall=rng.uniform(0.005, 0.05))
+    paths = [_path(case, params, part, rng) for _ in range(log.flights or flights)]
+    if log.landing:
+        setting = replace(setting, floor=FLOOR * params['rotor_radius'])
+        paths = [Grounded(path, seconds, setting.floor) for path in paths]
+    charges = 1.0 + log.charge * rng.uniform(-1.0, 1.0, len(paths))
     seed, voltage = int(rng.integers(2 ** 31)), rng.uniform(3.7, 16.8)
     shapes = {name: shape_of(name, params, rng) for name in case.effects}
-    sizes, reached, draws, fall = {}, {}, int(rng.integers(2 ** 31)), rng.uniform(0.005, 0.05)
+    sizes, reached, draws = {}, {}, int(rng.integers(2 ** 31))
 
-    def world_of(sizes):
-        inside = {name: size for name, size in sizes.items() if name in shapes}
-        outside = [item for item in sizes.items() if item[0] not in shapes]
-        return World(params, shapes, inside, outside[0] if outside else None, draws, fall)
-
-    def held_out(sizes):
-        return world_of(sizes).fly(paths[-1], seconds, step, noise, np.random.default_rng(seed),
-                                   voltage)
+    def fly_last(sizes, setting=setting, charge=1.0):
+        return World(params, setting, shapes, case.forms, sizes, draws).fly(
+            paths[-1], seconds, step, noise, np.random.default_rng(seed), voltage, charge)
 
     asked = case.effects if case.stranger is None else dict([case.stranger])
     for name, strength in asked.items():
+        if case.kind == 'datasheet':
+            sizes[name] = DATASHEET[name](rng)
+            reached[name] = strength_of_gap(fly_last({name: sizes[name]}), params)
+            continue
+        # Strengths are those beside a vehicle file that is right.
         sizes[name], reached[name] = size_of(
-            lambda size, name=name: held_out({name: size}), params, strength,
-            LARGEST.get(name, MOST))
-    world, last = world_of(sizes), held_out(sizes)
-    flown = [world.fly(path, seconds, step, noise, rng, voltage) for path in paths[:-1]] + [last]
-    faults = [draw_faults(rng) if case.faulty else Faults() for _ in flown]
-    folder.mkdir()
+            lambda size, name=name: fly_last({name: size}, replace(setting, told=params)),
+            params, strength, LARGEST.get(name, MOST))
+    world, last = World(params, setting, shapes, case.forms, sizes, draws), fly_last(
+        sizes, charge=charges[-1])
+    flown = [world.fly(path, seconds, step, noise, rng, voltage, charge)
+             for path, charge in zip(paths[:-1], charges[:-1], strict=True)] + [last]
+    parts = world.parts()
+    hidden = not all(getattr(one, 'recorded', True) for one in parts.values())
+    faults = [draw_faults(rng) if case.faulty else Faults(voltage=not hidden) for _ in flown]
+    folder.mkdir(parents=True)
     for number, (one, wrong) in enumerate(zip(flown, faults, strict=True), 1):
         (folder / f'flight_{number}.csv').write_text(csv_text(record_of(one, wrong, rng)))
-    (folder / 'vehicle.yaml').write_text(nominal_file(params, folder.name))
-    exact, alone, before = gaps_of(last, params)
+    (folder / 'vehicle.yaml').write_text(nominal_file(told, folder.name))
+    exact, alone, before = gaps_of(last, told)
+    effects = {name: {'asked': strength, 'strength': reached[name],
+                      'form': case.forms.get(name, 'ours'), **_parameters(name, world, parts)}
+               for name, strength in case.effects.items()}
     return {
-        'kind': case.kind, 'period': step, 'faulty': case.faulty, 'vehicle': case.vehicle,
-        'effects': {name: {'asked': case.effects[name], 'strength': reached[name],
-                           'parameters': world.effects[name]} for name in case.effects},
+        'kind': case.kind, 'period': last.step, 'faulty': case.faulty, 'vehicle': case.vehicle,
+        'log': case.log, 'effects': effects,
         'stranger': None if case.stranger is None else {
             'kind': case.stranger[0], 'asked': case.stranger[1],
             'strength': reached[case.stranger[0]]},
+        'file': factors, 'thrust_by_flight': charges.tolist() if log.charge else None,
+        'beside': sorted(_beside(case, parts, params, log) - set(effects)),
+        'instead': list(INSTEAD.get(case.forms.get('mass_offset'), ())),
         'faults': [asdict(one) for one in faults],
         'held_out': {'exact': exact, 'noise': alone, 'before': before}}
+
+
+def _parameters(name, world, parts):
+    """Return the parameters of an effect, and whether they mean what the library's do."""
+    if name in parts:
+        return {'parameters': parts[name].parameters, 'comparable': parts[name].comparable}
+    # The exponent of a battery is that of a law that the library has in another form.
+    return {'parameters': world.effects[name], 'comparable': name != 'battery_sag'}
+
+
+def _beside(case, parts, params, log):
+    """Return the names of what is there, too, so that a verdict may but need not name it."""
+    names = {name for part in parts.values() for name in part.beside}
+    if case.wrong_file:
+        names |= {'inertia_mismatch'}
+        names |= {'rotor_drag'} if np.any(params['linear_drag']) else set()
+    if log.charge:
+        names |= {'thrust_scale', 'battery_sag'}
+    return names
 
 
 def _path(case, params, part, rng):

@@ -2,10 +2,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """Effects of any size, and the size at which one opens a gap so many times the noise's."""
 
+from dataclasses import dataclass, field
+
 import numpy as np
 
 from withheld import outside
+from withheld.actuators import Battery, Line, Motor
 from withheld.fly import fly, Lost
+from withheld.forms import form_of
+from withheld.influence import Influence
+from withheld.logs import Charge, Logging
 from withheld.nominal import Nominal, nominal_errors, rms
 from withheld.plant import Reality
 from withheld.vehicles import GRAVITY, hover_speed
@@ -47,7 +53,7 @@ def shape_of(name, params, rng):
                                        for k, axis in enumerate(xyz)},
         'com_offset': lambda s: {axis: 0.002 * s * arm * along[k] for k, axis in enumerate(xyz)},
         'rotor_fault': lambda s: {f'loss_{rotor}': 0.005 * s},
-        'rotor_gyro': lambda s: {'rotor_inertia': 0.01 * s * params['Ixx']},
+        'rotor_gyro': lambda s: {'rotor_inertia': 0.002 * s * params['Ixx']},
         'blade_flapping': lambda s: {'coefficient': 0.002 * s * mass * arm},
         'attitude_misalignment': lambda s: dict(zip(('roll', 'pitch', 'yaw'), 0.008 * s * along,
                                                     strict=True)),
@@ -60,33 +66,84 @@ LARGEST = {'motor_lag': 12.0, 'actuation_delay': 6.0, 'inertia_mismatch': 12.0,
            'rotor_gyro': 60.0, 'rotor_fault': 60.0, 'ground_effect': 12.0, 'battery_sag': 20.0}
 
 
+@dataclass(frozen=True)
+class Setting:
+    """
+    What flights share beside the vehicle.
+
+    told: rotorpy's parameters as the vehicle file has them; controller: of CONTROLLERS; logging:
+    a Logging; floor m or None; fall: share of the voltage lost in 30 s where nothing sags.
+    """
+
+    told: dict
+    controller: str = 'geometric'
+    logging: Logging = field(default_factory=Logging)
+    floor: float | None = None
+    fall: float = 0.03
+
+
+# Sizes of what a vehicle has whose file is a data sheet: thrust off by 20 to 30 %, inertia by up
+# to 30 %, a lag of 20 to 50 ms, drag of 0.15 to 0.4 of the mass per second.
+DATASHEET = {'thrust_scale': lambda rng: rng.uniform(28.6, 42.8),
+             'inertia_mismatch': lambda rng: rng.uniform(2.0, 2.6),
+             'motor_lag': lambda rng: rng.uniform(1.7, 4.2),
+             'rotor_drag': lambda rng: rng.uniform(2.0, 5.0)}
+
+
 class World:
     """
     A reality as a thing that one can fly: a vehicle, its effects, and perhaps a stranger.
 
-    sizes: {effect: size}; stranger: (kind, size) or None; stranger_seed draws what it is like.
+    sizes: {effect or stranger: size}; shapes: {effect: shape_of} of those that have the library's
+    form; forms: {effect: form} of the others; seed draws what forms and strangers are like.
     """
 
-    def __init__(self, params, shapes, sizes, stranger=None, stranger_seed=0, fall=0.03):
-        """Set the effects; fall is the share of the voltage lost in 30 s where nothing sags."""
-        self.params = params
-        self.effects = {name: shapes[name](size) for name, size in sizes.items()}
-        self.stranger, self.stranger_seed = stranger, stranger_seed
-        self.fall = self.effects.get('battery_sag', {}).get('share', fall)
+    def __init__(self, params, setting, shapes, forms, sizes, seed=0):
+        """Set the effects."""
+        self.params, self.setting, self.seed = params, setting, seed
+        self.effects = {name: shapes[name](size) for name, size in sizes.items()
+                        if name in shapes and name not in forms}
+        self.made = {name: (form_of(name, forms[name]), size) for name, size in sizes.items()
+                     if name in forms}
+        self.strangers = {name: size for name, size in sizes.items() if name in outside.KINDS}
 
-    def fly(self, path, seconds, step, noise, rng, voltage):
+    def parts(self):
+        """Return the parts {effect or stranger: Part} that are no forms of the library's."""
+        parts = {name: kind(size, self.params, self._rng(name))
+                 for name, (kind, size) in self.made.items()}
+        for name, size in self.strangers.items():
+            kind, by = outside.KINDS[name]
+            measure = {'weight': self.params['mass'] * GRAVITY, 'mass': self.params['mass'],
+                       'hover': hover_speed(self.params)}[by]
+            parts[name] = kind(size, measure, self._rng(name))
+        return parts
+
+    def _rng(self, name):
+        return np.random.default_rng([self.seed, *name.encode()])
+
+    def reality(self, rng, charge=1.0):
+        """Return the Reality of one flight; charge is the factor on its thrust, rng its own."""
+        parts = list(self.parts().values())
+        flight = int(rng.integers(2 ** 31))
+        for number, part in enumerate(parts):
+            part.begin(np.random.default_rng([flight, number]))
+        if charge != 1.0:
+            parts.append(Charge(charge))
+        sag = self.effects.get('battery_sag', {})
+        battery = Battery(sag.get('share', self.setting.fall), sag.get('exponent', 0.0))
+
+        def only(kind, otherwise=None):
+            return next((part for part in parts if isinstance(part, kind)), otherwise)
+
+        return Reality(
+            self.params, self.effects, [part for part in parts if isinstance(part, Influence)],
+            only(Line), only(Motor), only(Battery, battery), self.setting.floor)
+
+    def fly(self, path, seconds, step, noise, rng, voltage, charge=1.0):
         """Return the Flown along a path."""
-        return fly(Reality(self.params, self.effects, self._stranger()), self.params, path,
-                   seconds, step, noise, rng, self._sensors(), voltage, self.fall)
-
-    def _stranger(self):
-        if self.stranger is None:
-            return None
-        kind, size = self.stranger
-        made, by = outside.KINDS[kind]
-        measure = {'weight': self.params['mass'] * GRAVITY, 'mass': self.params['mass'],
-                   'hover': hover_speed(self.params)}[by]
-        return made(size, measure, np.random.default_rng(self.stranger_seed))
+        setting, reality = self.setting, self.reality(rng, charge)
+        return fly(reality, setting.told, path, seconds, step, noise, rng, self._sensors(),
+                   voltage, setting.controller, setting.logging)
 
     def _sensors(self):
         tilt, bias = (self.effects.get(name, {}) for name in ('attitude_misalignment',
@@ -103,6 +160,12 @@ def gaps_of(flown, params):
     return rms(exact), rms(measured - exact), rms(measured)
 
 
+def strength_of_gap(flown, params):
+    """Return how many times the gap of the noise the nominal model misses a flight by."""
+    gap, alone, _ = gaps_of(flown, params)
+    return gap['velocity'] / alone['velocity']
+
+
 def size_of(flown_of, params, strength, largest):
     """
     Return the size at which the gap is `strength` times the noise's, and the strength reached.
@@ -113,12 +176,11 @@ def size_of(flown_of, params, strength, largest):
     size, best = min(strength, largest), None
     for _ in range(TRIES):
         try:
-            gap, alone, _ = gaps_of(flown_of(size), params)
+            reached = strength_of_gap(flown_of(size), params)
         except Lost:
             largest = 0.7 * size
             size = 0.5 * size
             continue
-        reached = gap['velocity'] / alone['velocity']
         if best is None or abs(np.log(reached / strength)) < abs(np.log(best[1] / strength)):
             best = size, reached
         if abs(reached / strength - 1.0) < CLOSE or (size >= largest and reached < strength):
