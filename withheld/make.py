@@ -79,9 +79,14 @@ def _attempt(case, part, flights, seconds, folder, rng):
     shapes = {name: shape_of(name, params, rng) for name in case.effects}
     sizes, reached, draws = {}, {}, int(rng.integers(2 ** 31))
 
+    flights = {}
+
     def fly_last(sizes, setting=setting, charge=1.0):
-        return World(params, setting, shapes, case.forms, sizes, draws).fly(
-            paths[-1], seconds, step, noise, np.random.default_rng(seed), voltage, charge)
+        key = (*sizes.items(), id(setting.told), charge)
+        if key not in flights:
+            flights[key] = World(params, setting, shapes, case.forms, sizes, draws).fly(
+                paths[-1], seconds, step, noise, np.random.default_rng(seed), voltage, charge)
+        return flights[key]
 
     asked = case.effects if case.stranger is None else dict([case.stranger])
     for name, strength in asked.items():

@@ -14,7 +14,7 @@ from withheld.vehicles import hover_speed
 NO_LAG = 1e12       # s: the speeds stay where the step sets them
 PART = 0.7          # of the time constant, one step of Runge-Kutta: 0.3 % of what is left
 SETTLED = 8.0       # time constants after which the command is reached
-FINE = 0.002        # s, the steps of motors of another form
+FINE = 0.0034       # s, the steps of motors of another form
 
 
 class Reality(Multirotor):
