@@ -5,7 +5,7 @@
 import numpy as np
 from rotorpy.controllers.quadrotor_control import SE3Control
 
-from withheld.vehicles import GRAVITY
+from withheld.constants import GRAVITY
 
 
 def geometric(params):

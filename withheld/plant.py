@@ -8,8 +8,8 @@ import numpy as np
 from rotorpy.vehicles.multirotor import Multirotor
 
 from withheld.actuators import Battery, Line
+from withheld.constants import hover_speed
 from withheld.influence import Instant
-from withheld.vehicles import hover_speed
 
 NO_LAG = 1e12       # s: the speeds stay where the step sets them
 PART = 0.7          # of the time constant, one step of Runge-Kutta: 0.3 % of what is left

@@ -8,13 +8,13 @@ import numpy as np
 
 from withheld import outside
 from withheld.actuators import Battery, Line, Motor
+from withheld.constants import GRAVITY, hover_speed
 from withheld.fly import fly, Lost
 from withheld.forms import form_of
 from withheld.influence import Influence
 from withheld.logs import Charge, Logging
 from withheld.nominal import Nominal, nominal_errors, rms
 from withheld.plant import Reality
-from withheld.vehicles import GRAVITY, hover_speed
 
 TRIES = 5
 CLOSE = 0.1        # of the strength that was asked for

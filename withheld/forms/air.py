@@ -4,14 +4,8 @@
 
 import numpy as np
 
+from withheld.constants import AIR_DENSITY, arm_length, GRAVITY, hover_speed
 from withheld.influence import Influence
-from withheld.vehicles import GRAVITY, hover_speed
-
-AIR_DENSITY = 1.2       # kg/m^3
-
-
-def _arm(params):
-    return float(np.linalg.norm(list(params['rotor_pos'].values())[0]))
 
 
 class _Drag(Influence):
@@ -41,7 +35,7 @@ class Offset(_Drag):
     def __init__(self, size, params, rng):
         """Draw the point."""
         super().__init__(size, params, rng)
-        self.point = _arm(params) * 0.2 * rng.choice([-1.0, 1.0], 3) * rng.uniform(0.5, 1.0, 3)
+        self.point = arm_length(params) * 0.2 * rng.choice([-1.0, 1.0], 3) * rng.uniform(0.5, 1.0, 3)
 
     def wrench(self, now):
         """Return force and moment."""
@@ -269,8 +263,8 @@ class TiltedDisk(Influence):
     def __init__(self, size, params, rng):
         """Set the moment per velocity, and the lean that goes with it."""
         self.hover, self.count = hover_speed(params), params['num_rotors']
-        self.moment = 0.002 * size * params['mass'] * _arm(params)
-        self.lean = self.moment / (0.3 * _arm(params)) / self.count
+        self.moment = 0.002 * size * params['mass'] * arm_length(params)
+        self.lean = self.moment / (0.3 * arm_length(params)) / self.count
         self.parameters = {'coefficient': self.moment}
 
     def wrench(self, now):
@@ -289,7 +283,7 @@ class CrossFlapping(Influence):
     def __init__(self, size, params, rng):
         """Set the moment per velocity."""
         self.hover = hover_speed(params)
-        self.moment = 0.002 * size * params['mass'] * _arm(params)
+        self.moment = 0.002 * size * params['mass'] * arm_length(params)
         self.cross = 0.2 * rng.choice([-1.0, 1.0])
         self.parameters = {'coefficient': self.moment}
 

@@ -5,15 +5,11 @@
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from withheld.constants import arm_length, hover_speed
 from withheld.influence import Influence
-from withheld.vehicles import hover_speed
 
 AXES = ('Ixx', 'Iyy', 'Izz')
 PRODUCTS = ('Ixy', 'Ixz', 'Iyz')
-
-
-def _arm(params):
-    return float(np.linalg.norm(list(params['rotor_pos'].values())[0]))
 
 
 def _signs(rng, count):
@@ -60,7 +56,7 @@ class Payload(_Load):
     def __init__(self, size, params, rng):
         """Draw where it hangs."""
         self.parameters = {'mass': 0.007 * size * params['mass']}
-        self.place = _arm(params) * np.array([*0.03 * rng.uniform(-1.0, 1.0, 2), -0.5])
+        self.place = arm_length(params) * np.array([*0.03 * rng.uniform(-1.0, 1.0, 2), -0.5])
 
 
 class OtherBattery(_Load):
@@ -69,7 +65,7 @@ class OtherBattery(_Load):
     def __init__(self, size, params, rng):
         """Draw which."""
         self.parameters = {'mass': 0.007 * size * params['mass'] * float(_signs(rng, 1)[0])}
-        self.place = _arm(params) * np.array([-0.08 * rng.uniform(0.5, 1.0), 0.0, -0.15])
+        self.place = arm_length(params) * np.array([-0.08 * rng.uniform(0.5, 1.0), 0.0, -0.15])
 
 
 class Dropped(Influence):
@@ -158,7 +154,7 @@ class Sliding(Influence):
     def __init__(self, size, params, rng):
         """Draw where it is."""
         along = np.array([*_signs(rng, 2) * rng.uniform(0.3, 1.0, 2), rng.uniform(-0.3, 0.3)])
-        self.centre = 0.002 * size * _arm(params) * along
+        self.centre = 0.002 * size * arm_length(params) * along
         self.parameters = dict(zip('xyz', self.centre.tolist(), strict=True))
         self.thrust = params['k_eta']
 
@@ -183,7 +179,7 @@ class Heavy(Influence):
     def __init__(self, size, params, rng):
         """Draw where."""
         along = np.array([*_signs(rng, 2) * rng.uniform(0.3, 1.0, 2), rng.uniform(-1.0, 1.0)])
-        self.centre = 0.002 * size * _arm(params) * along
+        self.centre = 0.002 * size * arm_length(params) * along
         self.parameters = dict(zip('xyz', self.centre.tolist(), strict=True))
 
     def alter(self, true, params):
@@ -333,7 +329,7 @@ class BlockWithLever(_Tilt):
     def __init__(self, size, params, rng):
         """Draw where it sits."""
         super().__init__(size, params, rng)
-        self.lever = 0.02 * min(size, 5.0) * _arm(params) * self.draws[:3]
+        self.lever = 0.02 * min(size, 5.0) * arm_length(params) * self.draws[:3]
 
     def measured(self, time, state, thrust):
         """Return what the block says."""

@@ -5,7 +5,7 @@
 import numpy as np
 
 from withheld.actuators import Line, Motor
-from withheld.vehicles import hover_speed
+from withheld.constants import hover_speed
 
 TIME = 0.012        # s per size
 
