@@ -3,8 +3,8 @@
 """
 States as real logs have them: out of an estimator, which the controller flies on, too.
 
-A case takes one of the `SETUPS` of its part and flies `EstimatedWorld` where other cases fly
-`World`: `EstimatedWorld(..., setup=SETUPS['development'][0])`. Its Flown has the estimates as
+A case takes one of the `SETUPS` of its part and flies an `EstimatedWorld` where other cases fly a
+`World`: the same arguments, and `setup=SETUPS['development'][0]`. Its Flown has the estimates as
 `measured`; `exact` is what sensors without noise would have shown, so that the strength of an
 effect is measured against what the estimator makes of it (realities.size_of), as everywhere.
 
@@ -16,17 +16,19 @@ without the estimated bias.
 """
 
 from collections import deque
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
 from scipy.signal import butter
 from scipy.spatial.transform import Rotation
 
-from withheld.fly import controller_of, FARTHEST, Flown, INTEGRAL, Lost
-from withheld.plant import Reality, rotation_of
+from withheld.constants import GRAVITY, hover_speed
+from withheld.controllers import CONTROLLERS
+from withheld.fly import FARTHEST, FASTEST, Flown, IDLE, INTEGRAL, Lost
+from withheld.logs import Logging
+from withheld.plant import rotation_of
 from withheld.realities import World
-from withheld.vehicles import GRAVITY, hover_speed
 
 UP = np.array([0.0, 0.0, 1.0])
 BEFORE = 1.0        # s flown before the record begins: by then a filter has settled
@@ -88,7 +90,11 @@ class Setup:
 
 @dataclass
 class Estimate:
-    """Position (3,) m, velocity (3,) m/s, rotation (3, 3) body to world, biases of the IMU."""
+    """
+    Position (3,) m, velocity (3,) m/s, rotation (3, 3) body to world, biases (3,) of the IMU.
+
+    Its arrays are replaced, never written to: to keep one is to copy it.
+    """
 
     position: np.ndarray
     velocity: np.ndarray
@@ -332,32 +338,57 @@ class _Sensors:
             seen['heading'] = heading_of(rotation) + aid.heading * rng.normal()
         return seen
 
-    def exact(self, states, bias):
-        """Return what sensors without noise show (N, 13) of states (N, 13)."""
-        out = states.copy()
-        rotation = Rotation.from_quat(states[:, 6:10])
-        out[:, :3] -= rotation.apply(self.centre)
-        out[:, 3:6] -= rotation.apply(np.cross(states[:, 10:], self.centre))
-        out[:, 6:10] = (rotation * Rotation.from_matrix(self.tilt)).as_quat()
-        out[:, 10:] = states[:, 10:] @ self.block + bias
+    def exact(self, state, place, bias):
+        """Return what sensors without noise show (13,) of a state (13,) and its `at`."""
+        return np.concatenate([place[0], place[1], quaternion_of(place[2] @ self.tilt),
+                               self.block.T @ state[10:] + bias])
+
+
+class _Seldom:
+    """
+    A line that is given a command only every so many steps, as the controller gives it.
+
+    Reality.hold hands the same command over in each step of the IMU; a delay that differs from
+    command to command must not be drawn anew for it.
+    """
+
+    def __init__(self, line, every):
+        """Take the line and the number of steps."""
+        self.line, self.every, self._calls, self._parts = line, every, 0, []
+
+    def pass_on(self, time, command, step):
+        """Return [(duration s, command (n,))] that fill the step."""
+        if self._calls % self.every == 0:
+            self._parts = self.line.pass_on(time, command, self.every * step)
+        self._calls += 1
+        out, rest = [], step
+        while self._parts and rest > 1e-9:
+            (duration, held), *after = self._parts
+            now = min(duration, rest)
+            out.append((now, held))
+            rest -= now
+            self._parts = after if duration - now < 1e-9 else [(duration - now, held), *after]
         return out
 
 
 def fly_on_estimate(reality, params, path, seconds, step, setup, rng, sensors,
-                    full_voltage=12.6, sag=0.0):
+                    full_voltage=12.6, controller='geometric', logging=None):
     """
     Return the Flown of a controller that flies on an estimate; raises Lost.
 
-    Args as of fly.fly, but for setup: a Setup, in the place of the noise. sensors['bias'] is added
-    to the recorded gyro: an autopilot that logs it without correction. sensors['tilt'] is that of
-    the measured attitude, and where none is measured that of the whole sensor block.
+    Args as of fly.fly, but for setup: a Setup, in the place of the noise; of logging only the bits
+    of a command count. sensors['bias'] is added to the recorded gyro: an autopilot that logs it
+    without correction. sensors['tilt'] is that of the measured attitude, and where none is
+    measured that of the whole sensor block. What the influences do to measurements they do to
+    the estimate.
     """
     h = 1.0 / setup.imu.rate
     first, every, turns = (round(span / h) for span in (BEFORE, step, 1.0 / setup.control))
     late, assumed, pause = (round(span / h) for span in (setup.aid.latency, setup.assumed,
                                                          1.0 / setup.aid.rate))
     total = first + every * round(seconds / step)
-    control, hover = controller_of(params), hover_speed(params)
+    control, hover = CONTROLLERS[controller](params), hover_speed(params)
+    reality.line = _Seldom(reality.line, turns)
     aim, s = path.update(0.0), np.zeros(20)
     s[0:3], s[3:6] = aim['x'], aim['x_dot']
     s[8:10] = np.sin(0.5 * aim['yaw']), np.cos(0.5 * aim['yaw'])
@@ -367,52 +398,53 @@ def fly_on_estimate(reality, params, path, seconds, step, setup, rng, sensors,
     estimate = Estimate(place[0], place[1], place[2] @ on_board.tilt, np.zeros(3), np.zeros(3))
     filtered = setup.make_filter(estimate, setup.aid)
     smooth = LowPass(setup.cutoff, setup.order, setup.imu.rate, np.zeros(3))
-    places, thoughts = deque([place], late + 1), deque([_copy(estimate)], assumed + 1)
-    rate, shift = np.zeros(3), np.zeros(3)
-    given = followed = np.full(4, hover)
-    earlier = [given] * 60
-    logged = {name: [] for name in ('states', 'speeds', 'measured', 'commands', 'voltage')}
+    places, thoughts = deque([place], late + 1), deque([replace(estimate)], assumed + 1)
+    rate, shift, given = np.zeros(3), np.zeros(3), np.full(4, hover)
+    logged = {name: [] for name in ('states', 'speeds', 'exact', 'measured', 'commands',
+                                    'voltage')}
     for k in range(total):
         t = k * h
+        if not np.abs(s[10:13]).max() < FASTEST:
+            raise Lost
         if k:
             after = on_board.at(s)
             gyro, force = on_board.imu(place, after, s[16:], h)
             filtered.propagate(gyro, force, h)
             rate, place = smooth(gyro) - estimate.gyro_bias + sensors['bias'], after
             places.append(place)
-            thoughts.append(_copy(estimate))
+            thoughts.append(replace(estimate))
             if k >= late and (k - late) % pause == 0:
                 filtered.correct(on_board.aid(places[0]), thoughts[0])
-        load = float(np.mean(given / hover) ** 3 - 1.0) if k else 0.0
-        reality.voltage_ratio = 1.0 - sag * (t / 30.0 + 0.03 * load)
+        reality.battery.drain(t, h, given / hover)
+        recorded = k >= first and (k - first) % every == 0
+        if recorded or k % turns == 0:
+            thrust = float(np.mean((given / hover) ** 2))
+            measured = np.concatenate([estimate.position, estimate.velocity,
+                                       quaternion_of(estimate.rotation), rate])
+            exact = on_board.exact(s[:13], place, sensors['bias'])
+            for one in reality.influences:
+                measured, exact = (one.measured(t, x, thrust) for x in (measured, exact))
         if k % turns == 0:
             aim = path.update(t)
-            away = estimate.position - aim['x']
-            if not np.linalg.norm(away) < FARTHEST:
+            away = measured[:3] - aim['x']
+            if aim.get('idle'):
+                given = np.full(4, IDLE * hover)
+            elif not np.linalg.norm(away) < FARTHEST:
                 raise Lost
-            shift = np.clip(shift - INTEGRAL / setup.control * away, -2.0, 2.0)
-            now = {'x': estimate.position - shift, 'v': estimate.velocity,
-                   'q': quaternion_of(estimate.rotation), 'w': rate}
-            given = np.clip(control.update(t, now, aim)['cmd_motor_speeds'], 0.05 * hover,
-                            params['rotor_speed_max'])
-            followed = given if reality.stranger is None else reality.stranger.given(given)
-        if k >= first and (k - first) % every == 0:
-            logged['states'].append(s[:13])
-            logged['speeds'].append(s[16:])
-            logged['measured'].append(np.concatenate([
-                estimate.position, estimate.velocity, quaternion_of(estimate.rotation), rate]))
-            logged['commands'].append(given)
-            logged['voltage'].append(full_voltage * reality.voltage_ratio)
-        s = reality.hold(s, followed, earlier[-int(reality.delay / h + 2):], h)
-        earlier.append(followed)
+            else:
+                shift = np.clip(shift - INTEGRAL / setup.control * away, -2.0, 2.0)
+                now = {'x': measured[:3] - shift, 'v': measured[3:6], 'q': measured[6:10],
+                       'w': measured[10:]}
+                given = np.clip(control.update(t, now, aim)['cmd_motor_speeds'], 0.05 * hover,
+                                params['rotor_speed_max'])
+        if recorded:
+            for name, value in zip(logged, (s[:13], s[16:], exact, measured, given,
+                                            full_voltage * reality.battery.ratio), strict=True):
+                logged[name].append(value)
+        s = reality.hold(s, given, h)
     logged = {name: np.array(values) for name, values in logged.items()}
-    return Flown(step=step, exact=on_board.exact(logged['states'], sensors['bias']), **logged)
-
-
-def _copy(estimate):
-    # The arrays of an estimate are replaced, never written to.
-    return Estimate(estimate.position, estimate.velocity, estimate.rotation,
-                    estimate.gyro_bias, estimate.accelerometer_bias)
+    told = (logging or Logging()).told(logged['commands'], params['rotor_speed_max'])
+    return Flown(step=step, **logged | {'commands': told})
 
 
 class EstimatedWorld(World):
@@ -423,11 +455,11 @@ class EstimatedWorld(World):
         super().__init__(*args, **options)
         self.setup = setup
 
-    def fly(self, path, seconds, step, noise, rng, voltage):
+    def fly(self, path, seconds, step, noise, rng, voltage, charge=1.0):
         """Return the Flown along a path; noise is not used."""
-        reality = Reality(self.params, self.effects, self._stranger())
-        return fly_on_estimate(reality, self.params, path, seconds, step, self.setup, rng,
-                               self._sensors(), voltage, self.fall)
+        setting, reality = self.setting, self.reality(rng, charge)
+        return fly_on_estimate(reality, setting.told, path, seconds, step, self.setup, rng,
+                               self._sensors(), voltage, setting.controller, setting.logging)
 
 
 # Two sensors and two filters, paired otherwise for the evaluation, with other gains throughout.
@@ -436,9 +468,9 @@ SETUPS = {
         Setup(Imu(), Aid(100.0, 0.008, 0.001, attitude=0.004),
               partial(ErrorStateFilter, gyro=0.05, accelerometer=0.8, walks=(1e-3, 1e-2)),
               assumed=0.006, cutoff=60.0, order=1, control=100.0),
-        Setup(Imu(gyro=0.005, accelerometer=0.1, gyro_bias=0.001),
+        Setup(Imu(gyro=0.005, accelerometer=0.1, gyro_bias=0.0005),
               Aid(10.0, 0.1, 0.02, velocity=0.04, heading=0.02),
-              partial(ComplementaryFilter, level=0.15, turn=0.5, bias=0.01, settle=1.0, blend=0.5),
+              partial(ComplementaryFilter, level=0.05, turn=0.5, bias=5e-4, settle=1.0, blend=0.5),
               assumed=0.1, cutoff=80.0, order=2, control=250.0)),
     'evaluation': (
         Setup(Imu(gyro=0.006, accelerometer=0.1, shaking=(0.05, 0.8)),
