@@ -480,6 +480,6 @@ SETUPS = {
               assumed=0.08, cutoff=50.0, order=1, control=500.0),
         Setup(Imu(gyro=0.015, accelerometer=0.2, shaking=(0.02, 0.3)),
               Aid(50.0, 0.012, 0.0015, attitude=0.006),
-              partial(ComplementaryFilter, level=4.0, turn=0.0, bias=0.3, settle=0.3),
+              partial(ComplementaryFilter, level=4.0, turn=0.0, bias=2.0, settle=0.3),
               assumed=0.012, cutoff=40.0, order=2, control=100.0)),
 }
