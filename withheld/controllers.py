@@ -5,19 +5,41 @@
 import numpy as np
 from rotorpy.controllers.quadrotor_control import SE3Control
 
-from withheld.constants import GRAVITY
+from withheld.constants import cross, GRAVITY, rotation_of
 
 
-def geometric(params):
+class Geometric(SE3Control):
     """
-    Return rotorpy's controller of the nominal vehicle, with gains that bear a delay.
+    rotorpy's controller of the nominal vehicle, with gains that bear a delay.
 
     It turns about z more gently: rotors that jump to a speed hand their momentum over at once.
     """
-    control = SE3Control(params)
-    control.kp_att, control.kd_att = np.array([150.0, 150.0, 25.0]), np.array([20.0, 20.0, 5.0])
-    control.kp_pos, control.kd_pos = np.array([4.0, 4.0, 6.0]), np.array([3.2, 3.2, 4.5])
-    return control
+
+    def __init__(self, params):
+        """Set the gains."""
+        super().__init__(params)
+        self.kp_pos, self.kd_pos = np.array([4.0, 4.0, 6.0]), np.array([3.2, 3.2, 4.5])
+        self.kp_att = np.array([150.0, 150.0, 25.0])
+        self.kd_att = np.array([20.0, 20.0, 5.0])
+
+    def update(self, t, state, flat_output):
+        """Return rotorpy's {'cmd_motor_speeds': (4,) rad/s}, by its law but with less ado."""
+        force = self.mass * (self.kp_pos * (flat_output['x'] - state['x'])
+                             + self.kd_pos * (flat_output['x_dot'] - state['v'])
+                             + flat_output['x_ddot'] + (0.0, 0.0, self.g))
+        rotation, yaw = rotation_of(state['q']), flat_output['yaw']
+        up = force / np.sqrt(force @ force)
+        left = cross(up, (np.cos(yaw), np.sin(yaw), 0.0))
+        left /= np.sqrt(left @ left)
+        wanted = np.array([cross(left, up), left, up])      # its axes as rows
+        turn = wanted @ rotation
+        error = 0.5 * np.array([turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0],
+                                turn[1, 0] - turn[0, 1]])
+        rate = state['w'] - (0.0, 0.0, flat_output['yaw_dot'])
+        moment = self.inertia @ (-self.kp_att * error - self.kd_att * rate) + cross(
+            state['w'], self.inertia @ state['w'])
+        speeds = self.TM_to_f @ np.array([force @ rotation[:, 2], *moment]) / self.k_eta
+        return {'cmd_motor_speeds': np.sign(speeds) * np.sqrt(np.abs(speeds))}
 
 
 class Cascade:
@@ -69,4 +91,4 @@ class Cascade:
         return {'cmd_motor_speeds': np.sqrt(np.maximum(squares, 0.0))}
 
 
-CONTROLLERS = {'geometric': geometric, 'cascade': Cascade}
+CONTROLLERS = {'geometric': Geometric, 'cascade': Cascade}

@@ -5,7 +5,9 @@
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
+from withheld.constants import rotation_of
 from withheld.controllers import CONTROLLERS
 from withheld.logs import Logging, LowPass
 from withheld.sensors import declared, moved
@@ -68,17 +70,18 @@ def fly(reality, params, path, seconds, step, noise, rng, sensors, full_voltage=
     s[8:10] = np.sin(0.5 * aim['yaw']), np.cos(0.5 * aim['yaw'])
     hover = np.sqrt(params['mass'] * 9.81 / (4 * params['k_eta']))
     s[16:] = hover
+    tilt = Rotation.from_euler('ZYX', sensors['tilt'][::-1]).as_quat()
     shift, given = np.zeros(3), np.full(4, hover)
     for k in range(count):
         t = k * step
         if not np.abs(s[10:13]).max() < FASTEST:
             raise Lost
         states[k], speeds[k] = s[:13], s[16:]
-        exact[k] = declared(states[k:k + 1], reality.centre, **sensors)[0]
+        exact[k] = declared(states[k], rotation_of(s[6:10]), reality.centre, tilt, sensors['bias'])
         thrust = float(np.mean((given / hover) ** 2))
         for one in reality.influences:
             exact[k] = one.measured(t, exact[k], thrust)
-        measured[k] = moved(exact[k:k + 1], changes[k:k + 1])[0]
+        measured[k] = moved(exact[k], changes[k])
         measured[k, 10:] = smooth(measured[k, 10:])
         reality.battery.drain(t, step, given / hover)
         voltage[k] = full_voltage * reality.battery.ratio

@@ -49,6 +49,10 @@ class Part:
     def begin(self, rng):
         """Draw what is a flight's own."""
 
+    def bodies(self):
+        """Return the options of bodies.Bodies that it asks for: none where it needs no MuJoCo."""
+        return {}
+
 
 class Influence(Part):
     """Something that acts on a vehicle; each kind overrides what it changes."""

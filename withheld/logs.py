@@ -48,7 +48,8 @@ class Log:
 LOGS = {'': Log(), 'fast_control': Log(Logging(every=5)), 'low_pass': Log(Logging(low_pass=20.0)),
         'bits_8': Log(Logging(bits=8)), 'bits_11': Log(Logging(bits=11)),
         'charge': Log(charge=0.03), '20_hz': Log(Logging(every=5)),
-        'one_flight': Log(flights=1), 'landing': Log(landing=True)}
+        'one_flight': Log(flights=1), 'landing': Log(landing=True),
+        'dropped': Log()}      # a payload falls off midway: a form of mass_offset
 PERIODS = {'20_hz': 0.05}       # s, where it is not that of the other records
 
 

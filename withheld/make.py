@@ -5,6 +5,7 @@
 import argparse
 from concurrent.futures import as_completed, ProcessPoolExecutor
 from dataclasses import asdict, replace
+from functools import partial
 import os
 from pathlib import Path
 import secrets
@@ -12,7 +13,8 @@ import sys
 
 import numpy as np
 
-from withheld.cases import SETS
+from withheld.cases import ALSO, SETS
+from withheld.estimator import EstimatedWorld, SETUPS
 from withheld.faults import csv_text, draw_faults, Faults, record_of
 from withheld.files import misread
 from withheld.fly import Lost
@@ -29,7 +31,7 @@ from withheld.realities import (
     World,
 )
 from withheld.seal import seal
-from withheld.sensors import Noise
+from withheld.sensors import noise_of
 from withheld.vehicles import nominal_file, vehicle_of, yaw_authority
 
 STEP = 0.01         # s, of the controller and of the record
@@ -37,8 +39,6 @@ RATES = (50.0, 100.0, 100.0, 200.0, 200.0, 500.0)      # Hz, of faulty records
 ATTEMPTS = 8
 FLOOR = 0.7         # rotor radii from the floor to the body origin of what stands on it
 CONTROLLER = {'development': 'geometric', 'evaluation': 'cascade'}
-# A mass that goes in flight is no constant of the vehicle: to call it unknown is right, too.
-INSTEAD = {'dropped': ('unknown',)}
 MOST = 30.0         # the largest size of an effect that has no limit of its own
 
 
@@ -61,69 +61,90 @@ def make_case(case, part, flights, seconds, folder, rng):
 
 
 def _attempt(case, part, flights, seconds, folder, rng):
-    drag = bool(rng.random() < 0.5) or 'wind' in case.effects
+    # Wind and gusts act through drag alone.
+    drag = bool(rng.random() < 0.5) or 'wind' in case.effects or bool(case.gusts)
     params = vehicle_of(part, case.vehicle, rng, drag)
     told, factors = misread(params, rng) if case.wrong_file else (params, {})
     log = LOGS[case.log]
-    noise, step = Noise(), PERIODS.get(case.log, STEP)
+    noise, step = noise_of(part, rng), PERIODS.get(case.log, STEP)
     if case.faulty:
         step = 1.0 / rng.choice(RATES)
         noise = replace(noise, correlation=rng.uniform(0.05, 0.3), bias=0.5)
-    setting = Setting(told, CONTROLLER[part], log.logging, fall=rng.uniform(0.005, 0.05))
     paths = [_path(case, params, part, rng) for _ in range(log.flights or flights)]
+    setting = Setting(told, CONTROLLER[part], log.logging, fall=rng.uniform(0.005, 0.05),
+                      bodies=case.bodies, gusts=case.gusts)
     if log.landing:
         setting = replace(setting, floor=FLOOR * params['rotor_radius'])
         paths = [Grounded(path, seconds, setting.floor) for path in paths]
     charges = 1.0 + log.charge * rng.uniform(-1.0, 1.0, len(paths))
     seed, voltage = int(rng.integers(2 ** 31)), rng.uniform(3.7, 16.8)
     shapes = {name: shape_of(name, params, rng) for name in case.effects}
-    sizes, reached, draws = {}, {}, int(rng.integers(2 ** 31))
+    kind, draws, flights = _world(case, part), int(rng.integers(2 ** 31)), {}
 
-    flights = {}
-
-    def fly_last(sizes, setting=setting, charge=1.0):
-        key = (*sizes.items(), id(setting.told), charge)
+    def fly_last(sizes, setting, charge=1.0):
+        key = (*sizes.items(), id(setting.told), setting.gusts, charge)
         if key not in flights:
-            flights[key] = World(params, setting, shapes, case.forms, sizes, draws).fly(
+            flights[key] = kind(params, setting, shapes, case.forms, sizes, draws).fly(
                 paths[-1], seconds, step, noise, np.random.default_rng(seed), voltage, charge)
         return flights[key]
 
+    # Strengths are those beside a vehicle file that is right and in air that is still.
+    still = replace(setting, told=params, gusts=0.0)
+    sizes, reached = _sizes(case, lambda sizes: fly_last(sizes, still), params, rng)
+    world = kind(params, setting, shapes, case.forms, sizes, draws)
+    flown = [world.fly(path, seconds, step, noise, rng, voltage, charge)
+             for path, charge in zip(paths[:-1], charges[:-1], strict=True)]
+    flown.append(fly_last(sizes, setting, charges[-1]))
+    parts = world.parts()
+    voltages = all(getattr(one, 'recorded', True) for one in parts.values())
+    faults = [draw_faults(rng) if case.faulty else Faults(voltage=voltages) for _ in flown]
+    folder.mkdir(parents=True)
+    for number, (one, wrong) in enumerate(zip(flown, faults, strict=True), 1):
+        (folder / f'flight_{number}.csv').write_text(csv_text(record_of(one, wrong, rng)))
+    (folder / 'vehicle.yaml').write_text(nominal_file(told, folder.name))
+    exact, alone, before = gaps_of(flown[-1], told)
+    return _label(case, world, reached) | {
+        'period': flown[-1].step, 'file': factors, 'faults': [asdict(one) for one in faults],
+        'thrust_by_flight': charges.tolist() if log.charge else None,
+        'beside': sorted(_beside(case, parts, params, log) - set(case.effects)),
+        'instead': list(_instead(case)),
+        'held_out': {'exact': exact, 'noise': alone, 'before': before}}
+
+
+def _world(case, part):
+    """Return the class of the case's worlds."""
+    if case.setup is None:
+        return World
+    return partial(EstimatedWorld, setup=SETUPS[part][case.setup])
+
+
+def _sizes(case, fly_last, params, rng):
+    """Return the sizes {effect or stranger: size}, and the strengths that they reach, alone."""
+    sizes, reached = {}, {}
     asked = case.effects if case.stranger is None else dict([case.stranger])
     for name, strength in asked.items():
         if case.kind == 'datasheet':
             sizes[name] = DATASHEET[name](rng)
             reached[name] = strength_of_gap(fly_last({name: sizes[name]}), params)
             continue
-        # Strengths are those beside a vehicle file that is right.
-        sizes[name], reached[name] = size_of(
-            lambda size, name=name: fly_last({name: size}, replace(setting, told=params)),
-            params, strength, LARGEST.get(name, MOST))
-    world, last = World(params, setting, shapes, case.forms, sizes, draws), fly_last(
-        sizes, charge=charges[-1])
-    flown = [world.fly(path, seconds, step, noise, rng, voltage, charge)
-             for path, charge in zip(paths[:-1], charges[:-1], strict=True)] + [last]
+        sizes[name], reached[name] = size_of(lambda size, name=name: fly_last({name: size}),
+                                             params, strength, LARGEST.get(name, MOST))
+    return sizes, reached
+
+
+def _label(case, world, reached):
+    """Return what the reality is, without what its flights and files add."""
     parts = world.parts()
-    hidden = not all(getattr(one, 'recorded', True) for one in parts.values())
-    faults = [draw_faults(rng) if case.faulty else Faults(voltage=not hidden) for _ in flown]
-    folder.mkdir(parents=True)
-    for number, (one, wrong) in enumerate(zip(flown, faults, strict=True), 1):
-        (folder / f'flight_{number}.csv').write_text(csv_text(record_of(one, wrong, rng)))
-    (folder / 'vehicle.yaml').write_text(nominal_file(told, folder.name))
-    exact, alone, before = gaps_of(last, told)
     effects = {name: {'asked': strength, 'strength': reached[name],
                       'form': case.forms.get(name, 'ours'), **_parameters(name, world, parts)}
                for name, strength in case.effects.items()}
     return {
-        'kind': case.kind, 'period': last.step, 'faulty': case.faulty, 'vehicle': case.vehicle,
-        'log': case.log, 'effects': effects,
+        'column': case.column, 'kind': case.kind, 'faulty': case.faulty, 'vehicle': case.vehicle,
+        'log': case.log, 'setup': case.setup, 'bodies': case.bodies, 'gusts': case.gusts,
+        'effects': effects,
         'stranger': None if case.stranger is None else {
             'kind': case.stranger[0], 'asked': case.stranger[1],
-            'strength': reached[case.stranger[0]]},
-        'file': factors, 'thrust_by_flight': charges.tolist() if log.charge else None,
-        'beside': sorted(_beside(case, parts, params, log) - set(effects)),
-        'instead': list(INSTEAD.get(case.forms.get('mass_offset'), ())),
-        'faults': [asdict(one) for one in faults],
-        'held_out': {'exact': exact, 'noise': alone, 'before': before}}
+            'strength': reached[case.stranger[0]]}}
 
 
 def _parameters(name, world, parts):
@@ -140,9 +161,19 @@ def _beside(case, parts, params, log):
     if case.wrong_file:
         names |= {'inertia_mismatch'}
         names |= {'rotor_drag'} if np.any(params['linear_drag']) else set()
+    if case.gusts:
+        names |= {'wind', 'unknown'}
     if log.charge:
         names |= {'thrust_scale', 'battery_sag'}
     return names
+
+
+def _instead(case):
+    """Return the names that do as well as what is there."""
+    if case.stranger is not None:
+        return ALSO.get(case.stranger[0], ())
+    # A mass that goes in flight is no constant of the vehicle.
+    return ('unknown',) if case.log == 'dropped' else ()
 
 
 def _path(case, params, part, rng):

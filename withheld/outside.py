@@ -111,6 +111,33 @@ class Slosh(Force):
         return self.rotation @ np.array([*inside, 0.0])
 
 
+class Ceiling(Influence):
+    """Suction towards a plate overhead."""
+
+    def __init__(self, size, radius, rng):
+        """Draw how high it is."""
+        self.size, self.radius, self.height = 0.3 * size, radius, rng.uniform(1.5, 2.5)
+
+    def gain(self, now):
+        """Return the factors."""
+        gap = np.maximum(self.height - now.heights, 0.0) / self.radius
+        return 1.0 + self.size / (1.0 + gap) ** 2
+
+
+class Neighbours(Influence):
+    """Rotors that breathe the wake of those beside them when these turn faster."""
+
+    def __init__(self, size, hover, rng):
+        """Draw how far they lean on each other."""
+        self.hover, self.share = hover, 0.1 * size * rng.choice([-1.0, 1.0])
+
+    def gain(self, now):
+        """Return the factors."""
+        turn = now.speeds / self.hover
+        return np.clip(1.0 + self.share * (np.roll(turn, 1) - turn) * np.abs(turn), 0.3, 2.0)
+
+
 KINDS = {'periodic_force': (Periodic, 'weight'), 'tether': (Tether, 'weight'),
          'updraft': (Updraft, 'weight'), 'thrust_exponent': (Exponent, 'hover'),
-         'backlash': (Backlash, 'hover'), 'slosh': (Slosh, 'mass')}
+         'backlash': (Backlash, 'hover'), 'slosh': (Slosh, 'mass'),
+         'ceiling': (Ceiling, 'radius'), 'neighbours': (Neighbours, 'hover')}

@@ -8,7 +8,7 @@ import numpy as np
 from rotorpy.vehicles.multirotor import Multirotor
 
 from withheld.actuators import Battery, Line
-from withheld.constants import hover_speed
+from withheld.constants import cross, hover_speed, rotation_of
 from withheld.influence import Instant
 
 NO_LAG = 1e12       # s: the speeds stay where the step sets them
@@ -57,7 +57,7 @@ class Reality(Multirotor):
         self.motor = motor
         self.battery = battery or Battery(0.0)
         self.steady = np.array([get('wind').get(axis, 0.0) for axis in 'xyz'])
-        self.linear_drag = params['linear_drag']
+        self.linear_drag, self.body_drag = params['linear_drag'], np.diag(self.drag_matrix)
         self.radius = params['rotor_radius']
         self.ground = get('ground_effect').get('strength', 0.0)
         self.faults = np.array([get('rotor_fault').get(f'loss_{j + 1}', 0.0)
@@ -71,43 +71,61 @@ class Reality(Multirotor):
         self._place = None
 
     def _s_dot_fn(self, t, s, cmd_rotor_speeds):
+        """Return the slope (20,) of a packed state, as rotorpy has it but with less ado."""
+        rotation, velocity, rate, speeds = rotation_of(s[6:10]), s[3:6], s[10:13], s[16:]
         # What rotorpy's wrench does not get told.
-        self._place = s[0:3], rotation_of(s[6:10]), s[3:6]
+        self._place = s[0:3], rotation, velocity
+        turning = (cmd_rotor_speeds - speeds) / self.tau_m
         if self.lag:
-            self._turning = (cmd_rotor_speeds - s[16:]) / self.lag
-        return super()._s_dot_fn(t, s, cmd_rotor_speeds)
+            self._turning = turning
+        force, moment = self.compute_body_wrench(rate, speeds, rotation.T @ (velocity - s[13:16]))
+        x, y, z, w = s[6:10]
+        p, q, r = rate
+        out = np.zeros(len(s))
+        out[0:3] = velocity
+        out[3:6] = (self.weight + rotation @ force) / self.mass
+        out[6:10] = (0.5 * (w * p - z * q + y * r), 0.5 * (z * p + w * q - x * r),
+                     0.5 * (w * r - y * p + x * q), -0.5 * (x * p + y * q + z * r))
+        out[10:13] = self.inv_inertia @ (moment - cross(rate, self.inertia @ rate))
+        out[16:] = turning
+        return out
 
     def compute_body_wrench(self, body_rates, rotor_speeds, body_airspeed_vector):
         """Return rotorpy's force and moment (body), and those of what it lacks."""
-        force, moment = super().compute_body_wrench(body_rates, rotor_speeds,
-                                                    body_airspeed_vector)
-        force = force - self.linear_drag * body_airspeed_vector
+        air, places, squares = body_airspeed_vector, self.rotor_geometry, rotor_speeds ** 2
         position, rotation, velocity = self._place
-        heights = position[2] + self.rotor_geometry @ rotation[2]
+        heights = position[2] + places @ rotation[2]
         gain = (1.0 - self.faults) * self.battery.gain(rotor_speeds / self.hover)
         if self.ground:
             ratio = self.radius / (4.0 * np.maximum(heights, 0.5 * self.radius))
             gain = gain / (1.0 - np.minimum(self.ground * ratio ** 2, 0.75))
-        torque = 1.0
+        reaction, force, moment = self.rotor_dir * squares, np.zeros(3), np.zeros(3)
         if self.influences:
-            now = Instant(self.time, position, velocity, rotation, body_rates,
-                          body_airspeed_vector, rotor_speeds, heights, self.rotor_geometry)
+            now = Instant(self.time, position, velocity, rotation, body_rates, air,
+                          rotor_speeds, heights, places)
             for one in self.influences:
-                gain, torque = gain * one.gain(now), torque * one.torque(now)
+                gain, reaction = gain * one.gain(now), reaction * one.torque(now)
                 extra = one.wrench(now)
                 if extra is not None:
                     force, moment = force + extra[0], moment + extra[1]
-        squares = rotor_speeds ** 2
-        extra = self.k_eta * squares * (gain - 1.0)
-        force[2] += extra.sum()
-        moment[0] += self.rotor_geometry[:, 1] @ extra
-        moment[1] -= self.rotor_geometry[:, 0] @ extra
-        moment[2] += self.k_m * np.sum(self.rotor_dir * squares * (torque - 1.0))
+        # Of each rotor, as in rotorpy: thrust and in-plane force, reaction, flapping.
+        p, q, r = body_rates
+        x = air[0] + q * places[:, 2] - r * places[:, 1]
+        y = air[1] + r * places[:, 0] - p * places[:, 2]
+        z = air[2] + p * places[:, 1] - q * places[:, 0]
+        fx, fy = -self.k_d * rotor_speeds * x, -self.k_d * rotor_speeds * y
+        fz = (self.k_eta * squares * gain + self.k_h * (x * x + y * y)
+              - self.k_z * rotor_speeds * z)
+        drag = self.linear_drag + self.body_drag * np.sqrt(air @ air)
+        force = force + (fx.sum(), fy.sum(), fz.sum()) - drag * air
+        moment = moment + (
+            places[:, 1] @ fz - places[:, 2] @ fy - self.k_flap * (rotor_speeds @ y),
+            places[:, 2] @ fx - places[:, 0] @ fz + self.k_flap * (rotor_speeds @ x),
+            places[:, 0] @ fy - places[:, 1] @ fx + self.k_m * reaction.sum())
         if np.any(self.rotor_inertia):
             spins = self.rotor_dir @ (self.rotor_inertia * rotor_speeds)
-            moment[0] += spins * body_rates[1]
-            moment[1] -= spins * body_rates[0]
-            moment[2] += self.rotor_dir @ (self.rotor_inertia * self._turning)
+            moment += (spins * q, -spins * p,
+                       self.rotor_dir @ (self.rotor_inertia * self._turning))
         return force, moment
 
     def advance(self, state, command, step):
@@ -203,14 +221,6 @@ class Reality(Multirotor):
         s[2], s[3:6], s[10:13] = self.floor, 0.0, 0.0
         s[6:10] = 0.0, 0.0, np.sin(0.5 * yaw), np.cos(0.5 * yaw)
         return s
-
-
-def rotation_of(q):
-    """Return the matrix (3, 3) of a quaternion x, y, z, w that is nearly of unit length."""
-    x, y, z, w = q / np.linalg.norm(q)
-    return np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-                     [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-                     [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]])
 
 
 NAMES = ('motor_lag', 'actuation_delay', 'rotor_drag', 'body_drag', 'wind', 'inflow',

@@ -11,6 +11,7 @@ from withheld.actuators import Battery, Line, Motor
 from withheld.constants import GRAVITY, hover_speed
 from withheld.fly import fly, Lost
 from withheld.forms import form_of
+from withheld.gusts import Gusts
 from withheld.influence import Influence
 from withheld.logs import Charge, Logging
 from withheld.nominal import Nominal, nominal_errors, rms
@@ -72,7 +73,8 @@ class Setting:
     What flights share beside the vehicle.
 
     told: rotorpy's parameters as the vehicle file has them; controller: of CONTROLLERS; logging:
-    a Logging; floor m or None; fall: share of the voltage lost in 30 s where nothing sags.
+    a Logging; floor m or None; fall: share of the voltage lost in 30 s where nothing sags;
+    bodies: in MuJoCo; gusts: of which size.
     """
 
     told: dict
@@ -80,6 +82,8 @@ class Setting:
     logging: Logging = field(default_factory=Logging)
     floor: float | None = None
     fall: float = 0.03
+    bodies: bool = False
+    gusts: float = 0.0
 
 
 # Sizes of what a vehicle has whose file is a data sheet: thrust off by 20 to 30 %, inertia by up
@@ -114,8 +118,11 @@ class World:
         for name, size in self.strangers.items():
             kind, by = outside.KINDS[name]
             measure = {'weight': self.params['mass'] * GRAVITY, 'mass': self.params['mass'],
-                       'hover': hover_speed(self.params)}[by]
+                       'hover': hover_speed(self.params),
+                       'radius': self.params['rotor_radius']}[by]
             parts[name] = kind(size, measure, self._rng(name))
+        if self.setting.gusts:
+            parts['gusts'] = Gusts(self.setting.gusts, self.params, self._rng('gusts'))
         return parts
 
     def _rng(self, name):
@@ -135,9 +142,14 @@ class World:
         def only(kind, otherwise=None):
             return next((part for part in parts if isinstance(part, kind)), otherwise)
 
-        return Reality(
+        arguments = (
             self.params, self.effects, [part for part in parts if isinstance(part, Influence)],
             only(Line), only(Motor), only(Battery, battery), self.setting.floor)
+        options = {key: value for part in parts for key, value in part.bodies().items()}
+        if not (self.setting.bodies or options):
+            return Reality(*arguments)
+        from withheld.bodies import Bodies  # MuJoCo takes a second to load
+        return Bodies(*arguments, **options)
 
     def fly(self, path, seconds, step, noise, rng, voltage, charge=1.0):
         """Return the Flown along a path."""

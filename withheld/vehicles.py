@@ -11,7 +11,8 @@ from rotorpy.vehicles.hummingbird_params import quad_params as HUMMINGBIRD
 from rotorpy.vehicles.px4_sihsim_quadx_params import quad_params as PX4
 import yaml
 
-from withheld.constants import GRAVITY, hover_speed as hover_speed
+from withheld.constants import GRAVITY
+from withheld.constants import hover_speed as hover_speed
 
 AERODYNAMICS = ('c_Dx', 'c_Dy', 'c_Dz', 'k_d', 'k_z', 'k_h', 'k_flap')
 # By set: rotorpy's parameters, radius of the rotors in m, scale of length.

@@ -8,14 +8,15 @@ noise; rng draws what does not depend on the size. Each is a Part (influence.py)
 Line, a Motor or a Battery (actuators.py).
 """
 
-from withheld.forms import air, batteries, body, motors
+from withheld.forms import air, batteries, body, hung, motors
 
 # Those that one develops with, and those that nobody looks at before a release.
 DEVELOPMENT = {
-    'motor_lag': {'second_order': motors.SecondOrder, 'speed_dependent': motors.SpeedDependent},
+    'motor_lag': {'second_order': motors.SecondOrder, 'speed_dependent': motors.SpeedDependent,
+                  'brushed': hung.identified('cf2x_P250')},
     'actuation_delay': {'jitter': motors.Jitter, 'staggered': motors.Staggered},
     'rotor_drag': {'saturating': air.Saturating, 'offset_point': air.Offset},
-    'body_drag': {'power_1.6': air.Power16, 'plates': air.Plates},
+    'body_drag': {'power_1.6': air.Power16, 'plates': air.Plates, 'hull': hung.Hull},
     'wind': {'profile': air.Profile, 'turning': air.Turning},
     'inflow': {'momentum': air.Momentum, 'following': air.Following},
     'ground_effect': {'rational': air.Rational, 'cushion': air.Cushion},
@@ -31,7 +32,8 @@ DEVELOPMENT = {
     'gyro_bias': {'warming': body.Warming, 'wandering': body.Wandering},
 }
 EVALUATION = {
-    'motor_lag': {'torque_balance': motors.TorqueBalance, 'two_poles': motors.TwoPoles},
+    'motor_lag': {'torque_balance': motors.TorqueBalance, 'two_poles': motors.TwoPoles,
+                  'brushless': hung.identified('cf21B_500')},
     'actuation_delay': {'clocked': motors.Clocked, 'growing': motors.Growing},
     'rotor_drag': {'power_1.25': air.Steeper, 'skewed': air.Skewed},
     'body_drag': {'crisis': air.Crisis, 'plate': air.Plate},
@@ -40,11 +42,11 @@ EVALUATION = {
     'ground_effect': {'swept': air.Swept, 'bounded': air.Bounded},
     'battery_sag': {'dc_motor': batteries.DcMotor, 'drained': batteries.Drained},
     'thrust_scale': {'exponent': body.Exponent},
-    'mass_offset': {'other_battery': body.OtherBattery},
+    'mass_offset': {'other_battery': body.OtherBattery, 'cable': hung.Cable},
     'inertia_mismatch': {'arms': body.Arms, 'outriggers': body.Outriggers},
     'com_offset': {'heavy': body.Heavy},
     'rotor_fault': {'worn': body.Worn, 'dragging': body.Dragging},
-    'rotor_gyro': {'heavy_pair': body.HeavyPair},
+    'rotor_gyro': {'heavy_pair': body.HeavyPair, 'spinning': hung.Spinning},
     'blade_flapping': {'cross_flapping': air.CrossFlapping},
     'attitude_misalignment': {'skewed_block': body.SkewedBlock, 'soft_mount': body.SoftMount},
     'gyro_bias': {'rectified': body.Rectified},

@@ -35,7 +35,8 @@ class Offset(_Drag):
     def __init__(self, size, params, rng):
         """Draw the point."""
         super().__init__(size, params, rng)
-        self.point = arm_length(params) * 0.2 * rng.choice([-1.0, 1.0], 3) * rng.uniform(0.5, 1.0, 3)
+        self.point = 0.2 * arm_length(params) * (
+            rng.choice([-1.0, 1.0], 3) * rng.uniform(0.5, 1.0, 3))
 
     def wrench(self, now):
         """Return force and moment."""
