@@ -25,10 +25,10 @@ import numpy as np
 import tomllib
 
 from withheld.actuators import Motor
-from withheld.constants import GRAVITY, hover_speed
+from withheld.constants import GRAVITY, hover_speed, rotation_of
 from withheld.fly import Lost
 from withheld.influence import Influence
-from withheld.plant import Reality, rotation_of
+from withheld.plant import Reality
 
 STEP = 0.001            # s, of MuJoCo
 AIR_DENSITY = 1.2       # kg/m^3

@@ -18,16 +18,16 @@ without the estimated bias.
 from collections import deque
 from dataclasses import dataclass, replace
 from functools import partial
+import math
 
 import numpy as np
 from scipy.signal import butter
 from scipy.spatial.transform import Rotation
 
-from withheld.constants import GRAVITY, hover_speed
+from withheld.constants import cross, GRAVITY, hover_speed, rotation_of
 from withheld.controllers import CONTROLLERS
 from withheld.fly import FARTHEST, FASTEST, Flown, IDLE, INTEGRAL, Lost
 from withheld.logs import Logging
-from withheld.plant import rotation_of
 from withheld.realities import World
 
 UP = np.array([0.0, 0.0, 1.0])
@@ -185,7 +185,7 @@ class ComplementaryFilter:
         if self.aid.attitude is None:
             now = self.now
             felt = force - now.accelerometer_bias
-            off = np.cross(felt / np.linalg.norm(felt), now.rotation.T @ UP)
+            off = cross(felt / np.sqrt(felt @ felt), now.rotation.T @ UP)
             now.gyro_bias = now.gyro_bias - step * self.bias * off
             gyro = gyro + self.level * off
         self.now.propagate(gyro, force, step)
@@ -234,19 +234,23 @@ def hat(v):
 
 
 def exponential(v):
-    """Return the rotation (3, 3) about v by its length, rad."""
-    angle = np.sqrt(v @ v)
-    cross = hat(v)
-    half = np.sinc(0.5 * angle / np.pi)
-    return np.eye(3) + np.sinc(angle / np.pi) * cross + 0.5 * half ** 2 * cross @ cross
+    """Return the rotation (3, 3) about v (3,) by its length, rad."""
+    x, y, z = v.tolist()
+    square = x * x + y * y + z * z
+    angle = math.sqrt(square)
+    s, c = (math.sin(angle) / angle, (1.0 - math.cos(angle)) / square) if angle > 1e-4 else (
+        1.0 - square / 6.0, 0.5 - square / 24.0)
+    return np.array([[1.0 - c * (y * y + z * z), c * x * y - s * z, c * x * z + s * y],
+                     [c * x * y + s * z, 1.0 - c * (x * x + z * z), c * y * z - s * x],
+                     [c * x * z - s * y, c * y * z + s * x, 1.0 - c * (x * x + y * y)]])
 
 
 def logarithm(rotation):
     """Return the rotation vector (3,) of a rotation (3, 3) of less than half a turn."""
     v = 0.5 * np.array([rotation[2, 1] - rotation[1, 2], rotation[0, 2] - rotation[2, 0],
                         rotation[1, 0] - rotation[0, 1]])
-    sine = np.sqrt(v @ v)
-    return v if sine < 1e-12 else v * (np.arctan2(sine, 0.5 * (np.trace(rotation) - 1.0)) / sine)
+    sine, cosine = math.sqrt(v @ v), 0.5 * (rotation[0, 0] + rotation[1, 1] + rotation[2, 2] - 1.0)
+    return v if sine < 1e-12 else v * (math.atan2(sine, cosine) / sine)
 
 
 def quaternion_of(rotation):
@@ -308,7 +312,7 @@ class _Sensors:
         """Return position and velocity of the body origin, and the rotation (3, 3)."""
         rotation = rotation_of(s[6:10])
         return (s[:3] - rotation @ self.centre,
-                s[3:6] - rotation @ np.cross(s[10:13], self.centre), rotation)
+                s[3:6] - rotation @ cross(s[10:13], self.centre), rotation)
 
     def imu(self, before, after, speeds, step):
         """Return mean rate and specific force of a step between two of `at`, as measured."""
