@@ -9,7 +9,9 @@ from functools import partial
 import os
 from pathlib import Path
 import secrets
+import shutil
 import sys
+import tempfile
 
 import numpy as np
 
@@ -18,6 +20,7 @@ from withheld.estimator import EstimatedWorld, SETUPS
 from withheld.faults import csv_text, draw_faults, Faults, record_of
 from withheld.files import misread
 from withheld.fly import Lost
+from withheld.hybrids import make_hybrids
 from withheld.logs import Grounded, LOGS, PERIODS
 from withheld.paths import Hover, Sines, Waypoints
 from withheld.realities import (
@@ -213,7 +216,23 @@ def make_set(name, count, seed, jobs, folder, on_case=lambda done, total: None):
             except Exception as error:      # of rotorpy: it takes no other case with it
                 not_flown.append(f'{type(error).__name__}: {error}')
             on_case(len(labels) + len(not_flown), len(cases))
+    if chosen.hybrids and count is None:
+        try:
+            labels |= _hybrids(chosen.part, Path(folder),
+                               np.random.default_rng([seed, len(cases)]))
+        except FileNotFoundError as error:
+            not_flown.append(str(error))
     return labels, not_flown
+
+
+def _hybrids(part, folder, rng):
+    """Write the changes to real flights, in folders with random names; return their labels."""
+    with tempfile.TemporaryDirectory() as apart:
+        labels = make_hybrids(part, apart, rng)
+        names = {name: secrets.token_hex(6) for name in labels}
+        for name in labels:
+            shutil.move(Path(apart) / name, folder / names[name])
+    return {names[name]: label | {'base': names['base']} for name, label in labels.items()}
 
 
 def main(arguments=None):

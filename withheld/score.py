@@ -5,6 +5,7 @@
 import numpy as np
 
 from withheld.cases import EFFECTS
+from withheld.hybrids import judge as judge_hybrid
 
 COLUMNS = ('ours', 'forms', 'files', 'logs', 'estimator', 'faulty')
 BINS = (0.0, 0.05, 0.2, 0.4, 0.6, 0.8, 0.95, 1.0)
@@ -181,7 +182,8 @@ def score(labels, found):
     A case without a diagnosis counts as failed.
     """
     missing = {'failed': 'no diagnosis was written'}
-    pairs = [(label, found.get(name, missing)) for name, label in sorted(labels.items())]
+    pairs = [(label, found.get(name, missing)) for name, label in sorted(labels.items())
+             if label['kind'] != 'hybrid']
     rows = [(label, judge(label, one)) for label, one in pairs]
     groups, effects, columns = {}, {}, {}
     for (label, row), pair in zip(rows, pairs, strict=True):
@@ -202,9 +204,22 @@ def score(labels, found):
         'columns': {name: _column(columns[name]) for name in COLUMNS if name in columns},
         'effects': {name: {strength: summary(some) for strength, some in sorted(by.items())}
                     for name, by in sorted(effects.items())},
-        'gap_agrees': agreement(pairs),
+        'gap_agrees': agreement(pairs), 'hybrids': hybrids_of(labels, found),
         'seconds': {'median': float(np.median(seconds)), 'most': float(np.max(seconds))}
         if seconds else None}
+
+
+def hybrids_of(labels, found):
+    """Return [{'change', and what hybrids.judge makes of it}] of the changes to real flights."""
+    rows = []
+    for name, label in labels.items():
+        if label['kind'] != 'hybrid' or name == label['base']:
+            continue
+        both = [found.get(one, {}) for one in (label['base'], name)]
+        judged = {'gained': None} if any('verdict' not in one for one in both) else judge_hybrid(
+            label, *both)
+        rows.append({'change': label['change']} | judged)
+    return sorted(rows, key=lambda row: row['change'])
 
 
 def _column(some):

@@ -24,7 +24,8 @@ def markdown(found):
     head, *rows = goals(found)
     return '\n\n'.join([
         'Bold: not reached; in brackets: the target in percent.', _rows(head, rows),
-        _groups(found), _claims(found), _effects(found), _coverage(found), _calibration(found)])
+        _groups(found), _claims(found), _effects(found), _coverage(found), _calibration(found),
+        *_hybrids(found)])
 
 
 def _rows(head, rows):
@@ -90,3 +91,13 @@ def _calibration(found):
                              f'{row["given"]:.3f}', f'{row["present"]:.3f}')
                             for row in one['table']]))
     return '\n\n'.join(parts)
+
+
+def _hybrids(found):
+    """Return the table of the changes to real flights, in a list, empty where there are none."""
+    words = {True: 'yes', False: 'no', None: '-'}
+    rows = [(f'`{row["change"]}`', words[row['gained']], words[row.get('moved')],
+             ', '.join(row.get('added', ())) or '-', ', '.join(row.get('lost', ())) or '-')
+            for row in found['hybrids']]
+    return [_rows(('real flights, changed', 'named', 'moved as much', 'also named', 'no longer'),
+                  rows)] if rows else []

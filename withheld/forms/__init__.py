@@ -46,7 +46,7 @@ EVALUATION = {
     'inertia_mismatch': {'arms': body.Arms, 'outriggers': body.Outriggers},
     'com_offset': {'heavy': body.Heavy},
     'rotor_fault': {'worn': body.Worn, 'dragging': body.Dragging},
-    'rotor_gyro': {'heavy_pair': body.HeavyPair, 'spinning': hung.Spinning},
+    'rotor_gyro': {'heavy_pair': body.HeavyPair},
     'blade_flapping': {'cross_flapping': air.CrossFlapping},
     'attitude_misalignment': {'skewed_block': body.SkewedBlock, 'soft_mount': body.SoftMount},
     'gyro_bias': {'rectified': body.Rectified},

@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Forms of bodies in MuJoCo: loads on cables, hulls, rotors that spin; identified motors."""
+"""Forms of bodies in MuJoCo: loads on cables, hulls; and identified motors."""
 
 from withheld.constants import arm_length
 from withheld.influence import Part
@@ -36,21 +36,6 @@ class Hull(Part):
     def bodies(self):
         """Ask for the hull."""
         return {'hull': self.parameters['size']}
-
-
-class Spinning(Part):
-    """Rotors that are bodies of their own."""
-
-    comparable = True
-
-    def __init__(self, size, params, rng):
-        """Take the inertia."""
-        self.parameters = {'rotor_inertia': 0.002 * size * params['Ixx']}
-
-    def bodies(self):
-        """Ask for the rotors; none at size 0."""
-        inertia = self.parameters['rotor_inertia']
-        return {'rotors': inertia} if inertia else {}
 
 
 def identified(name):
