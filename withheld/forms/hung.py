@@ -19,9 +19,10 @@ class Cable(Part):
 
     def bodies(self):
         """Ask for the payload; none at size 0."""
+        if not self.parameters['mass']:
+            return {}
         from withheld.bodies import Payload
-        mass = self.parameters['mass']
-        return {'payload': Payload(mass, self.length)} if mass else {}
+        return {'payload': Payload(self.parameters['mass'], self.length)}
 
 
 class Hull(Part):
