@@ -21,7 +21,7 @@ from withheld.faults import csv_text, draw_faults, Faults, record_of
 from withheld.files import misread
 from withheld.fly import Lost
 from withheld.hybrids import make_hybrids
-from withheld.logs import Grounded, LOGS, PERIODS
+from withheld.logs import Grounded, Logging, LOGS, PERIODS
 from withheld.paths import Hover, Sines, Waypoints
 from withheld.realities import (
     DATASHEET,
@@ -76,28 +76,34 @@ def _attempt(case, part, flights, seconds, folder, rng):
     paths = [_path(case, params, part, rng) for _ in range(log.flights or flights)]
     setting = Setting(told, CONTROLLER[part], log.logging, fall=rng.uniform(0.005, 0.05),
                       bodies=case.bodies, gusts=case.gusts)
+    span, above = None, paths[-1]
     if log.landing:
         setting = replace(setting, floor=FLOOR * params['rotor_radius'])
         paths = [Grounded(path, seconds, setting.floor) for path in paths]
+        span = paths[-1].up, paths[-1].down
     charges = 1.0 + log.charge * rng.uniform(-1.0, 1.0, len(paths))
     seed, voltage = int(rng.integers(2 ** 31)), rng.uniform(3.7, 16.8)
     shapes = {name: shape_of(name, params, rng) for name in case.effects}
     kind, draws, flights = _world(case, part), int(rng.integers(2 ** 31)), {}
 
-    def fly_last(sizes, setting, charge=1.0):
-        key = (*sizes.items(), id(setting.told), setting.gusts, charge)
+    def fly_last(sizes, setting, path, step, charge=1.0):
+        key = (*sizes.items(), setting is plain, charge)
         if key not in flights:
             flights[key] = kind(params, setting, shapes, case.forms, sizes, draws).fly(
-                paths[-1], seconds, step, noise, np.random.default_rng(seed), voltage, charge)
+                path, seconds, step, noise, np.random.default_rng(seed), voltage, charge)
         return flights[key]
 
-    # Strengths are those beside a vehicle file that is right and in air that is still.
-    still = replace(setting, told=params, gusts=0.0)
-    sizes, reached = _sizes(case, lambda sizes: fly_last(sizes, still), params, rng)
+    # Strengths are those of an effect alone: the file is right, the air still, the log complete.
+    plain = replace(setting, told=params, gusts=0.0, floor=None, logging=Logging())
+    plain_step = STEP if case.log else step
+    if not (case.log or case.wrong_file or case.gusts):
+        plain = setting
+    sizes, reached = _sizes(case, lambda sizes: fly_last(sizes, plain, above, plain_step), params,
+                            rng)
     world = kind(params, setting, shapes, case.forms, sizes, draws)
     flown = [world.fly(path, seconds, step, noise, rng, voltage, charge)
              for path, charge in zip(paths[:-1], charges[:-1], strict=True)]
-    flown.append(fly_last(sizes, setting, charges[-1]))
+    flown.append(fly_last(sizes, setting, paths[-1], step, charges[-1]))
     parts = world.parts()
     voltages = all(getattr(one, 'recorded', True) for one in parts.values())
     faults = [draw_faults(rng) if case.faulty else Faults(voltage=voltages) for _ in flown]
@@ -105,7 +111,7 @@ def _attempt(case, part, flights, seconds, folder, rng):
     for number, (one, wrong) in enumerate(zip(flown, faults, strict=True), 1):
         (folder / f'flight_{number}.csv').write_text(csv_text(record_of(one, wrong, rng)))
     (folder / 'vehicle.yaml').write_text(nominal_file(told, folder.name))
-    exact, alone, before = gaps_of(flown[-1], told)
+    exact, alone, before = gaps_of(flown[-1], told, span)
     return _label(case, world, reached) | {
         'period': flown[-1].step, 'file': factors, 'faults': [asdict(one) for one in faults],
         'thrust_by_flight': charges.tolist() if log.charge else None,

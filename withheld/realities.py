@@ -67,7 +67,7 @@ LARGEST = {'motor_lag': 12.0, 'actuation_delay': 6.0, 'inertia_mismatch': 12.0,
            'rotor_gyro': 60.0, 'rotor_fault': 60.0, 'ground_effect': 12.0, 'battery_sag': 20.0}
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Setting:
     """
     What flights share beside the vehicle.
@@ -164,11 +164,17 @@ class World:
                 'bias': np.array([bias.get(key, 0.0) for key in 'xyz'])}
 
 
-def gaps_of(flown, params):
-    """Return the RMS errors of the nominal model by group: with exact states, noise's alone."""
+def gaps_of(flown, params, span=None):
+    """
+    Return the RMS errors of the nominal model by group: of exact states, of noise, of measured.
+
+    Args: span (begin, end), s: what is not on the floor; None for all of the flight.
+    """
     model = Nominal(params)
-    exact = nominal_errors(model, flown.exact, flown.commands, flown.step)
-    measured = nominal_errors(model, flown.measured, flown.commands, flown.step)
+    rows = slice(None) if span is None else slice(*(round(t / flown.step) for t in span))
+    commands = flown.commands[rows]
+    exact = nominal_errors(model, flown.exact[rows], commands, flown.step)
+    measured = nominal_errors(model, flown.measured[rows], commands, flown.step)
     return rms(exact), rms(measured - exact), rms(measured)
 
 
