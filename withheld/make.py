@@ -112,12 +112,17 @@ def _attempt(case, part, flights, seconds, folder, rng):
         (folder / f'flight_{number}.csv').write_text(csv_text(record_of(one, wrong, rng)))
     (folder / 'vehicle.yaml').write_text(nominal_file(told, folder.name))
     exact, alone, before = gaps_of(flown[-1], told, span)
+    floor = alone
+    if case.log or case.gusts:
+        # What the log hides and gusts do is left when every effect is known.
+        none = fly_last({}, replace(setting, told=params), paths[-1], step, charges[-1])
+        floor = gaps_of(none, params, span)[2]
     return _label(case, world, reached) | {
         'period': flown[-1].step, 'file': factors, 'faults': [asdict(one) for one in faults],
         'thrust_by_flight': charges.tolist() if log.charge else None,
         'beside': sorted(_beside(case, parts, params, log) - set(case.effects)),
         'instead': list(_instead(case)),
-        'held_out': {'exact': exact, 'noise': alone, 'before': before}}
+        'held_out': {'exact': exact, 'noise': alone, 'before': before, 'floor': floor}}
 
 
 def _world(case, part):

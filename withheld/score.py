@@ -123,11 +123,14 @@ def _closed(label, found):
     """
     Return the share of the closable gap that was closed, velocity on the held-out flight.
 
+    The noise is what is left where every effect is known: `floor`, which holds what a log hides.
+
     Where records are not as they should be the gap before is the diagnosis's, as clocks are its
     own to mend, and rows on the floor its own to leave out.
     """
     held, gap = label['held_out'], found.get('gap') or {}
-    before, noise = held['before']['velocity'], held['noise']['velocity']
+    before = held['before']['velocity']
+    noise = held.get('floor', held['noise'])['velocity']
     if label['faulty'] or label.get('log'):
         before = gap.get('before', {}).get('velocity', before)
     after = gap.get('after', {}).get('velocity')

@@ -201,6 +201,12 @@ def test_the_share_closed_counts_from_the_noise(after, share):
     assert row['closed'] == pytest.approx(share)
 
 
+def test_what_a_log_hides_cannot_be_closed():
+    truth = label(['wind'])
+    truth['held_out']['floor'] = {'velocity': 0.2}
+    assert scores.judge(truth, diagnosis('wind', after=0.2))['closed'] == pytest.approx(1.0)
+
+
 def test_where_nothing_can_be_closed_there_is_no_share():
     truth = label(['wind'])
     truth['held_out']['before']['velocity'] = 0.102
