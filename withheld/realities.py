@@ -19,6 +19,7 @@ from withheld.plant import Reality
 
 TRIES = 5
 CLOSE = 0.1        # of the strength that was asked for
+TOO_MUCH = 2.0     # times that strength: the vehicle is about to be lost
 
 
 def shape_of(name, params, rng):
@@ -189,7 +190,8 @@ def size_of(flown_of, params, strength, largest):
     Return the size at which the gap is `strength` times the noise's, and the strength reached.
 
     Args: flown_of(size) the Flown, or raises Lost; largest size that may be. Raises Lost where
-    none of the sizes tried can be flown.
+    none of the sizes tried can be flown, or all of them are far too strong; an effect may remain
+    weaker than asked.
     """
     size, best = min(strength, largest), None
     for _ in range(TRIES):
@@ -204,6 +206,6 @@ def size_of(flown_of, params, strength, largest):
         if abs(reached / strength - 1.0) < CLOSE or (size >= largest and reached < strength):
             break
         size = min(largest, size * float(np.clip(strength / reached, 0.1, 10.0)))
-    if best is None:
+    if best is None or best[1] > TOO_MUCH * strength:
         raise Lost
     return best
