@@ -13,6 +13,17 @@ from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.vehicle import load_vehicle
 
 
+def diagnosis_of(folder):
+    """
+    Return the diagnosis (JSON) of the case in a folder; raises InputError where it is refused.
+
+    All that the check knows of the library: what the command line calls is to be called here.
+    """
+    vehicle = load_vehicle(str(folder / 'vehicle.yaml'))
+    records = [read_csv(path) for path in sorted(folder.glob('flight_*.csv'))]
+    return diagnose(records, vehicle).data
+
+
 def main(flights, found):
     """Diagnose every case in the folder `flights` and write {its name}.json into `found`."""
     for folder in sorted(path for path in Path(flights).iterdir() if path.is_dir()):
@@ -21,9 +32,7 @@ def main(flights, found):
             continue
         begin = time.process_time()
         try:
-            vehicle = load_vehicle(str(folder / 'vehicle.yaml'))
-            records = [read_csv(path) for path in sorted(folder.glob('flight_*.csv'))]
-            data = diagnose(records, vehicle).data
+            data = diagnosis_of(folder)
         except InputError as error:
             data = {'refused': str(error)}
         except Exception as error:

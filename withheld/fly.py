@@ -1,17 +1,20 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Flights in closed loop: rotorpy's controller on what is measured, against a reality."""
+"""Flights in closed loop: a controller on what is measured, against a reality."""
 
 from dataclasses import dataclass
 
 import numpy as np
-from rotorpy.controllers.quadrotor_control import SE3Control
+from scipy.spatial.transform import Rotation
 
+from withheld.constants import rotation_of
+from withheld.controllers import CONTROLLERS
+from withheld.logs import Logging, LowPass
 from withheld.sensors import declared, moved
 
 INTEGRAL = 0.8      # 1/s, of the position error into the place that is told
-FARTHEST = 4.0      # m from the path: then the vehicle is lost
-FULL, EMPTY = 1.0, 0.88
+FARTHEST, FASTEST = 4.0, 100.0      # m from the path, rad/s: beyond, the vehicle is lost
+IDLE = 0.4          # of the speed in hover, of rotors on the floor
 
 
 class Lost(Exception):
@@ -36,23 +39,27 @@ class Flown:
     commands: np.ndarray
     voltage: np.ndarray
 
+    def thinned(self, every):
+        """Return the flight with one of so many rows."""
+        if every == 1:
+            return self
+        return Flown(self.step * every, *(getattr(self, name)[::every] for name in (
+            'states', 'speeds', 'exact', 'measured', 'commands', 'voltage')))
 
-def controller_of(params):
-    """Return rotorpy's controller of the nominal vehicle, with gains that bear a delay."""
-    control = SE3Control({**params, 'kp_att': 150.0, 'kd_att': 20.0})
-    control.kp_pos, control.kd_pos = np.array([4.0, 4.0, 6.0]), np.array([3.2, 3.2, 4.5])
-    return control
 
-
-def fly(reality, params, path, seconds, step, noise, rng, sensors, full_voltage=12.6, sag=0.0):
+def fly(reality, params, path, seconds, step, noise, rng, sensors, full_voltage=12.6,
+        controller='geometric', logging=None):
     """
     Return the Flown; raises Lost.
 
-    Args: sensors: {'tilt': (3,), 'bias': (3,)}; noise: a Noise; sag: share of the voltage that
-    is lost over 30 s.
+    Args: sensors: {'tilt': (3,), 'bias': (3,)}; noise: a Noise; controller: one of CONTROLLERS;
+    logging: a Logging, or None for one row per command.
     """
+    logging = logging or Logging()
+    step = step / logging.every
     count = round(seconds / step)
-    control = controller_of(params)
+    control = CONTROLLERS[controller](params)
+    smooth = LowPass(logging.low_pass, step)
     changes = noise.draw(count, step, rng)
     states, speeds = np.empty((count, 13)), np.empty((count, 4))
     exact, measured = np.empty((count, 13)), np.empty((count, 13))
@@ -63,27 +70,34 @@ def fly(reality, params, path, seconds, step, noise, rng, sensors, full_voltage=
     s[8:10] = np.sin(0.5 * aim['yaw']), np.cos(0.5 * aim['yaw'])
     hover = np.sqrt(params['mass'] * 9.81 / (4 * params['k_eta']))
     s[16:] = hover
-    shift, earlier, given = np.zeros(3), [np.full(4, hover)] * 60, None
+    tilt = Rotation.from_euler('ZYX', sensors['tilt'][::-1]).as_quat()
+    shift, given = np.zeros(3), np.full(4, hover)
     for k in range(count):
         t = k * step
-        states[k], speeds[k] = s[:13], s[16:]
-        exact[k] = declared(states[k:k + 1], reality.centre, **sensors)[0]
-        measured[k] = moved(exact[k:k + 1], changes[k:k + 1])[0]
-        load = 0.0 if given is None else float(np.mean(given / hover) ** 3 - 1.0)
-        reality.voltage_ratio = 1.0 - sag * (t / 30.0 + 0.03 * load)
-        voltage[k] = full_voltage * reality.voltage_ratio
-        aim = path.update(t)
-        away = measured[k, :3] - aim['x']
-        if not np.linalg.norm(away) < FARTHEST:
+        if not np.abs(s[10:13]).max() < FASTEST:
             raise Lost
-        shift = np.clip(shift - INTEGRAL * step * away, -2.0, 2.0)
-        now = {'x': measured[k, :3] - shift, 'v': measured[k, 3:6], 'q': measured[k, 6:10],
-               'w': measured[k, 10:]}
-        given = np.clip(control.update(t, now, aim)['cmd_motor_speeds'], 0.05 * hover,
-                        params['rotor_speed_max'])
+        states[k], speeds[k] = s[:13], s[16:]
+        exact[k] = declared(states[k], rotation_of(s[6:10]), reality.centre, tilt, sensors['bias'])
+        thrust = float(np.mean((given / hover) ** 2))
+        for one in reality.influences:
+            exact[k] = one.measured(t, exact[k], thrust)
+        measured[k] = moved(exact[k], changes[k])
+        measured[k, 10:] = smooth(measured[k, 10:])
+        reality.battery.drain(t, step, given / hover)
+        voltage[k] = full_voltage * reality.battery.ratio
+        aim = path.update(t)
+        if aim.get('idle'):
+            given = np.full(4, IDLE * hover)
+        else:
+            away = measured[k, :3] - aim['x']
+            if not np.linalg.norm(away) < FARTHEST:
+                raise Lost
+            shift = np.clip(shift - INTEGRAL * step * away, -2.0, 2.0)
+            now = {'x': measured[k, :3] - shift, 'v': measured[k, 3:6], 'q': measured[k, 6:10],
+                   'w': measured[k, 10:]}
+            given = np.clip(control.update(t, now, aim)['cmd_motor_speeds'], 0.05 * hover,
+                            params['rotor_speed_max'])
         commands[k] = given
-        stranger = reality.stranger
-        followed = given if stranger is None else stranger.given(given)
-        s = reality.hold(s, followed, earlier[-int(reality.delay / step + 2):], step)
-        earlier.append(followed)
-    return Flown(step, states, speeds, exact, measured, commands, voltage)
+        s = reality.hold(s, given, step)
+    commands = logging.told(commands, params['rotor_speed_max'])
+    return Flown(step, states, speeds, exact, measured, commands, voltage).thinned(logging.every)

@@ -5,25 +5,43 @@
 import argparse
 from concurrent.futures import as_completed, ProcessPoolExecutor
 from dataclasses import asdict, replace
+from functools import partial
 import os
 from pathlib import Path
 import secrets
+import shutil
 import sys
+import tempfile
 
 import numpy as np
 
-from withheld.cases import SETS
+from withheld.cases import ALSO, SETS
+from withheld.estimator import EstimatedWorld, SETUPS
 from withheld.faults import csv_text, draw_faults, Faults, record_of
+from withheld.files import misread
 from withheld.fly import Lost
+from withheld.hybrids import make_hybrids
+from withheld.logs import Grounded, Logging, LOGS, PERIODS
 from withheld.paths import Hover, Sines, Waypoints
-from withheld.realities import gaps_of, LARGEST, shape_of, size_of, World
+from withheld.realities import (
+    DATASHEET,
+    gaps_of,
+    LARGEST,
+    Setting,
+    shape_of,
+    size_of,
+    strength_of_gap,
+    World,
+)
 from withheld.seal import seal
-from withheld.sensors import Noise
+from withheld.sensors import noise_of
 from withheld.vehicles import nominal_file, vehicle_of, yaw_authority
 
 STEP = 0.01         # s, of the controller and of the record
 RATES = (50.0, 100.0, 100.0, 200.0, 200.0, 500.0)      # Hz, of faulty records
 ATTEMPTS = 8
+FLOOR = 0.7         # rotor radii from the floor to the body origin of what stands on it
+CONTROLLER = {'development': 'geometric', 'evaluation': 'cascade'}
 MOST = 30.0         # the largest size of an effect that has no limit of its own
 
 
@@ -46,48 +64,130 @@ def make_case(case, part, flights, seconds, folder, rng):
 
 
 def _attempt(case, part, flights, seconds, folder, rng):
-    drag = bool(rng.random() < 0.5) or 'wind' in case.effects
+    # Wind and gusts act through drag alone.
+    drag = bool(rng.random() < 0.5) or 'wind' in case.effects or bool(case.gusts)
     params = vehicle_of(part, case.vehicle, rng, drag)
-    noise, step = Noise(), STEP
+    told, factors = misread(params, rng) if case.wrong_file else (params, {})
+    log = LOGS[case.log]
+    noise, step = noise_of(part, rng), PERIODS.get(case.log, STEP)
     if case.faulty:
         step = 1.0 / rng.choice(RATES)
         noise = replace(noise, correlation=rng.uniform(0.05, 0.3), bias=0.5)
-    paths = [_path(case, params, part, rng) for _ in range(flights)]
+    paths = [_path(case, params, part, rng) for _ in range(log.flights or flights)]
+    setting = Setting(told, CONTROLLER[part], log.logging, fall=rng.uniform(0.005, 0.05),
+                      bodies=case.bodies, gusts=case.gusts)
+    span, above = None, paths[-1]
+    if log.landing:
+        setting = replace(setting, floor=FLOOR * params['rotor_radius'])
+        paths = [Grounded(path, seconds, setting.floor) for path in paths]
+        span = paths[-1].up, paths[-1].down
+    charges = 1.0 + log.charge * rng.uniform(-1.0, 1.0, len(paths))
     seed, voltage = int(rng.integers(2 ** 31)), rng.uniform(3.7, 16.8)
     shapes = {name: shape_of(name, params, rng) for name in case.effects}
-    sizes, reached, draws, fall = {}, {}, int(rng.integers(2 ** 31)), rng.uniform(0.005, 0.05)
+    kind, draws, flights = _world(case, part), int(rng.integers(2 ** 31)), {}
 
-    def world_of(sizes):
-        inside = {name: size for name, size in sizes.items() if name in shapes}
-        outside = [item for item in sizes.items() if item[0] not in shapes]
-        return World(params, shapes, inside, outside[0] if outside else None, draws, fall)
+    def fly_last(sizes, setting, path, step, charge=1.0):
+        key = (*sizes.items(), setting is plain, charge)
+        if key not in flights:
+            flights[key] = kind(params, setting, shapes, case.forms, sizes, draws).fly(
+                path, seconds, step, noise, np.random.default_rng(seed), voltage, charge)
+        return flights[key]
 
-    def held_out(sizes):
-        return world_of(sizes).fly(paths[-1], seconds, step, noise, np.random.default_rng(seed),
-                                   voltage)
-
-    asked = case.effects if case.stranger is None else dict([case.stranger])
-    for name, strength in asked.items():
-        sizes[name], reached[name] = size_of(
-            lambda size, name=name: held_out({name: size}), params, strength,
-            LARGEST.get(name, MOST))
-    world, last = world_of(sizes), held_out(sizes)
-    flown = [world.fly(path, seconds, step, noise, rng, voltage) for path in paths[:-1]] + [last]
-    faults = [draw_faults(rng) if case.faulty else Faults() for _ in flown]
-    folder.mkdir()
+    # Strengths are those of an effect alone: the file is right, the air still, the log complete.
+    plain = replace(setting, told=params, gusts=0.0, floor=None, logging=Logging())
+    plain_step = STEP if case.log else step
+    if not (case.log or case.wrong_file or case.gusts):
+        plain = setting
+    sizes, reached = _sizes(case, lambda sizes: fly_last(sizes, plain, above, plain_step), params,
+                            rng)
+    world = kind(params, setting, shapes, case.forms, sizes, draws)
+    flown = [world.fly(path, seconds, step, noise, rng, voltage, charge)
+             for path, charge in zip(paths[:-1], charges[:-1], strict=True)]
+    flown.append(fly_last(sizes, setting, paths[-1], step, charges[-1]))
+    parts = world.parts()
+    voltages = all(getattr(one, 'recorded', True) for one in parts.values())
+    faults = [draw_faults(rng) if case.faulty else Faults(voltage=voltages) for _ in flown]
+    folder.mkdir(parents=True)
     for number, (one, wrong) in enumerate(zip(flown, faults, strict=True), 1):
         (folder / f'flight_{number}.csv').write_text(csv_text(record_of(one, wrong, rng)))
-    (folder / 'vehicle.yaml').write_text(nominal_file(params, folder.name))
-    exact, alone, before = gaps_of(last, params)
+    (folder / 'vehicle.yaml').write_text(nominal_file(told, folder.name))
+    exact, alone, before = gaps_of(flown[-1], told, span)
+    floor = alone
+    if case.log or case.gusts:
+        # What the log hides and gusts do is left when every effect is known.
+        none = fly_last({}, replace(setting, told=params), paths[-1], step, charges[-1])
+        floor = gaps_of(none, params, span)[2]
+    return _label(case, world, reached) | {
+        'period': flown[-1].step, 'file': factors, 'faults': [asdict(one) for one in faults],
+        'thrust_by_flight': charges.tolist() if log.charge else None,
+        'beside': sorted(_beside(case, parts, params, log) - set(case.effects)),
+        'instead': list(_instead(case)),
+        'held_out': {'exact': exact, 'noise': alone, 'before': before, 'floor': floor}}
+
+
+def _world(case, part):
+    """Return the class of the case's worlds."""
+    if case.setup is None:
+        return World
+    return partial(EstimatedWorld, setup=SETUPS[part][case.setup])
+
+
+def _sizes(case, fly_last, params, rng):
+    """Return the sizes {effect or stranger: size}, and the strengths that they reach, alone."""
+    sizes, reached = {}, {}
+    asked = case.effects if case.stranger is None else dict([case.stranger])
+    for name, strength in asked.items():
+        if case.kind == 'datasheet':
+            sizes[name] = DATASHEET[name](rng)
+            reached[name] = strength_of_gap(fly_last({name: sizes[name]}), params)
+            continue
+        sizes[name], reached[name] = size_of(lambda size, name=name: fly_last({name: size}),
+                                             params, strength, LARGEST.get(name, MOST))
+    return sizes, reached
+
+
+def _label(case, world, reached):
+    """Return what the reality is, without what its flights and files add."""
+    parts = world.parts()
+    effects = {name: {'asked': strength, 'strength': reached[name],
+                      'form': case.forms.get(name, 'ours'), **_parameters(name, world, parts)}
+               for name, strength in case.effects.items()}
     return {
-        'kind': case.kind, 'period': step, 'faulty': case.faulty, 'vehicle': case.vehicle,
-        'effects': {name: {'asked': case.effects[name], 'strength': reached[name],
-                           'parameters': world.effects[name]} for name in case.effects},
+        'column': case.column, 'kind': case.kind, 'faulty': case.faulty, 'vehicle': case.vehicle,
+        'log': case.log, 'setup': case.setup, 'bodies': case.bodies, 'gusts': case.gusts,
+        'effects': effects,
         'stranger': None if case.stranger is None else {
             'kind': case.stranger[0], 'asked': case.stranger[1],
-            'strength': reached[case.stranger[0]]},
-        'faults': [asdict(one) for one in faults],
-        'held_out': {'exact': exact, 'noise': alone, 'before': before}}
+            'strength': reached[case.stranger[0]]}}
+
+
+def _parameters(name, world, parts):
+    """Return the parameters of an effect, and whether they mean what the library's do."""
+    if name in parts:
+        return {'parameters': parts[name].parameters, 'comparable': parts[name].comparable}
+    # The exponent of a battery is that of a law that the library has in another form.
+    return {'parameters': world.effects[name], 'comparable': name != 'battery_sag'}
+
+
+def _beside(case, parts, params, log):
+    """Return the names of what is there, too, so that a verdict may but need not name it."""
+    names = {name for part in parts.values() for name in part.beside}
+    if case.wrong_file:
+        names |= {'inertia_mismatch'}
+        names |= {'rotor_drag'} if np.any(params['linear_drag']) else set()
+    if case.gusts:
+        names |= {'wind', 'unknown'}
+    if log.charge:
+        names |= {'thrust_scale', 'battery_sag'}
+    return names
+
+
+def _instead(case):
+    """Return the names that do as well as what is there."""
+    if case.stranger is not None:
+        return ALSO.get(case.stranger[0], ())
+    # A mass that goes in flight is no constant of the vehicle.
+    return ('unknown',) if case.log == 'dropped' else ()
 
 
 def _path(case, params, part, rng):
@@ -127,7 +227,23 @@ def make_set(name, count, seed, jobs, folder, on_case=lambda done, total: None):
             except Exception as error:      # of rotorpy: it takes no other case with it
                 not_flown.append(f'{type(error).__name__}: {error}')
             on_case(len(labels) + len(not_flown), len(cases))
+    if chosen.hybrids and count is None:
+        try:
+            labels |= _hybrids(chosen.part, Path(folder),
+                               np.random.default_rng([seed, len(cases)]))
+        except FileNotFoundError as error:
+            not_flown.append(str(error))
     return labels, not_flown
+
+
+def _hybrids(part, folder, rng):
+    """Write the changes to real flights, in folders with random names; return their labels."""
+    with tempfile.TemporaryDirectory() as apart:
+        labels = make_hybrids(part, apart, rng)
+        names = {name: secrets.token_hex(6) for name in labels}
+        for name in labels:
+            shutil.move(Path(apart) / name, folder / names[name])
+    return {names[name]: label | {'base': names['base']} for name, label in labels.items()}
 
 
 def main(arguments=None):

@@ -10,7 +10,7 @@ position, velocity (world), quaternion x, y, z, w, rate (body).
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from withheld.vehicles import GRAVITY
+from withheld.constants import GRAVITY
 
 
 class Nominal:

@@ -4,27 +4,23 @@
 
 import numpy as np
 
+from withheld.influence import Influence
 
-class Stranger:
-    """Something that acts on a vehicle; each kind changes one of these."""
 
-    def gain(self, speeds):
-        """Return the factors on the thrust of the rotors (n,) that turn at speeds (n,) rad/s."""
-        return np.ones(len(speeds))
+class Force(Influence):
+    """A force that depends on time and place."""
 
-    def force(self, t, position, velocity):
+    def force(self, time, position, velocity):
         """Return the force (3,) N in the world."""
-        return np.zeros(3)
+        raise NotImplementedError
 
-    def given(self, command):
-        """Return what the rotors follow, (n,) rad/s, of a command."""
-        return command
-
-    def after(self, step, rotation, acceleration):
-        """Take notice of the acceleration (3,) m/s^2 (world) during a step of s."""
+    def wrench(self, now):
+        """Return the force in the body, without a moment."""
+        force = self.force(now.time, now.position, now.velocity)
+        return now.rotation.T @ force, np.zeros(3)
 
 
-class Periodic(Stranger):
+class Periodic(Force):
     """A force that swings."""
 
     def __init__(self, size, weight, rng):
@@ -33,12 +29,12 @@ class Periodic(Stranger):
         self.amplitude = 0.02 * size * weight * direction / np.linalg.norm(direction)
         self.rate, self.phase = 2.0 * np.pi * rng.uniform(0.3, 1.5), rng.uniform(0.0, 6.28)
 
-    def force(self, t, position, velocity):
+    def force(self, time, position, velocity):
         """Return the force."""
-        return self.amplitude * np.sin(self.rate * t + self.phase)
+        return self.amplitude * np.sin(self.rate * time + self.phase)
 
 
-class Tether(Stranger):
+class Tether(Force):
     """A spring towards a point."""
 
     def __init__(self, size, weight, rng):
@@ -46,12 +42,12 @@ class Tether(Stranger):
         self.point = rng.uniform([-1.0, -1.0, 0.0], [1.0, 1.0, 0.3])
         self.stiffness = 0.02 * size * weight
 
-    def force(self, t, position, velocity):
+    def force(self, time, position, velocity):
         """Return the force."""
         return self.stiffness * (self.point - position)
 
 
-class Updraft(Stranger):
+class Updraft(Force):
     """A force upwards about a place."""
 
     def __init__(self, size, weight, rng):
@@ -59,25 +55,25 @@ class Updraft(Stranger):
         self.place, self.width = rng.uniform(-0.5, 0.5, 2), rng.uniform(0.3, 0.6)
         self.size = 0.03 * size * weight
 
-    def force(self, t, position, velocity):
+    def force(self, time, position, velocity):
         """Return the force."""
         away = np.sum((position[:2] - self.place) ** 2)
         return np.array([0.0, 0.0, self.size * np.exp(-0.5 * away / self.width ** 2)])
 
 
-class Exponent(Stranger):
+class Exponent(Influence):
     """Thrust that does not go with the square of the speed."""
 
     def __init__(self, size, hover, rng):
         """Draw whether the exponent is greater or less."""
         self.hover, self.change = hover, 0.1 * size * rng.choice([-1.0, 1.0])
 
-    def gain(self, speeds):
+    def gain(self, now):
         """Return the factors."""
-        return np.clip(speeds / self.hover, 0.1, 4.0) ** self.change
+        return np.clip(now.speeds / self.hover, 0.1, 4.0) ** self.change
 
 
-class Backlash(Stranger):
+class Backlash(Influence):
     """Commands with memory: the rotors follow only where the command leaves a band."""
 
     def __init__(self, size, hover, rng):
@@ -91,7 +87,7 @@ class Backlash(Stranger):
         return self.held
 
 
-class Slosh(Stranger):
+class Slosh(Force):
     """A load that swings in the body."""
 
     def __init__(self, size, mass, rng):
@@ -108,13 +104,40 @@ class Slosh(Stranger):
         self.place = self.place + step * self.speed
         self.rotation = rotation
 
-    def force(self, t, position, velocity):
+    def force(self, time, position, velocity):
         """Return the force of the spring and damper of the load."""
         inside = self.mass * (self.rate ** 2 * self.place
                               + 2.0 * self.damping * self.rate * self.speed)
         return self.rotation @ np.array([*inside, 0.0])
 
 
+class Ceiling(Influence):
+    """Suction towards a plate overhead."""
+
+    def __init__(self, size, radius, rng):
+        """Draw how high it is."""
+        self.size, self.radius, self.height = 0.3 * size, radius, rng.uniform(1.5, 2.5)
+
+    def gain(self, now):
+        """Return the factors."""
+        gap = np.maximum(self.height - now.heights, 0.0) / self.radius
+        return 1.0 + self.size / (1.0 + gap) ** 2
+
+
+class Neighbours(Influence):
+    """Rotors that breathe the wake of those beside them when these turn faster."""
+
+    def __init__(self, size, hover, rng):
+        """Draw how far they lean on each other."""
+        self.hover, self.share = hover, 0.1 * size * rng.choice([-1.0, 1.0])
+
+    def gain(self, now):
+        """Return the factors."""
+        turn = now.speeds / self.hover
+        return np.clip(1.0 + self.share * (np.roll(turn, 1) - turn) * np.abs(turn), 0.3, 2.0)
+
+
 KINDS = {'periodic_force': (Periodic, 'weight'), 'tether': (Tether, 'weight'),
          'updraft': (Updraft, 'weight'), 'thrust_exponent': (Exponent, 'hover'),
-         'backlash': (Backlash, 'hover'), 'slosh': (Slosh, 'mass')}
+         'backlash': (Backlash, 'hover'), 'slosh': (Slosh, 'mass'),
+         'ceiling': (Ceiling, 'radius'), 'neighbours': (Neighbours, 'hover')}

@@ -57,6 +57,7 @@ class Waypoints:
 
     def __init__(self, rng, size, acceleration, low, turn):
         """Draw the places and find the path."""
+        self._known = {}
         shown = None
         while shown is None:
             places = rng.uniform([-1.0, -1.0, -0.5], [1.0, 1.0, 0.5], (self.POINTS, 3))
@@ -77,7 +78,12 @@ class Waypoints:
                                 rng.uniform(-3.0, 3.0)])
 
     def update(self, t):
-        """Return rotorpy's flat outputs at t, s."""
+        """Return rotorpy's flat outputs at t, s; kept, as one path is flown several times."""
+        if t not in self._known:
+            self._known[t] = self._look_up(t)
+        return self._known[t]
+
+    def _look_up(self, t):
         found = self.inner.update(self.pace * t)
         parts = [(found['x'], found['yaw']), (found['x_dot'], found['yaw_dot']),
                  (found['x_ddot'], found['yaw_ddot']), (found['x_dddot'], 0.0),

@@ -5,9 +5,9 @@
 import numpy as np
 
 from withheld.cases import EFFECTS
+from withheld.hybrids import judge as judge_hybrid
 
-# battery_sag: the reality's exponent is no parameter of ours.
-COMPARED = tuple(name for name in EFFECTS if name != 'battery_sag')
+COLUMNS = ('ours', 'forms', 'files', 'logs', 'estimator', 'faulty')
 BINS = (0.0, 0.05, 0.2, 0.4, 0.6, 0.8, 0.95, 1.0)
 # Between samples there is nothing to tell a delay from a lag by, where both are over at the next.
 PASSED = {'actuation_delay': ('delay', 1.0), 'motor_lag': ('time_constant', 0.5)}   # periods
@@ -32,10 +32,48 @@ def twins_of(label):
     """Return the effects of which the records cannot tell which one it is, or an empty set."""
     for name, (parameter, most) in PASSED.items():
         true = label['effects'].get(name)
-        if len(label['effects']) == 1 and true is not None and (
-                true['parameters'][parameter] <= most * label['period']):
+        value = None if true is None else true['parameters'].get(parameter)
+        if len(label['effects']) == 1 and value is not None and value <= most * label['period']:
             return set(PASSED)
     return set()
+
+
+def findings_of(found):
+    """
+    Return what a diagnosis names as one finding, as a list of sets of names.
+
+    What motion cannot tell apart is one finding: it names each of its members.
+    """
+    return [set(names) for names in found.get('findings_as_one') or ()]
+
+
+def named_in(name, names, findings):
+    """Return whether a name is among names, or another member of its finding is."""
+    return name in names or any(name in one and one & names for one in findings)
+
+
+def minor_of(found):
+    """Return the set of effects that a diagnosis is sure of and holds for small."""
+    return {row['effect'] for row in found.get('minor') or ()}
+
+
+def is_exact(label, found):
+    """
+    Return whether a verdict names what is there, no more and no less.
+
+    Effects that are there but small may stand in `minor`. What the label allows beside the
+    effects (`beside`) may be named and need not be; `instead` are names that do as well.
+    """
+    truth, verdict = truth_of(label), set(found.get('verdict', ()))
+    findings, beside = findings_of(found), set(label.get('beside', ()))
+    if verdict and verdict <= set(label.get('instead', ())):
+        return True
+    extra = {name for name in verdict if not named_in(name, truth | beside, findings)}
+    known = verdict | minor_of(found)
+    missing = {name for name in truth if not named_in(name, known, findings)}
+    if truth == {'none'}:
+        return bool(verdict) and not extra
+    return not extra and not missing
 
 
 def judge(label, found):
@@ -45,44 +83,55 @@ def judge(label, found):
     A failure is wrong; a refusal is neither right nor wrong but counted as refused. `exact` is
     also right where the records cannot tell (poor flights, twins_of) and `undetermined` names
     what is there beside what the verdict names rightly; with twins, `first` is right with either.
+    `instead`: `unknown` is said where something known is, and nothing of that is named.
     """
     truth = truth_of(label)
     out = {'refused': 'refused' in found, 'failed': 'failed' in found,
            'seconds': found.get('seconds')}
-    keys = ('first', 'exact', 'alarm', 'unknown', 'undetermined', 'closed', 'precision', 'recall')
+    keys = ('first', 'exact', 'alarm', 'unknown', 'instead', 'undetermined', 'closed',
+            'precision', 'recall')
     if out['refused']:
         return out | dict.fromkeys(keys)
-    verdict = set(found.get('verdict', ()))
+    verdict, findings = set(found.get('verdict', ())), findings_of(found)
     doubts = undetermined_of(found)
-    named = verdict & set(EFFECTS)
-    effects = truth & set(EFFECTS)
+    named, effects = verdict & set(EFFECTS), truth & set(EFFECTS)
     ranking = [row['effect'] for row in found.get('ranking', ())]
-    exact = verdict == truth
+    exact = is_exact(label, found)
     twins = twins_of(label)
     if 'undetermined' in verdict and (label['kind'] == 'poor' or doubts == twins):
         sure = set(found.get('sure') or ())
         exact = sure <= truth <= doubts | sure if effects else False
-    hits = len(named & effects)
+    right = {name for name in effects if named_in(name, verdict, findings)}
+    counted = named - set(label.get('beside', ()))
+    allowed = set(label.get('instead', ()))
     return out | {
-        'first': bool(ranking) and ranking[0] in effects | twins if effects else None,
+        'first': bool(ranking) and named_in(ranking[0], effects | twins, findings)
+        if effects else None,
         'exact': exact,
-        'alarm': verdict != {'none'} if truth == {'none'} else None,
-        'unknown': 'unknown' in verdict,
+        'alarm': not exact if truth == {'none'} else None,
+        'unknown': 'unknown' in verdict or bool(verdict) and verdict <= allowed
+        if label['stranger'] else 'unknown' in verdict,
+        'instead': None if label['stranger'] or 'unknown' in allowed
+        else 'unknown' in verdict and not right,
         'undetermined': bool(doubts) and truth <= doubts | {'unknown'} if doubts else None,
         'closed': _closed(label, found),
-        'precision': hits / len(named) if named else None,
-        'recall': hits / len(effects) if effects else None}
+        'precision': len(right) / len(counted | right) if counted | right else None,
+        'recall': len(right) / len(effects) if effects else None}
 
 
 def _closed(label, found):
     """
     Return the share of the closable gap that was closed, velocity on the held-out flight.
 
-    With faults the gap before is the diagnosis's, too, as clocks are its own to mend.
+    The noise is what is left where every effect is known: `floor`, which holds what a log hides.
+
+    Where records are not as they should be the gap before is the diagnosis's, as clocks are its
+    own to mend, and rows on the floor its own to leave out.
     """
     held, gap = label['held_out'], found.get('gap') or {}
-    before, noise = held['before']['velocity'], held['noise']['velocity']
-    if label['faulty']:
+    before = held['before']['velocity']
+    noise = held.get('floor', held['noise'])['velocity']
+    if label['faulty'] or label.get('log'):
         before = gap.get('before', {}).get('velocity', before)
     after = gap.get('after', {}).get('velocity')
     if label['stranger'] or after is None or before - noise < ROOM * noise:
@@ -102,7 +151,7 @@ def summary(rows):
     hits = [(row['precision'] or 0.0, row['recall']) for row in rows if row['recall'] is not None]
     scores = [2 * p * r / (p + r) if p + r else 0.0 for p, r in hits]
     return {'count': len(rows), **{key: rate(rows, key) for key in (
-        'first', 'exact', 'alarm', 'unknown', 'refused', 'failed')},
+        'first', 'exact', 'alarm', 'unknown', 'instead', 'refused', 'failed')},
         'undetermined': sum(row['undetermined'] is not None for row in rows),
         'undetermined_right': sum(row['undetermined'] is True for row in rows),
         'f1': {'rate': float(np.mean(scores)) if scores else None, 'count': len(scores)},
@@ -119,6 +168,16 @@ def strength_of(label):
     return asked[0] if len(asked) == 1 else None
 
 
+def column_of(label):
+    """
+    Return the column of the tables that a case counts in.
+
+    ours, forms (of effects that the library has otherwise), files (vehicle files that are wrong
+    elsewhere, or data sheets), logs (what logging does), estimator (states), or faulty.
+    """
+    return label.get('column') or ('faulty' if label['faulty'] else 'ours')
+
+
 def score(labels, found):
     """
     Return the score of diagnoses {name: diagnosis} against labels {name: label}.
@@ -126,35 +185,50 @@ def score(labels, found):
     A case without a diagnosis counts as failed.
     """
     missing = {'failed': 'no diagnosis was written'}
-    pairs = [(label, found.get(name, missing)) for name, label in sorted(labels.items())]
+    pairs = [(label, found.get(name, missing)) for name, label in sorted(labels.items())
+             if label['kind'] != 'hybrid']
     rows = [(label, judge(label, one)) for label, one in pairs]
-    groups = {}
-    for label, row in rows:
-        prefix = 'faulty ' if label['faulty'] else ''
-        name = f'{prefix}{label["kind"]}'
+    groups, effects, columns = {}, {}, {}
+    for (label, row), pair in zip(rows, pairs, strict=True):
+        column = column_of(label)
+        name = f'{column}: {label["kind"]}'
+        columns.setdefault(column, []).append((pair, row))
         groups.setdefault(name, []).append(row)
-        if label['kind'] == 'single' or label['kind'] == 'unknown':
+        if label['kind'] in ('single', 'unknown'):
             groups.setdefault(f'{name} {strength_of(label):g}', []).append(row)
-    effects = {}
-    for label, row in rows:
-        if label['kind'] == 'single' and not label['faulty']:
-            (name,), strength = label['effects'], strength_of(label)
-            effects.setdefault(name, {}).setdefault(f'{strength:g}', []).append(row)
-    known = [row for label, row in rows if not label['stranger']]
+        if label['kind'] == 'single' and column in ('ours', 'forms'):
+            (effect,), strength = label['effects'], strength_of(label)
+            effects.setdefault(f'{column}: {effect}', {}).setdefault(
+                f'{strength:g}', []).append(row)
     seconds = [row['seconds'] for _, row in rows if row['seconds'] is not None]
     return {
         'count': len(rows), 'chance': chance(pairs),
         'groups': {name: summary(groups[name]) for name in sorted(groups)},
+        'columns': {name: _column(columns[name]) for name in COLUMNS if name in columns},
         'effects': {name: {strength: summary(some) for strength, some in sorted(by.items())}
                     for name, by in sorted(effects.items())},
-        'unknown_falsely_claimed': rate(known, 'unknown'),
-        'calibration': {'clean': calibration([p for p in pairs if not p[0]['faulty']]),
-                        'faulty': calibration([p for p in pairs if p[0]['faulty']])},
-        'coverage': {'clean': coverage([p for p in pairs if not p[0]['faulty']]),
-                     'faulty': coverage([p for p in pairs if p[0]['faulty']])},
-        'gap_agrees': agreement(pairs),
+        'gap_agrees': agreement(pairs), 'hybrids': hybrids_of(labels, found),
         'seconds': {'median': float(np.median(seconds)), 'most': float(np.max(seconds))}
         if seconds else None}
+
+
+def hybrids_of(labels, found):
+    """Return [{'change', and what hybrids.judge makes of it}] of the changes to real flights."""
+    rows = []
+    for name, label in labels.items():
+        if label['kind'] != 'hybrid' or name == label['base']:
+            continue
+        both = [found.get(one, {}) for one in (label['base'], name)]
+        judged = {'gained': None} if any('verdict' not in one for one in both) else judge_hybrid(
+            label, *both)
+        rows.append({'change': label['change']} | judged)
+    return sorted(rows, key=lambda row: row['change'])
+
+
+def _column(some):
+    """Return what a column has beside its groups, of [((label, diagnosis), judged)]."""
+    pairs, rows = [pair for pair, _ in some], [row for _, row in some]
+    return summary(rows) | {'calibration': calibration(pairs), 'coverage': coverage(pairs)}
 
 
 def chance(pairs):
@@ -169,12 +243,18 @@ def chance(pairs):
 
 
 def calibration(pairs):
-    """Return the reliability table of the probabilities, their Brier score and error."""
+    """
+    Return the reliability table of the probabilities, their Brier score and error.
+
+    `middle` is the error over the probabilities between 0.05 and 0.95 alone: among the others
+    nine in ten are near 0. What a label allows beside its effects is neither there nor not.
+    """
     given, present = [], []
     for label, one in pairs:
         for row in one.get('ranking', ()):
-            given.append(row['probability'])
-            present.append(row['effect'] in label['effects'])
+            if row['effect'] not in label.get('beside', ()):
+                given.append(row['probability'])
+                present.append(row['effect'] in label['effects'])
     if not given:
         return None
     given, present = np.array(given), np.array(present, float)
@@ -183,21 +263,32 @@ def calibration(pairs):
     table = [{'from': BINS[k], 'to': BINS[k + 1], 'count': int(some.sum()),
               'given': float(given[some].mean()), 'present': float(present[some].mean())}
              for k, some in inside]
-    error = sum(row['count'] * abs(row['given'] - row['present']) for row in table) / len(given)
+    middle = [row for row in table if row['from'] > BINS[0] and row['to'] < BINS[-1]]
     return {'table': table, 'brier': float(np.mean((given - present) ** 2)),
-            'error': float(error), 'count': len(given),
+            'error': _error(table), 'count': len(given), 'middle': _error(middle),
+            'middle_count': sum(row['count'] for row in middle),
             'brier_of_base_rate': float(present.mean() * (1.0 - present.mean()))}
 
 
+def _error(table):
+    count = sum(row['count'] for row in table)
+    return sum(row['count'] * abs(row['given'] - row['present'])
+               for row in table) / count if count else None
+
+
 def coverage(pairs):
-    """Return {effect: {'rate', 'count'}} of true parameters inside their 95 % intervals."""
+    """
+    Return {effect: {'rate', 'count'}} of true parameters inside their 95 % intervals.
+
+    Only where the set is exact, and of the parameters that mean the same as the library's.
+    """
     inside = {}
     for label, one in pairs:
-        if label['stranger'] or set(one.get('verdict', ())) != truth_of(label):
+        if label['stranger'] or not is_exact(label, one):
             continue
         for row in one.get('ranking', ()):
             true = label['effects'].get(row['effect'])
-            if true is None or row['effect'] not in COMPARED:
+            if true is None or not true.get('comparable', True):
                 continue
             for name, value in true['parameters'].items():
                 got = row['parameters'].get(name)
@@ -213,5 +304,6 @@ def agreement(pairs):
     """Return the largest relative difference of the gap before, theirs against ours, or None."""
     differences = [abs(one['gap']['before']['velocity'] / label['held_out']['before']['velocity']
                        - 1.0)
-                   for label, one in pairs if one.get('gap') and not label['faulty']]
+                   for label, one in pairs if one.get('gap') and column_of(label) in (
+                       'ours', 'forms', 'files')]
     return float(max(differences)) if differences else None

@@ -11,7 +11,9 @@ from rotorpy.vehicles.hummingbird_params import quad_params as HUMMINGBIRD
 from rotorpy.vehicles.px4_sihsim_quadx_params import quad_params as PX4
 import yaml
 
-GRAVITY = 9.81      # m/s^2, as rotorpy has it
+from withheld.constants import GRAVITY
+from withheld.constants import hover_speed as hover_speed
+
 AERODYNAMICS = ('c_Dx', 'c_Dy', 'c_Dz', 'k_d', 'k_z', 'k_h', 'k_flap')
 # By set: rotorpy's parameters, radius of the rotors in m, scale of length.
 BASES = {
@@ -45,11 +47,6 @@ def vehicle_of(part, which, rng, with_drag):
     strength = rng.uniform(0.05, 0.2) if with_drag else 0.0     # 1/s
     params['linear_drag'] = strength * params['mass'] * np.array([1.0, 1.0, 1.3])
     return params
-
-
-def hover_speed(params):
-    """Return the speed of the rotors in hover, rad/s."""
-    return float(np.sqrt(params['mass'] * GRAVITY / (params['num_rotors'] * params['k_eta'])))
 
 
 def yaw_authority(params):
