@@ -6,7 +6,7 @@ import numpy as np
 
 from quad_ident_ros.diagnose.rules import Rules
 
-FARTHEST = 20.0     # log odds that the evidence of a posterior with 1e-9 of rounding can give
+STEADIEST = 10.0    # standard errors beyond which more say nothing more
 LEAST = 1e-3        # contribution below which there is hardly any
 
 
@@ -18,15 +18,13 @@ def probabilities(posterior: dict, weights: dict, rules: Rules) -> dict:
     contribute; of the others by the posterior of the sets, to which these are no party.
     Args: posterior {candidate: ...} of the Selection; weights {candidate: Weight}.
     """
-    return {cause: presence(value, weights[cause].stability, weights[cause].contribution, rules)
+    return {cause: presence(weights[cause].stability, weights[cause].contribution, rules)
             if cause in weights else value for cause, value in posterior.items()}
 
 
-def presence(posterior: float, stability: float, contribution: float, rules: Rules) -> float:
+def presence(stability: float, contribution: float, rules: Rules) -> float:
     """Return the probability that an effect of the best set is present."""
-    odds = np.clip(np.log(max(posterior, 1e-300) / max(1.0 - posterior, 1e-300)),
-                   -FARTHEST, FARTHEST)
-    base, steady, share, evidence = rules.calibration
-    value = (base + steady * np.clip(stability, -10.0, 10.0)
-             + share * np.log10(np.clip(contribution, LEAST, 1.0)) + evidence * odds)
+    base, steady, share = rules.calibration
+    value = (base + steady * np.clip(stability, -STEADIEST, STEADIEST)
+             + share * np.log10(np.clip(contribution, LEAST, 1.0)))
     return float(1.0 / (1.0 + np.exp(-value)))

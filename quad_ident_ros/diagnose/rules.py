@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Every threshold of a verdict, with its reason and source; docs/method.md shows where each acts."""
+"""Every threshold of a verdict, with its reason; docs/method.md shows where each acts."""
 
 from dataclasses import dataclass, field
 
@@ -30,9 +30,9 @@ class Rules:
         one another by 10 to 30 % over the range in which they are used.
       form_time: s over which that error stays the same: that of a turn or a stop of a flight.
     Probability:
-      calibration: constant, and weights of stability, log10 of the contribution and log odds of
-        the posterior in the log odds of being present, fitted to the flights of development of
-        the withheld check: docs/method.md has the command.
+      calibration: constant, and weights of stability and log10 of the contribution in the log
+        odds of being present, fitted to the flights of development of the withheld check:
+        docs/method.md has the command.
     Naming:
       present: probability from which on an effect is named: more likely there than not.
       doubt: probability of a rival from which on it is not ruled out; an effect of 1 - doubt is
@@ -62,7 +62,7 @@ class Rules:
     present: float = 0.5
     doubt: float = 0.12
     instead: float = 2.0
-    calibration: tuple[float, float, float, float] = (-1.0, 0.6, 1.5, 0.05)
+    calibration: tuple[float, float, float] = (1.1, 0.2, 2.4)
     material: float = 0.05
     visible: float = 0.25
     noise_share: float = 0.75
@@ -72,8 +72,8 @@ class Rules:
     differs: float = 2.0
 
     def least(self, group: str, noise: float) -> float:
-        """Return the gap of a group of outputs below which shares of it mean nothing."""
-        return max(self.visible * noise, self.floors[group])
+        """Return the gap of a group below which shares of it mean nothing: half of what matters."""
+        return max(self.visible * noise, 0.5 * self.floors[group])
 
     def tolerance(self, group: str, noise: float) -> float:
         """Return the gap of a group of outputs that does not matter, beside its noise's gap."""
