@@ -8,6 +8,7 @@ import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 
 from quad_ident_ros.data.frames import continuous
+from quad_ident_ros.effects.registry import NULL
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.actuators import actuated, without_lag
 from quad_ident_ros.model.attitude import quaternion_from_euler
@@ -146,10 +147,10 @@ def _guides(thetas, guide, t, fine):
 
     Args: thetas (T, P); guide (N, 13) at t (N,) s; fine (M,) s of the integration.
     """
-    tilted = thetas[:, [place for place in SEEN if not COM.start <= place < COM.stop]].any(axis=1)
-    which = np.where(tilted, np.cumsum(tilted), 0)
-    rows = np.concatenate([[np.zeros(thetas.shape[1])], thetas[tilted]])
-    rows[:, COM] = 0.0
+    places = [place for place in SEEN if not COM.start <= place < COM.stop]
+    each, which = np.unique(thetas[:, places], axis=0, return_inverse=True)
+    rows = np.tile(NULL, (len(each), 1))
+    rows[:, places] = each
     states = underlying(rows, np.broadcast_to(guide, (len(rows), *guide.shape)))
     q, rate = states[..., 6:10], states[..., 10:]
     q = np.stack([continuous(each) for each in q])
@@ -159,7 +160,7 @@ def _guides(thetas, guide, t, fine):
         place = np.searchsorted(t, fine, side='right').clip(1, len(t) - 1)
         share = ((fine - t[place - 1]) / (t[place] - t[place - 1]))[:, None]
         rate = (1.0 - share) * rate[:, place - 1] + share * rate[:, place]
-    return np.ascontiguousarray(np.concatenate([q, rate], axis=-1)), which
+    return np.ascontiguousarray(np.concatenate([q, rate], axis=-1)), which.reshape(-1)
 
 
 def _finer(t, steps):
