@@ -124,9 +124,17 @@ def _apart(names):
 
 
 def fitted_vehicle(fit):
-    """Return the vehicle as it was found; what is undetermined as far as it is given."""
+    """
+    Return the vehicle as it was found; what is undetermined as far as it is given.
+
+    How well its file knows a constant that was fitted is said of the file's value, and left out.
+    """
     z = fit.estimate.z
-    return replace(fit.vehicle, effects=mapping(z[SPLIT:]), mass=float(z[INDEX['mass']]),
+    freed = {parameter.name for parameter in fit.parameters}
+    known = {key: std for key, std in fit.vehicle.uncertainty.items()
+             if not freed & {key, *(f'{key}_{axis}' for axis in 'xyz')}}
+    return replace(fit.vehicle, uncertainty=known, effects=mapping(z[SPLIT:]),
+                   mass=float(z[INDEX['mass']]),
                    thrust_coefficient=float(z[INDEX['thrust_coefficient']]),
                    torque_coefficient=float(z[INDEX['torque_coefficient']]),
                    **{key: tuple(float(z[INDEX[f'{key}_{axis}']]) for axis in 'xyz')

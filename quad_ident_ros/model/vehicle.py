@@ -13,6 +13,10 @@ from quad_ident_ros import resources, schema
 from quad_ident_ros.effects import registry
 from quad_ident_ros.errors import InputError
 
+# Constants by key of the file, and whether zero is refused.
+NUMBERS = {'mass': True, 'gravity': True, 'thrust_coefficient': True, 'torque_coefficient': True,
+           'rotor_inertia': False, 'rotor_radius': False, 'speed_min': False, 'speed_max': False}
+TRIPLES = {'inertia': True, 'linear_drag': False, 'rotational_drag': False}
 LEAST_HOVER = 0.03  # of speed_max: the rotors would carry a thousand times the weight
 
 
@@ -31,7 +35,9 @@ class Vehicle:
 
     inertia (3,) kg m^2; thrust_coefficient N/(rad/s)^2; torque_coefficient N m/(rad/s)^2;
     linear_drag (3,) N/(m/s); rotational_drag (3,) N m/(rad/s)^2; speeds rad/s; effects that it
-    has beside the nominal model, {effect: {parameter: value}}, see effects.registry.
+    has beside the nominal model, {effect: {parameter: value}}, see effects.registry; uncertainty:
+    standard deviations of the constants that have one, in the constant's unit, by key (those of
+    places by 'rotors[0].position'); those of lists are tuples, None where an entry has none.
     """
 
     name: str
@@ -48,6 +54,7 @@ class Vehicle:
     speed_min: float = 0.0
     speed_max: float = float('inf')
     effects: dict = field(default_factory=dict, hash=False)
+    uncertainty: dict = field(default_factory=dict, hash=False)
 
     @property
     def arm_length(self):
@@ -103,25 +110,27 @@ def load_nominal(name_or_path):
 
 def vehicle_from_mapping(data, where):
     """Return the vehicle that the mapping of a vehicle file describes; raises InputError."""
-    known = [field.name for field in fields(Vehicle)]
+    known = [field.name for field in fields(Vehicle) if field.name != 'uncertainty']
     required = [name for name in known[:7]]
     schema.check_keys(where, data, known, required)
     values = {'name': schema.name(f'{where}: name', data['name'])}
-    for key in ('mass', 'gravity', 'thrust_coefficient', 'torque_coefficient'):
-        values[key] = schema.number(f'{where}: {key}', data[key], 0.0, exclusive=True)
-    values['inertia'] = schema.numbers(f'{where}: inertia', data['inertia'], 3, minimum=0.0,
-                                       exclusive=True)
-    for key in ('rotor_inertia', 'rotor_radius', 'speed_min', 'speed_max'):
+    stds = {}
+    for key, exclusive in NUMBERS.items():
         if key in data:
-            values[key] = schema.number(f'{where}: {key}', data[key], 0.0)
-    for key in ('linear_drag', 'rotational_drag'):
+            values[key], stds[key] = schema.uncertain(f'{where}: {key}', data[key], 0.0,
+                                                      exclusive)
+    for key, exclusive in TRIPLES.items():
         if key in data:
-            values[key] = schema.numbers(f'{where}: {key}', data[key], 3, minimum=0.0)
+            values[key], stds[key] = schema.uncertain_numbers(
+                f'{where}: {key}', data[key], 3, 0.0, exclusive)
     if not isinstance(data['rotors'], list) or not data['rotors']:
         raise InputError(f'{where}: rotors: expected a list of {{position: [x, y, z], spin: 1}}')
-    values['rotors'] = tuple(_rotor(f'{where}: rotors[{i}]', rotor)
-                             for i, rotor in enumerate(data['rotors']))
-    vehicle = Vehicle(**values)
+    rotors = []
+    for i, rotor in enumerate(data['rotors']):
+        made, stds[_place_of(i)] = _rotor(f'{where}: rotors[{i}]', rotor)
+        rotors.append(made)
+    vehicle = Vehicle(**values, rotors=tuple(rotors), uncertainty={
+        key: std for key, std in stds.items() if std not in (None, (None,) * 3)})
     if not vehicle.arm_length > 0:
         raise InputError(f'{where}: rotors: all of them lie on the z axis; give their places')
     if vehicle.speed_max <= vehicle.speed_min:
@@ -134,10 +143,11 @@ def vehicle_from_mapping(data, where):
 
 def vehicle_to_mapping(vehicle):
     """Return the mapping of a vehicle file that describes the vehicle."""
-    data = {key: list(value) if isinstance(value, tuple) else value
-            for key, value in asdict(vehicle).items()}
-    data['rotors'] = [{'position': list(rotor.position), 'spin': rotor.spin}
-                      for rotor in vehicle.rotors]
+    stds = vehicle.uncertainty
+    data = {key: _with_std(value, stds.get(key)) for key, value in asdict(vehicle).items()
+            if key != 'uncertainty'}
+    data['rotors'] = [{'position': _with_std(rotor.position, stds.get(_place_of(i))),
+                       'spin': rotor.spin} for i, rotor in enumerate(vehicle.rotors)]
     if math.isinf(vehicle.speed_max):
         del data['speed_max']
     if not vehicle.effects:
@@ -161,7 +171,20 @@ def write_vehicle(path, vehicle):
         raise InputError(f'{path}: cannot be written: {error.strerror}') from None
 
 
-def _rotor(where, data):
+def _with_std(value: object, std: float | tuple | None) -> object:
+    """Return a value of a vehicle file with its standard deviation, where it has one."""
+    if isinstance(value, tuple):
+        return [_with_std(*pair) for pair in zip(value, std or [None] * len(value), strict=True)]
+    return value if std is None else {'value': value, 'std': std}
+
+
+def _place_of(rotor: int) -> str:
+    """Return the key by which `uncertainty` has the place of a rotor."""
+    return f'rotors[{rotor}].position'
+
+
+def _rotor(where: str, data: object) -> tuple[Rotor, tuple[float | None, ...]]:
+    """Return a rotor, and the standard deviations of its place."""
     schema.check_keys(where, data, ('position', 'spin'), ('position', 'spin'))
-    return Rotor(schema.numbers(f'{where}: position', data['position'], 3),
-                 schema.choice(f'{where}: spin', data['spin'], (1, -1)))
+    position, stds = schema.uncertain_numbers(f'{where}: position', data['position'], 3)
+    return Rotor(position, schema.choice(f'{where}: spin', data['spin'], (1, -1))), stds
