@@ -2,20 +2,22 @@
 # SPDX-License-Identifier: Apache-2.0
 """Rollouts that are short enough for a model to stay near the record."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from quad_ident_ros.greybox.errors import GROUPS
-from quad_ident_ros.greybox.flights import flight_of, SEGMENT
+from quad_ident_ros.greybox.flights import Flight, flight_of, SEGMENT, Track
 from quad_ident_ros.greybox.linear import errors_along
+from quad_ident_ros.model.vehicle import Vehicle
 
 SEGMENTS = (SEGMENT, 0.3, 0.2)      # s
 MOST = 2000     # rollouts of all flights: 1000 s of 0.5 s each; of more, every so many
 FAR = 0.8       # rad, of the attitude at the end: beyond it what the slopes say is not so
 
 
-def near_flights(tracks, vehicle, z):
+def near_flights(tracks: Sequence[Track], vehicle: Vehicle, z: np.ndarray) -> list[Flight]:
     """
     Return the Flights of Tracks, with the longest rollouts of a vector z (Z,) that stay near.
 

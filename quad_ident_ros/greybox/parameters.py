@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The constants of the vehicle and the parameters of all effects as one vector."""
 
+from collections.abc import Iterable
+
 import numpy as np
 
 from quad_ident_ros.effects import registry
@@ -24,17 +26,17 @@ FACTORS = {
 """Parameters of effects that are a factor on a constant, by constant."""
 
 
-def nominal(vehicle):
+def nominal(vehicle: Vehicle) -> np.ndarray:
     """Return the vector (Z,) of the vehicle file alone, without effects."""
     return np.concatenate([vehicle_vector(vehicle), registry.NULL])
 
 
-def as_described(vehicle):
+def as_described(vehicle: Vehicle) -> np.ndarray:
     """Return the vector (Z,) of the vehicle file with the effects that it names."""
     return np.concatenate([vehicle_vector(vehicle), registry.vector(vehicle.effects, vehicle)])
 
 
-def constants_of(z, vehicle):
+def constants_of(z: np.ndarray, vehicle: Vehicle) -> np.ndarray:
     """Return the constants (..., 16) in vectors (..., Z), the hover speeds those of the others."""
     constants = np.array(z[..., :SPLIT])
     mass, gravity, thrust = (constants[..., INDEX[name]] for name in
@@ -43,7 +45,7 @@ def constants_of(z, vehicle):
     return constants
 
 
-def limits(vehicle):
+def limits(vehicle: Vehicle) -> np.ndarray:
     """Return lower bounds, upper bounds and usual sizes (3, Z), SI."""
     constants = vehicle_vector(vehicle)
     arm = vehicle.arm_length
@@ -81,7 +83,7 @@ def prior_sizes(vehicle: Vehicle, width: float) -> np.ndarray:
     return sizes
 
 
-def columns_of(effects, rotor_count):
+def columns_of(effects: Iterable[str], rotor_count: int) -> list[int]:
     """Return the places (list of int) of the parameters of effects in the vector."""
     return [SPLIT + k for name in effects
             for k in range(registry.SLICES[name].start, registry.SLICES[name].stop)

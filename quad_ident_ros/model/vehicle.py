@@ -5,6 +5,7 @@
 from dataclasses import asdict, dataclass, field, fields, replace
 import math
 from pathlib import Path
+from typing import Any, TypeAlias
 
 import numpy as np
 import yaml
@@ -12,6 +13,8 @@ import yaml
 from quad_ident_ros import resources, schema
 from quad_ident_ros.effects import registry
 from quad_ident_ros.errors import InputError
+
+Uncertainty: TypeAlias = float | tuple[float | None, ...]
 
 # Constants by key of the file, and whether zero is refused.
 NUMBERS = {'mass': True, 'gravity': True, 'thrust_coefficient': True, 'torque_coefficient': True,
@@ -24,7 +27,7 @@ LEAST_HOVER = 0.03  # of speed_max: the rotors would carry a thousand times the 
 class Rotor:
     """A rotor: its place in the body frame (m) and the sign of its reaction torque about +z."""
 
-    position: tuple
+    position: tuple[float, ...]
     spin: int
 
 
@@ -42,37 +45,37 @@ class Vehicle:
 
     name: str
     mass: float
-    inertia: tuple
+    inertia: tuple[float, ...]
     gravity: float
     thrust_coefficient: float
     torque_coefficient: float
-    rotors: tuple
+    rotors: tuple[Rotor, ...]
     rotor_inertia: float = 0.0
     rotor_radius: float = 0.0
-    linear_drag: tuple = (0.0, 0.0, 0.0)
-    rotational_drag: tuple = (0.0, 0.0, 0.0)
+    linear_drag: tuple[float, ...] = (0.0, 0.0, 0.0)
+    rotational_drag: tuple[float, ...] = (0.0, 0.0, 0.0)
     speed_min: float = 0.0
     speed_max: float = float('inf')
-    effects: dict = field(default_factory=dict, hash=False)
-    uncertainty: dict = field(default_factory=dict, hash=False)
+    effects: registry.Values = field(default_factory=dict, hash=False)
+    uncertainty: dict[str, Uncertainty] = field(default_factory=dict, hash=False)
 
     @property
-    def arm_length(self):
+    def arm_length(self) -> float:
         """Lever arm l in m: the mean distance of the rotors from the body's z axis."""
         return float(np.mean([np.hypot(r.position[0], r.position[1]) for r in self.rotors]))
 
     @property
-    def hover_speed(self):
+    def hover_speed(self) -> float:
         """Speed of each rotor, rad/s, at which they all carry the weight."""
         return math.sqrt(self.mass * self.gravity / (len(self.rotors) * self.thrust_coefficient))
 
     @property
-    def hover_input(self):
+    def hover_input(self) -> np.ndarray:
         """Inputs U1..U4 (4,) that hold the vehicle still: the weight on U1, N."""
         return np.array([self.mass * self.gravity, 0.0, 0.0, 0.0])
 
 
-def hover_fault(vehicle):
+def hover_fault(vehicle: Vehicle) -> tuple[str, str] | None:
     """Return (what, how to mend it) where a vehicle cannot hover by its file, or None."""
     hover, low, high = vehicle.hover_speed, vehicle.speed_min, vehicle.speed_max
     if hover >= high:
@@ -89,7 +92,7 @@ def hover_fault(vehicle):
             'vehicle file')
 
 
-def load_vehicle(name_or_path):
+def load_vehicle(name_or_path: str | Path) -> Vehicle:
     """
     Return the vehicle of a shipped name or of a vehicle file.
 
@@ -99,7 +102,7 @@ def load_vehicle(name_or_path):
     return vehicle_from_mapping(resources.read_yaml(path), str(path))
 
 
-def load_nominal(name_or_path):
+def load_nominal(name_or_path: str | Path) -> Vehicle:
     """Return the vehicle of a name or file as load_vehicle; InputError where it has effects."""
     vehicle = load_vehicle(name_or_path)
     if vehicle.effects:
@@ -108,13 +111,13 @@ def load_nominal(name_or_path):
     return vehicle
 
 
-def vehicle_from_mapping(data, where):
+def vehicle_from_mapping(data: Any, where: str) -> Vehicle:
     """Return the vehicle that the mapping of a vehicle file describes; raises InputError."""
     known = [field.name for field in fields(Vehicle) if field.name != 'uncertainty']
     required = [name for name in known[:7]]
     schema.check_keys(where, data, known, required)
-    values = {'name': schema.name(f'{where}: name', data['name'])}
-    stds = {}
+    values: dict[str, Any] = {'name': schema.name(f'{where}: name', data['name'])}
+    stds: dict[str, Uncertainty | None] = {}
     for key, exclusive in NUMBERS.items():
         if key in data:
             values[key], stds[key] = schema.uncertain(f'{where}: {key}', data[key], 0.0,
@@ -130,7 +133,7 @@ def vehicle_from_mapping(data, where):
         made, stds[_place_of(i)] = _rotor(f'{where}: rotors[{i}]', rotor)
         rotors.append(made)
     vehicle = Vehicle(**values, rotors=tuple(rotors), uncertainty={
-        key: std for key, std in stds.items() if std not in (None, (None,) * 3)})
+        key: std for key, std in stds.items() if std is not None and std != (None,) * 3})
     if not vehicle.arm_length > 0:
         raise InputError(f'{where}: rotors: all of them lie on the z axis; give their places')
     if vehicle.speed_max <= vehicle.speed_min:
@@ -141,7 +144,7 @@ def vehicle_from_mapping(data, where):
     return vehicle
 
 
-def vehicle_to_mapping(vehicle):
+def vehicle_to_mapping(vehicle: Vehicle) -> dict[str, Any]:
     """Return the mapping of a vehicle file that describes the vehicle."""
     stds = vehicle.uncertainty
     data = {key: _with_std(value, stds.get(key)) for key, value in asdict(vehicle).items()
@@ -155,13 +158,13 @@ def vehicle_to_mapping(vehicle):
     return data
 
 
-def check_ending(path):
+def check_ending(path: str | Path) -> None:
     """Raise InputError where a path has not the ending of a vehicle file."""
     if Path(path).suffix not in ('.yaml', '.yml'):
         raise InputError(f'{path}: a vehicle is written to a .yaml file; name one')
 
 
-def write_vehicle(path, vehicle):
+def write_vehicle(path: str | Path, vehicle: Vehicle) -> None:
     """Write a vehicle file that load_vehicle reads back as it was; raises InputError."""
     check_ending(path)
     text = yaml.safe_dump(vehicle_to_mapping(vehicle), sort_keys=False, default_flow_style=None)
@@ -171,7 +174,7 @@ def write_vehicle(path, vehicle):
         raise InputError(f'{path}: cannot be written: {error.strerror}') from None
 
 
-def _with_std(value: object, std: float | tuple | None) -> object:
+def _with_std(value: Any, std: Any) -> Any:
     """Return a value of a vehicle file with its standard deviation, where it has one."""
     if isinstance(value, tuple):
         return [_with_std(*pair) for pair in zip(value, std or [None] * len(value), strict=True)]
@@ -183,7 +186,7 @@ def _place_of(rotor: int) -> str:
     return f'rotors[{rotor}].position'
 
 
-def _rotor(where: str, data: object) -> tuple[Rotor, tuple[float | None, ...]]:
+def _rotor(where: str, data: Any) -> tuple[Rotor, tuple[float | None, ...]]:
     """Return a rotor, and the standard deviations of its place."""
     schema.check_keys(where, data, ('position', 'spin'), ('position', 'spin'))
     position, stds = schema.uncertain_numbers(f'{where}: position', data['position'], 3)
