@@ -6,9 +6,7 @@ import argparse
 from dataclasses import replace
 import sys
 
-from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn
-
+from quad_ident_ros.cli.identify import progress_bar
 from quad_ident_ros.cli.options import flights_from
 from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.diagnose.rules import RULES
@@ -41,12 +39,11 @@ def add(commands):
     parser.add_argument('--mapping', metavar='FILE', help='which topics and outputs of other '
                         "people's records mean what (YAML)")
     parser.add_argument('--effects', metavar='A,B', help='only these may be named (default: all)')
+    usual = ', '.join(f'{name}={RULES.floors[name]:g} {unit}' for name, unit in UNITS.items())
     parser.add_argument('--tolerance', metavar='GROUP=VALUE[,...]',
                         help='gap beyond the noise that does not matter half a second ahead, for '
-                        f'example {EXAMPLE}; never less than a quarter of the gap that the noise '
-                        'makes (default: ' + ', '.join(
-                            f'{name}={RULES.floors[name]:g} {unit}'
-                            for name, unit in UNITS.items()) + ')')
+                             f'example {EXAMPLE}; never less than {100 * RULES.noise_share:.0f} '
+                             f'%% of what the noise makes (default: {usual})')
     parser.add_argument('--json', metavar='FILE', help='write it as data; - prints it')
     parser.add_argument('--report', metavar='FILE.html',
                         help='write a page for a browser: the verdict, pictures, all numbers')
@@ -66,8 +63,7 @@ def run(options):
                for record in flights_from(path, options.mapping, options.vehicle)]
     held = (flights_from(options.hold_out, options.mapping, options.vehicle)[-1]
             if options.hold_out else None)
-    with Progress(TextColumn('{task.description}'), BarColumn(),
-                  console=Console(stderr=True), transient=True) as bar:
+    with progress_bar() as bar:
         task = bar.add_task('comparing sets of effects', total=1.0)
         found = diagnose(records, vehicle, hold_out=held, effects=effects, rules=rules,
                          on_progress=lambda share: bar.update(task, completed=share))

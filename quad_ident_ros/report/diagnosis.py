@@ -41,7 +41,7 @@ def show(found: Diagnosis, stream: TextIO) -> None:
     for line in (*minor_lines(found), *one_finding_lines(found)):
         say(line)
     say('')
-    say(f'how far, on {found.held_out} (held out), {found.gap.horizon:g} s ahead')
+    say(far_line(found))
     screen.print(_table(FAR, far_rows(found)))
     for line in (*open_lines(found), *nuisance_lines(found)):
         say(line)
@@ -100,6 +100,13 @@ def shown_effects(found: Diagnosis) -> list[Ranked]:
     return [row for row in found.ranking if row.probability >= WORTH or row.effect in named]
 
 
+def form_of(row: Ranked) -> str:
+    """Return the form of an effect and how much of the effect it explains, in words."""
+    if row.form is None:
+        return ''
+    return row.form if row.explained is None else f'{row.form}, {100 * row.explained:.0f} %'
+
+
 def contribution_of(row: Ranked) -> str:
     """Return in words the share of the closable gap that is lost without an effect."""
     return '' if row.contribution is None else f'{100 * row.contribution:.0f} %'
@@ -130,6 +137,13 @@ def one_finding_lines(found: Diagnosis) -> list[str]:
         lines.append(f'{row["effect"]} may as well be another cause of the same motion'
                      + (f' ({may_be})' if may_be else '') + f'; what tells: {row["tells"]}')
     return lines
+
+
+def far_line(found: Diagnosis) -> str:
+    """Return how much of the velocity gap is closed, open loop and given the attitude."""
+    return (f'how far, on {found.held_out} (held out), {found.gap.horizon:g} s ahead: of the '
+            f'velocity gap above the noise {100 * found.gap.closed:.0f} % is closed, given the '
+            f'recorded attitude {100 * found.gap_given_attitude.closed:.0f} %')
 
 
 def far_rows(found: Diagnosis) -> list[list[str]]:
@@ -217,9 +231,9 @@ def _which(found: Diagnosis) -> Table:
     for row in shown_effects(found):
         values = ', '.join(f'{name} {one.value:.4g} ± {one.std:.2g} {one.unit}'.removesuffix(' 1')
                            for name, one in row.parameters.items())
-        rows.append([row.effect, row.form or '', f'{row.probability:.2f}', contribution_of(row),
+        rows.append([row.effect, form_of(row), f'{row.probability:.2f}', contribution_of(row),
                      values, without_it(found, row)])
-    return _table(('effect', 'form', 'probability', 'contribution', 'parameters',
+    return _table(('effect', 'form, explains', 'probability', 'contribution', 'parameters',
                    'velocity gap\nwithout it, m/s'), rows or [['none', *[''] * 5]])
 
 

@@ -11,7 +11,9 @@ from quad_ident_ros.report import gap_pictures
 from quad_ident_ros.report.diagnosis import (
     contribution_of,
     FAR,
+    far_line,
     far_rows,
+    form_of,
     minor_lines,
     NEXT,
     next_row,
@@ -93,7 +95,7 @@ def _where(found: Diagnosis, pictures: dict) -> list:
 def _which(found: Diagnosis, pictures: dict) -> list:
     rows = []
     for row in shown_effects(found):
-        first = [row.effect, row.form or '', f'{row.probability:.2f}', contribution_of(row),
+        first = [row.effect, form_of(row), f'{row.probability:.2f}', contribution_of(row),
                  without_it(found, row)]
         for name, one in row.parameters.items():
             spread = WIDE * one.std
@@ -102,7 +104,7 @@ def _which(found: Diagnosis, pictures: dict) -> list:
             first = [''] * len(first)
         if not row.parameters:
             rows.append([*first, '', '', '', ''])
-    estimates = ([table(['effect', 'form', 'probability', 'contribution',
+    estimates = ([table(['effect', 'form, explains', 'probability', 'contribution',
                          'velocity gap without it, m/s', 'parameter', 'estimate',
                          '95 % interval', 'unit'], rows,
                         kinds=('text', 'text', '', '', '', 'text', '', '', 'text'))]
@@ -112,8 +114,8 @@ def _which(found: Diagnosis, pictures: dict) -> list:
 
 
 def _far(found: Diagnosis, pictures: dict) -> list:
-    return [tag('h2', 'How far'), table(FAR, far_rows(found),
-                                        kinds=('text', '', '', '', '', 'text')),
+    return [tag('h2', 'How far'), tag('p', _sentence(far_line(found))),
+            table(FAR, far_rows(found), kinds=('text', '', '', '', '', 'text')),
             pictures['horizons'], pictures['predictions']]
 
 
