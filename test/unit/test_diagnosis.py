@@ -59,8 +59,13 @@ def with_play(commands, width=0.03 * HOVER):
 
 
 def check(data, truth):
-    """Check verdict, parameters and what is closed against the truth."""
-    assert set(data['verdict']) == set(truth)
+    """
+    Check verdict, parameters and what is closed against the truth.
+
+    Beside others an effect may be too small to matter; one alone may not.
+    """
+    minor = {row['effect'] for row in data['minor']} if len(truth) > 1 else set()
+    assert set(data['verdict']) <= set(truth) <= set(data['verdict']) | minor
     rows = {row['effect']: row for row in data['ranking']}
     for effect, parameters in truth.items():
         assert rows[effect]['probability'] > 0.9
@@ -93,9 +98,13 @@ def test_several_at_once_are_named_together():
     truth = {name: TRUTHS[name] for name in SEVERAL}
     data = diagnose(flown(truth), VEHICLE).as_data()
     check(data, truth)
-    # Each of them contributes: without it more is left.
+    # Each that is named contributes: without it the gap is larger.
+    assert len(data['verdict']) > 1
     assert all(data['gap']['without'][name]['velocity'] > data['gap']['after']['velocity']
-               for name in truth)
+               for name in data['verdict'])
+    contributions = [row['contribution'] for row in data['ranking'][:len(data['verdict'])]]
+    assert [row['effect'] for row in data['ranking']][:len(contributions)] == data['verdict']
+    assert contributions == sorted(contributions, reverse=True)
 
 
 @pytest.mark.parametrize('noise', [WHITE, COLOURED], ids=['white', 'coloured'])
@@ -112,8 +121,24 @@ def test_noise_with_a_memory_is_not_held_against_the_share_that_is_closed():
     check(diagnose(flown(truth, COLOURED, seed=20), VEHICLE).as_data(), truth)
 
 
-@pytest.mark.parametrize('told', [lambda commands: HOVER * (commands / HOVER) ** 0.7, with_play],
-                         ids=['another exponent of the thrust', 'play of the actuators'])
+def swinging(commands):
+    """Return commands without a swing that the thrust has, at half a hertz."""
+    wave = np.sin(np.pi * 0.01 * np.arange(len(commands)))
+    return commands * np.sqrt(1.0 + 0.1 * wave)
+
+
+def test_another_exponent_of_the_thrust_is_a_form_of_thrust_scale():
+    found = diagnose([as_if(record, lambda commands: HOVER * (commands / HOVER) ** 0.7)
+                      for record in flown({}, seed=30)], VEHICLE)
+    [row] = [row for row in found.ranking if row.effect == 'thrust_scale']
+    assert found.verdict[0] == 'thrust_scale' and row.form == 'exponent'
+    assert row.parameters['exponent'].value == pytest.approx(2.0 / 0.7, rel=0.005)
+    # The torque of the rotors follows the same law; the form has that of the thrust alone.
+    assert set(found.verdict) <= {'thrust_scale', 'inertia_mismatch'}
+
+
+@pytest.mark.parametrize('told', [swinging, with_play],
+                         ids=['a swing of the thrust', 'play of the actuators'])
 def test_what_no_effect_explains_is_unknown(told):
     data = diagnose([as_if(record, told) for record in flown({}, seed=30)], VEHICLE).as_data()
     assert 'unknown' in data['verdict']
@@ -139,7 +164,9 @@ def test_what_is_learnt_does_not_depend_on_the_held_out_flight():
     *training, test = flown({'battery_sag': TRUTHS['battery_sag']})
     fuller = replace(test, columns={**test.columns, 'vbat': test.columns['vbat'] + 0.3})
     one, other = (diagnose([*training, held], VEHICLE).as_data() for held in (test, fuller))
-    assert one['verdict'] == other['verdict']
+    assert one['verdict'] == ['battery_sag']
+    # Its voltage says nothing of its thrust, and that is not explained.
+    assert other['verdict'] == ['battery_sag', 'unknown']
     assert [row['parameters'] for row in one['ranking']] == [row['parameters']
                                                              for row in other['ranking']]
     assert one['where'] == other['where']

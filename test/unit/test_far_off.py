@@ -4,24 +4,23 @@
 
 import numpy as np
 import pytest
-from quality import NANOBENCH
+from real import CUTS, needs_real_flights, real_flight, real_vehicle
 
 from docs.real_flights import pushed, same
-from quad_ident_ros.data.load import load
 from quad_ident_ros.diagnose.candidates import candidates
 from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.diagnose.intake import take_in
 from quad_ident_ros.diagnose.rules import RULES
 from quad_ident_ros.diagnose.select import COLOURED, select
 from quad_ident_ros.greybox.noise import whole_noise
-from quad_ident_ros.model.vehicle import load_nominal
+
+pytestmark = needs_real_flights
 
 
 @pytest.fixture(scope='module')
 def flown():
     """Return the nominal vehicle and flights of it, as they are and with a moment added."""
-    vehicle = load_nominal(NANOBENCH / 'vehicle.yaml')
-    flights = [load(path) for path in sorted(NANOBENCH.glob('*.csv.gz'))]
+    vehicle, flights = real_vehicle(), [real_flight(name) for name in sorted(CUTS)]
     return vehicle, [[change(flight, vehicle) for flight in flights] for change in (same, pushed)]
 
 
