@@ -19,7 +19,7 @@ class Candidate:
     """
     An effect in one of its forms, or of one rotor, and its columns.
 
-    form: the name of the form; share: its part of the effect's prior probability; own: the
+    form: the name of the form; usual: whether it is the one that most know; share: its part of the effect's prior probability; own: the
     greybox.own.Nuisance that it is instead of an effect, or None.
     """
 
@@ -27,6 +27,7 @@ class Candidate:
     label: str
     columns: tuple[int, ...]
     form: str = ''
+    usual: bool = True
     share: float = 1.0
     own: Nuisance | None = None
 
@@ -48,7 +49,7 @@ def candidates(flights: list, vehicle: Vehicle,
                           for j in range(len(vehicle.rotors))]
             else:
                 found.append(Candidate(name, f'{name} {form.name}', columns, form.name,
-                                       1.0 / len(forms)))
+                                       form is forms[0], 1.0 / len(forms)))
     return tuple(found)
 
 

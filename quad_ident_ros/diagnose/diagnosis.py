@@ -9,18 +9,18 @@ import numpy as np
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.diagnose import advice, measure
 from quad_ident_ros.diagnose.candidates import candidates
-from quad_ident_ros.diagnose.intake import Intake, take_in
+from quad_ident_ros.diagnose.intake import take_in
 from quad_ident_ros.diagnose.judgement import Bench, judge, pooled
-from quad_ident_ros.diagnose.nuisances import late_controller
+from quad_ident_ros.diagnose.noise import noise_of
 from quad_ident_ros.diagnose.nuisances import as_data as nuisances_as_data
+from quad_ident_ros.diagnose.nuisances import late_controller
 from quad_ident_ros.diagnose.result import Diagnosis
-from quad_ident_ros.diagnose.rules import Rules, RULES
-from quad_ident_ros.diagnose.select import select, Selection
+from quad_ident_ros.diagnose.rules import RULES, Rules
+from quad_ident_ros.diagnose.select import select
 from quad_ident_ros.diagnose.verdict import verdict_of
 from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.greybox.kinematics import measurement_noise
-from quad_ident_ros.greybox.noise import near_noise, quick_noise, whole_noise
+from quad_ident_ros.greybox.noise import whole_noise
 from quad_ident_ros.greybox.parameters import nominal
 from quad_ident_ros.model.vehicle import Vehicle
 
@@ -49,7 +49,7 @@ def diagnose(records: list[FlightRecord], vehicle: Vehicle, *,
         intake = intake.shifted(prompt)
         selection = select(intake.flights, vehicle, causes, rules,
                            lambda share: on_progress(0.7 + 0.05 * share))
-    noise = noise_of(selection, intake)
+    noise = noise_of(selection, intake, rules)
     bench = Bench(intake.flights, (*intake.tracks, intake.held_out), vehicle, selection, noise,
                   rules)
     judged = judge(bench)
@@ -58,7 +58,8 @@ def diagnose(records: list[FlightRecord], vehicle: Vehicle, *,
     z0, model = nominal(vehicle), judged.model
     whole = np.median([whole_noise(raw, 1.0 - 1.0 / raw.shape[1])
                        for raw in model.estimate.left], axis=0)
-    before = measure.residual_wrenches(bench, [z0 + z - model.z for z in model.vectors], noise)
+    before = measure.residual_wrenches(bench, [z0 + z - model.z for z in model.vectors],
+                                       noise.deviation)
     after = measure.residual_wrenches(bench, model.vectors, whole)
     on_progress(0.95)
     unseen = advice.not_shown(selection, causes, verdict)
@@ -79,10 +80,3 @@ def diagnose(records: list[FlightRecord], vehicle: Vehicle, *,
         flight_checks=verdict.flight_checks, findings=tuple(intake.findings), z=model.z,
         pictures=measure.pictures(bench, judged, before, after))
 
-
-def noise_of(selection: Selection, intake: Intake) -> np.ndarray:
-    """Return the standard deviation of the measurement noise of the flights, (12,)."""
-    best = selection.best.estimate
-    near, white = (np.median([kind(raw) for raw in best.left], axis=0)
-                   for kind in (near_noise, quick_noise))
-    return measurement_noise(intake.flights, best.vectors, near, white)

@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from quad_ident_ros.diagnose.candidates import Candidate
 from quad_ident_ros.diagnose.discrepancy import fitted_sizes
 from quad_ident_ros.diagnose.evidence import occam, Quadratic
 from quad_ident_ros.diagnose.frame import blocks_at, Frame

@@ -16,8 +16,7 @@ from quad_ident_ros.diagnose.discrepancy import (
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.effects.registry import LACKING, SLICES
 from quad_ident_ros.greybox.estimate import Estimate, weights_of
-from quad_ident_ros.greybox.linear import linear_of, Slopes, slopes_at
-from quad_ident_ros.greybox.linear import errors_along
+from quad_ident_ros.greybox.linear import errors_along, linear_of, Slopes, slopes_at
 from quad_ident_ros.greybox.normal import Normal
 from quad_ident_ros.greybox.own import Layout
 from quad_ident_ros.greybox.parameters import SPLIT

@@ -28,6 +28,21 @@ MEDIAN = 2.366                  # of the sum of three squared standard normal nu
 
 
 @dataclass(frozen=True, eq=False)
+class Noise:
+    """
+    Noise of the measurement: standard deviation (12,) of the errors, of a tilt, of a drift.
+
+    Both stay the same over a prediction. The drift (m/s) is the error of the velocity that does,
+    beside that in the deviation; the tilt (rad) is that of the attitude: a vehicle whose attitude is taken from the record is pulled
+    sideways by it.
+    """
+
+    deviation: np.ndarray
+    tilt: float
+    drift: float
+
+
+@dataclass(frozen=True, eq=False)
 class Ends:
     """Errors (B, 12) of predictions at their end, and when they started (B,) s."""
 
@@ -66,11 +81,11 @@ def usual_gap(all_ends):
 
 def noise_gap(track, vehicle, z, noise, horizon):
     """
-    Return {group: what measurement noise alone would give}, for white noise (12,).
+    Return {group: what a Noise alone would give}.
 
     The noise of the first state, carried along by the model, and that of the last one.
     """
-    flight = flight_of(track, horizon, EVERY)
+    flight, deviation = flight_of(track, horizon, EVERY), noise.deviation
     chosen = flight.first[np.linspace(0, len(flight.first) - 1, NOISE_STARTS).astype(int)]
     starts = flight.states[chosen]
     everything = np.concatenate([starts, *(moved(starts, move) for move in np.diag(STATE_STEP))])
@@ -78,10 +93,15 @@ def noise_gap(track, vehicle, z, noise, horizon):
                   flight.count, constants=constants_of(z[None], vehicle),
                   guide=flight.guide)[:, -1]
     out = out.reshape(1 + ERRORS, len(chosen), -1)
-    carried = difference(out[1:], out[0]) / STATE_STEP[:, None, None] * noise[:, None, None]
-    variance = np.sum(carried ** 2, axis=0) + noise ** 2
-    return {name: float(np.sqrt(np.mean(np.sum(variance[:, part], axis=1))))
-            for name, part in GROUPS.items()}
+    carried = (difference(out[1:], out[0]) / STATE_STEP[:, None, None]
+               * deviation[:, None, None])
+    variance = np.sum(carried ** 2, axis=0) + deviation ** 2
+    found = {name: float(np.mean(np.sum(variance[:, part], axis=1)))
+             for name, part in GROUPS.items()}
+    pull = 2.0 * (vehicle.gravity * noise.tilt) ** 2    # of both horizontal axes
+    found['velocity'] += pull * horizon ** 2
+    found['position'] += pull * (horizon ** 2 / 2.0) ** 2 + 3.0 * (noise.drift * horizon) ** 2
+    return {name: float(np.sqrt(value)) for name, value in found.items()}
 
 
 def interval(all_ends, seed=0):

@@ -9,7 +9,7 @@ from quad_ident_ros.data.quality import cautions
 from quad_ident_ros.data.record import FlightRecord, refuse_twice, same_flight
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.greybox.flights import Flight, guided, highest_voltage, moved, track_of, Track
+from quad_ident_ros.greybox.flights import Flight, guided, highest_voltage, moved, Track, track_of
 from quad_ident_ros.greybox.near import near_flights
 from quad_ident_ros.greybox.parameters import nominal
 from quad_ident_ros.model.mixing import with_commands

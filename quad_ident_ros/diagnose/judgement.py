@@ -9,7 +9,9 @@ import numpy as np
 
 from quad_ident_ros.diagnose import gap as gaps
 from quad_ident_ros.diagnose.fitted import effects_in, refitted
+from quad_ident_ros.diagnose.gap import Noise
 from quad_ident_ros.diagnose.nuisances import own_of
+from quad_ident_ros.diagnose.probability import probabilities
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.diagnose.select import Selection
 from quad_ident_ros.greybox.errors import ERRORS, GROUPS
@@ -57,14 +59,14 @@ class Bench:
     Flights on which models are refitted and measured.
 
     flights: those learnt from, cut into rollouts; tracks: these and, last, the one held out;
-    noise (12,) of the measurement.
+    noise of the measurement.
     """
 
     flights: list
     tracks: tuple
     vehicle: object
     selection: Selection
-    noise: np.ndarray
+    noise: Noise
     rules: Rules
 
     def model(self, chosen: tuple, estimate: Estimate, fixed: np.ndarray | None = None) -> Model:
@@ -74,7 +76,7 @@ class Bench:
         fixed (Z,): nuisances that are not free in the flight that was held out.
         """
         held_out = own_of(self.tracks[-1], self.vehicle, estimate.z,
-                          tuple(cause.own for cause in chosen if cause.own), self.noise,
+                          tuple(cause.own for cause in chosen if cause.own), self.noise.deviation,
                           self.flights[0].segment, fixed)
         vectors = (*estimate.vectors, estimate.z + held_out)
         return Model(chosen, estimate, vectors, self.ends(vectors))
@@ -113,54 +115,89 @@ class Bench:
         return self.model(chosen, estimate, fixed[-1])
 
 
+@dataclass(frozen=True)
+class Weight:
+    """
+    What an effect weighs, by what is lost when it is taken out and everything else is refitted.
+
+    contribution: the share of the closable gap that is lost; stability: how steadily it helps,
+    see `stability`; explained: the share of what it is there for that its form explains;
+    gap {group: ...}: without it.
+    """
+
+    contribution: float
+    stability: float
+    explained: float
+    gap: dict
+
+
 @dataclass(frozen=True, eq=False)
 class Judgement:
     """
     What was judged of a Selection.
 
-    model: the effects that matter; full: all that the evidence is for; contribution: {candidate:
-    share of the closable gap that is lost without it}, of those in either; stability: {candidate:
-    how steadily it helps, see `stability`}; without: {candidate: Model without it}; before: the
-    Ends of the nominal vehicle with the nuisances of each flight; noise: {group: gap} of each
-    flight; unexplained: {group: gap beyond tolerance and error of form}.
+    model: all effects that are there; material: those of them that matter; weights {candidate:
+    Weight} and probability {candidate: of being present}; without {candidate: Model without it};
+    before: the Ends of the nominal vehicle with the nuisances of each flight; noise: {group: gap}
+    of each flight; unexplained: {group: gap beyond tolerance and error of form}.
     """
 
-    full: Model
     model: Model
+    material: tuple
+    weights: dict
+    probability: dict
+    without: dict
     before: tuple
     noise: list
-    contribution: dict
-    stability: dict
-    without: dict
     unexplained: dict
 
 
 def judge(bench: Bench) -> Judgement:
-    """Return the Judgement of the best set of a Selection on the flights of a Bench."""
-    best = bench.selection.best
+    """
+    Return the Judgement of the best set of a Selection on the flights of a Bench.
+
+    Effects without which nothing that matters is lost are taken out one group after the other;
+    those of them that are there all the same stay in the model.
+    """
+    best, rules = bench.selection.best, bench.rules
     full = model = bench.model(best.chosen, best.estimate)
     null = nominal(bench.vehicle)
     ends = bench.ends(tuple(null + vector - full.z for vector in full.vectors))
     noises = bench.noise_gaps(full)
     before, noise = gaps.gap(ends), pooled(noises)
-    contribution, steady, without = {}, {}, {}
+    weights, without = {}, {}
     while model.effects:
         smaller = {removed: bench.without(model, removed) for removed in _subsets(model)}
-        lost = {removed: lost_share(model.gap, one.gap, before, noise, bench.rules)
-                for removed, one in smaller.items()}
         for removed, one in smaller.items():
             if len(removed) == 1:
-                [cause] = removed
-                contribution[cause], without[cause] = lost[removed], one
-                steady[cause] = stability(model.ends, one.ends, noise)
+                weights[removed[0]] = _weight(model, one, before, noise, rules)
+                without[removed[0]] = one
         idle = [removed for removed, one in smaller.items()
-                if not matters(model.gap, one.gap, before, noise, bench.rules)]
+                if not matters(model.gap, one.gap, before, noise, rules)]
         if not idle:
             break
-        first = max(idle, key=lambda removed: (len(removed), -lost[removed]))
+        first = max(idle, key=lambda removed: (len(removed), -lost_share(
+            model.gap, smaller[removed].gap, before, noise, rules)))
         model = smaller[first]
-    return Judgement(full, model, ends, noises, contribution, steady, without,
-                     unexplained(model.gap, before, noise, bool(model.effects), bench.rules))
+    present = probabilities(bench.selection.probability, weights, rules)
+    absent = tuple(cause for cause in full.effects if present[cause] < rules.present)
+    material = tuple(cause for cause in model.effects if cause not in absent)
+    if set(material) == set(full.effects) - set(absent) and not set(model.effects) & set(absent):
+        final = model
+    else:
+        final = bench.without(full, absent) if absent else full
+    return Judgement(final, material, weights, present, without, ends, noises,
+                     unexplained(final.gap, before, noise, bool(material), rules))
+
+
+def _weight(model: Model, without: Model, before: dict, noise: dict, rules: Rules) -> Weight:
+    """Return the Weight of what a Model has more than another."""
+    shares = lost_shares(model.gap, without.gap, before, noise, rules)
+    name = max(shares, key=shares.get)
+    there = beyond(without.gap[name], noise[name])
+    remains = beyond(model.gap[name], noise[name])
+    return Weight(float(shares[name]), stability(model.ends, without.ends, noise),
+                  float(np.clip(1.0 - remains / max(there, 1e-300), 0.0, 1.0)), without.gap)
 
 
 def pooled(gap: list) -> dict:
@@ -196,7 +233,7 @@ def lost_shares(after: dict, without: dict, before: dict, noise: dict, rules: Ru
     Args: {group: gap} with all effects, without some, of the nominal vehicle, of the noise.
     """
     return {name: (without[name] - after[name]) / max(
-        before[name] - min(noise[name], after[name]), rules.tolerance(name, noise[name]))
+        before[name] - min(noise[name], after[name]), rules.least(name, noise[name]))
         for name in after}
 
 

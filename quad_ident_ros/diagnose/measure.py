@@ -34,7 +34,7 @@ def open_loop_gap(bench: Bench, judged: Judgement) -> Gap:
                horizons={str(horizon): values for horizon, values in horizons.items()},
                without={cause.effect: gaps.gap([gaps.ends(
                    track, bench.vehicle, judged.without[cause].vectors[-1], gaps.HEADLINE)])
-                        for cause in judged.model.effects})
+                        for cause in judged.material})
 
 
 def gap_given_attitude(bench: Bench, judged: Judgement) -> GapGivenAttitude:

@@ -41,6 +41,7 @@ class Ranked:
     form: str | None
     explained: float | None
     contribution: float | None
+    stability: float | None
     parameters: dict
     gap_after: dict
     without: dict | None

@@ -13,6 +13,12 @@ class Rules:
     Intake:
       shortest: s of a flight. Half of a single one is held out: four rollouts of half a second
         for each half; whether that tells anything is a matter of information, see `not_shown`.
+    Noise:
+      levelling: rad, the usual error of the level of an attitude that accelerometer and GPS
+        correct; autopilots' filters are good to half a degree to two. It does not show in their
+        states. drift: m/s, that of the velocity of such a filter, which stays over a prediction.
+        filtered_attitude: rad from sample to sample, below which an attitude is that of
+        a filter; tracked_position: m, above which its position is not from motion capture.
     Prior:
       prior_odds: probability of each effect before looking. One to three of some seventeen are
         there in vehicles that are looked at; less, for the many that may be named by chance
@@ -23,6 +29,10 @@ class Rules:
       form_error: relative error of an effect's formula. Published laws of one effect differ from
         one another by 10 to 30 % over the range in which they are used.
       form_time: s over which that error stays the same: that of a turn or a stop of a flight.
+    Probability:
+      calibration: constant, and weights of stability, log10 of the contribution and log odds of
+        the posterior in the log odds of being present, fitted to the flights of development of
+        the withheld check: docs/method.md has the command.
     Naming:
       present: probability from which on an effect is named: more likely there than not.
       doubt: probability of a rival from which on it is not ruled out; an effect of 1 - doubt is
@@ -30,7 +40,9 @@ class Rules:
       material: share of the closable gap that an effect must close to be in the verdict: less is
         below what a change of the weather or of a battery does.
     Tolerance (a gap that matters, by group of outputs, at 0.5 s):
-      noise_share: of the noise's gap: what is less cannot be seen in one prediction.
+      visible: of the noise's gap: of what can be closed below it, shares mean nothing.
+      noise_share: of the noise's gap: what remains below it is hard to see in a prediction, and
+        the noise itself is known to some ten percent only where it has a memory.
       floors: m, m/s, rad, rad/s that no user of a simulation at 0.5 s minds.
     Unknown:
       differs: times the gap that remains in the other flights from which on one flight differs.
@@ -39,6 +51,10 @@ class Rules:
     """
 
     shortest: float = 4.0
+    levelling: float = 0.015
+    drift: float = 0.05
+    filtered_attitude: float = 5e-4
+    tracked_position: float = 1e-3
     prior_odds: float = 0.02
     prior_width: float = 3.0
     form_error: float = 0.2
@@ -46,12 +62,18 @@ class Rules:
     present: float = 0.5
     doubt: float = 0.12
     instead: float = 2.0
+    calibration: tuple[float, float, float, float] = (-1.0, 0.6, 1.5, 0.05)
     material: float = 0.05
-    noise_share: float = 0.25
+    visible: float = 0.25
+    noise_share: float = 0.75
     floors: dict = field(default_factory=lambda: {
         'position': 0.01, 'velocity': 0.02, 'attitude': 0.01, 'rate': 0.05})
     unexplained: float = 0.5
     differs: float = 2.0
+
+    def least(self, group: str, noise: float) -> float:
+        """Return the gap of a group of outputs below which shares of it mean nothing."""
+        return max(self.visible * noise, self.floors[group])
 
     def tolerance(self, group: str, noise: float) -> float:
         """Return the gap of a group of outputs that does not matter, beside its noise's gap."""

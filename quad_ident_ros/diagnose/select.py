@@ -17,9 +17,8 @@ from quad_ident_ros.diagnose.fitted import (
     size_grids,
 )
 from quad_ident_ros.diagnose.frame import Frame, frame_at, normal_at
-from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.effects.registry import EFFECTS
-from quad_ident_ros.greybox.estimate import Estimate, estimate
+from quad_ident_ros.greybox.estimate import estimate
 from quad_ident_ros.greybox.linear import errors_along
 from quad_ident_ros.greybox.noise import quick_noise, whole_noise
 from quad_ident_ros.greybox.normal import scatter_of
@@ -96,10 +95,8 @@ class _Search:
     """Sets of candidates that were fitted, and the best of them."""
 
     def __init__(self, flights, vehicle, causes, rules):
-        self.flights, self.vehicle, self.causes, self.rules = flights, vehicle, causes, rules
-        self.nuisances = own_candidates(vehicle, flights)
-        self.columns = sorted({column for cause in causes for column in cause.columns})
-        self.rows = _rows(causes, self.nuisances, self.columns, len(flights))
+        self.flights, self.vehicle, self.rules = flights, vehicle, rules
+        self.all_causes, self.nuisances = causes, own_candidates(vehicle, flights)
         starts = [flight.states[flight.first] for flight in flights]
         self.noise = [quick_noise(errors_along(flight, vehicle, nominal(vehicle), start))
                       for flight, start in zip(flights, starts, strict=True)]
@@ -110,20 +107,32 @@ class _Search:
 
     def weigh(self, noise):
         """Weigh the residuals by another noise; the best sets so far are where to go on from."""
-        self.noise = noise
         known = self.order()[:REFITS]
+        self.noise, self.judged = noise, {}
         self.tried = {(): self.tried[()]} | {one.chosen: one.estimate for one in known}
         self.tried = {key: refitted(self.flights, self.vehicle, fit.z, key, noise, fit.own,
                                     fit.starts) for key, fit in self.tried.items()}
 
     def run(self, on_progress):
-        """Look for better sets around the best one until there is none."""
+        """Look for the best set among the usual forms, then among all forms, around that."""
+        if self.best is None:
+            usual = tuple(cause for cause in self.all_causes if cause.usual)
+            self.look_among(usual, lambda share: on_progress(0.6 * share))
+        self.look_among(self.all_causes, lambda share: on_progress(0.6 + 0.4 * share))
+
+    def look_among(self, causes, on_progress):
+        """Look for better sets of some candidates around the best one until there is none."""
+        self.causes = causes
+        self.columns = sorted({column for cause in (*causes, *self.all_causes)
+                               if cause in causes or any(cause in key for key in self.tried)
+                               for column in cause.columns})
+        self.rows = _rows(self.all_causes, self.nuisances, self.columns, len(self.flights))
         best = self.best.chosen if self.best else ()
-        self.judged = {}
         for turn in range(ROUNDS):
             self.stand_at(best)
             self.judge(best)
-            self.ranked = beam(self.quadratic, self.rows, self.rules)
+            self.ranked = beam(self.quadratic, {cause: self.rows[cause] for cause in
+                                                (*self.causes, *self.nuisances)}, self.rules)
             self.try_promising()
             self.best = self.order()[0]
             on_progress((turn + 1) / ROUNDS)
@@ -219,7 +228,7 @@ class _Search:
         """Return the Selection."""
         fitted = tuple(self.order())
         return Selection(fitted[0], fitted,
-                         probabilities(fitted, self.ranked, self.causes, set(self.tried)),
+                         probabilities(fitted, self.ranked, self.all_causes, set(self.tried)),
                          self.quadratic, self.rows, self.noise, self.frame)
 
 
@@ -285,7 +294,8 @@ def _swapped(chosen, top):
 
 def _rows(causes, own, columns, count):
     """Return {candidate: its rows of the quadratic}, in each flight of what is its own."""
-    rows = {cause: [columns.index(column) for column in cause.columns] for cause in causes}
+    rows = {cause: [columns.index(column) for column in cause.columns] for cause in causes
+            if set(cause.columns) <= set(columns)}
     order = [column for one in own for column in one.columns]
     first = 0
     for one in own:

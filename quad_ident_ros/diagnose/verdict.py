@@ -35,18 +35,13 @@ class Verdict:
 
 def verdict_of(bench: Bench, judged: Judgement, causes: tuple) -> Verdict:
     """Return the Verdict of a Judgement."""
-    rules = bench.rules
-    probability = bench.selection.probability
-    checks = flight_checks(bench, judged)
+    rules, checks = bench.rules, flight_checks(bench, judged)
     total = {}
     for cause in causes:
-        total[cause.effect] = min(1.0, total.get(cause.effect, 0.0) + probability[cause])
-    named = sorted((cause for cause in judged.model.effects
-                    if total[cause.effect] >= rules.present),
-                   key=lambda cause: -judged.contribution[cause])
-    minor = tuple(Minor(cause.effect, total[cause.effect], judged.contribution[cause])
-                  for cause in judged.full.effects if cause not in judged.model.effects
-                  and total[cause.effect] >= rules.present)
+        total[cause.effect] = min(1.0, total.get(cause.effect, 0.0) + judged.probability[cause])
+    named = sorted(judged.material, key=lambda cause: -judged.weights[cause].contribution)
+    minor = tuple(Minor(cause.effect, total[cause.effect], judged.weights[cause].contribution)
+                  for cause in judged.model.effects if cause not in judged.material)
     unknown = bool(judged.unexplained) or any(one.differs for one in checks)
     doubts = {} if unknown else doubts_of(bench.selection, tuple(named), rules)
     certain = tuple(cause for cause in named if cause not in doubts)
@@ -64,7 +59,7 @@ def flight_checks(bench: Bench, judged: Judgement) -> tuple[FlightCheck, ...]:
     """
     found, before = ([gaps.gap([one]) for one in ends]
                      for ends in (judged.model.ends, judged.before))
-    named, rows = bool(judged.model.effects), []
+    named, rows = bool(judged.material), []
     for k, (track, gap, noise) in enumerate(zip(bench.tracks, found, judged.noise, strict=True)):
         remains = unexplained(gap, before[k], noise, named, bench.rules)
         others = {name: np.median([beyond(one[name], other[name]) for j, (one, other) in enumerate(
@@ -78,33 +73,32 @@ def flight_checks(bench: Bench, judged: Judgement) -> tuple[FlightCheck, ...]:
 
 def _ranking(bench: Bench, judged: Judgement, causes: tuple, total: dict) -> tuple[Ranked, ...]:
     """Return every effect, the named ones by contribution, then the most probable first."""
-    z0, full, model = nominal(bench.vehicle), judged.full, judged.model
-    errors = dict(zip(full.estimate.columns, bench.selection.errors, strict=True))
+    z0, model, best = nominal(bench.vehicle), judged.model, bench.selection.best
+    errors = dict(zip(best.estimate.columns, bench.selection.errors, strict=True))
     track = bench.tracks[-1]
     nuisance = model.vectors[-1] - model.z
     before = gaps.gap([gaps.ends(track, bench.vehicle, z0 + nuisance, gaps.HEADLINE)])
     rows = {}
     for cause in causes:
-        known = rows.get(cause.effect)
-        if known is not None and cause not in full.effects:
+        weight = judged.weights.get(cause)
+        if cause.effect in rows and weight is None:
             continue
-        parameters, gap_after, contribution, form = {}, before, None, None
-        if cause in full.effects:
-            source = model if cause in model.effects else full
+        parameters, gap_after = {}, before
+        if weight is not None:
+            z = model.z if cause in model.effects else best.estimate.z
             units = {one.name: one.unit for one in EFFECTS[cause.effect].parameters}
             for column in cause.columns:
                 name = NAMES[column].split('.')[1]
-                parameters[name] = Value(float(source.z[column]), float(errors[column]),
-                                         units[name])
+                parameters[name] = Value(float(z[column]), float(errors[column]), units[name])
             alone = z0.copy()
-            alone[list(cause.columns)] = source.z[list(cause.columns)]
+            alone[list(cause.columns)] = z[list(cause.columns)]
             gap_after = gaps.gap([gaps.ends(track, bench.vehicle, alone + nuisance,
                                             gaps.HEADLINE)])
-            contribution, form = judged.contribution[cause], cause.form
         rows[cause.effect] = Ranked(
-            cause.effect, total[cause.effect], form, judged.stability.get(cause), contribution, parameters, gap_after,
-            judged.without[cause].gap if cause in model.effects else None)
-    named = {cause.effect for cause in model.effects}
+            cause.effect, total[cause.effect], weight and cause.form, weight and weight.explained,
+            weight and weight.contribution, weight and weight.stability, parameters, gap_after,
+            weight and weight.gap)
+    named = {cause.effect for cause in judged.material}
     return tuple(sorted(rows.values(), key=lambda row: (
-        row.effect not in named, -(row.contribution or 0.0) if row.effect in named
+        row.effect not in named, -row.contribution if row.effect in named
         else -row.probability)))

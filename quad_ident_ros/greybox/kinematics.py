@@ -11,7 +11,6 @@ import numpy as np
 from scipy.optimize import nnls
 
 from quad_ident_ros.greybox.errors import difference, GROUPS
-from quad_ident_ros.greybox.noise import MAD
 from quad_ident_ros.greybox.parameters import SPLIT
 from quad_ident_ros.model.attitude import rotation_matrix
 from quad_ident_ros.model.sensors import product, turn, underlying
@@ -22,6 +21,7 @@ HORIZON = 0.5   # s of the predictions that it is for
 LONGEST = 1.0   # s between two samples that are compared
 LAGS = 14
 ALIKE = 0.1     # weight of shares that are alike, beside the drift's
+KEPT = 0.995    # of pairs of samples, the others being glitches that were not told
 FEWEST = 50     # pairs of samples from which on a lag tells anything
 BREAK = 1.6     # usual periods between two samples over which nothing is integrated
 
@@ -88,8 +88,9 @@ def _spreads(flights, drifts, group):
             whole = (piece[stride:] == piece[:-stride]) & seen[stride:] & seen[:-stride]
             if whole.sum() >= FEWEST:
                 change = (drift[stride:] - drift[:-stride])[whole]
-                off = MAD * np.median(np.abs(change - np.median(change, axis=0)), axis=0)
-                found.append(np.mean(off ** 2))
+                square = np.sort((change - np.median(change, axis=0)) ** 2, axis=0)
+                # Corrections of a filter are rare and large: a median would miss them.
+                found.append(np.mean(square[:int(KEPT * len(square)) + 1]))
         if found:
             lags.append(stride * period)
             spread.append(np.mean(found))
