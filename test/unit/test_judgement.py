@@ -34,6 +34,9 @@ def test_the_tolerance_is_a_share_of_the_noise_but_no_less_than_its_floor():
     rules = replace(RULES, noise_share=0.25, floors={'velocity': 0.02})
     assert rules.tolerance('velocity', 0.04) == 0.02
     assert rules.tolerance('velocity', 0.4) == pytest.approx(0.1)
+    rules = replace(rules, visible=0.1)
+    assert rules.least('velocity', 0.04) == 0.02
+    assert rules.least('velocity', 0.4) == pytest.approx(0.04)
     assert set(RULES.floors) == set(GROUPS)
 
 
@@ -46,10 +49,10 @@ def test_a_share_is_of_what_the_nominal_vehicle_has_above_the_noise():
     assert shares['velocity'] == pytest.approx(0.02 / 0.2)
 
 
-def test_a_share_of_next_to_nothing_is_a_share_of_the_tolerance():
+def test_a_share_of_next_to_nothing_is_a_share_of_the_least_that_is_seen():
     after, without = of(velocity=0.04), of(velocity=0.041)
     shares = lost_shares(after, without, without, NOISE, RULES)
-    assert shares['velocity'] == pytest.approx(0.001 / RULES.tolerance('velocity', 0.04))
+    assert shares['velocity'] == pytest.approx(0.001 / RULES.least('velocity', 0.04))
 
 
 def test_the_share_that_counts_is_that_of_the_group_that_loses_most():
