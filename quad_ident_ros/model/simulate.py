@@ -96,7 +96,7 @@ def _newton_euler(vehicle, inputs, omega_r, period, substeps, altitude, on_progr
     def advance(part, first, t, substeps):
         """Integrate from the state part[0], at the sample first, and write what comes after it."""
         roll_out_one(constants, places, acting, one, part[:1].copy(), t, *acted, others,
-                     np.array([first]), len(part) - 1, substeps, part[None])
+                     np.array([first]), len(part) - 1, substeps, *NO_GUIDE, part[None])
 
     states = np.zeros((len(t), STATE))
     states[0, 2], states[0, 6] = altitude, 1.0
