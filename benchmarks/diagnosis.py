@@ -29,7 +29,7 @@ def run(size, bar):
         for name in [names[0], *names]:     # the first call loads the program
             flights = flown(vehicle, cases[name])
             found, spent = timed(diagnose, flights, vehicle)
-            rows.append((name, number(spent), ', '.join(found.data['verdict'])))
+            rows.append((name, number(spent), ', '.join(found.verdict)))
             seconds.append(spent)
             advance()
     rows, seconds = rows[1:], seconds[1:]

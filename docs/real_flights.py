@@ -18,12 +18,13 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from benchmarks.tables import DOCUMENTS, keep, markdown, number
 from quad_ident_ros.data.load import load
-from quad_ident_ros.data.quality import refuse_unfit
+from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.diagnose.diagnosis import diagnose
+from quad_ident_ros.diagnose.result import Diagnosis, Ranked
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.model.vehicle import load_nominal
+from quad_ident_ros.model.vehicle import load_nominal, Vehicle
 from quad_ident_ros.report import gap_page
-from quad_ident_ros.report.diagnosis import WORTH
+from quad_ident_ros.report.diagnosis import contribution_of, WORTH
 
 DOCUMENT = 'real_flights.md'
 TRAINING = ('star_fast', 'oval_fast', 'helix_fast', 'lissajous_fast')
@@ -33,7 +34,7 @@ MOMENT = 3e-4       # N m about x that is added in software: 2 % of weight times
 PICTURES = ('horizons', 'map')
 
 
-def main(folder):
+def main(folder: str) -> None:
     """Diagnose the flights as they are and tampered with, and write what was found."""
     folder = Path(folder)
     vehicle = load_nominal(folder / 'vehicle.yaml')
@@ -52,17 +53,17 @@ def main(folder):
             records = [change(flights[name], vehicle) for name in (*TRAINING, held)]
             found[label] = attempt(records, vehicle)
             if label == list(cases)[0]:
-                save(found[label], records)
+                save(found[label])
             bar.advance(task)
-    usual = found[list(cases)[0]].data
-    keep(DOCUMENT, 'gap', gap_table({label: one.data for label, one in found.items()
-                                     if label.startswith('as flown')}))
+    usual = found[list(cases)[0]]
+    keep(DOCUMENT, 'gap', gap_table([one for label, one in found.items()
+                                     if label.startswith('as flown')]))
     keep(DOCUMENT, 'effects', effects_table(usual))
-    keep(DOCUMENT, 'own', own_table(usual))
+    keep(DOCUMENT, 'nuisances', nuisances_table(usual))
     keep(DOCUMENT, 'tampered', tampered_table(found))
 
 
-def save(found, records):
+def save(found: Diagnosis) -> None:
     """Save the pictures of a diagnosis beside the document."""
     with tempfile.TemporaryDirectory() as folder:
         gap_page.save_pictures(found, Path(folder))
@@ -70,38 +71,36 @@ def save(found, records):
             shutil.copy(Path(folder) / f'{name}.png', DOCUMENTS / f'real_flights_{name}.png')
 
 
-def attempt(records, vehicle):
+def attempt(records: list[FlightRecord], vehicle: Vehicle) -> Diagnosis | InputError:
     """Return the Diagnosis, or the InputError that refuses it."""
     try:
-        for record in records:
-            refuse_unfit(record, vehicle)
         return diagnose(records, vehicle)
     except InputError as error:
         return error
 
 
-def same(record, vehicle):
+def same(record: FlightRecord, vehicle: Vehicle) -> FlightRecord:
     """Return a record as it is."""
     return record
 
 
-def without_voltage(record, vehicle):
+def without_voltage(record: FlightRecord, vehicle: Vehicle) -> FlightRecord:
     """Return a record without the voltage of the battery."""
     return changed(record, vbat=None)
 
 
-def earlier(record, vehicle):
+def earlier(record: FlightRecord, vehicle: Vehicle) -> FlightRecord:
     """Return a record whose commands are stamped earlier than they were given."""
     return changed(record, **{name: np.interp(record.t + EARLIER, record.t, record.columns[name])
                               for name in record.numbered('cmd')})
 
 
-def swapped(record, vehicle):
+def swapped(record: FlightRecord, vehicle: Vehicle) -> FlightRecord:
     """Return a record whose first two rotors have each other's commands."""
     return changed(record, cmd1=record.columns['cmd2'], cmd2=record.columns['cmd1'])
 
 
-def pushed(record, vehicle):
+def pushed(record: FlightRecord, vehicle: Vehicle) -> FlightRecord:
     """Return a record of a vehicle on which a moment acts of which its commands say nothing."""
     y = np.array([rotor.position[1] for rotor in vehicle.rotors])
     names = record.numbered('cmd')
@@ -110,102 +109,110 @@ def pushed(record, vehicle):
     return changed(record, **dict(zip(names, commands.T, strict=True)))
 
 
-def changed(record, **columns):
+def changed(record: FlightRecord, **columns: np.ndarray | None) -> FlightRecord:
     """Return a record with other columns; None leaves one out."""
     values = {**record.columns, **columns}
     return replace(record, columns={name: column for name, column in values.items()
                                     if column is not None})
 
 
-def gap_table(found):
-    """Return the gap on each held-out flight, before, after and of noise."""
+def gap_table(found: list[Diagnosis]) -> str:
+    """Return both gaps on each flight held out: nominal, with nuisances, after, of noise."""
     rows = []
-    for data in found.values():
-        gap = data['gap']
-        for name, unit in gap['units'].items():
-            rows.append((data['held_out'] if name == 'position' else '', f'{name}, {unit}',
-                         *(number(gap[stage][name]) for stage in ('before', 'after', 'noise')),
-                         f'{100 * (1 - gap["after"][name] / gap["before"][name]):.0f} %'))
-    return markdown(('held out', '0.5 s ahead', 'before', 'after', 'noise', 'smaller by'), rows)
+    for one in found:
+        full, given = one.gap, one.gap_given_attitude
+        for title, gap, names in (('', full, full.units), (', given attitude', given,
+                                                           given.before)):
+            for name in names:
+                stages = (gap.before, gap.before_own, gap.after, gap.noise)
+                rows.append((one.held_out if not title and name == 'position' else '',
+                             f'{name}{title}, {full.units[name]}',
+                             *(number(stage[name]) for stage in stages),
+                             f'{100 * (1 - gap.after[name] / gap.before[name]):.0f} %'))
+    return markdown(('held out', '0.5 s ahead', 'nominal', 'with nuisances', 'after', 'noise',
+                     'smaller by'), rows)
 
 
-def effects_table(data):
-    """Return the effects that were found, and what each is worth on the held-out flight."""
+def effects_table(found: Diagnosis) -> str:
+    """Return the effects with their parameters, and what each is worth on the held-out flight."""
     rows = []
-    for row in data['ranking']:
-        if not row['parameters'] and row['probability'] < WORTH:
+    for row in found.ranking:
+        if not row.parameters and row.probability < WORTH:
             continue
-        values = ', '.join(f'{name} {one["value"]:.3g} ± {one["std"]:.1g} {one["unit"]}'
-                           .removesuffix(' 1') for name, one in row['parameters'].items())
-        without = data['gap']['without'].get(row['effect'])
-        rows.append((f'`{row["effect"]}`', 'yes' if without else 'no',
-                     f'{row["probability"]:.2f}', values,
+        values = ', '.join(f'{name} {one.value:.3g} ± {one.std:.1g} {one.unit}'
+                           .removesuffix(' 1') for name, one in row.parameters.items())
+        without = found.gap.without.get(row.effect)
+        rows.append((f'`{row.effect}`', row.form or '–', 'yes' if without else 'no',
+                     f'{row.probability:.2f}', contribution_of(row) or '–', values,
                      number(without['velocity']) if without else '–'))
-    return (f'Verdict: {", ".join(data["verdict"])}; velocity gap with all that is named: '
-            f'{number(data["gap"]["after"]["velocity"])} m/s.\n\n'
-            + markdown(('effect', 'named', 'probability', 'parameters',
+    return (f'Verdict: {", ".join(found.verdict)}; velocity gap with all that is named: '
+            f'{number(found.gap.after["velocity"])} m/s.\n\n'
+            + markdown(('effect', 'form', 'named', 'probability', 'contribution', 'parameters',
                         'velocity gap without it, m/s'), rows))
 
 
-def own_table(data):
-    """Return what each flight has of its own."""
-    own = data['nuisances'] or {}
-    if not own:
-        return 'None: what there is of it is alike in all flights.'
-    head = ('flight', *(f'{name}, {one["unit"]}' for name, one in own.items()))
-    columns = [[*one['values'], one['held_out']] for one in own.values()]
+def nuisances_table(found: Diagnosis) -> str:
+    """Return what was estimated for each flight apart."""
+    nuisances = found.nuisances or {}
+    if not nuisances:
+        return 'None: the flights do not differ in any of them.'
+    head = ('flight', *(f'{name}, {one["unit"]}' for name, one in nuisances.items()))
+    columns = [[*one['values'], one['held_out']] for one in nuisances.values()]
     return markdown(head, [
         (name, *(' '.join(f'{value:.2g}' for value in column[k]) for column in columns))
-        for k, name in enumerate([*data['flights'], data['held_out']])])
+        for k, name in enumerate([*found.flights, found.held_out])])
 
 
-def tampered_table(found):
+def tampered_table(found: dict) -> str:
     """Return what is said of records that were tampered with, beside them as they were flown."""
     rows = []
     for label, one in found.items():
         if isinstance(one, InputError):
             rows.append((label, f'refused: {str(one).rpartition("/")[2]}', *[''] * 4))
             continue
-        data = one.data
-        rows.append((label, ', '.join(data['verdict']), _sag(data),
-                     f'{1e3 * _delay(data):.0f} ms', f'{1e3 * _moment(one):.2f} mN m',
-                     number(data['gap']['after']['velocity'])))
+        rows.append((label, ', '.join(one.verdict), _sag(one), f'{1e3 * _delay(one):.0f} ms',
+                     f'{1e3 * _moment(one):.2f} mN m', number(one.gap.after['velocity'])))
     return markdown(('flights', 'verdict', 'fall of the thrust (probability)',
                      'commands act after', 'moment about x in hover', 'velocity gap after, m/s'),
                     rows)
 
 
-def _parameters(data, effect):
-    """Return {parameter: value} that was found of an effect, named or not."""
-    [row] = [row for row in data['ranking'] if row['effect'] == effect]
-    return {name: one['value'] for name, one in row['parameters'].items()}
+def _row(found: Diagnosis, effect: str) -> Ranked:
+    [row] = [row for row in found.ranking if row.effect == effect]
+    return row
 
 
-def _own(data, name):
-    """Return the mean over the flights of what each has of its own, (K,), or zeros."""
-    return (np.mean(data['nuisances'][name]['values'], axis=0)
-            if name in (data['nuisances'] or {}) else np.zeros(3))
+def _parameter(found: Diagnosis, effect: str, name: str) -> float:
+    """Return the value of an effect's parameter, named or not, or 0."""
+    known = _row(found, effect).parameters.get(name)
+    return known.value if known else 0.0
 
 
-def _sag(data):
-    """Return the fall of thrust that was found, in words."""
-    found = _parameters(data, 'battery_sag')
-    kinds = {'per_volt': (1.0, 'a volt'), 'per_second': (60.0, 'a minute')}
-    [row] = [row for row in data['ranking'] if row['effect'] == 'battery_sag']
-    return ' and '.join(f'{100 * kinds[name][0] * value:.0f} % {kinds[name][1]} '
-                        f'({row["probability"]:.2f})' for name, value in found.items()) or 'none'
+def _mean(found: Diagnosis, nuisance: str) -> np.ndarray:
+    """Return the mean of a nuisance over the flights, (K,), or zeros."""
+    nuisances = found.nuisances or {}
+    return (np.mean(nuisances[nuisance]['values'], axis=0) if nuisance in nuisances
+            else np.zeros(3))
 
 
-def _delay(data):
+def _sag(found: Diagnosis) -> str:
+    """Return the fall of thrust with its probability, in words."""
+    row = _row(found, 'battery_sag')
+    values = ' and '.join(f'{name} {one.value:.3g} {one.unit}'
+                          for name, one in row.parameters.items())
+    return f'{values} ({row.probability:.2f})' if values else 'none'
+
+
+def _delay(found: Diagnosis) -> float:
     """Return how long after the commands the vehicle acts, s: by clock or delay."""
-    return _own(data, 'clock_offset')[0] + _parameters(data, 'actuation_delay').get('delay', 0.0)
+    return _mean(found, 'clock_offset')[0] + _parameter(found, 'actuation_delay', 'delay')
 
 
-def _moment(found):
-    """Return the moment about x in hover, N m: each flight's own, and the weight's lever."""
-    vehicle = found.training.vehicle
-    lever = _parameters(found.data, 'com_offset').get('y', 0.0)
-    return _own(found.data, 'trim_moment')[0] - vehicle.mass * vehicle.gravity * lever
+def _moment(found: Diagnosis) -> float:
+    """Return the moment about x in hover, N m: each flight's trim, and the weight's lever."""
+    vehicle = found.vehicle
+    return (_mean(found, 'trim_moment')[0]
+            - vehicle.mass * vehicle.gravity * _parameter(found, 'com_offset', 'y'))
 
 
 if __name__ == '__main__':

@@ -2,12 +2,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks of values that come from files, parameters and the command line."""
 
-from collections.abc import Container, Iterable
+from collections.abc import Collection, Iterable, Sequence
 import difflib
 import math
 import reprlib
+from typing import TypeVar
 
 from quad_ident_ros.errors import InputError
+
+Option = TypeVar('Option')
 
 _short = reprlib.Repr()
 _short.maxlevel = 1
@@ -19,7 +22,7 @@ def shown(value: object) -> str:
     return _short.repr(value)
 
 
-def unknown_key(where: str, key: object, known: Container[str]) -> InputError:
+def unknown_key(where: str, key: object, known: Collection[str]) -> InputError:
     """Return the InputError for a key that is not known, with the nearest known one."""
     lower = {str(name).lower(): name for name in known}
     near = difflib.get_close_matches(str(key).lower(), list(lower), n=1)
@@ -27,7 +30,7 @@ def unknown_key(where: str, key: object, known: Container[str]) -> InputError:
     return InputError(f'{where}: {shown(key)} is not known here; {hint}')
 
 
-def check_keys(where: str, mapping: object, known: Container[str],
+def check_keys(where: str, mapping: object, known: Collection[str],
                required: Iterable[str] = ()) -> None:
     """Raise InputError where `mapping` is none, lacks a required key or has an unknown one."""
     if not isinstance(mapping, dict):
@@ -66,14 +69,44 @@ def number(where: str, value: object, minimum: float = -math.inf, maximum: float
     return value
 
 
-def numbers(where, value, count, **limits):
+def numbers(where: str, value: object, count: int, minimum: float = -math.inf
+            ) -> tuple[float, ...]:
     """Return a tuple of `count` floats, each checked as `number` does."""
+    return tuple(number(f'{where}[{i}]', entry, minimum)
+                 for i, entry in enumerate(_list_of(where, value, count)))
+
+
+def uncertain(where: str, value: object, minimum: float = -math.inf, exclusive: bool = False
+              ) -> tuple[float, float | None]:
+    """
+    Return a number, checked as `number` does, and its standard deviation.
+
+    Args: value: a number, whose deviation is None, or {value: 0.5, std: 0.005}.
+    """
+    if not isinstance(value, dict):
+        return number(where, value, minimum, exclusive=exclusive), None
+    check_keys(where, value, ('value', 'std'), ('value', 'std'))
+    return (number(f'{where}: value', value['value'], minimum, exclusive=exclusive),
+            number(f'{where}: std', value['std'], 0.0, exclusive=True))
+
+
+def uncertain_numbers(where: str, value: object, count: int, minimum: float = -math.inf,
+                      exclusive: bool = False
+                      ) -> tuple[tuple[float, ...], tuple[float | None, ...]]:
+    """Return `count` numbers and their standard deviations, each as `uncertain` does."""
+    pairs = [uncertain(f'{where}[{i}]', entry, minimum, exclusive)
+             for i, entry in enumerate(_list_of(where, value, count))]
+    return tuple(value for value, _ in pairs), tuple(std for _, std in pairs)
+
+
+def _list_of(where: str, value: object, count: int) -> Sequence[object]:
+    """Return a list of `count` entries, or raise InputError."""
     if not isinstance(value, list | tuple) or len(value) != count:
         raise InputError(f'{where}: expected a list of {count} numbers, got {shown(value)}')
-    return tuple(number(f'{where}[{i}]', entry, **limits) for i, entry in enumerate(value))
+    return value
 
 
-def choice(where, value, options):
+def choice(where: str, value: object, options: Collection[Option]) -> Option:
     """Return the option that `value` is, or raise InputError that lists them."""
     # True == 1, but who writes `spin: yes` means something else.
     if isinstance(value, bool) or value not in options:
@@ -81,7 +114,7 @@ def choice(where, value, options):
     return next(option for option in options if option == value)
 
 
-def name(where, value):
+def name(where: str, value: object) -> str:
     """Return a name, of text or a number, that can be part of a file name, or raise InputError."""
     text = str(value) if isinstance(value, str | int | float) else ''
     if not text.strip() or not text.isprintable() or '/' in text or len(text) > 100:
@@ -90,7 +123,7 @@ def name(where, value):
     return text
 
 
-def integer(where, value, minimum):
+def integer(where: str, value: object, minimum: int) -> int:
     """Return a whole number of at least `minimum`, or raise InputError."""
     if isinstance(value, bool) or not isinstance(value, int) or value < minimum:
         raise InputError(f'{where}: expected a whole number of at least {minimum}, got '

@@ -10,18 +10,18 @@ import time
 from quad_ident_ros.data.csv import read_csv
 from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.model.vehicle import load_vehicle
+from quad_ident_ros.model.vehicle import load_nominal
 
 
 def diagnosis_of(folder):
     """
     Return the diagnosis (JSON) of the case in a folder; raises InputError where it is refused.
 
-    All that the check knows of the library: what the command line calls is to be called here.
+    All that the check knows of the library: the very function that the command line calls.
     """
-    vehicle = load_vehicle(str(folder / 'vehicle.yaml'))
+    vehicle = load_nominal(str(folder / 'vehicle.yaml'))
     records = [read_csv(path) for path in sorted(folder.glob('flight_*.csv'))]
-    return diagnose(records, vehicle).data
+    return diagnose(records, vehicle).as_data()
 
 
 def main(flights, found):

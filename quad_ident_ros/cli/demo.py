@@ -9,9 +9,11 @@ from quad_ident_ros.cli.identify import progress_bar, show
 from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.identify.result import as_data
-from quad_ident_ros.report import diagnosis
+from quad_ident_ros.model.vehicle import load_nominal
 from quad_ident_ros.report.data import write_json
+from quad_ident_ros.report.diagnosis import show as show_diagnosis
 from quad_ident_ros.report.picture import save_responses
+from quad_ident_ros.report.received import diagnosis_from
 
 PICTURE = 'responses.png'
 HIDDEN = 1.2    # times the noise's gap, below which an effect does not show
@@ -24,8 +26,8 @@ def add(commands):
         description='Start simulator, recorder and identifier as three processes on a ROS domain '
                     'of their own, fly an experiment, and show what was identified. Writes a '
                     'picture, the bag, CSV files and logs. With --gap the vehicle has an effect '
-                    'that its description lacks, drawn at random and told to the simulator '
-                    'alone: a diagnoser looks for it, and only then it is revealed.')
+                    'that its description does not have, drawn at random and told to the '
+                    'simulator alone: a diagnoser looks for it, and only then it is revealed.')
     parser.add_argument('--gap', action='store_true',
                         help='diagnose a vehicle with a secret instead')
     parser.add_argument('--experiment', help='name of a shipped experiment, or path of a .yaml '
@@ -89,7 +91,7 @@ def _reveal(options, outcome):
     """Show the diagnosis, and only then the truth."""
     found = outcome.diagnosis
     if options.json != '-':
-        diagnosis.show(found, sys.stdout)
+        show_diagnosis(diagnosis_from(found, load_nominal(outcome.nominal)), sys.stdout)
         units = {(effect.name, one.name): '' if one.unit == '1' else f' {one.unit}'
                  for effect in EFFECTS.values() for one in effect.parameters}
         truth = '; '.join(f'{name} ' + ', '.join(

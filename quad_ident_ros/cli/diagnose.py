@@ -6,18 +6,16 @@ import argparse
 from dataclasses import replace
 import sys
 
-from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn
-
+from quad_ident_ros.cli.identify import progress_bar
 from quad_ident_ros.cli.options import flights_from
-from quad_ident_ros.data.quality import cautions
 from quad_ident_ros.diagnose.diagnosis import diagnose
-from quad_ident_ros.diagnose.length import refuse_short
+from quad_ident_ros.diagnose.rules import RULES
 from quad_ident_ros.effects.registry import EFFECTS
-from quad_ident_ros.model.mixing import with_commands
+from quad_ident_ros.greybox.errors import UNITS
 from quad_ident_ros.model.vehicle import load_nominal, write_vehicle
 from quad_ident_ros.report.data import write_json
 from quad_ident_ros.report.diagnosis import show
+from quad_ident_ros.tolerances import EXAMPLE, rules_from
 
 
 def add(commands):
@@ -40,40 +38,39 @@ def add(commands):
                         help='the flight on which the gap is told (default: the last one named)')
     parser.add_argument('--mapping', metavar='FILE', help='which topics and outputs of other '
                         "people's records mean what (YAML)")
-    parser.add_argument('--effects', metavar='A,B', help='only these may be found (default: all)')
+    parser.add_argument('--effects', metavar='A,B', help='only these may be named (default: all)')
+    usual = ', '.join(f'{name}={RULES.floors[name]:g} {unit}' for name, unit in UNITS.items())
+    parser.add_argument('--tolerance', metavar='GROUP=VALUE[,...]',
+                        help='gap beyond the noise that does not matter half a second ahead, for '
+                             f'example {EXAMPLE}; never less than {100 * RULES.noise_share:.0f} '
+                             f'%% of what the noise makes (default: {usual})')
     parser.add_argument('--json', metavar='FILE', help='write it as data; - prints it')
     parser.add_argument('--report', metavar='FILE.html',
                         help='write a page for a browser: the verdict, pictures, all numbers')
     parser.add_argument('--out-vehicle', metavar='FILE',
-                        help='write the vehicle file with the effects found, for the simulator')
+                        help='write the vehicle file with the effects named, for the simulator')
     parser.set_defaults(run=run)
 
 
 def run(options):
-    """Read the flights, diagnose, and show what was found."""
+    """Read the flights, diagnose, and show what came of it."""
+    rules = RULES if options.tolerance is None else rules_from(options.tolerance.split(','),
+                                                               '--tolerance')
     vehicle = load_nominal(options.vehicle)
     effects = ([name.strip() for name in options.effects.split(',')]
                if options.effects is not None else None)
-    records = [with_commands(record, vehicle) for path in options.flights
+    records = [record for path in options.flights
                for record in flights_from(path, options.mapping, options.vehicle)]
-    held = None
-    if options.hold_out:
-        held = with_commands(
-            flights_from(options.hold_out, options.mapping, options.vehicle)[-1], vehicle)
-    wary = []
-    for record in [*records, *([held] if held else [])]:
-        refuse_short(record)
-        wary += cautions(record, vehicle)
-    with Progress(TextColumn('{task.description}'), BarColumn(),
-                  console=Console(stderr=True), transient=True) as bar:
+    held = (flights_from(options.hold_out, options.mapping, options.vehicle)[-1]
+            if options.hold_out else None)
+    with progress_bar() as bar:
         task = bar.add_task('comparing sets of effects', total=1.0)
-        found = diagnose(records, vehicle, hold_out=held, effects=effects,
+        found = diagnose(records, vehicle, hold_out=held, effects=effects, rules=rules,
                          on_progress=lambda share: bar.update(task, completed=share))
-    found = replace(found, data={**found.data, 'findings': wary})
     if options.json != '-':
-        show(found.data, sys.stdout)
+        show(found, sys.stdout)
     if options.json:
-        write_json(options.json, found.data)
+        write_json(options.json, found.as_data())
     if options.report:
         from quad_ident_ros.report import gap_page  # it draws: half a second to import
         gap_page.write(options.report, found)

@@ -34,7 +34,7 @@ examples:
   quad_ident fly circle --vehicle iris -o a.csv    make a closed-loop flight with known truth
   quad_ident identify flights/*.csv --trim hover --initial-state rest
   quad_ident fit flight.csv --vehicle v.yaml --free inertia,thrust_coefficient,motor_lag
-  quad_ident diagnose a.csv b.csv --vehicle v.yaml what the vehicle has and the model lacks
+  quad_ident diagnose a.csv b.csv --vehicle v.yaml what the vehicle has beside its model
   quad_ident info flight.csv                       what is in a flight, and what is wrong
   quad_ident convert flight.csv flight.mcap        the same flight as a bag
   quad_ident paper                                 reproduce the paper and check its claims

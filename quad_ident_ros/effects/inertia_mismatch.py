@@ -29,7 +29,8 @@ FORM = Form(
     acts_on='rotation', on_rotors=False,
     body=body)
 EFFECT = Effect(
-    name='inertia_mismatch', title='mismatch of the inertia', forms=(FORM, inertia_mismatch_moments.FORM),
+    name='inertia_mismatch', title='mismatch of the inertia',
+    forms=(FORM, inertia_mismatch_moments.FORM),
     excitation='fast turns about each axis',
     confused_with=('motor_lag', 'thrust_scale'),
     scale_group=True)

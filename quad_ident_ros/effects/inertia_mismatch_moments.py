@@ -3,7 +3,7 @@
 """Mismatch of the inertia, which acts alike: other arms, and another torque coefficient."""
 
 from quad_ident_ros.compiled import compiled
-from quad_ident_ros.effects.base import Form, Parameter, Table
+from quad_ident_ros.effects.base import Axis, Form, Parameter, Table
 from quad_ident_ros.model.situation import ARMS_X, ARMS_Y, TORQUE
 
 
@@ -16,14 +16,16 @@ def body(p: Table, k: int, s: Table) -> None:
         s[TORQUE, i] *= p[k + 2, i]
 
 
+FACTORS: tuple[tuple[str, str, Axis], ...] = (
+    ('arms_y', "the rotors' arms along body y: moment about x", 'roll'),
+    ('arms_x', "the rotors' arms along body x: moment about y", 'pitch'),
+    ('torque', 'the torque coefficient: moment about z', 'yaw'))
+
 FORM = Form(
     name='moments', title='other arms or torque coefficient',
     parameters=tuple(Parameter(name, '1', 0.2, 5.0, 0.1, f'on {what}', null=1.0,
                                excited_by=turn)
-                     for name, what, turn in (
-                         ('arms_y', "the rotors' arms along body y: moment about x", 'roll'),
-                         ('arms_x', "the rotors' arms along body x: moment about y", 'pitch'),
-                         ('torque', 'the torque coefficient: moment about z', 'yaw'))),
+                     for name, what, turn in FACTORS),
     source='moments of the rotors times a factor, about each body axis; apart from the reciprocal '
            'of a factor on the inertia it differs in the gyroscopic moment alone',
     acts_on='rotation', on_rotors=True,

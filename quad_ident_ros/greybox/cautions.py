@@ -2,6 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """What is wrong with flights and bears on a fit: said beside its values."""
 
+from collections.abc import Iterable, Sequence
+
+from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.effects.registry import PARAMETERS
 
 CONSTANTS = {
@@ -17,7 +20,7 @@ SHOWS = {axis: (*constants, *(f'{effect}.{parameter.name}' for effect, parameter
 """What the motion along each axis shows; axes as data.quality.excitation names them."""
 
 
-def cautions(flights, names):
+def cautions(flights: Sequence[tuple[str, Sequence[Finding]]], names: Iterable[str]) -> list[str]:
     """
     Return lines on a fit: its parameters that no flight moves, and the warnings on the flights.
 

@@ -15,7 +15,7 @@ GROUPS = {'position': slice(0, 3), 'velocity': slice(3, 6), 'attitude': slice(6,
 UNITS = {'position': 'm', 'velocity': 'm/s', 'attitude': 'rad', 'rate': 'rad/s'}
 
 
-def difference(recorded, predicted):
+def difference(recorded: np.ndarray, predicted: np.ndarray) -> np.ndarray:
     """Return recorded minus predicted states (..., 13) as (..., 12), attitude as a rotation."""
     recorded, predicted = np.broadcast_arrays(recorded, predicted)
     out = np.empty((*recorded.shape[:-1], ERRORS))
@@ -26,7 +26,7 @@ def difference(recorded, predicted):
 
 
 @compiled(fused=True)
-def slopes(moved, base, factors, out):
+def slopes(moved: np.ndarray, base: np.ndarray, factors: np.ndarray, out: np.ndarray) -> None:
     """
     Write what rollouts change by per step into out (B, K, M * 12).
 
@@ -43,14 +43,14 @@ def slopes(moved, base, factors, out):
 
 
 @compiled(fused=True)
-def _differences(recorded, predicted, out):
+def _differences(recorded: np.ndarray, predicted: np.ndarray, out: np.ndarray) -> None:
     """Write the differences of states (N, 13) into out (N, 12)."""
     for i in range(len(out)):
         _difference(recorded[i], predicted[i], out[i])
 
 
 @compiled(fused=True, inlined=True)
-def _difference(a, b, out):
+def _difference(a: np.ndarray, b: np.ndarray, out: np.ndarray) -> None:
     """Write state a minus state b, both (13,), into out (12,)."""
     for n in range(6):
         out[n] = a[n] - b[n]
@@ -72,7 +72,7 @@ def _difference(a, b, out):
     out[6], out[7], out[8] = x * gain, y * gain, z * gain
 
 
-def moved(states, change):
+def moved(states: np.ndarray, change: np.ndarray) -> np.ndarray:
     """Return states (..., 13) moved by changes (..., 12): the inverse of difference."""
     states, change = np.broadcast_arrays(states, np.concatenate(
         [change, np.zeros((*change.shape[:-1], 1))], axis=-1))

@@ -2,22 +2,28 @@
 # SPDX-License-Identifier: Apache-2.0
 """Parameters of the vehicle and its effects that predict flights best: Gauss-Newton."""
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from quad_ident_ros.greybox.flights import Flight
 from quad_ident_ros.greybox.linear import (
     errors_along,
+    Linear,
     linear_of,
     linearise,
     new_starts,
     seen_along,
+    Slopes,
     slopes_at,
+    Tangent,
 )
 from quad_ident_ros.greybox.noise import MAD, quick_noise, whole_noise
 from quad_ident_ros.greybox.normal import bounded_step, covariance_of, marginal, Normal, normal_of
 from quad_ident_ros.greybox.own import Layout, Own
 from quad_ident_ros.greybox.parameters import limits
+from quad_ident_ros.model.vehicle import Vehicle
 
 ITERATIONS = 20
 DONE = 0.2          # standard errors of a last step, which leaves a twentieth of that or less
@@ -42,30 +48,30 @@ class Estimate:
     """
 
     z: np.ndarray
-    columns: list
+    columns: list[int]
     covariance: np.ndarray
-    noise: list
+    noise: list[np.ndarray]
     own: Own
-    starts: list
+    starts: list[np.ndarray]
     normal: Normal
     at: np.ndarray
-    left: list
+    left: list[np.ndarray]
     cost: float
     free: np.ndarray
     converged: bool
 
     @property
-    def vectors(self):
+    def vectors(self) -> list[np.ndarray]:
         """Return the vector of each flight, with what it has of its own, a list of (Z,)."""
         return self.own.vectors(self.z)
 
     @property
-    def errors(self):
+    def errors(self) -> np.ndarray:
         """Return the standard errors of the columns (C,)."""
         return np.sqrt(np.maximum(np.diag(self.covariance), 0.0))
 
 
-def weights_of(raw, noise, flight):
+def weights_of(raw: np.ndarray, noise: np.ndarray, flight: Flight) -> np.ndarray:
     """Return the weight of each sample, 1 but for those far beyond noise and bulk (Huber)."""
     seen = seen_along(flight)
     bulk = MAD * np.median(np.abs(raw.reshape(-1, raw.shape[-1])[::SPARSE]), axis=0)
@@ -73,8 +79,10 @@ def weights_of(raw, noise, flight):
     return seen * np.sqrt(np.minimum(1.0, far / np.maximum(np.abs(raw), 1e-300)))
 
 
-def estimate(flights, vehicle, z, columns, *, noise=None, own=None, starts=None,
-             iterations=ITERATIONS, clock=True, slopes=None, scatter=1.0):
+def estimate(flights: Sequence[Flight], vehicle: Vehicle, z: np.ndarray, columns: Iterable[int],
+             *, noise: list[np.ndarray] | None = None, own: Own | None = None,
+             starts: list[np.ndarray] | None = None, iterations: int = ITERATIONS,
+             clock: bool = True, slopes: Slopes | None = None, scatter: float = 1.0) -> Estimate:
     """
     Return the Estimate of the columns of z that predicts the flights best.
 
@@ -99,14 +107,15 @@ def estimate(flights, vehicle, z, columns, *, noise=None, own=None, starts=None,
                     DONE * np.sqrt(max(1.0, scatter)), slopes)
 
 
-def _fewer(flight, count):
+def _fewer(flight: Flight, count: int) -> Flight:
     """Return a flight with `count` of its rollouts or a few more, spread over all of it."""
     skip = max(1, len(flight.first) // count)
     return replace(flight, first=flight.first[skip // 2::skip])
 
 
-def _descend(flights, vehicle, z, columns, box, noise, own, starts, iterations, clock, done,
-             slopes=None):
+def _descend(flights: Sequence[Flight], vehicle: Vehicle, z: np.ndarray, columns: list[int],
+             box: np.ndarray, noise: list[np.ndarray] | None, own: Own, starts: list[np.ndarray],
+             iterations: int, clock: bool, done: float, slopes: Slopes | None = None) -> Estimate:
     """Return the Estimate from z by steps of Gauss and Newton that do not raise the cost."""
     layout = Layout(columns, own.columns, len(flights))
     shared, lower, upper, size, precision = _whole(box, own, len(flights))
@@ -119,7 +128,7 @@ def _descend(flights, vehicle, z, columns, box, noise, own, starts, iterations, 
         tangents, at = slopes.of(layout.wanted), slopes.at
     for count in range(iterations):
         fresh = tangents is None
-        if fresh:
+        if tangents is None:
             tangents = slopes_at(flights, vehicle, z, own.vectors(z), starts, raws,
                                  layout.wanted).tangents
             at = z
@@ -175,7 +184,8 @@ def _descend(flights, vehicle, z, columns, box, noise, own, starts, iterations, 
                     free[:shared], converged)
 
 
-def _whole(box, own, count):
+def _whole(box: np.ndarray, own: Own, count: int
+           ) -> tuple[int, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Return how many columns are shared; bounds, sizes, precisions of these and all own."""
     lower, upper, size = box
     spreads = np.tile(own.spreads, count)
@@ -184,7 +194,8 @@ def _whole(box, own, count):
             np.append(np.zeros(len(size)), spreads ** -2.0))
 
 
-def _aligned(raws, tangents, scales, clock):
+def _aligned(raws: list[np.ndarray], tangents: Iterable[Tangent], scales: Iterable[np.ndarray],
+             clock: bool) -> list[np.ndarray]:
     """Return errors without what an offset of each flight's clock explains."""
     if not clock:
         return raws
@@ -196,12 +207,13 @@ def _aligned(raws, tangents, scales, clock):
     return out
 
 
-def _cost(raws, scales):
+def _cost(raws: Iterable[np.ndarray], scales: Iterable[np.ndarray]) -> float:
     return sum(float(np.sum((raw * scale) ** 2))
                for raw, scale in zip(raws, scales, strict=True))
 
 
-def settled(flights, vehicle, vectors, noise=None):
+def settled(flights: Sequence[Flight], vehicle: Vehicle, vectors: Sequence[np.ndarray],
+            noise: Sequence[np.ndarray] | None = None) -> list[np.ndarray]:
     """
     Return the initial states (B, 13) per flight that fit best at its vector, all samples alike.
 
@@ -216,7 +228,7 @@ def settled(flights, vehicle, vectors, noise=None):
     return found
 
 
-def _clock(linear, move):
+def _clock(linear: Linear, move: np.ndarray) -> float:
     """Return the offset of a flight's clock (s) that goes with a step of its parameters."""
     own = linear.slope[..., -1]
     left = linear.error - linear.slope[..., :-1] @ move

@@ -2,22 +2,24 @@
 # SPDX-License-Identifier: Apache-2.0
 """Chosen physical parameters from flights, with what the flights cannot determine."""
 
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import asdict, dataclass, replace
+from typing import Any
 
 import numpy as np
 
 from quad_ident_ros import __version__
 from quad_ident_ros.data.clocks import clocks_of, on_one_clock
-from quad_ident_ros.data.record import refuse_twice
+from quad_ident_ros.data.record import FlightRecord, refuse_twice
 from quad_ident_ros.effects.registry import mapping
 from quad_ident_ros.greybox.errors import GROUPS, UNITS
 from quad_ident_ros.greybox.estimate import Estimate, estimate
-from quad_ident_ros.greybox.flights import highest_voltage, track_of
+from quad_ident_ros.greybox.flights import Flight, highest_voltage, track_of
 from quad_ident_ros.greybox.free import columns_of_names, excitation_of, unit_of
-from quad_ident_ros.greybox.identifiable import correlated, freedoms
+from quad_ident_ros.greybox.identifiable import correlated, Freedom, freedoms
 from quad_ident_ros.greybox.near import near_flights
 from quad_ident_ros.greybox.noise import quick_noise
-from quad_ident_ros.greybox.normal import covariance_of, scatter_of
+from quad_ident_ros.greybox.normal import covariance_of, Normal, scatter_of
 from quad_ident_ros.greybox.parameters import as_described, INDEX, limits, SPLIT
 from quad_ident_ros.model.vehicle import Vehicle
 
@@ -43,7 +45,7 @@ class Parameter:
     value: float | None
     std: float | None
     status: str
-    given: dict
+    given: dict[str, float]
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,15 +58,16 @@ class Fit:
     """
 
     vehicle: Vehicle
-    flights: tuple
-    parameters: tuple
+    flights: tuple[str, ...]
+    parameters: tuple[Parameter, ...]
     estimate: Estimate
-    names: tuple
-    correlations: tuple
-    findings: tuple
+    names: tuple[str, ...]
+    correlations: tuple[tuple[str, str, float], ...]
+    findings: tuple[str, ...]
 
 
-def fit(records, vehicle, names, on_progress=lambda share: None):
+def fit(records: Sequence[FlightRecord], vehicle: Vehicle, names: Iterable[str],
+        on_progress: Callable[[float], None] = lambda share: None) -> Fit:
     """
     Return the Fit of the named parameters of a vehicle to flight records.
 
@@ -98,7 +101,7 @@ def fit(records, vehicle, names, on_progress=lambda share: None):
         z[held] = start[held]
         rest = [place for place in free.values() if place not in held]
         found = estimate(flights, vehicle, z, rest, noise=found.noise, starts=found.starts)
-    given = {name: {} for name in inside}
+    given: dict[str, dict[str, float]] = {name: {} for name in inside}
     for freedom in left:
         for k in freedom.members:
             given[inside[k]][inside[freedom.held]] = float(start[columns[freedom.held]])
@@ -117,23 +120,35 @@ def fit(records, vehicle, names, on_progress=lambda share: None):
                replace(found, covariance=covariance), order, pairs, findings)
 
 
-def _apart(names):
+def _apart(names: Sequence[str]) -> list[str]:
     """Return names of flights that differ: a second flight_1 is flight_1 (2)."""
     return [name if name not in names[:k] else f'{name} ({names[:k].count(name) + 1})'
             for k, name in enumerate(names)]
 
 
-def fitted_vehicle(fit):
-    """Return the vehicle as it was found; what is undetermined as far as it is given."""
+def fitted_vehicle(fit: Fit) -> Vehicle:
+    """
+    Return the vehicle as it was found; what is undetermined as far as it is given.
+
+    How well its file knows a constant that was fitted is said of the file's value, and left out.
+    """
     z = fit.estimate.z
-    return replace(fit.vehicle, effects=mapping(z[SPLIT:]), mass=float(z[INDEX['mass']]),
+
+    def triple(key: str) -> tuple[float, ...]:
+        return tuple(float(z[INDEX[f'{key}_{axis}']]) for axis in 'xyz')
+
+    freed = {parameter.name for parameter in fit.parameters}
+    known = {key: std for key, std in fit.vehicle.uncertainty.items()
+             if not freed & {key, *(f'{key}_{axis}' for axis in 'xyz')}}
+    return replace(fit.vehicle, uncertainty=known, effects=mapping(z[SPLIT:]),
+                   mass=float(z[INDEX['mass']]),
                    thrust_coefficient=float(z[INDEX['thrust_coefficient']]),
                    torque_coefficient=float(z[INDEX['torque_coefficient']]),
-                   **{key: tuple(float(z[INDEX[f'{key}_{axis}']]) for axis in 'xyz')
-                      for key in ('inertia', 'linear_drag', 'rotational_drag')})
+                   inertia=triple('inertia'), linear_drag=triple('linear_drag'),
+                   rotational_drag=triple('rotational_drag'))
 
 
-def as_data(fit):
+def as_data(fit: Fit) -> dict[str, Any]:
     """Return a Fit as data for JSON."""
     found = fit.estimate
     return {
@@ -152,13 +167,14 @@ def as_data(fit):
         'converged': found.converged, 'findings': list(fit.findings)}
 
 
-def _inside(normal, free):
+def _inside(normal: Normal, free: np.ndarray) -> Normal:
     """Return what is said of the columns that are inside their bounds, the others held."""
     return replace(normal, information=normal.information[np.ix_(free, free)],
                    gradient=normal.gradient[free], scores=normal.scores[:, free])
 
 
-def _parameter(name, start, value, error, given):
+def _parameter(name: str, start: float, value: float, error: float | None,
+               given: dict[str, dict[str, float]]) -> Parameter:
     """Return the Parameter; error: its standard error, 0 at a bound, None where it is held."""
     told = given.get(name, {})
     status = 'undetermined' if told else 'determined' if error else 'bound'
@@ -167,7 +183,7 @@ def _parameter(name, start, value, error, given):
                      {other: at for other, at in told.items() if other != name})
 
 
-def _said(freedom, names, values):
+def _said(freedom: Freedom, names: Sequence[str], values: np.ndarray) -> str:
     """Return what a Freedom means, in words."""
     members = [names[k] for k in freedom.members]
     held = names[freedom.held]
@@ -185,14 +201,15 @@ def _said(freedom, names, values):
             f'{value}')
 
 
-def _findings(found, parameters, pairs, flights):
+def _findings(found: Estimate, parameters: Iterable[Parameter],
+              pairs: Sequence[tuple[str, str, float]], flights: Iterable[Flight]) -> list[str]:
     """Return what is to be known of the estimate besides what it leaves undetermined."""
     said = []
     if not found.converged:
         said.append('the fit did not converge: the values are not the best ones; start it from '
                     'a vehicle file that is nearer, or free fewer parameters')
     for parameter in parameters:
-        if parameter.status == 'bound':
+        if parameter.status == 'bound' and parameter.value is not None:
             why = 'what the flights ask for lies beyond' if parameter.value else 'it is not there'
             said.append(f'{parameter.name} ends at its bound, '
                         f'{_with_unit(parameter.value, parameter.name)}: {why}, or something '
@@ -217,6 +234,6 @@ def _findings(found, parameters, pairs, flights):
     return said
 
 
-def _with_unit(value, name):
+def _with_unit(value: float, name: str) -> str:
     unit = unit_of(name)
     return f'{value:g}' if unit == '1' else f'{value:g} {unit}'

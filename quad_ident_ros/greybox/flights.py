@@ -2,7 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Flights cut into the short rollouts that are held against them."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
+from typing import TypeVar
 
 import numpy as np
 
@@ -10,9 +12,13 @@ from quad_ident_ros.data.clocks import Clock
 from quad_ident_ros.data.frames import continuous
 from quad_ident_ros.data.quality import refuse_errors, timing
 from quad_ident_ros.data.quality.glitches import glitches
+from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.greybox.errors import ERRORS, GROUPS
 from quad_ident_ros.model.dynamics import Course, course_of, states_of
+from quad_ident_ros.model.vehicle import Vehicle
+
+Moving = TypeVar('Moving', bound='Track')
 
 RATE = 125.0        # Hz, the fastest that is looked at: more rows add cost, hardly information
 SEGMENT = 0.5       # s of a rollout
@@ -51,12 +57,13 @@ class Flight(Track):
     count: int
 
     @property
-    def segment(self):
+    def segment(self) -> float:
         """Return the length of a rollout, s."""
         return self.count * self.period
 
 
-def track_of(record, vehicle, reference_voltage=None, clock=None):
+def track_of(record: FlightRecord, vehicle: Vehicle, reference_voltage: float | None = None,
+             clock: Clock | None = None) -> Track:
     """
     Return the Track of a record; InputError where it lacks columns or is too slow.
 
@@ -76,14 +83,14 @@ def track_of(record, vehicle, reference_voltage=None, clock=None):
     return track if clock is None else moved(track, clock.late, clock.drift)
 
 
-def moved(track, late, drift=0.0):
+def moved(track: Moving, late: float, drift: float = 0.0) -> Moving:
     """Return a Track with commands so many s later in the middle of the flight, and s/s."""
     stamps = track.course.stamps
     stamps = stamps + late + drift * (stamps - 0.5 * (stamps[0] + stamps[-1]))
     return replace(track, course=replace(track.course, stamps=stamps))
 
 
-def flight_of(track, segment=SEGMENT, every=None):
+def flight_of(track: Track, segment: float = SEGMENT, every: float | None = None) -> Flight:
     """
     Return the Flight of a Track; InputError where it is too short.
 
@@ -115,7 +122,7 @@ def guided(track: Track) -> Track:
     return replace(track, guide=states)
 
 
-def highest_voltage(records):
+def highest_voltage(records: Iterable[FlightRecord]) -> float | None:
     """
     Return the highest voltage at which a flight begins, V, or None where none is recorded.
 
@@ -130,7 +137,8 @@ def highest_voltage(records):
     return max(starts) if starts else None
 
 
-def _bridged(course, states, seen, period):
+def _bridged(course: Course, states: np.ndarray, seen: np.ndarray, period: float
+             ) -> tuple[Course, np.ndarray, np.ndarray]:
     """Return course, states and seen with rows in place of those that were lost."""
     steps = np.diff(course.t)
     count = np.round(steps / period).astype(int)
@@ -142,7 +150,7 @@ def _bridged(course, states, seen, period):
     share = np.append(place / count[before], 1.0)
     before = np.append(before, len(steps) - 1)
 
-    def between(values):
+    def between(values: np.ndarray) -> np.ndarray:
         part = share.reshape(-1, *(1,) * (values.ndim - 1))
         return (1.0 - part) * values[before] + part * values[before + 1]
 
@@ -156,7 +164,8 @@ def _bridged(course, states, seen, period):
             filled, seen[rows] & there[:, None])
 
 
-def _thinned(course, states, seen, skip):
+def _thinned(course: Course, states: np.ndarray, seen: np.ndarray, skip: int
+             ) -> tuple[Course, np.ndarray, np.ndarray]:
     """Return every so many samples, and all commands."""
     rows = len(course.t) // skip * skip
     drop = course.volt_drop[:rows].reshape(-1, skip).mean(axis=1)
@@ -166,7 +175,8 @@ def _thinned(course, states, seen, skip):
             states[:rows:skip], seen[:rows:skip])
 
 
-def _starts(t, seen, period, count, step, warm):
+def _starts(t: np.ndarray, seen: np.ndarray, period: float, count: int, step: int, warm: int
+            ) -> np.ndarray:
     """Return the samples, seen, that `warm` others precede and `count` follow without a gap."""
     gaps = np.flatnonzero(np.diff(t) > max(GAP * period, SHORT_GAP))
     edges = np.concatenate([[0], gaps + 1, [len(t)]])

@@ -2,10 +2,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """The names of what may be freed in a fit: keys of the vehicle file, effects, their parameters."""
 
+from collections.abc import Iterable
+from typing import TypeAlias
+
 from quad_ident_ros import schema
 from quad_ident_ros.effects import registry
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.greybox.parameters import columns_of, INDEX, SPLIT
+from quad_ident_ros.model.vehicle import Vehicle
+
+Names: TypeAlias = dict[str, dict[str, int]]
+"""{name that can be given: {full name: place in the parameter vector}}."""
 
 UNITS = {'mass': 'kg', 'inertia': 'kg m^2', 'thrust_coefficient': 'N/(rad/s)^2',
          'torque_coefficient': 'N m/(rad/s)^2', 'linear_drag': 'N/(m/s)',
@@ -26,14 +33,14 @@ SAME = {'mass': 'mass_offset.mass', 'thrust_coefficient': 'thrust_scale.factor',
 """Constants that are one physical number with a parameter of an effect."""
 
 
-def columns_of_names(names, vehicle):
+def columns_of_names(names: Iterable[str], vehicle: Vehicle) -> dict[str, int]:
     """
     Return {full name: place in the parameter vector} of names to be freed, in their order.
 
     Raises InputError for a name that is not known, and for two names of one physical number.
     """
     table = _table(vehicle)
-    found = {}
+    found: dict[str, int] = {}
     for name in names:
         if name not in table:
             raise _unknown(name, table)
@@ -47,7 +54,7 @@ def columns_of_names(names, vehicle):
     return found
 
 
-def _unknown(name, table):
+def _unknown(name: str, table: Names) -> InputError:
     """Return the InputError for a name that is not known, with the nearest known one."""
     error = schema.unknown_key('--free', name, table)
     if 'did you mean' in str(error):
@@ -55,7 +62,7 @@ def _unknown(name, table):
     return InputError(f'--free: {schema.shown(name)} cannot be freed; {_KNOWN}')
 
 
-def unit_of(name):
+def unit_of(name: str) -> str:
     """Return the unit of a full name."""
     effect, dot, parameter = name.partition('.')
     if not dot:
@@ -64,20 +71,20 @@ def unit_of(name):
                 if known.name == parameter)
 
 
-def excitation_of(name):
+def excitation_of(name: str) -> str:
     """Return what a flight must do to show a full name."""
     effect, dot, _ = name.partition('.')
     return registry.EFFECTS[effect].excitation if dot else EXCITATION[_key(name)]
 
 
-def _key(name):
+def _key(name: str) -> str:
     """Return the key of the vehicle file that a constant belongs to."""
     return name if name in UNITS else name[:-2]
 
 
-def _table(vehicle):
+def _table(vehicle: Vehicle) -> Names:
     """Return every name that can be given, with the full names and places it stands for."""
-    table = {}
+    table: Names = {}
     for key in UNITS:
         parts = [name for name in (key, *(f'{key}_{axis}' for axis in 'xyz')) if name in INDEX]
         table[key] = {name: INDEX[name] for name in parts}

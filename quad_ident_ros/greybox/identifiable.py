@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What flights cannot determine: parameters that move together and leave the predictions."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -23,11 +24,12 @@ class Freedom:
     """
 
     held: int
-    members: tuple
+    members: tuple[int, ...]
     scale: bool
 
 
-def freedoms(information, values, sizes, first=()):
+def freedoms(information: np.ndarray, values: np.ndarray, sizes: np.ndarray,
+             first: Sequence[int] = ()) -> list[Freedom]:
     """
     Return the Freedoms that an information matrix (C, C) leaves.
 
@@ -56,13 +58,13 @@ def freedoms(information, values, sizes, first=()):
             for k, place in enumerate(held)]
 
 
-def _freedom(held, others, moves, values):
+def _freedom(held: int, others: np.ndarray, moves: np.ndarray, values: np.ndarray) -> Freedom:
     ratio = values[others] / values[held] if values[held] else np.full(len(others), np.inf)
     scale = len(others) > 0 and bool(np.all(np.abs(moves - ratio) <= EQUAL * np.abs(ratio)))
     return Freedom(held, tuple(sorted((held, *(int(k) for k in others)))), scale)
 
 
-def correlated(covariance, least):
+def correlated(covariance: np.ndarray, least: float) -> list[tuple[int, int, float]]:
     """Return (i, j, correlation) of the columns whose correlation is at least so large."""
     errors = np.sqrt(np.diag(covariance))
     table = covariance / np.maximum(np.outer(errors, errors), 1e-300)

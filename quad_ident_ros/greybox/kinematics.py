@@ -7,10 +7,13 @@ The pose is the integral of velocity and rate, whatever force acts: what a model
 taken for noise here, nor noise with a memory for what a model lacks.
 """
 
+from collections.abc import Sequence
+
 import numpy as np
 from scipy.optimize import nnls
 
 from quad_ident_ros.greybox.errors import difference, GROUPS
+from quad_ident_ros.greybox.flights import Flight
 from quad_ident_ros.greybox.parameters import SPLIT
 from quad_ident_ros.model.attitude import rotation_matrix
 from quad_ident_ros.model.sensors import product, turn, underlying
@@ -26,7 +29,8 @@ FEWEST = 50     # pairs of samples from which on a lag tells anything
 BREAK = 1.6     # usual periods between two samples over which nothing is integrated
 
 
-def measurement_noise(flights, vectors, near, white):
+def measurement_noise(flights: Sequence[Flight], vectors: Sequence[np.ndarray],
+                      near: np.ndarray, white: np.ndarray) -> np.ndarray:
     """
     Return the standard deviation of the measurement noise, with what of it has a memory, (12,).
 
@@ -53,7 +57,7 @@ def measurement_noise(flights, vectors, near, white):
     return found
 
 
-def _drifts(flight, z):
+def _drifts(flight: Flight, z: np.ndarray) -> list[np.ndarray]:
     """Return position (N, 3) and rotation (N, 3), world, less the integrals of their rates."""
     states, t = underlying(z[SPLIT:], flight.states), flight.course.t
     good = np.flatnonzero(flight.seen[:, GROUPS['attitude']].all(axis=1))
@@ -75,7 +79,8 @@ def _drifts(flight, z):
             for part in (errors[:, GROUPS['position']], turned)]
 
 
-def _spreads(flights, drifts, group):
+def _spreads(flights: Sequence[Flight], drifts: Sequence[np.ndarray], group: slice
+             ) -> tuple[np.ndarray, np.ndarray]:
     """Return times (L,) s between samples and the variance of the drift over them (L,)."""
     period = float(np.median([flight.period for flight in flights]))
     strides = np.unique(np.geomspace(1, LONGEST / period, LAGS).astype(int))
@@ -83,7 +88,7 @@ def _spreads(flights, drifts, group):
     for stride in strides:
         found = []
         for flight, drift in zip(flights, drifts, strict=True):
-            t, seen = flight.course.t, flight.seen[:, group].all(axis=1)
+            t, seen = flight.course.t, np.asarray(flight.seen[:, group].all(axis=1))
             piece = np.append(0, np.cumsum(np.diff(t) > BREAK * flight.period))
             whole = (piece[stride:] == piece[:-stride]) & seen[stride:] & seen[:-stride]
             if whole.sum() >= FEWEST:
@@ -97,7 +102,8 @@ def _spreads(flights, drifts, group):
     return np.array(lags), np.array(spread)
 
 
-def _split(lags, spread, period, white, near):
+def _split(lags: np.ndarray, spread: np.ndarray, period: float, white: float,
+           near: Sequence[float]) -> tuple[float, float]:
     """
     Return the variances of the noise of a pose and of its rate, as far as it changes in HORIZON.
 

@@ -2,14 +2,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """Flights linearised in the parameters, with the initial states of all rollouts taken out."""
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from quad_ident_ros.effects import registry
 from quad_ident_ros.greybox.errors import difference, ERRORS, moved, slopes
+from quad_ident_ros.greybox.flights import Flight
 from quad_ident_ros.greybox.parameters import constants_of, limits, SPLIT
 from quad_ident_ros.model.dynamics import predict
+from quad_ident_ros.model.vehicle import Vehicle
 
 STATE_STEP = np.repeat([1e-4, 1e-4, 1e-5, 1e-4], 3)     # of differences in the initial state
 STEP = 1e-4                                             # of a parameter's usual size
@@ -28,7 +31,7 @@ class Tangent:
     table: np.ndarray
 
     @property
-    def drift(self):
+    def drift(self) -> np.ndarray:
         """Return the change per second of an offset of the pose in time, (B, count + 1, 12)."""
         return self.table[:, -1].reshape(len(self.table), -1, ERRORS)
 
@@ -43,18 +46,19 @@ class Slopes:
     """
 
     at: np.ndarray
-    columns: list
-    vectors: list
-    starts: list
-    raws: list
-    tangents: list
+    columns: list[int]
+    vectors: list[np.ndarray]
+    starts: list[np.ndarray]
+    raws: list[np.ndarray]
+    tangents: list[Tangent]
 
-    def of(self, columns):
+    def of(self, columns: Iterable[int]) -> list[Tangent]:
         """Return the Tangents in some of the columns."""
         kept = [*range(ERRORS), *(ERRORS + self.columns.index(one) for one in columns), -1]
         return [Tangent(tangent.table[:, kept]) for tangent in self.tangents]
 
-    def missed(self, vectors, raws, noise):
+    def missed(self, vectors: Sequence[np.ndarray], raws: Sequence[np.ndarray],
+               noise: Sequence[np.ndarray]) -> float:
         """
         Return what the slopes leave out of errors elsewhere: a sum of squares, over the noise.
 
@@ -88,30 +92,33 @@ class Linear:
     whole_slope: np.ndarray
 
     @property
-    def freedom(self):
+    def freedom(self) -> np.ndarray:
         """Return the share of each channel (12,) that the initial states leave."""
         spent = np.sum(self.basis ** 2, axis=-1).reshape(-1, ERRORS)
         return 1.0 - spent.mean(axis=0)
 
 
-def recorded_along(flight):
+def recorded_along(flight: Flight) -> np.ndarray:
     """Return what each rollout of a flight is held against, (B, count + 1, 13)."""
     return flight.states[flight.first[:, None] + np.arange(flight.count + 1)]
 
 
-def seen_along(flight):
+def seen_along(flight: Flight) -> np.ndarray:
     """Return whether each of these errors counts, (B, count + 1, 12)."""
     return flight.seen[flight.first[:, None] + np.arange(flight.count + 1)]
 
 
-def errors_along(flight, vehicle, z, starts):
+def errors_along(flight: Flight, vehicle: Vehicle, z: np.ndarray, starts: np.ndarray
+                 ) -> np.ndarray:
     """Return recorded minus predicted along the rollouts, (B, count + 1, 12)."""
     predicted = predict(vehicle, z[SPLIT:], flight.course, starts, flight.first, flight.count,
                         constants=constants_of(z[None], vehicle), guide=flight.guide)
     return difference(recorded_along(flight), predicted)
 
 
-def linearise(flight, vehicle, z, starts, columns, noise, clock=True, weight=None):
+def linearise(flight: Flight, vehicle: Vehicle, z: np.ndarray, starts: np.ndarray,
+              columns: Sequence[int], noise: np.ndarray, clock: bool = True,
+              weight: np.ndarray | None = None) -> Linear:
     """
     Return the Linear of a flight around a parameter vector z (Z,).
 
@@ -125,7 +132,9 @@ def linearise(flight, vehicle, z, starts, columns, noise, clock=True, weight=Non
                      errors_along(flight, vehicle, z, starts), scale, clock)
 
 
-def slopes_at(flights, vehicle, z, vectors, starts, raws, columns):
+def slopes_at(flights: Sequence[Flight], vehicle: Vehicle, z: np.ndarray,
+              vectors: list[np.ndarray], starts: list[np.ndarray], raws: list[np.ndarray],
+              columns: list[int]) -> Slopes:
     """
     Return the Slopes of flights around z (Z,).
 
@@ -138,7 +147,8 @@ def slopes_at(flights, vehicle, z, vectors, starts, raws, columns):
                    for flight, vector, start in zip(flights, vectors, starts, strict=True)])
 
 
-def tangent_of(flight, vehicle, z, starts, columns, steps):
+def tangent_of(flight: Flight, vehicle: Vehicle, z: np.ndarray, starts: np.ndarray,
+               columns: Sequence[int], steps: np.ndarray) -> Tangent:
     """
     Return the Tangent of a flight around z, by differences.
 
@@ -174,7 +184,7 @@ def tangent_of(flight, vehicle, z, starts, columns, steps):
     return Tangent(table)
 
 
-def linear_of(tangent, raw, scale, clock=True):
+def linear_of(tangent: Tangent, raw: np.ndarray, scale: np.ndarray, clock: bool = True) -> Linear:
     """
     Return the Linear of a flight from its Tangent.
 
@@ -196,7 +206,7 @@ def linear_of(tangent, raw, scale, clock=True):
                   slope.transpose(0, 2, 1))
 
 
-def new_starts(linear, starts, step):
+def new_starts(linear: Linear, starts: np.ndarray, step: np.ndarray) -> np.ndarray:
     """Return the initial states (B, 13) that fit best after a step (C,) of the parameters."""
     left = linear.whole_error - linear.whole_slope @ step
     side = (linear.basis.transpose(0, 2, 1) @ left[..., None])

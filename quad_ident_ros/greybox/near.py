@@ -2,13 +2,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Rollouts that are short enough for a model to stay near the record."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from quad_ident_ros.greybox.errors import GROUPS
-from quad_ident_ros.greybox.flights import flight_of, SEGMENT
+from quad_ident_ros.greybox.flights import Flight, flight_of, SEGMENT, Track
 from quad_ident_ros.greybox.linear import errors_along
+from quad_ident_ros.model.vehicle import Vehicle
 
 SEGMENTS = (SEGMENT, 0.3, 0.2)      # s
 MOST = 240      # rollouts of all flights, four of 30 s: of more, every so many. Where that many do
@@ -16,7 +18,7 @@ MOST = 240      # rollouts of all flights, four of 30 s: of more, every so many.
 FAR = 0.8       # rad, of the attitude at the end: beyond it what the slopes say is not so
 
 
-def near_flights(tracks, vehicle, z):
+def near_flights(tracks: Sequence[Track], vehicle: Vehicle, z: np.ndarray) -> list[Flight]:
     """
     Return the Flights of Tracks, with the longest rollouts of a vector z (Z,) that stay near.
 

@@ -11,7 +11,7 @@ CLEARLY = 1.2       # times the noise from sample to sample that it must be ther
 MAD = 1.4826    # standard deviation over median deviation, of a normal distribution
 
 
-def quick_noise(raw):
+def quick_noise(raw: np.ndarray) -> np.ndarray:
     """
     Return the standard deviation of what changes from sample to sample, (12,).
 
@@ -22,7 +22,7 @@ def quick_noise(raw):
     return np.maximum(MAD * np.median(np.abs(third), axis=0) / np.sqrt(20.0), FLOOR)
 
 
-def near_noise(raw):
+def near_noise(raw: np.ndarray) -> np.ndarray:
     """
     Return the standard deviation of what changes within some samples, (12,).
 
@@ -38,7 +38,7 @@ def near_noise(raw):
     return found
 
 
-def whole_noise(raw, freedom):
+def whole_noise(raw: np.ndarray, freedom: np.ndarray | float) -> np.ndarray:
     """
     Return the standard deviation of all that is left, outliers apart, (12,).
 

@@ -2,10 +2,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Normal equations of flights: what is shared by all of them, what each has of its own."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.special import chdtri
+
+from quad_ident_ros.greybox.flights import Flight
+from quad_ident_ros.greybox.linear import Linear
+from quad_ident_ros.greybox.own import Layout
 
 WEAK = 1e-7         # of the largest information: a direction that says nothing
 CHANCE = 0.01       # of white noise to be taken for noise that hangs together
@@ -27,7 +32,8 @@ class Normal:
     scores: np.ndarray
 
 
-def normal_of(linears, flights, layout, clock=True):
+def normal_of(linears: Iterable[Linear], flights: Iterable[Flight], layout: Layout,
+              clock: bool = True) -> Normal:
     """
     Return the Normal of linearised flights, in the columns of a greybox.own.Layout.
 
@@ -59,7 +65,7 @@ def normal_of(linears, flights, layout, clock=True):
     return Normal(information, gradient, cost, np.concatenate(scores))
 
 
-def _blocks(each, flight):
+def _blocks(each: np.ndarray, flight: Flight) -> np.ndarray:
     """Return sums over blocks of time of what there is per rollout."""
     block = (flight.course.t[flight.first] // BLOCK).astype(int)
     _, which = np.unique(block, return_inverse=True)
@@ -68,7 +74,9 @@ def _blocks(each, flight):
     return sums
 
 
-def bounded_step(information, gradient, now, lower, upper, size):
+def bounded_step(information: np.ndarray, gradient: np.ndarray, now: np.ndarray,
+                 lower: np.ndarray, upper: np.ndarray, size: np.ndarray
+                 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the Gauss-Newton step (C,) that stays in bounds, and which columns it is free in."""
     free = np.ones(len(now), bool)
     step = np.zeros(len(now))
@@ -90,7 +98,7 @@ def bounded_step(information, gradient, now, lower, upper, size):
     return np.clip(step, lower - now, upper - now), free
 
 
-def solve(information, gradient, size):
+def solve(information: np.ndarray, gradient: np.ndarray, size: np.ndarray) -> np.ndarray:
     """Return the step (C,) that the information supports; where it says nothing, none."""
     scaled = information * np.outer(size, size)
     values, vectors = np.linalg.eigh(scaled)
@@ -99,7 +107,7 @@ def solve(information, gradient, size):
     return size * (vectors[:, kept] @ (along[kept] / values[kept]))
 
 
-def marginal(normal, shared, precision):
+def marginal(normal: Normal, shared: int, precision: np.ndarray) -> Normal:
     """
     Return the Normal of the first columns, the others free but for their precision (C,).
 
@@ -113,7 +121,7 @@ def marginal(normal, shared, precision):
                   normal.scores[:, :shared] - normal.scores[:, rest] @ ties)
 
 
-def covariance_of(normal, size):
+def covariance_of(normal: Normal, size: np.ndarray) -> np.ndarray:
     """
     Return the covariance (C, C) of the columns: the inverse of the information.
 
@@ -125,7 +133,7 @@ def covariance_of(normal, size):
     return (vectors / np.maximum(values, least)) @ vectors.T * np.outer(spread, spread)
 
 
-def scatter_of(normal):
+def scatter_of(normal: Normal) -> np.ndarray:
     """
     Return, per column (C,), the variance of the blocks' scores over that of white noise.
 

@@ -7,11 +7,16 @@ An effect is shared by flights. What differs from one flight to the next is adde
 parameters of each one, about zero and about as wide as its usual spread.
 """
 
+from __future__ import annotations
+
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from quad_ident_ros.greybox.flights import Track
 from quad_ident_ros.greybox.parameters import INDEX
+from quad_ident_ros.model.vehicle import Vehicle
 
 CLOCK = 'clock_offset'
 CLOCK_TITLE = 'how much later than the commands the states are stamped'
@@ -33,18 +38,18 @@ class Nuisance:
     name: str
     title: str
     unit: str
-    columns: tuple
-    spreads: tuple
+    columns: tuple[int, ...]
+    spreads: tuple[float, ...]
     odds: float
 
 
-def put_right(tracks):
+def put_right(tracks: Sequence[Track]) -> bool:
     """Return whether the clocks of all Tracks are known and those of some were apart."""
-    clocks = [track.clock for track in tracks]
-    return None not in clocks and any(clock.late for clock in clocks)
+    clocks = [track.clock for track in tracks if track.clock is not None]
+    return len(clocks) == len(tracks) and any(clock.late for clock in clocks)
 
 
-def nuisances(vehicle, tracks):
+def nuisances(vehicle: Vehicle, tracks: Sequence[Track]) -> tuple[Nuisance, ...]:
     """
     Return the Nuisances of Tracks of a vehicle.
 
@@ -59,8 +64,9 @@ def nuisances(vehicle, tracks):
     moment = tuple(f'external_wrench.moment_{axis}' for axis in 'xyz')
     apart, odds = APART, RARE
     if put_right(tracks):
-        apart = max(REST, REST_SHARE * max(track.clock.period for track in tracks))
+        apart = max(REST, REST_SHARE * max(track.clock.period for track in tracks if track.clock))
         odds = LIKELY
+    kinds: list[tuple[str, str, str, tuple[str, ...], tuple[float, ...], float]]
     kinds = [(CLOCK, CLOCK_TITLE, 's', ('actuation_delay.delay',), (apart,), odds)]
     kinds += [('rate_bias', 'bias of the rate', 'rad/s', rate, (spread,) * 3, RARE)
               for spread in (0.01, 0.003)]
@@ -68,8 +74,8 @@ def nuisances(vehicle, tracks):
               for spread in (0.005, 0.0015)]
     kinds.append(('trim_moment', 'moment', 'N m', moment,
                   (0.02 * lever, 0.02 * lever, 0.05 * twist), RARE))
-    return tuple(Nuisance(name, title, unit, tuple(INDEX[one] for one in columns), *rest)
-                 for name, title, unit, columns, *rest in kinds)
+    return tuple(Nuisance(name, title, unit, tuple(INDEX[one] for one in columns), spreads, odds)
+                 for name, title, unit, columns, spreads, odds in kinds)
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,13 +86,13 @@ class Own:
     fixed (F, Z): what is added to the vector of each flight and is not estimated, or None.
     """
 
-    columns: tuple
+    columns: tuple[int, ...]
     spreads: np.ndarray
     values: np.ndarray
     fixed: np.ndarray | None = None
 
     @classmethod
-    def of(cls, kinds, count, known=None):
+    def of(cls, kinds: Sequence[Nuisance], count: int, known: Own | None = None) -> Own:
         """
         Return the Own of Nuisances in so many flights, with the values of a known one.
 
@@ -101,7 +107,7 @@ class Own:
                 values[:, k] = known.values[:, same].sum(axis=1)
         return cls(columns, spreads, values)
 
-    def vectors(self, z):
+    def vectors(self, z: np.ndarray) -> list[np.ndarray]:
         """Return z (Z,) with what each flight has of its own, a list of (Z,)."""
         found = []
         for k, values in enumerate(self.values):
@@ -119,18 +125,18 @@ class Layout:
     flight; size of the vector: shared, then those of each flight.
     """
 
-    def __init__(self, shared, own, count):
+    def __init__(self, shared: Sequence[int], own: Sequence[int], count: int) -> None:
         self.wanted = sorted({*shared, *own})
         self.shared, self.own = len(shared), len(own)
         self.rows = [self.wanted.index(column) for column in (*shared, *own)]
         self.size = self.shared + count * self.own
 
-    def places(self, number):
+    def places(self, number: int) -> list[int]:
         """Return where the rows of a flight stand in the vector."""
         first = self.shared + number * self.own
         return [*range(self.shared), *range(first, first + self.own)]
 
-    def of_flight(self, vector, number):
+    def of_flight(self, vector: np.ndarray, number: int) -> np.ndarray:
         """Return the part (wanted,) of a vector that moves a flight's parameters."""
         out = np.zeros(len(self.wanted))
         np.add.at(out, self.rows, vector[self.places(number)])

@@ -2,10 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """The constants of the vehicle and the parameters of all effects as one vector."""
 
+from collections.abc import Iterable
+
 import numpy as np
 
 from quad_ident_ros.effects import registry
 from quad_ident_ros.model.rigid_body import vehicle_vector
+from quad_ident_ros.model.vehicle import Vehicle
 
 CONSTANTS = ('mass', 'inertia_x', 'inertia_y', 'inertia_z', 'gravity', 'thrust_coefficient',
              'torque_coefficient', 'rotor_radius', 'linear_drag_x', 'linear_drag_y',
@@ -15,19 +18,25 @@ NAMES = CONSTANTS + tuple(f'{effect}.{parameter.name}' for effect, parameter in
                           registry.PARAMETERS)
 INDEX = {name: k for k, name in enumerate(NAMES)}
 SPLIT = len(CONSTANTS)
+FACTORS = {
+    'thrust_coefficient': ('thrust_scale.factor', 'thrust_scale.at_hover',
+                           'thrust_scale.hover_factor'),
+    'torque_coefficient': ('inertia_mismatch.torque',),
+    **{f'inertia_{axis}': (f'inertia_mismatch.factor_{axis}',) for axis in 'xyz'}}
+"""Parameters of effects that are a factor on a constant, by constant."""
 
 
-def nominal(vehicle):
+def nominal(vehicle: Vehicle) -> np.ndarray:
     """Return the vector (Z,) of the vehicle file alone, without effects."""
     return np.concatenate([vehicle_vector(vehicle), registry.NULL])
 
 
-def as_described(vehicle):
+def as_described(vehicle: Vehicle) -> np.ndarray:
     """Return the vector (Z,) of the vehicle file with the effects that it names."""
     return np.concatenate([vehicle_vector(vehicle), registry.vector(vehicle.effects, vehicle)])
 
 
-def constants_of(z, vehicle):
+def constants_of(z: np.ndarray, vehicle: Vehicle) -> np.ndarray:
     """Return the constants (..., 16) in vectors (..., Z), the hover speeds those of the others."""
     constants = np.array(z[..., :SPLIT])
     mass, gravity, thrust = (constants[..., INDEX[name]] for name in
@@ -36,7 +45,7 @@ def constants_of(z, vehicle):
     return constants
 
 
-def limits(vehicle):
+def limits(vehicle: Vehicle) -> np.ndarray:
     """Return lower bounds, upper bounds and usual sizes (3, Z), SI."""
     constants = vehicle_vector(vehicle)
     arm = vehicle.arm_length
@@ -51,7 +60,30 @@ def limits(vehicle):
     return np.concatenate([table, registry.bounds(vehicle)], axis=1)
 
 
-def columns_of(effects, rotor_count):
+def prior_sizes(vehicle: Vehicle, width: float) -> np.ndarray:
+    """
+    Return the standard deviations (Z,), SI, of the prior about the nominal vehicle.
+
+    Usual sizes times `width`. Where the vehicle file says how well it knows a constant, its own
+    deviation instead: for the constant, and for what effects have as the same physical number.
+    A drag that is well known says nothing of the effects of drag, which are forces beside it.
+    """
+    sizes, constants = width * limits(vehicle)[2], vehicle_vector(vehicle)
+    for key, std in vehicle.uncertainty.items():
+        entries = ({f'{key}_{axis}': one for axis, one in zip('xyz', std, strict=True)}
+                   if isinstance(std, tuple) else {key: std})
+        for name, one in entries.items():
+            if one is None or name not in INDEX:    # of places and limits of speed no column is
+                continue
+            sizes[INDEX[name]] = one
+            for factor in FACTORS.get(name, ()):
+                sizes[INDEX[factor]] = one / constants[INDEX[name]]
+    if 'mass' in vehicle.uncertainty:
+        sizes[INDEX['mass_offset.mass']] = vehicle.uncertainty['mass']
+    return sizes
+
+
+def columns_of(effects: Iterable[str], rotor_count: int) -> list[int]:
     """Return the places (list of int) of the parameters of effects in the vector."""
     return [SPLIT + k for name in effects
             for k in range(registry.SLICES[name].start, registry.SLICES[name].stop)

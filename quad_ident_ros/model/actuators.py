@@ -34,7 +34,8 @@ class Actuation(NamedTuple):
     added: np.ndarray
 
 
-def actuated(t, stamps, commands, thetas):
+def actuated(t: np.ndarray, stamps: np.ndarray, commands: np.ndarray, thetas: np.ndarray
+             ) -> Actuation:
     """
     Return the Actuation at times t (N,) s of commands (M, n) rad/s, each held to the next.
 
@@ -44,21 +45,21 @@ def actuated(t, stamps, commands, thetas):
     changes within a step, `added` makes the thrust's mean over the step, and where in the step it
     lies, those of the true speeds: a mean command would smooth what it drives.
     """
-    found = {}
+    known: dict[tuple[float, ...], Actuation] = {}
     sets, shape = len(thetas), (len(t), commands.shape[1])
     all_of = Actuation(np.empty((sets, *shape)), np.empty((sets, *shape)),
                        np.empty((sets, shape[0], 3, shape[1])))
     for k, theta in enumerate(thetas):
         key = (theta[DELAY], *law_of(theta))
-        if key not in found:
-            own = Actuation(np.empty(shape), np.empty(shape), np.zeros((shape[0], 3, shape[1])))
+        if key not in known:
+            acted = Actuation(np.empty(shape), np.empty(shape), np.zeros((shape[0], 3, shape[1])))
             if theta[FOLLOWED].any():
-                _act_by_law(t, stamps, commands, *key, *own)
+                _act_by_law(t, stamps, commands, *key, *acted)
             else:
-                _act(t, stamps, commands, *key[:2], *own)
-            found[key] = own
-        for whole, own in zip(all_of, found[key], strict=True):
-            whole[k] = own
+                _act(t, stamps, commands, *key[:2], *acted)
+            known[key] = acted
+        for whole, part in zip(all_of, known[key], strict=True):
+            whole[k] = part
     return all_of
 
 
@@ -89,7 +90,7 @@ def accelerations(t: np.ndarray, acted: Actuation, thetas: np.ndarray) -> np.nda
 
 
 @compiled(fused=True, inlined=True)
-def shares(step, lag):
+def shares(step: float, lag: float) -> tuple[float, float, float]:
     """
     Return what is left of a gap to the command at begin, middle and end of a step s, lag s.
 
@@ -104,7 +105,8 @@ def shares(step, lag):
 
 
 @compiled
-def _act(t, stamps, commands, delay, lag, followed, speeds, added):
+def _act(t: np.ndarray, stamps: np.ndarray, commands: np.ndarray, delay: float, lag: float,
+         followed: np.ndarray, speeds: np.ndarray, added: np.ndarray) -> None:
     """Write the Actuation of one delay and lag, s."""
     count, last, n = len(t), len(stamps), commands.shape[1]
     sums, same = np.empty((3, n)), np.empty((3, n))
@@ -154,7 +156,8 @@ def _act(t, stamps, commands, delay, lag, followed, speeds, added):
 
 
 @compiled
-def _advance(speed, command, length, left, lag, sums):
+def _advance(speed: np.ndarray, command: np.ndarray, length: float, left: float, lag: float,
+             sums: np.ndarray) -> None:
     """
     Advance speeds (n,) by length s, `left` s before the end of a step.
 
@@ -181,7 +184,9 @@ def _advance(speed, command, length, left, lag, sums):
 
 
 @compiled
-def _act_by_law(t, stamps, commands, delay, up, down, slew, followed, speeds, added):
+def _act_by_law(t: np.ndarray, stamps: np.ndarray, commands: np.ndarray, delay: float, up: float,
+                down: float, slew: float, followed: np.ndarray, speeds: np.ndarray,
+                added: np.ndarray) -> None:
     """Write the Actuation of one delay and any law: see law_of."""
     count, last = len(t), len(stamps)
     sums = np.empty((3, commands.shape[1]))
@@ -209,7 +214,8 @@ def _act_by_law(t, stamps, commands, delay, up, down, slew, followed, speeds, ad
 
 
 @compiled
-def follow(speed, command, step, up, down, slew, added):
+def follow(speed: np.ndarray, command: np.ndarray, step: float, up: float, down: float,
+           slew: float, added: np.ndarray) -> None:
     """
     Advance speeds (n,) by a step s towards commands (n,), by any law: see law_of.
 
@@ -222,7 +228,8 @@ def follow(speed, command, step, up, down, slew, added):
 
 
 @compiled
-def _follow(speed, command, length, left, up, down, slew, sums):
+def _follow(speed: np.ndarray, command: np.ndarray, length: float, left: float, up: float,
+            down: float, slew: float, sums: np.ndarray) -> None:
     """Advance speeds (n,) as _advance does, by a lag up, another one down and a limited rate."""
     for j in range(len(speed)):
         gap = speed[j] - command[j]
@@ -245,7 +252,7 @@ def _follow(speed, command, length, left, up, down, slew, sums):
 
 
 @compiled
-def _match(sums, step, end, added):
+def _match(sums: np.ndarray, step: float, end: np.ndarray, added: np.ndarray) -> None:
     """Write what added to the speeds `end` (n,) has the sums (3, n) of a step s: see actuated."""
     same = np.zeros(sums.shape)
     _advance(end.copy(), end, step, step, 0.0, same)

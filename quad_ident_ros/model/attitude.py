@@ -3,9 +3,10 @@
 """Attitude conversions: Hamilton quaternions (scalar first, body to world) and Euler angles."""
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 
-def quaternion_from_euler(euler):
+def quaternion_from_euler(euler: ArrayLike) -> np.ndarray:
     """
     Return the unit quaternions of Z-Y-X Euler angles.
 
@@ -17,7 +18,7 @@ def quaternion_from_euler(euler):
                      cr * sp * cy + sr * cp * sy, cr * cp * sy - sr * sp * cy], axis=-1)
 
 
-def rotation_matrix(quaternion):
+def rotation_matrix(quaternion: ArrayLike) -> np.ndarray:
     """
     Return the rotation matrices (body to world) of unit quaternions.
 
@@ -31,7 +32,7 @@ def rotation_matrix(quaternion):
         np.stack([2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)], -1)], -2)
 
 
-def euler_from_quaternion(quaternion):
+def euler_from_quaternion(quaternion: ArrayLike) -> np.ndarray:
     """
     Return the Z-Y-X Euler angles with pitch folded into [-pi/2, pi/2].
 
@@ -44,7 +45,7 @@ def euler_from_quaternion(quaternion):
     return np.stack([roll, pitch, yaw], axis=-1)
 
 
-def unwrap_euler(euler, reference=(0.0, 0.0, 0.0)):
+def unwrap_euler(euler: ArrayLike, reference: ArrayLike = (0.0, 0.0, 0.0)) -> np.ndarray:
     """
     Return Euler angles continued without jumps.
 
@@ -67,7 +68,7 @@ def unwrap_euler(euler, reference=(0.0, 0.0, 0.0)):
     return out
 
 
-def body_rate(euler, euler_rate):
+def body_rate(euler: ArrayLike, euler_rate: ArrayLike) -> np.ndarray:
     """
     Return the body rate that belongs to Euler rates: the paper's eq. (3).
 

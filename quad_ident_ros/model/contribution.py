@@ -3,15 +3,19 @@
 """What effects add to the nominal vehicle along a recorded flight."""
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from quad_ident_ros.effects.registry import NULL, SLICES
 from quad_ident_ros.model.actuators import accelerations, actuated
 from quad_ident_ros.model.attitude import rotation_matrix
+from quad_ident_ros.model.dynamics import Course
 from quad_ident_ros.model.rigid_body import derivatives, INPUT, rotor_table, vehicle_vector
 from quad_ident_ros.model.sensors import underlying
+from quad_ident_ros.model.vehicle import Vehicle
 
 
-def contribution(vehicle, theta, course, states):
+def contribution(vehicle: Vehicle, theta: ArrayLike, course: Course, states: np.ndarray
+                 ) -> tuple[np.ndarray, np.ndarray]:
     """
     Return force (N, 3) N and moment (N, 3) N m, body, that effects add to the nominal vehicle.
 
@@ -26,7 +30,8 @@ def contribution(vehicle, theta, course, states):
     return vehicle.mass * body, vehicle.inertia * angular
 
 
-def _accelerations(vehicle, theta, course, states):
+def _accelerations(vehicle: Vehicle, theta: np.ndarray, course: Course, states: np.ndarray
+                   ) -> tuple[np.ndarray, np.ndarray]:
     """Return those of the body origin, world, and those of the rate, body, (N, 3) each."""
     states = np.ascontiguousarray(underlying(theta, states))
     acted = actuated(course.t, course.stamps, course.commands, theta[None])

@@ -2,18 +2,23 @@
 # SPDX-License-Identifier: Apache-2.0
 """The vehicle model with effects, as functions of flights: rollouts and what they record."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.interpolate import CubicHermiteSpline
 
 from quad_ident_ros.data.frames import continuous
+from quad_ident_ros.data.record import FlightRecord
+from quad_ident_ros.effects.registry import NULL
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.actuators import actuated, without_lag
 from quad_ident_ros.model.attitude import quaternion_from_euler
 from quad_ident_ros.model.rigid_body import INPUT, rotor_table, STATE, vehicle_vector
 from quad_ident_ros.model.rollout import NO_GUIDE, roll_out, roll_out_one
 from quad_ident_ros.model.sensors import acts, COM, product, recorded, SEEN, underlying
+from quad_ident_ros.model.vehicle import Vehicle
 
 STATES = ('px', 'py', 'pz', 'vx', 'vy', 'vz', 'qw', 'qx', 'qy', 'qz', 'wx', 'wy', 'wz')
 LONGEST_STEP = 0.01     # s, of the integration: errors of about 1e-6 of what happens in it
@@ -31,10 +36,10 @@ class Course:
     t: np.ndarray
     commands: np.ndarray
     volt_drop: np.ndarray
-    stamps: np.ndarray = None
+    stamps: np.ndarray = None  # type: ignore[assignment]  # t, see below
     reference_voltage: float = np.inf
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if self.stamps is None:
             object.__setattr__(self, 'stamps', self.t)
 
@@ -44,7 +49,8 @@ class Course:
         return self.volt_drop / self.reference_voltage
 
 
-def course_of(record, vehicle, reference_voltage=None):
+def course_of(record: FlightRecord, vehicle: Vehicle, reference_voltage: float | None = None
+              ) -> Course:
     """
     Return the Course of a flight record.
 
@@ -54,15 +60,15 @@ def course_of(record, vehicle, reference_voltage=None):
     names = [f'cmd{j}' for j in range(1, len(vehicle.rotors) + 1)]
     _refuse_without(record, names, 'or u1, u2, u3, u4, the thrust and moments')
     commands = record.stack(*names)
-    drop, known = np.zeros(len(record)), reference_voltage is not None and record.has('vbat')
-    if known:
-        drop = reference_voltage - record.columns['vbat']
+    drop, reference = np.zeros(len(record)), np.inf
+    if reference_voltage is not None and record.has('vbat'):
+        drop, reference = reference_voltage - record.columns['vbat'], reference_voltage
     began = record.info.get('began', record.t[0])
     return Course(record.t - began, np.ascontiguousarray(commands), drop,
-                  reference_voltage=reference_voltage if known else np.inf)
+                  reference_voltage=reference)
 
 
-def _refuse_without(record, names, instead):
+def _refuse_without(record: FlightRecord, names: Sequence[str], instead: str) -> None:
     missing = [name for name in names if not record.has(name)]
     if missing:
         name = record.info.get('source') or record.info.get('name', 'flight')
@@ -70,7 +76,7 @@ def _refuse_without(record, names, instead):
                          f'{instead}; it has: {", ".join(["t", *record.columns])}')
 
 
-def states_of(record):
+def states_of(record: FlightRecord) -> np.ndarray:
     """
     Return the recorded states, (N, 13), quaternions of unit length; InputError where none.
 
@@ -91,8 +97,9 @@ def states_of(record):
     return states
 
 
-def predict(vehicle, thetas, course, starts, first, count, which=None, constants=None,
-            guide=None):
+def predict(vehicle: Vehicle, thetas: ArrayLike, course: Course, starts: np.ndarray,
+            first: ArrayLike, count: int, which: ArrayLike | None = None,
+            constants: np.ndarray | None = None, guide: np.ndarray | None = None) -> np.ndarray:
     """
     Return what rollouts along a flight would record, (B, count + 1, 13).
 
@@ -140,16 +147,17 @@ def predict(vehicle, thetas, course, starts, first, count, which=None, constants
     return out
 
 
-def _guides(thetas, guide, t, fine):
+def _guides(thetas: np.ndarray, guide: np.ndarray, t: np.ndarray, fine: np.ndarray
+            ) -> tuple[np.ndarray, np.ndarray]:
     """
     Return the underlying attitudes and rates of a guide, (G, M, 7), and each set's one, (T,).
 
     Args: thetas (T, P); guide (N, 13) at t (N,) s; fine (M,) s of the integration.
     """
-    tilted = thetas[:, [place for place in SEEN if not COM.start <= place < COM.stop]].any(axis=1)
-    which = np.where(tilted, np.cumsum(tilted), 0)
-    rows = np.concatenate([[np.zeros(thetas.shape[1])], thetas[tilted]])
-    rows[:, COM] = 0.0
+    places = [place for place in SEEN if not COM.start <= place < COM.stop]
+    each, which = np.unique(thetas[:, places], axis=0, return_inverse=True)
+    rows = np.tile(NULL, (len(each), 1))
+    rows[:, places] = each
     states = underlying(rows, np.broadcast_to(guide, (len(rows), *guide.shape)))
     q, rate = states[..., 6:10], states[..., 10:]
     q = np.stack([continuous(each) for each in q])
@@ -159,10 +167,10 @@ def _guides(thetas, guide, t, fine):
         place = np.searchsorted(t, fine, side='right').clip(1, len(t) - 1)
         share = ((fine - t[place - 1]) / (t[place] - t[place - 1]))[:, None]
         rate = (1.0 - share) * rate[:, place - 1] + share * rate[:, place]
-    return np.ascontiguousarray(np.concatenate([q, rate], axis=-1)), which
+    return np.ascontiguousarray(np.concatenate([q, rate], axis=-1)), which.reshape(-1)
 
 
-def _finer(t, steps):
+def _finer(t: np.ndarray, steps: int) -> np.ndarray:
     """Return times with so many steps between two of t (N,)."""
     if steps == 1:
         return t

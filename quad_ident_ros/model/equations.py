@@ -12,18 +12,19 @@ import math
 import numpy as np
 
 from quad_ident_ros.compiled import compiled
+from quad_ident_ros.model.vehicle import Vehicle
 
 STATE = 12      # position, velocity (world), Euler angles, Euler rates
 
 
-def parameter_vector(vehicle):
+def parameter_vector(vehicle: Vehicle) -> np.ndarray:
     """Return the constants of the equations of motion, (13,), in the order stated above."""
     return np.array([*vehicle.inertia, *vehicle.rotational_drag, *vehicle.linear_drag,
                      vehicle.rotor_inertia, vehicle.mass, vehicle.gravity, vehicle.arm_length])
 
 
 @compiled
-def printed(x, u, omega_r, p, dx):
+def printed(x: np.ndarray, u: np.ndarray, omega_r: float, p: np.ndarray, dx: np.ndarray) -> None:
     """
     Write the derivative of the state into dx; the paper's eqs. (13)-(18) to the letter.
 
@@ -55,7 +56,8 @@ def printed(x, u, omega_r, p, dx):
 
 
 @compiled
-def rk4(x, inputs, omega_r, p, period, substeps, rate_limit, out):
+def rk4(x: np.ndarray, inputs: np.ndarray, omega_r: np.ndarray, p: np.ndarray, period: float,
+        substeps: int, rate_limit: float, out: np.ndarray) -> tuple[int, float]:
     """
     Integrate by classical Runge-Kutta, writing the state at each sample into out (N, 12).
 

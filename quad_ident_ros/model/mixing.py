@@ -3,14 +3,16 @@
 """Between the inputs U1..U4 and the rotor speeds: the paper's eqs. (9) and (19)."""
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.optimize import lsq_linear
 
 from quad_ident_ros.data.record import FlightRecord, INPUTS
+from quad_ident_ros.model.vehicle import Vehicle
 
 RESIDUAL = 1e-6   # share of the inputs by which speeds that give them may miss
 
 
-def allocation_matrix(vehicle):
+def allocation_matrix(vehicle: Vehicle) -> np.ndarray:
     """
     Return the matrix that gives U1..U4 from the squared rotor speeds, (4, n).
 
@@ -25,7 +27,7 @@ def allocation_matrix(vehicle):
                      vehicle.torque_coefficient * spin])
 
 
-def squared_speeds(vehicle, inputs):
+def squared_speeds(vehicle: Vehicle, inputs: ArrayLike) -> np.ndarray:
     """
     Return squared rotor speeds that give inputs, (N, n); see infeasibility where none can.
 
@@ -48,7 +50,7 @@ def squared_speeds(vehicle, inputs):
     return squared
 
 
-def with_commands(record, vehicle):
+def with_commands(record: FlightRecord, vehicle: Vehicle) -> FlightRecord:
     """
     Return a flight record with rotor speed commands; where it has none, those that give U1..U4.
 
@@ -63,7 +65,7 @@ def with_commands(record, vehicle):
     return FlightRecord(record.t, columns, record.info)
 
 
-def infeasibility(vehicle, inputs, t):
+def infeasibility(vehicle: Vehicle, inputs: ArrayLike, t: np.ndarray) -> str | None:
     """
     Say why no rotor speeds give these inputs, or return None where some do.
 
@@ -93,7 +95,7 @@ def infeasibility(vehicle, inputs, t):
             f'{vehicle.speed_max ** 2:.6g}')
 
 
-def residual_rotor_speed(vehicle, inputs):
+def residual_rotor_speed(vehicle: Vehicle, inputs: ArrayLike) -> np.ndarray:
     """
     Return Omega_r, the signed sum of the rotor speeds, (N,) rad/s.
 

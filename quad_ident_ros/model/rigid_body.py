@@ -85,13 +85,14 @@ from quad_ident_ros.model.situation import (
     WY,
     WZ,
 )
+from quad_ident_ros.model.vehicle import Vehicle
 
 STATE = 13      # position, velocity (world), quaternion (body to world), rate (body)
 # Besides the rotors: force z, moment x, y, z (body), spin sum, fall of the voltage, V and share.
 INPUT = 7
 
 
-def vehicle_vector(vehicle, drag_in_world=False):
+def vehicle_vector(vehicle: Vehicle, drag_in_world: bool = False) -> np.ndarray:
     """Return the constants of the equations of motion, (16,), in the order stated above."""
     return np.array([vehicle.mass, *vehicle.inertia, vehicle.gravity, vehicle.thrust_coefficient,
                      vehicle.torque_coefficient, vehicle.rotor_radius, *vehicle.linear_drag,
@@ -99,13 +100,14 @@ def vehicle_vector(vehicle, drag_in_world=False):
                      len(vehicle.rotors) * vehicle.hover_speed])
 
 
-def rotor_table(vehicle):
+def rotor_table(vehicle: Vehicle) -> np.ndarray:
     """Return the rotors' places (m) and spins, (n, 4)."""
     return np.array([[*rotor.position, rotor.spin] for rotor in vehicle.rotors], float)
 
 
 @compiled(fused=True, inlined=True)
-def prepare(v, places, theta, s, rotors):
+def prepare(v: np.ndarray, places: np.ndarray, theta: np.ndarray, s: np.ndarray,
+            rotors: np.ndarray) -> None:
     """Write what stays the same along a flight: what acts, mass, inertia, centre of mass, arms."""
     for i in range(s.shape[1]):
         s[MASS, i], s[IX, i], s[IY, i], s[IZ, i] = v[0, i], v[1, i], v[2, i], v[3, i]
@@ -127,7 +129,7 @@ def prepare(v, places, theta, s, rotors):
 
 
 @compiled(fused=True, inlined=True)
-def _place(x, s):
+def _place(x: np.ndarray, s: np.ndarray) -> None:
     """
     Write position, velocity, rotation, rates and air velocity of the states x (13, LANES).
 
@@ -170,7 +172,7 @@ def _place(x, s):
 
 
 @compiled(fused=True, inlined=True)
-def _rotors(s, rotors, places):
+def _rotors(s: np.ndarray, rotors: np.ndarray, places: np.ndarray) -> None:
     """Write the rotors' air velocities and heights, and the sum of their spins."""
     for j in range(rotors.shape[0]):
         spin = places[j, 3]
@@ -185,7 +187,8 @@ def _rotors(s, rotors, places):
 
 
 @compiled(fused=True, inlined=True)
-def wrench(v, places, theta, s, rotors):
+def wrench(v: np.ndarray, places: np.ndarray, theta: np.ndarray, s: np.ndarray,
+           rotors: np.ndarray) -> None:
     """Write force and moment (body) on the centre of mass, without gravity."""
     _rotors(s, rotors, places)
     THRUST(theta, s, rotors)
@@ -209,7 +212,8 @@ def wrench(v, places, theta, s, rotors):
 
 
 @compiled(fused=True, inlined=True)
-def derivative(x, u, v, places, theta, s, rotors, dx):
+def derivative(x: np.ndarray, u: np.ndarray, v: np.ndarray, places: np.ndarray,
+               theta: np.ndarray, s: np.ndarray, rotors: np.ndarray, dx: np.ndarray) -> None:
     """
     Write the derivative of the states x (13, LANES) into dx; the rotors' speeds are in `rotors`.
 
@@ -255,7 +259,9 @@ def derivative(x, u, v, places, theta, s, rotors, dx):
 
 
 @compiled(fused=True)
-def derivatives(v, places, theta, t, states, speeds, accelerations, inputs, out):
+def derivatives(v: np.ndarray, places: np.ndarray, theta: np.ndarray, t: np.ndarray,
+                states: np.ndarray, speeds: np.ndarray, accelerations: np.ndarray,
+                inputs: np.ndarray, out: np.ndarray) -> None:
     """
     Write the derivatives of given states, each by itself, into out (N, 13).
 

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Integration of many rollouts at once, from given states, along recorded or planned commands."""
 
+from collections.abc import Callable
 import math
 
 import numpy as np
@@ -30,7 +31,9 @@ CHANGE = 4  # row of work[3]: what of the rate of change of the rotors' spin no 
 
 
 @compiled(fused=True, inlined=True)
-def _set_speeds(share, speed, command, added, places, period_rate, change, s, rotors):
+def _set_speeds(share: np.ndarray, speed: np.ndarray, command: np.ndarray, added: np.ndarray,
+                places: np.ndarray, period_rate: np.ndarray, change: np.ndarray, s: np.ndarray,
+                rotors: np.ndarray) -> None:
     """Set the speeds that lie between `speed` and `command`; share (LANES,) is what is left."""
     for i in range(s.shape[1]):
         s[SPIN_UP, i] = change[i]
@@ -42,7 +45,9 @@ def _set_speeds(share, speed, command, added, places, period_rate, change, s, ro
 
 
 @compiled(fused=True, inlined=True)
-def take_up(x, speed, command, span, theta, places, s, rotors, work):
+def take_up(x: np.ndarray, speed: np.ndarray, command: np.ndarray, span: np.ndarray,
+            theta: np.ndarray, places: np.ndarray, s: np.ndarray, rotors: np.ndarray,
+            work: np.ndarray) -> None:
     """
     Hand the momentum of rotors that change their speed without a lag of their own to the body.
 
@@ -66,7 +71,9 @@ def take_up(x, speed, command, span, theta, places, s, rotors, work):
 
 
 @compiled(fused=True, inlined=True)
-def step(x, h, u, v, places, theta, speed, command, added, lag, s, rotors, work):
+def step(x: np.ndarray, h: np.ndarray, u: np.ndarray, v: np.ndarray, places: np.ndarray,
+         theta: np.ndarray, speed: np.ndarray, command: np.ndarray, added: np.ndarray,
+         lag: np.ndarray, s: np.ndarray, rotors: np.ndarray, work: np.ndarray) -> None:
     """
     Advance the states x (13, LANES) by h (LANES,) s; speed becomes that at the end.
 
@@ -118,11 +125,13 @@ def step(x, h, u, v, places, theta, speed, command, added, lag, s, rotors, work)
             speed[j, i] = rotors[j, SPEED, i] - added[2, j, i]
 
 
-def _kernel(lanes):
+def _kernel(lanes: int) -> Callable[..., None]:
     """Return the integrator that does so many rollouts side by side."""
     @compiled(fused=True)
-    def roll_out(vehicles, places, thetas, which, x0, t, followed, speeds, added, inputs, first,
-                 count, substeps, guides, guide_of, out):
+    def roll_out(vehicles: np.ndarray, places: np.ndarray, thetas: np.ndarray, which: np.ndarray,
+                 x0: np.ndarray, t: np.ndarray, followed: np.ndarray, speeds: np.ndarray,
+                 added: np.ndarray, inputs: np.ndarray, first: np.ndarray, count: int,
+                 substeps: int, guides: np.ndarray, guide_of: np.ndarray, out: np.ndarray) -> None:
         """
         Integrate rollouts by Runge-Kutta and write their states into out (B, count + 1, 13).
 

@@ -9,6 +9,7 @@ Parameter sets theta (P,), or (B, P) for states (B, ..., 13).
 """
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from quad_ident_ros.compiled import compiled
 from quad_ident_ros.effects.registry import PLACES, SLICES
@@ -19,7 +20,7 @@ SEEN = [place for part in (COM, TILT, BIAS, BLOCK, GYRO)
         for place in range(part.start, part.stop)]
 
 
-def product(a, b):
+def product(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """Return the Hamilton products of quaternions (..., 4)."""
     aw, ax, ay, az = np.moveaxis(a, -1, 0)
     bw, bx, by, bz = np.moveaxis(b, -1, 0)
@@ -29,7 +30,7 @@ def product(a, b):
                      aw * bz + ax * by - ay * bx + az * bw], axis=-1)
 
 
-def turn(vector):
+def turn(vector: ArrayLike) -> np.ndarray:
     """Return the quaternions of rotation vectors (..., 3) rad."""
     vector = np.asarray(vector, float)
     angle = np.linalg.norm(vector, axis=-1, keepdims=True)
@@ -37,9 +38,9 @@ def turn(vector):
     return np.concatenate([np.cos(angle / 2), half * vector], axis=-1)
 
 
-def acts(theta):
+def acts(theta: np.ndarray) -> np.ndarray:
     """Return whether what is recorded differs from the state of the centre of mass, (...)."""
-    return theta[..., SEEN].any(axis=-1)
+    return np.asarray(theta[..., SEEN].any(axis=-1))
 
 
 def tilts_of(theta: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -48,17 +49,17 @@ def tilts_of(theta: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return product(block, turn(theta[..., TILT])), product(block, turn(theta[..., GYRO]))
 
 
-def recorded(theta, states):
+def recorded(theta: np.ndarray, states: np.ndarray) -> np.ndarray:
     """Return what is recorded of states of the centre of mass, (..., 13)."""
     return _changed(theta, states, True)
 
 
-def underlying(theta, states):
+def underlying(theta: np.ndarray, states: np.ndarray) -> np.ndarray:
     """Return the states of the centre of mass of recorded ones, (..., 13): recorded, undone."""
     return _changed(theta, states, False)
 
 
-def _changed(theta, states, forward):
+def _changed(theta: np.ndarray, states: np.ndarray, forward: bool) -> np.ndarray:
     """Return recorded states of underlying ones, or, backward, those of recorded ones."""
     states, theta = np.array(states, float), np.atleast_2d(theta)
     if acts(theta).any():
@@ -73,7 +74,8 @@ def _changed(theta, states, forward):
 
 
 @compiled(fused=True)
-def _change(arms, tilts, rates, turned, biases, states, forward):
+def _change(arms: np.ndarray, tilts: np.ndarray, rates: np.ndarray, turned: bool,
+            biases: np.ndarray, states: np.ndarray, forward: bool) -> None:
     """
     Change states (B, N, 13) in place, by arms and biases (B, 3) and turns (B, 4).
 
@@ -98,7 +100,7 @@ def _change(arms, tilts, rates, turned, biases, states, forward):
 
 
 @compiled(fused=True, inlined=True)
-def _tilt(x, tilt):
+def _tilt(x: np.ndarray, tilt: np.ndarray) -> None:
     """Turn the attitude of a state (13,) by a quaternion (4,) in the body."""
     w, a, b, c = x[6], x[7], x[8], x[9]
     x[6] = w * tilt[0] - a * tilt[1] - b * tilt[2] - c * tilt[3]
@@ -108,7 +110,7 @@ def _tilt(x, tilt):
 
 
 @compiled(fused=True, inlined=True)
-def _turn_rate(x, turned, sense):
+def _turn_rate(x: np.ndarray, turned: np.ndarray, sense: float) -> None:
     """Turn the rate of a state (13,) by a quaternion (4,), or back where sense is -1."""
     w, i, j, k = turned[0], sense * turned[1], sense * turned[2], sense * turned[3]
     a, b, c = x[10], x[11], x[12]
@@ -119,7 +121,7 @@ def _turn_rate(x, turned, sense):
 
 
 @compiled(fused=True, inlined=True)
-def _shift(x, arm, share):
+def _shift(x: np.ndarray, arm: np.ndarray, share: float) -> None:
     """Move position and velocity of a state (13,) by a share of an arm (3,) in the body."""
     ax, ay, az = share * arm[0], share * arm[1], share * arm[2]
     _add_turned(x, 0, ax, ay, az)
@@ -127,7 +129,7 @@ def _shift(x, arm, share):
 
 
 @compiled(fused=True, inlined=True)
-def _add_turned(x, place, a, b, c):
+def _add_turned(x: np.ndarray, place: int, a: float, b: float, c: float) -> None:
     """Add a vector of the body, in the world, to three elements of a state (13,)."""
     w, i, j, k = x[6], x[7], x[8], x[9]
     u, v, t = 2.0 * (j * c - k * b), 2.0 * (k * a - i * c), 2.0 * (i * b - j * a)

@@ -2,9 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Simulation of the vehicle under given inputs."""
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import Any, TypeAlias
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.effects import registry
@@ -14,6 +17,11 @@ from quad_ident_ros.model.actuators import actuated, FOLLOWED, without_lag
 from quad_ident_ros.model.rigid_body import INPUT, rotor_table, STATE, vehicle_vector
 from quad_ident_ros.model.rollout import NO_GUIDE, roll_out_one
 from quad_ident_ros.model.sensors import recorded
+from quad_ident_ros.model.vehicle import Vehicle
+
+Progress: TypeAlias = Callable[[float], object]
+Flown: TypeAlias = tuple[dict[str, np.ndarray], float]
+"""Columns of a record and the time at which it ends, s."""
 
 # Longest integration step, s. The errors that they leave are stated in docs/paper.md and shown
 # by test/unit/test_golden.py: the printed equations are stiff and chaotic, the derived are not.
@@ -36,8 +44,10 @@ class Simulation:
     end_time: float
 
 
-def simulate(vehicle, model, inputs, period, *, omega_r=0.0, altitude=0.0, step=None, info=None,
-             on_progress=lambda share: None):
+def simulate(vehicle: Vehicle, model: str, inputs: ArrayLike, period: float, *,
+             omega_r: ArrayLike = 0.0, altitude: float = 0.0, step: float | None = None,
+             info: Mapping[str, Any] | None = None,
+             on_progress: Progress = lambda share: None) -> Simulation:
     """
     Fly the vehicle from rest, level, under inputs that are held between samples.
 
@@ -73,7 +83,8 @@ def simulate(vehicle, model, inputs, period, *, omega_r=0.0, altitude=0.0, step=
     return Simulation(record, 'complete' if count == len(inputs) else 'diverged', float(end))
 
 
-def _newton_euler(vehicle, inputs, omega_r, period, substeps, altitude, on_progress):
+def _newton_euler(vehicle: Vehicle, inputs: np.ndarray, omega_r: np.ndarray, period: float,
+                  substeps: int, altitude: float, on_progress: Progress) -> Flown:
     """Fly the vehicle model with the vehicle's effects; linear drag is along world axes."""
     stamps = np.arange(len(inputs)) * period
     theta = registry.vector(vehicle.effects, vehicle)
@@ -93,10 +104,10 @@ def _newton_euler(vehicle, inputs, omega_r, period, substeps, altitude, on_progr
     places = rotor_table(vehicle)[:commands.shape[1]]
     acting, one = without_lag(theta[None]), np.zeros(1, np.int64)
 
-    def advance(part, first, t, substeps):
+    def advance(part: np.ndarray, first: int, t: np.ndarray, substeps: int) -> None:
         """Integrate from the state part[0], at the sample first, and write what comes after it."""
         roll_out_one(constants, places, acting, one, part[:1].copy(), t, *acted, others,
-                     np.array([first]), len(part) - 1, substeps, part[None])
+                     np.array([first]), len(part) - 1, substeps, *NO_GUIDE, part[None])
 
     states = np.zeros((len(t), STATE))
     states[0, 2], states[0, 6] = altitude, 1.0
@@ -130,7 +141,8 @@ def _newton_euler(vehicle, inputs, omega_r, period, substeps, altitude, on_progr
     return columns, end
 
 
-def _acting(vehicle, theta, inputs, omega_r, t):
+def _acting(vehicle: Vehicle, theta: np.ndarray, inputs: np.ndarray, omega_r: np.ndarray,
+            t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """
     Return what acts: commands of the rotors (N, n), n = 0 where none are needed, and the rest.
 
@@ -156,13 +168,14 @@ def _acting(vehicle, theta, inputs, omega_r, t):
     return np.empty((len(t), 0)), others
 
 
-def _lost(states):
+def _lost(states: np.ndarray) -> np.ndarray:
     """Say which states (N, 13) are beyond the limit of rates or no numbers, (N,)."""
     within = (np.abs(states[:, 10:]) <= RATE_LIMIT).all(axis=1)
     return ~(within & np.isfinite(states).all(axis=1))
 
 
-def _printed(vehicle, inputs, omega_r, period, substeps, altitude, on_progress):
+def _printed(vehicle: Vehicle, inputs: np.ndarray, omega_r: np.ndarray, period: float,
+             substeps: int, altitude: float, on_progress: Progress) -> Flown:
     """Fly the equations as the paper prints them."""
     if vehicle.effects:
         raise InputError(f'vehicle {vehicle.name}: the equations as printed know no effects; fly '
@@ -191,12 +204,13 @@ STATE_COLUMNS = ('px', 'py', 'pz', 'vx', 'vy', 'vz', 'qw', 'qx', 'qy', 'qz', 'wx
                  'u1', 'u2', 'u3', 'u4', 'phi', 'theta', 'psi')
 
 
-def _columns(*parts):
+def _columns(*parts: np.ndarray) -> dict[str, np.ndarray]:
     """Return the columns of a record of parts of the table of its state, (N, ...) each."""
     return dict(zip(STATE_COLUMNS, np.hstack(parts).T, strict=True))
 
 
-def omega_r_of(setting, vehicle, inputs, t, sign=1):
+def omega_r_of(setting: str | float, vehicle: Vehicle, inputs: np.ndarray, t: np.ndarray,
+               sign: int = 1) -> float | np.ndarray:
     """
     Return Omega_r for a setting: 'zero', 'from_rotors' or a number of rad/s.
 

@@ -5,6 +5,7 @@
 from dataclasses import asdict, dataclass, field, fields, replace
 import math
 from pathlib import Path
+from typing import Any, TypeAlias
 
 import numpy as np
 import yaml
@@ -13,6 +14,12 @@ from quad_ident_ros import resources, schema
 from quad_ident_ros.effects import registry
 from quad_ident_ros.errors import InputError
 
+Uncertainty: TypeAlias = float | tuple[float | None, ...]
+
+# Constants by key of the file, and whether zero is refused.
+NUMBERS = {'mass': True, 'gravity': True, 'thrust_coefficient': True, 'torque_coefficient': True,
+           'rotor_inertia': False, 'rotor_radius': False, 'speed_min': False, 'speed_max': False}
+TRIPLES = {'inertia': True, 'linear_drag': False, 'rotational_drag': False}
 LEAST_HOVER = 0.03  # of speed_max: the rotors would carry a thousand times the weight
 
 
@@ -20,7 +27,7 @@ LEAST_HOVER = 0.03  # of speed_max: the rotors would carry a thousand times the 
 class Rotor:
     """A rotor: its place in the body frame (m) and the sign of its reaction torque about +z."""
 
-    position: tuple
+    position: tuple[float, ...]
     spin: int
 
 
@@ -31,41 +38,44 @@ class Vehicle:
 
     inertia (3,) kg m^2; thrust_coefficient N/(rad/s)^2; torque_coefficient N m/(rad/s)^2;
     linear_drag (3,) N/(m/s); rotational_drag (3,) N m/(rad/s)^2; speeds rad/s; effects that it
-    has beside the nominal model, {effect: {parameter: value}}, see effects.registry.
+    has beside the nominal model, {effect: {parameter: value}}, see effects.registry; uncertainty:
+    standard deviations of the constants that have one, in the constant's unit, by key (those of
+    places by 'rotors[0].position'); those of lists are tuples, None where an entry has none.
     """
 
     name: str
     mass: float
-    inertia: tuple
+    inertia: tuple[float, ...]
     gravity: float
     thrust_coefficient: float
     torque_coefficient: float
-    rotors: tuple
+    rotors: tuple[Rotor, ...]
     rotor_inertia: float = 0.0
     rotor_radius: float = 0.0
-    linear_drag: tuple = (0.0, 0.0, 0.0)
-    rotational_drag: tuple = (0.0, 0.0, 0.0)
+    linear_drag: tuple[float, ...] = (0.0, 0.0, 0.0)
+    rotational_drag: tuple[float, ...] = (0.0, 0.0, 0.0)
     speed_min: float = 0.0
     speed_max: float = float('inf')
-    effects: dict = field(default_factory=dict, hash=False)
+    effects: registry.Values = field(default_factory=dict, hash=False)
+    uncertainty: dict[str, Uncertainty] = field(default_factory=dict, hash=False)
 
     @property
-    def arm_length(self):
+    def arm_length(self) -> float:
         """Lever arm l in m: the mean distance of the rotors from the body's z axis."""
         return float(np.mean([np.hypot(r.position[0], r.position[1]) for r in self.rotors]))
 
     @property
-    def hover_speed(self):
+    def hover_speed(self) -> float:
         """Speed of each rotor, rad/s, at which they all carry the weight."""
         return math.sqrt(self.mass * self.gravity / (len(self.rotors) * self.thrust_coefficient))
 
     @property
-    def hover_input(self):
+    def hover_input(self) -> np.ndarray:
         """Inputs U1..U4 (4,) that hold the vehicle still: the weight on U1, N."""
         return np.array([self.mass * self.gravity, 0.0, 0.0, 0.0])
 
 
-def hover_fault(vehicle):
+def hover_fault(vehicle: Vehicle) -> tuple[str, str] | None:
     """Return (what, how to mend it) where a vehicle cannot hover by its file, or None."""
     hover, low, high = vehicle.hover_speed, vehicle.speed_min, vehicle.speed_max
     if hover >= high:
@@ -82,7 +92,7 @@ def hover_fault(vehicle):
             'vehicle file')
 
 
-def load_vehicle(name_or_path):
+def load_vehicle(name_or_path: str | Path) -> Vehicle:
     """
     Return the vehicle of a shipped name or of a vehicle file.
 
@@ -92,7 +102,7 @@ def load_vehicle(name_or_path):
     return vehicle_from_mapping(resources.read_yaml(path), str(path))
 
 
-def load_nominal(name_or_path):
+def load_nominal(name_or_path: str | Path) -> Vehicle:
     """Return the vehicle of a name or file as load_vehicle; InputError where it has effects."""
     vehicle = load_vehicle(name_or_path)
     if vehicle.effects:
@@ -101,27 +111,29 @@ def load_nominal(name_or_path):
     return vehicle
 
 
-def vehicle_from_mapping(data, where):
+def vehicle_from_mapping(data: Any, where: str) -> Vehicle:
     """Return the vehicle that the mapping of a vehicle file describes; raises InputError."""
-    known = [field.name for field in fields(Vehicle)]
+    known = [field.name for field in fields(Vehicle) if field.name != 'uncertainty']
     required = [name for name in known[:7]]
     schema.check_keys(where, data, known, required)
-    values = {'name': schema.name(f'{where}: name', data['name'])}
-    for key in ('mass', 'gravity', 'thrust_coefficient', 'torque_coefficient'):
-        values[key] = schema.number(f'{where}: {key}', data[key], 0.0, exclusive=True)
-    values['inertia'] = schema.numbers(f'{where}: inertia', data['inertia'], 3, minimum=0.0,
-                                       exclusive=True)
-    for key in ('rotor_inertia', 'rotor_radius', 'speed_min', 'speed_max'):
+    values: dict[str, Any] = {'name': schema.name(f'{where}: name', data['name'])}
+    stds: dict[str, Uncertainty | None] = {}
+    for key, exclusive in NUMBERS.items():
         if key in data:
-            values[key] = schema.number(f'{where}: {key}', data[key], 0.0)
-    for key in ('linear_drag', 'rotational_drag'):
+            values[key], stds[key] = schema.uncertain(f'{where}: {key}', data[key], 0.0,
+                                                      exclusive)
+    for key, exclusive in TRIPLES.items():
         if key in data:
-            values[key] = schema.numbers(f'{where}: {key}', data[key], 3, minimum=0.0)
+            values[key], stds[key] = schema.uncertain_numbers(
+                f'{where}: {key}', data[key], 3, 0.0, exclusive)
     if not isinstance(data['rotors'], list) or not data['rotors']:
         raise InputError(f'{where}: rotors: expected a list of {{position: [x, y, z], spin: 1}}')
-    values['rotors'] = tuple(_rotor(f'{where}: rotors[{i}]', rotor)
-                             for i, rotor in enumerate(data['rotors']))
-    vehicle = Vehicle(**values)
+    rotors = []
+    for i, rotor in enumerate(data['rotors']):
+        made, stds[_place_of(i)] = _rotor(f'{where}: rotors[{i}]', rotor)
+        rotors.append(made)
+    vehicle = Vehicle(**values, rotors=tuple(rotors), uncertainty={
+        key: std for key, std in stds.items() if std is not None and std != (None,) * 3})
     if not vehicle.arm_length > 0:
         raise InputError(f'{where}: rotors: all of them lie on the z axis; give their places')
     if vehicle.speed_max <= vehicle.speed_min:
@@ -132,12 +144,13 @@ def vehicle_from_mapping(data, where):
     return vehicle
 
 
-def vehicle_to_mapping(vehicle):
+def vehicle_to_mapping(vehicle: Vehicle) -> dict[str, Any]:
     """Return the mapping of a vehicle file that describes the vehicle."""
-    data = {key: list(value) if isinstance(value, tuple) else value
-            for key, value in asdict(vehicle).items()}
-    data['rotors'] = [{'position': list(rotor.position), 'spin': rotor.spin}
-                      for rotor in vehicle.rotors]
+    stds = vehicle.uncertainty
+    data = {key: _with_std(value, stds.get(key)) for key, value in asdict(vehicle).items()
+            if key != 'uncertainty'}
+    data['rotors'] = [{'position': _with_std(rotor.position, stds.get(_place_of(i))),
+                       'spin': rotor.spin} for i, rotor in enumerate(vehicle.rotors)]
     if math.isinf(vehicle.speed_max):
         del data['speed_max']
     if not vehicle.effects:
@@ -145,13 +158,13 @@ def vehicle_to_mapping(vehicle):
     return data
 
 
-def check_ending(path):
+def check_ending(path: str | Path) -> None:
     """Raise InputError where a path has not the ending of a vehicle file."""
     if Path(path).suffix not in ('.yaml', '.yml'):
         raise InputError(f'{path}: a vehicle is written to a .yaml file; name one')
 
 
-def write_vehicle(path, vehicle):
+def write_vehicle(path: str | Path, vehicle: Vehicle) -> None:
     """Write a vehicle file that load_vehicle reads back as it was; raises InputError."""
     check_ending(path)
     text = yaml.safe_dump(vehicle_to_mapping(vehicle), sort_keys=False, default_flow_style=None)
@@ -161,7 +174,20 @@ def write_vehicle(path, vehicle):
         raise InputError(f'{path}: cannot be written: {error.strerror}') from None
 
 
-def _rotor(where, data):
+def _with_std(value: Any, std: Any) -> Any:
+    """Return a value of a vehicle file with its standard deviation, where it has one."""
+    if isinstance(value, tuple):
+        return [_with_std(*pair) for pair in zip(value, std or [None] * len(value), strict=True)]
+    return value if std is None else {'value': value, 'std': std}
+
+
+def _place_of(rotor: int) -> str:
+    """Return the key by which `uncertainty` has the place of a rotor."""
+    return f'rotors[{rotor}].position'
+
+
+def _rotor(where: str, data: Any) -> tuple[Rotor, tuple[float | None, ...]]:
+    """Return a rotor, and the standard deviations of its place."""
     schema.check_keys(where, data, ('position', 'spin'), ('position', 'spin'))
-    return Rotor(schema.numbers(f'{where}: position', data['position'], 3),
-                 schema.choice(f'{where}: spin', data['spin'], (1, -1)))
+    position, stds = schema.uncertain_numbers(f'{where}: position', data['position'], 3)
+    return Rotor(position, schema.choice(f'{where}: spin', data['spin'], (1, -1))), stds

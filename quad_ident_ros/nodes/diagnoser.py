@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Node `diagnoser`: says what a vehicle has and its nominal description lacks."""
+"""Node `diagnoser`: says which effects a vehicle has beside its nominal description."""
 
 from datetime import datetime, timezone
 import json
@@ -8,13 +8,13 @@ import sys
 
 from std_msgs.msg import Float64MultiArray, String
 
-from quad_ident_ros.data.quality import cautions
 from quad_ident_ros.diagnose.diagnosis import diagnose
-from quad_ident_ros.diagnose.length import refuse_short, SHORTEST
-from quad_ident_ros.diagnose.where import CHANNELS
+from quad_ident_ros.diagnose.intake import refuse_short
+from quad_ident_ros.diagnose.residual_wrench import CHANNELS
+from quad_ident_ros.diagnose.rules import RULES
 from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.model.mixing import with_commands
+from quad_ident_ros.greybox.errors import UNITS
 from quad_ident_ros.model.vehicle import load_nominal
 from quad_ident_ros.nodes import process
 from quad_ident_ros.nodes.messages import ERROR, OK, table_message, WARN
@@ -22,6 +22,7 @@ from quad_ident_ros.nodes.parameters import help_text, ParameterSpec
 from quad_ident_ros.nodes.qos import latched
 from quad_ident_ros.nodes.record_worker import RecordWorker, Words
 from quad_ident_ros.report.diagnosis import verdict_line
+from quad_ident_ros.tolerances import EXAMPLE, rules_from
 from quad_ident_ros.warm_up import warm_up_diagnosis
 
 WORDS = Words('diagnose', 'diagnosis', 'diagnosing', 'diagnosed')
@@ -30,16 +31,20 @@ STAGES = ('before', 'after', 'noise')
 SPECS = (
     ParameterSpec('vehicle', 'paper_quadrotor', 'Name of a shipped vehicle or path of a vehicle '
                   'file: the nominal one, without effects.'),
-    ParameterSpec('effects', (), 'Effects that may be found; empty: all.',
+    ParameterSpec('effects', (), 'Effects that may be named; empty: all.',
                   choices=tuple(EFFECTS)),
     ParameterSpec('mode', 'once', 'once: diagnose the first complete experiment, then only on '
                   '~/diagnose; continuous: diagnose each new record by itself.',
                   choices=('once', 'continuous')),
     ParameterSpec('window', 0.0, 'Seconds at the end of a record that are diagnosed, at '
-                  f'least {SHORTEST:g}; 0 takes all.', limits=(0.0, 1e6)),
+                  f'least {RULES.shortest:g}; 0 takes all.', limits=(0.0, 1e6)),
+    ParameterSpec('tolerance', (), 'Gaps beyond the noise that do not matter half a second ahead, '
+                  f'each GROUP=VALUE, for example {EXAMPLE}; groups and units: '
+                  + ', '.join(f'{name} {unit}' for name, unit in UNITS.items())
+                  + '; empty: the usual ones.'),
 )
 
-HELP = f"""diagnoser: says what a vehicle has and its nominal description lacks.
+HELP = f"""diagnoser: says which effects a vehicle has beside its nominal description.
 
   ros2 run quad_ident_ros diagnoser --ros-args -p vehicle:=hummingbird
   ros2 topic echo /diagnosis --once
@@ -53,7 +58,7 @@ Publishes (latched, but progress and diagnostics):
                                              what to fly next
   gap            std_msgs/Float64MultiArray  gap of position, velocity, attitude, rate (m, m/s,
                                              rad, rad/s), 0.5 s ahead, held out: before, after the
-                                             effects found, and of noise alone
+                                             effects named, and of noise alone
   where          std_msgs/Float64MultiArray  share of the gap of {', '.join(CHANNELS)}
   ~/progress     std_msgs/String             JSON: fraction
   /diagnostics   diagnostic_msgs/DiagnosticArray  OK: nothing but noise; WARN: known effects, or
@@ -76,7 +81,7 @@ class Diagnoser(RecordWorker):
     def _unfit(self, record):
         if self._continuous:
             try:
-                refuse_short(record)
+                refuse_short(record, RULES)
             except InputError as error:     # the end of a run
                 return str(error)
         return None
@@ -90,51 +95,50 @@ class Diagnoser(RecordWorker):
         records = self._taken()
 
         def run():
-            vehicle = load_nominal(values['vehicle'])
-            flights = [with_commands(record.last(values['window']) if values['window']
-                                     else record, vehicle) for record in records]
-            wary = []
-            for flight in flights:
-                refuse_short(flight)
-                wary += cautions(flight, vehicle)
-            found = diagnose(flights, vehicle, effects=values['effects'] or None,
+            flights = [record.last(values['window']) if values['window'] else record
+                       for record in records]
+            found = diagnose(flights, load_nominal(values['vehicle']),
+                             effects=values['effects'] or None,
+                             rules=rules_from(values['tolerance'], 'parameter tolerance'),
                              on_progress=self._job.tell)
-            return {**found.data, 'findings': wary}, flights
+            return found, flights
 
         return run
 
     def _publish(self, outcome):
-        data, flights = outcome
+        found, flights = outcome
         span = [int(flights[0].info.get('start_ns', 0)),
                 int(flights[-1].info.get('start_ns', 0)
                     + round(1e9 * (flights[-1].t[-1] - flights[-1].t[0])))]
-        data = {**data, 'time': datetime.now(timezone.utc).isoformat(), 'span_ns': span,
+        data = {**found.as_data(), 'time': datetime.now(timezone.utc).isoformat(), 'span_ns': span,
                 'dropped_samples': sum(flight.info.get('dropped', 0) for flight in flights)}
         self._json.publish(String(data=json.dumps(data)))
-        gap = data['gap']
-        self._gap.publish(table_message([[gap[stage][name] for stage in STAGES]
-                                         for name in gap['units']],
-                                        ','.join(gap['units']), ','.join(STAGES)))
-        shares = {row['channel']: row['share'] for row in data['where']}
+        gap = found.gap
+        self._gap.publish(table_message([[stage[name] for stage in (gap.before, gap.after,
+                                                                    gap.noise)]
+                                         for name in gap.units],
+                                        ','.join(gap.units), ','.join(STAGES)))
+        shares = {row.channel: row.share for row in found.where}
         self._where.publish(table_message([[shares.get(name, 0.0)] for name in CHANNELS],
                                           ','.join(CHANNELS), 'share'))
         self._job.say(1.0)
-        verdict = data['verdict']
-        level = ERROR if 'unknown' in verdict else OK if verdict == ['none'] else WARN
-        text = f'verdict: {verdict_line(data)}'
+        verdict = found.verdict
+        level = ERROR if 'unknown' in verdict else OK if verdict == ('none',) else WARN
+        text = f'verdict: {verdict_line(found)}'
         self._status = (level, text, {
-            'verdict': ','.join(verdict), 'closed': gap['closed'],
+            'verdict': ','.join(verdict), 'closed': gap.closed,
             'dropped_samples': data['dropped_samples'],
-            **{f'probability/{row["effect"]}': row['probability'] for row in data['ranking']}})
-        self.get_logger().info(f'{text}; {100 * gap["closed"]:.0f} % of the velocity gap above '
+            **{f'probability/{row.effect}': row.probability for row in found.ranking}})
+        self.get_logger().info(f'{text}; {100 * gap.closed:.0f} % of the velocity gap above '
                                'the noise is closed')
 
 
 def _validate(values):
     load_nominal(values['vehicle'])
-    if 0.0 < values['window'] < SHORTEST:
+    rules = rules_from(values['tolerance'], 'parameter tolerance')
+    if 0.0 < values['window'] < rules.shortest:
         raise InputError(f'parameter window: {values["window"]:g} s are too short for a '
-                         f'diagnosis; expected 0 (all) or at least {SHORTEST:g}')
+                         f'diagnosis; expected 0 (all) or at least {rules.shortest:g}')
 
 
 def main(args=None):

@@ -2,97 +2,219 @@
 # SPDX-License-Identifier: Apache-2.0
 """A diagnosis as a table that a person reads in ten seconds."""
 
+from typing import TextIO
+
 from rich import box
 from rich.console import Console
 from rich.table import Table
 
+from quad_ident_ros.diagnose.result import Channel, Diagnosis, Ranked, Unexplained
+from quad_ident_ros.diagnose.rules import RULES
+
 WIDTH = 118     # columns that the widest row needs
 WORTH = 0.02        # probability or share from which on a row is shown
 
+WHERE = ('channel', 'share', 'rms', 'noise alone', 'where most of it is', 'Hz')
+"""What where_row says of a channel."""
 
-def show(data, stream):
-    """Print a diagnosis (the project's JSON as data) to a stream: the verdict first."""
-    screen = Console(file=stream, width=WIDTH)
-
-    def say(text, style=None):
-        screen.print(text, style=style, markup=False, highlight=False, soft_wrap=True)
-
-    say(f'verdict: {verdict_line(data)}', 'bold')
-    gap = data['gap']
-    say('')
-    say('where: what the nominal vehicle lacks')
-    screen.print(_where(data['where']))
-    say('which')
-    screen.print(_which(data['ranking']))
-    say(f'how far, on {data["held_out"]} (held out), {gap["horizon"]:g} s ahead: '
-        f'{100 * gap["closed"]:.0f} % of the velocity gap above the noise is closed')
-    screen.print(_far(gap))
-    for line in own_lines(data):
-        say(line)
-    for row in data['unknown'] or ():
-        say(f'unexplained: {row["channel"]} depends on {row["depends_on"]} '
-            f'({100 * row["share"]:.0f} % of what is left there)')
-    if data['not_shown']:
-        say(not_shown_line(data))
-    for line in caution_lines(data):
-        say(line)
-    if data['fly_next']:
-        say('what to fly next')
-        screen.print(_next(data['fly_next']))
-
-
-def verdict_line(data):
-    """Return the verdict in words."""
-    verdict = data['verdict']
-    if verdict == ['none']:
-        return 'none: nothing but measurement noise is left'
-    said = ', '.join(verdict)
-    if data['undetermined']:
-        said += f': the flights cannot tell between {", ".join(data["undetermined"])}'
-        if verdict == ['undetermined'] and data['sure']:
-            said += f'; sure beside them: {", ".join(data["sure"])}'
-    return said
-
-
-def own_lines(data):
-    """Return what each flight has of its own, in words."""
-    lines = []
-    for name, own in (data['nuisances'] or {}).items():
-        lines.append(f"each flight's own {name} ({own['what']}) is no effect: {_own(own)}")
-        if own.get('hidden_delay'):
-            lines.append(f'a delay of all flights of up to {1e3 * own["hidden_delay"]:.0f} ms '
-                         'cannot be told from the clocks')
-    return lines
-
-
-def not_shown_line(data):
-    """Return what the flights could not show, in words."""
-    return f'would not show at their usual size: {", ".join(data["not_shown"])}'
-
-
-def caution_lines(data):
-    """
-    Return what to be wary of, a line for each kind of it.
-
-    A held-out flight that the effects found lead away from, and what was found in the records, if
-    they were looked at.
-    """
-    farther = [f'be wary of {data["held_out"]} (held out): it is farther from the model with the '
-               'effects found than without: it was flown otherwise, or by another vehicle']
-    alike = {}
-    for one in data.get('findings', ()):
-        alike.setdefault((one['code'], one['where'].partition(', t =')[0]), []).append(one)
-    found = [f'be wary of {first["flight"]}'
-             + (f' ({", ".join(one["flight"] for one in others)} alike)' if others else '')
-             + f': {first["where"]}: {first["message"]}' for first, *others in alike.values()]
-    return [*(farther if data['gap']['closed'] < 0.0 else []), *found]
-
+FAR = ('', 'nominal', 'with nuisances', 'after', 'noise', 'unit')
+"""What far_rows say of a group of outputs."""
 
 NEXT = ('manoeuvre', 'to', 'standard errors now', 'with it', 'size', 'height', 'speed up to')
 """What next_row says of a manoeuvre."""
 
 
-def next_row(one):
+def show(found: Diagnosis, stream: TextIO) -> None:
+    """Print a Diagnosis to a stream: the verdict first."""
+    screen = Console(file=stream, width=WIDTH)
+
+    def say(text: str, style: str | None = None) -> None:
+        screen.print(text, style=style, markup=False, highlight=False, soft_wrap=True)
+
+    say(f'verdict: {verdict_line(found)}', 'bold')
+    say(size_line(found))
+    say('')
+    say('where: force and moment that the nominal vehicle does not explain')
+    screen.print(_table(WHERE, [where_row(row) for row in shown_channels(found)]))
+    say('which')
+    screen.print(_which(found))
+    for line in (*minor_lines(found), *one_finding_lines(found)):
+        say(line)
+    say('')
+    say(far_line(found))
+    screen.print(_table(FAR, far_rows(found)))
+    for line in (*open_lines(found), *nuisance_lines(found)):
+        say(line)
+    if found.fly_next:
+        say('what to fly next')
+        screen.print(_table(NEXT, [next_row(one) for one in found.fly_next]))
+
+
+def verdict_line(found: Diagnosis) -> str:
+    """Return the verdict in words."""
+    said = ', '.join(found.verdict)
+    if found.verdict == ('none',):
+        said += ': the nominal vehicle explains the flights to within noise and tolerance'
+    if 'unknown' in found.verdict:
+        said += ': no known effect explains all of the gap'
+    if found.undetermined:
+        said += f': the flights cannot tell between {", ".join(found.undetermined)}'
+        if found.verdict == ('undetermined',) and found.sure:
+            said += f'; sure beside them: {", ".join(found.sure)}'
+    return said
+
+
+def size_line(found: Diagnosis) -> str:
+    """Return how large the gap of the velocity is before and after, as a sentence."""
+    gap = found.gap
+    before, after, noise = (stage['velocity'] for stage in (gap.before, gap.after, gap.noise))
+    said = (f'On {found.held_out}, which took no part, the velocity {gap.horizon:g} s ahead is '
+            f'off by {before:.3g} m/s with the nominal vehicle')
+    if gap.without:
+        said += f', by {after:.3g} m/s with the effects named'
+    said += f'; noise alone makes {noise:.3g} m/s.'
+    return said if not gap.without else (
+        f'{said} {100 * gap.closed:.0f} % of the gap above the noise is closed.')
+
+
+def shown_channels(found: Diagnosis) -> list[Channel]:
+    """Return the Channels that have a share worth a row."""
+    return [row for row in found.where if row.share >= WORTH]
+
+
+def where_row(row: Channel) -> list[str]:
+    """Return the cells of a Channel."""
+    return [row.channel, f'{100 * row.share:.0f} %', f'{row.rms:.3g} {row.unit}',
+            f'{row.noise_rms:.3g}', row.regime, band_of(row)]
+
+
+def band_of(row: Channel | Unexplained) -> str:
+    """Return the frequency band of a channel, Hz, in words."""
+    low, high = row.band
+    return f'{low:.2g} to {high:.2g}' if high > 0.0 else 'constant'
+
+
+def shown_effects(found: Diagnosis) -> list[Ranked]:
+    """Return the effects that are named, or probable enough for a row."""
+    named = {*found.verdict, *(one.effect for one in found.minor)}
+    return [row for row in found.ranking if row.probability >= WORTH or row.effect in named]
+
+
+def form_of(row: Ranked) -> str:
+    """Return the form of an effect and how much of the effect it explains, in words."""
+    if row.form is None:
+        return ''
+    return row.form if row.explained is None else f'{row.form}, {100 * row.explained:.0f} %'
+
+
+def contribution_of(row: Ranked) -> str:
+    """Return in words the share of the closable gap that is lost without an effect."""
+    return '' if row.contribution is None else f'{100 * row.contribution:.0f} %'
+
+
+def without_it(found: Diagnosis, row: Ranked) -> str:
+    """Return in words the velocity gap (m/s) of the flight held out without an effect."""
+    gap = found.gap.without.get(row.effect)
+    return '' if gap is None else f'{gap["velocity"]:.3g}'
+
+
+def minor_lines(found: Diagnosis) -> list[str]:
+    """Return what is there and does not matter, in words."""
+    alike = [(f'closing less than {100 * RULES.material:.0f} %',
+              [one for one in found.minor if one.contribution < RULES.material]),
+             ('closing no more than the error of form of the other effects may be',
+              [one for one in found.minor if one.contribution >= RULES.material])]
+    return [f'also there, but {why}: ' + ', '.join(
+        f'{one.effect} ({100 * max(one.contribution, 0.0):.1f} %, probability '
+        f'{one.probability:.2f})' for one in some) for why, some in alike if some]
+
+
+def one_finding_lines(found: Diagnosis) -> list[str]:
+    """Return what motion cannot tell apart from an effect that is named, and what tells it."""
+    lines = []
+    for row in found.one_finding:
+        may_be = ', '.join(' or '.join(names) for names in row['may_be'])
+        lines.append(f'{row["effect"]} may as well be another cause of the same motion'
+                     + (f' ({may_be})' if may_be else '') + f'; what tells: {row["tells"]}')
+    return lines
+
+
+def far_line(found: Diagnosis) -> str:
+    """Return how much of the velocity gap is closed, open loop and given the attitude."""
+    return (f'how far, on {found.held_out} (held out), {found.gap.horizon:g} s ahead: of the '
+            f'velocity gap above the noise {100 * found.gap.closed:.0f} % is closed, given the '
+            f'recorded attitude {100 * found.gap_given_attitude.closed:.0f} %')
+
+
+def far_rows(found: Diagnosis) -> list[list[str]]:
+    """Return the cells of every group of outputs: open loop, then given the attitude."""
+    gap, given = found.gap, found.gap_given_attitude
+    rows = [[name, _between(gap.before, gap.before_interval, name), f'{gap.before_own[name]:.3g}',
+             _between(gap.after, gap.after_interval, name), f'{gap.noise[name]:.3g}', unit]
+            for name, unit in gap.units.items()]
+    return rows + [[f'{name} given attitude',
+                    *(f'{stage[name]:.3g}' for stage in (given.before, given.before_own,
+                                                         given.after, given.noise)),
+                    gap.units[name]] for name in given.before]
+
+
+def _between(gap: dict, interval: dict, name: str) -> str:
+    low, high = interval[name]
+    return f'{gap[name]:.3g} ({low:.3g} to {high:.3g})'
+
+
+def open_lines(found: Diagnosis) -> list[str]:
+    """Return what the verdict does not explain, what did not show and what to be wary of."""
+    lines = [f'unexplained: {row.channel}, {row.depends_on}, {row.rms:.2g} {row.unit} rms, '
+             + (f'{band_of(row)} Hz' if row.band[1] > 0.0 else 'constant')
+             for row in found.unknown]
+    for one in found.flight_checks:
+        if one.differs:
+            times = ', '.join(f'{name} {value:.3g}' for name, value in one.gap_over_noise.items())
+            lines.append(f'{one.flight} differs from the other flights; gap over that of the '
+                         f'noise: {times}')
+    if found.not_shown:
+        lines.append(f'would not show at their usual size: {", ".join(found.not_shown)}')
+    return lines + caution_lines(found)
+
+
+def nuisance_lines(found: Diagnosis) -> list[str]:
+    """Return what was estimated for each flight apart, in words."""
+    lines = []
+    for name, one in (found.nuisances or {}).items():
+        lines.append(f'{name} ({one["what"]}), {one["unit"]}: {_values(one)}')
+        if one.get('hidden_delay'):
+            lines.append(f'a delay of all flights of up to {1e3 * one["hidden_delay"]:.0f} ms '
+                         'cannot be told from the clocks')
+    return ['estimated per flight, not reported as effects:',
+            *(f'  {line}' for line in lines)] if lines else []
+
+
+def _values(one: dict) -> str:
+    """Return the values of each flight, the held-out one last."""
+    *flights, held_out = (' '.join(f'{value:.2g}' for value in values)
+                          for values in (*one['values'], one['held_out']))
+    return f'{"; ".join(flights)}; held out {held_out}'
+
+
+def caution_lines(found: Diagnosis) -> list[str]:
+    """
+    Return what to be wary of, a line for each kind of it.
+
+    A held-out flight that the effects found lead away from, and what was found in the records.
+    """
+    farther = [f'be wary of {found.held_out} (held out): it is farther from the model with the '
+               'effects named than without: it was flown otherwise, or by another vehicle']
+    alike: dict = {}
+    for one in found.findings:
+        alike.setdefault((one['code'], one['where'].partition(', t =')[0]), []).append(one)
+    lines = [f'be wary of {first["flight"]}'
+             + (f' ({", ".join(one["flight"] for one in others)} alike)' if others else '')
+             + f': {first["where"]}: {first["message"]}' for first, *others in alike.values()]
+    return [*(farther if found.gap.closed < 0.0 else []), *lines]
+
+
+def next_row(one: dict) -> list[str]:
     """Return the cells of a proposal of what to fly next."""
     low, high = one['height']
     names = ', '.join(one['effects'])
@@ -104,67 +226,21 @@ def next_row(one):
             f'{one["speed"]:.1f} m/s']
 
 
-def _next(proposals):
-    table = _table(*NEXT)
-    for one in proposals:
-        table.add_row(*next_row(one))
-    return table
+def _which(found: Diagnosis) -> Table:
+    rows = []
+    for row in shown_effects(found):
+        values = ', '.join(f'{name} {one.value:.4g} ± {one.std:.2g} {one.unit}'.removesuffix(' 1')
+                           for name, one in row.parameters.items())
+        rows.append([row.effect, form_of(row), f'{row.probability:.2f}', contribution_of(row),
+                     values, without_it(found, row)])
+    return _table(('effect', 'form, explains', 'probability', 'contribution', 'parameters',
+                   'velocity gap\nwithout it, m/s'), rows or [['none', *[''] * 5]])
 
 
-def _own(own):
-    """Return the values of each flight, the held-out one last."""
-    *flights, held_out = (' '.join(f'{value:.2g}' for value in values)
-                          for values in (*own['values'], own['held_out']))
-    return f'{"; ".join(flights)}; held out {held_out} {own["unit"]}'
-
-
-def _far(gap):
-    table = _table('', 'before', 'after', 'noise alone', 'unit')
-    for name, unit in gap['units'].items():
-        table.add_row(name, *(_interval(gap, key, name) for key in ('before', 'after')),
-                      f'{gap["noise"][name]:.3g}', unit)
-    for name, values in gap['without'].items():
-        table.add_row(f'velocity, all but {name}', '', f'{values["velocity"]:.3g}', '', 'm/s')
-    return table
-
-
-def _interval(gap, key, name):
-    low, high = gap[f'{key}_interval'][name]
-    return f'{gap[key][name]:.3g} ({low:.3g} to {high:.3g})'
-
-
-def _which(ranking):
-    table = _table('effect', 'probability', 'parameters', 'velocity gap with it alone, m/s')
-    for row in ranking:
-        if row['probability'] >= WORTH:
-            values = ', '.join(f'{name} {one["value"]:.4g} ± {one["std"]:.2g} {one["unit"]}'
-                               .removesuffix(' 1') for name, one in row['parameters'].items())
-            alone = row['gap_after']
-            table.add_row(row['effect'], f'{row["probability"]:.2f}', values,
-                          f'{alone["velocity"]:.3g}' if values else '')
-    if not table.row_count:
-        table.add_row('none', '', '', '')
-    return table
-
-
-def _where(rows):
-    table = _table('channel', 'share', 'rms', 'noise alone', 'where most of it is', 'Hz')
-    for row in rows:
-        if row['share'] >= WORTH:
-            table.add_row(row['channel'], f'{100 * row["share"]:.0f} %',
-                          f'{row["rms"]:.3g} {row["unit"]}', f'{row["noise_rms"]:.3g}',
-                          row['regime'], band_of(row))
-    return table
-
-
-def band_of(row):
-    """Return the frequency band of a channel, Hz, in words."""
-    low, high = row['band']
-    return f'{low:.2g} to {high:.2g}' if high > 0.0 else 'constant'
-
-
-def _table(*names):
+def _table(names: tuple, rows: list) -> Table:
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1), header_style='bold')
     for name in names:
         table.add_column(name, overflow='fold')
+    for row in rows:
+        table.add_row(*row)
     return table

@@ -2,12 +2,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """Pictures of a diagnosis."""
 
+from pathlib import Path
+
 from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 import numpy as np
 
-from quad_ident_ros.diagnose.where import CHANNELS, weights
+from quad_ident_ros.diagnose.residual_wrench import CHANNELS, ResidualWrench, weights
+from quad_ident_ros.diagnose.result import Diagnosis, Gap, Ranked
 from quad_ident_ros.greybox.errors import GROUPS
 from quad_ident_ros.model.dynamics import STATES
+from quad_ident_ros.model.vehicle import Vehicle
 from quad_ident_ros.report.picture import MEASURED, pyplot, save
 
 BEFORE, AFTER, NOISE = '#d55e00', '#0072b2', '#555555'
@@ -18,26 +22,21 @@ NARROW = 4.0        # times the lowest gap that its axis shows at least
 NAMED = 0.5         # probability from which on a bar is coloured
 
 
-def save_predictions(held_out, before, after, gap, path):
-    """
-    Save measured against predicted velocity and rates, and the errors beside them.
-
-    Args: held_out: its Track; before, after: diagnose.gap.Ends of it with the nominal and
-    with the diagnosed vehicle; gap: that part of the diagnosis.
-    """
-    plt = pyplot(path)
+def save_predictions(found: Diagnosis, path: str | Path) -> None:
+    """Save measured against predicted velocity and rates, and the errors beside them."""
+    plt, pictures, gap = pyplot(path), found.pictures, found.gap
     rows = [(group, number, name, unit) for group, (names, unit) in SHOWN.items()
             for number, name in enumerate(names)]
     figure, axes = plt.subplots(len(rows), 2, figsize=(11.4, 11.0), dpi=110, sharex=True,
                                 layout='constrained', gridspec_kw={'width_ratios': (1.5, 1)})
-    t, states = before.t + gap['horizon'], dict(zip(STATES, held_out.states.T, strict=True))
+    t, states = pictures.t, dict(zip(STATES, pictures.states.T, strict=True))
     for (left, right), (group, number, name, unit) in zip(axes, rows, strict=True):
-        measured = np.interp(t, held_out.course.t, states[name])
+        measured = states[name]
         left.plot(t, measured, color=MEASURED, linewidth=4, label='measured')
-        noise = 2.0 * gap['noise'][group] / np.sqrt(3.0)
+        noise = 2.0 * gap.noise[group] / np.sqrt(3.0)
         right.axhspan(-noise, noise, color='0.88', linewidth=0, label='noise alone, 2 σ')
-        for ends, color, label in ((before, BEFORE, 'predicted before'),
-                                   (after, AFTER, 'predicted after')):
+        for ends, color, label in ((pictures.before, BEFORE, 'predicted before'),
+                                   (pictures.after, AFTER, 'predicted after')):
             error = ends.errors[:, GROUPS[group]][:, number]
             left.plot(t, measured - error, color=color, linewidth=1.1, label=label)
             right.plot(t, error, color=color, linewidth=1.0)
@@ -46,7 +45,7 @@ def save_predictions(held_out, before, after, gap, path):
         left.set_ylabel(f'{name}, {unit}')
         _plain(left)
         _plain(right)
-    axes[0, 0].set_title(f'measured, and predicted {gap["horizon"]:g} s ahead', fontsize='medium')
+    axes[0, 0].set_title(f'measured, and predicted {gap.horizon:g} s ahead', fontsize='medium')
     axes[0, 1].set_title('measured - predicted', fontsize='medium')
     for axis in axes[-1]:
         axis.set_xlabel('time, s')
@@ -55,23 +54,23 @@ def save_predictions(held_out, before, after, gap, path):
     save(plt, figure, path)
 
 
-def save_horizons(gap, path):
+def save_horizons(gap: Gap, path: str | Path) -> None:
     """Save the gap over the horizon, before, after and of noise, with its 95 % intervals."""
     plt = pyplot(path)
     figure, axes = plt.subplots(1, len(GROUPS), figsize=(11.4, 3.2), dpi=110,
                                 layout='constrained')
-    horizons = np.array([float(name) for name in gap['horizons']])
+    horizons = np.array([float(name) for name in gap.horizons])
     for axis, group in zip(axes, GROUPS, strict=True):
         for stage, color, shift in (('before', BEFORE, -0.012), ('after', AFTER, 0.012)):
-            values = np.array([one[stage][group] for one in gap['horizons'].values()])
+            values = np.array([one[stage][group] for one in gap.horizons.values()])
             ends = np.array([one[f'{stage}_interval'][group]
-                             for one in gap['horizons'].values()]).T
+                             for one in gap.horizons.values()]).T
             axis.errorbar(horizons + shift, values, np.maximum([values - ends[0],
                                                                 ends[1] - values], 0.0),
                           color=color, marker='o', markersize=4, capsize=3, label=stage)
-        axis.plot(horizons, [one['noise'][group] for one in gap['horizons'].values()],
+        axis.plot(horizons, [one['noise'][group] for one in gap.horizons.values()],
                   color=NOISE, linestyle='--', label='noise alone')
-        # What is left may be a hundredth of what was there: both are to be read.
+        # The gap after may be a hundredth of that before: both are to be read.
         axis.set_yscale('log')
         axis.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
         axis.yaxis.set_major_formatter(StrMethodFormatter('{x:g}'))
@@ -79,7 +78,7 @@ def save_horizons(gap, path):
         low, high = axis.get_ylim()
         axis.set_ylim(min(low, high / NARROW), high)    # a gap that stays must not look steep
         axis.set_xticks(horizons)
-        axis.set_title(f'{group}, {gap["units"][group]}', fontsize='medium')
+        axis.set_title(f'{group}, {gap.units[group]}', fontsize='medium')
         axis.set_xlabel('horizon, s')
         _plain(axis)
     handles, labels = axes[0].get_legend_handles_labels()
@@ -87,13 +86,14 @@ def save_horizons(gap, path):
     save(plt, figure, path)
 
 
-def save_map(before, after, vehicle, path):
+def save_map(before: tuple[ResidualWrench, ...], after: tuple[ResidualWrench, ...],
+             vehicle: Vehicle, path: str | Path) -> None:
     """
-    Save where force and moment lack, by channel and third of each feature of the regime.
+    Save the residual force and moment by channel and third of each feature of the regime.
 
-    Args: before, after: lists of diagnose.where.Lacking, with the nominal and with the diagnosed
-    vehicle. In m/s of velocity made in half a second, so that forces and moments compare; what
-    noise alone gives is taken off.
+    Args: before, after: of each flight with the nominal and with the diagnosed vehicle. In m/s of
+    velocity made in half a second, so that forces and moments compare; what noise alone gives is
+    taken off.
     """
     plt = pyplot(path)
     names = [name for name, (_, values) in before[0].features.items() if np.ptp(values) > 0]
@@ -119,8 +119,9 @@ def save_map(before, after, vehicle, path):
     save(plt, figure, path)
 
 
-def _by_third(flights, names, vehicle):
-    """Return what lacks (6, 3 K) by third of K features, of all flights together."""
+def _by_third(flights: tuple[ResidualWrench, ...], names: list[str],
+              vehicle: Vehicle) -> np.ndarray:
+    """Return the residual (6, 3 K) by third of K features, of all flights together."""
     values = np.concatenate([flight.values for flight in flights])
     errors = np.concatenate([flight.errors for flight in flights])
     energy = (values ** 2 - errors ** 2) * weights(vehicle) ** 2
@@ -133,16 +134,16 @@ def _by_third(flights, names, vehicle):
     return np.stack(columns, axis=1)
 
 
-def save_probabilities(ranking, path):
+def save_probabilities(ranking: tuple[Ranked, ...], path: str | Path) -> None:
     """Save the probability of each effect as bars."""
     plt = pyplot(path)
     figure, axis = plt.subplots(figsize=(7.0, 0.26 * len(ranking) + 0.8), dpi=110,
                                 layout='constrained')
-    values = [row['probability'] for row in ranking]
+    values = [row.probability for row in ranking]
     bars = axis.barh(range(len(ranking)), values, height=0.7,
                      color=[AFTER if value >= NAMED else '#b9c4cc' for value in values])
     axis.bar_label(bars, [f'{value:.2f}' for value in values], padding=3, fontsize='small')
-    axis.set_yticks(range(len(ranking)), [row['effect'] for row in ranking])
+    axis.set_yticks(range(len(ranking)), [row.effect for row in ranking])
     axis.invert_yaxis()
     axis.set_xlim(0.0, 1.12)
     axis.set_xlabel('probability of being present')

@@ -18,7 +18,7 @@ GROUPS = ('velocity', 'attitude')
 def summary_of(case: Case) -> dict:
     """Return what is recorded of a case: verdict, probabilities, gap, parameters with std."""
     try:
-        data = diagnose(case.flights(), case.nominal()).data
+        data = diagnose(case.flights(), case.nominal()).as_data()
     except InputError as error:
         return {'verdict': ['refused'], 'why': str(error)}
     ranking = {row['effect']: row for row in data['ranking']}

@@ -48,6 +48,9 @@ VALUES = {
         ('mode', 'twice', "'twice' is not one of once, continuous"),
         ('window', -1.0, 'window'),
         ('window', 3.0, 'parameter window: 3 s are too short for a diagnosis'),
+        ('tolerance', ['velocty=0.1'], "parameter tolerance: 'velocty' is not known here"),
+        ('tolerance', ['velocity'], 'expected GROUP=VALUE'),
+        ('tolerance', ['rate=-1'], 'parameter tolerance: rate: -1 is out of range'),
     ],
     'identifier': [
         ('method', 'simplex', "'simplex' is not one of all, pso, cs, pso_cs, ls"),

@@ -68,8 +68,8 @@ def test_what_the_diagnoser_refuses_ends_the_demo_in_one_line(tmp_path):
     path = tmp_path / 'short.yaml'
     path.write_text(yaml.safe_dump({
         'name': 'short', 'model': 'closed_loop', 'vehicle': 'hummingbird', 'period': 0.01,
-        'runs': [{'name': 'only', 'duration': 5.0, 'trajectory': 'hover'}]}), encoding='utf-8')
+        'runs': [{'name': 'only', 'duration': 3.0, 'trajectory': 'hover'}]}), encoding='utf-8')
     done = run('--experiment', str(path), '--seed', SEED, '-o', str(tmp_path / 'out'))
     assert done.returncode == 2
     line = done.stderr.splitlines()[-1]     # after those that tell how far it is
-    assert line.startswith('quad_ident demo: error: short/only: 5.01 s are too short')
+    assert line.startswith('quad_ident demo: error: short/only: 3.01 s are too short')

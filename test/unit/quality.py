@@ -2,14 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the tests of the quality of records share."""
 
-from pathlib import Path
-
 from flightmaker import VEHICLE
 import numpy as np
 
 from quad_ident_ros.data.quality import findings
 
-NANOBENCH = Path(__file__).parents[1] / 'data' / 'nanobench'
 P, V, Q = ('px', 'py', 'pz'), ('vx', 'vy', 'vz'), ('qw', 'qx', 'qy', 'qz')
 W, A, CMD = ('wx', 'wy', 'wz'), ('ax', 'ay', 'az'), ('cmd1', 'cmd2', 'cmd3', 'cmd4')
 

@@ -145,7 +145,7 @@ def test_a_stream_that_is_late_changes_no_verdict(sensors, stream, offset, truth
                for k, course in enumerate(('figure8', 'low_passes', 'lissajous'))]
     if stream == 'velocity':    # the others come from one sensor each
         flights = [late(flight, {stream: offset}) for flight in flights]
-    data = diagnose(flights, VEHICLE).data
+    data = diagnose(flights, VEHICLE).as_data()
     assert data['verdict'] == (list(truth) or ['none'])
     # The slow passes tell it to less than a millisecond, and no better.
     assert np.ravel(data['nuisances'][f'{stream}_clock']['values']) == pytest.approx(

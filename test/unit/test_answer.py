@@ -142,7 +142,7 @@ def test_streams_that_were_moved_leave_open_which_of_them_is_answered():
 
 def test_a_delay_is_told_beside_clocks_that_differ():
     flights = [stamped(flown(seed, DELAY), late) for seed, late in enumerate(LATE)]
-    data = diagnose(flights, VEHICLE).data
+    data = diagnose(flights, VEHICLE).as_data()
     assert data['verdict'] == ['actuation_delay']
     [row] = [row for row in data['ranking'] if row['effect'] == 'actuation_delay']
     delay = row['parameters']['delay']
@@ -154,7 +154,7 @@ def test_a_delay_is_told_beside_clocks_that_differ():
 
 def test_clocks_that_are_alike_in_all_flights_are_no_delay():
     flights = [stamped(flown(seed), 0.02) for seed in range(3)]
-    data = diagnose(flights, VEHICLE).data
+    data = diagnose(flights, VEHICLE).as_data()
     assert data['verdict'] == ['none']
     assert data['nuisances']['clock_offset']['held_out'] == pytest.approx([0.02], abs=0.003)
     [finding] = [one for one in findings(flights[0], VEHICLE) if one.code == 'clock_offset']
@@ -174,11 +174,11 @@ def test_a_lag_of_the_controller_is_no_delay_whatever_the_clocks():
     """Beside clocks that differ no record tells it from commands that act late by as much."""
     one_clock = [answering_late(seed) for seed in range(3)]
     assert answer_of(one_clock[0]).lag == pytest.approx(0.01, abs=1e-3)
-    data = diagnose(one_clock, VEHICLE).data
+    data = diagnose(one_clock, VEHICLE).as_data()
     assert data['verdict'] == ['none'] and data['nuisances'] is None
     late = (0.0, 0.021, -0.014)
     data = diagnose([stamped(record, one) for record, one in zip(one_clock, late, strict=True)],
-                    VEHICLE).data
+                    VEHICLE).as_data()
     assert data['verdict'] == ['none']
     clocks = data['nuisances']['clock_offset']
     assert np.ravel([*clocks['values'], clocks['held_out']]) == pytest.approx(late, abs=0.003)
@@ -187,7 +187,7 @@ def test_a_lag_of_the_controller_is_no_delay_whatever_the_clocks():
 
 def test_clocks_that_drift_are_put_right():
     flights = [stamped(flown(seed, duration=30.0), 0.012, drift=8e-4) for seed in range(3)]
-    data = diagnose(flights, VEHICLE).data
+    data = diagnose(flights, VEHICLE).as_data()
     assert data['verdict'] == ['none']
     assert data['gap']['after']['rate'] < 1.1 * data['gap']['noise']['rate']
 

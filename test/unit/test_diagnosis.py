@@ -59,8 +59,13 @@ def with_play(commands, width=0.03 * HOVER):
 
 
 def check(data, truth):
-    """Check verdict, parameters and what is closed against the truth."""
-    assert set(data['verdict']) == set(truth)
+    """
+    Check verdict, parameters and what is closed against the truth.
+
+    Beside others an effect may be too small to matter; one alone may not.
+    """
+    minor = {row['effect'] for row in data['minor']} if len(truth) > 1 else set()
+    assert set(data['verdict']) <= set(truth) <= set(data['verdict']) | minor
     rows = {row['effect']: row for row in data['ranking']}
     for effect, parameters in truth.items():
         assert rows[effect]['probability'] > 0.9
@@ -76,7 +81,7 @@ def check(data, truth):
 def test_a_weak_rotor_is_not_the_opposite_one_that_is_strong(loss, factor):
     """With other thrust of all rotors both do nearly the same."""
     truth = {'rotor_fault': {'loss_1': loss}, 'thrust_scale': {'factor': factor}}
-    check(diagnose(flown(truth), VEHICLE).data, truth)
+    check(diagnose(flown(truth), VEHICLE).as_data(), truth)
 
 
 def test_the_truths_are_of_every_effect():
@@ -86,21 +91,25 @@ def test_the_truths_are_of_every_effect():
 @pytest.mark.parametrize('effect', TRUTHS)
 def test_each_effect_is_named_alone_with_its_parameters(effect):
     truth = {effect: TRUTHS[effect]}
-    check(diagnose(flown(truth), VEHICLE).data, truth)
+    check(diagnose(flown(truth), VEHICLE).as_data(), truth)
 
 
 def test_several_at_once_are_named_together():
     truth = {name: TRUTHS[name] for name in SEVERAL}
-    data = diagnose(flown(truth), VEHICLE).data
+    data = diagnose(flown(truth), VEHICLE).as_data()
     check(data, truth)
-    # Each of them contributes: without it more is left.
+    # Each that is named contributes: without it the gap is larger.
+    assert len(data['verdict']) > 1
     assert all(data['gap']['without'][name]['velocity'] > data['gap']['after']['velocity']
-               for name in truth)
+               for name in data['verdict'])
+    contributions = [row['contribution'] for row in data['ranking'][:len(data['verdict'])]]
+    assert [row['effect'] for row in data['ranking']][:len(contributions)] == data['verdict']
+    assert contributions == sorted(contributions, reverse=True)
 
 
 @pytest.mark.parametrize('noise', [WHITE, COLOURED], ids=['white', 'coloured'])
 def test_where_nothing_but_noise_is_left_the_verdict_is_none(noise):
-    data = diagnose(flown({}, noise, seed=10), VEHICLE).data
+    data = diagnose(flown({}, noise, seed=10), VEHICLE).as_data()
     assert data['verdict'] == ['none']
     # Noise with a memory is noise, too: it opens no gap.
     for group in ('velocity', 'attitude'):
@@ -109,13 +118,29 @@ def test_where_nothing_but_noise_is_left_the_verdict_is_none(noise):
 
 def test_noise_with_a_memory_is_not_held_against_the_share_that_is_closed():
     truth = {'mass_offset': TRUTHS['mass_offset']}
-    check(diagnose(flown(truth, COLOURED, seed=20), VEHICLE).data, truth)
+    check(diagnose(flown(truth, COLOURED, seed=20), VEHICLE).as_data(), truth)
 
 
-@pytest.mark.parametrize('told', [lambda commands: HOVER * (commands / HOVER) ** 0.7, with_play],
-                         ids=['another exponent of the thrust', 'play of the actuators'])
+def swinging(commands):
+    """Return commands without a swing that the thrust has, at half a hertz."""
+    wave = np.sin(np.pi * 0.01 * np.arange(len(commands)))
+    return commands * np.sqrt(1.0 + 0.1 * wave)
+
+
+def test_another_exponent_of_the_thrust_is_a_form_of_thrust_scale():
+    found = diagnose([as_if(record, lambda commands: HOVER * (commands / HOVER) ** 0.7)
+                      for record in flown({}, seed=30)], VEHICLE)
+    [row] = [row for row in found.ranking if row.effect == 'thrust_scale']
+    assert found.verdict[0] == 'thrust_scale' and row.form == 'exponent'
+    assert row.parameters['exponent'].value == pytest.approx(2.0 / 0.7, rel=0.005)
+    # The torque of the rotors follows the same law; the form has that of the thrust alone.
+    assert set(found.verdict) <= {'thrust_scale', 'inertia_mismatch'}
+
+
+@pytest.mark.parametrize('told', [swinging, with_play],
+                         ids=['a swing of the thrust', 'play of the actuators'])
 def test_what_no_effect_explains_is_unknown(told):
-    data = diagnose([as_if(record, told) for record in flown({}, seed=30)], VEHICLE).data
+    data = diagnose([as_if(record, told) for record in flown({}, seed=30)], VEHICLE).as_data()
     assert 'unknown' in data['verdict']
     assert all(row['channel'] and row['depends_on'] for row in data['unknown'])
     assert data['gap']['after']['velocity'] > 1.1 * data['gap']['noise']['velocity']
@@ -125,21 +150,23 @@ def test_a_hover_is_no_reason_for_another_inertia():
     """What moves in hover is the noise, to which the controller replies."""
     hovers = [fly_closed_loop(VEHICLE, {}, 'hover', duration=12.0, seed=seed, noise=WHITE)
               for seed in (1, 101, 102)]
-    assert diagnose(hovers, VEHICLE).data['verdict'] == ['none']
+    assert diagnose(hovers, VEHICLE).as_data()['verdict'] == ['none']
 
 
 def test_the_held_out_flight_takes_no_part_even_where_it_is_named_among_the_others():
     flights = flown({'mass_offset': TRUTHS['mass_offset']})
-    beside = diagnose(flights, VEHICLE, hold_out=flights[1]).data
-    alone = diagnose([flights[0], *flights[2:]], VEHICLE, hold_out=flights[1]).data
+    beside = diagnose(flights, VEHICLE, hold_out=flights[1]).as_data()
+    alone = diagnose([flights[0], *flights[2:]], VEHICLE, hold_out=flights[1]).as_data()
     assert beside == alone
 
 
 def test_what_is_learnt_does_not_depend_on_the_held_out_flight():
     *training, test = flown({'battery_sag': TRUTHS['battery_sag']})
     fuller = replace(test, columns={**test.columns, 'vbat': test.columns['vbat'] + 0.3})
-    one, other = (diagnose([*training, held], VEHICLE).data for held in (test, fuller))
-    assert one['verdict'] == other['verdict']
+    one, other = (diagnose([*training, held], VEHICLE).as_data() for held in (test, fuller))
+    assert one['verdict'] == ['battery_sag']
+    # Its voltage says nothing of its thrust, and that is not explained.
+    assert other['verdict'] == ['battery_sag', 'unknown']
     assert [row['parameters'] for row in one['ranking']] == [row['parameters']
                                                              for row in other['ranking']]
     assert one['where'] == other['where']
@@ -148,7 +175,7 @@ def test_what_is_learnt_does_not_depend_on_the_held_out_flight():
 def test_thrust_that_falls_by_the_second_is_told_beside_a_voltage():
     flights = flown({'battery_sag': {'per_second': 0.003}})
     assert all(np.ptp(flight.columns['vbat']) > 0.1 for flight in flights)
-    data = diagnose(flights, VEHICLE).data
+    data = diagnose(flights, VEHICLE).as_data()
     check(data, {'battery_sag': {'per_second': 0.003}})
     assert list(data['ranking'][0]['parameters']) == ['per_second']
 
@@ -161,7 +188,7 @@ def test_a_held_out_flight_of_another_vehicle_is_told():
     said = []
     for held_out in (own, foreign):
         stream = io.StringIO()
-        show(diagnose([*training, held_out], VEHICLE).data, stream)
+        show(diagnose([*training, held_out], VEHICLE), stream)
         said.append('by another vehicle' in stream.getvalue())
     assert said == [False, True]
 
@@ -171,7 +198,7 @@ def test_a_vehicle_that_is_lost_within_half_a_second_is_found():
     truth = {'com_offset': {'x': 0.006, 'y': -0.008, 'z': 0.004},
              'inertia_mismatch': {'factor_x': 1.6, 'factor_y': 1.5, 'factor_z': 1.4},
              'thrust_scale': {'factor': 0.9}}
-    data = diagnose(flown(truth), VEHICLE).data
+    data = diagnose(flown(truth), VEHICLE).as_data()
     assert data['gap']['before']['attitude'] > 1.0
     check(data, truth)
 
@@ -188,4 +215,4 @@ def test_the_second_half_of_a_flight_is_not_the_beginning_of_a_battery():
     truth = {'battery_sag': {'per_second': 0.003}}
     record = fly_closed_loop(VEHICLE, truth, 'lissajous', duration=40.0, seed=3, noise=WHITE)
     columns = {name: values for name, values in record.columns.items() if name != 'vbat'}
-    check(diagnose([replace(record, columns=columns)], VEHICLE).data, truth)
+    check(diagnose([replace(record, columns=columns)], VEHICLE).as_data(), truth)

@@ -8,9 +8,13 @@ import numpy as np
 import pytest
 
 from quad_ident_ros.diagnose.candidates import Candidate
-from quad_ident_ros.diagnose.evidence import beam, linear_evidence, occam, Quadratic
+from quad_ident_ros.diagnose.evidence import beam, excludes, linear_evidence, Quadratic
+from quad_ident_ros.diagnose.rules import Rules
+from quad_ident_ros.greybox.own import Nuisance, RARE
 
-CAUSES = tuple(Candidate(name, name, (k,)) for k, name in enumerate(('a', 'b', 'c')))
+RULES = Rules(prior_odds=0.03)
+CAUSES = tuple(Candidate(name, name, (k,), share=share) for k, (name, share) in enumerate(
+    (('motor_lag', 1.0), ('rotor_drag', 0.5), ('wind', 1.0))))
 ROWS = {cause: [k] for k, cause in enumerate(CAUSES)}
 WIDE = np.array([1.0, 2.0, 3.0])
 FREE = np.full(3, np.inf)
@@ -24,12 +28,14 @@ def quadratic(information, best, rest=10.0, lower=-FREE, upper=FREE):
 
 
 def expected(cost, chosen):
-    """Return the evidence of causes by the Gaussian integral over their parameters."""
+    """Return the evidence of causes: log of the Gaussian integral over their parameters."""
     free = [k for cause in chosen for k in ROWS[cause]]
     block = cost.information[np.ix_(free, free)]
-    prior = np.diag(WIDE[free] ** -2.0)
-    left = cost.cost - cost.gradient[free] @ np.linalg.solve(block + prior, cost.gradient[free])
-    return -0.5 * left + occam(block, WIDE[free], 1.0, chosen)
+    precision = block + np.diag(WIDE[free] ** -2.0)
+    least = cost.cost - cost.gradient[free] @ np.linalg.solve(precision, cost.gradient[free])
+    volume = 0.5 * np.log(np.linalg.det(precision)) + np.sum(np.log(WIDE[free]))
+    prior = sum(np.log(0.03 * cause.share / (1.0 - 0.03 * cause.share)) for cause in chosen)
+    return -0.5 * least - volume + prior
 
 
 SETS = [(), CAUSES[:1], CAUSES[1:2], CAUSES[:2], (CAUSES[0], CAUSES[2]), CAUSES]
@@ -38,7 +44,7 @@ TIED = [[50.0, 30.0, 0.0], [30.0, 40.0, 5.0], [0.0, 5.0, 20.0]]
 
 def test_the_evidence_is_the_integral_over_the_parameters():
     cost = quadratic(TIED, [0.5, -1.0, 0.2])
-    values = linear_evidence(cost, SETS, ROWS)[0]
+    values = linear_evidence(cost, SETS, ROWS, RULES)[0]
     assert values == pytest.approx([expected(cost, chosen) for chosen in SETS], rel=1e-12)
 
 
@@ -46,27 +52,49 @@ def test_it_does_not_depend_on_where_the_cost_was_linearised():
     here, at = quadratic(TIED, [0.5, -1.0, 0.2]), np.array([0.3, 0.1, -0.4])
     there = replace(here, now=at, gradient=here.gradient - here.information @ at,
                     cost=here.cost - 2.0 * here.gradient @ at + at @ here.information @ at)
-    for one, other in zip(linear_evidence(here, SETS, ROWS), linear_evidence(there, SETS, ROWS),
+    for one, other in zip(*(linear_evidence(cost, SETS, ROWS, RULES) for cost in (here, there)),
                           strict=True):
         assert one == pytest.approx(other, rel=1e-10, abs=1e-12)
 
 
 def test_a_cause_that_could_only_help_beyond_its_bound_is_none():
     cost = quadratic(TIED, [0.5, -1.0, 0.2], lower=np.zeros(3))
-    values, found = linear_evidence(cost, [CAUSES[1:2], CAUSES[:2]], ROWS)
+    values, found = linear_evidence(cost, [CAUSES[1:2], CAUSES[:2]], ROWS, RULES)
     assert np.isneginf(values).all() and (found >= 0.0).all()
 
 
 def test_a_parameter_ends_at_its_bound():
     cost = quadratic(np.diag([50.0, 40.0, 20.0]), [0.5, -1.0, 0.2], upper=np.full(3, 0.25))
-    _, found = linear_evidence(cost, [CAUSES[:1]], ROWS)
+    _, found = linear_evidence(cost, [CAUSES[:1]], ROWS, RULES)
     assert found[0, 0] == 0.25
 
 
 def test_the_beam_ranks_the_causes_that_are_there_first():
     cost = quadratic(TIED, [2.0, 0.0, -1.5])
-    ranked = beam(cost, ROWS)
+    ranked = beam(cost, ROWS, RULES)
     assert ranked[0][1] == (CAUSES[0], CAUSES[2])
     values = [value for value, _, _ in ranked]
     assert values == sorted(values, reverse=True)
     assert {chosen for _, chosen, _ in ranked} >= {(), CAUSES}
+
+
+def test_forms_of_one_effect_and_the_two_of_a_ratio_never_stand_together():
+    """Thrust and mass scale a motion by their quotient alone."""
+    thrust, mass, inertia, other_thrust = (
+        Candidate(name, name, (k,), form) for k, (name, form) in enumerate((
+            ('thrust_scale', 'factor'), ('mass_offset', ''), ('inertia_mismatch', ''),
+            ('thrust_scale', 'exponent'))))
+    assert excludes(thrust, mass) and excludes(mass, thrust)
+    assert excludes(thrust, other_thrust)
+    assert not excludes(thrust, inertia) and not excludes(CAUSES[0], CAUSES[1])
+    cost = quadratic(TIED, [2.0, 1.0, -1.5])
+    ranked = beam(cost, {thrust: [0], mass: [1], inertia: [2]}, RULES)
+    assert not [chosen for _, chosen, _ in ranked if {thrust, mass} <= set(chosen)]
+
+
+def test_an_effect_stands_beside_a_nuisance_in_its_place():
+    """What flights share is the effect, what differs is the nuisance."""
+    bias = Nuisance('rate_bias', 'bias', 'rad/s', (0,), (0.01,), RARE)
+    nuisance = Candidate('rate_bias', 'rate_bias', (0,), own=bias)
+    assert not excludes(Candidate('gyro_bias', 'gyro_bias', (0,)), nuisance)
+    assert excludes(nuisance, nuisance)

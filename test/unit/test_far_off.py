@@ -4,37 +4,56 @@
 
 import numpy as np
 import pytest
-from quality import NANOBENCH
+from real import CUTS, needs_real_flights, real_flight, real_vehicle
 
 from docs.real_flights import pushed, same
-from quad_ident_ros.data.load import load
+from quad_ident_ros.diagnose.candidates import candidates
 from quad_ident_ros.diagnose.diagnosis import diagnose
-from quad_ident_ros.diagnose.select import COLOURED
+from quad_ident_ros.diagnose.intake import take_in
+from quad_ident_ros.diagnose.rules import RULES
+from quad_ident_ros.diagnose.select import COLOURED, select
 from quad_ident_ros.greybox.noise import whole_noise
-from quad_ident_ros.model.vehicle import load_nominal
+
+pytestmark = needs_real_flights
 
 
 @pytest.fixture(scope='module')
-def found():
-    vehicle = load_nominal(NANOBENCH / 'vehicle.yaml')
-    flights = [load(path) for path in sorted(NANOBENCH.glob('*.csv.gz'))]
-    return [diagnose([change(flight, vehicle) for flight in flights], vehicle)
-            for change in (same, pushed)]
+def flown():
+    """Return the nominal vehicle and flights of it, as they are and with a moment added."""
+    vehicle, flights = real_vehicle(), [real_flight(name) for name in sorted(CUTS)]
+    return vehicle, [[change(flight, vehicle) for flight in flights] for change in (same, pushed)]
 
 
-def test_the_errors_are_weighed_by_what_is_left_of_them(found):
-    for one in found:
-        selection = one.selection
-        left = [whole_noise(raw, 1.0 - 1.0 / raw.shape[1]) for raw in selection.best.estimate.left]
-        ratio = np.median(np.array(left) / selection.noise, axis=0)
-        assert (ratio < COLOURED).all() and (ratio > 1.0 / COLOURED).all()
+@pytest.fixture(scope='module')
+def found(flown):
+    vehicle, cases = flown
+    return [diagnose(flights, vehicle) for flights in cases]
+
+
+def test_the_errors_are_weighed_by_what_remains_of_them(flown):
+    vehicle, (flights, _) = flown
+    intake = take_in(flights, vehicle, None, RULES)
+    selection = select(intake.flights, vehicle, candidates(intake.flights, vehicle), RULES)
+    remains = [whole_noise(raw, 1.0 - 1.0 / raw.shape[1]) for raw in selection.best.estimate.left]
+    ratio = np.median(np.array(remains) / selection.noise, axis=0)
+    assert (ratio < COLOURED).all() and (ratio > 1.0 / COLOURED).all()
 
 
 def test_a_constant_moment_more_changes_no_verdict(found):
-    as_flown, moved = (one.data for one in found)
-    assert as_flown['verdict'] == moved['verdict']
+    as_flown, moved = found
+    assert set(as_flown.verdict) == set(moved.verdict)
     # Several times smaller, and yet far above the noise.
-    for data in (as_flown, moved):
-        gap = {when: data['gap'][when]['attitude'] for when in ('before', 'after', 'noise')}
-        assert 3.0 * gap['noise'] < gap['after'] < 0.3 * gap['before']
-        assert data['verdict'][-1] == 'unknown'
+    for one in found:
+        before, after, noise = (stage['attitude'] for stage in (one.gap.before, one.gap.after,
+                                                                one.gap.noise))
+        assert 3.0 * noise < after < 0.3 * before
+        assert one.verdict[-1] == 'unknown'
+
+
+def test_an_attitude_that_is_lost_hides_no_drag(found):
+    """Given the recorded attitude the translation is explained, whatever turns the vehicle."""
+    for one in found:
+        assert 'rotor_drag' in one.verdict
+        given = one.gap_given_attitude
+        assert given.after['velocity'] < 0.5 * given.before['velocity']
+        assert given.after['position'] < one.gap.after['position']

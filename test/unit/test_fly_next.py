@@ -12,8 +12,9 @@ import pytest
 from quad_ident_ros.diagnose.candidates import Candidate
 from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.diagnose.doubts import doubts_of
-from quad_ident_ros.diagnose.evidence import PRIOR, Quadratic
+from quad_ident_ros.diagnose.evidence import Quadratic
 from quad_ident_ros.diagnose.fly_next import fly_next, separation, visibility
+from quad_ident_ros.diagnose.rules import RULES
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import MOCAP_IMU, Sensors
 from quad_ident_ros.flight.trajectories import TRAJECTORIES
@@ -39,7 +40,7 @@ def hovers(truth):
 
 
 def probabilities(found):
-    return {row['effect']: row['probability'] for row in found.data['ranking']}
+    return {row.effect: row.probability for row in found.ranking}
 
 
 @pytest.fixture(scope='module', params=['mass_offset', 'thrust_scale'])
@@ -51,7 +52,7 @@ def doubtful(request):
 
 
 def proposal(found):
-    [one] = [one for one in found.data['fly_next'] if one['purpose'] == 'separate']
+    [one] = [one for one in found.fly_next if one['purpose'] == 'separate']
     return one
 
 
@@ -64,8 +65,8 @@ def flown_as(doubtful, trajectory):
 
 
 def test_a_hover_does_not_tell_a_payload_from_weaker_thrust(doubtful):
-    data = doubtful[2].data
-    assert data['verdict'] == ['undetermined'] and data['undetermined'] == ALIKE
+    found = doubtful[2]
+    assert found.verdict == ('undetermined',) and found.undetermined == tuple(ALIKE)
     one = proposal(doubtful[2])
     assert one['effects'] == ALIKE
     assert one['now'] < 1.0 < 5.0 < one['after'] == one['manoeuvres'][one['trajectory']]
@@ -75,7 +76,7 @@ def test_a_hover_does_not_tell_a_payload_from_weaker_thrust(doubtful):
 
 def test_the_manoeuvre_proposed_tells_them_apart(doubtful):
     found = flown_as(doubtful, proposal(doubtful[2])['trajectory'])
-    assert found.data['verdict'] == list(doubtful[0])
+    assert found.verdict == tuple(doubtful[0])
     [rival] = set(ALIKE) - set(doubtful[0])
     assert probabilities(found)[rival] < 0.01
 
@@ -83,7 +84,7 @@ def test_the_manoeuvre_proposed_tells_them_apart(doubtful):
 def test_the_manoeuvre_ranked_last_does_not(doubtful):
     last = list(proposal(doubtful[2])['manoeuvres'])[-1]
     found = flown_as(doubtful, last)
-    assert set(ALIKE) <= set(found.data['undetermined'])
+    assert set(ALIKE) <= set(found.undetermined)
     assert all(probabilities(found)[name] > 0.1 for name in ALIKE)
 
 
@@ -94,16 +95,16 @@ def test_more_hovering_is_worth_nothing(doubtful):
 
 def test_a_sure_effect_is_named_beside_those_that_are_not():
     found = diagnose(hovers(TILTED), VEHICLE)
-    assert found.data['verdict'] == ['undetermined']
-    assert found.data['undetermined'] == ALIKE
-    assert found.data['sure'] == ['attitude_misalignment']
+    assert found.verdict == ('undetermined',)
+    assert found.undetermined == tuple(ALIKE)
+    assert found.sure == ('attitude_misalignment',)
     text = io.StringIO()
-    show(found.data, text)
+    show(found, text)
     assert text.getvalue().startswith(
         'verdict: undetermined: the flights cannot tell between mass_offset, thrust_scale; '
         'sure beside them: attitude_misalignment\n')
     assert 'what to fly next' in text.getvalue()
-    proposals = found.data['fly_next']
+    proposals = found.fly_next
     assert json.loads(json.dumps(proposals)) == proposals
 
 
@@ -115,32 +116,32 @@ def nothing():
 
 
 def test_what_a_hover_could_not_show_is_said_and_what_would(nothing):
-    data = nothing[1].data
-    assert data['verdict'] == ['none']
-    assert {'rotor_drag', 'ground_effect'} <= set(data['not_shown'])
-    assert not {'mass_offset', 'com_offset', 'gyro_bias'} & set(data['not_shown'])
-    [low] = [one for one in data['fly_next'] if 'ground_effect' in one['effects']]
+    found = nothing[1]
+    assert found.verdict == ('none',)
+    assert {'rotor_drag', 'ground_effect'} <= set(found.not_shown)
+    assert not {'mass_offset', 'com_offset', 'gyro_bias'} & set(found.not_shown)
+    [low] = [one for one in found.fly_next if 'ground_effect' in one['effects']]
     assert low['trajectory'] == 'low_passes' and low['height'][0] < 3 * VEHICLE.rotor_radius
     # Without drag nothing feels the wind, and no manoeuvre is proposed to see it.
-    assert 'wind' in data['not_shown']
-    assert all('wind' not in one['effects'] for one in data['fly_next'])
+    assert 'wind' in found.not_shown
+    assert all('wind' not in one['effects'] for one in found.fly_next)
 
 
 def test_what_is_flown_then_is_seen_then(nothing):
     flights, found = nothing
     more = [fly({}, one['trajectory'], one['seed'], one['duration'])
-            for one in found.data['fly_next']]
+            for one in found.fly_next]
     again = diagnose([flights[0], *more], VEHICLE, hold_out=flights[1])
-    asked = {name for one in found.data['fly_next'] for name in one['effects']}
-    assert asked and not asked & set(again.data['not_shown'])
+    asked = {name for one in found.fly_next for name in one['effects']}
+    assert asked and not asked & set(again.not_shown)
 
 
 def test_a_sure_verdict_asks_for_no_flight():
     truth = {'rotor_drag': {'coefficient': 0.2}}
     found = diagnose([fly(truth, name, 1) for name in ('lissajous', 'figure8')], VEHICLE,
                      effects=['rotor_drag', 'wind', 'mass_offset', 'thrust_scale'])
-    assert found.data['verdict'] == ['rotor_drag']
-    assert found.data['fly_next'] is None and found.data['undetermined'] is None
+    assert found.verdict == ('rotor_drag',)
+    assert found.fly_next is None and not found.undetermined
 
 
 def test_a_vehicle_that_cannot_fly_is_asked_for_nothing():
@@ -162,7 +163,8 @@ def pair(correlation, third=None):
     if third is not None:
         information[:2, 2] = information[2, :2] = third
     quadratic = Quadratic(information, np.zeros(3), 0.0, np.array([1.0, 0.0, 0.0]),
-                          np.full(3, PRIOR * 100.0), np.full(3, -1e3), np.full(3, 1e3), 1.0)
+                          np.full(3, RULES.prior_width * 100.0), np.full(3, -1e3),
+                          np.full(3, 1e3), 1.0)
     rows = {cause: [k] for k, cause in enumerate(causes)}
     return SimpleNamespace(quadratic=quadratic, rows=rows, noise=[np.full(12, 1e-2)],
                            best=SimpleNamespace(chosen=(), own=()))
@@ -209,15 +211,15 @@ def test_only_what_stands_in_its_place_is_a_rival():
     sets = [((MASS,), 0.0), ((THRUST,), -0.4), ((MASS, BIAS), -0.1), ((THRUST, BIAS), -0.5),
             ((), -90.0)]
     unsure = selected(*sets, probability={MASS: 0.6, THRUST: 0.4, BIAS: 0.5})
-    doubts = doubts_of(unsure, (MASS,))
+    doubts = doubts_of(unsure, (MASS,), RULES)
     assert list(doubts) == [MASS, THRUST]
     assert [fit.causes for fit in doubts.values()] == [(MASS,), (THRUST,)]
     sure = selected(*sets, probability={MASS: 0.95, THRUST: 0.2, BIAS: 0.5})
-    assert not doubts_of(sure, (MASS,))
+    assert not doubts_of(sure, (MASS,), RULES)
 
 
 def test_which_rotor_is_weak_is_no_doubt_between_effects():
     one, other = (Candidate('rotor_fault', f'rotor_fault {j}', (INDEX[f'rotor_fault.loss_{j}'],))
                   for j in (1, 2))
     found = selected(((one,), 0.0), ((other,), -0.1), probability={one: 0.5, other: 0.5})
-    assert not doubts_of(found, (one,))
+    assert not doubts_of(found, (one,), RULES)

@@ -82,7 +82,7 @@ def open_loop(dragged):
 
 def test_clocks_that_differ_from_flight_to_flight_are_no_delay(open_loop):
     data = diagnose([shifted(one, late) for one, late in zip(open_loop, LATE, strict=True)],
-                    VEHICLE).data
+                    VEHICLE).as_data()
     assert data['verdict'] == ['rotor_drag']
     value, std = parameters(data, 'rotor_drag')['coefficient']
     assert abs(value - DRAG['rotor_drag']['coefficient']) < 4 * std
@@ -95,7 +95,7 @@ def test_clocks_that_differ_from_flight_to_flight_are_no_delay(open_loop):
 
 
 def test_flights_without_anything_of_their_own_are_told_so(dragged):
-    assert diagnose(dragged, VEHICLE).data['nuisances'] is None
+    assert diagnose(dragged, VEHICLE).as_data()['nuisances'] is None
 
 
 @pytest.mark.parametrize('count', [1, 2])
@@ -104,15 +104,15 @@ def test_few_late_flights_have_a_delay_though_their_sensors_have_biases(count):
     vehicle, truth = VEHICLES['hummingbird'], {'actuation_delay': {'delay': 0.0137}}
     flights = [fly_closed_loop(vehicle, truth, 'steps', duration=12.0, seed=seed,
                                noise=SENSORS['mocap_imu']) for seed in (1, 2)][:count]
-    data = diagnose(flights, vehicle).data
+    data = diagnose(flights, vehicle).as_data()
     assert data['verdict'] == ['actuation_delay']
     value, std = parameters(data, 'actuation_delay')['delay']
     assert abs(value - 0.0137) < 4 * std
 
 
 def test_what_is_late_alike_in_all_flights_is_a_delay(open_loop):
-    data = diagnose([shifted(one, 2) for one in open_loop], VEHICLE).data
-    assert data['verdict'] == ['actuation_delay', 'rotor_drag']
+    data = diagnose([shifted(one, 2) for one in open_loop], VEHICLE).as_data()
+    assert set(data['verdict']) == {'actuation_delay', 'rotor_drag'}
     value, std = parameters(data, 'actuation_delay')['delay']
     assert abs(value - 0.02) < 4 * std < 0.005
     assert data['nuisances'] is None
@@ -121,8 +121,8 @@ def test_what_is_late_alike_in_all_flights_is_a_delay(open_loop):
 def test_a_delay_beyond_the_scatter_of_the_clocks_is_named_with_that_scatter(open_loop):
     late = [8, 5, 7, 6]
     data = diagnose([shifted(one, k) for one, k in zip(open_loop, late, strict=True)],
-                    VEHICLE).data
-    assert data['verdict'] == ['actuation_delay', 'rotor_drag']
+                    VEHICLE).as_data()
+    assert set(data['verdict']) == {'actuation_delay', 'rotor_drag'}
     value, std = parameters(data, 'actuation_delay')['delay']
     assert abs(value - 0.01 * np.mean(late[:3])) < 2 * std
     assert std == pytest.approx(0.02 / np.sqrt(3), rel=0.1)
@@ -140,7 +140,7 @@ def test_trims_that_differ_from_flight_to_flight_are_no_offset_of_the_centre_of_
         flights.append(changed(record, **{
             name: np.sqrt(np.maximum(record.columns[name] ** 2 + more[j], 0.0))
             for j, name in enumerate(f'cmd{j}' for j in range(1, 1 + len(more)))}))
-    data = diagnose(flights, VEHICLE).data
+    data = diagnose(flights, VEHICLE).as_data()
     assert data['verdict'] == ['rotor_drag']
     assert 'trim_moment' in data['nuisances']
 
@@ -153,7 +153,7 @@ def test_biases_that_differ_from_flight_to_flight_are_no_effect(dragged):
         flights.append(changed(record, **{name: record.columns[name] + one
                                           for name, one in zip(('wx', 'wy', 'wz'), bias,
                                                                strict=True)}))
-    data = diagnose(flights, VEHICLE).data
+    data = diagnose(flights, VEHICLE).as_data()
     assert data['verdict'] == ['rotor_drag']
     assert 'rate_bias' in data['nuisances']
 
@@ -167,8 +167,8 @@ def test_how_far_biases_differ_is_part_of_the_uncertainty_of_the_one_they_share(
         flights.append(changed(record, **{name: record.columns[name] + one
                                           for name, one in zip(('wx', 'wy', 'wz'), bias,
                                                                strict=True)}))
-    data = diagnose(flights, VEHICLE).data
-    assert data['verdict'] == ['rotor_drag', 'gyro_bias']
+    data = diagnose(flights, VEHICLE).as_data()
+    assert set(data['verdict']) == {'rotor_drag', 'gyro_bias'}
     wide, narrow = sorted((kind.spreads[0] for kind in nuisances(VEHICLE, [])
                            if kind.name == 'rate_bias'), reverse=True)
     for true, (value, std) in zip(shared, parameters(data, 'gyro_bias').values(), strict=True):
@@ -188,7 +188,7 @@ def spoilt(record, rng):
 def test_single_attitudes_that_are_off_do_not_alter_the_verdict(dragged):
     random = np.random.default_rng(1)
     flights = [spoilt(record, random)[0] for record in dragged]
-    data, clean = (diagnose(each, VEHICLE).data for each in (flights, dragged))
+    data, clean = (diagnose(each, VEHICLE).as_data() for each in (flights, dragged))
     assert data['verdict'] == clean['verdict'] == ['rotor_drag']
     (value, std), (other, _) = (parameters(each, 'rotor_drag')['coefficient']
                                 for each in (data, clean))
@@ -226,7 +226,7 @@ def test_lost_rows_hardly_move_the_estimate(dragged):
             kept[k:k + int(random.geometric(0.4))] = False
         flights.append(FlightRecord(record.t[kept], {name: values[kept] for name, values in
                                                      record.columns.items()}, record.info))
-    data = diagnose(flights, VEHICLE).data
+    data = diagnose(flights, VEHICLE).as_data()
     assert data['verdict'] == ['rotor_drag']
     value, std = parameters(data, 'rotor_drag')['coefficient']
     assert abs(value - DRAG['rotor_drag']['coefficient']) < 4 * std

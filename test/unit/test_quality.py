@@ -7,10 +7,10 @@ from dataclasses import replace
 from flightmaker import changed, flight, frd, ned, ned_attitude, VEHICLE, world_velocity_in_body
 import numpy as np
 import pytest
-from quality import A, CMD, codes, named, NANOBENCH, P, Q, V, W
+from quality import A, CMD, codes, named, P, Q, V, W
+from real import needs_real_flights, real_flight, real_vehicle
 
 from quad_ident_ros.data.frames import conjugate, multiply, rotate
-from quad_ident_ros.data.load import load
 from quad_ident_ros.data.quality import clock_offset, findings, SEVERITIES
 from quad_ident_ros.data.quality.excitation import excitation
 from quad_ident_ros.data.record import FlightRecord
@@ -56,11 +56,12 @@ def test_simulated_flights_have_no_faults(noise):
             assert codes(record, load_vehicle('paper_quadrotor')) <= {'excitation'}
 
 
+@needs_real_flights
 @pytest.mark.parametrize('name, offset', [('star_fast', 0.01), ('oval_fast', 0.01)])
 def test_real_flights_have_the_faults_that_their_source_states(name, offset):
     """Its README: stale samples, jumps of the attitude, hardly any yaw, 10 ms at most."""
-    record = load(NANOBENCH / f'{name}.csv.gz')
-    vehicle = load_vehicle(NANOBENCH / 'vehicle.yaml')
+    record = real_flight(name)
+    vehicle = real_vehicle()
     found = findings(record, vehicle)
     assert {'stale_marked', 'attitude_glitch', 'excitation'} <= {finding.code for finding in found}
     assert {finding.code for finding in found} <= {
@@ -218,10 +219,11 @@ def test_a_fault_put_into_a_clean_flight_is_found_alone(fault, noise):
     assert codes(changed(record, **FAULTS[fault](record))) == {fault.split(',')[0]}
 
 
+@needs_real_flights
 @pytest.mark.parametrize('fault', FAULTS)
 def test_a_fault_is_found_in_a_real_flight(fault):
-    record = load(NANOBENCH / 'star_fast.csv.gz')
-    vehicle = load_vehicle(NANOBENCH / 'vehicle.yaml')
+    record = real_flight('star_fast')
+    vehicle = real_vehicle()
     new = codes(changed(record, **FAULTS[fault](record)), vehicle) - codes(record, vehicle)
     assert fault.split(',')[0] in new
     assert new <= {fault.split(',')[0], 'clock_offset', 'clock_wander', 'excitation'}

@@ -5,9 +5,9 @@
 from flightmaker import changed, flight, VEHICLE
 import numpy as np
 import pytest
-from quality import A, CMD, codes, named, NANOBENCH, P, Q, V, W
+from quality import A, CMD, codes, named, P, Q, V, W
+from real import needs_real_flights, real_flight
 
-from quad_ident_ros.data.load import load
 from quad_ident_ros.data.quality import clock_offset, command_offset, findings
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.flight.fly import fly_closed_loop
@@ -89,9 +89,10 @@ def test_the_lag_of_motors_is_no_fault():
     assert 'command_offset' not in codes(record)
 
 
+@needs_real_flights
 @pytest.mark.parametrize('name', ['star_fast', 'oval_fast'])
 def test_an_offset_put_into_a_real_flight_is_found(name):
-    record = load(NANOBENCH / f'{name}.csv.gz')
+    record = real_flight(name)
     moved = late(record, (*P, *V, *Q), 0.06)
     before, after = clock_offset(record), clock_offset(moved)
     assert 'clock_offset' in codes(moved)

@@ -8,13 +8,12 @@ from itertools import permutations, product
 from flightmaker import changed, flight, VEHICLE
 import numpy as np
 import pytest
-from quality import CMD, named, NANOBENCH
+from quality import CMD, named
+from real import needs_real_flights, real_flight, real_vehicle
 
-from quad_ident_ros.data.load import load
 from quad_ident_ros.data.quality import findings
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.flight.fly import fly_closed_loop
-from quad_ident_ros.model.vehicle import load_vehicle
 
 
 @pytest.mark.parametrize('order', [p for p in permutations(range(4)) if p != (0, 1, 2, 3)])
@@ -32,10 +31,11 @@ def test_the_commands_of_another_vehicle_are_found(columns):
     assert finding.code == 'rotor_count' and finding.severity == 'error'
 
 
+@needs_real_flights
 @pytest.mark.parametrize('name', ['star_fast', 'oval_fast'])
 def test_wrong_orders_are_found_in_real_flights(name):
-    record = load(NANOBENCH / f'{name}.csv.gz')
-    vehicle = load_vehicle(NANOBENCH / 'vehicle.yaml')
+    record = real_flight(name)
+    vehicle = real_vehicle()
     for order in permutations(range(4)):
         mixed = changed(record, **named(CMD, record.stack(*[CMD[k] for k in order])))
         found = [f for f in findings(mixed, vehicle) if f.code == 'rotor_order']

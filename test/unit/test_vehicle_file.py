@@ -3,6 +3,7 @@
 """Vehicle files: those that ship, and what is said of bad ones."""
 
 import copy
+import dataclasses
 
 from hypothesis import example, given, HealthCheck, settings
 from hypothesis import strategies as st
@@ -13,6 +14,7 @@ import yaml
 from quad_ident_ros import resources
 from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.greybox.parameters import INDEX, limits, NAMES, prior_sizes
 from quad_ident_ros.model.mixing import infeasibility, squared_speeds
 from quad_ident_ros.model.vehicle import (
     load_vehicle,
@@ -109,6 +111,66 @@ def test_bad_effects_are_refused(effects, words):
     assert words in refused({**PAPER, 'effects': effects})
 
 
+KNOWN = {'mass': {'value': 0.65, 'std': '1e-3'}, 'gravity': {'value': 9.806, 'std': 1e-3},
+         'inertia': [{'value': 7.5e-3, 'std': 1.5e-3}, 7.5e-3, {'value': 1.3e-3, 'std': 1.3e-4}],
+         'thrust_coefficient': {'value': 2.9842e-5, 'std': 2.9842e-6},
+         'torque_coefficient': {'value': 3.232e-6, 'std': 1.616e-6},
+         'linear_drag': [{'value': 0, 'std': 0.1}] * 3, 'speed_max': {'value': 1000, 'std': 20}}
+
+
+def test_what_the_file_knows_of_its_numbers_is_beside_the_values():
+    data = changed(**KNOWN)
+    data['rotors'][1]['position'][1] = {'value': -0.23, 'std': 0.002}
+    vehicle = vehicle_from_mapping(data, 'v.yaml')
+    plain = vehicle_from_mapping(changed(linear_drag=[0, 0, 0]), 'v.yaml')
+    assert plain.uncertainty == {}
+    assert dataclasses.replace(vehicle, uncertainty={}) == plain
+    assert vehicle.uncertainty == {
+        'mass': 1e-3, 'gravity': 1e-3, 'inertia': (1.5e-3, None, 1.3e-4),
+        'thrust_coefficient': 2.9842e-6, 'torque_coefficient': 1.616e-6,
+        'linear_drag': (0.1, 0.1, 0.1), 'speed_max': 20.0,
+        'rotors[1].position': (None, 0.002, None)}
+
+
+@pytest.mark.parametrize(('values', 'words'), [
+    ({'mass': {'value': 0.6, 'std': 0}}, 'mass: std: 0 is out of range, expected > 0'),
+    ({'mass': {'value': 0.6, 'std': -0.1}}, 'mass: std: -0.1 is out of range, expected > 0'),
+    ({'mass': {'value': 0.6, 'std': 'little'}}, "mass: std: expected a number, got 'little'"),
+    ({'mass': {'value': 0.6, 'std': float('inf')}}, 'mass: std: expected a finite number'),
+    ({'mass': {'value': 0, 'std': 0.1}}, 'mass: value: 0 is out of range, expected > 0'),
+    ({'mass': {'value': 0.6}}, "mass: 'std' is missing"),
+    ({'mass': {'std': 0.1}}, "mass: 'value' is missing"),
+    ({'mass': {'value': 0.6, 'sdt': 0.1}}, "mass: 'sdt' is not known here; did you mean 'std'?"),
+    ({'inertia': {'value': [1, 1, 1], 'std': [1, 1, 1]}}, 'inertia: expected a list of 3 numbers'),
+    ({'inertia': [1e-3, {'value': 1e-3, 'std': 0}, 1e-3]}, 'inertia[1]: std: 0 is out of range'),
+    ({'name': {'value': 'x', 'std': 1}}, 'name: expected a name'),
+    ({'uncertainty': {'mass': 0.1}}, "'uncertainty' is not known here"),
+    ({'rotors': [{'position': [{'value': 0.1, 'std': 0}, 0, 0], 'spin': 1}]},
+     'rotors[0]: position[0]: std: 0 is out of range'),
+    ({'rotors': [{'position': [0.1, 0, 0], 'spin': {'value': 1, 'std': 1}}]}, 'is not one of 1'),
+], ids=str)
+def test_bad_standard_deviations_are_refused(values, words):
+    assert words in refused(changed(**values))
+
+
+def test_priors_are_as_wide_as_the_file_says():
+    plain, known = (vehicle_from_mapping(data, 'v.yaml') for data in (PAPER, changed(**KNOWN)))
+    wide, told = prior_sizes(plain, 2.5), prior_sizes(known, 2.5)
+    assert np.array_equal(wide, 2.5 * limits(plain)[2])
+    expected = {
+        'mass': 1e-3, 'mass_offset.mass': 1e-3, 'gravity': 1e-3,
+        'inertia_x': 1.5e-3, 'inertia_mismatch.factor_x': 0.2,
+        'inertia_z': 1.3e-4, 'inertia_mismatch.factor_z': 0.1,
+        'thrust_coefficient': 2.9842e-6, 'thrust_scale.factor': 0.1, 'thrust_scale.at_hover': 0.1,
+        'thrust_scale.hover_factor': 0.1, 'torque_coefficient': 1.616e-6,
+        'inertia_mismatch.torque': 0.5, **{f'linear_drag_{axis}': 0.1 for axis in 'xyz'}}
+    for name, size in expected.items():
+        assert told[INDEX[name]] == pytest.approx(size), name
+    # All else is as wide as before: the inertia about y, the effects of drag, the arms.
+    same = [k for k, name in enumerate(NAMES) if name not in expected]
+    assert np.array_equal(told[same], wide[same])
+
+
 positive = st.floats(1e-9, 1e9)
 triples = st.tuples(positive, positive, positive)
 
@@ -125,6 +187,9 @@ def vehicles(draw):
         effects[name] = {parameter.name: draw(st.floats(1.01, 1.9)) * 0.01 + parameter.null}
     # Offsets of mass, place and inertia have bounds in units of the vehicle's own.
     mass = draw(st.floats(0.1, 10))
+    known = {'mass': positive, 'gravity': positive, 'rotor_radius': positive,
+             'inertia': st.tuples(positive, st.none() | positive, st.none()),
+             'rotors[0].position': st.tuples(st.none(), st.none() | positive, positive)}
     return Vehicle(
         draw(st.text(st.characters(categories=('L', 'N')), min_size=1, max_size=20)), mass,
         (0.1, 0.1, 0.1), draw(positive), draw(positive), draw(positive),
@@ -133,7 +198,8 @@ def vehicles(draw):
         draw(positive), draw(positive), draw(triples), draw(triples), lowest,
         draw(st.just(float('inf')) | st.floats(101, 1e6)),
         {name: values for name, values in effects.items()
-         if name not in ('com_offset', 'inflow', 'body_drag', 'blade_flapping', 'rotor_gyro')})
+         if name not in ('com_offset', 'inflow', 'body_drag', 'blade_flapping', 'rotor_gyro')},
+        {key: draw(known[key]) for key in draw(st.sets(st.sampled_from(sorted(known))))})
 
 
 @FAST

@@ -1,0 +1,44 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""A diagnosis that came as data, as over ROS 2, typed again so that it can be shown."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from quad_ident_ros.diagnose.result import (
+    Channel,
+    Diagnosis,
+    FlightCheck,
+    Gap,
+    GapGivenAttitude,
+    Minor,
+    Ranked,
+    Unexplained,
+    Value,
+)
+from quad_ident_ros.model.vehicle import Vehicle
+
+
+def diagnosis_from(data: dict, vehicle: Vehicle) -> Diagnosis:
+    """
+    Return the Diagnosis of a nominal vehicle that Diagnosis.as_data made data of.
+
+    Without the parameter vector and what pictures are drawn from, which do not travel.
+    """
+    ranking = (Ranked(**row) for row in data['ranking'])
+    return Diagnosis(
+        vehicle=vehicle, verdict=tuple(data['verdict']),
+        minor=tuple(Minor(**row) for row in data['minor']),
+        ranking=tuple(replace(row, parameters={name: Value(**one) for name, one in
+                                               row.parameters.items()}) for row in ranking),
+        where=tuple(Channel(**row) for row in data['where']), gap=Gap(**data['gap']),
+        gap_given_attitude=GapGivenAttitude(**data['gap_given_attitude']),
+        tolerance=data['tolerance'],
+        unknown=tuple(Unexplained(**row) for row in data['unknown'] or ()),
+        undetermined=tuple(data['undetermined'] or ()), sure=tuple(data['sure'] or ()),
+        one_finding=tuple(data['one_finding']), not_shown=tuple(data['not_shown']),
+        fly_next=data['fly_next'], nuisances=data['nuisances'], flights=tuple(data['flights']),
+        held_out=data['held_out'],
+        flight_checks=tuple(FlightCheck(**row) for row in data['flight_checks']),
+        findings=tuple(data['findings']), z=np.empty(0), pictures=None)

@@ -1,0 +1,175 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What matters, what helps steadily, what is unexplained and which flight differs."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from quad_ident_ros.diagnose.gap import Ends
+from quad_ident_ros.diagnose.judgement import (
+    beyond,
+    lost_share,
+    lost_shares,
+    matters,
+    pooled,
+    stability,
+    unexplained,
+)
+from quad_ident_ros.diagnose.rules import RULES
+from quad_ident_ros.diagnose.verdict import flight_checks
+
+GROUPS = ('position', 'velocity', 'attitude', 'rate')
+NOISE = {'position': 0.01, 'velocity': 0.04, 'attitude': 0.01, 'rate': 0.03}
+
+
+def of(**changes):
+    """Return {group: gap}: the noise's but for the changes."""
+    return NOISE | changes
+
+
+def test_the_tolerance_is_a_share_of_the_noise_but_no_less_than_its_floor():
+    rules = replace(RULES, noise_share=0.25, floors={'velocity': 0.02})
+    assert rules.tolerance('velocity', 0.04) == 0.02
+    assert rules.tolerance('velocity', 0.4) == pytest.approx(0.1)
+    rules = replace(rules, visible=0.1)
+    assert rules.least('velocity', 0.04) == 0.02
+    assert rules.least('velocity', 0.4) == pytest.approx(0.04)
+    assert set(RULES.floors) == set(GROUPS)
+
+
+def test_a_share_is_of_what_the_nominal_vehicle_has_above_the_noise():
+    shares = lost_shares(of(), of(velocity=0.14), of(velocity=0.54), NOISE, RULES)
+    assert shares['velocity'] == pytest.approx(0.1 / 0.5)
+    assert shares['position'] == shares['rate'] == 0.0
+    # A model that is better than the noise estimate says what noise there is.
+    shares = lost_shares(of(velocity=0.03), of(velocity=0.05), of(velocity=0.23), NOISE, RULES)
+    assert shares['velocity'] == pytest.approx(0.02 / 0.2)
+
+
+def test_a_share_of_next_to_nothing_is_a_share_of_the_least_that_is_seen():
+    after, without = of(velocity=0.04), of(velocity=0.041)
+    shares = lost_shares(after, without, without, NOISE, RULES)
+    assert shares['velocity'] == pytest.approx(0.001 / RULES.least('velocity', 0.04))
+
+
+def test_the_share_that_counts_is_that_of_the_group_that_loses_most():
+    before = of(velocity=1.04, attitude=0.11)
+    without = of(velocity=0.14, attitude=0.06)
+    assert lost_share(of(), without, before, NOISE, RULES) == pytest.approx(0.5)
+
+
+def test_what_closes_less_than_what_is_material_does_not_matter():
+    before = of(velocity=1.04)
+    assert not matters(of(), of(velocity=0.04 + 0.9 * RULES.material), before, NOISE, RULES)
+    assert matters(of(), before, before, NOISE, RULES)
+
+
+def test_a_further_effect_matters_beside_more_than_the_error_of_form_of_the_first():
+    """The first one closes 2 m/s; it may err by a fifth of it, 0.4 m/s, which proves nothing."""
+    before = of(velocity=2.0)
+    for remains, expected in ((0.3, False), (0.6, True)):
+        share = (remains - 0.04) / (2.0 - 0.04)
+        assert share > RULES.material
+        assert matters(of(), of(velocity=remains), before, NOISE, RULES) is expected
+
+
+def test_one_group_in_which_an_effect_matters_is_enough():
+    before = of(velocity=2.0, rate=0.5)
+    assert matters(of(), of(velocity=0.05, rate=0.4), before, NOISE, RULES)
+
+
+def ends(errors):
+    """Return Ends of one prediction every 0.1 s."""
+    return Ends(errors, 0.1 * np.arange(len(errors)))
+
+
+def test_the_stability_is_the_mean_over_its_standard_error_over_blocks():
+    """Saved in each block of 2 s, from the squared errors in units of what remains."""
+    count, blocks = 400, 20
+    random = np.random.default_rng(1)
+    one = np.zeros((count, 12))
+    one[:, 3:6] = 0.1
+    more = np.repeat(random.uniform(0.0, 0.2, blocks), count // blocks)
+    other = one.copy()
+    other[:, 3:6] = np.sqrt(0.01 + more[:, None] / 3.0)
+    scale = 3.0 * 0.1 ** 2     # the squared gap that remains: above the noise's
+    saved = more.reshape(blocks, -1).sum(axis=1) / scale
+    expected = saved.mean() / (saved.std() / np.sqrt(blocks))
+    noise = dict.fromkeys(GROUPS, 1e-3)
+    assert stability((ends(one),), (ends(other),), noise) == pytest.approx(expected)
+    assert stability((ends(other),), (ends(one),), noise) < 0.0
+
+
+def test_blocks_of_every_flight_count():
+    random = np.random.default_rng(2)
+    flights = [(ends(random.normal(size=(200, 12))), ends(random.normal(size=(200, 12)) * 1.2))
+               for _ in range(9)]
+    noise = dict.fromkeys(GROUPS, 0.1)
+    few, many = (stability(*zip(*flights[:k], strict=True), noise) for k in (1, 9))
+    assert many == pytest.approx(3.0 * few, rel=0.5) and many > 6.0
+
+
+def test_chance_is_not_steady():
+    """About as many values as a standard normal variable has lie beyond 2."""
+    random, noise = np.random.default_rng(3), dict.fromkeys(GROUPS, 0.1)
+    values = [stability((ends(random.normal(size=(400, 12))),),
+                        (ends(random.normal(size=(400, 12))),), noise) for _ in range(200)]
+    assert np.mean(np.abs(values) > 2.0) < 0.12 and abs(np.mean(values)) < 0.25
+
+
+def test_what_is_within_the_tolerance_is_not_unexplained():
+    just = np.hypot(0.04, RULES.tolerance('velocity', 0.04))
+    assert not unexplained(of(velocity=0.99 * just), NOISE, NOISE, False, RULES)
+    assert unexplained(of(velocity=1.01 * just), NOISE, NOISE, False, RULES).keys() == {'velocity'}
+    wider = replace(RULES, floors=RULES.floors | {'velocity': 5.0})
+    assert not unexplained(of(velocity=3.0), of(velocity=4.0), NOISE, False, wider)
+
+
+def test_beside_named_effects_their_error_of_form_is_not_unexplained():
+    before, after = of(velocity=1.0), of(velocity=0.3)
+    assert unexplained(after, before, NOISE, False, RULES)['velocity'] == pytest.approx(
+        np.sqrt(0.3 ** 2 - 0.04 ** 2))
+    assert not unexplained(after, before, NOISE, True, RULES)
+    assert unexplained(of(velocity=0.8), before, NOISE, True, RULES)
+
+
+def test_gaps_of_flights_are_pooled_by_their_squares():
+    assert pooled([{'rate': 3.0}, {'rate': 4.0}])['rate'] == pytest.approx(np.sqrt(12.5))
+    assert beyond(5.0, 3.0) == pytest.approx(4.0) and beyond(3.0, 5.0) == 0.0
+
+
+def checks_of(*sizes, named=True):
+    """Return the checks of flights whose velocity is off by so many m/s."""
+    def flight(size):
+        errors = np.full((100, 12), 0.01)
+        errors[:, 3:6] = size / np.sqrt(3.0)
+        return ends(errors)
+
+    noise = {'position': 0.02, 'velocity': 0.04, 'attitude': 0.02, 'rate': 0.02}
+    effects = ('an effect',) if named else ()
+    judged = SimpleNamespace(
+        model=SimpleNamespace(ends=tuple(map(flight, sizes)), effects=effects), material=effects,
+        before=tuple(flight(1.0) for _ in sizes), noise=[noise for _ in sizes])
+    tracks = [SimpleNamespace(name=f'flight {k}') for k in range(len(sizes))]
+    return flight_checks(SimpleNamespace(tracks=tracks, rules=RULES), judged)
+
+
+def test_a_flight_that_the_model_of_the_others_does_not_explain_differs():
+    checks = checks_of(0.05, 0.045, 0.05, 0.9)
+    assert [one.flight for one in checks if one.differs] == ['flight 3']
+    assert checks[3].gap_over_noise['velocity'] == pytest.approx(0.9 / 0.04)
+    # The one that was held out has no other part in this than those learnt from.
+    assert [one.flight for one in checks_of(0.05, 0.9, 0.05) if one.differs] == ['flight 1']
+
+
+def test_a_form_that_errs_alike_in_all_flights_singles_out_none():
+    assert not any(one.differs for one in checks_of(0.5, 0.55, 0.5, 0.6))
+
+
+def test_without_a_named_effect_less_remains_unsaid():
+    """Beside an effect that closes 1 m/s an error of its form of 0.3 m/s is nothing new."""
+    assert not any(one.differs for one in checks_of(0.05, 0.05, 0.3))
+    assert checks_of(0.05, 0.05, 0.3, named=False)[2].differs
