@@ -12,7 +12,7 @@ from quad_ident_ros.diagnose.frame import blocks_at, Frame
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.greybox.estimate import Estimate, estimate
 from quad_ident_ros.greybox.own import Own
-from quad_ident_ros.greybox.parameters import limits, nominal
+from quad_ident_ros.greybox.parameters import nominal, prior_sizes
 
 FIT_STEPS = 5       # of Gauss and Newton: sets start near where they end
 
@@ -91,14 +91,24 @@ def fitted_of(chosen: tuple, fit: Estimate, vehicle, frame: Frame, quadratic: Qu
     Return the Fitted of a set and its Estimate: Laplace's approximation of the evidence.
 
     The residuals count by the likelihood with the discrepancy marginalised out, the volume of the
-    parameters by the information around the Frame's point.
+    parameters by the information around the Frame's point. There is none for a further form with a
+    parameter at a bound other than that of no effect: it does the work of something else.
     """
+    if _out_of_bounds(chosen, fit, vehicle):
+        return Fitted(chosen, fit, -np.inf, start)
     blocks = blocks_at(frame, fit, distances_of(chosen, fit, vehicle))
     value, sizes = fitted_sizes(blocks, rules.form_error, grids, quadratic.scatter, start)
     spreads = np.tile(fit.own.spreads, len(fit.own.values))
-    wide = np.append(rules.prior_width * limits(vehicle)[2][fit.columns], spreads)
+    wide = np.append(prior_sizes(vehicle, rules.prior_width)[fit.columns], spreads)
     distance = np.append((fit.z - nominal(vehicle))[fit.columns], fit.own.values) / wide
     places = [row for cause in chosen for row in rows[cause]]
     block = quadratic.information[np.ix_(places, places)]
     return Fitted(chosen, fit, value - 0.5 * float(np.sum(distance ** 2))
                   + occam(block, quadratic.wide[places], quadratic.scatter, chosen, rules), sizes)
+
+
+def _out_of_bounds(chosen: tuple, fit: Estimate, vehicle) -> bool:
+    """Return whether a further form of an effect has a parameter that wants to leave its bounds."""
+    null, free = nominal(vehicle), dict(zip(fit.columns, fit.free, strict=True))
+    return any(not free[column] and fit.z[column] != null[column]
+               for cause in effects_in(chosen) if not cause.usual for column in cause.columns)

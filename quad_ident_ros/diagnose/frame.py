@@ -75,8 +75,8 @@ def discrepancy_of(frame: Frame, distances: dict) -> list:
     """
     Return the directions (B, M, D) of the discrepancy of each flight.
 
-    Args: distances: {(kind, columns): distance (F, K) of their parameters from none in each flight} of
-    each effect and nuisance.
+    Args: distances: {(kind, columns): distance (F, K) of their parameters from none in each
+    flight} of each effect and nuisance.
     """
     found = []
     for k in range(len(frame.slope)):

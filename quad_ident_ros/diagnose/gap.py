@@ -33,8 +33,8 @@ class Noise:
     Noise of the measurement: standard deviation (12,) of the errors, of a tilt, of a drift.
 
     Both stay the same over a prediction. The drift (m/s) is the error of the velocity that does,
-    beside that in the deviation; the tilt (rad) is that of the attitude: a vehicle whose attitude is taken from the record is pulled
-    sideways by it.
+    beside that in the deviation. The tilt (rad) is that of the attitude: a vehicle whose attitude
+    is taken from the record is pulled sideways by it.
     """
 
     deviation: np.ndarray

@@ -72,7 +72,7 @@ class Rules:
     differs: float = 2.0
 
     def least(self, group: str, noise: float) -> float:
-        """Return the gap of a group below which shares of it mean nothing: half of what matters."""
+        """Return the gap of a group below which shares mean nothing: half of what matters."""
         return max(self.visible * noise, 0.5 * self.floors[group])
 
     def tolerance(self, group: str, noise: float) -> float:

@@ -23,7 +23,7 @@ from quad_ident_ros.greybox.linear import errors_along
 from quad_ident_ros.greybox.noise import quick_noise, whole_noise
 from quad_ident_ros.greybox.normal import scatter_of
 from quad_ident_ros.greybox.own import Layout, Own
-from quad_ident_ros.greybox.parameters import limits, nominal
+from quad_ident_ros.greybox.parameters import limits, nominal, prior_sizes
 
 ROUNDS = 6
 REFITS = 3          # sets that are refitted in a round
@@ -165,14 +165,15 @@ class _Search:
                            distances_of(chosen, fit, self.vehicle),
                            tuple(grid[k] for grid, k in zip(grids, sizes, strict=True)),
                            self.rules)
-        lower, upper, size = limits(self.vehicle)
+        lower, upper, _ = limits(self.vehicle)
+        wide = prior_sizes(self.vehicle, self.rules.prior_width)[self.columns]
         null = nominal(self.vehicle)[self.columns]
         spreads = np.tile(everyone.spreads, len(self.flights))
         beyond = np.full(len(spreads), np.inf)
         scatter = float(np.median(scatter_of(normal)[:len(self.columns)]))
         return Quadratic(normal.information, normal.gradient, normal.cost,
                          np.append(fit.z[self.columns] - null, everyone.values),
-                         np.append(self.rules.prior_width * size[self.columns], spreads),
+                         np.append(wide, spreads),
                          np.append(lower[self.columns] - null, -beyond),
                          np.append(upper[self.columns] - null, beyond), scatter)
 
