@@ -19,8 +19,9 @@ class Candidate:
     """
     An effect in one of its forms, or of one rotor, and its columns.
 
-    form: the name of the form; usual: whether it is the one that most know; share: its part of the effect's prior probability; own: the
-    greybox.own.Nuisance that it is instead of an effect, or None.
+    form: the name of the form; usual: whether it is the one that most know; share: its part of
+    the effect's prior probability; own: the greybox.own.Nuisance that it is instead of an effect,
+    or None.
     """
 
     effect: str

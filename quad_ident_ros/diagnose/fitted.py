@@ -6,14 +6,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from quad_ident_ros.diagnose.candidates import Candidate
 from quad_ident_ros.diagnose.discrepancy import fitted_sizes
 from quad_ident_ros.diagnose.evidence import occam, Quadratic
 from quad_ident_ros.diagnose.frame import blocks_at, Frame
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.greybox.estimate import Estimate, estimate
 from quad_ident_ros.greybox.own import Own
-from quad_ident_ros.greybox.parameters import nominal, prior_sizes
+from quad_ident_ros.greybox.parameters import limits, nominal, prior_sizes
 
+CLOSE = 1e-3        # usual sizes to a bound that are none
 FIT_STEPS = 5       # of Gauss and Newton: sets start near where they end
 
 
@@ -91,11 +93,8 @@ def fitted_of(chosen: tuple, fit: Estimate, vehicle, frame: Frame, quadratic: Qu
     Return the Fitted of a set and its Estimate: Laplace's approximation of the evidence.
 
     The residuals count by the likelihood with the discrepancy marginalised out, the volume of the
-    parameters by the information around the Frame's point. There is none for a further form with a
-    parameter at a bound other than that of no effect: it does the work of something else.
+    parameters by the information around the Frame's point.
     """
-    if _out_of_bounds(chosen, fit, vehicle):
-        return Fitted(chosen, fit, -np.inf, start)
     blocks = blocks_at(frame, fit, distances_of(chosen, fit, vehicle))
     value, sizes = fitted_sizes(blocks, rules.form_error, grids, quadratic.scatter, start)
     spreads = np.tile(fit.own.spreads, len(fit.own.values))
@@ -107,8 +106,13 @@ def fitted_of(chosen: tuple, fit: Estimate, vehicle, frame: Frame, quadratic: Qu
                   + occam(block, quadratic.wide[places], quadratic.scatter, chosen, rules), sizes)
 
 
-def _out_of_bounds(chosen: tuple, fit: Estimate, vehicle) -> bool:
-    """Return whether a further form of an effect has a parameter that wants to leave its bounds."""
-    null, free = nominal(vehicle), dict(zip(fit.columns, fit.free, strict=True))
-    return any(not free[column] and fit.z[column] != null[column]
-               for cause in effects_in(chosen) if not cause.usual for column in cause.columns)
+def out_of_bounds(cause: Candidate, fit: Estimate, vehicle) -> bool:
+    """
+    Return whether a further form of an effect has a parameter that wants to leave its bounds.
+
+    It does the work of something else then. The bound of no effect is none in this sense.
+    """
+    null, (lower, upper, size) = nominal(vehicle), limits(vehicle)
+    columns = [column for column in cause.columns if fit.z[column] != null[column]]
+    room = np.minimum(fit.z - lower, upper - fit.z) / size
+    return not cause.usual and bool((room[columns] < CLOSE).any())

@@ -80,7 +80,8 @@ def discrepancy_of(frame: Frame, distances: dict) -> list:
     """
     found = []
     for k in range(len(frame.slope)):
-        each = [frame.columns(list(columns), k) @ away[k] for (_, columns), away in distances.items()]
+        each = [frame.columns(list(columns), k) @ away[k]
+                for (_, columns), away in distances.items()]
         shape = frame.slope[k].shape[:2]
         found.append(directions(frame.columns(list(WRENCH), k),
                                 np.stack(each, axis=2) if each else np.zeros((*shape, 0))))

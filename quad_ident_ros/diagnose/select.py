@@ -13,6 +13,7 @@ from quad_ident_ros.diagnose.fitted import (
     effects_in,
     Fitted,
     fitted_of,
+    out_of_bounds,
     refitted,
     size_grids,
 )
@@ -87,6 +88,7 @@ def select(flights, vehicle, causes, rules, on_progress=lambda share: None) -> S
             break
         search.weigh(whole)
         search.run(lambda share, rest=0.5 ** again: on_progress(1.0 - rest + 0.5 * rest * share))
+    search.settle()
     on_progress(1.0)
     return search.selection()
 
@@ -225,9 +227,25 @@ class _Search:
         self.tried[chosen] = fit
         self.judge(chosen)
 
+    def settle(self):
+        """Put the usual form in place of each of the best set that wants to leave its bounds."""
+        usual = {cause.effect: cause for cause in self.all_causes if cause.usual}
+        fit = self.best.estimate
+        swaps = {cause: usual[cause.effect] for cause in self.best.causes
+                 if out_of_bounds(cause, fit, self.vehicle)}
+        if not swaps:
+            return
+        z = fit.z.copy()
+        for cause in swaps:
+            z[list(cause.columns)] = nominal(self.vehicle)[list(cause.columns)]
+        chosen = key_of(tuple(swaps.get(cause, cause) for cause in self.best.chosen))
+        self.tried[chosen] = refitted(self.flights, self.vehicle, z, chosen, self.noise, fit.own,
+                                      fit.starts, scatter=self.quadratic.scatter)
+        self.best = self.judge(chosen)
+
     def selection(self):
         """Return the Selection."""
-        fitted = tuple(self.order())
+        fitted = (self.best, *(one for one in self.order() if one is not self.best))
         return Selection(fitted[0], fitted,
                          probabilities(fitted, self.ranked, self.all_causes, set(self.tried)),
                          self.quadratic, self.rows, self.noise, self.frame)

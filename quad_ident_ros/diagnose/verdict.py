@@ -39,6 +39,8 @@ def verdict_of(bench: Bench, judged: Judgement, causes: tuple) -> Verdict:
     total = {}
     for cause in causes:
         total[cause.effect] = min(1.0, total.get(cause.effect, 0.0) + judged.probability[cause])
+    # The forms of an effect that is in the best set are one effect.
+    total |= {cause.effect: judged.probability[cause] for cause in judged.weights}
     named = sorted(judged.material, key=lambda cause: -judged.weights[cause].contribution)
     minor = tuple(Minor(cause.effect, total[cause.effect], judged.weights[cause].contribution)
                   for cause in judged.model.effects if cause not in judged.material)
