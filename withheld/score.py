@@ -44,7 +44,7 @@ def findings_of(found):
 
     What motion cannot tell apart is one finding: it names each of its members.
     """
-    return [set(names) for names in found.get('findings_as_one') or ()]
+    return [set(one['effects']) for one in found.get('one_finding') or ()]
 
 
 def named_in(name, names, findings):

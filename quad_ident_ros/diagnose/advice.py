@@ -5,22 +5,27 @@
 from quad_ident_ros.diagnose import fly_next as design
 from quad_ident_ros.diagnose.select import Selection
 from quad_ident_ros.diagnose.verdict import Verdict
+from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.model.vehicle import Vehicle
 
 ASKS = (('none',), ('undetermined',))   # verdicts that ask for another flight
 
+RATIO = tuple(name for name, effect in EFFECTS.items() if effect.ratio)
+"""Effects of which only a quotient shows."""
+
 SAME_MOTION = {
-    ('inertia_mismatch', 'factor_x'): ('inertia about x', 'arms along y'),
-    ('inertia_mismatch', 'factor_y'): ('inertia about y', 'arms along x'),
-    ('inertia_mismatch', 'factor_z'): ('inertia about z', 'torque coefficient'),
-    ('thrust_scale', 'factor'): ('thrust coefficient', 'mass with inertia and drag in proportion'),
+    'inertia_mismatch': (('inertia about x', 'arms along y'), ('inertia about y', 'arms along x'),
+                         ('inertia about z', 'torque coefficient')),
+    'thrust_scale': (('thrust coefficient', 'mass with the inertia in proportion'),),
+    'mass_offset': (('mass', 'thrust coefficient with the inertia in proportion'),),
 }
-"""Constants whose change moves a vehicle alike, by the parameter that stands for all of them."""
+"""Constants that move a vehicle alike, by the effect that stands for all of them."""
 
 TELLS = {
     'inertia_mismatch': 'a ruler for the arms, a pendulum for the inertia, a thrust stand for '
                         'the torque coefficient',
     'thrust_scale': 'a scale for the mass, a thrust stand for the thrust coefficient',
+    'mass_offset': 'a scale for the mass, a thrust stand for the thrust coefficient',
 }
 """What measurement tells such constants apart."""
 
@@ -42,12 +47,17 @@ def fly_next(selection: Selection, flights: list, vehicle: Vehicle, z, verdict: 
 
 
 def one_finding(verdict: Verdict) -> tuple[dict, ...]:
-    """Return what each named effect may be as well, and what measurement would tell, as data."""
+    """
+    Return what each named effect may be as well, and what measurement would tell, as data.
+
+    effects: names that the flights do not tell apart. Thrust and mass are told from one another by
+    the moments, so not where the inertia is found to differ, too.
+    """
     rows = []
-    for row in verdict.ranking:
-        if row.effect not in TELLS or row.effect not in verdict.names:
+    for name in verdict.names:
+        if name not in TELLS:
             continue
-        may_be = [list(SAME_MOTION[row.effect, name]) for name in row.parameters
-                  if (row.effect, name) in SAME_MOTION]
-        rows.append({'effect': row.effect, 'may_be': may_be, 'tells': TELLS[row.effect]})
+        loose = name != 'inertia_mismatch' and 'inertia_mismatch' in verdict.names
+        rows.append({'effect': name, 'may_be': [list(pair) for pair in SAME_MOTION[name]],
+                     'effects': sorted(RATIO) if loose else [name], 'tells': TELLS[name]})
     return tuple(rows)

@@ -46,7 +46,8 @@ def candidates(flights: list, vehicle: Vehicle,
             place = PLACES[name, form.name]
             columns = tuple(range(SPLIT + place.start, SPLIT + place.stop))
             if effect.per_rotor:
-                found += [Candidate(name, f'{name} {j + 1}', columns[j:j + 1], form.name)
+                found += [Candidate(name, f'{name} {j + 1}', columns[j:j + 1], form.name,
+                                    share=1.0 / len(vehicle.rotors))
                           for j in range(len(vehicle.rotors))]
             else:
                 found.append(Candidate(name, f'{name} {form.name}', columns, form.name,

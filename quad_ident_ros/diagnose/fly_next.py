@@ -27,8 +27,6 @@ from quad_ident_ros.greybox.parameters import nominal, SPLIT
 DURATION = 20.0     # s of a manoeuvre
 SEED = 0            # of its trajectory
 ROLLOUTS = 12       # of a manoeuvre that are looked at, for all of them
-HIDDEN = 1.0        # standard errors: an effect of usual size that is not that far off is not seen
-SHOWN = 3.0         # standard errors from which on it is
 MOST = 3            # manoeuvres that are proposed to show what was not
 
 
@@ -146,7 +144,7 @@ def visibility(information, selection, causes, present):
 def hidden(selection, causes, present):
     """Return the names of effects that the flights would not show at their usual size."""
     seen = visibility(_of_record(selection), selection, causes, present)
-    return [name for name, away in seen.items() if away < HIDDEN]
+    return [name for name, away in seen.items() if away < RULES.hidden]
 
 
 def fly_next(selection, flights, vehicle, z, sure, doubts, unseen):
@@ -185,7 +183,8 @@ def _to_show(selection, options, names, present):
     seen = {option.trajectory: visibility(record + option.information, selection, causes, present)
             for option in options}
     while left and len(found) < MOST:
-        shown = {name: [one for one in left if away[one] >= SHOWN] for name, away in seen.items()}
+        shown = {name: [one for one in left if away[one] >= RULES.shown]
+                 for name, away in seen.items()}
         best = max(shown, default=None, key=lambda name: (len(shown[name]), sum(
             np.log(seen[name][one]) for one in shown[name])))
         if best is None or not shown[best]:

@@ -14,12 +14,10 @@ from quad_ident_ros.diagnose.nuisances import own_of
 from quad_ident_ros.diagnose.probability import probabilities
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.diagnose.select import Selection
+from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.greybox.errors import ERRORS, GROUPS
 from quad_ident_ros.greybox.estimate import Estimate
 from quad_ident_ros.greybox.parameters import nominal
-
-SCALING = ('thrust_scale', 'mass_offset', 'inertia_mismatch')
-TIED = 0.9      # correlation of two effects' parameters from which on they are taken out together
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,7 +135,7 @@ class Judgement:
     What was judged of a Selection.
 
     model: all effects that are there; material: those of them that matter; weights {candidate:
-    Weight} and probability {candidate: of being present}; without {candidate: Model without it};
+    Weight} and probability {effect: of being present}; without {candidate: Model without it};
     before: the Ends of the nominal vehicle with the nuisances of each flight; noise: {group: gap}
     of each flight; unexplained: {group: gap beyond tolerance and error of form}.
     """
@@ -167,7 +165,7 @@ def judge(bench: Bench) -> Judgement:
     before, noise = gaps.gap(ends), pooled(noises)
     weights, without = {}, {}
     while model.effects:
-        smaller = {removed: bench.without(model, removed) for removed in _subsets(model)}
+        smaller = {removed: bench.without(model, removed) for removed in _subsets(model, rules)}
         for removed, one in smaller.items():
             if len(removed) == 1:
                 weights[removed[0]] = _weight(model, one, before, noise, rules)
@@ -180,7 +178,7 @@ def judge(bench: Bench) -> Judgement:
             model.gap, smaller[removed].gap, before, noise, rules)))
         model = smaller[first]
     present = probabilities(bench.selection.probability, weights, rules)
-    absent = tuple(cause for cause in full.effects if present[cause] < rules.present)
+    absent = tuple(cause for cause in full.effects if present[cause.effect] < rules.present)
     material = tuple(cause for cause in model.effects if cause not in absent)
     if set(material) == set(full.effects) - set(absent) and not set(model.effects) & set(absent):
         final = model
@@ -277,14 +275,14 @@ def beyond(gap: float, noise: float) -> float:
     return float(np.sqrt(max(0.0, gap ** 2 - noise ** 2)))
 
 
-def _subsets(model: Model) -> list:
+def _subsets(model: Model, rules: Rules) -> list:
     """Return the effects that are taken out: each one, and those together that may cancel."""
     effects = model.effects
-    scaling = [cause for cause in effects if cause.effect in SCALING]
+    scaling = [cause for cause in effects if EFFECTS[cause.effect].scale_group]
     groups = [tuple(group) for size in range(2, len(scaling) + 1)
               for group in combinations(scaling, size)]
     pairs = [pair for pair in combinations(effects, 2)
-             if pair not in groups and _tie(model.estimate, *pair) > TIED]
+             if pair not in groups and _tie(model.estimate, *pair) > rules.tied]
     return [*((cause,) for cause in effects), *groups, *pairs]
 
 

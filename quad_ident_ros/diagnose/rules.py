@@ -31,7 +31,8 @@ class Rules:
       form_time: s over which that error stays the same: that of a turn or a stop of a flight.
     Probability:
       calibration: constant, and weights of stability and log10 of the contribution in the log
-        odds of being present, fitted to the flights of development of the withheld check:
+        odds of being present, steadiest and faintest: where these end, for more says no more;
+        fitted to the flights of development of the withheld check:
         docs/method.md has the command.
     Naming:
       present: probability from which on an effect is named: more likely there than not.
@@ -39,6 +40,10 @@ class Rules:
         sure. instead: how many times likelier a rival must be without an effect than with it.
       material: share of the closable gap that an effect must close to be in the verdict: less is
         below what a change of the weather or of a battery does.
+      tied: correlation of two effects' parameters from which on they are taken out together, too.
+    Advice:
+      hidden, shown: standard errors from no effect below which an effect of usual size is not
+        seen, and from which on it is.
     Tolerance (a gap that matters, by group of outputs, at 0.5 s):
       visible: of the noise's gap: of what can be closed below it, shares mean nothing.
       noise_share: of the noise's gap: what remains below it is hard to see in a prediction, and
@@ -63,6 +68,11 @@ class Rules:
     doubt: float = 0.12
     instead: float = 2.0
     calibration: tuple[float, float, float] = (1.1, 0.2, 2.4)
+    steadiest: float = 10.0
+    faintest: float = 1e-3
+    tied: float = 0.9
+    hidden: float = 1.0
+    shown: float = 3.0
     material: float = 0.05
     visible: float = 0.25
     noise_share: float = 0.75

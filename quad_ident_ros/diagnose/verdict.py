@@ -36,11 +36,7 @@ class Verdict:
 def verdict_of(bench: Bench, judged: Judgement, causes: tuple) -> Verdict:
     """Return the Verdict of a Judgement."""
     rules, checks = bench.rules, flight_checks(bench, judged)
-    total = {}
-    for cause in causes:
-        total[cause.effect] = min(1.0, total.get(cause.effect, 0.0) + judged.probability[cause])
-    # The forms of an effect that is in the best set are one effect.
-    total |= {cause.effect: judged.probability[cause] for cause in judged.weights}
+    total = judged.probability
     named = sorted(judged.material, key=lambda cause: -judged.weights[cause].contribution)
     minor = tuple(Minor(cause.effect, total[cause.effect], judged.weights[cause].contribution)
                   for cause in judged.model.effects if cause not in judged.material)

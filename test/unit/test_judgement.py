@@ -35,7 +35,7 @@ def test_the_tolerance_is_a_share_of_the_noise_but_no_less_than_its_floor():
     assert rules.tolerance('velocity', 0.04) == 0.02
     assert rules.tolerance('velocity', 0.4) == pytest.approx(0.1)
     rules = replace(rules, visible=0.1)
-    assert rules.least('velocity', 0.04) == 0.02
+    assert rules.least('velocity', 0.04) == 0.01
     assert rules.least('velocity', 0.4) == pytest.approx(0.04)
     assert set(RULES.floors) == set(GROUPS)
 
