@@ -114,5 +114,5 @@ def out_of_bounds(cause: Candidate, fit: Estimate, vehicle) -> bool:
     """
     null, (lower, upper, size) = nominal(vehicle), limits(vehicle)
     columns = [column for column in cause.columns if fit.z[column] != null[column]]
-    room = np.minimum(fit.z - lower, upper - fit.z) / size
-    return not cause.usual and bool((room[columns] < CLOSE).any())
+    room = np.minimum(fit.z - lower, upper - fit.z)[columns]
+    return not cause.usual and bool((room < CLOSE * size[columns]).any())

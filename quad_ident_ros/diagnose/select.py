@@ -230,18 +230,19 @@ class _Search:
     def settle(self):
         """Put the usual form in place of each of the best set that wants to leave its bounds."""
         usual = {cause.effect: cause for cause in self.all_causes if cause.usual}
-        fit = self.best.estimate
-        swaps = {cause: usual[cause.effect] for cause in self.best.causes
-                 if out_of_bounds(cause, fit, self.vehicle)}
-        if not swaps:
-            return
-        z = fit.z.copy()
-        for cause in swaps:
-            z[list(cause.columns)] = nominal(self.vehicle)[list(cause.columns)]
-        chosen = key_of(tuple(swaps.get(cause, cause) for cause in self.best.chosen))
-        self.tried[chosen] = refitted(self.flights, self.vehicle, z, chosen, self.noise, fit.own,
-                                      fit.starts, scatter=self.quadratic.scatter)
-        self.best = self.judge(chosen)
+        while True:
+            fit = self.best.estimate
+            swaps = {cause: usual[cause.effect] for cause in self.best.causes
+                     if out_of_bounds(cause, fit, self.vehicle)}
+            if not swaps:
+                return
+            z = fit.z.copy()
+            for cause in swaps:
+                z[list(cause.columns)] = nominal(self.vehicle)[list(cause.columns)]
+            chosen = key_of(tuple(swaps.get(cause, cause) for cause in self.best.chosen))
+            self.tried[chosen] = refitted(self.flights, self.vehicle, z, chosen, self.noise,
+                                          fit.own, fit.starts, scatter=self.quadratic.scatter)
+            self.best = self.judge(chosen)
 
     def selection(self):
         """Return the Selection."""
