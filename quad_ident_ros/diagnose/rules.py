@@ -52,7 +52,8 @@ class Rules:
     Unknown:
       differs: times the gap that remains in the other flights from which on one flight differs.
       unexplained: share of the gap that the named effects close which may remain as error of
-        their form before something unknown is named.
+        their form before something unknown is named: effects that close half of a gap leave
+        1 / sqrt(3) of what they close.
     """
 
     shortest: float = 4.0
@@ -67,7 +68,7 @@ class Rules:
     present: float = 0.5
     doubt: float = 0.12
     instead: float = 2.0
-    calibration: tuple[float, float, float] = (1.1, 0.2, 2.4)
+    calibration: tuple[float, float, float] = (1.1, 0.26, 2.7)
     steadiest: float = 10.0
     faintest: float = 1e-3
     tied: float = 0.9
@@ -78,7 +79,7 @@ class Rules:
     noise_share: float = 0.75
     floors: dict = field(default_factory=lambda: {
         'position': 0.01, 'velocity': 0.02, 'attitude': 0.01, 'rate': 0.05})
-    unexplained: float = 0.5
+    unexplained: float = 0.58
     differs: float = 2.0
 
     def least(self, group: str, noise: float) -> float:
