@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from quad_ident_ros.effects.registry import EFFECTS, PLACES
-from quad_ident_ros.greybox.own import Nuisance, nuisances
+from quad_ident_ros.greybox.nuisances import Nuisance, nuisances
 from quad_ident_ros.greybox.parameters import SPLIT
 from quad_ident_ros.model.vehicle import Vehicle
 
@@ -20,8 +20,8 @@ class Candidate:
     An effect in one of its forms, or of one rotor, and its columns.
 
     form: the name of the form; usual: whether it is the one that most know; share: its part of
-    the effect's prior probability; own: the greybox.own.Nuisance that it is instead of an effect,
-    or None.
+    the effect's prior probability; nuisance: the greybox.nuisances.Nuisance that it is instead of
+    an effect, or None.
     """
 
     effect: str
@@ -30,7 +30,7 @@ class Candidate:
     form: str = ''
     usual: bool = True
     share: float = 1.0
-    own: Nuisance | None = None
+    nuisance: Nuisance | None = None
 
 
 def candidates(flights: list, vehicle: Vehicle,
@@ -55,7 +55,7 @@ def candidates(flights: list, vehicle: Vehicle,
     return tuple(found)
 
 
-def own_candidates(vehicle: Vehicle, tracks: list) -> tuple[Candidate, ...]:
-    """Return the Candidates for what Tracks have of their own, which is no effect."""
-    return tuple(Candidate(kind.name, kind.name, kind.columns, own=kind)
+def nuisance_candidates(vehicle: Vehicle, tracks: list) -> tuple[Candidate, ...]:
+    """Return the Candidates for the nuisances of Tracks, which are no effects."""
+    return tuple(Candidate(kind.name, kind.name, kind.columns, nuisance=kind)
                  for kind in nuisances(vehicle, tracks))

@@ -57,7 +57,7 @@ def diagnose(records: list[FlightRecord], vehicle: Vehicle, *,
     verdict = verdict_of(bench, judged, causes)
     z0, model = nominal(vehicle), judged.model
     whole = np.median([whole_noise(raw, 1.0 - 1.0 / raw.shape[1])
-                       for raw in model.estimate.left], axis=0)
+                       for raw in model.estimate.residuals], axis=0)
     before = measure.residual_wrenches(bench, [z0 + z - model.z for z in model.vectors],
                                        noise.deviation)
     after = measure.residual_wrenches(bench, model.vectors, whole)
@@ -74,7 +74,7 @@ def diagnose(records: list[FlightRecord], vehicle: Vehicle, *,
         one_finding=advice.one_finding(verdict), not_shown=unseen,
         fly_next=advice.fly_next(selection, intake.flights, vehicle, model.z, verdict, unseen),
         nuisances=nuisances_as_data(
-            tuple(cause.own for cause in model.chosen if cause.own),
+            tuple(cause.nuisance for cause in model.chosen if cause.nuisance),
             [z - model.z for z in model.vectors], intake.late, intake.clocks, prompt),
         flights=intake.names[:-1], held_out=intake.names[-1],
         flight_checks=verdict.flight_checks, findings=tuple(intake.findings), z=model.z,

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from quad_ident_ros.effects.registry import EFFECTS
-from quad_ident_ros.greybox.own import CLOCK, LIKELY
+from quad_ident_ros.greybox.nuisances import CLOCK, LIKELY
 
 BEAM = 12           # sets kept per size
-MOST = 8            # causes in a set, beside what flights have of their own
+MOST = 8            # causes in a set, beside the nuisances of flights
 BEHIND = 40.0       # log-evidence behind the best set from which on none grows
 
 
@@ -47,12 +47,12 @@ def _volume(information, wide, scatter):
 
 
 def _odds(causes, rules):
-    own = [cause.own for cause in causes if cause.own is not None]
+    nuisances = [cause.nuisance for cause in causes if cause.nuisance is not None]
     # A sensor with one bias may have others. Clocks have nothing to do with them.
-    clocks = [kind.odds for kind in own if kind.name == CLOCK]
+    clocks = [kind.odds for kind in nuisances if kind.name == CLOCK]
     biases = [kind.odds if k == 0 else LIKELY for k, kind in
-              enumerate(kind for kind in own if kind.name != CLOCK)]
-    effects = [rules.prior_odds * cause.share for cause in causes if cause.own is None]
+              enumerate(kind for kind in nuisances if kind.name != CLOCK)]
+    effects = [rules.prior_odds * cause.share for cause in causes if cause.nuisance is None]
     shares = effects + clocks + biases
     return sum(np.log(share / (1.0 - share)) for share in shares)
 
@@ -128,10 +128,10 @@ def beam(quadratic, causes, rules):
     while level:
         grown = {}      # in the order in which they come up
         for _, chosen, _ in level:
-            full = sum(cause.own is None for cause in chosen) >= MOST
+            full = sum(cause.nuisance is None for cause in chosen) >= MOST
             for cause in causes:
-                if full and cause.own is None or any(excludes(cause, other)
-                                                     for other in chosen):
+                if full and cause.nuisance is None or any(excludes(cause, other)
+                                                          for other in chosen):
                     continue
                 grown[key_of((*chosen, cause))] = None
         grown = entries(list(grown))
@@ -149,7 +149,7 @@ def excludes(cause, other):
     Two of one effect, and two whose ratio alone shows: thrust and mass, multiplied by one factor
     with the inertia, move a vehicle alike.
     """
-    if cause.own is not None or other.own is not None:
+    if cause.nuisance is not None or other.nuisance is not None:
         return cause.effect == other.effect
     ratio = EFFECTS[cause.effect].ratio
     return cause.effect == other.effect or (ratio is not None
@@ -158,4 +158,4 @@ def excludes(cause, other):
 
 def key_of(causes):
     """Return causes in the one order in which sets of them are compared."""
-    return tuple(sorted(causes, key=lambda one: (one.own is not None, one.columns)))
+    return tuple(sorted(causes, key=lambda one: (one.nuisance is not None, one.columns)))

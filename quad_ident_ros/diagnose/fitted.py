@@ -12,7 +12,7 @@ from quad_ident_ros.diagnose.evidence import occam, Quadratic
 from quad_ident_ros.diagnose.frame import blocks_at, Frame
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.greybox.estimate import Estimate, estimate
-from quad_ident_ros.greybox.own import Own
+from quad_ident_ros.greybox.nuisances import NuisanceValues
 from quad_ident_ros.greybox.parameters import limits, nominal, prior_sizes
 
 CLOSE = 1e-3        # usual sizes to a bound that are none
@@ -38,27 +38,27 @@ class Fitted:
         return effects_in(self.chosen)
 
     @property
-    def own(self) -> tuple:
-        """Return the kinds of Nuisance that flights have of their own."""
-        return tuple(cause.own for cause in self.chosen if cause.own)
+    def nuisances(self) -> tuple:
+        """Return the kinds of Nuisance in the set."""
+        return tuple(cause.nuisance for cause in self.chosen if cause.nuisance)
 
 
 def effects_in(chosen: tuple) -> tuple:
     """Return those of a set of candidates that are effects."""
-    return tuple(cause for cause in chosen if cause.own is None)
+    return tuple(cause for cause in chosen if cause.nuisance is None)
 
 
-def refitted(flights, vehicle, z, chosen, noise, own, starts, slopes=None,
+def refitted(flights, vehicle, z, chosen, noise, nuisances, starts, slopes=None,
              scatter=1.0, fixed=None) -> Estimate:
     """
-    Return the Estimate of a set, from a vector and an Own that has the values to start from.
+    Return the Estimate of a set, from a vector and the NuisanceValues to start from.
 
-    fixed (F, Z): what is added to each flight's vector, as in Own.
+    fixed (F, Z): what is added to each flight's vector, as in NuisanceValues.
     """
     free = sorted(column for cause in effects_in(chosen) for column in cause.columns)
-    own = replace(Own.of([cause.own for cause in chosen if cause.own], len(flights), own),
-                  fixed=fixed)
-    return estimate(flights, vehicle, z, free, noise=noise, own=own, starts=starts,
+    nuisances = replace(NuisanceValues.of([cause.nuisance for cause in chosen if cause.nuisance],
+                                          len(flights), nuisances), fixed=fixed)
+    return estimate(flights, vehicle, z, free, noise=noise, nuisances=nuisances, starts=starts,
                     iterations=FIT_STEPS, slopes=slopes, scatter=scatter)
 
 
@@ -70,8 +70,8 @@ def distances_of(chosen: tuple, fit: Estimate, vehicle) -> dict:
     """
     vectors = np.stack(fit.vectors)
     shared = np.broadcast_to(fit.z - nominal(vehicle), vectors.shape)
-    return {('nuisance' if cause.own else 'effect', cause.columns):
-            (vectors - fit.z if cause.own else shared)[:, list(cause.columns)]
+    return {('nuisance' if cause.nuisance else 'effect', cause.columns):
+            (vectors - fit.z if cause.nuisance else shared)[:, list(cause.columns)]
             for cause in chosen}
 
 
@@ -97,9 +97,9 @@ def fitted_of(chosen: tuple, fit: Estimate, vehicle, frame: Frame, quadratic: Qu
     """
     blocks = blocks_at(frame, fit, distances_of(chosen, fit, vehicle))
     value, sizes = fitted_sizes(blocks, rules.form_error, grids, quadratic.scatter, start)
-    spreads = np.tile(fit.own.spreads, len(fit.own.values))
+    spreads = np.tile(fit.nuisances.spreads, len(fit.nuisances.values))
     wide = np.append(prior_sizes(vehicle, rules.prior_width)[fit.columns], spreads)
-    distance = np.append((fit.z - nominal(vehicle))[fit.columns], fit.own.values) / wide
+    distance = np.append((fit.z - nominal(vehicle))[fit.columns], fit.nuisances.values) / wide
     places = [row for cause in chosen for row in rows[cause]]
     block = quadratic.information[np.ix_(places, places)]
     return Fitted(chosen, fit, value - 0.5 * float(np.sum(distance ** 2))

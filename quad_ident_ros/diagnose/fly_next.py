@@ -21,7 +21,7 @@ from quad_ident_ros.flight.trajectories import TRAJECTORIES
 from quad_ident_ros.greybox.flights import flight_of, RATE, track_of
 from quad_ident_ros.greybox.linear import linearise
 from quad_ident_ros.greybox.normal import marginal, normal_of
-from quad_ident_ros.greybox.own import Layout, Own
+from quad_ident_ros.greybox.nuisances import Layout, NuisanceValues
 from quad_ident_ros.greybox.parameters import nominal, SPLIT
 
 DURATION = 20.0     # s of a manoeuvre
@@ -58,9 +58,9 @@ def manoeuvres(selection, flights, vehicle, z):
     Rate and noise are those of the flights that the Selection is of.
     """
     scatter, noise = selection.quadratic.scatter, np.median(selection.noise, axis=0)
-    own, columns = Own.of(selection.best.own, 1), _columns(selection)
-    layout = Layout(columns, own.columns, 1)
-    precision = np.append(np.zeros(len(columns)), own.spreads ** -2.0)
+    nuisances, columns = NuisanceValues.of(selection.best.nuisances, 1), _columns(selection)
+    layout = Layout(columns, nuisances.columns, 1)
+    precision = np.append(np.zeros(len(columns)), nuisances.spreads ** -2.0)
     rate = float(np.clip(1.0 / np.median([flight.period for flight in flights]), RATES[0], RATE))
     found = []
     for name in TRAJECTORIES:
@@ -206,7 +206,7 @@ def _proposal(purpose, effects, options, now, after):
 
 def _causes(selection):
     """Return the causes that are effects."""
-    return [cause for cause in selection.rows if cause.own is None]
+    return [cause for cause in selection.rows if cause.nuisance is None]
 
 
 def _columns(selection):
@@ -215,10 +215,10 @@ def _columns(selection):
 
 
 def _of_record(selection):
-    """Return the information (C, C) of the flights, with what they have of their own free."""
-    own = _places(selection, [cause for cause in selection.best.chosen if cause.own])
+    """Return the information (C, C) of the flights, with their nuisances free."""
+    nuisances = _places(selection, [cause for cause in selection.best.chosen if cause.nuisance])
     return _left(selection.quadratic.information / selection.quadratic.scatter,
-                 np.arange(len(_columns(selection))), own, selection.quadratic)
+                 np.arange(len(_columns(selection))), nuisances, selection.quadratic)
 
 
 def _places(selection, causes):

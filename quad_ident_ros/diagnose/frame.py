@@ -14,14 +14,15 @@ from quad_ident_ros.diagnose.discrepancy import (
     summed,
 )
 from quad_ident_ros.diagnose.rules import Rules
-from quad_ident_ros.effects.registry import LACKING, SLICES
+from quad_ident_ros.effects.registry import RESIDUAL_WRENCH, SLICES
 from quad_ident_ros.greybox.estimate import Estimate, weights_of
 from quad_ident_ros.greybox.linear import errors_along, linear_of, Slopes, slopes_at
 from quad_ident_ros.greybox.normal import Normal
-from quad_ident_ros.greybox.own import Layout
+from quad_ident_ros.greybox.nuisances import Layout
 from quad_ident_ros.greybox.parameters import SPLIT
 
-WRENCH = tuple(range(SPLIT + SLICES[LACKING.name].start, SPLIT + SLICES[LACKING.name].stop))
+WRENCH = tuple(range(SPLIT + SLICES[RESIDUAL_WRENCH.name].start,
+                     SPLIT + SLICES[RESIDUAL_WRENCH.name].stop))
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,9 +60,9 @@ def frame_at(flights: list, vehicle, fit: Estimate, wanted: list, rules: Rules) 
             for flight, z, start in zip(flights, fit.vectors, fit.starts, strict=True)]
     slopes = slopes_at(flights, vehicle, fit.z, fit.vectors, fit.starts, raws, wanted)
     scale, basis, slope, block = [], [], [], []
-    for tangent, raw, left, sigma, flight in zip(slopes.tangents, raws, fit.left, fit.noise,
-                                                 flights, strict=True):
-        weight = weights_of(left, sigma, flight) / sigma
+    for tangent, raw, residual, sigma, flight in zip(slopes.tangents, raws, fit.residuals,
+                                                     fit.noise, flights, strict=True):
+        weight = weights_of(residual, sigma, flight) / sigma
         linear = linear_of(tangent, raw, weight)
         scale.append(weight.reshape(len(raw), -1))
         basis.append(linear.basis)
@@ -90,8 +91,9 @@ def discrepancy_of(frame: Frame, distances: dict) -> list:
 
 def blocks_at(frame: Frame, fit: Estimate, distances: dict) -> Blocks:
     """Return the Blocks of the residuals of an Estimate with its effects' distances."""
-    return blocks_of([(basis, frame.residual(errors, k), frame.block[k]) for k, (basis, errors) in
-                      enumerate(zip(discrepancy_of(frame, distances), fit.left, strict=True))])
+    return blocks_of([(basis, frame.residual(errors, k), frame.block[k])
+                      for k, (basis, errors) in enumerate(zip(discrepancy_of(frame, distances),
+                                                              fit.residuals, strict=True))])
 
 
 def normal_at(frame: Frame, flights: list, fit: Estimate, layout: Layout, distances: dict,
@@ -105,7 +107,7 @@ def normal_at(frame: Frame, flights: list, fit: Estimate, layout: Layout, distan
     gradient, cost, scores = np.zeros(layout.size), 0.0, []
     rows = [frame.wanted.index(place) for place in layout.wanted]
     for number, basis in enumerate(discrepancy_of(frame, distances)):
-        residual = frame.residual(fit.left[number], number)
+        residual = frame.residual(fit.residuals[number], number)
         table = np.concatenate([frame.slope[number][..., [*rows, -1]],
                                 residual[..., None]], axis=2)
         deviation = scales(*sizes, rules.form_error, basis.shape[2])

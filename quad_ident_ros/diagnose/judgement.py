@@ -10,7 +10,7 @@ import numpy as np
 from quad_ident_ros.diagnose import gap as gaps
 from quad_ident_ros.diagnose.fitted import effects_in, refitted
 from quad_ident_ros.diagnose.gap import Noise
-from quad_ident_ros.diagnose.nuisances import own_of
+from quad_ident_ros.diagnose.nuisances import nuisances_of
 from quad_ident_ros.diagnose.probability import probabilities
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.diagnose.select import Selection
@@ -73,9 +73,9 @@ class Bench:
 
         fixed (Z,): nuisances that are not free in the flight that was held out.
         """
-        held_out = own_of(self.tracks[-1], self.vehicle, estimate.z,
-                          tuple(cause.own for cause in chosen if cause.own), self.noise.deviation,
-                          self.flights[0].segment, fixed)
+        held_out = nuisances_of(self.tracks[-1], self.vehicle, estimate.z,
+                                tuple(cause.nuisance for cause in chosen if cause.nuisance),
+                                self.noise.deviation, self.flights[0].segment, fixed)
         vectors = (*estimate.vectors, estimate.z + held_out)
         return Model(chosen, estimate, vectors, self.ends(vectors))
 
@@ -101,14 +101,15 @@ class Bench:
         z[columns] = nominal(self.vehicle)[columns]
         fixed = np.stack(model.vectors) - model.z
         shared = [column for column in columns if fixed[:, column].any()]
-        others = [column for cause in model.chosen if cause.own is not None
-                  and not set(cause.own.columns) & set(shared) for column in cause.own.columns]
+        others = [column for cause in model.chosen
+                  if cause.nuisance is not None and not set(cause.nuisance.columns) & set(shared)
+                  for column in cause.nuisance.columns]
         fixed[:, others] = 0.0
         fixed[:, shared] -= fixed[:-1, shared].mean(axis=0)
         chosen = tuple(cause for cause in model.chosen if cause not in removed and not (
-            cause.own is not None and set(shared) & set(cause.own.columns)))
-        estimate = refitted(self.flights, self.vehicle, z, chosen, self.selection.noise, fit.own,
-                            fit.starts, scatter=self.selection.quadratic.scatter,
+            cause.nuisance is not None and set(shared) & set(cause.nuisance.columns)))
+        estimate = refitted(self.flights, self.vehicle, z, chosen, self.selection.noise,
+                            fit.nuisances, fit.starts, scatter=self.selection.quadratic.scatter,
                             fixed=fixed[:-1])
         return self.model(chosen, estimate, fixed[-1])
 

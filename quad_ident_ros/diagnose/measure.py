@@ -50,9 +50,9 @@ def _gap(track, bench: Bench, judged: Judgement, horizon: float) -> dict:
     """Return {stage: {group: gap}} of a Track of the flight held out, with intervals."""
     z0 = nominal(bench.vehicle)
     after_z = judged.model.vectors[-1]
-    before, own, after = (gaps.ends(track, bench.vehicle, z, horizon) for z in (
+    before, nuisance, after = (gaps.ends(track, bench.vehicle, z, horizon) for z in (
         z0, z0 + after_z - judged.model.z, after_z))
-    return {'before': gaps.gap([before]), 'before_own': gaps.gap([own]),
+    return {'before': gaps.gap([before]), 'before_own': gaps.gap([nuisance]),
             'after': gaps.gap([after]),
             'noise': gaps.noise_gap(track, bench.vehicle, after_z, bench.noise, horizon),
             'before_interval': gaps.interval([before]), 'after_interval': gaps.interval([after])}

@@ -22,7 +22,7 @@ def noise_of(selection: Selection, intake: Intake, rules: Rules) -> Noise:
     little noise, and their tilt not at all: it is taken as usual ones are.
     """
     best = selection.best.estimate
-    near, white = (np.median([kind(raw) for raw in best.left], axis=0)
+    near, white = (np.median([kind(raw) for raw in best.residuals], axis=0)
                    for kind in (near_noise, quick_noise))
     deviation = measurement_noise(intake.flights, best.vectors, near, white)
     attitude, position = GROUPS['attitude'], GROUPS['position']

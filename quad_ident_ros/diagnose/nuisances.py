@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What each flight has of its own, told: clocks, trims and biases, which are no effects."""
+"""The nuisances of each flight, told: clocks, trims and biases, which are no effects."""
 
 from dataclasses import replace
 
@@ -9,15 +9,15 @@ import numpy as np
 from quad_ident_ros.data.clocks import controllers_own
 from quad_ident_ros.greybox.estimate import estimate
 from quad_ident_ros.greybox.flights import flight_of
-from quad_ident_ros.greybox.own import APART, CLOCK, CLOCK_TITLE, Own, put_right
+from quad_ident_ros.greybox.nuisances import APART, CLOCK, CLOCK_TITLE, NuisanceValues, put_right
 
 WIDE = 1.64     # standard errors below which 95 % lie
 DELAY = 'actuation_delay'
 
 
-def own_of(track, vehicle, z, kinds, noise, segment, fixed=None):
+def nuisances_of(track, vehicle, z, kinds, noise, segment, fixed=None):
     """
-    Return what a Track that was not learnt from has of its own (Z,), beside a vector z.
+    Return the nuisances (Z,) of a Track that was not learnt from, beside a vector z.
 
     fixed (Z,): what is known of it beforehand.
     """
@@ -25,7 +25,7 @@ def own_of(track, vehicle, z, kinds, noise, segment, fixed=None):
     if not kinds:
         return fixed
     found = estimate([flight_of(track, segment)], vehicle, z, [], noise=[noise],
-                     own=replace(Own.of(kinds, 1), fixed=fixed[None]))
+                     nuisances=replace(NuisanceValues.of(kinds, 1), fixed=fixed[None]))
     return found.vectors[0] - z
 
 
@@ -49,13 +49,14 @@ def late_controller(selection, flights):
 
 def as_data(kinds, flights, late, clocks, prompt):
     """
-    Return as data, by Nuisance, what flights (the held-out one last) have of their own, (Z,).
+    Return as data, by Nuisance, what the nuisances (Z,) of flights are, the held-out one last.
 
     late: {stream: s}, what was moved as it was stamped late, and clocks: the Clock, or None, of
     each flight, the held-out one last; prompt: s of a delay that may be the controller's own lag
     and is counted with the clocks. Of clocks also the longest delay (s) that they may hide.
     """
-    found = {kind.name: _each(kind.title, kind.unit, [own[list(kind.columns)] for own in flights])
+    found = {kind.name: _each(kind.title, kind.unit,
+                              [vector[list(kind.columns)] for vector in flights])
              for kind in kinds}
     hidden = prompt
     for kind in kinds:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from quad_ident_ros.effects.registry import LACKING, SLICES
+from quad_ident_ros.effects.registry import RESIDUAL_WRENCH, SLICES
 from quad_ident_ros.greybox.estimate import settled, weights_of
 from quad_ident_ros.greybox.flights import flight_of
 from quad_ident_ros.greybox.linear import errors_along, linearise
@@ -20,7 +20,8 @@ STRETCH = 25.0      # s without a break that spectra are taken of,
 STRETCHES = 4       # and how many of them, spread over a longer flight
 FEWEST = 8          # windows of a stretch that has a spectrum
 EXCESS = 0.35       # of the energy that a regime must have beyond its share of the time
-COLUMNS = list(range(SPLIT + SLICES[LACKING.name].start, SPLIT + SLICES[LACKING.name].stop))
+COLUMNS = list(range(SPLIT + SLICES[RESIDUAL_WRENCH.name].start,
+                     SPLIT + SLICES[RESIDUAL_WRENCH.name].stop))
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from quad_ident_ros.diagnose.candidates import own_candidates
+from quad_ident_ros.diagnose.candidates import nuisance_candidates
 from quad_ident_ros.diagnose.evidence import beam, key_of, Quadratic
 from quad_ident_ros.diagnose.fitted import (
     distances_of,
@@ -23,7 +23,7 @@ from quad_ident_ros.greybox.estimate import estimate
 from quad_ident_ros.greybox.linear import errors_along
 from quad_ident_ros.greybox.noise import quick_noise, whole_noise
 from quad_ident_ros.greybox.normal import scatter_of
-from quad_ident_ros.greybox.own import Layout, Own
+from quad_ident_ros.greybox.nuisances import Layout, NuisanceValues
 from quad_ident_ros.greybox.parameters import limits, nominal, prior_sizes
 
 ROUNDS = 6
@@ -82,7 +82,7 @@ def select(flights, vehicle, causes, rules, on_progress=lambda share: None) -> S
     search.run(lambda share: on_progress(0.5 * share))
     for again in range(1, 1 + PASSES):
         whole = [whole_noise(raw, 1.0 - 1.0 / raw.shape[1])
-                 for raw in search.best.estimate.left]
+                 for raw in search.best.estimate.residuals]
         ratio = np.median(np.array(whole) / search.noise, axis=0)
         if max(np.max(ratio), np.max(1.0 / ratio)) <= COLOURED:
             break
@@ -98,7 +98,7 @@ class _Search:
 
     def __init__(self, flights, vehicle, causes, rules):
         self.flights, self.vehicle, self.rules = flights, vehicle, rules
-        self.all_causes, self.nuisances = causes, own_candidates(vehicle, flights)
+        self.all_causes, self.nuisances = causes, nuisance_candidates(vehicle, flights)
         starts = [flight.states[flight.first] for flight in flights]
         self.noise = [quick_noise(errors_along(flight, vehicle, nominal(vehicle), start))
                       for flight, start in zip(flights, starts, strict=True)]
@@ -112,7 +112,7 @@ class _Search:
         known = self.order()[:REFITS]
         self.noise, self.judged = noise, {}
         self.tried = {(): self.tried[()]} | {one.chosen: one.estimate for one in known}
-        self.tried = {key: refitted(self.flights, self.vehicle, fit.z, key, noise, fit.own,
+        self.tried = {key: refitted(self.flights, self.vehicle, fit.z, key, noise, fit.nuisances,
                                     fit.starts) for key, fit in self.tried.items()}
 
     def run(self, on_progress):
@@ -145,7 +145,8 @@ class _Search:
     def stand_at(self, chosen):
         """Linearise around a fitted set; those judged before are judged anew, the best of them."""
         fit = self.tried[chosen]
-        everyone = Own.of([one.own for one in self.nuisances], len(self.flights), fit.own)
+        everyone = NuisanceValues.of([one.nuisance for one in self.nuisances], len(self.flights),
+                                     fit.nuisances)
         layout = Layout(self.columns, everyone.columns, len(self.flights))
         self.frame = frame_at(self.flights, self.vehicle, fit, layout.wanted, self.rules)
         grids = size_grids(self.vehicle, self.noise, self.rules)
@@ -200,29 +201,30 @@ class _Search:
             lower, upper, _ = limits(self.vehicle)
             start[self.columns] += distances[:len(self.columns)]
             start = np.clip(start, lower, upper)
-            everyone = Own.of([one.own for one in self.nuisances], len(self.flights))
+            everyone = NuisanceValues.of([one.nuisance for one in self.nuisances],
+                                         len(self.flights))
             everyone.values.flat[:] = distances[len(self.columns):]
             self.fit(chosen, start, everyone, around.starts, slopes)
         for chosen, start in _other_actuator(self.best_key(), self.causes,
                                              self.tried[self.best_key()].z, self.vehicle):
             if chosen not in self.tried and self.quadratic.scatter > LOST:
                 fit = self.tried[self.best_key()]
-                self.fit(chosen, start, fit.own, fit.starts, None)
+                self.fit(chosen, start, fit.nuisances, fit.starts, None)
 
     def best_key(self):
         """Return the set around which the flights are linearised."""
         return self.order()[0].chosen
 
-    def fit(self, chosen, z, own, starts, slopes):
+    def fit(self, chosen, z, nuisances, starts, slopes):
         """Fit a set from a vector, and once more from its best subset where it gets lost."""
         scatter = self.quadratic.scatter
-        fit = refitted(self.flights, self.vehicle, z, chosen, self.noise, own, starts, slopes,
-                       scatter)
+        fit = refitted(self.flights, self.vehicle, z, chosen, self.noise, nuisances, starts,
+                       slopes, scatter)
         subsets = [one for key, one in self.tried.items() if set(key) < set(chosen)]
         near = min(subsets, key=lambda one: one.cost, default=fit)
         if fit.cost > near.cost + LOST * scatter:
-            again = refitted(self.flights, self.vehicle, near.z, chosen, self.noise, near.own,
-                             near.starts)
+            again = refitted(self.flights, self.vehicle, near.z, chosen, self.noise,
+                             near.nuisances, near.starts)
             fit = min(fit, again, key=lambda one: one.cost)
         self.tried[chosen] = fit
         self.judge(chosen)
@@ -241,7 +243,8 @@ class _Search:
                 z[list(cause.columns)] = nominal(self.vehicle)[list(cause.columns)]
             chosen = key_of(tuple(swaps.get(cause, cause) for cause in self.best.chosen))
             self.tried[chosen] = refitted(self.flights, self.vehicle, z, chosen, self.noise,
-                                          fit.own, fit.starts, scatter=self.quadratic.scatter)
+                                          fit.nuisances, fit.starts,
+                                          scatter=self.quadratic.scatter)
             self.best = self.judge(chosen)
 
     def selection(self):
@@ -312,13 +315,13 @@ def _swapped(chosen, top):
     return len(apart) == 2 and bool(effects_in(tuple(apart)))
 
 
-def _rows(causes, own, columns, count):
-    """Return {candidate: its rows of the quadratic}, in each flight of what is its own."""
+def _rows(causes, nuisances, columns, count):
+    """Return {candidate: its rows of the quadratic}, in each flight of a nuisance."""
     rows = {cause: [columns.index(column) for column in cause.columns] for cause in causes
             if set(cause.columns) <= set(columns)}
-    order = [column for one in own for column in one.columns]
+    order = [column for one in nuisances for column in one.columns]
     first = 0
-    for one in own:
+    for one in nuisances:
         rows[one] = [len(columns) + number * len(order) + first + k for number in range(count)
                      for k in range(len(one.columns))]
         first += len(one.columns)

@@ -26,5 +26,5 @@ FORM = Form(
     on_rotors=False,
     wrench=wrench)
 EFFECT = Effect(
-    name='external_wrench', title='force and moment that are lacking', forms=(FORM,),
+    name='external_wrench', title='force and moment that no effect explains', forms=(FORM,),
     excitation='any flight')

@@ -49,12 +49,12 @@ EFFECTS: dict[str, Effect] = {module.EFFECT.name: module.EFFECT for module in (
     motor_lag, actuation_delay, rotor_drag, body_drag, wind, inflow, ground_effect, battery_sag,
     thrust_scale, mass_offset, inertia_mismatch, com_offset, rotor_fault, rotor_gyro,
     blade_flapping, attitude_misalignment, gyro_bias)}
-# Not a cause but a measure: the force and the moment that are lacking, whatever they come from.
-LACKING = external_wrench.EFFECT
+# Not a cause but a measure: force and moment that no effect explains, whatever they come from.
+RESIDUAL_WRENCH = external_wrench.EFFECT
 
 # The usual form of each effect first, so that the vector begins with what most know of it.
 FORMS: tuple[tuple[str, Form], ...] = (
-    *((effect.name, effect.forms[0]) for effect in (*EFFECTS.values(), LACKING)),
+    *((effect.name, effect.forms[0]) for effect in (*EFFECTS.values(), RESIDUAL_WRENCH)),
     *((effect.name, form) for effect in EFFECTS.values() for form in effect.forms[1:]))
 PARAMETERS: tuple[tuple[str, Parameter], ...] = tuple(
     (name, parameter) for name, form in FORMS for parameter in form.parameters)
@@ -65,7 +65,7 @@ for _name, _form in FORMS:
     _first = max((part.stop for part in PLACES.values()), default=0)
     PLACES[_name, _form.name] = slice(_first, _first + len(_form.parameters))
 SLICES: dict[str, slice] = {effect.name: PLACES[effect.name, effect.forms[0].name]
-                            for effect in (*EFFECTS.values(), LACKING)}
+                            for effect in (*EFFECTS.values(), RESIDUAL_WRENCH)}
 """Where those of an effect's usual form stand."""
 PLACE: dict[tuple[str, str], int] = {(name, parameter.name): place for place, (name, parameter)
                                      in enumerate(PARAMETERS)}
@@ -146,7 +146,7 @@ def _chain(hook: str) -> Hook:
     """Return one compiled function that does what all forms do at a hook, one after another."""
     early = hook in BEFORE
     chain: Hook = _nothing_early if early else _nothing
-    for effect in (LACKING, *reversed(EFFECTS.values())):
+    for effect in (RESIDUAL_WRENCH, *reversed(EFFECTS.values())):
         for form in reversed(effect.forms):
             key = effect.name, form.name
             function = getattr(form, hook)

@@ -21,7 +21,7 @@ from quad_ident_ros.greybox.linear import (
 )
 from quad_ident_ros.greybox.noise import MAD, quick_noise, whole_noise
 from quad_ident_ros.greybox.normal import bounded_step, covariance_of, marginal, Normal, normal_of
-from quad_ident_ros.greybox.own import Layout, Own
+from quad_ident_ros.greybox.nuisances import Layout, NuisanceValues
 from quad_ident_ros.greybox.parameters import limits
 from quad_ident_ros.model.vehicle import Vehicle
 
@@ -41,9 +41,9 @@ class Estimate:
     """
     A fit: the vector z (Z,), the free columns, their covariance (C, C), noise per flight (12,).
 
-    own: what the flights have of their own; starts: initial states per flight; normal: the last
-    Normal, of the columns and of each flight's own, by slopes at the vector `at` (Z,), near z;
-    left: recorded minus predicted per flight, but for what the clock explains, and its cost;
+    nuisances: those of the flights; starts: initial states per flight; normal: the last
+    Normal, of the columns and of all nuisances, by slopes at the vector `at` (Z,), near z;
+    residuals: recorded minus predicted per flight, less what the clock explains; cost: theirs;
     free: whether each column is inside its bounds; converged: whether the last step was small.
     """
 
@@ -51,19 +51,19 @@ class Estimate:
     columns: list[int]
     covariance: np.ndarray
     noise: list[np.ndarray]
-    own: Own
+    nuisances: NuisanceValues
     starts: list[np.ndarray]
     normal: Normal
     at: np.ndarray
-    left: list[np.ndarray]
+    residuals: list[np.ndarray]
     cost: float
     free: np.ndarray
     converged: bool
 
     @property
     def vectors(self) -> list[np.ndarray]:
-        """Return the vector of each flight, with what it has of its own, a list of (Z,)."""
-        return self.own.vectors(self.z)
+        """Return the vector of each flight, with its nuisances, a list of (Z,)."""
+        return self.nuisances.vectors(self.z)
 
     @property
     def errors(self) -> np.ndarray:
@@ -80,7 +80,7 @@ def weights_of(raw: np.ndarray, noise: np.ndarray, flight: Flight) -> np.ndarray
 
 
 def estimate(flights: Sequence[Flight], vehicle: Vehicle, z: np.ndarray, columns: Iterable[int],
-             *, noise: list[np.ndarray] | None = None, own: Own | None = None,
+             *, noise: list[np.ndarray] | None = None, nuisances: NuisanceValues | None = None,
              starts: list[np.ndarray] | None = None, iterations: int = ITERATIONS,
              clock: bool = True, slopes: Slopes | None = None, scatter: float = 1.0) -> Estimate:
     """
@@ -88,22 +88,23 @@ def estimate(flights: Sequence[Flight], vehicle: Vehicle, z: np.ndarray, columns
 
     Output error over short rollouts with free initial states, weighed by the noise, which is
     estimated along unless it is given; outliers count less; with `clock` each flight's pose may
-    be off in time against the rest; own: what else flights have of their own (Own). Without
+    be off in time against the rest; nuisances: what else differs by flight. Without
     `starts` (B, 13) per flight, the initial states, a few of the rollouts first bring z near.
     slopes: Slopes at the same starts, taken where the errors at z are what they say; scatter: what
     differences of the cost are divided by: the more, the sooner a step is small.
     """
     columns = list(columns)
-    own = own or Own.of((), len(flights))
+    nuisances = nuisances or NuisanceValues.of((), len(flights))
     box = limits(vehicle)[:, columns]
     if starts is None:
         few = [_fewer(flight, max(1, FEW // len(flights))) for flight in flights]
         if 2 * sum(len(flight.first) for flight in few) <= sum(len(f.first) for f in flights):
-            near = _descend(few, vehicle, z, columns, box, noise, own,
-                            settled(few, vehicle, own.vectors(z), noise), iterations, clock, ROUGH)
-            z, own = near.z, near.own
-        starts = settled(flights, vehicle, own.vectors(z), noise)
-    return _descend(flights, vehicle, z, columns, box, noise, own, starts, iterations, clock,
+            near = _descend(few, vehicle, z, columns, box, noise, nuisances,
+                            settled(few, vehicle, nuisances.vectors(z), noise), iterations, clock,
+                            ROUGH)
+            z, nuisances = near.z, near.nuisances
+        starts = settled(flights, vehicle, nuisances.vectors(z), noise)
+    return _descend(flights, vehicle, z, columns, box, noise, nuisances, starts, iterations, clock,
                     DONE * np.sqrt(max(1.0, scatter)), slopes)
 
 
@@ -114,22 +115,23 @@ def _fewer(flight: Flight, count: int) -> Flight:
 
 
 def _descend(flights: Sequence[Flight], vehicle: Vehicle, z: np.ndarray, columns: list[int],
-             box: np.ndarray, noise: list[np.ndarray] | None, own: Own, starts: list[np.ndarray],
-             iterations: int, clock: bool, done: float, slopes: Slopes | None = None) -> Estimate:
+             box: np.ndarray, noise: list[np.ndarray] | None, nuisances: NuisanceValues,
+             starts: list[np.ndarray], iterations: int, clock: bool, done: float,
+             slopes: Slopes | None = None) -> Estimate:
     """Return the Estimate from z by steps of Gauss and Newton that do not raise the cost."""
-    layout = Layout(columns, own.columns, len(flights))
-    shared, lower, upper, size, precision = _whole(box, own, len(flights))
+    layout = Layout(columns, nuisances.columns, len(flights))
+    shared, lower, upper, size, precision = _whole(box, nuisances, len(flights))
     known, z = noise, np.array(z, float)
     raws = [errors_along(flight, vehicle, vector, start)
-            for flight, vector, start in zip(flights, own.vectors(z), starts, strict=True)]
+            for flight, vector, start in zip(flights, nuisances.vectors(z), starts, strict=True)]
     noise = known or [quick_noise(raw) for raw in raws]
     tangents, converged = None, False
-    if slopes and slopes.missed(own.vectors(z), raws, noise) < NEARLY:
+    if slopes and slopes.missed(nuisances.vectors(z), raws, noise) < NEARLY:
         tangents, at = slopes.of(layout.wanted), slopes.at
     for count in range(iterations):
         fresh = tangents is None
         if tangents is None:
-            tangents = slopes_at(flights, vehicle, z, own.vectors(z), starts, raws,
+            tangents = slopes_at(flights, vehicle, z, nuisances.vectors(z), starts, raws,
                                  layout.wanted).tangents
             at = z
         scales = [weights_of(raw, sigma, flight) / sigma
@@ -137,7 +139,7 @@ def _descend(flights: Sequence[Flight], vehicle: Vehicle, z: np.ndarray, columns
         linears = [linear_of(tangent, raw, scale, clock)
                    for tangent, raw, scale in zip(tangents, raws, scales, strict=True)]
         normal = normal_of(linears, flights, layout, clock)
-        now = np.concatenate([z[columns], own.values.ravel()])
+        now = np.concatenate([z[columns], nuisances.values.ravel()])
         information = normal.information + np.diag(precision)
         gradient = normal.gradient - precision * now
         step, free = bounded_step(information, gradient, now, lower, upper, size)
@@ -146,14 +148,14 @@ def _descend(flights: Sequence[Flight], vehicle: Vehicle, z: np.ndarray, columns
         for share in SHARES:
             there, new = z.copy(), now + share * step
             there[columns] = new[:shared]
-            theirs = replace(own, values=new[shared:].reshape(own.values.shape))
+            theirs = replace(nuisances, values=new[shared:].reshape(nuisances.values.shape))
             moves = [layout.of_flight(share * step, k) for k in range(len(flights))]
             moved = [new_starts(linear, start, np.append(move, _clock(linear, move)) if clock
                                 else move)
                      for linear, start, move in zip(linears, starts, moves, strict=True)]
-            left = [errors_along(flight, vehicle, vector, start) for flight, vector, start in
-                    zip(flights, theirs.vectors(there), moved, strict=True)]
-            aligned = _aligned(left, tangents, scales, clock)
+            residuals = [errors_along(flight, vehicle, vector, start) for flight, vector, start in
+                         zip(flights, theirs.vectors(there), moved, strict=True)]
+            aligned = _aligned(residuals, tangents, scales, clock)
             after = _cost(aligned, scales) + precision @ new ** 2
             if after <= before * (1.0 + 1e-9):
                 break
@@ -162,7 +164,7 @@ def _descend(flights: Sequence[Flight], vehicle: Vehicle, z: np.ndarray, columns
                 break
             tangents = None
             continue
-        z, own, starts, raws, told = there, theirs, moved, left, aligned
+        z, nuisances, starts, raws, told = there, theirs, moved, residuals, aligned
         if known is None:
             noise = [whole_noise(part, linear.freedom)
                      for part, linear in zip(aligned, linears, strict=True)]
@@ -180,15 +182,15 @@ def _descend(flights: Sequence[Flight], vehicle: Vehicle, z: np.ndarray, columns
     # By the weights of these errors, not of those before the last step, to be held against others.
     cost = _cost(told, [weights_of(raw, sigma, flight) / sigma
                         for raw, sigma, flight in zip(raws, noise, flights, strict=True)])
-    return Estimate(z, columns, covariance, noise, own, starts, normal, at, told, cost,
+    return Estimate(z, columns, covariance, noise, nuisances, starts, normal, at, told, cost,
                     free[:shared], converged)
 
 
-def _whole(box: np.ndarray, own: Own, count: int
+def _whole(box: np.ndarray, nuisances: NuisanceValues, count: int
            ) -> tuple[int, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Return how many columns are shared; bounds, sizes, precisions of these and all own."""
+    """Return how many columns are shared; bounds, sizes, precisions of these and all nuisances."""
     lower, upper, size = box
-    spreads = np.tile(own.spreads, count)
+    spreads = np.tile(nuisances.spreads, count)
     wide = np.full(len(spreads), np.inf)
     return (len(size), np.append(lower, -wide), np.append(upper, wide), np.append(size, spreads),
             np.append(np.zeros(len(size)), spreads ** -2.0))
@@ -230,6 +232,6 @@ def settled(flights: Sequence[Flight], vehicle: Vehicle, vectors: Sequence[np.nd
 
 def _clock(linear: Linear, move: np.ndarray) -> float:
     """Return the offset of a flight's clock (s) that goes with a step of its parameters."""
-    own = linear.slope[..., -1]
-    left = linear.error - linear.slope[..., :-1] @ move
-    return float(np.sum(own * left) / max(np.sum(own * own), 1e-300))
+    drift = linear.slope[..., -1]
+    residuals = linear.error - linear.slope[..., :-1] @ move
+    return float(np.sum(drift * residuals) / max(np.sum(drift * drift), 1e-300))

@@ -89,12 +89,12 @@ def fit(records: Sequence[FlightRecord], vehicle: Vehicle, names: Iterable[str],
     on_progress(FITTED)
     inside = [name for name, moves in zip(free, found.free, strict=True) if moves]
     columns = [free[name] for name in inside]
-    left = freedoms(_inside(found.normal, found.free).information, found.at[columns],
-                    sizes[columns], [inside.index('mass')] if 'mass' in inside else [])
-    if left:
-        held = [columns[freedom.held] for freedom in left]
+    undetermined = freedoms(_inside(found.normal, found.free).information, found.at[columns],
+                            sizes[columns], [inside.index('mass')] if 'mass' in inside else [])
+    if undetermined:
+        held = [columns[freedom.held] for freedom in undetermined]
         z = found.z.copy()
-        for freedom in left:
+        for freedom in undetermined:
             if freedom.scale:
                 members = [columns[k] for k in freedom.members]
                 z[members] *= start[columns[freedom.held]] / z[columns[freedom.held]]
@@ -102,7 +102,7 @@ def fit(records: Sequence[FlightRecord], vehicle: Vehicle, names: Iterable[str],
         rest = [place for place in free.values() if place not in held]
         found = estimate(flights, vehicle, z, rest, noise=found.noise, starts=found.starts)
     given: dict[str, dict[str, float]] = {name: {} for name in inside}
-    for freedom in left:
+    for freedom in undetermined:
         for k in freedom.members:
             given[inside[k]][inside[freedom.held]] = float(start[columns[freedom.held]])
     covariance = np.zeros((len(found.columns),) * 2)
@@ -114,7 +114,7 @@ def fit(records: Sequence[FlightRecord], vehicle: Vehicle, names: Iterable[str],
     order = tuple(name for name, place in free.items() if place in errors)
     pairs = tuple((order[i], order[j], share) for i, j, share in correlated(covariance, STRONG))
     on_progress(1.0)
-    findings = (*(_said(freedom, inside, start[columns]) for freedom in left),
+    findings = (*(_said(freedom, inside, start[columns]) for freedom in undetermined),
                 *_findings(found, parameters, pairs, flights))
     return Fit(vehicle, tuple(flight.name for flight in flights), parameters,
                replace(found, covariance=covariance), order, pairs, findings)
@@ -163,7 +163,7 @@ def as_data(fit: Fit) -> dict[str, Any]:
                          for group, part in GROUPS.items()}
                   for name, noise in zip(fit.flights, found.noise, strict=True)},
         'cost': found.cost, 'samples': sum(raw.shape[0] * raw.shape[1]
-                                                  for raw in found.left),
+                                                  for raw in found.residuals),
         'converged': found.converged, 'findings': list(fit.findings)}
 
 
@@ -222,7 +222,7 @@ def _findings(found: Estimate, parameters: Iterable[Parameter],
     if widest > 1.0:
         said.append(f'what is left hangs together in time: standard errors are widened, up to '
                     f'{widest:.1f} times')
-    for flight, noise, raw in zip(flights, found.noise, found.left, strict=True):
+    for flight, noise, raw in zip(flights, found.noise, found.residuals, strict=True):
         ratio = noise / quick_noise(raw)
         worst = {group: float(ratio[part].max()) for group, part in GROUPS.items()}
         coloured = [f'{group} {times:.1f} times' for group, times in worst.items()

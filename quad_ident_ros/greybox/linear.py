@@ -138,7 +138,7 @@ def slopes_at(flights: Sequence[Flight], vehicle: Vehicle, z: np.ndarray,
     """
     Return the Slopes of flights around z (Z,).
 
-    Args: vectors: z with what each flight has of its own; starts (B, 13) and raws of errors_along
+    Args: vectors: z with the nuisances of each flight; starts (B, 13) and raws of errors_along
     per flight; columns: places in z.
     """
     steps = STEP * limits(vehicle)[2, columns]
@@ -208,6 +208,6 @@ def linear_of(tangent: Tangent, raw: np.ndarray, scale: np.ndarray, clock: bool 
 
 def new_starts(linear: Linear, starts: np.ndarray, step: np.ndarray) -> np.ndarray:
     """Return the initial states (B, 13) that fit best after a step (C,) of the parameters."""
-    left = linear.whole_error - linear.whole_slope @ step
-    side = (linear.basis.transpose(0, 2, 1) @ left[..., None])
+    residuals = linear.whole_error - linear.whole_slope @ step
+    side = (linear.basis.transpose(0, 2, 1) @ residuals[..., None])
     return moved(starts, np.linalg.solve(linear.triangle, side)[..., 0])

@@ -44,7 +44,7 @@ def whole_noise(raw: np.ndarray, freedom: np.ndarray | float) -> np.ndarray:
 
     Args: raw (B, count + 1, 12); freedom (12,) share that is not spent on initial states.
     """
-    left = raw.reshape(-1, raw.shape[-1])
-    spread = MAD * np.median(np.abs(left), axis=0)
-    inside = np.minimum(np.abs(left), 5.0 * np.maximum(spread, FLOOR))
+    residuals = raw.reshape(-1, raw.shape[-1])
+    spread = MAD * np.median(np.abs(residuals), axis=0)
+    inside = np.minimum(np.abs(residuals), 5.0 * np.maximum(spread, FLOOR))
     return np.maximum(np.sqrt(np.mean(inside ** 2, axis=0) / freedom), FLOOR)

@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Normal equations of flights: what is shared by all of them, what each has of its own."""
+"""Normal equations of flights: what is shared by all of them, and the nuisances of each."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -10,7 +10,7 @@ from scipy.special import chdtri
 
 from quad_ident_ros.greybox.flights import Flight
 from quad_ident_ros.greybox.linear import Linear
-from quad_ident_ros.greybox.own import Layout
+from quad_ident_ros.greybox.nuisances import Layout
 
 WEAK = 1e-7         # of the largest information: a direction that says nothing
 CHANCE = 0.01       # of white noise to be taken for noise that hangs together
@@ -35,7 +35,7 @@ class Normal:
 def normal_of(linears: Iterable[Linear], flights: Iterable[Flight], layout: Layout,
               clock: bool = True) -> Normal:
     """
-    Return the Normal of linearised flights, in the columns of a greybox.own.Layout.
+    Return the Normal of linearised flights, in the columns of a greybox.nuisances.Layout.
 
     With clock, what the last columns of each flight explain is taken out.
     """
@@ -48,10 +48,10 @@ def normal_of(linears: Iterable[Linear], flights: Iterable[Flight], layout: Layo
         cost += float(np.sum(linear.error ** 2))
         if clock:
             # The column of the clock is taken out of the others and of the errors.
-            own, size = products[:, :-1, -1], max(products[:, -1, -1].sum(), 1e-300)
-            share, ties = each[:, -1].sum() / size, own.sum(axis=0) / size
+            drift, size = products[:, :-1, -1], max(products[:, -1, -1].sum(), 1e-300)
+            share, ties = each[:, -1].sum() / size, drift.sum(axis=0) / size
             rest = each[:, -1] - share * products[:, -1, -1]
-            each = each[:, :-1] - share * own - ties * rest[:, None]
+            each = each[:, :-1] - share * drift - ties * rest[:, None]
             cost -= size * share ** 2
             whole = products[:, :-1, :-1].sum(axis=0) - size * np.outer(ties, ties)
         else:

@@ -10,7 +10,7 @@ import pytest
 from quad_ident_ros.diagnose.candidates import Candidate
 from quad_ident_ros.diagnose.evidence import beam, excludes, linear_evidence, Quadratic
 from quad_ident_ros.diagnose.rules import Rules
-from quad_ident_ros.greybox.own import Nuisance, RARE
+from quad_ident_ros.greybox.nuisances import Nuisance, RARE
 
 RULES = Rules(prior_odds=0.03)
 CAUSES = tuple(Candidate(name, name, (k,), share=share) for k, (name, share) in enumerate(
@@ -95,6 +95,6 @@ def test_forms_of_one_effect_and_the_two_of_a_ratio_never_stand_together():
 def test_an_effect_stands_beside_a_nuisance_in_its_place():
     """What flights share is the effect, what differs is the nuisance."""
     bias = Nuisance('rate_bias', 'bias', 'rad/s', (0,), (0.01,), RARE)
-    nuisance = Candidate('rate_bias', 'rate_bias', (0,), own=bias)
+    nuisance = Candidate('rate_bias', 'rate_bias', (0,), nuisance=bias)
     assert not excludes(Candidate('gyro_bias', 'gyro_bias', (0,)), nuisance)
     assert excludes(nuisance, nuisance)

@@ -167,7 +167,7 @@ def pair(correlation, third=None):
                           np.full(3, 1e3), 1.0)
     rows = {cause: [k] for k, cause in enumerate(causes)}
     return SimpleNamespace(quadratic=quadratic, rows=rows, noise=[np.full(12, 1e-2)],
-                           best=SimpleNamespace(chosen=(), own=()))
+                           best=SimpleNamespace(chosen=(), nuisances=()))
 
 
 def test_the_distance_of_two_causes_is_what_the_other_cannot_take_up():

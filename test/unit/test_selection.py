@@ -13,7 +13,7 @@ from quad_ident_ros.diagnose.select import _other_actuator, Selection
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import SENSORS
 from quad_ident_ros.greybox.flights import flight_of, track_of
-from quad_ident_ros.greybox.own import Nuisance, Own, RARE
+from quad_ident_ros.greybox.nuisances import Nuisance, NuisanceValues, RARE
 from quad_ident_ros.greybox.parameters import nominal
 from quad_ident_ros.model.vehicle import load_vehicle
 
@@ -22,7 +22,7 @@ EFFECT, OTHER = Candidate('a', 'a', (0,)), Candidate('b', 'b', (1,))
 
 def own(spread):
     kind = Nuisance('bias', 'bias', 'rad/s', (0,), (spread,), RARE)
-    return Candidate('bias', 'bias', (0,), own=kind)
+    return Candidate('bias', 'bias', (0,), nuisance=kind)
 
 
 def fitted(chosen, value, error, evidence):
@@ -65,7 +65,7 @@ def test_from_a_delay_that_does_the_work_of_a_lag_the_lag_is_found():
         causes.setdefault(cause.effect, cause)      # the usual form first
 
     def fit(z, chosen, noise=None):
-        return refitted(flights, vehicle, z, chosen, noise, Own.of((), 1), None)
+        return refitted(flights, vehicle, z, chosen, noise, NuisanceValues.of((), 1), None)
 
     late = fit(nominal(vehicle), (causes['actuation_delay'],))
     [(chosen, start)] = _other_actuator((causes['actuation_delay'],), list(causes.values()),

@@ -1,7 +1,7 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-What each flight may have of its own: clocks, trims and biases, which are no effects.
+Nuisances of flights: clocks, trims and biases, which are no effects.
 
 An effect is shared by flights. What differs from one flight to the next is added to the
 parameters of each one, about zero and about as wide as its usual spread.
@@ -20,7 +20,7 @@ from quad_ident_ros.model.vehicle import Vehicle
 
 CLOCK = 'clock_offset'
 CLOCK_TITLE = 'how much later than the commands the states are stamped'
-RARE, LIKELY = 1e-4, 0.5    # odds of flights having something of their own, before looking
+RARE, LIKELY = 1e-4, 0.5    # odds of flights having one, before looking
 APART = 0.02        # s, how far clocks usually are apart where nothing shows it,
 REST = 0.001        # s, or
 REST_SHARE = 0.2    # periods, how far where they were put right
@@ -79,9 +79,9 @@ def nuisances(vehicle: Vehicle, tracks: Sequence[Track]) -> tuple[Nuisance, ...]
 
 
 @dataclass(frozen=True, eq=False)
-class Own:
+class NuisanceValues:
     """
-    Places in z (K,) where flights have something of their own, spreads (K,), values (F, K).
+    Places in z (K,) of the nuisances of flights, their spreads (K,) and values (F, K).
 
     fixed (F, Z): what is added to the vector of each flight and is not estimated, or None.
     """
@@ -92,9 +92,10 @@ class Own:
     fixed: np.ndarray | None = None
 
     @classmethod
-    def of(cls, kinds: Sequence[Nuisance], count: int, known: Own | None = None) -> Own:
+    def of(cls, kinds: Sequence[Nuisance], count: int,
+           known: NuisanceValues | None = None) -> NuisanceValues:
         """
-        Return the Own of Nuisances in so many flights, with the values of a known one.
+        Return those of kinds of Nuisance in so many flights, with the values of a known one.
 
         Where several stand for the same columns the first one has the values.
         """
@@ -108,33 +109,33 @@ class Own:
         return cls(columns, spreads, values)
 
     def vectors(self, z: np.ndarray) -> list[np.ndarray]:
-        """Return z (Z,) with what each flight has of its own, a list of (Z,)."""
+        """Return z (Z,) with the nuisances of each flight, a list of (Z,)."""
         found = []
         for k, values in enumerate(self.values):
-            own = np.array(z, float) if self.fixed is None else z + self.fixed[k]
-            np.add.at(own, list(self.columns), values)
-            found.append(own)
+            vector = np.array(z, float) if self.fixed is None else z + self.fixed[k]
+            np.add.at(vector, list(self.columns), values)
+            found.append(vector)
         return found
 
 
 class Layout:
     """
-    Where the columns that flights share and those of their own stand in one vector.
+    Where the columns that flights share and those of their nuisances stand in one vector.
 
     wanted: places in z to be linearised in; rows: of these, the shared ones and those of a
     flight; size of the vector: shared, then those of each flight.
     """
 
-    def __init__(self, shared: Sequence[int], own: Sequence[int], count: int) -> None:
-        self.wanted = sorted({*shared, *own})
-        self.shared, self.own = len(shared), len(own)
-        self.rows = [self.wanted.index(column) for column in (*shared, *own)]
-        self.size = self.shared + count * self.own
+    def __init__(self, shared: Sequence[int], nuisances: Sequence[int], count: int) -> None:
+        self.wanted = sorted({*shared, *nuisances})
+        self.shared, self.nuisances = len(shared), len(nuisances)
+        self.rows = [self.wanted.index(column) for column in (*shared, *nuisances)]
+        self.size = self.shared + count * self.nuisances
 
     def places(self, number: int) -> list[int]:
         """Return where the rows of a flight stand in the vector."""
-        first = self.shared + number * self.own
-        return [*range(self.shared), *range(first, first + self.own)]
+        first = self.shared + number * self.nuisances
+        return [*range(self.shared), *range(first, first + self.nuisances)]
 
     def of_flight(self, vector: np.ndarray, number: int) -> np.ndarray:
         """Return the part (wanted,) of a vector that moves a flight's parameters."""

@@ -17,7 +17,7 @@ from quad_ident_ros.experiment import fly, load_experiment
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import SENSORS
 from quad_ident_ros.greybox.flights import flight_of, track_of
-from quad_ident_ros.greybox.own import nuisances
+from quad_ident_ros.greybox.nuisances import nuisances
 from quad_ident_ros.model.attitude import rotation_matrix
 from quad_ident_ros.model.dynamics import STATES
 from quad_ident_ros.model.sensors import product, turn
