@@ -25,6 +25,8 @@ class Rules:
         (multiplicity: Scott and Berger, Annals of Statistics 38, 2010).
       prior_width: usual sizes of a parameter that are one standard deviation of its prior about
         no effect: wide enough for the largest that is flown.
+      alike: log evidence within which sets are about as good, so that the smallest is taken: a
+        Bayes factor under 20 is not strong (Kass and Raftery, JASA 90, 1995).
     Discrepancy (see discrepancy.py):
       form_error: relative error of an effect's formula. Published laws of one effect differ from
         one another by 10 to 30 % over the range in which they are used.
@@ -63,6 +65,7 @@ class Rules:
     tracked_position: float = 1e-3
     prior_odds: float = 0.02
     prior_width: float = 3.0
+    alike: float = 3.0
     form_error: float = 0.2
     form_time: float = 1.0
     present: float = 0.5

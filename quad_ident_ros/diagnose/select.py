@@ -230,7 +230,14 @@ class _Search:
         self.judge(chosen)
 
     def settle(self):
-        """Put the usual form in place of each of the best set that wants to leave its bounds."""
+        """
+        Take the simplest of the sets that are about as good, and forms within their bounds.
+
+        Of a form that wants to leave its bounds the usual one takes the place.
+        """
+        self.best = min((one for one in self.order()
+                         if one.evidence > self.best.evidence - self.rules.alike),
+                        key=lambda one: (len(one.chosen), -one.evidence))
         usual = {cause.effect: cause for cause in self.all_causes if cause.usual}
         while True:
             fit = self.best.estimate
