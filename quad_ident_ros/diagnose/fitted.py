@@ -8,7 +8,7 @@ import numpy as np
 
 from quad_ident_ros.diagnose.candidates import Candidate
 from quad_ident_ros.diagnose.discrepancy import fitted_sizes
-from quad_ident_ros.diagnose.evidence import occam, Quadratic
+from quad_ident_ros.diagnose.evidence import key_of, occam, Quadratic
 from quad_ident_ros.diagnose.frame import blocks_at, Frame
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.greybox.estimate import Estimate, estimate
@@ -116,3 +116,23 @@ def out_of_bounds(cause: Candidate, fit: Estimate, vehicle) -> bool:
     columns = [column for column in cause.columns if fit.z[column] != null[column]]
     room = np.minimum(fit.z - lower, upper - fit.z)[columns]
     return not cause.usual and bool((room < CLOSE * size[columns]).any())
+
+
+def within_bounds(chosen: tuple, fit: Estimate, usual: dict, flights, vehicle, noise,
+                  scatter: float = 1.0, fixed=None) -> tuple:
+    """
+    Return a set and its Estimate with the usual form for each that wants to leave its bounds.
+
+    usual {effect: candidate of its usual form}; the others as of refitted.
+    """
+    while True:
+        swaps = {cause: usual[cause.effect] for cause in effects_in(chosen)
+                 if out_of_bounds(cause, fit, vehicle)}
+        if not swaps:
+            return chosen, fit
+        z = fit.z.copy()
+        for cause in swaps:
+            z[list(cause.columns)] = nominal(vehicle)[list(cause.columns)]
+        chosen = key_of(tuple(swaps.get(cause, cause) for cause in chosen))
+        fit = refitted(flights, vehicle, z, chosen, noise, fit.nuisances, fit.starts,
+                       scatter=scatter, fixed=fixed)

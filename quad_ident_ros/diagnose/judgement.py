@@ -8,7 +8,7 @@ from itertools import combinations
 import numpy as np
 
 from quad_ident_ros.diagnose import gap as gaps
-from quad_ident_ros.diagnose.fitted import effects_in, refitted
+from quad_ident_ros.diagnose.fitted import effects_in, refitted, within_bounds
 from quad_ident_ros.diagnose.gap import Noise
 from quad_ident_ros.diagnose.nuisances import nuisances_of
 from quad_ident_ros.diagnose.probability import probabilities
@@ -108,9 +108,12 @@ class Bench:
         fixed[:, shared] -= fixed[:-1, shared].mean(axis=0)
         chosen = tuple(cause for cause in model.chosen if cause not in removed and not (
             cause.nuisance is not None and set(shared) & set(cause.nuisance.columns)))
-        estimate = refitted(self.flights, self.vehicle, z, chosen, self.selection.noise,
-                            fit.nuisances, fit.starts, scatter=self.selection.quadratic.scatter,
-                            fixed=fixed[:-1])
+        noise, scatter = self.selection.noise, self.selection.quadratic.scatter
+        estimate = refitted(self.flights, self.vehicle, z, chosen, noise, fit.nuisances,
+                            fit.starts, scatter=scatter, fixed=fixed[:-1])
+        usual = {cause.effect: cause for cause in self.selection.probability if cause.usual}
+        chosen, estimate = within_bounds(chosen, estimate, usual, self.flights, self.vehicle,
+                                         noise, scatter, fixed[:-1])
         return self.model(chosen, estimate, fixed[-1])
 
 

@@ -13,9 +13,9 @@ from quad_ident_ros.diagnose.fitted import (
     effects_in,
     Fitted,
     fitted_of,
-    out_of_bounds,
     refitted,
     size_grids,
+    within_bounds,
 )
 from quad_ident_ros.diagnose.frame import Frame, frame_at, normal_at
 from quad_ident_ros.effects.registry import EFFECTS
@@ -239,20 +239,10 @@ class _Search:
                          if one.evidence > self.best.evidence - self.rules.alike),
                         key=lambda one: (len(one.chosen), -one.evidence))
         usual = {cause.effect: cause for cause in self.all_causes if cause.usual}
-        while True:
-            fit = self.best.estimate
-            swaps = {cause: usual[cause.effect] for cause in self.best.causes
-                     if out_of_bounds(cause, fit, self.vehicle)}
-            if not swaps:
-                return
-            z = fit.z.copy()
-            for cause in swaps:
-                z[list(cause.columns)] = nominal(self.vehicle)[list(cause.columns)]
-            chosen = key_of(tuple(swaps.get(cause, cause) for cause in self.best.chosen))
-            self.tried[chosen] = refitted(self.flights, self.vehicle, z, chosen, self.noise,
-                                          fit.nuisances, fit.starts,
-                                          scatter=self.quadratic.scatter)
-            self.best = self.judge(chosen)
+        chosen, fit = within_bounds(self.best.chosen, self.best.estimate, usual, self.flights,
+                                    self.vehicle, self.noise, self.quadratic.scatter)
+        self.tried[chosen] = fit
+        self.best = self.judge(chosen)
 
     def selection(self):
         """Return the Selection."""
