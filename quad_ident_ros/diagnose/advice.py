@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the flights could not show or tell apart, and what would."""
 
+import numpy as np
+
 from quad_ident_ros.diagnose import fly_next as design
 from quad_ident_ros.diagnose.select import Selection
 from quad_ident_ros.diagnose.verdict import Verdict
@@ -37,8 +39,8 @@ def not_shown(selection: Selection, causes: tuple, verdict: Verdict) -> tuple[st
                                list(verdict.certain)))
 
 
-def fly_next(selection: Selection, flights: list, vehicle: Vehicle, z, verdict: Verdict,
-             unseen: tuple) -> list | None:
+def fly_next(selection: Selection, flights: list, vehicle: Vehicle, z: np.ndarray,
+             verdict: Verdict, unseen: tuple) -> list | None:
     """Return what to fly next, as data, where the verdict leaves something open, else None."""
     if verdict.names not in ASKS:
         return None

@@ -2,23 +2,31 @@
 # SPDX-License-Identifier: Apache-2.0
 """Between which causes flights cannot tell."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
+from quad_ident_ros.diagnose.candidates import Candidate
+from quad_ident_ros.diagnose.fitted import Fitted
+from quad_ident_ros.diagnose.rules import Rules
+from quad_ident_ros.diagnose.select import Selection
 
-def doubts_of(selection, named, rules):
+
+def doubts_of(selection: Selection, named: Sequence[Candidate], rules: Rules
+              ) -> dict[Candidate, Fitted]:
     """
     Return the causes between which the flights of a Selection cannot tell; none where they can.
 
     Those of the named ones whose effects are not sure, and those that may be there in their place,
     each with the Fitted set that speaks for it: {cause: Fitted}.
     """
-    total = {}
+    total: dict[str, float] = {}
     for cause, value in selection.probability.items():
         total[cause.effect] = total.get(cause.effect, 0.0) + value
     present = {cause.effect for cause in named}
     others = [cause for cause in selection.probability
               if cause.effect not in present and total[cause.effect] > rules.doubt]
-    found = {}
+    found: dict[Candidate, Fitted] = {}
     for cause in named:
         rivals = ({} if total[cause.effect] >= 1.0 - rules.doubt else
                   rivals_of(selection, cause, others, rules))
@@ -27,12 +35,13 @@ def doubts_of(selection, named, rules):
     return found
 
 
-def rivals_of(selection, cause, others, rules):
+def rivals_of(selection: Selection, cause: Candidate, others: Sequence[Candidate], rules: Rules
+              ) -> dict[Candidate, Fitted]:
     """Return {rival: Fitted} of other causes that are there rather where a cause is not."""
     top = max(one.evidence for one in selection.fitted)
     weights = [np.exp(max(one.evidence - top, -700.0)) for one in selection.fitted]
 
-    def share(other, there):
+    def share(other: Candidate, there: bool) -> float:
         """Return the probability of another cause, given whether the cause is there."""
         given = [(weight, other in one.causes) for weight, one in
                  zip(weights, selection.fitted, strict=True) if (cause in one.causes) == there]

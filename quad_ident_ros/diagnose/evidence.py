@@ -2,10 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """How well sets of causes explain flights, by the linear model around a point."""
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from quad_ident_ros.diagnose.candidates import Candidate
+from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.greybox.nuisances import CLOCK, LIKELY
 
@@ -35,18 +38,19 @@ class Quadratic:
     scatter: float
 
 
-def occam(information, wide, scatter, causes, rules):
+def occam(information: np.ndarray, wide: np.ndarray, scatter: float,
+          causes: Sequence[Candidate], rules: Rules) -> float:
     """Return the log-evidence that free columns and causes cost."""
-    return _volume(information, wide, scatter) + _odds(causes, rules)
+    return float(_volume(information, wide, scatter)) + _odds(causes, rules)
 
 
-def _volume(information, wide, scatter):
+def _volume(information: np.ndarray, wide: np.ndarray, scatter: float) -> np.ndarray:
     """Return the log-evidence that free columns cost, of a stack (..., C, C)."""
     scaled = information * (wide[..., :, None] * wide[..., None, :]) / scatter
     return -0.5 * np.linalg.slogdet(np.eye(wide.shape[-1]) + scaled)[1]
 
 
-def _odds(causes, rules):
+def _odds(causes: Sequence[Candidate], rules: Rules) -> float:
     nuisances = [cause.nuisance for cause in causes if cause.nuisance is not None]
     # A sensor with one bias may have others. Clocks have nothing to do with them.
     clocks = [kind.odds for kind in nuisances if kind.name == CLOCK]
@@ -57,7 +61,8 @@ def _odds(causes, rules):
     return sum(np.log(share / (1.0 - share)) for share in shares)
 
 
-def linear_evidence(quadratic, sets, rows, rules):
+def linear_evidence(quadratic: Quadratic, sets: Sequence[tuple], rows: dict, rules: Rules
+                    ) -> tuple[np.ndarray, np.ndarray]:
     """
     Return the log-evidence (N,) of sets of causes, and the distances (N, C) that fit then.
 
@@ -92,7 +97,7 @@ def linear_evidence(quadratic, sets, rows, rules):
     return value, found
 
 
-def _by_size(free, going):
+def _by_size(free: np.ndarray, going: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
     """Yield sets (n,) of those that go on which have as many free rows, and these rows (n, k)."""
     sizes = free[going].sum(axis=1)
     for size in np.unique(sizes):
@@ -100,7 +105,7 @@ def _by_size(free, going):
         yield which, np.nonzero(free[which])[1].reshape(len(which), size)
 
 
-def _solved(quadratic, found, places):
+def _solved(quadratic: Quadratic, found: np.ndarray, places: np.ndarray) -> np.ndarray:
     """Return the distances (n, k) of free rows that fit best, the others held as found (n, C)."""
     change = found - quadratic.now
     np.put_along_axis(change, places, 0.0, axis=1)
@@ -112,21 +117,22 @@ def _solved(quadratic, found, places):
     return now + np.linalg.solve(blocks, (pull - ridge * now)[..., None])[..., 0]
 
 
-def beam(quadratic, causes, rules):
+def beam(quadratic: Quadratic, causes: dict, rules: Rules
+         ) -> list[tuple[float, tuple, np.ndarray]]:
     """
     Return [(log-evidence, causes, distances)] of the best sets of causes, best first.
 
     Args: causes: {cause: rows of the quadratic}. Sets grow by one cause at a time from each of the
     best of a size; of two causes that exclude one another only one is in a set.
     """
-    def entries(sets):
+    def entries(sets: list[tuple]) -> dict:
         values, distances = linear_evidence(quadratic, sets, causes, rules)
         return dict(zip(sets, zip(values, sets, distances, strict=True), strict=True))
 
     seen = entries([()])
     level = list(seen.values())
     while level:
-        grown = {}      # in the order in which they come up
+        grown: dict = {}      # in the order in which they come up
         for _, chosen, _ in level:
             full = sum(cause.nuisance is None for cause in chosen) >= MOST
             for cause in causes:
@@ -142,7 +148,7 @@ def beam(quadratic, causes, rules):
     return sorted(seen.values(), key=lambda one: -one[0])
 
 
-def excludes(cause, other):
+def excludes(cause: Candidate, other: Candidate) -> bool:
     """
     Return whether two causes never stand together.
 
@@ -156,6 +162,6 @@ def excludes(cause, other):
                                             and ratio == EFFECTS[other.effect].ratio)
 
 
-def key_of(causes):
+def key_of(causes: tuple) -> tuple:
     """Return causes in the one order in which sets of them are compared."""
     return tuple(sorted(causes, key=lambda one: (one.nuisance is not None, one.columns)))

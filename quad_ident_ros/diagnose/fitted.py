@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A set of effects fitted to flights, and its log evidence."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,8 +13,11 @@ from quad_ident_ros.diagnose.evidence import key_of, occam, Quadratic
 from quad_ident_ros.diagnose.frame import blocks_at, Frame
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.greybox.estimate import Estimate, estimate
+from quad_ident_ros.greybox.flights import Flight
+from quad_ident_ros.greybox.linear import Slopes
 from quad_ident_ros.greybox.nuisances import NuisanceValues
 from quad_ident_ros.greybox.parameters import limits, nominal, prior_sizes
+from quad_ident_ros.model.vehicle import Vehicle
 
 CLOSE = 1e-3        # usual sizes to a bound that are none
 FIT_STEPS = 5       # of Gauss and Newton: sets start near where they end
@@ -48,8 +52,10 @@ def effects_in(chosen: tuple) -> tuple:
     return tuple(cause for cause in chosen if cause.nuisance is None)
 
 
-def refitted(flights, vehicle, z, chosen, noise, nuisances, starts, slopes=None,
-             scatter=1.0, fixed=None) -> Estimate:
+def refitted(flights: Sequence[Flight], vehicle: Vehicle, z: np.ndarray, chosen: tuple,
+             noise: list[np.ndarray], nuisances: NuisanceValues, starts: list[np.ndarray],
+             slopes: Slopes | None = None, scatter: float = 1.0,
+             fixed: np.ndarray | None = None) -> Estimate:
     """
     Return the Estimate of a set, from a vector and the NuisanceValues to start from.
 
@@ -62,7 +68,7 @@ def refitted(flights, vehicle, z, chosen, noise, nuisances, starts, slopes=None,
                     iterations=FIT_STEPS, slopes=slopes, scatter=scatter)
 
 
-def distances_of(chosen: tuple, fit: Estimate, vehicle) -> dict:
+def distances_of(chosen: tuple, fit: Estimate, vehicle: Vehicle) -> dict:
     """
     Return {columns: distance (F, K) of their parameters from none in each flight}.
 
@@ -75,7 +81,7 @@ def distances_of(chosen: tuple, fit: Estimate, vehicle) -> dict:
             for cause in chosen}
 
 
-def size_grids(vehicle, noise: list, rules: Rules) -> tuple:
+def size_grids(vehicle: Vehicle, noise: list, rules: Rules) -> tuple:
     """
     Return rising sizes of an unexplained force (N) and moment (N m), 0 first.
 
@@ -87,8 +93,9 @@ def size_grids(vehicle, noise: list, rules: Rules) -> tuple:
             2.0 * float(np.mean(vehicle.inertia)) * float(np.mean(sigma[9:12])) * steps)
 
 
-def fitted_of(chosen: tuple, fit: Estimate, vehicle, frame: Frame, quadratic: Quadratic,
-              rows: dict, grids: tuple, rules: Rules, start: tuple = (0, 0)) -> Fitted:
+def fitted_of(chosen: tuple, fit: Estimate, vehicle: Vehicle, frame: Frame,
+              quadratic: Quadratic, rows: dict, grids: tuple, rules: Rules,
+              start: tuple = (0, 0)) -> Fitted:
     """
     Return the Fitted of a set and its Estimate: Laplace's approximation of the evidence.
 
@@ -106,7 +113,7 @@ def fitted_of(chosen: tuple, fit: Estimate, vehicle, frame: Frame, quadratic: Qu
                   + occam(block, quadratic.wide[places], quadratic.scatter, chosen, rules), sizes)
 
 
-def out_of_bounds(cause: Candidate, fit: Estimate, vehicle) -> bool:
+def out_of_bounds(cause: Candidate, fit: Estimate, vehicle: Vehicle) -> bool:
     """
     Return whether a further form of an effect has a parameter that wants to leave its bounds.
 

@@ -8,21 +8,25 @@ parameters is added to that of the flights (Fedorov, Theory of Optimal Experimen
 square of a distance in standard errors is the expected logarithm of the Bayes factor.
 """
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from quad_ident_ros.diagnose.evidence import occam
+from quad_ident_ros.diagnose.candidates import Candidate
+from quad_ident_ros.diagnose.evidence import occam, Quadratic
 from quad_ident_ros.diagnose.rules import RULES
+from quad_ident_ros.diagnose.select import Selection
 from quad_ident_ros.effects.registry import mapping
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.flight.fly import fly_closed_loop, FULL_VOLTAGE, RATES
 from quad_ident_ros.flight.trajectories import TRAJECTORIES
-from quad_ident_ros.greybox.flights import flight_of, RATE, track_of
+from quad_ident_ros.greybox.flights import Flight, flight_of, RATE, track_of
 from quad_ident_ros.greybox.linear import linearise
 from quad_ident_ros.greybox.normal import marginal, normal_of
 from quad_ident_ros.greybox.nuisances import Layout, NuisanceValues
 from quad_ident_ros.greybox.parameters import nominal, SPLIT
+from quad_ident_ros.model.vehicle import Vehicle
 
 DURATION = 20.0     # s of a manoeuvre
 SEED = 0            # of its trajectory
@@ -45,13 +49,14 @@ class Manoeuvre:
     height: tuple
     speed: float
 
-    def data(self):
+    def data(self) -> dict:
         """Return what is to be flown, as data."""
         return {'trajectory': self.trajectory, 'duration': DURATION, 'seed': SEED,
                 'span': list(self.span), 'height': list(self.height), 'speed': self.speed}
 
 
-def manoeuvres(selection, flights, vehicle, z):
+def manoeuvres(selection: Selection, flights: Sequence[Flight], vehicle: Vehicle, z: np.ndarray
+               ) -> list[Manoeuvre]:
     """
     Return the Manoeuvres that a vehicle with a parameter vector z (Z,) can fly.
 
@@ -85,7 +90,7 @@ def manoeuvres(selection, flights, vehicle, z):
     return found
 
 
-def separation(information, selection, sets):
+def separation(information: np.ndarray, selection: Selection, sets: dict) -> float:
     """
     Return how far apart the two closest of sets of causes are, standard errors.
 
@@ -103,7 +108,8 @@ def separation(information, selection, sets):
     return float(np.sqrt(max(least, 0.0)))
 
 
-def _with_another(information, selection, one, other):
+def _with_another(information: np.ndarray, selection: Selection, one: tuple, other: tuple
+                  ) -> list[tuple[float, tuple]]:
     """Return [(cost, causes)]: a set and with it each cause that neither it nor `one` has."""
     found, known = [(0.0, other)], _places(selection, other)
     effects = {cause.effect for cause in (*one, *other)}
@@ -116,20 +122,23 @@ def _with_another(information, selection, one, other):
     return found
 
 
-def _distance(information, selection, one, distances, other):
+def _distance(information: np.ndarray, selection: Selection, one: tuple, distances: np.ndarray,
+              other: tuple) -> float:
     """Return the square of the distance from a set as it was found to the nearest of another."""
     away = _places(selection, [cause for cause in one if cause not in other])
     block = _left(information, away, _places(selection, other), selection.quadratic)
     return distances[away] @ block @ distances[away]
 
 
-def visibility(information, selection, causes, present):
+def visibility(information: np.ndarray, selection: Selection, causes: Sequence[Candidate],
+               present: Sequence[Candidate]) -> dict[str, float]:
     """
     Return, per effect, how far from none it would be at its usual size, standard errors.
 
     Args: information (C, C); causes looked at; present: those that are known to be there.
     """
-    size, found = selection.quadratic.wide / RULES.prior_width, {}
+    size = selection.quadratic.wide / RULES.prior_width
+    found: dict[str, float] = {}
     for cause in causes:
         places = _places(selection, [cause])
         known = _places(selection, [one for one in present if one.effect != cause.effect])
@@ -141,13 +150,15 @@ def visibility(information, selection, causes, present):
     return found
 
 
-def hidden(selection, causes, present):
+def hidden(selection: Selection, causes: Sequence[Candidate], present: Sequence[Candidate]
+           ) -> list[str]:
     """Return the names of effects that the flights would not show at their usual size."""
     seen = visibility(_of_record(selection), selection, causes, present)
     return [name for name, away in seen.items() if away < RULES.hidden]
 
 
-def fly_next(selection, flights, vehicle, z, sure, doubts, unseen):
+def fly_next(selection: Selection, flights: Sequence[Flight], vehicle: Vehicle, z: np.ndarray,
+             sure: Sequence[Candidate], doubts: dict, unseen: Sequence[str]) -> list[dict]:
     """
     Return what to fly next, as data: [{purpose, effects, the manoeuvre, now, after, manoeuvres}].
 
@@ -162,7 +173,8 @@ def fly_next(selection, flights, vehicle, z, sure, doubts, unseen):
             + _to_show(selection, options, unseen, sure))
 
 
-def _to_separate(selection, options, vehicle, doubts):
+def _to_separate(selection: Selection, options: list[Manoeuvre], vehicle: Vehicle, doubts: dict
+                 ) -> list[dict]:
     """Return at most one proposal: the manoeuvre that separates doubtful causes best."""
     columns = _columns(selection)
     sets = {fit.causes: (fit.estimate.z - nominal(vehicle))[columns] for fit in doubts.values()}
@@ -175,9 +187,11 @@ def _to_separate(selection, options, vehicle, doubts):
                       separation(record, selection, sets), after)]
 
 
-def _to_show(selection, options, names, present):
+def _to_show(selection: Selection, options: list[Manoeuvre], names: Sequence[str],
+             present: Sequence[Candidate]) -> list[dict]:
     """Return the proposals of a few manoeuvres that together show effects by name."""
-    record, left, found = _of_record(selection), list(names), []
+    record, left = _of_record(selection), list(names)
+    found: list[dict] = []
     causes = [cause for cause in _causes(selection) if cause.effect in left]
     now = visibility(record, selection, causes, present)
     seen = {option.trajectory: visibility(record + option.information, selection, causes, present)
@@ -196,7 +210,8 @@ def _to_show(selection, options, names, present):
     return found
 
 
-def _proposal(purpose, effects, options, now, after):
+def _proposal(purpose: str, effects: Iterable[str], options: list[Manoeuvre], now: float,
+              after: dict[str, float]) -> dict:
     """Return the manoeuvre that reaches most, and what each would, as data."""
     ranked = sorted(after, key=lambda name: -after[name])
     best = next(option for option in options if option.trajectory == ranked[0])
@@ -204,28 +219,29 @@ def _proposal(purpose, effects, options, now, after):
             'after': after[ranked[0]], 'manoeuvres': {name: after[name] for name in ranked}}
 
 
-def _causes(selection):
+def _causes(selection: Selection) -> list[Candidate]:
     """Return the causes that are effects."""
     return [cause for cause in selection.rows if cause.nuisance is None]
 
 
-def _columns(selection):
+def _columns(selection: Selection) -> list[int]:
     """Return the places in z that flights share."""
     return sorted({column for cause in _causes(selection) for column in cause.columns})
 
 
-def _of_record(selection):
+def _of_record(selection: Selection) -> np.ndarray:
     """Return the information (C, C) of the flights, with their nuisances free."""
     nuisances = _places(selection, [cause for cause in selection.best.chosen if cause.nuisance])
     return _left(selection.quadratic.information / selection.quadratic.scatter,
                  np.arange(len(_columns(selection))), nuisances, selection.quadratic)
 
 
-def _places(selection, causes):
+def _places(selection: Selection, causes: Iterable[Candidate]) -> np.ndarray:
     return np.array([row for cause in causes for row in selection.rows[cause]], int)
 
 
-def _left(information, places, free, quadratic):
+def _left(information: np.ndarray, places: np.ndarray, free: np.ndarray, quadratic: Quadratic
+          ) -> np.ndarray:
     """Return the information (K, K) on places that is left where others are free."""
     block = information[np.ix_(places, places)]
     if not len(free):

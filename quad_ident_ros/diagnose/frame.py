@@ -20,6 +20,7 @@ from quad_ident_ros.greybox.linear import errors_along, linear_of, Slopes, slope
 from quad_ident_ros.greybox.normal import Normal
 from quad_ident_ros.greybox.nuisances import Layout
 from quad_ident_ros.greybox.parameters import SPLIT
+from quad_ident_ros.model.vehicle import Vehicle
 
 WRENCH = tuple(range(SPLIT + SLICES[RESIDUAL_WRENCH.name].start,
                      SPLIT + SLICES[RESIDUAL_WRENCH.name].stop))
@@ -53,7 +54,7 @@ class Frame:
         return whole - (basis @ (basis.transpose(0, 2, 1) @ whole[..., None]))[..., 0]
 
 
-def frame_at(flights: list, vehicle, fit: Estimate, wanted: list, rules: Rules) -> Frame:
+def frame_at(flights: list, vehicle: Vehicle, fit: Estimate, wanted: list, rules: Rules) -> Frame:
     """Return the Frame of flights around an Estimate in some places of z and the wrench's."""
     wanted = sorted({*wanted, *WRENCH})
     raws = [errors_along(flight, vehicle, z, start)
@@ -97,7 +98,7 @@ def blocks_at(frame: Frame, fit: Estimate, distances: dict) -> Blocks:
 
 
 def normal_at(frame: Frame, flights: list, fit: Estimate, layout: Layout, distances: dict,
-              sizes: tuple, rules: Rules) -> Normal:
+              sizes: tuple[float, float], rules: Rules) -> Normal:
     """
     Return the Normal in a Layout's columns with the discrepancy marginalised out.
 

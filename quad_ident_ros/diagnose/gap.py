@@ -7,15 +7,17 @@ Open-loop predictions from recorded states, started every 0.1 s, held against th
 end of a horizon; root mean square per group of outputs (greybox.errors.GROUPS).
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from quad_ident_ros.greybox.errors import difference, ERRORS, GROUPS, moved
-from quad_ident_ros.greybox.flights import flight_of
+from quad_ident_ros.greybox.flights import flight_of, Track
 from quad_ident_ros.greybox.linear import STATE_STEP
 from quad_ident_ros.greybox.parameters import constants_of, SPLIT
 from quad_ident_ros.model.dynamics import predict
+from quad_ident_ros.model.vehicle import Vehicle
 
 HORIZONS = (0.1, 0.5, 1.0)      # s
 HEADLINE = 0.5                  # s
@@ -50,7 +52,7 @@ class Ends:
     t: np.ndarray
 
 
-def ends(track, vehicle, z, horizon):
+def ends(track: Track, vehicle: Vehicle, z: np.ndarray, horizon: float) -> Ends:
     """
     Return the Ends of predictions along a Track with a parameter vector z (Z,).
 
@@ -65,21 +67,22 @@ def ends(track, vehicle, z, horizon):
                 flight.course.t[first])
 
 
-def gap(all_ends):
+def gap(all_ends: Sequence[Ends]) -> dict[str, float]:
     """Return {group: root mean square error} of the Ends of flights."""
     errors = np.concatenate([one.errors for one in all_ends])
     return {name: float(np.sqrt(np.mean(np.sum(errors[:, part] ** 2, axis=1))))
             for name, part in GROUPS.items()}
 
 
-def usual_gap(all_ends):
+def usual_gap(all_ends: Sequence[Ends]) -> dict[str, float]:
     """Return {group: gap} that a few outliers do not change: by the median, for normal errors."""
     errors = np.concatenate([one.errors for one in all_ends])
     return {name: float(np.sqrt(np.median(np.sum(errors[:, part] ** 2, axis=1)) * 3.0 / MEDIAN))
             for name, part in GROUPS.items()}
 
 
-def noise_gap(track, vehicle, z, noise, horizon):
+def noise_gap(track: Track, vehicle: Vehicle, z: np.ndarray, noise: Noise, horizon: float
+              ) -> dict[str, float]:
     """
     Return {group: what a Noise alone would give}.
 
@@ -104,7 +107,7 @@ def noise_gap(track, vehicle, z, noise, horizon):
     return {name: float(np.sqrt(value)) for name, value in found.items()}
 
 
-def interval(all_ends, seed=0):
+def interval(all_ends: Sequence[Ends], seed: int = 0) -> dict[str, tuple[float, ...]]:
     """Return {group: (low, high)}, the 95 % interval of the gap: bootstrap of blocks of time."""
     blocks = []
     for one in all_ends:
@@ -121,7 +124,7 @@ def interval(all_ends, seed=0):
     return found
 
 
-def closed(before, after, noise):
+def closed(before: float, after: float, noise: float) -> float:
     """
     Return the share of the gap above the noise that is closed, -1 to 1; 0 where there is none.
 

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Flight records on their way into a diagnosis: commands, checks, clocks, one split, once."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from quad_ident_ros.data.clocks import clocks_of, on_one_clock
@@ -46,7 +47,7 @@ class Intake:
                        flights=rollouts(tracks, self.vehicle))
 
 
-def take_in(records: list, vehicle: Vehicle, hold_out: FlightRecord | None,
+def take_in(records: Sequence[FlightRecord], vehicle: Vehicle, hold_out: FlightRecord | None,
             rules: Rules) -> Intake:
     """
     Return the Intake of flight records.
@@ -73,12 +74,12 @@ def take_in(records: list, vehicle: Vehicle, hold_out: FlightRecord | None,
                   findings)
 
 
-def rollouts(tracks: tuple, vehicle: Vehicle) -> list[Flight]:
+def rollouts(tracks: Sequence[Track], vehicle: Vehicle) -> list[Flight]:
     """Return the Flights of Tracks, cut so that the nominal vehicle stays near the record."""
     return near_flights(tracks, vehicle, nominal(vehicle))
 
 
-def split(records: list, hold_out: FlightRecord | None) -> tuple:
+def split(records: Sequence[FlightRecord], hold_out: FlightRecord | None) -> tuple:
     """Return the records to learn from and the one held out; InputError without a record."""
     if not records:
         raise InputError('no flight to learn from: name at least one flight record beside the one '

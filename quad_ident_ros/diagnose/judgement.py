@@ -8,6 +8,7 @@ from itertools import combinations
 import numpy as np
 
 from quad_ident_ros.diagnose import gap as gaps
+from quad_ident_ros.diagnose.candidates import Candidate
 from quad_ident_ros.diagnose.fitted import effects_in, refitted, within_bounds
 from quad_ident_ros.diagnose.gap import Noise
 from quad_ident_ros.diagnose.nuisances import nuisances_of
@@ -18,6 +19,7 @@ from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.greybox.errors import ERRORS, GROUPS
 from quad_ident_ros.greybox.estimate import Estimate
 from quad_ident_ros.greybox.parameters import nominal
+from quad_ident_ros.model.vehicle import Vehicle
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,7 +64,7 @@ class Bench:
 
     flights: list
     tracks: tuple
-    vehicle: object
+    vehicle: Vehicle
     selection: Selection
     noise: Noise
     rules: Rules
@@ -195,7 +197,7 @@ def judge(bench: Bench) -> Judgement:
 def _weight(model: Model, without: Model, before: dict, noise: dict, rules: Rules) -> Weight:
     """Return the Weight of what a Model has more than another."""
     shares = lost_shares(model.gap, without.gap, before, noise, rules)
-    name = max(shares, key=shares.get)
+    name = max(shares, key=lambda group: shares[group])
     there = beyond(without.gap[name], noise[name])
     remains = beyond(model.gap[name], noise[name])
     return Weight(float(shares[name]), stability(model.ends, without.ends, noise),
@@ -218,12 +220,12 @@ def stability(with_it: tuple, without: tuple, noise: dict) -> float:
     scale = np.empty(ERRORS)
     for name, gap in gaps.gap(with_it).items():
         scale[GROUPS[name]] = max(gap, noise[name])
-    saved = []
+    blocks = []
     for one, other in zip(with_it, without, strict=True):
         change = np.sum((other.errors ** 2 - one.errors ** 2) / scale ** 2, axis=1)
         block = np.unique((one.t // gaps.BLOCK).astype(int), return_inverse=True)[1]
-        saved.append(np.bincount(block, change))
-    saved = np.concatenate(saved)
+        blocks.append(np.bincount(block, change))
+    saved = np.concatenate(blocks)
     error = np.std(saved) * np.sqrt(len(saved))
     return float(np.sum(saved) / max(error, 1e-300))
 
@@ -290,7 +292,7 @@ def _subsets(model: Model, rules: Rules) -> list:
     return [*((cause,) for cause in effects), *groups, *pairs]
 
 
-def _tie(fit: Estimate, one, other) -> float:
+def _tie(fit: Estimate, one: Candidate, other: Candidate) -> float:
     """Return the largest correlation between the parameters of two effects."""
     errors = np.sqrt(np.maximum(np.diag(fit.covariance), 1e-300))
     table = np.abs(fit.covariance / np.outer(errors, errors))

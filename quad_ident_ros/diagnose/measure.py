@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """How far the gap shrinks on the flight held out, and where it lies."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -18,7 +19,9 @@ from quad_ident_ros.diagnose.result import (
     Unexplained,
 )
 from quad_ident_ros.greybox.errors import UNITS
+from quad_ident_ros.greybox.flights import Track
 from quad_ident_ros.greybox.parameters import nominal
+from quad_ident_ros.model.vehicle import Vehicle
 
 TRANSLATION = ('position', 'velocity')
 
@@ -46,7 +49,7 @@ def gap_given_attitude(bench: Bench, judged: Judgement) -> GapGivenAttitude:
         *(parts[stage]['velocity'] for stage in ('before_own', 'after', 'noise'))))
 
 
-def _gap(track, bench: Bench, judged: Judgement, horizon: float) -> dict:
+def _gap(track: Track, bench: Bench, judged: Judgement, horizon: float) -> dict:
     """Return {stage: {group: gap}} of a Track of the flight held out, with intervals."""
     z0 = nominal(bench.vehicle)
     after_z = judged.model.vectors[-1]
@@ -58,13 +61,14 @@ def _gap(track, bench: Bench, judged: Judgement, horizon: float) -> dict:
             'before_interval': gaps.interval([before]), 'after_interval': gaps.interval([after])}
 
 
-def residual_wrenches(bench: Bench, vectors: tuple, noise: np.ndarray) -> tuple:
+def residual_wrenches(bench: Bench, vectors: Sequence[np.ndarray], noise: np.ndarray
+                      ) -> tuple[ResidualWrench, ...]:
     """Return the ResidualWrench of each flight learnt from with its vector (Z,)."""
     return tuple(wrenches.residual_wrench(track, bench.vehicle, z, noise)
                  for track, z in zip(bench.tracks[:-1], vectors, strict=False))
 
 
-def channels(found: tuple[ResidualWrench, ...], vehicle) -> tuple[Channel, ...]:
+def channels(found: tuple[ResidualWrench, ...], vehicle: Vehicle) -> tuple[Channel, ...]:
     """Return the Channels of residual wrenches, the one with the largest share first."""
     rows = []
     for channel, share in wrenches.shares(found, vehicle).items():
@@ -98,4 +102,4 @@ def pictures(bench: Bench, judged: Judgement, before: tuple, after: tuple) -> Pi
             for z in (z0, judged.model.vectors[-1])]
     t = ends[0].t + gaps.HEADLINE
     states = np.stack([np.interp(t, track.course.t, column) for column in track.states.T], axis=1)
-    return Pictures(t, states, *ends, before, after)
+    return Pictures(t, states, ends[0], ends[1], before, after)

@@ -2,20 +2,33 @@
 # SPDX-License-Identifier: Apache-2.0
 """The nuisances of each flight, told: clocks, trims and biases, which are no effects."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from quad_ident_ros.data.clocks import controllers_own
+from quad_ident_ros.data.clocks import Clock, controllers_own
+from quad_ident_ros.diagnose.select import Selection
 from quad_ident_ros.greybox.estimate import estimate
-from quad_ident_ros.greybox.flights import flight_of
-from quad_ident_ros.greybox.nuisances import APART, CLOCK, CLOCK_TITLE, NuisanceValues, put_right
+from quad_ident_ros.greybox.flights import Flight, flight_of, Track
+from quad_ident_ros.greybox.nuisances import (
+    APART,
+    CLOCK,
+    CLOCK_TITLE,
+    Nuisance,
+    NuisanceValues,
+    put_right,
+)
+from quad_ident_ros.model.vehicle import Vehicle
 
 WIDE = 1.64     # standard errors below which 95 % lie
 DELAY = 'actuation_delay'
 
 
-def nuisances_of(track, vehicle, z, kinds, noise, segment, fixed=None):
+def nuisances_of(track: Track, vehicle: Vehicle, z: np.ndarray, kinds: Sequence[Nuisance],
+                 noise: np.ndarray, segment: float, fixed: np.ndarray | None = None
+                 ) -> np.ndarray:
     """
     Return the nuisances (Z,) of a Track that was not learnt from, beside a vector z.
 
@@ -29,7 +42,7 @@ def nuisances_of(track, vehicle, z, kinds, noise, segment, fixed=None):
     return found.vectors[0] - z
 
 
-def late_controller(selection, flights):
+def late_controller(selection: Selection, flights: Sequence[Flight]) -> float:
     """
     Return the delay (s) that a Selection found where it may be the controller's own lag, or 0.
 
@@ -43,11 +56,12 @@ def late_controller(selection, flights):
     [column] = columns
     error = selection.errors[best.estimate.columns.index(column)]
     delay = best.estimate.z[column]
-    period = max(flight.clock.period for flight in flights)
+    period = max(flight.clock.period for flight in flights if flight.clock is not None)
     return float(delay) if controllers_own(delay, error, period) else 0.0
 
 
-def as_data(kinds, flights, late, clocks, prompt):
+def as_data(kinds: Sequence[Nuisance], flights: Sequence[np.ndarray], late: Sequence[dict],
+            clocks: Sequence[Clock | None], prompt: float) -> dict | None:
     """
     Return as data, by Nuisance, what the nuisances (Z,) of flights are, the held-out one last.
 
@@ -77,7 +91,7 @@ def as_data(kinds, flights, late, clocks, prompt):
     return found or None
 
 
-def _each(what, unit, values):
+def _each(what: str, unit: str, values: ArrayLike) -> dict:
     """Return as data what each flight has, (k,), the held-out one last."""
     *values, held_out = np.array(values, float).tolist()
     return {'what': what, 'unit': unit, 'values': values, 'held_out': held_out}

@@ -2,16 +2,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """Where the gap lies: the force and moment that the model does not explain."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from quad_ident_ros.effects.registry import RESIDUAL_WRENCH, SLICES
 from quad_ident_ros.greybox.estimate import settled, weights_of
-from quad_ident_ros.greybox.flights import flight_of
+from quad_ident_ros.greybox.flights import Flight, flight_of, Track
 from quad_ident_ros.greybox.linear import errors_along, linearise
 from quad_ident_ros.greybox.parameters import SPLIT
 from quad_ident_ros.model.attitude import rotation_matrix
+from quad_ident_ros.model.vehicle import Vehicle
 
 CHANNELS = ('Fx', 'Fy', 'Fz', 'Mx', 'My', 'Mz')
 WINDOW = 0.2        # s over which force and moment are taken as constant,
@@ -40,7 +42,8 @@ class ResidualWrench:
     stretch: np.ndarray
 
 
-def residual_wrench(track, vehicle, z, noise):
+def residual_wrench(track: Track, vehicle: Vehicle, z: np.ndarray, noise: np.ndarray
+                    ) -> ResidualWrench:
     """Return the ResidualWrench of a Track with a parameter vector z (Z,) and noise (12,)."""
     flight = flight_of(track, WINDOW, EVERY)
     first, stretch = _stretches(flight)
@@ -56,7 +59,7 @@ def residual_wrench(track, vehicle, z, noise):
                           _features(flight, middle, vehicle, z), stretch)
 
 
-def _stretches(flight):
+def _stretches(flight: Flight) -> tuple[np.ndarray, np.ndarray]:
     """Return the starts of windows, at most STRETCHES times STRETCH s, and their stretches."""
     first, t = flight.first, flight.course.t
     if t[first[-1]] - t[first[0]] > STRETCHES * STRETCH:
@@ -67,7 +70,7 @@ def _stretches(flight):
     return first, np.append(0, np.cumsum(breaks))
 
 
-def shares(flights, vehicle):
+def shares(flights: Sequence[ResidualWrench], vehicle: Vehicle) -> dict[str, float]:
     """
     Return {channel: share of the gap}, of the ResidualWrench of flights, noise taken off.
 
@@ -80,14 +83,14 @@ def shares(flights, vehicle):
     return dict(zip(CHANNELS, energy / total if total > 0 else energy, strict=True))
 
 
-def weights(vehicle):
+def weights(vehicle: Vehicle) -> np.ndarray:
     """Return what a unit of each channel makes of velocity in half a second, (6,)."""
     force = 0.5 / vehicle.mass
     moment = vehicle.gravity * 0.5 ** 3 / 6.0 / np.array(vehicle.inertia)
     return np.array([force, force, force, *moment])
 
 
-def regime(flights, channel):
+def regime(flights: Sequence[ResidualWrench], channel: str) -> tuple[str, float]:
     """
     Return (text, share): the half-space of the regime in which most of a channel lies.
 
@@ -113,7 +116,7 @@ def regime(flights, channel):
     return best[:2]
 
 
-def band(flights, channel):
+def band(flights: Sequence[ResidualWrench], channel: str) -> tuple[float, float]:
     """
     Return the frequencies (low, high) Hz between which half of a channel's energy lies.
 
@@ -138,10 +141,10 @@ def band(flights, channel):
         return 0.0, 0.0
     share = np.cumsum(spectrum) / np.sum(spectrum)
     return (float(frequency[np.searchsorted(share, 0.25)]),
-            float(frequency[min(np.searchsorted(share, 0.75), len(frequency) - 1)]))
+            float(frequency[min(int(np.searchsorted(share, 0.75)), len(frequency) - 1)]))
 
 
-def _features(flight, middle, vehicle, z):
+def _features(flight: Flight, middle: np.ndarray, vehicle: Vehicle, z: np.ndarray) -> dict:
     states = flight.states[middle]
     rotation = rotation_matrix(states[:, 6:10])
     wind = z[SPLIT + SLICES['wind'].start:SPLIT + SLICES['wind'].stop]

@@ -2,11 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Which effects explain flights: sets of candidates compared jointly, each refitted."""
 
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from quad_ident_ros.diagnose.candidates import nuisance_candidates
+from quad_ident_ros.diagnose.candidates import Candidate, nuisance_candidates
 from quad_ident_ros.diagnose.evidence import beam, key_of, Quadratic
 from quad_ident_ros.diagnose.fitted import (
     distances_of,
@@ -18,13 +19,16 @@ from quad_ident_ros.diagnose.fitted import (
     within_bounds,
 )
 from quad_ident_ros.diagnose.frame import Frame, frame_at, normal_at
+from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.effects.registry import EFFECTS
-from quad_ident_ros.greybox.estimate import estimate
-from quad_ident_ros.greybox.linear import errors_along
+from quad_ident_ros.greybox.estimate import Estimate, estimate
+from quad_ident_ros.greybox.flights import Flight
+from quad_ident_ros.greybox.linear import errors_along, Slopes
 from quad_ident_ros.greybox.noise import quick_noise, whole_noise
 from quad_ident_ros.greybox.normal import scatter_of
 from quad_ident_ros.greybox.nuisances import Layout, NuisanceValues
 from quad_ident_ros.greybox.parameters import limits, nominal, prior_sizes
+from quad_ident_ros.model.vehicle import Vehicle
 
 ROUNDS = 6
 REFITS = 3          # sets that are refitted in a round
@@ -71,7 +75,8 @@ class Selection:
         return np.sqrt(np.average(squares, axis=0, weights=shares))
 
 
-def select(flights, vehicle, causes, rules, on_progress=lambda share: None) -> Selection:
+def select(flights: list[Flight], vehicle: Vehicle, causes: tuple[Candidate, ...],
+           rules: Rules, on_progress: Callable[[float], None] = lambda share: None) -> Selection:
     """
     Return the Selection among candidate effects for flights of a vehicle.
 
@@ -81,13 +86,18 @@ def select(flights, vehicle, causes, rules, on_progress=lambda share: None) -> S
     search = _Search(flights, vehicle, causes, rules)
     search.run(lambda share: on_progress(0.5 * share))
     for again in range(1, 1 + PASSES):
+        assert search.best is not None
         whole = [whole_noise(raw, 1.0 - 1.0 / raw.shape[1])
                  for raw in search.best.estimate.residuals]
         ratio = np.median(np.array(whole) / search.noise, axis=0)
         if max(np.max(ratio), np.max(1.0 / ratio)) <= COLOURED:
             break
         search.weigh(whole)
-        search.run(lambda share, rest=0.5 ** again: on_progress(1.0 - rest + 0.5 * rest * share))
+
+        def later(share: float, rest: float = 0.5 ** again) -> None:
+            on_progress(1.0 - rest + 0.5 * rest * share)
+
+        search.run(later)
     search.settle()
     on_progress(1.0)
     return search.selection()
@@ -96,7 +106,15 @@ def select(flights, vehicle, causes, rules, on_progress=lambda share: None) -> S
 class _Search:
     """Sets of candidates that were fitted, and the best of them."""
 
-    def __init__(self, flights, vehicle, causes, rules):
+    tried: dict[tuple, Estimate]
+    best: Fitted | None
+    judged: dict[tuple, Fitted]
+    ranked: list
+    frame: Frame
+    quadratic: Quadratic
+
+    def __init__(self, flights: list[Flight], vehicle: Vehicle, causes: tuple[Candidate, ...],
+                 rules: Rules) -> None:
         self.flights, self.vehicle, self.rules = flights, vehicle, rules
         self.all_causes, self.nuisances = causes, nuisance_candidates(vehicle, flights)
         starts = [flight.states[flight.first] for flight in flights]
@@ -105,9 +123,8 @@ class _Search:
         self.tried = {(): estimate(flights, vehicle, nominal(vehicle), [], noise=self.noise,
                                    iterations=2)}
         self.best, self.judged, self.ranked = None, {}, []
-        self.frame = self.quadratic = None
 
-    def weigh(self, noise):
+    def weigh(self, noise: list[np.ndarray]) -> None:
         """Weigh the residuals by another noise; the best sets so far are where to go on from."""
         known = self.order()[:REFITS]
         self.noise, self.judged = noise, {}
@@ -115,14 +132,15 @@ class _Search:
         self.tried = {key: refitted(self.flights, self.vehicle, fit.z, key, noise, fit.nuisances,
                                     fit.starts) for key, fit in self.tried.items()}
 
-    def run(self, on_progress):
+    def run(self, on_progress: Callable[[float], None]) -> None:
         """Look for the best set among the usual forms, then among all forms, around that."""
         if self.best is None:
             usual = tuple(cause for cause in self.all_causes if cause.usual)
             self.look_among(usual, lambda share: on_progress(0.6 * share))
         self.look_among(self.all_causes, lambda share: on_progress(0.6 + 0.4 * share))
 
-    def look_among(self, causes, on_progress):
+    def look_among(self, causes: tuple[Candidate, ...], on_progress: Callable[[float], None]
+                   ) -> None:
         """Look for better sets of some candidates around the best one until there is none."""
         self.causes = causes
         self.columns = sorted({column for cause in (*causes, *self.all_causes)
@@ -142,11 +160,11 @@ class _Search:
                 break
             best = self.best.chosen
 
-    def stand_at(self, chosen):
+    def stand_at(self, chosen: tuple) -> None:
         """Linearise around a fitted set; those judged before are judged anew, the best of them."""
         fit = self.tried[chosen]
-        everyone = NuisanceValues.of([one.nuisance for one in self.nuisances], len(self.flights),
-                                     fit.nuisances)
+        everyone = NuisanceValues.of([one.nuisance for one in self.nuisances if one.nuisance],
+                                     len(self.flights), fit.nuisances)
         layout = Layout(self.columns, everyone.columns, len(self.flights))
         self.frame = frame_at(self.flights, self.vehicle, fit, layout.wanted, self.rules)
         grids = size_grids(self.vehicle, self.noise, self.rules)
@@ -162,7 +180,8 @@ class _Search:
         for key in before:
             self.judge(key)
 
-    def quadratic_of(self, fit, chosen, layout, everyone, grids, sizes):
+    def quadratic_of(self, fit: Estimate, chosen: tuple, layout: Layout, everyone: NuisanceValues,
+                     grids: tuple, sizes: tuple) -> Quadratic:
         """Return the Quadratic around an Estimate, all candidates free."""
         normal = normal_at(self.frame, self.flights, fit, layout,
                            distances_of(chosen, fit, self.vehicle),
@@ -180,7 +199,7 @@ class _Search:
                          np.append(lower[self.columns] - null, -beyond),
                          np.append(upper[self.columns] - null, beyond), scatter)
 
-    def judge(self, chosen):
+    def judge(self, chosen: tuple) -> Fitted:
         """Find the log evidence of a set that was fitted."""
         if chosen not in self.judged:
             start = self.best.sizes if self.best else (0, 0)
@@ -189,11 +208,11 @@ class _Search:
                                             start)
         return self.judged[chosen]
 
-    def order(self):
+    def order(self) -> list[Fitted]:
         """Return the Fitted sets, the one with the most evidence first."""
         return sorted(self.judged.values(), key=lambda one: -one.evidence)
 
-    def try_promising(self):
+    def try_promising(self) -> None:
         """Fit the sets that the linear model finds promising, and judge them."""
         around, slopes = self.frame.slopes, self.frame.slopes
         for chosen, distances in _promising(self.ranked, self.tried):
@@ -201,7 +220,7 @@ class _Search:
             lower, upper, _ = limits(self.vehicle)
             start[self.columns] += distances[:len(self.columns)]
             start = np.clip(start, lower, upper)
-            everyone = NuisanceValues.of([one.nuisance for one in self.nuisances],
+            everyone = NuisanceValues.of([one.nuisance for one in self.nuisances if one.nuisance],
                                          len(self.flights))
             everyone.values.flat[:] = distances[len(self.columns):]
             self.fit(chosen, start, everyone, around.starts, slopes)
@@ -211,11 +230,12 @@ class _Search:
                 fit = self.tried[self.best_key()]
                 self.fit(chosen, start, fit.nuisances, fit.starts, None)
 
-    def best_key(self):
+    def best_key(self) -> tuple:
         """Return the set around which the flights are linearised."""
         return self.order()[0].chosen
 
-    def fit(self, chosen, z, nuisances, starts, slopes):
+    def fit(self, chosen: tuple, z: np.ndarray, nuisances: NuisanceValues,
+            starts: list[np.ndarray], slopes: Slopes | None) -> None:
         """Fit a set from a vector, and once more from its best subset where it gets lost."""
         scatter = self.quadratic.scatter
         fit = refitted(self.flights, self.vehicle, z, chosen, self.noise, nuisances, starts,
@@ -229,30 +249,32 @@ class _Search:
         self.tried[chosen] = fit
         self.judge(chosen)
 
-    def settle(self):
+    def settle(self) -> None:
         """
         Take the simplest of the sets that are about as good, and forms within their bounds.
 
         Of a form that wants to leave its bounds the usual one takes the place.
         """
-        self.best = min((one for one in self.order()
-                         if one.evidence > self.best.evidence - self.rules.alike),
-                        key=lambda one: (len(one.chosen), -one.evidence))
+        sets = self.order()
+        best = min((one for one in sets if one.evidence > sets[0].evidence - self.rules.alike),
+                   key=lambda one: (len(one.chosen), -one.evidence))
         usual = {cause.effect: cause for cause in self.all_causes if cause.usual}
-        chosen, fit = within_bounds(self.best.chosen, self.best.estimate, usual, self.flights,
+        chosen, fit = within_bounds(best.chosen, best.estimate, usual, self.flights,
                                     self.vehicle, self.noise, self.quadratic.scatter)
         self.tried[chosen] = fit
         self.best = self.judge(chosen)
 
-    def selection(self):
+    def selection(self) -> Selection:
         """Return the Selection."""
+        assert self.best is not None
         fitted = (self.best, *(one for one in self.order() if one is not self.best))
         return Selection(fitted[0], fitted,
                          probabilities(fitted, self.ranked, self.all_causes, set(self.tried)),
                          self.quadratic, self.rows, self.noise, self.frame)
 
 
-def probabilities(fitted, ranked, causes, tried) -> dict:
+def probabilities(fitted: Sequence[Fitted], ranked: list, causes: Sequence[Candidate],
+                  tried: Collection[tuple]) -> dict:
     """
     Return {effect candidate: probability of being present}: the evidence of sets that have it.
 
@@ -272,7 +294,7 @@ def probabilities(fitted, ranked, causes, tried) -> dict:
                              if cause in chosen)) for cause in causes}
 
 
-def _promising(ranked, tried):
+def _promising(ranked: list, tried: Collection[tuple]) -> list[tuple[tuple, np.ndarray]]:
     """
     Return [(set, distances)] of the untried sets that are worth refitting.
 
@@ -288,7 +310,8 @@ def _promising(ranked, tried):
     return [*fresh[:REFITS], *rivals[:REFITS]]
 
 
-def _other_actuator(best, causes, z, vehicle):
+def _other_actuator(best: tuple, causes: Sequence[Candidate], z: np.ndarray, vehicle: Vehicle
+                    ) -> list[tuple[tuple, np.ndarray]]:
     """
     Return [(set, vector)] with a delay for a lag of a set and the reverse, at its usual size.
 
@@ -306,13 +329,14 @@ def _other_actuator(best, causes, z, vehicle):
     return found
 
 
-def _swapped(chosen, top):
+def _swapped(chosen: tuple, top: tuple) -> bool:
     """Return whether sets differ by one effect, in whose place there is another candidate."""
     apart = set(chosen) ^ set(top)
     return len(apart) == 2 and bool(effects_in(tuple(apart)))
 
 
-def _rows(causes, nuisances, columns, count):
+def _rows(causes: Sequence[Candidate], nuisances: Sequence[Candidate], columns: list[int],
+          count: int) -> dict[Candidate, list[int]]:
     """Return {candidate: its rows of the quadratic}, in each flight of a nuisance."""
     rows = {cause: [columns.index(column) for column in cause.columns] for cause in causes
             if set(cause.columns) <= set(columns)}

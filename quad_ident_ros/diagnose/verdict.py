@@ -99,5 +99,5 @@ def _ranking(bench: Bench, judged: Judgement, causes: tuple, total: dict) -> tup
             weight and weight.gap)
     named = {cause.effect for cause in judged.material}
     return tuple(sorted(rows.values(), key=lambda row: (
-        row.effect not in named, -row.contribution if row.effect in named
+        row.effect not in named, -(row.contribution or 0.0) if row.effect in named
         else -row.probability)))
