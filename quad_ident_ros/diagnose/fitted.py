@@ -125,8 +125,9 @@ def out_of_bounds(cause: Candidate, fit: Estimate, vehicle: Vehicle) -> bool:
     return not cause.usual and bool((room < CLOSE * size[columns]).any())
 
 
-def within_bounds(chosen: tuple, fit: Estimate, usual: dict, flights, vehicle, noise,
-                  scatter: float = 1.0, fixed=None) -> tuple:
+def within_bounds(chosen: tuple, fit: Estimate, usual: dict, flights: Sequence[Flight],
+                  vehicle: Vehicle, noise: list, scatter: float = 1.0,
+                  fixed: np.ndarray | None = None) -> tuple[tuple, Estimate]:
     """
     Return a set and its Estimate with the usual form for each that wants to leave its bounds.
 

@@ -23,7 +23,7 @@ FORM = Form(
     name='exponent', title='another power of the speed',
     parameters=(Parameter('hover_factor', '1', 0.2, 3.0, 0.1,
                           'on the thrust at hover speed', null=1.0),
-                Parameter('exponent', '1', 1.5, 2.5, 0.1, 'of the speed', null=2.0)),
+                Parameter('exponent', '1', 1.0, 3.0, 0.1, 'of the speed', null=2.0)),
     source='thrust = hover_factor thrust_coefficient hover^2 (speed / hover)^exponent: blades '
            'that bend, low Reynolds numbers; Deters, Ananda, Selig, AIAA 2014-2151',
     thrust=thrust)

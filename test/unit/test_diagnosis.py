@@ -68,7 +68,8 @@ def check(data, truth):
     assert set(data['verdict']) <= set(truth) <= set(data['verdict']) | minor
     rows = {row['effect']: row for row in data['ranking']}
     for effect, parameters in truth.items():
-        assert rows[effect]['probability'] > 0.9
+        # A frequency over realities of any form: docs/method.md.
+        assert rows[effect]['probability'] > 0.6
         for name, value in parameters.items():
             found = rows[effect]['parameters'][name]
             assert abs(found['value'] - value) < 4.5 * found['std'], (effect, name)
@@ -165,11 +166,11 @@ def test_what_is_learnt_does_not_depend_on_the_held_out_flight():
     fuller = replace(test, columns={**test.columns, 'vbat': test.columns['vbat'] + 0.3})
     one, other = (diagnose([*training, held], VEHICLE).as_data() for held in (test, fuller))
     assert one['verdict'] == ['battery_sag']
-    # Its voltage says nothing of its thrust, and that is not explained.
-    assert other['verdict'] == ['battery_sag', 'unknown']
-    assert [row['parameters'] for row in one['ranking']] == [row['parameters']
-                                                             for row in other['ranking']]
-    assert one['where'] == other['where']
+    # Its voltage says nothing of its thrust: the flight vetoes, and takes no part in the fit.
+    assert 'unknown' in other['verdict']
+    fitted = [{row['effect']: row['parameters'] for row in data['ranking']}['battery_sag']
+              for data in (one, other)]
+    assert fitted[0] == fitted[1]
 
 
 def test_thrust_that_falls_by_the_second_is_told_beside_a_voltage():

@@ -43,6 +43,7 @@ OTHERS = {
     ('attitude_misalignment', 'gyro'): {'gyro_roll': 0.03, 'gyro_pitch': -0.02, 'gyro_yaw': 0.1},
     ('thrust_scale', 'offset'): {'at_hover': 1.02, 'offset': 0.2},
     ('thrust_scale', 'exponent'): {'hover_factor': 1.02, 'exponent': 1.7},
+    ('inertia_mismatch', 'moments'): {'arms_y': 1.1, 'arms_x': 0.9, 'torque': 1.2},
     ('blade_flapping', 'drag_centre'): {'arm': 0.05},
     ('inflow', 'momentum'): {'through': 0.5}}
 EACH = [pytest.param(name, form, id=f'{name} {form}') for name, form in OTHERS]
