@@ -183,13 +183,18 @@ def judge(bench: Bench) -> Judgement:
         first = max(idle, key=lambda removed: (len(removed), -lost_share(
             model.gap, smaller[removed].gap, before, noise, rules)))
         model = smaller[first]
+    # Where forms gave way to the usual ones, these stand for their effects.
+    there = {cause.effect: cause for cause in (*full.effects, *model.effects)}
+    weights = {cause: weight for cause, weight in weights.items()
+               if there.get(cause.effect) is cause}
     present = probabilities(bench.selection.probability, weights, rules)
-    absent = tuple(cause for cause in full.effects if present[cause.effect] < rules.present)
+    absent = tuple(cause for cause in there.values() if present[cause.effect] < rules.present)
     material = tuple(cause for cause in model.effects if cause not in absent)
-    if set(material) == set(full.effects) - set(absent) and not set(model.effects) & set(absent):
-        final = model
+    if set(model.effects) <= set(full.effects):
+        final = full if not absent else bench.without(full, absent)
     else:
-        final = bench.without(full, absent) if absent else full
+        improbable = tuple(cause for cause in model.effects if cause in absent)
+        final = bench.without(model, improbable) if improbable else model
     return Judgement(final, material, weights, present, without, ends, noises,
                      unexplained(final.gap, before, noise, bool(material), rules))
 

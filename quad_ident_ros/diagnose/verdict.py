@@ -73,7 +73,8 @@ def flight_checks(bench: Bench, judged: Judgement) -> tuple[FlightCheck, ...]:
 def _ranking(bench: Bench, judged: Judgement, causes: tuple, total: dict) -> tuple[Ranked, ...]:
     """Return every effect, the named ones by contribution, then the most probable first."""
     z0, model, best = nominal(bench.vehicle), judged.model, bench.selection.best
-    errors = dict(zip(best.estimate.columns, bench.selection.errors, strict=True))
+    errors = dict(zip(model.estimate.columns, model.estimate.errors, strict=True))
+    errors |= dict(zip(best.estimate.columns, bench.selection.errors, strict=True))
     track = bench.tracks[-1]
     nuisance = model.vectors[-1] - model.z
     before = gaps.gap([gaps.ends(track, bench.vehicle, z0 + nuisance, gaps.HEADLINE)])

@@ -126,7 +126,7 @@ def test_a_name_that_does_as_well_is_right_alone():
 
 
 def test_one_finding_is_named_by_each_of_its_members():
-    one = {'findings_as_one': [['thrust_scale', 'mass_offset']]}
+    one = {'one_finding': [{'effects': ['thrust_scale', 'mass_offset']}]}
     both = diagnosis('thrust_scale', 'mass_offset') | one
     assert scores.is_exact(label(['mass_offset']), both)
     assert scores.is_exact(label(['mass_offset']), diagnosis('thrust_scale') | one)
