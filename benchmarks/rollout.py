@@ -20,7 +20,7 @@ from quad_ident_ros.effects.registry import bounds, EFFECTS, NULL, PLACES, SLICE
 from quad_ident_ros.model.actuators import actuated
 from quad_ident_ros.model.dynamics import Course, predict, states_of
 from quad_ident_ros.model.rigid_body import INPUT, rotor_table, STATE, vehicle_vector
-from quad_ident_ros.model.rollout import roll_out, roll_out_one
+from quad_ident_ros.model.rollout import NO_GUIDE, roll_out, roll_out_one
 from quad_ident_ros.model.vehicle import load_vehicle
 
 SAMPLES, PERIOD, BATCH = 100, 0.01, 1024
@@ -56,7 +56,7 @@ class Problem:
         """Roll out by a compiled kernel into `out`."""
         kernel(vehicle_vector(self.vehicle)[None], rotor_table(self.vehicle), self.theta[None],
                np.zeros(len(self.x0), np.int64), self.x0, self.t, *self.acted, self.inputs,
-               self.first, self.samples, 1, self.out)
+               self.first, self.samples, 1, *NO_GUIDE, self.out)
         return self.out
 
     def in_numpy(self):

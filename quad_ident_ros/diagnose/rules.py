@@ -27,6 +27,8 @@ class Rules:
         no effect: wide enough for the largest that is flown.
       alike: log evidence within which sets are about as good, so that the smallest is taken: a
         Bayes factor under 20 is not strong (Kass and Raftery, JASA 90, 1995).
+      worth: share of the cost that further forms must save over the usual ones: a form that is
+        wrong by 10 % of what an effect does leaves that much of a gap ten times the noise.
     Discrepancy (see discrepancy.py):
       form_error: relative error of an effect's formula. Published laws of one effect differ from
         one another by 10 to 30 % over the range in which they are used.
@@ -66,6 +68,7 @@ class Rules:
     prior_odds: float = 0.02
     prior_width: float = 3.0
     alike: float = 3.0
+    worth: float = 0.01
     form_error: float = 0.2
     form_time: float = 1.0
     present: float = 0.5

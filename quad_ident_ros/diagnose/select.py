@@ -126,9 +126,9 @@ class _Search:
 
     def weigh(self, noise: list[np.ndarray]) -> None:
         """Weigh the residuals by another noise; the best sets so far are where to go on from."""
-        known = self.order()[:REFITS]
+        known = [*(one.chosen for one in self.order()[:REFITS]), self.plain, ()]
         self.noise, self.judged = noise, {}
-        self.tried = {(): self.tried[()]} | {one.chosen: one.estimate for one in known}
+        self.tried = {key: self.tried[key] for key in dict.fromkeys(known)}
         self.tried = {key: refitted(self.flights, self.vehicle, fit.z, key, noise, fit.nuisances,
                                     fit.starts) for key, fit in self.tried.items()}
 
@@ -137,6 +137,8 @@ class _Search:
         if self.best is None:
             usual = tuple(cause for cause in self.all_causes if cause.usual)
             self.look_among(usual, lambda share: on_progress(0.6 * share))
+            assert self.best is not None
+            self.plain = self.best.chosen
         self.look_among(self.all_causes, lambda share: on_progress(0.6 + 0.4 * share))
 
     def look_among(self, causes: tuple[Candidate, ...], on_progress: Callable[[float], None]
@@ -258,6 +260,15 @@ class _Search:
         sets = self.order()
         best = min((one for one in sets if one.evidence > sets[0].evidence - self.rules.alike),
                    key=lambda one: (len(one.chosen), -one.evidence))
+        # Further forms are for what the usual ones leave, not for a little of the noise.
+        plain = self.tried[self.plain]
+        if plain.cost < (1.0 + self.rules.worth) * best.estimate.cost:
+            for key in [key for key in self.tried if _plain(key)]:
+                self.judge(key)
+            self.judged = {key: one for key, one in self.judged.items() if _plain(key)}
+            self.ranked = [one for one in self.ranked if _plain(one[1])]
+            best = max((self.judged[key] for key in self.judged),
+                       key=lambda one: one.evidence)
         usual = {cause.effect: cause for cause in self.all_causes if cause.usual}
         chosen, fit = within_bounds(best.chosen, best.estimate, usual, self.flights,
                                     self.vehicle, self.noise, self.quadratic.scatter)
@@ -327,6 +338,11 @@ def _other_actuator(best: tuple, causes: Sequence[Candidate], z: np.ndarray, veh
             found.append((key_of((other, *(cause for cause in best if cause is not there))),
                           start))
     return found
+
+
+def _plain(chosen: tuple) -> bool:
+    """Return whether the effects of a set are all in their usual forms."""
+    return all(cause.usual for cause in effects_in(chosen))
 
 
 def _swapped(chosen: tuple, top: tuple) -> bool:
