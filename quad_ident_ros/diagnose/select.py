@@ -108,6 +108,7 @@ class _Search:
 
     tried: dict[tuple, Estimate]
     best: Fitted | None
+    plain: tuple
     judged: dict[tuple, Fitted]
     ranked: list
     frame: Frame
