@@ -43,9 +43,9 @@ def probabilities(found):
     return {row.effect: row.probability for row in found.ranking}
 
 
-TOO_SURE = pytest.mark.xfail(strict=False, reason='in hover the commands answer the noise, and the '
-                             'posterior is surer of mass or thrust than it should be: see '
-                             'docs/diagnosis.md, Limits')
+TOO_SURE = pytest.mark.xfail(
+    strict=False, reason='in hover the commands answer the noise, and the posterior is surer of '
+    'mass or thrust than it should be: see docs/diagnosis.md, Limits')
 
 
 @pytest.fixture(scope='module', params=['mass_offset', 'thrust_scale'])
