@@ -6,11 +6,12 @@ import json
 import subprocess
 import sys
 
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 import pytest
-import yaml
 
 from quad_ident_ros.data.replay import read_bag
 from quad_ident_ros.model.vehicle import load_vehicle
+from quad_ident_ros.nodes.demo import Watcher
 
 SEED = '4'      # a drag of the rotors
 
@@ -64,12 +65,13 @@ def test_what_cannot_be_is_refused_in_one_line(tmp_path, words, said):
     assert done.returncode == 2 and line.startswith('quad_ident demo: error: ') and said in line
 
 
-def test_what_the_diagnoser_refuses_ends_the_demo_in_one_line(tmp_path):
-    path = tmp_path / 'short.yaml'
-    path.write_text(yaml.safe_dump({
-        'name': 'short', 'model': 'closed_loop', 'vehicle': 'hummingbird', 'period': 0.01,
-        'runs': [{'name': 'only', 'duration': 3.0, 'trajectory': 'hover'}]}), encoding='utf-8')
-    done = run('--experiment', str(path), '--seed', SEED, '-o', str(tmp_path / 'out'))
-    assert done.returncode == 2
-    line = done.stderr.splitlines()[-1]     # after those that tell how far it is
-    assert line.startswith('quad_ident demo: error: short/only: 3.01 s are too short')
+def test_what_the_diagnoser_refuses_is_what_the_demo_ends_with():
+    """The flights of a demo are long enough: its watcher is told of a refusal."""
+    watcher = Watcher(1, 'diagnoser', 'diagnosis', lambda text, share: None)
+    for name, values in (('recorder', []), ('diagnoser', [KeyValue(key='closed', value='0')])):
+        watcher._on_status(DiagnosticArray(status=[DiagnosticStatus(
+            name=name, level=DiagnosticStatus.ERROR, message='unknown', values=values)]))
+        assert watcher.refusal is None
+    watcher._on_status(DiagnosticArray(status=[DiagnosticStatus(
+        name='diagnoser', level=DiagnosticStatus.ERROR, message='3 s are too short')]))
+    assert watcher.refusal == '3 s are too short' and not watcher.done
