@@ -255,11 +255,12 @@ def matters(after: dict, without: dict, before: dict, noise: dict, rules: Rules)
     """
     Return whether effects matter, by the gap with and without them.
 
-    In some group of outputs the share that is lost without them is material, and more than the
-    error of form of the other effects may be.
+    In some group of outputs the share that is lost without them is material, beside the tolerance
+    of the user, too, and more than the error of form of the other effects may be.
     """
     shares = lost_shares(after, without, before, noise, rules)
     return any(share >= rules.material
+               and without[name] - after[name] >= 0.5 * rules.material * rules.floors[name]
                and beyond(without[name], after[name])
                >= rules.form_error * beyond(before[name], without[name])
                for name, share in shares.items())

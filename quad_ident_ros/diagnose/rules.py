@@ -53,6 +53,8 @@ class Rules:
       noise_share: of the noise's gap: what remains below it is hard to see in a prediction, and
         the noise itself is known to some ten percent only where it has a memory.
       floors: m, m/s, rad, rad/s that no user of a simulation at 0.5 s minds.
+      smallest: half of the usual floors: of what can be closed below it, shares mean nothing,
+        whatever the tolerance of the user. Whether an effect is there is no matter of tolerance.
     Unknown:
       differs: times the gap that remains in the other flights from which on one flight differs.
       unexplained: share of the gap that the named effects close which may remain as error of
@@ -85,12 +87,14 @@ class Rules:
     noise_share: float = 0.75
     floors: dict = field(default_factory=lambda: {
         'position': 0.01, 'velocity': 0.02, 'attitude': 0.01, 'rate': 0.05})
+    smallest: dict[str, float] = field(default_factory=lambda: {
+        'position': 0.005, 'velocity': 0.01, 'attitude': 0.005, 'rate': 0.025})
     unexplained: float = 0.58
     differs: float = 2.0
 
     def least(self, group: str, noise: float) -> float:
-        """Return the gap of a group below which shares mean nothing: half of what matters."""
-        return max(self.visible * noise, 0.5 * self.floors[group])
+        """Return the gap of a group of outputs below which shares of it mean nothing."""
+        return max(self.visible * noise, self.smallest[group])
 
     def tolerance(self, group: str, noise: float) -> float:
         """Return the gap of a group of outputs that does not matter, beside its noise's gap."""

@@ -222,6 +222,7 @@ def test_a_gap_within_the_tolerance_of_the_user_does_not_matter(paths, tmp_path)
                  '--json', str(out)]) == 0
     data = json.loads(out.read_text())
     assert data['verdict'] == ['none'] and data['tolerance']['velocity'] == 50.0
+    assert [one['effect'] for one in data['minor']] == ['rotor_drag']
 
 
 @pytest.mark.parametrize('given, said', [
