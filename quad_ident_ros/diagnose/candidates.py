@@ -19,9 +19,9 @@ class Candidate:
     """
     An effect in one of its forms, or of one rotor, and its columns.
 
-    form: the name of the form; usual: whether it is the one that most know; share: its part of
-    the effect's prior probability; nuisance: the greybox.nuisances.Nuisance that it is instead of
-    an effect, or None.
+    form: the name of the form; usual: whether it is the one that most know; plain: whether it has
+    no more parameters than that; share: its part of the effect's prior probability; nuisance: the
+    greybox.nuisances.Nuisance that it is instead of an effect, or None.
     """
 
     effect: str
@@ -29,6 +29,7 @@ class Candidate:
     columns: tuple[int, ...]
     form: str = ''
     usual: bool = True
+    plain: bool = True
     share: float = 1.0
     nuisance: Nuisance | None = None
 
@@ -51,7 +52,9 @@ def candidates(flights: list, vehicle: Vehicle,
                           for j in range(len(vehicle.rotors))]
             else:
                 found.append(Candidate(name, f'{name} {form.name}', columns, form.name,
-                                       form is forms[0], 1.0 / len(forms)))
+                                       form is forms[0],
+                                       len(form.parameters) <= len(forms[0].parameters),
+                                       1.0 / len(forms)))
     return tuple(found)
 
 

@@ -261,15 +261,15 @@ class _Search:
         sets = self.order()
         best = min((one for one in sets if one.evidence > sets[0].evidence - self.rules.alike),
                    key=lambda one: (len(one.chosen), -one.evidence))
-        # Further forms are for what the usual ones leave, not for a little of the noise.
-        plain = self.tried[self.plain]
-        if plain.cost < (1.0 + self.rules.worth) * best.estimate.cost:
-            for key in [key for key in self.tried if _plain(key)]:
-                self.judge(key)
+        # More parameters are for what the fewer leave, not for a little of the noise.
+        for key in [key for key in self.tried if _plain(key)]:
+            self.judge(key)
+        plain = max((one for one in self.judged.values() if _plain(one.chosen)),
+                    key=lambda one: one.evidence)
+        if plain.estimate.cost < (1.0 + self.rules.worth) * best.estimate.cost:
             self.judged = {key: one for key, one in self.judged.items() if _plain(key)}
             self.ranked = [one for one in self.ranked if _plain(one[1])]
-            best = max((self.judged[key] for key in self.judged),
-                       key=lambda one: one.evidence)
+            best = plain
         usual = {cause.effect: cause for cause in self.all_causes if cause.usual}
         chosen, fit = within_bounds(best.chosen, best.estimate, usual, self.flights,
                                     self.vehicle, self.noise, self.quadratic.scatter)
@@ -342,8 +342,8 @@ def _other_actuator(best: tuple, causes: Sequence[Candidate], z: np.ndarray, veh
 
 
 def _plain(chosen: tuple) -> bool:
-    """Return whether the effects of a set are all in their usual forms."""
-    return all(cause.usual for cause in effects_in(chosen))
+    """Return whether no effect of a set is in a form with more parameters than usual."""
+    return all(cause.plain for cause in effects_in(chosen))
 
 
 def _swapped(chosen: tuple, top: tuple) -> bool:

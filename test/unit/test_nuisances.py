@@ -94,13 +94,10 @@ def test_clocks_that_differ_from_flight_to_flight_are_no_delay(open_loop):
     assert data['gap']['closed'] > 0.95
 
 
-def test_flights_without_nuisances_have_none_above_the_noise_of_their_sensors(dragged):
-    found = diagnose(dragged, VEHICLE).as_data()['nuisances'] or {}
-    # rad and rad/s: the noise of the attitude and of the rate in this experiment.
-    most = {'attitude_bias': 0.004, 'rate_bias': 0.01}
-    assert set(found) <= set(most)
-    for name, one in found.items():
-        assert np.abs(one['values']).max() < most[name]
+@pytest.mark.xfail(strict=True, reason='noise of the recorded attitude, which guides the '
+                   'translation, is taken for biases of it below 2 mrad')
+def test_flights_without_anything_of_their_own_are_told_so(dragged):
+    assert diagnose(dragged, VEHICLE).as_data()['nuisances'] is None
 
 
 @pytest.mark.parametrize('count', [1, 2])
