@@ -93,8 +93,8 @@ def test_each_effect_is_named_alone_with_its_parameters(effect):
     check(diagnose(flown(truth), VEHICLE).as_data(), truth)
 
 
-UNSTEADY = pytest.mark.xfail(strict=True, reason='over realities of any form, effects that help in '
-                             'few blocks of a flight are there in 84 to 86 of 100')
+UNSTEADY = pytest.mark.xfail(strict=True, reason='over realities of any form, effects that '
+                             'help in few blocks of a flight are there in 84 to 86 of 100')
 LESS_SURE = ('motor_lag', 'actuation_delay', 'ground_effect', 'inertia_mismatch', 'rotor_gyro')
 
 
