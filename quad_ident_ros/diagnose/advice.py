@@ -12,25 +12,6 @@ from quad_ident_ros.model.vehicle import Vehicle
 
 ASKS = (('none',), ('undetermined',))   # verdicts that ask for another flight
 
-RATIO = tuple(name for name, effect in EFFECTS.items() if effect.ratio)
-"""Effects of which only a quotient shows."""
-
-SAME_MOTION = {
-    'inertia_mismatch': (('inertia about x', 'arms along y'), ('inertia about y', 'arms along x'),
-                         ('inertia about z', 'torque coefficient')),
-    'thrust_scale': (('thrust coefficient', 'mass with the inertia in proportion'),),
-    'mass_offset': (('mass', 'thrust coefficient with the inertia in proportion'),),
-}
-"""Constants that move a vehicle alike, by the effect that stands for all of them."""
-
-TELLS = {
-    'inertia_mismatch': 'a ruler for the arms, a pendulum for the inertia, a thrust stand for '
-                        'the torque coefficient',
-    'thrust_scale': 'a scale for the mass, a thrust stand for the thrust coefficient',
-    'mass_offset': 'a scale for the mass, a thrust stand for the thrust coefficient',
-}
-"""What measurement tells such constants apart."""
-
 
 def not_shown(selection: Selection, causes: tuple, verdict: Verdict) -> tuple[str, ...]:
     """Return the names of effects that the flights would not show at their usual size."""
@@ -55,11 +36,13 @@ def one_finding(verdict: Verdict) -> tuple[dict, ...]:
     effects: names that the flights do not tell apart. Thrust and mass are told from one another by
     the moments, so not where the inertia is found to differ, too.
     """
-    rows = []
-    for name in verdict.names:
-        if name not in TELLS:
-            continue
-        loose = name != 'inertia_mismatch' and 'inertia_mismatch' in verdict.names
-        rows.append({'effect': name, 'may_be': [list(pair) for pair in SAME_MOTION[name]],
-                     'effects': sorted(RATIO) if loose else [name], 'tells': TELLS[name]})
+    rows, named = [], [name for name in verdict.names if name in EFFECTS]
+    # The moments tell thrust from mass, but not where the inertia is off, too.
+    loose = any(EFFECTS[name].scale_group and EFFECTS[name].ratio is None for name in named)
+    for effect in (EFFECTS[name] for name in named if EFFECTS[name].same_motion):
+        ratio = [name for name, other in EFFECTS.items()
+                 if effect.ratio is not None and other.ratio == effect.ratio]
+        rows.append({'effect': effect.name, 'may_be': [list(pair) for pair in effect.same_motion],
+                     'effects': sorted(ratio) if loose and ratio else [effect.name],
+                     'tells': effect.told_by})
     return tuple(rows)

@@ -152,14 +152,14 @@ def excludes(cause: Candidate, other: Candidate) -> bool:
     """
     Return whether two causes never stand together.
 
-    Two of one effect, and two whose ratio alone shows: thrust and mass, multiplied by one factor
-    with the inertia, move a vehicle alike.
+    Two of one effect or nuisance, and two whose ratio alone shows: thrust, be it that of each
+    flight, and mass, multiplied by one factor with the inertia, move a vehicle alike.
     """
-    if cause.nuisance is not None or other.nuisance is not None:
-        return cause.effect == other.effect
-    ratio = EFFECTS[cause.effect].ratio
-    return cause.effect == other.effect or (ratio is not None
-                                            and ratio == EFFECTS[other.effect].ratio)
+    if cause.effect == other.effect:
+        return True
+    names = [one.nuisance.of_effect if one.nuisance else one.effect for one in (cause, other)]
+    ratios = [EFFECTS[name].ratio if name else None for name in names]
+    return names[0] != names[1] and ratios[0] is not None and ratios[0] == ratios[1]
 
 
 def key_of(causes: tuple) -> tuple:

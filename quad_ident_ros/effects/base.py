@@ -93,9 +93,10 @@ class Effect:
     confused_with: names of effects that look alike; per_rotor: each parameter belongs to one
     rotor, and one at a time is off; scale_group: one of those that scale the whole motion, of
     which only ratios show without a force sensor; ratio: the quotient that shows, of two effects
-    with one of it only one is named; per_flight: how much its usual form's parameters usually
-    differ from one flight to the next, 0 where they are the vehicle's; needs_air: it is felt only
-    by what depends on the velocity of the air.
+    with one of it only one is named; per_flight: how much each of its usual form's parameters
+    usually differs from one flight to the next, empty where none does; needs_air: it is felt only
+    by what depends on the velocity of the air; same_motion: pairs of constants that move a vehicle
+    alike, for all of which it stands; told_by: what measurement tells them apart.
     """
 
     name: str
@@ -105,8 +106,10 @@ class Effect:
     confused_with: tuple[str, ...] = ()
     per_rotor: bool = False
     scale_group: bool = False
-    per_flight: float = 0.0
+    per_flight: tuple[float, ...] = ()
     needs_air: bool = False
+    same_motion: tuple[tuple[str, str], ...] = ()
+    told_by: str = ''
     ratio: str | None = None
 
     @property

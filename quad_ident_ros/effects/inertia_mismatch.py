@@ -33,4 +33,8 @@ EFFECT = Effect(
     forms=(FORM, inertia_mismatch_moments.FORM),
     excitation='fast turns about each axis',
     confused_with=('motor_lag', 'thrust_scale'),
-    scale_group=True)
+    scale_group=True,
+    same_motion=(('inertia about x', 'arms along y'), ('inertia about y', 'arms along x'),
+                 ('inertia about z', 'torque coefficient')),
+    told_by='a ruler for the arms, a pendulum for the inertia, a thrust stand for the torque '
+            'coefficient')

@@ -24,4 +24,6 @@ EFFECT = Effect(
     name='mass_offset', title='offset of the mass', forms=(FORM,),
     excitation='any flight, with roll or pitch manoeuvres to tell it from thrust',
     confused_with=('thrust_scale',),
-    scale_group=True, ratio='thrust per mass')
+    scale_group=True, ratio='thrust per mass',
+    same_motion=(('mass', 'thrust coefficient with the inertia in proportion'),),
+    told_by='a scale for the mass, a thrust stand for the thrust coefficient')

@@ -33,7 +33,7 @@ class Nuisance:
     A kind of it.
 
     name, what it is, unit, places in z and its usual spread from 0 there, SI; odds of flights
-    having it, before looking.
+    having it, before looking; of_effect: the name of the effect that differs by flight, or ''.
     """
 
     name: str
@@ -42,6 +42,7 @@ class Nuisance:
     columns: tuple[int, ...]
     spreads: tuple[float, ...]
     odds: float
+    of_effect: str = ''
 
 
 def put_right(tracks: Sequence[Track]) -> bool:
@@ -67,7 +68,7 @@ def nuisances(vehicle: Vehicle, tracks: Sequence[Track]) -> tuple[Nuisance, ...]
     if put_right(tracks):
         apart = max(REST, REST_SHARE * max(track.clock.period for track in tracks if track.clock))
         odds = LIKELY
-    kinds: list[tuple[str, str, str, tuple[str, ...], tuple[float, ...], float]]
+    kinds: list[tuple]
     kinds = [(CLOCK, CLOCK_TITLE, 's', ('actuation_delay.delay',), (apart,), odds)]
     kinds += [('rate_bias', 'bias of the rate', 'rad/s', rate, (spread,) * 3, RARE)
               for spread in (0.01, 0.003)]
@@ -76,13 +77,14 @@ def nuisances(vehicle: Vehicle, tracks: Sequence[Track]) -> tuple[Nuisance, ...]
     kinds.append(('trim_moment', 'moment', 'N m', moment,
                   (0.02 * lever, 0.02 * lever, 0.05 * twist), RARE))
     for name, effect in EFFECTS.items():
-        if effect.per_flight:
-            parameters = effect.forms[0].parameters
-            kinds.append((f'{name}_by_flight', f'{effect.title}, by flight', parameters[0].unit,
-                          tuple(f'{name}.{parameter.name}' for parameter in parameters),
-                          (effect.per_flight,) * len(parameters), RARE))
-    return tuple(Nuisance(name, title, unit, tuple(INDEX[one] for one in columns), spreads, odds)
-                 for name, title, unit, columns, spreads, odds in kinds)
+        differing = [(parameter, spread) for parameter, spread in
+                     zip(effect.forms[0].parameters, effect.per_flight, strict=False) if spread]
+        if differing:
+            kinds.append((f'{name}_by_flight', f'{effect.title}, by flight', differing[0][0].unit,
+                          tuple(f'{name}.{parameter.name}' for parameter, _ in differing),
+                          tuple(spread for _, spread in differing), RARE, name))
+    return tuple(Nuisance(name, title, unit, tuple(INDEX[one] for one in columns), *rest)
+                 for name, title, unit, columns, *rest in kinds)
 
 
 @dataclass(frozen=True, eq=False)

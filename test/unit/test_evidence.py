@@ -98,3 +98,12 @@ def test_an_effect_stands_beside_a_nuisance_in_its_place():
     nuisance = Candidate('rate_bias', 'rate_bias', (0,), nuisance=bias)
     assert not excludes(Candidate('gyro_bias', 'gyro_bias', (0,)), nuisance)
     assert excludes(nuisance, nuisance)
+
+
+def test_a_thrust_of_each_flight_stands_beside_that_of_all_and_not_beside_the_mass():
+    """Mass and the thrust of all flights by one factor would be an inertia by its reciprocal."""
+    own = Nuisance('thrust_scale_by_flight', 'thrust', '1', (0,), (0.03,), RARE, 'thrust_scale')
+    nuisance = Candidate(own.name, own.name, (0,), nuisance=own)
+    assert excludes(nuisance, Candidate('mass_offset', 'mass', (1,)))
+    assert not excludes(nuisance, Candidate('thrust_scale', 'thrust', (0,)))
+    assert not excludes(nuisance, Candidate('inertia_mismatch', 'inertia', (2,)))
