@@ -123,7 +123,7 @@ class Knot(Curve):
 
 
 class Spirals(Curve):
-    """Circles that widen and narrow while the vehicle climbs and sinks, nose to the middle now and then."""
+    """Circles that widen and narrow in climb and descent, with a nose that turns unevenly."""
 
     def draw(self, rng):
         """Draw how fast they widen and how fast it climbs."""

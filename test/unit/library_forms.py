@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """How much of a force and moment no form of the library can be, over what is flown."""
 
+import copy
+
 import numpy as np
 from scipy.optimize import least_squares
 
@@ -41,13 +43,27 @@ def summed(places, forces, force=0.0, moment=0.0):
 def of_part(part, params, places, flight):
     """Return the force and moment (COUNT, 6) that a form adds to the nominal ones."""
     thrust, out = nominal(params, flight), np.zeros((COUNT, 6))
+    part.alter(copy.deepcopy(params) | {'centre': np.zeros(3)}, params)
     for k, now in enumerate(instants(places, flight)):
         gain = part.gain(now) * np.ones(len(places))
         forces = np.zeros((1, len(places), 3))
         forces[0, :, 2] = (gain - 1.0) * thrust[k]
         force, moment = part.wrench(now) or (np.zeros(3), np.zeros(3))
-        out[k] = summed(places, forces, force, moment)[0]
+        reaction = (part.torque(now) * np.ones(len(places)) - 1.0) * params['rotor_directions']
+        yaw = params['k_m'] * reaction @ flight['speeds'][k] ** 2
+        out[k] = summed(places, forces, force, moment + [0.0, 0.0, yaw])[0]
         part.after(STEP, np.eye(3), np.zeros(3))
+    return out
+
+
+def of_battery(battery, params, places, hover, flight):
+    """Return the force and moment (COUNT, 6) that a battery takes from the nominal ones."""
+    thrust, out = nominal(params, flight), np.zeros((COUNT, 6))
+    for k, speeds in enumerate(flight['speeds'] / hover):
+        battery.drain(flight['time'][k], STEP, speeds)
+        forces = np.zeros((1, len(places), 3))
+        forces[0, :, 2] = (battery.gain(speeds) - 1.0) * thrust[k]
+        out[k] = summed(places, forces)[0]
     return out
 
 
