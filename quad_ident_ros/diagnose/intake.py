@@ -7,6 +7,8 @@ from dataclasses import dataclass, replace
 
 from quad_ident_ros.data.clocks import clocks_of, on_one_clock
 from quad_ident_ros.data.quality import cautions
+from quad_ident_ros.data.quality.finding import as_caution
+from quad_ident_ros.data.quality.ground import airborne, stands
 from quad_ident_ros.data.record import FlightRecord, refuse_twice, same_flight
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.errors import InputError
@@ -58,12 +60,10 @@ def take_in(records: Sequence[FlightRecord], vehicle: Vehicle, hold_out: FlightR
     if hold_out is not None:    # among others it would take part in fit and choice
         records = [record for record in records if not same_flight(record, hold_out)]
     refuse_twice(records)
-    records = [with_commands(record, vehicle) for record in records]
-    hold_out = None if hold_out is None else with_commands(hold_out, vehicle)
-    findings = []
-    for record in records if hold_out is None else [*records, hold_out]:
-        refuse_short(record, rules)
-        findings += cautions(record, vehicle)
+    findings: list[dict] = []
+    records = [_fit_for_use(record, vehicle, rules, findings) for record in records]
+    if hold_out is not None:
+        hold_out = _fit_for_use(hold_out, vehicle, rules, findings)
     training, test = split(records, hold_out)
     records, late, answers = zip(*on_one_clock([*training, test]), strict=True)
     voltage = highest_voltage(records[:-1])
@@ -72,6 +72,17 @@ def take_in(records: Sequence[FlightRecord], vehicle: Vehicle, hold_out: FlightR
                          for record, clock in zip(records, clocks, strict=True))
     return Intake(vehicle, tuple(tracks), held_out, rollouts(tracks, vehicle), late, clocks,
                   findings)
+
+
+def _fit_for_use(record: FlightRecord, vehicle: Vehicle, rules: Rules, findings: list
+                 ) -> FlightRecord:
+    """Return a record with commands, off the ground, its cautions added to the findings."""
+    record = with_commands(record, vehicle)
+    findings += [as_caution(finding, record) for finding in stands(record, vehicle)]
+    record = airborne(record, vehicle)
+    refuse_short(record, rules)
+    findings += cautions(record, vehicle)
+    return record
 
 
 def rollouts(tracks: Sequence[Track], vehicle: Vehicle) -> list[Flight]:
@@ -89,10 +100,10 @@ def split(records: Sequence[FlightRecord], hold_out: FlightRecord | None) -> tup
     if len(records) > 1:
         return records[:-1], records[-1]
     record = records[0]
-    half = len(record) // 2
+    half, began = len(record) // 2, record.info.get('began', record.t[0])
     later = record.slice(half, len(record))
     # The battery goes on emptying from the start of the flight.
-    return [record.slice(0, half)], replace(later, info={**later.info, 'began': record.t[0]})
+    return [record.slice(0, half)], replace(later, info={**later.info, 'began': began})
 
 
 def length_of(record: FlightRecord) -> float:

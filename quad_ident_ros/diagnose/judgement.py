@@ -15,10 +15,10 @@ from quad_ident_ros.diagnose.nuisances import nuisances_of
 from quad_ident_ros.diagnose.probability import probabilities
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.diagnose.select import Selection
-from quad_ident_ros.effects.registry import EFFECTS
+from quad_ident_ros.effects.registry import EFFECTS, PLACES
 from quad_ident_ros.greybox.errors import ERRORS, GROUPS
 from quad_ident_ros.greybox.estimate import Estimate
-from quad_ident_ros.greybox.parameters import nominal
+from quad_ident_ros.greybox.parameters import nominal, SPLIT
 from quad_ident_ros.model.vehicle import Vehicle
 
 
@@ -95,14 +95,15 @@ class Bench:
         """
         Return a Model with some of its effects taken out and everything else refitted.
 
-        What is alike in all flights must not hide in nuisances: those in the same parameters as
-        an effect that is taken out may only differ between flights, as they do beside it.
+        What is alike in all flights must not hide in nuisances: those that do what an effect does
+        that is taken out may only differ between flights, as they do beside it.
         """
         fit, z = model.estimate, model.z.copy()
         columns = [column for cause in removed for column in cause.columns]
         z[columns] = nominal(self.vehicle)[columns]
         fixed = np.stack(model.vectors) - model.z
-        shared = [column for column in columns if fixed[:, column].any()]
+        alike = {column for cause in removed for column in _columns_alike(cause.effect)}
+        shared = [column for column in sorted(alike) if fixed[:, column].any()]
         others = [column for cause in model.chosen
                   if cause.nuisance is not None and not set(cause.nuisance.columns) & set(shared)
                   for column in cause.nuisance.columns]
@@ -197,6 +198,15 @@ def judge(bench: Bench) -> Judgement:
         final = bench.without(model, improbable) if improbable else model
     return Judgement(final, material, weights, present, without, ends, noises,
                      unexplained(final.gap, before, noise, bool(material), rules))
+
+
+def _columns_alike(name: str) -> list[int]:
+    """Return the columns of an effect in all its forms, and of those with the same ratio."""
+    ratio = EFFECTS[name].ratio
+    names = {name, *(other for other, effect in EFFECTS.items()
+                     if ratio is not None and effect.ratio == ratio)}
+    return [SPLIT + place for (effect, _), part in PLACES.items() if effect in names
+            for place in range(part.start, part.stop)]
 
 
 def _weight(model: Model, without: Model, before: dict, noise: dict, rules: Rules) -> Weight:

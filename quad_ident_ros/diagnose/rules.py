@@ -34,9 +34,9 @@ class Rules:
         one another by 10 to 30 % over the range in which they are used.
       form_time: s over which that error stays the same: that of a turn or a stop of a flight.
     Probability:
-      calibration: constant, and weights of stability and log10 of the contribution in the log
-        odds of being present, steadiest and faintest: where these end, for more says no more;
-        fitted to the flights of development of the withheld check:
+      calibration: constant, and weights of stability, of log10 of the contribution and of the
+        share explained in the log odds of being present, steadiest and faintest: where the first
+        two end, for more says no more; fitted to the flights of development of the withheld check:
         docs/method.md has the command.
     Naming:
       present: probability from which on an effect is named: more likely there than not.
@@ -76,7 +76,7 @@ class Rules:
     present: float = 0.5
     doubt: float = 0.12
     instead: float = 2.0
-    calibration: tuple[float, float, float] = (1.1, 0.26, 2.7)
+    calibration: tuple[float, float, float, float] = (-0.8, 0.11, 1.7, 3.5)
     steadiest: float = 10.0
     faintest: float = 1e-3
     tied: float = 0.9

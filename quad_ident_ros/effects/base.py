@@ -93,8 +93,9 @@ class Effect:
     confused_with: names of effects that look alike; per_rotor: each parameter belongs to one
     rotor, and one at a time is off; scale_group: one of those that scale the whole motion, of
     which only ratios show without a force sensor; ratio: the quotient that shows, of two effects
-    with one of it only one is named; per_flight: it may differ from flight to flight;
-    needs_air: it is felt only by what depends on the velocity of the air.
+    with one of it only one is named; per_flight: how much its usual form's parameters usually
+    differ from one flight to the next, 0 where they are the vehicle's; needs_air: it is felt only
+    by what depends on the velocity of the air.
     """
 
     name: str
@@ -104,7 +105,7 @@ class Effect:
     confused_with: tuple[str, ...] = ()
     per_rotor: bool = False
     scale_group: bool = False
-    per_flight: bool = False
+    per_flight: float = 0.0
     needs_air: bool = False
     ratio: str | None = None
 

@@ -27,5 +27,4 @@ EFFECT = Effect(
     name='battery_sag', title='sag of the battery',
     forms=(FORM, battery_sag_time.FORM, battery_sag_power.FORM, battery_sag_load.FORM),
     excitation='a flight long enough for the voltage to fall',
-    confused_with=('thrust_scale', 'mass_offset'),
-    per_flight=True)
+    confused_with=('thrust_scale', 'mass_offset'))

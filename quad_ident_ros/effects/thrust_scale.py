@@ -26,4 +26,4 @@ EFFECT = Effect(
     forms=(FORM, thrust_scale_offset.FORM, thrust_scale_exponent.FORM),
     excitation='any flight, with roll or pitch manoeuvres to tell it from mass',
     confused_with=('mass_offset', 'battery_sag', 'inflow'),
-    scale_group=True, per_flight=True, ratio='thrust per mass')
+    scale_group=True, per_flight=0.03, ratio='thrust per mass')

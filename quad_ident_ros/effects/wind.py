@@ -27,4 +27,4 @@ EFFECT = Effect(
     name='wind', title='steady wind', forms=(FORM,),
     excitation='flight in several directions or headings; it acts through drag, known or found',
     confused_with=('attitude_misalignment', 'rotor_drag', 'body_drag'),
-    per_flight=True, needs_air=True)
+    per_flight=1.0, needs_air=True)

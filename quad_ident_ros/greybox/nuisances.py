@@ -14,6 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.greybox.flights import Track
 from quad_ident_ros.greybox.parameters import INDEX
 from quad_ident_ros.model.vehicle import Vehicle
@@ -74,6 +75,12 @@ def nuisances(vehicle: Vehicle, tracks: Sequence[Track]) -> tuple[Nuisance, ...]
               for spread in (0.005, 0.0015)]
     kinds.append(('trim_moment', 'moment', 'N m', moment,
                   (0.02 * lever, 0.02 * lever, 0.05 * twist), RARE))
+    for name, effect in EFFECTS.items():
+        if effect.per_flight:
+            parameters = effect.forms[0].parameters
+            kinds.append((f'{name}_by_flight', f'{effect.title}, by flight', parameters[0].unit,
+                          tuple(f'{name}.{parameter.name}' for parameter in parameters),
+                          (effect.per_flight,) * len(parameters), RARE))
     return tuple(Nuisance(name, title, unit, tuple(INDEX[one] for one in columns), spreads, odds)
                  for name, title, unit, columns, spreads, odds in kinds)
 

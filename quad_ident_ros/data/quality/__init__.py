@@ -6,8 +6,6 @@ The quality of a flight record: what is wrong with it, and how to mend it.
 One file per subject, each with checks (record, vehicle or None) -> findings, entered in CHECKS.
 """
 
-from dataclasses import asdict
-
 import numpy as np
 
 from quad_ident_ros.data.quality import (
@@ -17,6 +15,7 @@ from quad_ident_ros.data.quality import (
     excitation,
     frames,
     glitches,
+    ground,
     rotors,
     saturation,
     stale,
@@ -30,7 +29,7 @@ from quad_ident_ros.data.quality.clock import (
     command_offset,
     velocity_offset,
 )
-from quad_ident_ros.data.quality.finding import Finding, SEVERITIES
+from quad_ident_ros.data.quality.finding import as_caution, Finding, SEVERITIES
 from quad_ident_ros.errors import InputError
 
 CHECKS = (columns.known, columns.incomplete, columns.frozen, columns.dead, columns.quaternions,
@@ -40,7 +39,7 @@ CHECKS = (columns.known, columns.incomplete, columns.frozen, columns.dead, colum
           units.position_in_millimetres, units.speeds_in_rpm, frames.quaternion, frames.world,
           frames.velocity_in_body, frames.signs, rotors.hover, rotors.size, rotors.count,
           rotors.order_and_spin, thrust.carried, clock.attitude, clock.velocity, clock.commands,
-          answer.commands, saturation.speeds, excitation.axes)
+          ground.stands, answer.commands, saturation.speeds, excitation.axes)
 
 __all__ = ['cautions', 'CHECKS', 'clock_offset', 'ClockOffset', 'command_offset', 'Finding',
            'findings', 'refuse_errors', 'refuse_unfit', 'SEVERITIES', 'velocity_offset']
@@ -71,8 +70,8 @@ def cautions(record, vehicle):
 
     Raises InputError for a fault that no verdict survives.
     """
-    return [{'flight': record.info.get('name', 'flight'), **asdict(finding)}
-            for finding in refuse_unfit(record, vehicle) if finding.severity == 'warning']
+    return [as_caution(finding, record) for finding in refuse_unfit(record, vehicle)
+            if finding.severity == 'warning']
 
 
 def refuse_errors(record, found):

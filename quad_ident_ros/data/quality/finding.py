@@ -2,7 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a check of a flight record says."""
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
+
+from quad_ident_ros.data.record import FlightRecord
 
 SEVERITIES = ('info', 'warning', 'error')
 """info: good to know; warning: results suffer; error: results are wrong until it is mended."""
@@ -17,3 +19,8 @@ class Finding:
     where: str
     message: str
     remedy: str
+
+
+def as_caution(finding: Finding, record: FlightRecord) -> dict:
+    """Return a Finding on a record as data, with the name of the flight."""
+    return {'flight': record.info.get('name', 'flight'), **asdict(finding)}
