@@ -212,7 +212,8 @@ def make_set(name, count, seed, jobs, folder, on_case=lambda done, total: None):
     on it alone; jobs: processes; on_case is called after each case.
     """
     chosen = SETS[name]
-    cases = chosen.cases(np.random.default_rng(seed))[:count]
+    whole = chosen.cases(np.random.default_rng(seed))
+    cases = whole[:count]
     names = [secrets.token_hex(6) for _ in cases]
     labels, not_flown = {}, []
     with ProcessPoolExecutor(jobs) as pool:
@@ -227,19 +228,20 @@ def make_set(name, count, seed, jobs, folder, on_case=lambda done, total: None):
             except Exception as error:      # of rotorpy: it takes no other case with it
                 not_flown.append(f'{type(error).__name__}: {error}')
             on_case(len(labels) + len(not_flown), len(cases))
-    if chosen.hybrids and count is None:
+    if chosen.hybrids:
         try:
             labels |= _hybrids(chosen.part, Path(folder),
-                               np.random.default_rng([seed, len(cases)]))
+                               np.random.default_rng([seed, len(cases)]),
+                               len(cases) / len(whole))
         except FileNotFoundError as error:
             not_flown.append(str(error))
     return labels, not_flown
 
 
-def _hybrids(part, folder, rng):
-    """Write the changes to real flights, in folders with random names; return their labels."""
+def _hybrids(part, folder, rng, share):
+    """Write a share of the changes to real flights, in folders of random names; return labels."""
     with tempfile.TemporaryDirectory() as apart:
-        labels = make_hybrids(part, apart, rng)
+        labels = make_hybrids(part, apart, rng, share=share)
         names = {name: secrets.token_hex(6) for name in labels}
         for name in labels:
             shutil.move(Path(apart) / name, folder / names[name])
@@ -260,7 +262,8 @@ def main(arguments=None):
     seed = secrets.randbits(48) if options.seed is None else options.seed
     labels, not_flown = make_set(options.set, options.count, seed, options.jobs, options.flights,
                                  lambda done, total: print(done, total, flush=True))
-    sealed, key = seal({'seed': seed, 'labels': labels, 'not_flown': not_flown})
+    sealed, key = seal({'set': options.set, 'seed': seed, 'labels': labels,
+                        'not_flown': not_flown})
     Path(options.sealed).write_bytes(sealed)
     with os.fdopen(options.key, 'wb') as pipe:
         pipe.write(key)

@@ -2,8 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """No form of the evaluation is one that the library has: what the best fit of these leaves."""
 
-from importlib.util import find_spec
-
 from library_forms import COUNT, flown, of_battery, of_part, remainder, STEP
 import numpy as np
 import pytest
@@ -68,8 +66,6 @@ def followed(turn, command):
 
 @pytest.mark.parametrize('form', EVALUATION['motor_lag'])
 def test_a_motor_is_no_lag_of_the_first_order_up_or_down(form):
-    if form == 'brushless' and (find_spec('drone_models') is None or find_spec('mujoco') is None):
-        pytest.skip('drone-models is not installed')
     motor, (command, _) = made('motor_lag', form), commands()
     true = followed(lambda w, c: motor.turn(w, c, STEP_OF_MOTORS), command)
 
@@ -80,7 +76,7 @@ def test_a_motor_is_no_lag_of_the_first_order_up_or_down(form):
         return np.sqrt(np.mean((lag - true) ** 2) / np.mean((true - command) ** 2))
 
     best = minimize(missed, np.log([0.03, 0.03]), method='Nelder-Mead', options={'maxiter': 40})
-    assert best.fun > 0.5 * LEAST       # of a lag, that is some 2 ms
+    assert best.fun > LEAST
 
 
 @pytest.mark.parametrize('form', EVALUATION['actuation_delay'])

@@ -13,7 +13,8 @@ from withheld.forms import air, batteries, body, hung, motors
 # Those that one develops with, and those that nobody looks at before a release.
 DEVELOPMENT = {
     'motor_lag': {'second_order': motors.SecondOrder, 'speed_dependent': motors.SpeedDependent,
-                  'brushed': hung.identified('cf2x_P250')},
+                  'brushed': hung.identified('cf2x_P250'),
+                  'brushless': hung.identified('cf21B_500')},
     'actuation_delay': {'jitter': motors.Jitter, 'staggered': motors.Staggered},
     'rotor_drag': {'saturating': air.Saturating, 'offset_point': air.Offset},
     'body_drag': {'power_1.6': air.Power16, 'plates': air.Plates, 'hull': hung.Hull},
@@ -32,8 +33,7 @@ DEVELOPMENT = {
     'gyro_bias': {'warming': body.Warming, 'wandering': body.Wandering},
 }
 EVALUATION = {
-    'motor_lag': {'torque_balance': motors.TorqueBalance, 'two_poles': motors.TwoPoles,
-                  'brushless': hung.identified('cf21B_500')},
+    'motor_lag': {'torque_balance': motors.TorqueBalance, 'two_poles': motors.TwoPoles},
     'actuation_delay': {'clocked': motors.Clocked, 'growing': motors.Growing},
     'rotor_drag': {'power_1.25': air.Steeper, 'skewed': air.Skewed},
     'body_drag': {'crisis': air.Crisis, 'plate': air.Plate},
