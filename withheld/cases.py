@@ -183,8 +183,8 @@ def _dealt(cases, part, rng):
     Return the cases in an order of which each beginning has them in proportion, and with names.
 
     The k-th of n cases of a stratum comes where (k + 1/2) / n of all have come; within a stratum,
-    and where two fall together, chance decides. So the first N differ from their share by less
-    than one case in every stratum. Vehicle, path, controller and noise are dealt to them in turn,
+    and where two fall together, chance decides. So the first N have of every stratum about what
+    is its share, to a case or two. Vehicle, path, controller and noise are dealt to them in turn,
     each from a shuffled list.
     """
     strata = {}

@@ -27,4 +27,4 @@ NOISES = {
 STRANGERS = {
     DEVELOPMENT: ('periodic_force', 'tether', 'thrust_exponent', 'backlash', 'updraft', 'slosh',
                   'ceiling', 'neighbours'),
-    EVALUATION: ('wall', 'whirl', 'stutter', 'compass', 'flexing')}
+    EVALUATION: ('wall', 'whirl', 'stutter', 'compass')}

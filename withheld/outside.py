@@ -222,39 +222,10 @@ class Compass(Influence):
         return out
 
 
-class Flexing(Influence):
-    """Arms that bend: the moments about x and y ring on with a weakly damped mode."""
-
-    def __init__(self, size, hover, rng):
-        """Draw frequency and damping of the mode."""
-        self.share, self.hover = 0.15 * size, hover
-        self.rate, self.damping = 2.0 * np.pi * rng.uniform(3.0, 6.0), rng.uniform(0.03, 0.08)
-        self.bent, self.speed, self.asked = np.zeros(2), np.zeros(2), np.zeros(2)
-        self.thrust = 0.0
-
-    def alter(self, true, params):
-        """Take what a rotor lifts."""
-        self.thrust = params['k_eta']
-
-    def wrench(self, now):
-        """Return the moment by which the arms lag behind the rotors."""
-        lifts = self.thrust * now.speeds ** 2
-        self.asked = np.array([now.places[:, 1] @ lifts, -now.places[:, 0] @ lifts])
-        return np.zeros(3), self.share * np.array([*(self.bent - self.asked), 0.0])
-
-    def after(self, step, rotation, acceleration):
-        """Bend on, by the exact solution for a moment that is held."""
-        d, w = self.damping * self.rate, self.rate * np.sqrt(1.0 - self.damping ** 2)
-        c, s, f = np.cos(w * step), np.sin(w * step), np.exp(-d * step)
-        off, speed = self.bent - self.asked, self.speed
-        self.bent = self.asked + f * (off * c + (speed + d * off) / w * s)
-        self.speed = f * (speed * c - (d * speed + self.rate ** 2 * off) / w * s)
-
-
 # Each with what of the vehicle its size is measured by.
 KINDS = {'periodic_force': (Periodic, 'weight'), 'tether': (Tether, 'weight'),
          'updraft': (Updraft, 'weight'), 'thrust_exponent': (Exponent, 'hover'),
          'backlash': (Backlash, 'hover'), 'slosh': (Slosh, 'mass'),
          'ceiling': (Ceiling, 'radius'), 'neighbours': (Neighbours, 'hover'),
          'wall': (Wall, 'radius', 'weight'), 'whirl': (Whirl, 'weight'),
-         'stutter': (Stutter, 'rotors'), 'compass': (Compass,), 'flexing': (Flexing, 'hover')}
+         'stutter': (Stutter, 'rotors'), 'compass': (Compass,)}
