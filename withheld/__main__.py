@@ -50,8 +50,10 @@ def main(arguments=None):
     parser = argparse.ArgumentParser(
         prog='quad_ident withheld', description=DESCRIPTION, epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument('calibrate', nargs='*', metavar='calibrate [FOLDER ...]',
-                        help='fit the probabilities to kept runs, or to a new one of development')
+    parser.add_argument('action', nargs='?', choices=('calibrate',), metavar='calibrate',
+                        help='fit the probabilities to flights of development')
+    parser.add_argument('folders', nargs='*', metavar='FOLDER',
+                        help='for calibrate: kept runs (default: one that is flown now)')
     parser.add_argument('--set', choices=SETS,
                         help='which cases (default: evaluation, to be run once per release)')
     parser.add_argument('--count', type=_positive, metavar='N',
@@ -66,7 +68,7 @@ def main(arguments=None):
     options = parser.parse_args(arguments)
     if options.keep and Path(options.keep).exists():
         parser.error(f'--keep {options.keep}: it exists already; name a new folder')
-    if options.calibrate:
+    if options.action:
         return _calibrate(parser, options)
     options.set = options.set or 'evaluation'
     work = Path(tempfile.mkdtemp(prefix='withheld-'))
@@ -90,16 +92,13 @@ def main(arguments=None):
     return 0
 
 
-def _calibrate(parser, options):
+def _calibrate(parser: argparse.ArgumentParser, options: argparse.Namespace) -> int:
     """Fit the probabilities to kept runs, or to one that is flown now; return the exit code."""
-    word, *folders = options.calibrate
-    if word != 'calibrate':
-        parser.error(f'{word}: only `calibrate` is known')
     if options.set == 'evaluation':
         parser.error('calibrate: never on the evaluation, which would not count any more')
     from withheld.calibrate import fit, rows_of, text_of
     pairs = []
-    for folder in map(Path, folders):
+    for folder in map(Path, options.folders):
         try:
             kept = json.loads((folder / 'labels.json').read_text(encoding='utf-8'))
         except OSError as error:
@@ -107,7 +106,7 @@ def _calibrate(parser, options):
         if kept.get('set') == 'evaluation':
             parser.error(f'calibrate {folder}: a run of the evaluation')
         pairs += _paired(kept, diagnoses_in(folder / 'found'))
-    if not folders:
+    if not options.folders:
         options.set = 'development'
         with tempfile.TemporaryDirectory(prefix='withheld-') as work:
             pairs = _paired(*run(options, Path(work)))
@@ -121,11 +120,11 @@ def _calibrate(parser, options):
     return 0
 
 
-def _paired(opened, found):
+def _paired(opened: dict, found: dict) -> list[tuple[dict, dict]]:
     return [(label, found.get(name, {})) for name, label in opened['labels'].items()]
 
 
-def diagnoses_in(folder):
+def diagnoses_in(folder: Path) -> dict[str, dict]:
     """Return {case: diagnosis} of a folder that was written to blindly."""
     return {path.stem: json.loads(path.read_text(encoding='utf-8'))
             for path in folder.glob('*.json')}

@@ -2,7 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Vehicles of the evaluation alone, of four classes of mass and four geometries."""
 
+from collections.abc import Sequence
+
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from withheld.constants import GRAVITY
 
@@ -10,7 +13,8 @@ SPEED_MARGIN = 1.9      # of the largest speed over that in hover: 3.6 times the
 AXES = ('Ixx', 'Iyy', 'Izz')
 
 
-def airframe(mass, inertia, places, spins, radius, hover, torque):
+def airframe(mass: float, inertia: Sequence[float], places: ArrayLike, spins: Sequence[int],
+             radius: float, hover: float, torque: float) -> dict:
     """
     Return rotorpy's parameters of a vehicle.
 
@@ -18,6 +22,7 @@ def airframe(mass, inertia, places, spins, radius, hover, torque):
     spins (n,), the sign of the reaction about z; radius m of the rotors; hover rad/s, their
     mean speed there; torque m, the reaction torque per thrust.
     """
+    places = np.asarray(places, float)
     count = len(places)
     k_eta = mass * GRAVITY / (count * hover ** 2)
     return {
@@ -28,7 +33,7 @@ def airframe(mass, inertia, places, spins, radius, hover, torque):
         'rotor_speed_min': 0.0, 'rotor_speed_max': SPEED_MARGIN * hover}
 
 
-def ring(count, arm, first):
+def ring(count: int, arm: float, first: float) -> NDArray[np.float64]:
     """Return the places (count, 2) m of rotors on a circle; the first at an angle, rad."""
     angles = first + 2.0 * np.pi * np.arange(count) / count
     return arm * np.stack([np.cos(angles), np.sin(angles)], axis=1)

@@ -25,7 +25,7 @@ def diagnosis_of(folder):
     return diagnose(records, vehicle).as_data()
 
 
-def write_diagnosis(folder, target):
+def write_diagnosis(folder: Path, target: Path) -> None:
     """Diagnose the case in a folder and write the answer into a file."""
     begin = time.process_time()
     try:

@@ -172,13 +172,13 @@ def full_set(rng):
     return _dealt(cases, part, rng)
 
 
-def stratum_of(case):
+def stratum_of(case: Case) -> tuple:
     """Return what a smaller draw keeps the share of: a row of the tables, or what is beside it."""
     apart = case.log or ('gusts' if case.gusts else case.kind)
     return case.column, apart, case.bodies, case.setup
 
 
-def _dealt(cases, part, rng):
+def _dealt(cases: list[Case], part: str, rng: np.random.Generator) -> list[Case]:
     """
     Return the cases in an order of which each beginning has them in proportion, and with names.
 
@@ -199,7 +199,7 @@ def _dealt(cases, part, rng):
             for k, case in enumerate(ordered)]
 
 
-def _deck(names, count, rng):
+def _deck(names: tuple[str, ...], count: int, rng: np.random.Generator) -> list[str]:
     """Return so many names, each as often as any other, by shuffling the list again and again."""
     rounds = -(-count // len(names))
     return [names[k] for _ in range(rounds) for k in rng.permutation(len(names))][:count]

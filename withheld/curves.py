@@ -3,9 +3,12 @@
 """Paths of the evaluation alone: curves, as large and as fast as asked, and flown as splines."""
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline, make_interp_spline
 
 from withheld.flat import flat
+
+Array = NDArray[np.float64]
 
 GRID, FLOWN = 0.05, 20.0    # s between knots of the spline; s of the flights
 MARGIN = 0.5                # s that a curve goes on after it, at the pace of the flight
@@ -23,7 +26,8 @@ class Curve:
     1 is one second at the pace 1.
     """
 
-    def __init__(self, rng, size, acceleration, low, turn):
+    def __init__(self, rng: np.random.Generator, size: float, acceleration: float, low: float,
+                 turn: float) -> None:
         """Draw the curve, then find its pace."""
         self.draw(rng)
         self.pace = self._pace(size, acceleration)
@@ -37,7 +41,7 @@ class Curve:
         self.middle = np.array([0.0, 0.0, low - self.scale[2] * flown[:, 2].min(),
                                 rng.uniform(-3.0, 3.0)])
 
-    def _pace(self, size, acceleration):
+    def _pace(self, size: float, acceleration: float) -> float:
         """Return the pace at which x and y have the acceleration, by bisection."""
         low, high = LEAST_PACE, MOST_PACE
         for _ in range(30):
@@ -48,14 +52,14 @@ class Curve:
                                                                                          pace)
         return low
 
-    def _limit(self, turn, acceleration):
+    def _limit(self, turn: float, acceleration: float) -> None:
         """Set the factors (4,) that keep height and heading within what the vehicle can."""
         pulls = np.abs(self.splines[2](np.arange(0.0, FLOWN, 0.02)))
         up = np.sqrt(np.mean(pulls[:, 2] ** 2))
         self.scale = np.array([1.0, 1.0, min(1.0, STEEPEST * acceleration / up),
                                min(1.0, turn / max(pulls[:, 3].max(), 1e-9))])
 
-    def update(self, t):
+    def update(self, t: float) -> dict:
         """Return rotorpy's flat outputs at t, s."""
         t = min(max(t, 0.0), FLOWN + MARGIN - GRID)
         return flat(self.middle, [self.scale * spline(t) for spline in self.splines])
@@ -71,11 +75,11 @@ class Stops(Curve):
 
     COUNT, MOVE, REST = 130, 1.6, 0.3       # s at the pace 1
 
-    def draw(self, rng):
+    def draw(self, rng: np.random.Generator) -> None:
         """Draw the places."""
         self.places = rng.uniform(-1.0, 1.0, (self.COUNT, 4)) * [1.0, 1.0, 0.5, 1.0]
 
-    def at(self, phase):
+    def at(self, phase: Array) -> Array:
         """Return the places."""
         number, rest = np.divmod(phase, self.MOVE + self.REST)
         k, x = number.astype(int), np.minimum(rest / self.MOVE, 1.0)[:, None]
@@ -88,7 +92,7 @@ class Gates(Curve):
 
     COUNT, LAP = 7, 9.0         # gates; s of a lap at the pace 1
 
-    def draw(self, rng):
+    def draw(self, rng: np.random.Generator) -> None:
         """Draw the gates around the middle, at unequal angles."""
         angles = np.sort(2.0 * np.pi * (np.arange(self.COUNT) + rng.uniform(
             -0.35, 0.35, self.COUNT)) / self.COUNT)
@@ -98,7 +102,7 @@ class Gates(Curve):
         self.course = CubicSpline(np.linspace(0.0, self.LAP, self.COUNT + 1),
                                   np.concatenate([gates, gates[:1]]), bc_type='periodic')
 
-    def at(self, phase):
+    def at(self, phase: Array) -> Array:
         """Return the places; the heading winds on."""
         ahead = self.course(phase, 1)
         heading = np.unwrap(np.arctan2(ahead[:, 1], ahead[:, 0]))
@@ -108,13 +112,13 @@ class Gates(Curve):
 class Knot(Curve):
     """A torus knot, which crosses itself at different heights."""
 
-    def draw(self, rng):
+    def draw(self, rng: np.random.Generator) -> None:
         """Draw which knot, from where, and which way around."""
         turns = ((2, 3), (2, 5), (3, 4))[int(rng.integers(3))]
         self.long, self.short = turns
         self.start, self.sign = rng.uniform(0.0, 2.0 * np.pi), rng.choice([-1.0, 1.0])
 
-    def at(self, phase):
+    def at(self, phase: Array) -> Array:
         """Return the places."""
         angle = self.start + 0.4 * self.sign * phase
         ring = 0.65 + 0.35 * np.cos(self.short * angle)
@@ -125,12 +129,12 @@ class Knot(Curve):
 class Spirals(Curve):
     """Circles that widen and narrow in climb and descent, with a nose that turns unevenly."""
 
-    def draw(self, rng):
+    def draw(self, rng: np.random.Generator) -> None:
         """Draw how fast they widen and how fast it climbs."""
         self.widen, self.climb = rng.uniform(0.12, 0.25, 2)
         self.start = rng.uniform(0.0, 2.0 * np.pi, 3)
 
-    def at(self, phase):
+    def at(self, phase: Array) -> Array:
         """Return the places; the heading winds on."""
         angle = self.start[0] + phase
         reach = 0.65 + 0.35 * np.sin(self.widen * phase + self.start[1])
@@ -149,12 +153,12 @@ class Sweep(Curve):
 
     LOW, RATE = 0.6, 0.05       # rad per phase; growth of the frequency per phase
 
-    def draw(self, rng):
+    def draw(self, rng: np.random.Generator) -> None:
         """Draw phases and the unequal frequencies of the axes."""
         self.start = rng.uniform(0.0, 2.0 * np.pi, 4)
         self.share = rng.uniform(0.8, 1.25, 4)
 
-    def at(self, phase):
+    def at(self, phase: Array) -> Array:
         """Return the places."""
         rate = self.LOW * self.share * np.exp(self.RATE * phase[:, None])
         angle = self.start + rate / self.RATE

@@ -3,6 +3,7 @@
 """Controllers of the evaluation alone, of the nominal vehicle with any number of rotors."""
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.linalg import solve_continuous_are
 
 from withheld.constants import cross, GRAVITY, rotation_of
@@ -11,7 +12,7 @@ UP = np.array([0.0, 0.0, 1.0])
 LEAST_LIFT = 0.3        # of gravity: rotors do not pull downwards
 
 
-def mixer_of(params):
+def mixer_of(params: dict) -> NDArray[np.float64]:
     """Return the matrix (n, 4) from thrust and moments to the squares of the rotors' speeds."""
     places = np.array(list(params['rotor_pos'].values()))
     k = params['k_eta']
@@ -20,7 +21,7 @@ def mixer_of(params):
         params['k_m'] * np.asarray(params['rotor_directions'])]))
 
 
-def inertia_of(params):
+def inertia_of(params: dict) -> NDArray[np.float64]:
     """Return the nominal moments of inertia (3,)."""
     return np.array([params[key] for key in ('Ixx', 'Iyy', 'Izz')])
 
@@ -38,13 +39,13 @@ class TiltFirst:
     TILT, HEADING = 9.0, 2.5                        # 1/s
     RATE, RATE_SLOW = np.array([22.0, 22.0, 9.0]), np.array([15.0, 15.0, 4.0])  # 1/s, 1/s^2
 
-    def __init__(self, params):
+    def __init__(self, params: dict) -> None:
         """Take the nominal vehicle."""
         self.mass, self.inertia = params['mass'], inertia_of(params)
         self.mixer = mixer_of(params)
         self._time, self._drift, self._turn = None, np.zeros(3), np.zeros(3)
 
-    def update(self, t, state, aim):
+    def update(self, t: float, state: dict, aim: dict) -> dict:
         """Return {'cmd_motor_speeds': (n,) rad/s}; state and aim as of rotorpy's controllers."""
         step = 0.0 if self._time is None else t - self._time
         self._time = t
@@ -84,7 +85,7 @@ class Lqr:
     EFFORT = np.array([6.0, 40.0, 40.0, 15.0])
     STEEPEST = 0.7                                  # rad
 
-    def __init__(self, params):
+    def __init__(self, params: dict) -> None:
         """Solve for the gains (4, 15)."""
         self.mass, self.inertia = params['mass'], inertia_of(params)
         self.mixer = mixer_of(params)
@@ -96,7 +97,7 @@ class Lqr:
         self.gains = (b.T @ cost) * (self.EFFORT ** 2)[:, None]
         self._time, self._sum = None, np.zeros(3)
 
-    def update(self, t, state, aim):
+    def update(self, t: float, state: dict, aim: dict) -> dict:
         """Return {'cmd_motor_speeds': (n,) rad/s}; state and aim as of rotorpy's controllers."""
         step = 0.0 if self._time is None else t - self._time
         self._time = t

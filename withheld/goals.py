@@ -55,7 +55,7 @@ class Reached:
     missed: tuple[str, ...] = ()
 
 
-def goals(found):
+def goals(found: dict) -> list[Reached]:
     """Return the Reached of a score, goal by goal and within each column by column."""
     columns = [_Column(name, found) for name in GOALS if name in found['columns']]
     rows = [(_Column.first,), *((_Column.exact, kind) for kind in SIDES), (_Column.alarm,),
@@ -151,7 +151,7 @@ class _Column:
                              wrong=lambda case: case['refused'])
 
 
-def _target(least, most):
+def _target(least: float | None, most: float | None) -> str:
     if least is not None and most is not None:
         return f'{100 * least:.0f} to {100 * most:.0f} %'
     if least is not None:

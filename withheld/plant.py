@@ -226,7 +226,7 @@ class Reality(Multirotor):
         return s
 
 
-def _with_four(params):
+def _with_four(params: dict) -> dict:
     """
     Return parameters with the first four rotors alone.
 

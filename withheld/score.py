@@ -217,7 +217,7 @@ def score(labels, found):
         if seconds else None}
 
 
-def case_of(name, label, found, row):
+def case_of(name: str, label: dict, found: dict, row: dict) -> dict:
     """
     Return a judged case for the lists of what was missed.
 
@@ -235,7 +235,7 @@ def case_of(name, label, found, row):
                   'outside': not all(inside), 'misjudged': max(off, default=0.0)}
 
 
-def text_of(name, label, found):
+def text_of(name: str, label: dict, found: dict) -> str:
     """Return a case in words: its name, what it is, what was said."""
     effects = [f'{effect}' + (f' ({one["form"]})' if one.get('form', 'ours') != 'ours' else '')
                + (f' {one["asked"]:g}' if one.get('asked') else '')
@@ -303,7 +303,7 @@ def calibration(pairs):
             'brier_of_base_rate': float(present.mean() * (1.0 - present.mean()))}
 
 
-def given_and_present(label, found):
+def given_and_present(label: dict, found: dict) -> list[tuple[float, bool]]:
     """Return [(probability, whether the effect is there)] of what a label does not leave open."""
     return [(row['probability'], row['effect'] in label['effects'])
             for row in found.get('ranking', ()) if row['effect'] not in label.get('beside', ())]
@@ -330,7 +330,7 @@ def coverage(pairs):
             for name, values in [('all', every), *sorted(inside.items())] if values}
 
 
-def _inside(label, found):
+def _inside(label: dict, found: dict) -> dict[str, list[bool]]:
     """Return {effect: [whether each true parameter is inside its interval]} of one case."""
     inside = {}
     if label['stranger'] or not is_exact(label, found):

@@ -78,7 +78,7 @@ WHITE = {'normal': _normal, 'student': _student, 'laplace': _laplace, 'breathing
          'uneven': _uneven}
 
 
-def noise_of(kind, rng):
+def noise_of(kind: str, rng: np.random.Generator) -> Noise:
     """Return the Noise of a case; each deviation is drawn, but for the normal one."""
     if kind == 'normal':
         return Noise()
