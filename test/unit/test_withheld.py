@@ -451,6 +451,20 @@ def test_the_diagnosing_process_is_not_told_where_the_labels_are(tmp_path, monke
                                if not target.startswith('/proc/')}
 
 
+def test_cases_are_diagnosed_side_by_side_and_each_once(tmp_path, capsys):
+    from withheld import blind
+    flights, found = tmp_path / 'flights', tmp_path / 'found'
+    for name in 'abc':
+        (flights / name).mkdir(parents=True)
+    found.mkdir()
+    (found / 'c.json').write_text('{}')
+    blind.main(str(flights), str(found), '2')
+    answers = {path.stem: json.loads(path.read_text()) for path in found.glob('*.json')}
+    assert set(answers) == set('abc') and answers['c'] == {}
+    assert all('vehicle.yaml' in answers[name]['refused'] for name in 'ab')
+    assert capsys.readouterr().out.count('done') == 2
+
+
 WRITES = """
 import os, sys
 print('1 1', flush=True)

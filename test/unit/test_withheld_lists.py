@@ -19,6 +19,7 @@ controllers, outside, paths, plant, realities, sensors, vehicles = (
     import_module(f'withheld.{name}') for name in (
         'controllers', 'outside', 'paths', 'plant', 'realities',
         'sensors', 'vehicles'))
+setups = import_module('withheld.estimator.setups')
 EVALUATION = lists.EVALUATION
 
 
@@ -31,6 +32,14 @@ def test_every_name_of_the_lists_is_one_that_is_flown():
                          (lists.CONTROLLERS, controllers.CONTROLLERS),
                          (lists.NOISES, sensors.WHITE), (lists.STRANGERS, outside.KINDS)):
         assert {name for part in names.values() for name in part} == set(table)
+
+
+def test_the_estimators_of_the_two_lists_share_no_sensor_or_filter():
+    developed, evaluated = (setups.SETUPS[part] for part in lists.PARTS)
+    for one in developed:
+        for other in evaluated:
+            assert one.imu != other.imu and one.aid != other.aid
+            assert one.make_filter.keywords != other.make_filter.keywords
 
 
 def test_the_vehicles_of_the_evaluation_differ_in_mass_and_geometry():
