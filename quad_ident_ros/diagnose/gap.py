@@ -32,16 +32,19 @@ MEDIAN = 2.366                  # of the sum of three squared standard normal nu
 @dataclass(frozen=True, eq=False)
 class Noise:
     """
-    Noise of the measurement: standard deviation (12,) of the errors, of a tilt, of a drift.
+    What no model can predict: standard deviation (12,) of measured states, tilt, drift, walk.
 
-    Both stay the same over a prediction. The drift (m/s) is the error of the velocity that does,
-    beside that in the deviation. The tilt (rad) is that of the attitude: a vehicle whose attitude
-    is taken from the record is pulled sideways by it.
+    Tilt and drift stay the same over a prediction. The drift (m/s) is the error of the velocity
+    that does, beside that in the deviation. The tilt (rad) is that of the attitude: a vehicle
+    whose attitude is taken from the record is pulled sideways by it. The walk (3,) (rad/s)^2/s is
+    the growth of the variance of the rate, by moments that differ from one sample to the next:
+    those of commands between the samples of a log, or finer than it.
     """
 
     deviation: np.ndarray
     tilt: float
     drift: float
+    walk: np.ndarray
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,6 +107,14 @@ def noise_gap(track: Track, vehicle: Vehicle, z: np.ndarray, noise: Noise, horiz
     pull = 2.0 * (vehicle.gravity * noise.tilt) ** 2    # of both horizontal axes
     found['velocity'] += pull * horizon ** 2
     found['position'] += pull * (horizon ** 2 / 2.0) ** 2 + 3.0 * (noise.drift * horizon) ** 2
+    # A walk of the rate, integrated; where the attitude is predicted, it pulls sideways.
+    walk = float(np.sum(noise.walk))
+    found['rate'] += walk * horizon
+    found['attitude'] += walk * horizon ** 3 / 3.0
+    if flight.guide is None:
+        sideways = vehicle.gravity ** 2 * float(np.sum(noise.walk[:2]))
+        found['velocity'] += sideways * horizon ** 5 / 20.0
+        found['position'] += sideways * horizon ** 7 / 252.0
     return {name: float(np.sqrt(value)) for name, value in found.items()}
 
 

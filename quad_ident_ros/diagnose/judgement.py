@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What each effect contributes, which effects matter, and whether something unknown remains."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
@@ -75,9 +75,7 @@ class Bench:
 
         fixed (Z,): nuisances that are not free in the flight that was held out.
         """
-        held_out = nuisances_of(self.tracks[-1], self.vehicle, estimate.z,
-                                tuple(cause.nuisance for cause in chosen if cause.nuisance),
-                                self.noise.deviation, self.flights[0].segment, fixed)
+        held_out = self._nuisances(-1, estimate.z, chosen, fixed)
         vectors = (*estimate.vectors, estimate.z + held_out)
         return Model(chosen, estimate, vectors, self.ends(vectors))
 
@@ -120,6 +118,34 @@ class Bench:
         return self.model(chosen, estimate, fixed[-1])
 
 
+    def left_out(self, model: Model) -> tuple:
+        """
+        Return the Ends of each flight by a Model refitted to the others, the one held out last.
+
+        A flight that is the only one to learn from is predicted by the model as it is.
+        """
+        count, found = len(self.flights), []
+        for k in range(count if count > 1 and model.chosen else 0):
+            kept = [n for n in range(count) if n != k]
+            fit, flights = model.estimate, [self.flights[n] for n in kept]
+            nuisances = replace(fit.nuisances, values=fit.nuisances.values[kept])
+            refit = refitted(flights, self.vehicle, fit.z, model.chosen,
+                             [self.selection.noise[n] for n in kept], nuisances,
+                             [fit.starts[n] for n in kept],
+                             scatter=self.selection.quadratic.scatter)
+            found.append(gaps.ends(self.tracks[k], self.vehicle,
+                                   refit.z + self._nuisances(k, refit.z, model.chosen),
+                                   gaps.HEADLINE))
+        return (*(found or model.ends[:-1]), model.ends[-1])
+
+    def _nuisances(self, flight: int, z: np.ndarray, chosen: tuple,
+                   fixed: np.ndarray | None = None) -> np.ndarray:
+        """Return the nuisances (Z,) of a flight beside a vector that it took no part in."""
+        return nuisances_of(self.tracks[flight], self.vehicle, z,
+                            tuple(cause.nuisance for cause in chosen if cause.nuisance),
+                            self.noise.deviation, self.flights[0].segment, fixed)
+
+
 @dataclass(frozen=True)
 class Weight:
     """
@@ -143,8 +169,9 @@ class Judgement:
 
     model: all effects that are there; material: those of them that matter; weights {candidate:
     Weight} and probability {effect: of being present}; without {candidate: Model without it};
-    before: the Ends of the nominal vehicle with the nuisances of each flight; noise: {group: gap}
-    of each flight; unexplained: {group: gap beyond tolerance and error of form}.
+    before: the Ends of the nominal vehicle with the nuisances of each flight; left_out: those of
+    each flight by the model fitted to the others; noise: {group: gap} of each flight;
+    unexplained: {group: gap beyond tolerance and error of form}.
     """
 
     model: Model
@@ -153,6 +180,7 @@ class Judgement:
     probability: dict
     without: dict
     before: tuple
+    left_out: tuple
     noise: list
     unexplained: dict
 
@@ -196,7 +224,8 @@ def judge(bench: Bench) -> Judgement:
     else:
         improbable = tuple(cause for cause in model.effects if cause in absent)
         final = bench.without(model, improbable) if improbable else model
-    return Judgement(final, material, weights, present, without, ends, noises,
+    return Judgement(final, material, weights, present, without, ends, bench.left_out(final),
+                     noises,
                      unexplained(final.gap, before, noise, bool(material), rules))
 
 

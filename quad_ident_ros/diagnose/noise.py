@@ -1,6 +1,8 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""The noise of the measurement: what a perfect model would be off by."""
+"""What a perfect model would be off by: noise of the measurement and of the motion."""
+
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -11,6 +13,8 @@ from quad_ident_ros.diagnose.select import Selection
 from quad_ident_ros.greybox.errors import GROUPS
 from quad_ident_ros.greybox.kinematics import measurement_noise
 from quad_ident_ros.greybox.noise import near_noise, quick_noise
+
+LAGS = (0.02, 0.05, 0.1)    # s: gyros are filtered at 20 Hz and more, effects take half a second
 
 
 def noise_of(selection: Selection, intake: Intake, rules: Rules) -> Noise:
@@ -32,4 +36,40 @@ def noise_of(selection: Selection, intake: Intake, rules: Rules) -> Noise:
     levels = (np.mean(near[attitude]) < rules.filtered_attitude
               and np.mean(near[position]) > rules.tracked_position)
     level, drift = (rules.levelling, rules.drift) if levels else (0.0, 0.0)
-    return Noise(deviation, float(np.sqrt(steady + mean + level ** 2)), drift)
+    walk = rate_walk([(raw[..., GROUPS['rate']], flight.period) for raw, flight in
+                      zip(best.residuals, intake.flights, strict=True)], rules.shown)
+    return Noise(deviation, float(np.sqrt(steady + mean + level ** 2)), drift, walk)
+
+
+def rate_walk(parts: Sequence[tuple[np.ndarray, float]], shown: float) -> np.ndarray:
+    """
+    Return the growth (3,) (rad/s)^2/s of the variance of the rate by independent moments.
+
+    The mean square change of an error over a lag is that of noise, flat beyond its memory, of
+    independent moments, in proportion to the lag, and of slow ones, to its square. The slopes
+    between three lags tell these apart; 0 where less than `shown` standard errors remain.
+    Args: parts: residuals (B, count + 1, 3) of the rate and the period s of each flight.
+    """
+    each = []
+    for errors, period in parts:
+        near, mid, far = lags = _lags(period)
+        if far >= errors.shape[1]:
+            return np.zeros(errors.shape[-1])
+        change = [np.mean((errors[:, lag:] - errors[:, :-lag]) ** 2, axis=1) for lag in lags]
+        early = (change[1] - change[0]) / ((mid - near) * period)
+        late = (change[2] - change[1]) / ((far - mid) * period)
+        each.append(np.stack([late, early - (late - early) * (mid + near) / (far - near)]))
+    slopes = np.concatenate(each, axis=1)
+    mean = slopes.mean(axis=1)
+    error = slopes.std(axis=1) / np.sqrt(slopes.shape[1])
+    least = np.argmin(mean, axis=0)[None]
+    value, spread = (np.take_along_axis(table, least, axis=0)[0] for table in (mean, error))
+    return np.where(value > shown * spread, value, 0.0)
+
+
+def _lags(period: float) -> tuple[int, ...]:
+    """Return three lags, in samples: beyond the memory of filters, below that of effects."""
+    near, mid, far = (round(lag / period) for lag in LAGS)
+    near = max(near, 1)
+    mid = max(mid, near + 1)
+    return near, mid, max(far, mid + 1)

@@ -52,12 +52,12 @@ def verdict_of(bench: Bench, judged: Judgement, causes: tuple) -> Verdict:
 
 def flight_checks(bench: Bench, judged: Judgement) -> tuple[FlightCheck, ...]:
     """
-    Return how well each flight is predicted, and whether it differs from the others.
+    Return how well the others predict each flight, and whether it differs from them.
 
     It differs where a gap remains that matters and is twice that of the other flights.
     """
     found, before = ([gaps.gap([one]) for one in ends]
-                     for ends in (judged.model.ends, judged.before))
+                     for ends in (judged.left_out, judged.before))
     named, rows = bool(judged.material), []
     for k, (track, gap, noise) in enumerate(zip(bench.tracks, found, judged.noise, strict=True)):
         remains = unexplained(gap, before[k], noise, named, bench.rules)

@@ -193,6 +193,16 @@ def test_a_held_out_flight_of_another_vehicle_is_told():
     assert said == [False, True]
 
 
+@pytest.mark.parametrize('odd', [0, 2])
+def test_each_flight_is_left_out_in_turn_and_the_one_that_differs_is_named(odd):
+    truth = {'rotor_drag': TRUTHS['rotor_drag']}
+    flights = flown(truth)
+    loaded = replace(VEHICLE, mass=1.3 * VEHICLE.mass)
+    flights[odd] = fly_closed_loop(loaded, truth, 'lissajous', duration=12.0, seed=9, noise=WHITE)
+    checks = diagnose(flights, VEHICLE).flight_checks
+    assert [one.differs for one in checks] == [k == odd for k in range(len(flights))]
+
+
 def test_a_vehicle_that_is_lost_within_half_a_second_is_found():
     """The model without effects turns over: no slope at it leads to what is there."""
     truth = {'com_offset': {'x': 0.006, 'y': -0.008, 'z': 0.004},

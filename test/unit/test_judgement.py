@@ -151,7 +151,7 @@ def checks_of(*sizes, named=True):
     noise = {'position': 0.02, 'velocity': 0.04, 'attitude': 0.02, 'rate': 0.02}
     effects = ('an effect',) if named else ()
     judged = SimpleNamespace(
-        model=SimpleNamespace(ends=tuple(map(flight, sizes)), effects=effects), material=effects,
+        left_out=tuple(map(flight, sizes)), material=effects,
         before=tuple(flight(1.0) for _ in sizes), noise=[noise for _ in sizes])
     tracks = [SimpleNamespace(name=f'flight {k}') for k in range(len(sizes))]
     return flight_checks(SimpleNamespace(tracks=tracks, rules=RULES), judged)
