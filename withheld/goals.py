@@ -34,7 +34,7 @@ GOALS = {
     'files': _STATES, 'logs': _STATES, 'estimator': _STATES,
     'faulty': Goal(0.95, (0.88, 0.80, 0.60), 0.05, 0.80, 0.05, (0.90, 0.99), 0.15, (0.95, 0.80)),
 }
-SIDES = {'pair': 'pairs', 'mixture': 'mixtures', 'single': 'single'}
+SIDES = {'single': 'single', 'pair': 'pairs', 'mixture': 'mixtures'}
 CLEAR = 0.5     # from what is true: a probability in the middle that is further off
 
 
