@@ -31,12 +31,17 @@ Check the diagnosis on flights whose effects are withheld from it.
 One process flies realities with rotorpy and seals what they were; a second one diagnoses the
 flights and cannot open the seal; this one then opens it and prints how often the diagnosis was
 right. The labels on disk are enciphered with a pad that only this process holds in its memory.
+
+`calibrate` instead fits the probabilities of the diagnosis to flights of development.
 """
 
 EPILOG = """\
 examples:
   ./run withheld --set development --count 12    a few cases, to see that it works
   ./run withheld                                 the evaluation set; adds to docs/withheld.md
+  ./run withheld --count 150 --jobs 2            the same kinds of cases in proportion, but fewer
+  ./run withheld calibrate                       fly development; print Rules.calibration
+  ./run withheld calibrate KEPT                  the same of a folder that --keep has written
 """
 
 
@@ -45,19 +50,27 @@ def main(arguments=None):
     parser = argparse.ArgumentParser(
         prog='quad_ident withheld', description=DESCRIPTION, epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument('--set', default='evaluation', choices=SETS,
+    parser.add_argument('action', nargs='?', choices=('calibrate',), metavar='calibrate',
+                        help='fit the probabilities to flights of development')
+    parser.add_argument('folders', nargs='*', metavar='FOLDER',
+                        help='for calibrate: kept runs (default: one that is flown now)')
+    parser.add_argument('--set', choices=SETS,
                         help='which cases (default: evaluation, to be run once per release)')
-    parser.add_argument('--count', type=_positive, metavar='N', help='only the first N cases')
+    parser.add_argument('--count', type=_positive, metavar='N',
+                        help='only so many cases, of each kind in proportion')
     parser.add_argument('--seed', type=_positive, metavar='S',
                         help='fly this draw again (default: one that nobody knows beforehand)')
     parser.add_argument('--jobs', type=_positive, default=os.cpu_count(), metavar='N',
-                        help='processes that fly (default: one per core)')
+                        help='processes that fly and that diagnose (default: one per core)')
     parser.add_argument('--keep', metavar='FOLDER',
                         help='keep flights, diagnoses and opened labels in this new folder')
     parser.add_argument('--json', metavar='FILE', help='write the score as data; - prints it')
     options = parser.parse_args(arguments)
     if options.keep and Path(options.keep).exists():
         parser.error(f'--keep {options.keep}: it exists already; name a new folder')
+    if options.action:
+        return _calibrate(parser, options)
+    options.set = options.set or 'evaluation'
     work = Path(tempfile.mkdtemp(prefix='withheld-'))
     try:
         opened, found = run(options, work)
@@ -65,14 +78,11 @@ def main(arguments=None):
             'set': options.set, 'seed': opened['seed'], 'version': _version(),
             'not_flown': opened['not_flown']}
         if options.keep:
-            (work / 'labels.json').write_text(json.dumps(opened, indent=1), encoding='utf-8')
             shutil.copytree(work, options.keep)
     finally:
         shutil.rmtree(work)
     if options.json != '-':
         print(markdown(result))
-        for line in result['not_flown']:
-            print(f'not flown: {line}', file=sys.stderr)
     if options.json == '-':
         print(json.dumps(result, indent=1))
     elif options.json:
@@ -80,6 +90,44 @@ def main(arguments=None):
     if options.set == 'evaluation' and options.count is None:
         keep(DOCUMENT, result, datetime.date.today())
     return 0
+
+
+def _calibrate(parser: argparse.ArgumentParser, options: argparse.Namespace) -> int:
+    """Fit the probabilities to kept runs, or to one that is flown now; return the exit code."""
+    if options.set == 'evaluation':
+        parser.error('calibrate: never on the evaluation, which would not count any more')
+    from withheld.calibrate import fit, rows_of, text_of
+    pairs = []
+    for folder in map(Path, options.folders):
+        try:
+            kept = json.loads((folder / 'labels.json').read_text(encoding='utf-8'))
+        except OSError as error:
+            parser.error(f'calibrate {folder}: no kept run: {error}')
+        if kept.get('set') == 'evaluation':
+            parser.error(f'calibrate {folder}: a run of the evaluation')
+        pairs += _paired(kept, diagnoses_in(folder / 'found'))
+    if not options.folders:
+        options.set = 'development'
+        with tempfile.TemporaryDirectory(prefix='withheld-') as work:
+            pairs = _paired(*run(options, Path(work)))
+            if options.keep:
+                shutil.copytree(work, options.keep)
+    rows = rows_of(pairs)
+    try:
+        print(text_of(rows, fit(rows)))
+    except ValueError as error:
+        parser.error(str(error))
+    return 0
+
+
+def _paired(opened: dict, found: dict) -> list[tuple[dict, dict]]:
+    return [(label, found.get(name, {})) for name, label in opened['labels'].items()]
+
+
+def diagnoses_in(folder: Path) -> dict[str, dict]:
+    """Return {case: diagnosis} of a folder that was written to blindly."""
+    return {path.stem: json.loads(path.read_text(encoding='utf-8'))
+            for path in folder.glob('*.json')}
 
 
 def run(options, work):
@@ -90,10 +138,10 @@ def run(options, work):
     with tempfile.TemporaryDirectory(prefix='sealed-') as vault, _bar() as bar:
         sealed = Path(vault) / 'labels'
         key = fly(options, flights, sealed, bar)
-        diagnose(flights, found, bar)
+        diagnose(flights, found, bar, options.jobs)
         opened = unseal(sealed.read_bytes(), key)
-    return opened, {path.stem: json.loads(path.read_text(encoding='utf-8'))
-                    for path in found.glob('*.json')}
+    (work / 'labels.json').write_text(json.dumps(opened, indent=1), encoding='utf-8')
+    return opened, diagnoses_in(found)
 
 
 def fly(options, flights, sealed, bar):
@@ -119,10 +167,10 @@ def key_from(command, bar):
         return key.result()
 
 
-def diagnose(flights, found, bar):
+def diagnose(flights, found, bar, jobs=1):
     """Have the flights diagnosed by a process that is told of them and of nothing else."""
     process = subprocess.Popen(
-        [sys.executable, '-m', 'withheld.blind', str(flights), str(found)],
+        [sys.executable, '-m', 'withheld.blind', str(flights), str(found), str(jobs)],
         stdout=subprocess.PIPE, text=True, cwd=flights, env={**os.environ, **THREADS})
     follow(process, bar, 'diagnosing them', sum(1 for _ in flights.iterdir()))
 

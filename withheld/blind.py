@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The diagnosing process: it is told a folder of flights, and knows nothing else of them."""
 
+from concurrent.futures import as_completed, ProcessPoolExecutor
 import json
 from pathlib import Path
 import sys
@@ -24,23 +25,29 @@ def diagnosis_of(folder):
     return diagnose(records, vehicle).as_data()
 
 
-def main(flights, found):
+def write_diagnosis(folder: Path, target: Path) -> None:
+    """Diagnose the case in a folder and write the answer into a file."""
+    begin = time.process_time()
+    try:
+        data = diagnosis_of(folder)
+    except InputError as error:
+        data = {'refused': str(error)}
+    except Exception as error:
+        # A failure is a result too: it counts as wrong.
+        data = {'failed': f'{type(error).__name__}: {error}'}
+    data['seconds'] = time.process_time() - begin
+    target.write_text(json.dumps(data), encoding='utf-8')
+
+
+def main(flights, found, jobs='1'):
     """Diagnose every case in the folder `flights` and write {its name}.json into `found`."""
-    for folder in sorted(path for path in Path(flights).iterdir() if path.is_dir()):
-        target = Path(found) / f'{folder.name}.json'
-        if target.exists():
-            continue
-        begin = time.process_time()
-        try:
-            data = diagnosis_of(folder)
-        except InputError as error:
-            data = {'refused': str(error)}
-        except Exception as error:
-            # A failure is a result too: it counts as wrong.
-            data = {'failed': f'{type(error).__name__}: {error}'}
-        data['seconds'] = time.process_time() - begin
-        target.write_text(json.dumps(data), encoding='utf-8')
-        print(folder.name, flush=True)
+    folders = sorted(path for path in Path(flights).iterdir() if path.is_dir())
+    waiting = [(folder, Path(found) / f'{folder.name}.json') for folder in folders]
+    with ProcessPoolExecutor(int(jobs)) as pool:
+        done = [pool.submit(write_diagnosis, *one) for one in waiting if not one[1].exists()]
+        for one in as_completed(done):
+            one.result()
+            print('done', flush=True)
 
 
 if __name__ == '__main__':

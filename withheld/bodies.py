@@ -125,7 +125,7 @@ class Bodies(Reality):
             **parts)
 
     def advance(self, state, command, step):
-        """Return the packed state (20,) after a step (s) with a command held."""
+        """Return the packed state (16 + n,) after a step (s) with a command held."""
         command = np.clip(command, self.rotor_speed_min, self.rotor_speed_max)
         count = int(np.ceil(step / STEP - 1e-9))
         h = self.model.opt.timestep = step / count

@@ -1,11 +1,12 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What flies: rotorpy's geometric controller, and a cascade of PIDs as of most autopilots."""
+"""What one develops with: rotorpy's geometric controller, and a cascade as of most autopilots."""
 
 import numpy as np
 from rotorpy.controllers.quadrotor_control import SE3Control
 
 from withheld.constants import cross, GRAVITY, rotation_of
+from withheld.feedback import Lqr, mixer_of, TiltFirst
 
 
 class Geometric(SE3Control):
@@ -23,7 +24,7 @@ class Geometric(SE3Control):
         self.kd_att = np.array([20.0, 20.0, 5.0])
 
     def update(self, t, state, flat_output):
-        """Return rotorpy's {'cmd_motor_speeds': (4,) rad/s}, by its law but with less ado."""
+        """Return rotorpy's {'cmd_motor_speeds': (n,) rad/s}, by its law but with less ado."""
         force = self.mass * (self.kp_pos * (flat_output['x'] - state['x'])
                              + self.kd_pos * (flat_output['x_dot'] - state['v'])
                              + flat_output['x_ddot'] + (0.0, 0.0, self.g))
@@ -58,15 +59,11 @@ class Cascade:
         """Take the nominal vehicle."""
         self.mass = params['mass']
         self.inertia = np.array([params[key] for key in ('Ixx', 'Iyy', 'Izz')])
-        places = np.array(list(params['rotor_pos'].values()))
-        k = params['k_eta']
-        self.mixer = np.linalg.inv(np.stack([
-            np.full(len(places), k), k * places[:, 1], -k * places[:, 0],
-            params['k_m'] * params['rotor_directions']]))
+        self.mixer = mixer_of(params)
         self._time, self._drift, self._turn = None, np.zeros(3), np.zeros(3)
 
     def update(self, t, state, aim):
-        """Return {'cmd_motor_speeds': (4,) rad/s}; state and aim as of rotorpy's controllers."""
+        """Return {'cmd_motor_speeds': (n,) rad/s}; state and aim as of rotorpy's controllers."""
         step = 0.0 if self._time is None else t - self._time
         self._time = t
         late = (aim['x_dot'] + self.POSITION * (aim['x'] - state['x'])) - state['v']
@@ -91,4 +88,4 @@ class Cascade:
         return {'cmd_motor_speeds': np.sqrt(np.maximum(squares, 0.0))}
 
 
-CONTROLLERS = {'geometric': Geometric, 'cascade': Cascade}
+CONTROLLERS = {'geometric': Geometric, 'cascade': Cascade, 'tilt_first': TiltFirst, 'lqr': Lqr}

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from withheld.constants import rotation_of
+from withheld.constants import hover_speed, rotation_of
 from withheld.controllers import CONTROLLERS
 from withheld.logs import Logging, LowPass
 from withheld.sensors import declared, moved
@@ -26,8 +26,8 @@ class Flown:
     """
     A flight as it was.
 
-    step s; states (N, 13) of the centre of mass; speeds (N, 4) rad/s of the rotors; exact (N, 13)
-    measured without noise; measured (N, 13); commands (N, 4) rad/s, each held for a step;
+    step s; states (N, 13) of the centre of mass; speeds (N, n) rad/s of the rotors; exact (N, 13)
+    measured without noise; measured (N, 13); commands (N, n) rad/s, each held for a step;
     voltage (N,) V.
     """
 
@@ -61,17 +61,18 @@ def fly(reality, params, path, seconds, step, noise, rng, sensors, full_voltage=
     control = CONTROLLERS[controller](params)
     smooth = LowPass(logging.low_pass, step)
     changes = noise.draw(count, step, rng)
-    states, speeds = np.empty((count, 13)), np.empty((count, 4))
+    rotors = params['num_rotors']
+    states, speeds = np.empty((count, 13)), np.empty((count, rotors))
     exact, measured = np.empty((count, 13)), np.empty((count, 13))
-    commands, voltage = np.empty((count, 4)), np.empty(count)
+    commands, voltage = np.empty((count, rotors)), np.empty(count)
     aim = path.update(0.0)
-    s = np.zeros(20)
+    s = np.zeros(16 + rotors)
     s[0:3], s[3:6] = aim['x'], aim['x_dot']
     s[8:10] = np.sin(0.5 * aim['yaw']), np.cos(0.5 * aim['yaw'])
-    hover = np.sqrt(params['mass'] * 9.81 / (4 * params['k_eta']))
+    hover = hover_speed(params)
     s[16:] = hover
     tilt = Rotation.from_euler('ZYX', sensors['tilt'][::-1]).as_quat()
-    shift, given = np.zeros(3), np.full(4, hover)
+    shift, given = np.zeros(3), np.full(rotors, hover)
     for k in range(count):
         t = k * step
         if not np.abs(s[10:13]).max() < FASTEST:
@@ -87,7 +88,7 @@ def fly(reality, params, path, seconds, step, noise, rng, sensors, full_voltage=
         voltage[k] = full_voltage * reality.battery.ratio
         aim = path.update(t)
         if aim.get('idle'):
-            given = np.full(4, IDLE * hover)
+            given = np.full(rotors, IDLE * hover)
         else:
             away = measured[k, :3] - aim['x']
             if not np.linalg.norm(away) < FARTHEST:

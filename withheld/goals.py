@@ -4,9 +4,6 @@
 
 from dataclasses import dataclass
 
-TITLES = {'ours': 'forms as ours', 'forms': 'other forms', 'files': 'wrong files',
-          'logs': 'logs', 'estimator': 'estimator states', 'faulty': 'faulty records'}
-
 
 @dataclass(frozen=True)
 class Goal:
@@ -37,36 +34,44 @@ GOALS = {
     'files': _STATES, 'logs': _STATES, 'estimator': _STATES,
     'faulty': Goal(0.95, (0.88, 0.80, 0.60), 0.05, 0.80, 0.05, (0.90, 0.99), 0.15, (0.95, 0.80)),
 }
-EXACT = ('single', 'pair', 'mixture')
+SIDES = {'single': 'single', 'pair': 'pairs', 'mixture': 'mixtures'}
+CLEAR = 0.5     # from what is true: a probability in the middle that is further off
 
 
-def goals(found):
+@dataclass(frozen=True)
+class Reached:
     """
-    Return the lines of a table: head, then a line per goal with a cell per column.
+    One goal of one column.
 
-    A cell has what was reached and, in brackets, the target; in bold what was not reached.
+    what; column; figure as text; target as text, '' where nothing is asked; met, None where there
+    is no figure or no target; missed: the cases that it was missed in, as text.
     """
-    names = [name for name in GOALS if name in found['columns']]
-    columns = [_Column(name, found) for name in names]
-    rows = [('right effect first, strength 1 and 3', _Column.first),
-            ('exact set, single / pairs / mixtures', _Column.exact),
-            ('false alarms on `none`', _Column.alarm),
-            ('`unknown` recognised / said instead of the effect', _Column.unknown),
-            ('coverage of 95 % intervals', _Column.coverage),
-            ('calibration error over 0.05 to 0.95', _Column.calibration),
-            ('share of the gap closed, median / worst tenth', _Column.closed),
-            ('refused', _Column.refused)]
-    return [('what', *(TITLES[name] for name in names)),
-            *((title, *(cell(column) for column in columns)) for title, cell in rows)]
+
+    what: str
+    column: str
+    figure: str
+    target: str = ''
+    met: bool | None = None
+    missed: tuple[str, ...] = ()
+
+
+def goals(found: dict) -> list[Reached]:
+    """Return the Reached of a score, goal by goal and within each column by column."""
+    columns = [_Column(name, found) for name in GOALS if name in found['columns']]
+    rows = [(_Column.first,), *((_Column.exact, kind) for kind in SIDES), (_Column.alarm,),
+            (_Column.unknown,), (_Column.instead,), (_Column.coverage,), (_Column.calibration,),
+            (_Column.closed, 'median'), (_Column.closed, 'tenth'), (_Column.refused,)]
+    return [make(column, *which) for make, *which in rows for column in columns]
 
 
 class _Column:
-    """The cells of one column."""
+    """The goals of one column."""
 
     def __init__(self, name, found):
-        self.goal, self.all = GOALS[name], found['columns'][name]
+        self.name, self.goal, self.all = name, GOALS[name], found['columns'][name]
         self.groups = {key.split(': ')[1]: one for key, one in found['groups'].items()
                        if key.startswith(f'{name}: ')}
+        self.cases = [case for case in found['cases'] if case['column'] == name]
 
     def _rate(self, key, *kinds):
         """Return (rate, count) of a measure over groups."""
@@ -75,57 +80,80 @@ class _Column:
         total = sum(one['rate'] * one['count'] for one in some if one['count'])
         return (total / count if count else None), count
 
-    def first(self):
-        rate, count = self._rate('first', 'single 1', 'single 3')
-        return _cell(rate, count, least=self.goal.first)
+    def _reached(self, what, rate, count, least=None, most=None, wrong=lambda case: False):
+        """Return the Reached of a rate; wrong(case) says whether a case counts against it."""
+        if rate is None:
+            return Reached(what, self.name, '-', _target(least, most))
+        figure = f'{100 * rate:.0f} %' + ('' if count is None else f' of {count}')
+        if least is None and most is None:
+            return Reached(what, self.name, figure, missed=self._told(wrong))
+        met = (least is None or rate >= least - 1e-9) and (most is None or rate <= most + 1e-9)
+        return Reached(what, self.name, figure, _target(least, most), met,
+                       () if met else self._told(wrong))
 
-    def exact(self):
-        return ' / '.join(_cell(*self._rate('exact', kind), least=least)
-                          for kind, least in zip(EXACT, self.goal.exact, strict=True))
+    def _told(self, wrong):
+        return tuple(case['text'] for case in self.cases if wrong(case))
+
+    def first(self):
+        kinds = ('single 1', 'single 3')
+        return self._reached(
+            'right effect first, strength 1 and 3', *self._rate('first', *kinds),
+            least=self.goal.first,
+            wrong=lambda case: case['group'] in kinds and case['first'] is False)
+
+    def exact(self, kind):
+        least = dict(zip(('single', 'pair', 'mixture'), self.goal.exact, strict=True))[kind]
+        return self._reached(
+            f'exact set, {SIDES[kind]}', *self._rate('exact', kind), least=least,
+            wrong=lambda case: case['kind'] == kind and case['exact'] is False)
 
     def alarm(self):
-        return _cell(*self._rate('alarm', 'none'), most=self.goal.alarm)
+        return self._reached('false alarms on `none`', *self._rate('alarm', 'none'),
+                             most=self.goal.alarm, wrong=lambda case: case['alarm'])
 
     def unknown(self):
-        instead = self.all['instead']
-        return (f'{_cell(*self._rate("unknown", "unknown"), least=self.goal.unknown)} / '
-                f'{_cell(instead["rate"], instead["count"], most=self.goal.instead)}')
+        return self._reached(
+            '`unknown` recognised', *self._rate('unknown', 'unknown'), least=self.goal.unknown,
+            wrong=lambda case: case['kind'] == 'unknown' and case['unknown'] is False)
+
+    def instead(self):
+        one = self.all['instead']
+        return self._reached('`unknown` said instead of the effect', one['rate'], one['count'],
+                             most=self.goal.instead, wrong=lambda case: case['instead'])
 
     def coverage(self):
         one = self.all['coverage'].get('all', {'rate': None, 'count': 0})
-        return _cell(one['rate'], one['count'], *self.goal.coverage)
+        few = one['rate'] is not None and one['rate'] < self.goal.coverage[0]
+        return self._reached('coverage of 95 % intervals', one['rate'], one['count'],
+                             *self.goal.coverage, wrong=lambda case: few and case['outside'])
 
     def calibration(self):
+        what, most = 'calibration error over 0.05 to 0.95', self.goal.calibration
         one = self.all['calibration']
         if one is None or one['middle'] is None:
-            return '-'
-        met = one['middle'] <= self.goal.calibration
-        return _bold(f'{one["middle"]:.2f} of {one["middle_count"]}', met) + (
-            f' (≤ {self.goal.calibration:g})')
+            return Reached(what, self.name, '-', f'≤ {most:g}')
+        met = one['middle'] <= most
+        return Reached(what, self.name, f'{one["middle"]:.2f} of {one["middle_count"]}',
+                       f'≤ {most:g}', met,
+                       () if met else self._told(lambda case: case['misjudged'] > CLEAR))
 
-    def closed(self):
+    def closed(self, key):
+        least = dict(zip(('median', 'tenth'), self.goal.closed, strict=True))[key]
         one = self.all['closed']
-        if one is None:
-            return '-'
-        return ' / '.join(_cell(one[key], None, least=least) for key, least in zip(
-            ('median', 'tenth'), self.goal.closed, strict=True))
+        what = f'share of the gap closed, {"median" if key == "median" else "worst tenth"}'
+        return self._reached(
+            what, one and one[key], None, least=least,
+            wrong=lambda case: case['closed'] is not None and case['closed'] < least)
 
     def refused(self):
-        return _cell(self.all['refused']['rate'], self.all['refused']['count'])
+        one = self.all['refused']
+        return self._reached('refused', one['rate'], one['count'],
+                             wrong=lambda case: case['refused'])
 
 
-def _bold(text, met):
-    return text if met else f'**{text}**'
-
-
-def _cell(rate, count=None, least=None, most=None):
-    """Return a rate as text with its count and target; bold where the target is missed."""
-    if rate is None:
-        return '-'
-    met = ((least is None or rate >= least - 1e-9) and (most is None or rate <= most + 1e-9))
-    text = _bold(f'{100 * rate:.0f} %' + (f' of {count}' if count is not None else ''), met)
+def _target(least: float | None, most: float | None) -> str:
     if least is not None and most is not None:
-        return f'{text} ({100 * least:.0f} to {100 * most:.0f})'
+        return f'{100 * least:.0f} to {100 * most:.0f} %'
     if least is not None:
-        return f'{text} (≥ {100 * least:.0f})'
-    return text if most is None else f'{text} (≤ {100 * most:.0f})'
+        return f'≥ {100 * least:.0f} %'
+    return '' if most is None else f'≤ {100 * most:.0f} %'

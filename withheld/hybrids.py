@@ -168,20 +168,23 @@ def read_flight(path):
         return dict(zip(names, np.loadtxt(lines, delimiter=',', ndmin=2).T, strict=True))
 
 
-def make_hybrids(part, folder, rng, source=FOLDER):
+def make_hybrids(part, folder, rng, source=FOLDER, share=1.0):
     """
     Write the cases of a part into `folder`, each in one of its name, and return their labels.
 
     The labels are {case: {'kind': 'hybrid', 'change', 'by', 'effects', 'twins'}}; that of 'base'
-    has no change. Raises FileNotFoundError where the flights are not there: they are no part of
-    the package.
+    has no change. share: of the changes, drawn, at least one. Raises FileNotFoundError where the
+    flights are not there: they are no part of the package.
     """
     if not source.is_dir():
         raise FileNotFoundError(f'{source}: the real flights that hybrids are made of')
     flights = [read_flight(source / f'{name}.csv.gz') for name in FLIGHTS[part]]
     vehicle = yaml.safe_load((source / 'vehicle.yaml').read_text(encoding='utf-8'))
     vehicle['speed_max'] *= HEADROOM
-    changes = {'base': Change({})} | draw_changes(rng, vehicle['mass'])
+    drawn = draw_changes(rng, vehicle['mass'])
+    count = max(1, round(share * len(drawn)))
+    chosen = rng.permutation(list(drawn))[:count]
+    changes = {'base': Change({})} | {name: drawn[name] for name in sorted(map(str, chosen))}
     labels = {}
     for name, change in changes.items():
         case = Path(folder) / name

@@ -16,13 +16,14 @@ import tempfile
 import numpy as np
 
 from withheld.cases import ALSO, SETS
-from withheld.estimator import EstimatedWorld, SETUPS
+from withheld.estimator.flight import EstimatedWorld
+from withheld.estimator.setups import SETUPS
 from withheld.faults import csv_text, draw_faults, Faults, record_of
 from withheld.files import misread
 from withheld.fly import Lost
 from withheld.hybrids import make_hybrids
 from withheld.logs import Grounded, Logging, LOGS, PERIODS
-from withheld.paths import Hover, Sines, Waypoints
+from withheld.paths import Hover, PATHS
 from withheld.realities import (
     DATASHEET,
     gaps_of,
@@ -41,7 +42,6 @@ STEP = 0.01         # s, of the controller and of the record
 RATES = (50.0, 100.0, 100.0, 200.0, 200.0, 500.0)      # Hz, of faulty records
 ATTEMPTS = 8
 FLOOR = 0.7         # rotor radii from the floor to the body origin of what stands on it
-CONTROLLER = {'development': 'geometric', 'evaluation': 'cascade'}
 MOST = 30.0         # the largest size of an effect that has no limit of its own
 
 
@@ -66,15 +66,15 @@ def make_case(case, part, flights, seconds, folder, rng):
 def _attempt(case, part, flights, seconds, folder, rng):
     # Wind and gusts act through drag alone.
     drag = bool(rng.random() < 0.5) or 'wind' in case.effects or bool(case.gusts)
-    params = vehicle_of(part, case.vehicle, rng, drag)
+    params = vehicle_of(case.vehicle, rng, drag)
     told, factors = misread(params, rng) if case.wrong_file else (params, {})
     log = LOGS[case.log]
-    noise, step = noise_of(part, rng), PERIODS.get(case.log, STEP)
+    noise, step = noise_of(case.noise, rng), PERIODS.get(case.log, STEP)
     if case.faulty:
         step = 1.0 / rng.choice(RATES)
         noise = replace(noise, correlation=rng.uniform(0.05, 0.3), bias=0.5)
-    paths = [_path(case, params, part, rng) for _ in range(log.flights or flights)]
-    setting = Setting(told, CONTROLLER[part], log.logging, fall=rng.uniform(0.005, 0.05),
+    paths = [_path(case, params, rng) for _ in range(log.flights or flights)]
+    setting = Setting(told, case.controller, log.logging, fall=rng.uniform(0.005, 0.05),
                       bodies=case.bodies, gusts=case.gusts)
     span, above = None, paths[-1]
     if log.landing:
@@ -154,6 +154,7 @@ def _label(case, world, reached):
                for name, strength in case.effects.items()}
     return {
         'column': case.column, 'kind': case.kind, 'faulty': case.faulty, 'vehicle': case.vehicle,
+        'path': case.path, 'controller': case.controller, 'noise': case.noise,
         'log': case.log, 'setup': case.setup, 'bodies': case.bodies, 'gusts': case.gusts,
         'effects': effects,
         'stranger': None if case.stranger is None else {
@@ -190,16 +191,15 @@ def _instead(case):
     return ('unknown',) if case.log == 'dropped' else ()
 
 
-def _path(case, params, part, rng):
+def _path(case, params, rng):
     radius = params['rotor_radius']
     near = 'ground_effect' in case.effects or rng.random() < 0.4
     low = rng.uniform(1.2, 2.0) * radius if near else rng.uniform(8.0, 14.0) * radius
     if case.kind == 'poor':
         return Hover(rng, low)
     span = float(np.sqrt(params['rotor_radius'] / 0.1))
-    family = Sines if part == 'development' else Waypoints
-    return family(rng, size=2.0 * span ** 0.5, acceleration=rng.uniform(1.8, 3.2), low=low,
-                  turn=min(3.0, 0.25 * yaw_authority(params)))
+    return PATHS[case.path](rng, size=2.0 * span ** 0.5, acceleration=rng.uniform(1.8, 3.2),
+                            low=low, turn=min(3.0, 0.25 * yaw_authority(params)))
 
 
 def make_set(name, count, seed, jobs, folder, on_case=lambda done, total: None):
@@ -212,7 +212,8 @@ def make_set(name, count, seed, jobs, folder, on_case=lambda done, total: None):
     on it alone; jobs: processes; on_case is called after each case.
     """
     chosen = SETS[name]
-    cases = chosen.cases(np.random.default_rng(seed))[:count]
+    whole = chosen.cases(np.random.default_rng(seed))
+    cases = whole[:count]
     names = [secrets.token_hex(6) for _ in cases]
     labels, not_flown = {}, []
     with ProcessPoolExecutor(jobs) as pool:
@@ -227,19 +228,20 @@ def make_set(name, count, seed, jobs, folder, on_case=lambda done, total: None):
             except Exception as error:      # of rotorpy: it takes no other case with it
                 not_flown.append(f'{type(error).__name__}: {error}')
             on_case(len(labels) + len(not_flown), len(cases))
-    if chosen.hybrids and count is None:
+    if chosen.hybrids:
         try:
             labels |= _hybrids(chosen.part, Path(folder),
-                               np.random.default_rng([seed, len(cases)]))
+                               np.random.default_rng([seed, len(cases)]),
+                               len(cases) / len(whole))
         except FileNotFoundError as error:
             not_flown.append(str(error))
     return labels, not_flown
 
 
-def _hybrids(part, folder, rng):
-    """Write the changes to real flights, in folders with random names; return their labels."""
+def _hybrids(part, folder, rng, share):
+    """Write a share of the changes to real flights, in folders of random names; return labels."""
     with tempfile.TemporaryDirectory() as apart:
-        labels = make_hybrids(part, apart, rng)
+        labels = make_hybrids(part, apart, rng, share=share)
         names = {name: secrets.token_hex(6) for name in labels}
         for name in labels:
             shutil.move(Path(apart) / name, folder / names[name])
@@ -260,7 +262,8 @@ def main(arguments=None):
     seed = secrets.randbits(48) if options.seed is None else options.seed
     labels, not_flown = make_set(options.set, options.count, seed, options.jobs, options.flights,
                                  lambda done, total: print(done, total, flush=True))
-    sealed, key = seal({'seed': seed, 'labels': labels, 'not_flown': not_flown})
+    sealed, key = seal({'set': options.set, 'seed': seed, 'labels': labels,
+                        'not_flown': not_flown})
     Path(options.sealed).write_bytes(sealed)
     with os.fdopen(options.key, 'wb') as pipe:
         pipe.write(key)

@@ -92,7 +92,7 @@ class Slosh(Force):
 
     def __init__(self, size, mass, rng):
         """Draw how it swings."""
-        self.mass = 0.02 * size * mass
+        self.load = 0.02 * size * mass      # kg; an Influence has a method `mass`
         self.rate, self.damping = 2.0 * np.pi * rng.uniform(0.6, 1.4), rng.uniform(0.02, 0.1)
         self.place, self.speed, self.rotation = np.zeros(2), np.zeros(2), np.eye(3)
 
@@ -106,7 +106,7 @@ class Slosh(Force):
 
     def force(self, time, position, velocity):
         """Return the force of the spring and damper of the load."""
-        inside = self.mass * (self.rate ** 2 * self.place
+        inside = self.load * (self.rate ** 2 * self.place
                               + 2.0 * self.damping * self.rate * self.speed)
         return self.rotation @ np.array([*inside, 0.0])
 
@@ -137,7 +137,95 @@ class Neighbours(Influence):
         return np.clip(1.0 + self.share * (np.roll(turn, 1) - turn) * np.abs(turn), 0.3, 2.0)
 
 
+class Wall(Force):
+    """
+    A force towards an upright wall, by the flow between it and the rotors.
+
+    It falls with the square of the distance; that a wall pulls, and over some radii, is in Paz
+    and others, Journal of Wind Engineering and Industrial Aerodynamics 206, 2020.
+    """
+
+    REACH = 4.0         # radii of a rotor
+
+    def __init__(self, size, radius, weight, rng):
+        """Draw where the wall stands."""
+        angle = rng.uniform(0.0, 2.0 * np.pi)
+        self.towards = np.array([np.cos(angle), np.sin(angle), 0.0])
+        self.distance, self.reach = rng.uniform(0.8, 1.4), self.REACH * radius
+        self.size = 0.1 * size * weight
+
+    def force(self, time, position, velocity):
+        """Return the force."""
+        gap = max(self.distance - position @ self.towards, 0.0)
+        return self.size / (1.0 + gap / self.reach) ** 2 * self.towards
+
+
+class Whirl(Force):
+    """A column of turning air: a force around a place, strongest at some distance from it."""
+
+    def __init__(self, size, weight, rng):
+        """Draw the place, and which way it turns."""
+        self.place, self.core = rng.uniform(-0.5, 0.5, 2), rng.uniform(0.4, 0.8)
+        self.size = 0.04 * size * weight * rng.choice([-1.0, 1.0])
+
+    def force(self, time, position, velocity):
+        """Return the force, by the velocity of Rankine's vortex with a smooth core."""
+        x, y = (position[:2] - self.place) / self.core
+        share = 2.0 * self.size / (1.0 + x * x + y * y)
+        return np.array([-share * y, share * x, 0.0])
+
+
+class Stutter(Influence):
+    """A rotor that loses thrust for a tenth of a second, now this one and now that one."""
+
+    LAST, EVERY, COUNT = 0.12, 0.9, 100         # s, s on average, so many in a flight
+
+    def __init__(self, size, rotors, rng):
+        """Take how deep it is."""
+        self.loss, self.rotors = min(0.05 * size, 0.9), rotors
+
+    def begin(self, rng):
+        """Draw when, and which rotor."""
+        self.times = np.cumsum(rng.exponential(self.EVERY, self.COUNT))
+        self.which = rng.integers(self.rotors, size=self.COUNT)
+
+    def gain(self, now):
+        """Return the factors."""
+        gain, last = np.ones(self.rotors), np.searchsorted(self.times, now.time) - 1
+        if last >= 0 and now.time - self.times[last] < self.LAST:
+            gain[self.which[last]] -= self.loss
+        return gain
+
+
+class Compass(Influence):
+    """
+    A heading that is pulled aside by iron on board and by the currents of the motors.
+
+    Once and twice around the horizon, and with the thrust (hard and soft iron: Gebre-Egziabher
+    and others, Journal of Aerospace Engineering 19(2), 2006).
+    """
+
+    def __init__(self, size, rng):
+        """Draw the harmonics."""
+        self.sizes = 0.03 * size * rng.uniform(0.6, 1.0, 3) * rng.choice([-1.0, 1.0], 3)
+        self.phases = rng.uniform(0.0, 2.0 * np.pi, 2)
+
+    def measured(self, time, state, thrust):
+        """Return the state with a heading that is off."""
+        out = state.copy()
+        x, y, z, w = state[6:10]
+        yaw = np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
+        once, twice = np.sin(np.array([yaw, 2.0 * yaw]) + self.phases)
+        off = 0.5 * float(self.sizes @ [once, twice, np.clip(thrust, 0.0, 3.0) - 1.0])
+        c, s = np.cos(off), np.sin(off)         # a turn about the world's vertical
+        out[6:10] = c * x - s * y, c * y + s * x, c * z + s * w, c * w - s * z
+        return out
+
+
+# Each with what of the vehicle its size is measured by.
 KINDS = {'periodic_force': (Periodic, 'weight'), 'tether': (Tether, 'weight'),
          'updraft': (Updraft, 'weight'), 'thrust_exponent': (Exponent, 'hover'),
          'backlash': (Backlash, 'hover'), 'slosh': (Slosh, 'mass'),
-         'ceiling': (Ceiling, 'radius'), 'neighbours': (Neighbours, 'hover')}
+         'ceiling': (Ceiling, 'radius'), 'neighbours': (Neighbours, 'hover'),
+         'wall': (Wall, 'radius', 'weight'), 'whirl': (Whirl, 'weight'),
+         'stutter': (Stutter, 'rotors'), 'compass': (Compass,)}

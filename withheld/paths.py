@@ -1,12 +1,15 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Where the vehicles are told to fly, in the form of rotorpy's trajectories."""
+"""Where the vehicles are told to fly, by name, in the form of rotorpy's trajectories."""
 
 import contextlib
 import io
 
 import numpy as np
 from rotorpy.trajectories.minsnap import MinSnap
+
+from withheld.curves import Gates, Knot, Spirals, Stops, Sweep
+from withheld.flat import flat
 
 
 class Sines:
@@ -104,9 +107,5 @@ class Hover:
         return flat(self.middle, [np.zeros(4)] * 5)
 
 
-def flat(middle, parts):
-    """Return rotorpy's flat outputs of derivatives 0 to 4 of (x, y, z, heading)."""
-    place = middle + parts[0]
-    return {'x': place[:3], 'x_dot': parts[1][:3], 'x_ddot': parts[2][:3], 'x_dddot': parts[3][:3],
-            'x_ddddot': parts[4][:3], 'yaw': place[3], 'yaw_dot': parts[1][3],
-            'yaw_ddot': parts[2][3]}
+PATHS = {'sines': Sines, 'minimum_snap': Waypoints, 'stops': Stops, 'gates': Gates, 'knot': Knot,
+         'spirals': Spirals, 'sweep': Sweep}

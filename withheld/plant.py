@@ -50,7 +50,10 @@ class Reality(Multirotor):
                              for name, place in true['rotor_pos'].items()}
         self.lag = 0.0 if motor else get('motor_lag').get('time_constant', 0.0)
         true['tau_m'] = self.lag or NO_LAG
-        super().__init__(true)
+        super().__init__(_with_four(true))
+        self.num_rotors, self.rotor_pos = true['num_rotors'], true['rotor_pos']
+        self.rotor_dir = true['rotor_directions']
+        self.extract_geometry()
         self._dry = self.mass
         self.hover = hover_speed(params)
         self.line = line or Line(get('actuation_delay').get('delay', 0.0))
@@ -71,7 +74,7 @@ class Reality(Multirotor):
         self._place = None
 
     def _s_dot_fn(self, t, s, cmd_rotor_speeds):
-        """Return the slope (20,) of a packed state, as rotorpy has it but with less ado."""
+        """Return the slope (16 + n,) of a packed state, as rotorpy has it but with less ado."""
         rotation, velocity, rate, speeds = rotation_of(s[6:10]), s[3:6], s[10:13], s[16:]
         # What rotorpy's wrench does not get told.
         self._place = s[0:3], rotation, velocity
@@ -130,7 +133,7 @@ class Reality(Multirotor):
 
     def advance(self, state, command, step):
         """
-        Return the packed state (20,) after a step (s) with a command held.
+        Return the packed state (16 + n,) after a step (s) with a command held.
 
         By the midpoint rule, which is exact for what a held command brings about but for turns of
         milliradians; with a lag by Runge-Kutta of the fourth order in parts of its time constant.
@@ -221,6 +224,17 @@ class Reality(Multirotor):
         s[2], s[3:6], s[10:13] = self.floor, 0.0, 0.0
         s[6:10] = 0.0, 0.0, np.sin(0.5 * yaw), np.cos(0.5 * yaw)
         return s
+
+
+def _with_four(params: dict) -> dict:
+    """
+    Return parameters with the first four rotors alone.
+
+    rotorpy inverts the allocation of four rotors, which nothing here uses.
+    """
+    places = dict(list(params['rotor_pos'].items())[:4])
+    return params | {'num_rotors': 4, 'rotor_pos': places,
+                     'rotor_directions': params['rotor_directions'][:4]}
 
 
 NAMES = ('motor_lag', 'actuation_delay', 'rotor_drag', 'body_drag', 'wind', 'inflow',

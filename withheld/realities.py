@@ -117,11 +117,12 @@ class World:
         parts = {name: kind(size, self.params, self._rng(name))
                  for name, (kind, size) in self.made.items()}
         for name, size in self.strangers.items():
-            kind, by = outside.KINDS[name]
-            measure = {'weight': self.params['mass'] * GRAVITY, 'mass': self.params['mass'],
-                       'hover': hover_speed(self.params),
-                       'radius': self.params['rotor_radius']}[by]
-            parts[name] = kind(size, measure, self._rng(name))
+            kind, *by = outside.KINDS[name]
+            measures = {'weight': self.params['mass'] * GRAVITY, 'mass': self.params['mass'],
+                        'hover': hover_speed(self.params),
+                        'radius': self.params['rotor_radius'],
+                        'rotors': self.params['num_rotors']}
+            parts[name] = kind(size, *(measures[one] for one in by), self._rng(name))
         if self.setting.gusts:
             parts['gusts'] = Gusts(self.setting.gusts, self.params, self._rng('gusts'))
         return parts

@@ -8,6 +8,8 @@ from withheld.cases import EFFECTS
 from withheld.hybrids import judge as judge_hybrid
 
 COLUMNS = ('ours', 'forms', 'files', 'logs', 'estimator', 'faulty')
+TITLES = {'ours': 'forms as ours', 'forms': 'other forms', 'files': 'wrong files',
+          'logs': 'logs', 'estimator': 'estimator states', 'faulty': 'faulty records'}
 BINS = (0.0, 0.05, 0.2, 0.4, 0.6, 0.8, 0.95, 1.0)
 # Between samples there is nothing to tell a delay from a lag by, where both are over at the next.
 PASSED = {'actuation_delay': ('delay', 1.0), 'motor_lag': ('time_constant', 0.5)}   # periods
@@ -188,6 +190,7 @@ def score(labels, found):
     pairs = [(label, found.get(name, missing)) for name, label in sorted(labels.items())
              if label['kind'] != 'hybrid']
     rows = [(label, judge(label, one)) for label, one in pairs]
+    names = [name for name, label in sorted(labels.items()) if label['kind'] != 'hybrid']
     groups, effects, columns = {}, {}, {}
     for (label, row), pair in zip(rows, pairs, strict=True):
         column = column_of(label)
@@ -203,6 +206,8 @@ def score(labels, found):
     seconds = [row['seconds'] for _, row in rows if row['seconds'] is not None]
     return {
         'count': len(rows), 'chance': chance(pairs),
+        'cases': [case_of(name, *pair, row) for name, pair, (_, row) in zip(
+            names, pairs, rows, strict=True)],
         'groups': {name: summary(groups[name]) for name in sorted(groups)},
         'columns': {name: _column(columns[name]) for name in COLUMNS if name in columns},
         'effects': {name: {strength: summary(some) for strength, some in sorted(by.items())}
@@ -210,6 +215,39 @@ def score(labels, found):
         'gap_agrees': agreement(pairs), 'hybrids': hybrids_of(labels, found),
         'seconds': {'median': float(np.median(seconds)), 'most': float(np.max(seconds))}
         if seconds else None}
+
+
+def case_of(name: str, label: dict, found: dict, row: dict) -> dict:
+    """
+    Return a judged case for the lists of what was missed.
+
+    Beside `judge`: column, kind, group; text: what it is and what was said; outside: whether a
+    true parameter is outside its interval; misjudged: how far off the worst probability between
+    0.05 and 0.95 is.
+    """
+    strength = strength_of(label) if label['kind'] in ('single', 'unknown') else None
+    group = label['kind'] if strength is None else f'{label["kind"]} {strength:g}'
+    off = [abs(given - there) for given, there in given_and_present(label, found)
+           if BINS[1] <= given < BINS[-2]]
+    inside = [one for values in _inside(label, found).values() for one in values]
+    return row | {'name': name, 'column': column_of(label), 'kind': label['kind'],
+                  'group': group, 'text': text_of(name, label, found),
+                  'outside': not all(inside), 'misjudged': max(off, default=0.0)}
+
+
+def text_of(name: str, label: dict, found: dict) -> str:
+    """Return a case in words: its name, what it is, what was said."""
+    effects = [f'{effect}' + (f' ({one["form"]})' if one.get('form', 'ours') != 'ours' else '')
+               + (f' {one["asked"]:g}' if one.get('asked') else '')
+               for effect, one in label['effects'].items()]
+    if label['stranger']:
+        effects.append(f'stranger {label["stranger"]["kind"]} {label["stranger"]["asked"]:g}')
+    about = [str(label[key]) for key in ('log', 'vehicle', 'path') if label.get(key)]
+    about += [key for key in ('bodies', 'gusts') if label.get(key)]
+    if label.get('setup') is not None:
+        about.append(f'estimator {label["setup"] + 1}')
+    said = found.get('refused') or found.get('failed') or ', '.join(found.get('verdict', ()))
+    return f'`{name}` {" + ".join(effects) or "none"} ({", ".join(about)}): {said}'
 
 
 def hybrids_of(labels, found):
@@ -249,15 +287,10 @@ def calibration(pairs):
     `middle` is the error over the probabilities between 0.05 and 0.95 alone: among the others
     nine in ten are near 0. What a label allows beside its effects is neither there nor not.
     """
-    given, present = [], []
-    for label, one in pairs:
-        for row in one.get('ranking', ()):
-            if row['effect'] not in label.get('beside', ()):
-                given.append(row['probability'])
-                present.append(row['effect'] in label['effects'])
-    if not given:
+    both = [one for pair in pairs for one in given_and_present(*pair)]
+    if not both:
         return None
-    given, present = np.array(given), np.array(present, float)
+    given, present = np.array(both, float).T
     which = np.clip(np.searchsorted(BINS, given, side='right') - 1, 0, len(BINS) - 2)
     inside = [(k, which == k) for k in range(len(BINS) - 1) if (which == k).any()]
     table = [{'from': BINS[k], 'to': BINS[k + 1], 'count': int(some.sum()),
@@ -268,6 +301,12 @@ def calibration(pairs):
             'error': _error(table), 'count': len(given), 'middle': _error(middle),
             'middle_count': sum(row['count'] for row in middle),
             'brier_of_base_rate': float(present.mean() * (1.0 - present.mean()))}
+
+
+def given_and_present(label: dict, found: dict) -> list[tuple[float, bool]]:
+    """Return [(probability, whether the effect is there)] of what a label does not leave open."""
+    return [(row['probability'], row['effect'] in label['effects'])
+            for row in found.get('ranking', ()) if row['effect'] not in label.get('beside', ())]
 
 
 def _error(table):
@@ -283,21 +322,29 @@ def coverage(pairs):
     Only where the set is exact, and of the parameters that mean the same as the library's.
     """
     inside = {}
-    for label, one in pairs:
-        if label['stranger'] or not is_exact(label, one):
-            continue
-        for row in one.get('ranking', ()):
-            true = label['effects'].get(row['effect'])
-            if true is None or not true.get('comparable', True):
-                continue
-            for name, value in true['parameters'].items():
-                got = row['parameters'].get(name)
-                if got is not None:
-                    inside.setdefault(row['effect'], []).append(
-                        abs(got['value'] - value) <= 1.96 * got['std'])
+    for pair in pairs:
+        for name, values in _inside(*pair).items():
+            inside.setdefault(name, []).extend(values)
     every = [value for values in inside.values() for value in values]
     return {name: {'rate': float(np.mean(values)), 'count': len(values)}
             for name, values in [('all', every), *sorted(inside.items())] if values}
+
+
+def _inside(label: dict, found: dict) -> dict[str, list[bool]]:
+    """Return {effect: [whether each true parameter is inside its interval]} of one case."""
+    inside = {}
+    if label['stranger'] or not is_exact(label, found):
+        return inside
+    for row in found.get('ranking', ()):
+        true = label['effects'].get(row['effect'])
+        if true is None or not true.get('comparable', True):
+            continue
+        for name, value in true['parameters'].items():
+            got = row['parameters'].get(name)
+            if got is not None:
+                inside.setdefault(row['effect'], []).append(
+                    abs(got['value'] - value) <= 1.96 * got['std'])
+    return inside
 
 
 def agreement(pairs):

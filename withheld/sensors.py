@@ -14,8 +14,7 @@ class Noise:
     """
     Standard deviations: position m, velocity m/s, attitude rad, rate rad/s; correlation s.
 
-    bias: of each flight, over the deviation; freedom: of Student's distribution, where errors
-    have longer tails than the normal one.
+    bias: of each flight, over the deviation; kind: one of WHITE, how errors are distributed.
     """
 
     position: float = 0.001
@@ -24,7 +23,7 @@ class Noise:
     rate: float = 0.01
     correlation: float = 0.0
     bias: float = 0.0
-    freedom: float | None = None
+    kind: str = 'normal'
 
     def sizes(self):
         """Return the deviations of the 12 errors."""
@@ -32,11 +31,7 @@ class Noise:
 
     def draw(self, count, step, rng):
         """Return errors (count, 12) at samples `step` s apart."""
-        white = rng.normal(size=(count, 12))
-        if self.freedom:
-            # Of unit variance, too.
-            chi = rng.chisquare(self.freedom, (count, 12))
-            white *= np.sqrt((self.freedom - 2.0) / chi)
+        white = WHITE[self.kind](count, step, rng)
         if self.correlation:
             # Half of the variance is coloured, the rest stays white.
             keep = np.exp(-step / self.correlation)
@@ -48,19 +43,48 @@ class Noise:
         return self.sizes() * (white + self.bias * rng.normal(size=12))
 
 
-def noise_of(part, rng):
-    """
-    Return the Noise of a case.
+def _normal(count, step, rng):
+    """Return errors of the normal distribution, of unit variance as all here."""
+    return rng.normal(size=(count, 12))
 
-    In development always the same, normal and white; in the evaluation each deviation is drawn,
-    and the errors have longer tails.
-    """
-    if part == 'development':
+
+def _student(count, step, rng):
+    """Return errors with longer tails: Student's distribution of five degrees of freedom."""
+    freedom = 5.0
+    return rng.normal(size=(count, 12)) * np.sqrt(
+        (freedom - 2.0) / rng.chisquare(freedom, (count, 12)))
+
+
+def _laplace(count, step, rng):
+    """Return errors with a peak and exponential tails, as of mostly good and some bad fixes."""
+    return rng.laplace(scale=np.sqrt(0.5), size=(count, 12))
+
+
+def _breathing(count, step, rng):
+    """Return normal errors that grow and shrink by 1.7, as more or fewer markers are seen."""
+    period, phase = rng.uniform(4.0, 9.0), rng.uniform(0.0, 2.0 * np.pi)
+    share = 1.7 ** np.sin(2.0 * np.pi * step * np.arange(count) / period + phase)
+    share /= np.sqrt(np.mean(share ** 2))
+    return share[:, None] * rng.normal(size=(count, 12))
+
+
+def _uneven(count, step, rng):
+    """Return normal errors that differ by axis: depth and heading are seen least well."""
+    shares = np.array([0.7, 0.7, 1.6, 0.7, 0.7, 1.6, 0.8, 0.8, 1.4, 1.2, 1.2, 0.8])
+    return shares * rng.normal(size=(count, 12))
+
+
+WHITE = {'normal': _normal, 'student': _student, 'laplace': _laplace, 'breathing': _breathing,
+         'uneven': _uneven}
+
+
+def noise_of(kind: str, rng: np.random.Generator) -> Noise:
+    """Return the Noise of a case; each deviation is drawn, but for the normal one."""
+    if kind == 'normal':
         return Noise()
-    scale = np.exp(rng.uniform(-0.5, 0.5, 4))
-    one = Noise()
+    one, scale = Noise(), np.exp(rng.uniform(-0.5, 0.5, 4))
     return Noise(one.position * scale[0], one.velocity * scale[1], one.attitude * scale[2],
-                 one.rate * scale[3], freedom=5.0)
+                 one.rate * scale[3], kind=kind)
 
 
 def product(one, other):

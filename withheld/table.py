@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The score as tables in Markdown, for the screen and for docs/withheld.md."""
 
-from withheld.goals import goals, TITLES
+from withheld.goals import goals
+from withheld.score import TITLES
 
 STRENGTHS = ('0.3', '1', '3', '10')
 
@@ -21,11 +22,31 @@ def closed(part):
 
 def markdown(found):
     """Return all tables of a score."""
-    head, *rows = goals(found)
     return '\n\n'.join([
-        'Bold: not reached; in brackets: the target in percent.', _rows(head, rows),
-        _groups(found), _claims(found), _effects(found), _coverage(found), _calibration(found),
-        *_hybrids(found)])
+        *_goals(found), *_not_flown(found), _groups(found), _claims(found), _effects(found),
+        _coverage(found), _calibration(found), *_hybrids(found)])
+
+
+def _goals(found):
+    """Return the table of goals, and below it each that was missed with its cases."""
+    rows = goals(found)
+    met = {True: 'met', False: '**missed**', None: '-'}
+    table = _rows(('goal', 'column', 'reached', 'target', ''),
+                  [(row.what, TITLES[row.column], row.figure, row.target or '-', met[row.met])
+                   for row in rows])
+    lines = []
+    for row in rows:
+        if row.missed or row.met is False:
+            lines += [f'- {row.what}, {TITLES[row.column]}: {row.figure}'
+                      + (f' ({row.target})' if row.target else ''),
+                      *(f'  - {case}' for case in row.missed)]
+    return [table] + (['Missed, with the cases:\n\n' + '\n'.join(lines)] if lines else [])
+
+
+def _not_flown(found):
+    """Return what was asked for and could not be flown, in a list."""
+    some = found.get('not_flown')
+    return ['Not flown:\n\n' + '\n'.join(f'- {line}' for line in some)] if some else []
 
 
 def _rows(head, rows):

@@ -13,8 +13,9 @@ import numpy as np
 import pytest
 
 from quad_ident_ros.effects.registry import EFFECTS as OURS
+from withheld import lists
 from withheld import score as scores
-from withheld.cases import Case, EFFECTS, full_set, quick_set, SETS, STRANGERS, STRENGTHS, VEHICLES
+from withheld.cases import Case, EFFECTS, full_set, quick_set, SETS, stratum_of, STRENGTHS
 from withheld.forms import FORMS
 from withheld.goals import goals
 from withheld.seal import Broken, seal, unseal
@@ -45,31 +46,59 @@ def test_the_vocabulary_is_that_of_the_project():
     assert set(EFFECTS) == set(OURS)
 
 
-def test_the_full_set_has_every_effect_at_every_strength_on_every_vehicle():
+def test_the_full_set_has_every_effect_at_every_strength():
     cases = full_set(np.random.default_rng(1))
-    singles = {(*case.effects.items(), case.vehicle) for case in cases
+    singles = {tuple(*case.effects.items()) for case in cases
                if case.kind == 'single' and case.column == 'ours'}
-    assert singles == {((name, strength), vehicle) for name in EFFECTS for strength in STRENGTHS
-                       for vehicle in range(VEHICLES)}
+    assert singles == {(name, strength) for name in EFFECTS for strength in STRENGTHS}
     assert len(cases) >= 200
     assert sum(case.kind == 'none' and case.column == 'ours' for case in cases) >= 20
-    sizes = {len(case.effects) for case in cases if case.kind == 'mixture'}
-    assert sizes == {3, 4, 5}
+    for column in ('ours', 'forms', 'estimator', 'faulty'):
+        assert {len(case.effects) for case in cases
+                if case.kind == 'mixture' and case.column == column} == {3, 4, 5}
     assert {case.kind for case in cases if case.faulty} == {'single', 'none', 'pair', 'mixture',
                                                             'unknown'}
 
 
+SUBJECTS = {'vehicle': lists.VEHICLES, 'path': lists.PATHS, 'controller': lists.CONTROLLERS,
+            'noise': lists.NOISES}
+
+
+@pytest.mark.parametrize(('names', 'least'), [
+    (lists.VEHICLES, 4), (lists.PATHS, 5), (lists.CONTROLLERS, 2), (lists.NOISES, 3),
+    (lists.STRANGERS, 4)])
+def test_the_lists_of_development_and_evaluation_are_disjoint(names, least):
+    developed, evaluated = (names[part] for part in lists.PARTS)
+    assert not set(developed) & set(evaluated)
+    assert len(set(evaluated)) == len(evaluated) >= least and developed
+
+
 def test_the_evaluation_draws_nothing_that_development_uses():
     for name in EFFECTS:
-        own, others = (FORMS[part][name] for part in ('development', 'evaluation'))
+        own, others = (FORMS[part][name] for part in lists.PARTS)
         assert not set(own) & set(others) and own and others
         assert not set(own.values()) & set(others.values())
-    assert not set(STRANGERS['development']) & set(STRANGERS['evaluation'])
     for chosen in SETS.values():
         cases = chosen.cases(np.random.default_rng(1))
-        assert {case.stranger[0] for case in cases if case.stranger} <= set(STRANGERS[chosen.part])
+        assert {case.stranger[0] for case in cases if case.stranger} == set(
+            lists.STRANGERS[chosen.part])
+        for subject, names in SUBJECTS.items():
+            assert {getattr(case, subject) for case in cases} == set(names[chosen.part])
         assert all(form in FORMS[chosen.part][name] for case in cases if case.log != 'dropped'
                    for name, form in case.forms.items())
+
+
+def test_a_smaller_draw_has_every_kind_in_proportion():
+    cases = full_set(np.random.default_rng(3))
+    few, share = cases[:150], 150 / len(cases)
+    for stratum in {stratum_of(case) for case in cases}:
+        whole, some = (sum(stratum_of(case) == stratum for case in of) for of in (cases, few))
+        assert some >= 1 and abs(some - share * whole) < 2.0
+    assert {case.log for case in few} == {case.log for case in cases}
+    for subject, names in SUBJECTS.items():
+        counts = [sum(getattr(case, subject) == name for case in few)
+                  for name in names['evaluation']]
+        assert max(counts) - min(counts) <= 1
 
 
 @pytest.mark.parametrize('make', [quick_set, full_set])
@@ -83,7 +112,7 @@ def test_every_column_has_cases_of_its_own(make):
     ({'gusts': 1.0}, 'forms'), ({'wrong_file': True}, 'files'), ({'log': '20_hz'}, 'logs'),
     ({'setup': 0}, 'estimator'), ({'setup': 0, 'faulty': True}, 'faulty')])
 def test_a_case_counts_where_what_is_hardest_about_it_is(options, column):
-    assert Case('single', {'wind': 1.0}, 0, **options).column == column
+    assert Case('single', {'wind': 1.0}, **options).column == column
 
 def test_the_order_of_the_cases_tells_nothing():
     first, second = (full_set(np.random.default_rng(seed)) for seed in (1, 2))
@@ -268,9 +297,8 @@ def test_the_score_does_not_change_what_it_is_given_and_makes_tables():
     assert '| faulty: single | 1 |' in text and '| `ours: wind` |' in text
 
 
-def cells(labels, found, column):
-    head, *rows = goals(scores.score(labels, found))
-    return {row[0]: row[head.index(column)] for row in rows}
+def reached(labels, found, column):
+    return {row.what: row for row in goals(scores.score(labels, found)) if row.column == column}
 
 
 def test_the_goals_say_what_was_not_reached():
@@ -278,12 +306,44 @@ def test_the_goals_say_what_was_not_reached():
               'c': label(kind='none', faulty=True)}
     right = {'a': diagnosis('none'), 'b': diagnosis('unknown'), 'c': diagnosis('none')}
     wrong = {'a': diagnosis('wind'), 'b': diagnosis('none'), 'c': diagnosis('none')}
-    reached = [cells(labels, found, 'forms as ours') for found in (right, wrong)]
-    assert not any('**' in cell for cell in reached[0].values())
-    assert [one['false alarms on `none`'] for one in reached] == [
-        '0 % of 1 (≤ 2)', '**100 % of 1** (≤ 2)']
-    assert reached[1]['`unknown` recognised / said instead of the effect'].startswith(
-        '**0 % of 1** (≥ 90)')
+    good, bad = (reached(labels, found, 'ours') for found in (right, wrong))
+    assert not any(row.met is False or row.missed for row in good.values())
+    alarms = bad['false alarms on `none`']
+    assert (alarms.figure, alarms.target, alarms.met) == ('100 % of 1', '≤ 2 %', False)
+    assert good['false alarms on `none`'].met is True
+    unknown = bad['`unknown` recognised']
+    assert (unknown.figure, unknown.target, unknown.met) == ('0 % of 1', '≥ 90 %', False)
+
+
+def test_a_goal_that_is_missed_names_its_cases_and_no_others():
+    labels = {'a1': label(['wind'], stranger=None), 'b2': label(['motor_lag']),
+              'c3': label(['wind'], faulty=True)}
+    found = {'a1': diagnosis('wind'), 'b2': diagnosis('inflow', 'unknown'),
+             'c3': diagnosis('inflow')}
+    result = scores.score(labels, found)
+    first = reached(labels, found, 'ours')['right effect first, strength 1 and 3']
+    assert len(first.missed) == 1
+    assert '`b2` motor_lag 1' in first.missed[0] and 'inflow, unknown' in first.missed[0]
+    text = markdown(result)
+    heading = text.index('- right effect first, strength 1 and 3, forms as ours: 50 % of 2')
+    assert heading < text.index('`b2`', heading) < text.index('`c3`', heading)
+    assert '| right effect first, strength 1 and 3 | forms as ours | 50 % of 2 | ≥ 99 % | ' in text
+    assert '`a1`' not in text
+
+
+def test_intervals_and_probabilities_that_miss_the_truth_are_named():
+    truth = label(['wind'], values={'wind': {'x': 1.0}})
+    off = diagnosis('wind', probability=0.3, parameters={'wind': {'x': {'value': 2.0,
+                                                                        'std': 0.1}}})
+    rows = reached({'a': truth}, {'a': off}, 'ours')
+    assert len(rows['coverage of 95 % intervals'].missed) == 1
+    assert len(rows['calibration error over 0.05 to 0.95'].missed) == 1
+
+
+def test_what_was_not_flown_is_told():
+    result = scores.score({'a': label(['wind'])}, {'a': diagnosis('wind')})
+    assert 'Not flown' not in markdown(result)
+    assert '- no real flights here' in markdown(result | {'not_flown': ['no real flights here']})
 
 
 def test_each_column_is_held_to_its_own_goals():
@@ -292,16 +352,18 @@ def test_each_column_is_held_to_its_own_goals():
     found = {name: diagnosis(*one['effects']) for name, one in labels.items()}
     for kind in ('clean', 'faulty'):
         found[f'{kind}0'] = diagnosis('wind')
-    what = 'exact set, single / pairs / mixtures'
-    assert cells(labels, found, 'forms as ours')[what] == '- / **90 % of 10** (≥ 95) / -'
-    assert cells(labels, found, 'faulty records')[what] == '- / 90 % of 10 (≥ 80) / -'
+    ours, faulty = (reached(labels, found, column)['exact set, pairs']
+                    for column in ('ours', 'faulty'))
+    assert (ours.figure, ours.target, ours.met) == ('90 % of 10', '≥ 95 %', False)
+    assert (faulty.figure, faulty.target, faulty.met) == ('90 % of 10', '≥ 80 %', True)
 
 
 def test_refusals_are_told_by_column():
     labels = {'a': label(['wind']), 'b': label(['wind'], faulty=True)}
     found = {'a': diagnosis('wind'), 'b': {'refused': 'clocks'}}
-    assert cells(labels, found, 'forms as ours')['refused'] == '0 % of 1'
-    assert cells(labels, found, 'faulty records')['refused'] == '100 % of 1'
+    assert reached(labels, found, 'ours')['refused'].figure == '0 % of 1'
+    refused = reached(labels, found, 'faulty')['refused']
+    assert refused.figure == '100 % of 1' and 'clocks' in refused.missed[0]
 
 
 def test_changes_to_real_flights_are_told_beside_the_rates():
@@ -377,16 +439,30 @@ def test_the_diagnosing_process_is_not_told_where_the_labels_are(tmp_path, monke
     monkeypatch.setattr(check.subprocess, 'Popen', spied)
     monkeypatch.setattr(check, 'follow', lambda process, *_: seen.append(process.communicate()[0]))
     with open(vault / 'labels', 'rb'):
-        check.diagnose(flights, found, None)
+        check.diagnose(flights, found, None, 2)
     os.close(read)
     os.close(write)
     told = json.loads(seen[0])
     assert told['cwd'] == str(flights)
-    assert told['argv'][1:] == [str(flights), str(found)]
+    assert told['argv'][1:] == [str(flights), str(found), '2']
     assert str(vault) not in seen[0]
     assert key.hex() not in seen[0]
     assert {'0', '1', '2'} >= {name for name, target in told['fds'].items()
                                if not target.startswith('/proc/')}
+
+
+def test_cases_are_diagnosed_side_by_side_and_each_once(tmp_path, capsys):
+    from withheld import blind
+    flights, found = tmp_path / 'flights', tmp_path / 'found'
+    for name in 'abc':
+        (flights / name).mkdir(parents=True)
+    found.mkdir()
+    (found / 'c.json').write_text('{}')
+    blind.main(str(flights), str(found), '2')
+    answers = {path.stem: json.loads(path.read_text()) for path in found.glob('*.json')}
+    assert set(answers) == set('abc') and answers['c'] == {}
+    assert all('vehicle.yaml' in answers[name]['refused'] for name in 'ab')
+    assert capsys.readouterr().out.count('done') == 2
 
 
 WRITES = """

@@ -19,7 +19,7 @@ bodies, flying, paths, plants, vehicles = (
 Bodies, Payload = bodies.Bodies, bodies.Payload
 
 STEP = 0.01
-PARAMS = vehicles.vehicle_of('development', 1, np.random.default_rng(1), False)
+PARAMS = vehicles.vehicle_of('px4_quadrotor', np.random.default_rng(1), False)
 HOVER = np.full(4, vehicles.hover_speed(PARAMS))
 
 

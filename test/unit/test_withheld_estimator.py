@@ -14,21 +14,23 @@ from withheld.actuators import Line
 
 if find_spec('rotorpy') is None:
     pytest.skip('rotorpy is not installed', allow_module_level=True)
-estimator, nominal, paths, plant, vehicles = (
-    import_module(f'withheld.{name}')
-    for name in ('estimator', 'nominal', 'paths', 'plant', 'vehicles'))
+estimate, flight, low_pass, rotations, sensors, setups = (
+    import_module(f'withheld.estimator.{name}')
+    for name in ('estimate', 'flight', 'low_pass', 'rotations', 'sensors', 'setups'))
+nominal, paths, plant, vehicles = (
+    import_module(f'withheld.{name}') for name in ('nominal', 'paths', 'plant', 'vehicles'))
 
 STEP = 0.01
-PARAMS = vehicles.vehicle_of('development', 1, np.random.default_rng(1), True)
-SILENT = estimator.Imu(gyro=0.0, accelerometer=0.0, gyro_bias=0.0, accelerometer_bias=0.0,
+PARAMS = vehicles.vehicle_of('px4_quadrotor', np.random.default_rng(1), True)
+SILENT = sensors.Imu(gyro=0.0, accelerometer=0.0, gyro_bias=0.0, accelerometer_bias=0.0,
                        shaking=(0.0, 0.0))
-MOCAP, GPS = estimator.SETUPS['development']
-ALL = [setup for part in estimator.SETUPS.values() for setup in part]
+MOCAP, GPS = setups.SETUPS['development']
+ALL = [setup for part in setups.SETUPS.values() for setup in part]
 
 
 @pytest.fixture(autouse=True)
 def begin_soon(monkeypatch):
-    monkeypatch.setattr(estimator, 'BEFORE', 0.2)
+    monkeypatch.setattr(flight, 'BEFORE', 0.2)
 
 
 def undisturbed(setup, latency=0.0, assumed=0.0):
@@ -44,17 +46,17 @@ def undisturbed(setup, latency=0.0, assumed=0.0):
 
 def flown(setup, seconds=0.5, effects=None, tilt=(0.0, 0.0, 0.0), bias=(0.0, 0.0, 0.0), seed=1):
     path = paths.Sines(np.random.default_rng(3), size=1.5, acceleration=2.0, low=1.0, turn=0.5)
-    sensors = {'tilt': np.array(tilt), 'bias': np.array(bias)}
-    return estimator.fly_on_estimate(
+    declared = {'tilt': np.array(tilt), 'bias': np.array(bias)}
+    return flight.fly_on_estimate(
         plant.Reality(PARAMS, effects or {}), PARAMS, path, seconds, STEP, setup,
-        np.random.default_rng(seed), sensors)
+        np.random.default_rng(seed), declared)
 
 
-def missed(flight):
-    return nominal.rms(nominal.errors(flight.measured, flight.exact))
+def missed(one):
+    return nominal.rms(nominal.errors(one.measured, one.exact))
 
 
-@pytest.mark.parametrize('setup', [MOCAP, estimator.SETUPS['evaluation'][0]])
+@pytest.mark.parametrize('setup', [MOCAP, setups.SETUPS['evaluation'][0]])
 def test_without_noise_and_latency_the_truth_comes_out(setup):
     errors = missed(flown(undisturbed(setup), effects={'com_offset': {'x': 0.01, 'z': 0.02}}))
     assert errors['position'] < 1e-4
@@ -71,10 +73,10 @@ def test_levelling_by_the_accelerometer_errs_in_flight_even_without_noise():
 
 @pytest.mark.parametrize('setup', ALL)
 def test_with_all_that_is_wrong_it_still_flies(setup):
-    flight = flown(setup)
-    errors = missed(flight)
-    assert flight.measured.shape == flight.exact.shape == (50, 13)
-    assert flight.commands.shape == (50, 4)
+    one = flown(setup)
+    errors = missed(one)
+    assert one.measured.shape == one.exact.shape == (50, 13)
+    assert one.commands.shape == (50, 4)
     assert 1e-4 < errors['position'] < 0.2
     assert 1e-3 < errors['attitude'] < 0.1
 
@@ -86,11 +88,11 @@ def test_a_latency_that_the_filter_does_not_know_costs_accuracy():
     assert unknown > 10.0 * known
 
 
-@pytest.mark.parametrize('setup', [MOCAP, estimator.SETUPS['evaluation'][1]])
+@pytest.mark.parametrize('setup', [MOCAP, setups.SETUPS['evaluation'][1]])
 def test_the_bias_of_the_gyro_is_told_from_a_turn(setup):
     # A vehicle that stands still, whose gyro says that it turns.
     bias = np.array([0.008, -0.005, 0.003])
-    start = estimator.Estimate(np.zeros(3), np.zeros(3), np.eye(3), *np.zeros((2, 3)))
+    start = estimate.Estimate(np.zeros(3), np.zeros(3), np.eye(3), *np.zeros((2, 3)))
     filtered = setup.make_filter(start, setup.aid)
     pause = round(setup.imu.rate / setup.aid.rate)
     for k in range(round(4.0 * setup.imu.rate)):
@@ -104,23 +106,23 @@ def test_the_bias_of_the_gyro_is_told_from_a_turn(setup):
 
 
 def test_a_bias_that_is_logged_is_not_taken_out():
-    flight = flown(MOCAP, bias=(0.1, 0.0, -0.1))
-    assert np.mean((flight.measured - flight.exact)[:, 10:], axis=0) == pytest.approx(
+    one = flown(MOCAP, bias=(0.1, 0.0, -0.1))
+    assert np.mean((one.measured - one.exact)[:, 10:], axis=0) == pytest.approx(
         np.zeros(3), abs=0.02)
-    true = flight.exact[:, 10:] - flight.states[:, 10:]
+    true = one.exact[:, 10:] - one.states[:, 10:]
     assert true == pytest.approx(np.tile([0.1, 0.0, -0.1], (50, 1)))
 
 
 def test_a_tilt_is_of_the_attitude_alone_or_of_the_whole_block():
     tilt = (0.03, -0.02, 0.0)
-    for setup, of_rates in ((MOCAP, False), (estimator.SETUPS['evaluation'][0], True)):
-        flight = flown(setup, tilt=tilt)
+    for setup, of_rates in ((MOCAP, False), (setups.SETUPS['evaluation'][0], True)):
+        one = flown(setup, tilt=tilt)
         attitude, shown, seen = (Rotation.from_quat(states[:, 6:10])
-                                 for states in (flight.states, flight.exact, flight.measured))
+                                 for states in (one.states, one.exact, one.measured))
         turned = (attitude.inv() * shown).as_euler('ZYX')[:, ::-1]
         assert turned == pytest.approx(np.tile(tilt, (50, 1)), abs=1e-9)
         assert (shown.inv() * seen).magnitude().max() < 0.03
-        assert np.allclose(flight.states[:, 10:], flight.exact[:, 10:]) != of_rates
+        assert np.allclose(one.states[:, 10:], one.exact[:, 10:]) != of_rates
 
 
 def test_control_faster_than_the_log_changes_commands_between_rows():
@@ -135,39 +137,39 @@ def test_control_faster_than_the_log_changes_commands_between_rows():
     for control, rows in ((100.0, 1), (500.0, 5)):
         reality = plant.Reality(PARAMS, {}, line=Counting(0.005))
         line = reality.line
-        estimator.fly_on_estimate(
+        flight.fly_on_estimate(
             reality, PARAMS, path, 0.1, STEP, replace(MOCAP, control=control),
             np.random.default_rng(1), {'tilt': np.zeros(3), 'bias': np.zeros(3)})
-        assert line.given == rows * round((0.1 + estimator.BEFORE) / STEP)
+        assert line.given == rows * round((0.1 + flight.BEFORE) / STEP)
 
 
 def test_the_low_pass_halves_the_power_at_its_cutoff():
     rate, cutoff = 500.0, 40.0
-    smooth = estimator.LowPass(cutoff, 2, rate, np.zeros(3))
+    smooth = low_pass.LowPass(cutoff, 2, rate, np.zeros(3))
     t = np.arange(2000) / rate
     out = np.array([smooth(np.full(3, np.sin(2.0 * np.pi * cutoff * x))) for x in t])
     assert np.sqrt(2.0) * out[1000:, 0].std() == pytest.approx(np.sqrt(0.5), rel=0.01)
-    still = estimator.LowPass(cutoff, 2, rate, np.full(3, 0.7))
+    still = low_pass.LowPass(cutoff, 2, rate, np.full(3, 0.7))
     assert still(np.full(3, 0.7)) == pytest.approx(np.full(3, 0.7))
 
 
 def test_rotations_agree_with_scipy():
     for one in Rotation.random(50, rng=np.random.default_rng(2)):
-        assert abs(estimator.quaternion_of(one.as_matrix()) @ one.as_quat()) == pytest.approx(1.0)
+        assert abs(rotations.quaternion_of(one.as_matrix()) @ one.as_quat()) == pytest.approx(1.0)
         vector = 0.5 * one.as_rotvec()
-        matrix = estimator.exponential(vector)
+        matrix = rotations.exponential(vector)
         assert matrix == pytest.approx(Rotation.from_rotvec(vector).as_matrix())
-        assert estimator.logarithm(matrix) == pytest.approx(vector)
+        assert rotations.logarithm(matrix) == pytest.approx(vector)
 
 
 @pytest.mark.parametrize('name', ['position', 'velocity', 'attitude', 'heading'])
 def test_what_is_seen_grows_with_the_error_as_its_rows_say(name):
     rng = np.random.default_rng(6)
     rotation = Rotation.from_euler('ZYX', [0.4, 0.2, -0.3]).as_matrix()
-    then = estimator.Estimate(rng.normal(size=3), rng.normal(size=3), rotation, *np.zeros((2, 3)))
+    then = estimate.Estimate(rng.normal(size=3), rng.normal(size=3), rotation, *np.zeros((2, 3)))
     error = 1e-5 * rng.normal(size=15)
     true = {'position': then.position + error[:3], 'velocity': then.velocity + error[3:6],
-            'attitude': rotation @ estimator.exponential(error[6:9])}
-    true['heading'] = estimator.heading_of(true['attitude'])
-    change, row = estimator.ROWS[name](true[name], then)
+            'attitude': rotation @ rotations.exponential(error[6:9])}
+    true['heading'] = rotations.heading_of(true['attitude'])
+    change, row = estimate.ROWS[name](true[name], then)
     assert change == pytest.approx(row @ error, abs=1e-9)

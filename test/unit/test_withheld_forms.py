@@ -15,8 +15,9 @@ from withheld.constants import hover_speed
 from withheld.files import FARTHEST, misread, SPREADS
 from withheld.forms import air, batteries, body, EVENTS, form_of, FORMS, motors
 from withheld.influence import Influence, Instant
+from withheld.lists import NOISES
 from withheld.logs import Grounded, Logging, LowPass
-from withheld.sensors import declared, moved, Noise, noise_of
+from withheld.sensors import declared, moved, Noise, noise_of, WHITE
 
 PARAMS = {
     'mass': 0.5, 'Ixx': 3e-3, 'Iyy': 3e-3, 'Izz': 5e-3, 'Ixy': 0.0, 'Ixz': 0.0, 'Iyz': 0.0,
@@ -133,13 +134,21 @@ def test_a_motor_in_balance_of_torque_rises_faster_than_it_falls():
     assert 1.2 - speeds[0] / HOVER < speeds[1] / HOVER - 0.8
 
 
-def test_a_winding_lets_the_thrust_fall_with_less_than_the_square_of_the_voltage():
-    battery, turn = batteries.DcMotor(5.0, PARAMS, None), np.array([0.7, 1.0, 1.3])
-    battery.ratio = 0.99
-    powers = np.log(battery.gain(turn)) / np.log(0.99)
-    assert np.all(np.diff(powers) < 0) and np.all((powers > 1.0) & (powers < 2.0))
-    # d ln x / d ln V = (a x + b x^2) / (a x + 2 b x^2) at the speed in hover, twice in the thrust.
-    assert powers[1] == pytest.approx(2.0 / 1.35, rel=0.01)
+def test_a_full_cell_drops_first_and_then_falls_slowly():
+    battery, shown = batteries.ExponentialZone(3.0, PARAMS, None), []
+    for _ in range(2000):
+        battery.drain(0.0, 0.01, np.ones(4))
+        shown.append(battery.ratio)
+    assert shown[0] == pytest.approx(1.0, abs=1e-3)
+    assert shown[0] - shown[500] > 3.0 * (shown[1000] - shown[1500]) > 0.0
+
+
+def test_a_cold_cell_recovers_as_it_warms_and_then_falls():
+    battery, shown = batteries.Warming(3.0, PARAMS, None), []
+    for k in range(6000):
+        battery.drain(0.01 * k, 0.01, np.ones(4))
+        shown.append(battery.ratio)
+    assert shown[0] < shown[1000] > shown[5999]
 
 
 def test_a_cell_polarises_within_its_time_constant():
@@ -205,14 +214,43 @@ def test_products_of_inertia_leave_a_body_that_can_be():
     assert np.all(moments > 0.0) and true['Ixy'] != 0.0
 
 
-def test_arms_and_torque_are_the_ratio_of_inertia_to_moment():
+def test_another_torque_is_the_ratio_of_inertia_to_moment():
     true = fresh()
-    arms = body.Arms(3.0, PARAMS, np.random.default_rng(2))
-    arms.alter(true, PARAMS)
-    assert 0.12 / true['rotor_pos']['r1'][0] == pytest.approx(arms.parameters['factor_x'])
     torque = body.TorqueCoefficient(3.0, PARAMS, np.random.default_rng(2))
     torque.alter(true, PARAMS)
     assert 1e-7 / true['k_m'] == pytest.approx(torque.parameters['factor_z'])
+
+
+def test_an_entrained_inertia_resists_until_it_turns_as_fast():
+    part = body.Entrained(3.0, PARAMS, np.random.default_rng(2))
+    part.begin(None)
+    part.alter(fresh(), PARAMS)
+    now, moments = instant(rate=(1.0, 0.0, 0.0)), []
+    for _ in range(100):
+        moments.append(part.wrench(now)[1][0])
+        part.after(0.002, np.eye(3), np.zeros(3))
+    # All that it takes up is the angular momentum of its inertia.
+    assert 0.002 * np.sum(moments) == pytest.approx(-part.loads[0], rel=0.05)
+    assert abs(moments[-1]) < 0.05 * abs(moments[0])
+
+
+def test_a_thrust_curve_that_levels_off_has_a_kink_in_hover():
+    part = body.Levelling(3.0, PARAMS, np.random.default_rng(2))
+    gains = [part.gain(instant(turn=(x,) * 4))[0] - 1.0 for x in (0.8, 0.9, 1.0, 1.1, 1.2)]
+    assert np.diff(gains)[2:] == pytest.approx([0.0, 0.0])
+    assert np.diff(gains)[:2] == pytest.approx(np.full(2, -0.6 * part.share))
+
+
+def test_rotors_behind_lose_thrust_in_forward_flight():
+    part = air.Shadowed(3.0, PARAMS, None)
+    gain = part.gain(instant(velocity=(3.0, 0.0, 0.0), rate=(0.0, 0.0, 0.0), turn=(1.0,) * 4))
+    assert gain[:2] == pytest.approx(np.ones(2)) and np.all(gain[2:] < 0.99)
+
+
+def test_a_rotor_fails_more_and_more():
+    part = body.Incipient(4.0, PARAMS, np.random.default_rng(2))
+    losses = [1.0 - part.gain(instant(time=t))[part.rotor] for t in (0.0, 10.0, 20.0)]
+    assert losses == pytest.approx([0.01, 0.02, 0.03])
 
 
 def test_a_dropped_payload_is_gone_from_then_on():
@@ -292,12 +330,23 @@ def test_states_are_measured_at_the_body_origin_and_moved_by_the_noise():
         change[6:9])
 
 
-def test_the_noise_of_the_evaluation_has_longer_tails_and_the_same_deviation():
-    assert noise_of('development', np.random.default_rng(1)) == Noise()
-    noise = noise_of('evaluation', np.random.default_rng(1))
+@pytest.mark.parametrize('kind', [kind for kinds in NOISES.values() for kind in kinds])
+def test_every_noise_has_its_deviations_over_a_flight(kind):
+    noise = noise_of(kind, np.random.default_rng(1))
     drawn = noise.draw(20000, 0.01, np.random.default_rng(2)) / noise.sizes()
-    assert drawn.std() == pytest.approx(1.0, abs=0.02)
-    assert np.mean(np.abs(drawn) > 4.0) > 20 * 6e-5
+    assert np.sqrt(np.mean(drawn ** 2)) == pytest.approx(1.0, abs=0.1)
+    assert np.mean(drawn) == pytest.approx(0.0, abs=0.02)
+
+
+def test_the_noise_of_the_evaluation_differs_in_kind():
+    drawn = {kind: Noise(kind=kind).draw(20000, 0.01, np.random.default_rng(2)) / Noise().sizes()
+             for kind in WHITE}
+    beyond = {kind: np.mean(np.abs(one) > 4.0) for kind, one in drawn.items()}
+    assert beyond['laplace'] > 20.0 * max(beyond['normal'], 6e-5)
+    parts = {kind: one.reshape(200, 100, 12).std(axis=(1, 2)) for kind, one in drawn.items()}
+    assert np.ptp(parts['breathing']) > 5.0 * np.ptp(parts['normal'])
+    assert drawn['uneven'][:, 2].std() > 1.5 * drawn['uneven'][:, 0].std()
+    assert noise_of('normal', np.random.default_rng(1)) == Noise()
 
 
 needs_rotorpy = pytest.mark.skipif(find_spec('rotorpy') is None, reason='rotorpy is not installed')
@@ -310,7 +359,7 @@ def test_the_plant_moves_by_rotorpys_law():
     from withheld.plant import Reality
     from withheld.vehicles import vehicle_of
     rng = np.random.default_rng(0)
-    params = vehicle_of('development', 1, rng, False)
+    params = vehicle_of('px4_quadrotor', rng, False)
     plant = Reality(params, {
         'inflow': {'axial': 0.1, 'translational': 0.05}, 'rotor_drag': {'coefficient': 0.2},
         'body_drag': {'horizontal': 0.1, 'vertical': 0.2}, 'blade_flapping': {'coefficient': 0.01},
@@ -332,7 +381,7 @@ def test_the_controller_is_rotorpys():
     from withheld.paths import Sines
     from withheld.vehicles import vehicle_of
     rng = np.random.default_rng(0)
-    control = Geometric(vehicle_of('development', 1, rng, False))
+    control = Geometric(vehicle_of('px4_quadrotor', rng, False))
     aim = Sines(rng, 2.0, 2.5, 0.2, 2.0).update(1.0)
     state = {'x': aim['x'] + 0.1, 'v': aim['x_dot'] - 0.1, 'w': np.array([0.3, -0.2, 0.1]),
              'q': Rotation.from_rotvec([0.1, 0.2, 0.5]).as_quat()}
@@ -344,7 +393,7 @@ def test_the_controller_is_rotorpys():
 def test_rotors_that_jump_hand_their_momentum_over():
     from withheld.plant import Reality
     from withheld.vehicles import vehicle_of
-    params = vehicle_of('development', 1, np.random.default_rng(0), False)
+    params = vehicle_of('px4_quadrotor', np.random.default_rng(0), False)
     plant = Reality(params, {'rotor_gyro': {'rotor_inertia': 1e-4}})
     state = np.zeros(20)
     state[2], state[9], state[16:] = 1.0, 1.0, plant.hover
@@ -357,7 +406,7 @@ def test_rotors_that_jump_hand_their_momentum_over():
 def test_a_floor_holds_what_stands_on_it():
     from withheld.plant import Reality
     from withheld.vehicles import vehicle_of
-    params = vehicle_of('development', 1, np.random.default_rng(0), False)
+    params = vehicle_of('px4_quadrotor', np.random.default_rng(0), False)
     plant = Reality(params, {}, floor=0.05)
     state = np.zeros(20)
     state[2], state[9], state[16:] = 0.05, 1.0, 0.4 * plant.hover

@@ -1,7 +1,7 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Other forms of the effects: none of them is a form that the library has.
+Other forms of the effects; none of those of the evaluation is a form that the library has.
 
 A form is a class of (size, params, rng): size 0 is no effect, size 1 opens about the gap of the
 noise; rng draws what does not depend on the size. Each is a Part (influence.py): an Influence, a
@@ -13,7 +13,8 @@ from withheld.forms import air, batteries, body, hung, motors
 # Those that one develops with, and those that nobody looks at before a release.
 DEVELOPMENT = {
     'motor_lag': {'second_order': motors.SecondOrder, 'speed_dependent': motors.SpeedDependent,
-                  'brushed': hung.identified('cf2x_P250')},
+                  'brushed': hung.identified('cf2x_P250'),
+                  'brushless': hung.identified('cf21B_500')},
     'actuation_delay': {'jitter': motors.Jitter, 'staggered': motors.Staggered},
     'rotor_drag': {'saturating': air.Saturating, 'offset_point': air.Offset},
     'body_drag': {'power_1.6': air.Power16, 'plates': air.Plates, 'hull': hung.Hull},
@@ -32,20 +33,20 @@ DEVELOPMENT = {
     'gyro_bias': {'warming': body.Warming, 'wandering': body.Wandering},
 }
 EVALUATION = {
-    'motor_lag': {'torque_balance': motors.TorqueBalance, 'two_poles': motors.TwoPoles,
-                  'brushless': hung.identified('cf21B_500')},
+    'motor_lag': {'torque_balance': motors.TorqueBalance, 'two_poles': motors.TwoPoles},
     'actuation_delay': {'clocked': motors.Clocked, 'growing': motors.Growing},
     'rotor_drag': {'power_1.25': air.Steeper, 'skewed': air.Skewed},
     'body_drag': {'crisis': air.Crisis, 'plate': air.Plate},
     'wind': {'sheltered': air.Sheltered, 'shear': air.Shear},
-    'inflow': {'advance_ratio': air.AdvanceRatio, 'glauert': air.Glauert},
+    'inflow': {'flat_table': air.FlatTable, 'shadowed': air.Shadowed},
     'ground_effect': {'swept': air.Swept, 'bounded': air.Bounded},
-    'battery_sag': {'dc_motor': batteries.DcMotor, 'drained': batteries.Drained},
-    'thrust_scale': {'exponent': body.Exponent},
+    'battery_sag': {'exponential_zone': batteries.ExponentialZone,
+                    'warming': batteries.Warming},
+    'thrust_scale': {'levelling': body.Levelling},
     'mass_offset': {'other_battery': body.OtherBattery, 'cable': hung.Cable},
-    'inertia_mismatch': {'arms': body.Arms, 'outriggers': body.Outriggers},
-    'com_offset': {'heavy': body.Heavy},
-    'rotor_fault': {'worn': body.Worn, 'dragging': body.Dragging},
+    'inertia_mismatch': {'entrained': body.Entrained, 'outriggers': body.Outriggers},
+    'com_offset': {'elastic': body.Elastic},
+    'rotor_fault': {'incipient': body.Incipient, 'dragging': body.Dragging},
     'rotor_gyro': {'heavy_pair': body.HeavyPair},
     'blade_flapping': {'cross_flapping': air.CrossFlapping},
     'attitude_misalignment': {'skewed_block': body.SkewedBlock, 'soft_mount': body.SoftMount},

@@ -232,28 +232,42 @@ class Following(_Thrust):
         self._slow = self._slow + (1.0 - np.exp(-step / self.TIME)) * (self._now - self._slow)
 
 
-class AdvanceRatio(_Thrust):
-    """A thrust coefficient that falls with the advance ratio, as in propeller tables."""
+class FlatTable(_Thrust):
+    """
+    A thrust coefficient that hardly falls at first and then with the square, as in wind tunnels.
+
+    Curves of small propellers over the advance ratio are flat at rest (Brandt and Selig, AIAA
+    2011-1255); across, the gain goes with the speed rather than with its square.
+    """
 
     def gain(self, now):
         """Return the factors."""
         turn = self.radius * np.maximum(now.speeds, 0.05 * self.hover)
         hubs = now.hubs() / (0.1 * turn[:, None])
-        axial, across = hubs[:, 2], hubs[:, 0] ** 2 + hubs[:, 1] ** 2
+        axial, across = hubs[:, 2], np.hypot(hubs[:, 0], hubs[:, 1])
         return 1.0 + 0.02 * self.size * np.clip(
-            -axial - 0.25 * axial * np.abs(axial) + 0.3 * across, -10.0, 10.0)
+            -2.5 * axial * np.abs(axial) + 0.4 * across, -10.0, 10.0)
 
 
-class Glauert(_Thrust):
-    """Loss with the axial velocity and gain with the root of the square of that across."""
+class Shadowed(_Thrust):
+    """
+    Rotors at the back that fly in the wake of those in front, which costs them thrust.
+
+    Their loss and the moment that comes of it in edgewise flight: Misiorowski, Gandhi, Oberai,
+    AIAA Journal 57(10), 2019. Climbing costs all of them thrust.
+    """
+
+    beside = ('blade_flapping',)
 
     def gain(self, now):
         """Return the factors."""
         turn = np.maximum(now.speeds / self.hover, 0.05)
-        hubs = now.hubs() / (self.induced * turn[:, None])
-        across = np.sqrt(1.0 + hubs[:, 0] ** 2 + hubs[:, 1] ** 2) - 1.0
-        return 1.0 + 0.015 * self.size * (0.8 * across - np.tanh(hubs[:, 2]) * np.sqrt(
-            1.0 + np.abs(hubs[:, 2])))
+        flow = np.array([*now.air[:2], 0.0]) / self.induced
+        speed = np.sqrt(flow @ flow)
+        reach = np.max(np.abs(now.places))
+        behind = np.maximum(-now.places @ flow / (reach * max(speed, 1e-9)), 0.0)
+        climb = now.hubs()[:, 2] / (self.induced * turn)
+        return 1.0 - 0.012 * self.size * (climb + 1.5 * behind * speed / (1.0 + speed ** 2))
 
 
 class TiltedDisk(Influence):

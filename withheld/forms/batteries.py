@@ -49,41 +49,49 @@ class Recovery(Battery):
         self.ratio = 1.0 - self.size * self.LEVEL * (self._polarised + 0.3 * time / 30.0)
 
 
-class DcMotor(Battery):
+class ExponentialZone(Battery):
     """
-    Motors with a winding: a x + b x^2 = duty voltage, x the speed over that in hover.
+    A full cell: its voltage drops in the first seconds, then falls slowly with the charge taken.
 
-    A lower voltage slows them less where they turn fast, so that the power is between 1 and 2.
+    The exponential zone of C. M. Shepherd, Journal of the Electrochemical Society 112, 1965.
     """
-
-    LOAD = 0.35         # share of the voltage in hover that the resistance takes
-
-    def __init__(self, size, params, rng):
-        """Set the fall of the voltage."""
-        super().__init__(0.012 * size)
-        self.parameters = {'fall': 0.012 * size}
-
-    def gain(self, speeds):
-        """Return the factors on the thrust."""
-        a, b = 1.0 - self.LOAD, self.LOAD
-        duty = self.ratio * (a * speeds + b * speeds ** 2)
-        turning = (np.sqrt(a * a + 4.0 * b * duty) - a) / (2.0 * b)
-        return (turning / np.maximum(speeds, 1e-9)) ** 2
-
-
-class Drained(Battery):
-    """A voltage that falls with the charge that was taken, thrust with the power 2.2."""
 
     recorded = False
+    ZONE = 5.0          # s, at the load of hover
 
     def __init__(self, size, params, rng):
         """Start full."""
-        super().__init__(0.012 * size, 2.2)
-        self.parameters = {'fall': 0.012 * size}
-        self._taken = 0.0
+        super().__init__(0.0, 1.8)
+        self.size, self._taken = size, 0.0
+        self.parameters = {'zone': 0.01 * size, 'slope': 0.004 * size}
+
+    def drain(self, time, step, speeds):
+        """Go on."""
+        self._taken += float(np.mean(speeds ** 3)) * step
+        drop = 0.01 * (1.0 - np.exp(-self._taken / self.ZONE)) + 0.004 * self._taken / 30.0
+        self.ratio = 1.0 - self.size * drop
+
+
+class Warming(Battery):
+    """
+    A cold cell, whose resistance falls as it warms: the thrust recovers before it falls.
+
+    Resistance with the temperature, heat with the load: Gao, Liu, Dougal, IEEE Transactions on
+    Components and Packaging Technologies 25(3), 2002.
+    """
+
+    recorded = False
+    TIME = 7.0          # s, in which it warms at the load of hover
+
+    def __init__(self, size, params, rng):
+        """Start cold."""
+        super().__init__(0.0, 1.8)
+        self.size, self._heat = size, 0.0
+        self.parameters = {'resistance': 0.012 * size, 'slope': 0.012 * size}
 
     def drain(self, time, step, speeds):
         """Go on."""
         load = float(np.mean(speeds ** 3))
-        self._taken += load * step
-        self.ratio = 1.0 - self.fall * (self._taken / 30.0 + 0.1 * (load - 1.0))
+        self._heat += step / self.TIME * (load ** 2 - self._heat)
+        resistance = 0.012 * (1.0 - 0.7 * np.clip(self._heat, 0.0, 1.2))
+        self.ratio = 1.0 - self.size * (resistance * load + 0.012 * time / 30.0 - 0.004)

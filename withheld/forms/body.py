@@ -115,21 +115,39 @@ class TorqueCoefficient(Influence):
         true['k_m'] /= self.parameters['factor_z']
 
 
-class Arms(Influence):
-    """Other arms: motion sees their ratio to the inertia about x and y."""
+class Entrained(Influence):
+    """
+    Inertia that the body drags along through friction, as liquid in a tank or a loose harness.
 
-    comparable = True
+    Each axis turns a second inertia through a viscous coupling: slow turns have all of it to
+    move, fast ones nothing but its friction (the viscous ring of P. C. Hughes, Spacecraft Attitude
+    Dynamics, 1986; liquids: R. A. Ibrahim, Liquid Sloshing Dynamics, 2005).
+    """
+
+    TIME = 0.05         # s, of the coupling
 
     def __init__(self, size, params, rng):
-        """Draw whether they are longer or shorter."""
-        factor = float(np.exp(0.06 * size * _signs(rng, 1)[0]))
-        self.parameters = {'factor_x': factor, 'factor_y': factor}
+        """Draw how much of it each axis has."""
+        self.shares = 0.12 * size * rng.uniform(0.6, 1.0, 3)
+        self.parameters = {'share': 0.12 * size}
 
     def alter(self, true, params):
-        """Change them."""
-        factor = self.parameters['factor_x']
-        true['rotor_pos'] = {name: np.asarray(place) / [factor, factor, 1.0]
-                             for name, place in true['rotor_pos'].items()}
+        """Take the inertia that it goes with."""
+        self.loads = self.shares * [true[key] for key in AXES]
+
+    def begin(self, rng):
+        """Start at rest."""
+        self._turning, self._rate = np.zeros(3), np.zeros(3)
+
+    def wrench(self, now):
+        """Return the moment of the friction."""
+        self._rate = now.rate
+        return np.zeros(3), self.loads / self.TIME * (self._turning - now.rate)
+
+    def after(self, step, rotation, acceleration):
+        """Let it follow."""
+        self._turning = self._turning + (1.0 - np.exp(-step / self.TIME)) * (
+            self._rate - self._turning)
 
 
 class Outriggers(Influence):
@@ -169,24 +187,22 @@ class Sliding(Influence):
         return np.zeros(3), lift * np.array([-y, x, 0.0])
 
 
-class Heavy(Influence):
-    """An offset because a tenth of the mass sits elsewhere, which changes the inertia, too."""
-
-    comparable = True
-    beside = ('inertia_mismatch',)
-    SHARE = 0.1
+class Elastic(Influence):
+    """A centre of mass that yields to the load, as of a battery that hangs in soft straps."""
 
     def __init__(self, size, params, rng):
-        """Draw where."""
-        along = np.array([*_signs(rng, 2) * rng.uniform(0.3, 1.0, 2), rng.uniform(-1.0, 1.0)])
+        """Draw where it is."""
+        along = np.array([*_signs(rng, 2) * rng.uniform(0.3, 1.0, 2), 0.0])
         self.centre = 0.002 * size * arm_length(params) * along
         self.parameters = dict(zip('xyz', self.centre.tolist(), strict=True))
+        self.thrust, self.hover = params['k_eta'], hover_speed(params)
 
-    def alter(self, true, params):
-        """Move the part."""
-        part, away = self.SHARE * true['mass'], self.centre / self.SHARE
-        true['mass'] -= part
-        add_mass(true, part, true['centre'] + away)
+    def wrench(self, now):
+        """Return the moment of the thrust about a centre that goes with the thrust."""
+        turn = np.mean((now.speeds / self.hover) ** 2)
+        x, y, _ = float(np.clip(turn, 0.0, 3.0)) * self.centre
+        lift = self.thrust * np.sum(now.speeds ** 2)
+        return np.zeros(3), lift * np.array([-y, x, 0.0])
 
 
 class Sloped(Influence):
@@ -203,8 +219,16 @@ class Sloped(Influence):
         return 1.0 + self.share * (1.0 + 1.5 * (np.clip(now.speeds / self.hover, 0.3, 2.0) - 1.0))
 
 
-class Exponent(Influence):
-    """A thrust curve that is off by a factor and has another exponent."""
+class Levelling(Influence):
+    """
+    A thrust coefficient that falls off below the speed of hover and is level above it.
+
+    As blades at low Reynolds numbers have it, whose coefficient rises with the speed and then
+    levels off (Deters, Ananda, Selig, AIAA 2014-2151, figures of small rotors at rest): a kink,
+    where a power law is smooth.
+    """
+
+    SLOPE = 6.0
 
     def __init__(self, size, params, rng):
         """Draw whether it is more or less."""
@@ -214,8 +238,8 @@ class Exponent(Influence):
 
     def gain(self, now):
         """Return the factors."""
-        turn = np.clip(now.speeds / self.hover, 0.2, 3.0)
-        return (1.0 + self.share) * turn ** (2.0 * self.share)
+        below = np.clip(1.0 - now.speeds / self.hover, 0.0, 0.7)
+        return 1.0 + self.share * (1.0 + self.SLOPE * below)
 
 
 class _Fault(Influence):
@@ -255,14 +279,21 @@ class Chipped(_Fault):
         return self._with(now, lambda turn: turn ** 2)
 
 
-class Worn(_Fault):
-    """A motor that turns more slowly than it is told: thrust and torque with the square."""
+class Incipient(_Fault):
+    """
+    A loss that grows during the flight, from half of its mean to half as much again.
 
-    def given(self, command):
-        """Return what is followed."""
-        command = command.copy()
-        command[self.rotor] *= np.sqrt(max(1.0 - self.loss, 0.0))
-        return command
+    Faults that drift, beside those that jump: e.g. Zhang and Jiang, Annual Reviews in Control
+    32(2), 2008.
+    """
+
+    def gain(self, now):
+        """Return the factors."""
+        return self._with(now, lambda turn: 0.5 + min(now.time / 20.0, 1.0))
+
+    def torque(self, now):
+        """Return the factors: the motor turns more slowly."""
+        return self.gain(now)
 
 
 class Dragging(_Fault):

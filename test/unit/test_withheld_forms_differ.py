@@ -1,0 +1,157 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""No form of the evaluation is one that the library has: what the best fit of these leaves."""
+
+from library_forms import COUNT, flown, of_battery, of_part, remainder, STEP
+import numpy as np
+import pytest
+from scipy.optimize import minimize
+from scipy.spatial.transform import Rotation
+from test_withheld_forms import fresh, HOVER, PARAMS, PLACES
+
+from quad_ident_ros.effects.registry import EFFECTS
+from withheld.actuators import Battery
+from withheld.forms import body, EVALUATION, form_of
+
+# Of what a form does, rms: less is a small error of form, which the diagnosis must not mind.
+LEAST = 0.05
+SIZE = 3.0
+FORCES = [(effect, form) for effect in (
+    'rotor_drag', 'body_drag', 'inflow', 'ground_effect', 'battery_sag', 'thrust_scale',
+    'rotor_fault', 'blade_flapping') for form in EVALUATION[effect]]
+FLIGHT = flown(PARAMS, HOVER)
+STEP_OF_MOTORS = 0.002
+
+
+def made(effect, form, size=SIZE):
+    part = form_of(effect, form)(size, PARAMS, np.random.default_rng(3))
+    part.begin(np.random.default_rng(4))
+    return part
+
+
+@pytest.mark.parametrize(('effect', 'form'), FORCES)
+def test_a_force_or_moment_is_no_form_of_the_library(effect, form):
+    part = made(effect, form)
+    if isinstance(part, Battery):
+        assert not part.recorded    # a recorded voltage would tell the library
+        target = of_battery(part, PARAMS, PLACES, HOVER, FLIGHT)
+    else:
+        target = of_part(part, PARAMS, PLACES, FLIGHT)
+    for ours in EFFECTS[effect].forms:
+        if not ours.needs_voltage:
+            assert remainder(target, ours, PARAMS, PLACES, FLIGHT, HOVER) > LEAST
+
+
+def test_what_the_fit_leaves_of_a_form_of_the_library_is_nothing():
+    sloped = of_part(made('thrust_scale', 'sloped'), PARAMS, PLACES, FLIGHT)
+    rests = {one.name: remainder(sloped, one, PARAMS, PLACES, FLIGHT, HOVER)
+             for one in EFFECTS['thrust_scale'].forms}
+    assert rests['exponent'] < 0.02 < LEAST < rests['factor']
+
+
+def commands():
+    """Return held commands (N, 4) as a controller gives them, and the times of their samples."""
+    rng, t = np.random.default_rng(1), np.arange(0.0, 6.0, STEP_OF_MOTORS)
+    rates = 2.0 * np.pi * np.exp(rng.uniform(np.log(0.3), np.log(8.0), (4, 15, 1)))
+    waves = np.sin(rates * t + rng.uniform(0.0, 6.28, (4, 15, 1))).sum(axis=1).T
+    return np.repeat(HOVER * (1.0 + 0.05 * waves)[::5], 5, axis=0), t
+
+
+def followed(turn, command):
+    speeds, out = command[0].copy(), np.empty_like(command)
+    for k, one in enumerate(command):
+        speeds = out[k] = turn(speeds, one)
+    return out
+
+
+@pytest.mark.parametrize('form', EVALUATION['motor_lag'])
+def test_a_motor_is_no_lag_of_the_first_order_up_or_down(form):
+    motor, (command, _) = made('motor_lag', form), commands()
+    true = followed(lambda w, c: motor.turn(w, c, STEP_OF_MOTORS), command)
+
+    def missed(logs):
+        up, down = np.exp(logs)
+        lag = followed(lambda w, c: c + (w - c) * np.exp(
+            -STEP_OF_MOTORS / np.where(c > w, up, down)), command)
+        return np.sqrt(np.mean((lag - true) ** 2) / np.mean((true - command) ** 2))
+
+    best = minimize(missed, np.log([0.03, 0.03]), method='Nelder-Mead', options={'maxiter': 40})
+    assert best.fun > LEAST
+
+
+@pytest.mark.parametrize('form', EVALUATION['actuation_delay'])
+def test_a_delay_is_not_constant(form):
+    line = made('actuation_delay', form)
+    waits = [line.waits(t) for t in np.arange(0.0, 20.0, 0.01)]
+    assert np.std(waits) / np.mean(waits) > LEAST
+
+
+@pytest.mark.parametrize('form', EVALUATION['wind'])
+def test_a_wind_is_not_the_same_everywhere_and_at_all_times(form):
+    wind, rng = made('wind', form), np.random.default_rng(2)
+    places = np.column_stack([rng.uniform(-1.5, 1.5, (COUNT, 2)), rng.uniform(0.1, 2.0, COUNT)])
+    air = np.array([wind.wind(STEP * k, place) for k, place in enumerate(places)])
+    assert np.linalg.norm(air.std(axis=0)) > LEAST * np.linalg.norm(air.mean(axis=0))
+
+
+def test_an_entrained_inertia_is_no_factor_on_the_inertia():
+    moment = of_part(made('inertia_mismatch', 'entrained'), PARAMS, PLACES, FLIGHT)[:, 3:]
+    slopes = np.gradient(FLIGHT['rate'], STEP, axis=0)
+    for axis in range(3):
+        share = slopes[:, axis] @ moment[:, axis] / (slopes[:, axis] @ slopes[:, axis])
+        rest = moment[:, axis] - share * slopes[:, axis]
+        assert share < 0.0 and np.std(rest) > LEAST * np.std(moment[:, axis])
+
+
+def test_masses_moved_outwards_leave_products_of_inertia():
+    true = fresh()
+    made('inertia_mismatch', 'outriggers').alter(true, PARAMS)
+    change = body.inertia_of(true) - body.inertia_of(PARAMS)
+    products = change - np.diag(np.diag(change))
+    assert np.linalg.norm(products) > LEAST * np.linalg.norm(change)
+
+
+def test_a_centre_that_yields_is_no_constant_offset():
+    part = made('com_offset', 'elastic')
+    moment = of_part(part, PARAMS, PLACES, FLIGHT)[:, 3:]
+    lift = PARAMS['k_eta'] * np.sum(FLIGHT['speeds'] ** 2, axis=1)
+    share = lift @ moment / (lift @ lift)
+    assert np.linalg.norm(moment - lift[:, None] * share) > LEAST * np.linalg.norm(moment)
+
+
+def test_a_mass_that_is_not_at_the_centre_moves_the_centre_and_a_cable_swings():
+    true = fresh()
+    made('mass_offset', 'other_battery').alter(true, PARAMS)
+    assert np.linalg.norm(true['centre']) > 1e-4
+    assert made('mass_offset', 'cable').bodies()['payload'].length > 0.1
+
+
+def test_rotors_of_one_spin_that_are_heavier_keep_momentum_in_hover():
+    true = fresh()
+    made('rotor_gyro', 'heavy_pair').alter(true, PARAMS)
+    momentum = true['rotor_inertia'] * PARAMS['rotor_directions']
+    assert abs(momentum.sum()) > LEAST * np.abs(momentum).sum()
+
+
+@pytest.mark.parametrize('form', EVALUATION['gyro_bias'])
+def test_a_bias_is_not_constant(form):
+    part, state = made('gyro_bias', form), np.array([*np.zeros(9), 1.0, *np.zeros(3)])
+    thrusts = np.mean((FLIGHT['speeds'] / HOVER) ** 2, axis=1)
+    bias = np.array([part.measured(t, state, thrust)[10:] for t, thrust in zip(
+        FLIGHT['time'], thrusts, strict=True)])
+    assert np.linalg.norm(bias.std(axis=0)) > LEAST * np.linalg.norm(bias.mean(axis=0))
+
+
+@pytest.mark.parametrize('form', EVALUATION['attitude_misalignment'])
+def test_a_tilt_is_not_that_of_an_attitude_or_of_a_block(form):
+    part, turns = made('attitude_misalignment', form), []
+    thrusts, rates = np.mean((FLIGHT['speeds'] / HOVER) ** 2, axis=1), FLIGHT['rate']
+    seen = np.array([part.measured(t, np.array([*np.zeros(9), 1.0, *rate]), thrust)
+                     for t, thrust, rate in zip(FLIGHT['time'], thrusts, rates, strict=True)])
+    turns = Rotation.from_quat(seen[:, 6:10]).as_rotvec()
+    mean = np.mean(turns, axis=0)
+    # The rates of a block that is tilted so, or of one that is not: whichever is nearer.
+    block = Rotation.from_rotvec(mean).inv().apply(rates)
+    rest = min(np.linalg.norm(seen[:, 10:] - one) for one in (rates, block))
+    change = np.linalg.norm(block - rates)
+    assert max(np.linalg.norm(turns - mean) / np.linalg.norm(turns), rest / change) > LEAST
