@@ -52,12 +52,12 @@ def _volume(information: np.ndarray, wide: np.ndarray, scatter: float) -> np.nda
 
 def _odds(causes: Sequence[Candidate], rules: Rules) -> float:
     nuisances = [cause.nuisance for cause in causes if cause.nuisance is not None]
-    # A sensor with one bias may have others. Clocks have nothing to do with them.
-    clocks = [kind.odds for kind in nuisances if kind.name == CLOCK]
+    # A sensor with one bias may have others. Clocks, thrust and wind have nothing to do with them.
+    apart = [kind for kind in nuisances if kind.name == CLOCK or kind.of_effect]
     biases = [kind.odds if k == 0 else LIKELY for k, kind in
-              enumerate(kind for kind in nuisances if kind.name != CLOCK)]
+              enumerate(kind for kind in nuisances if kind not in apart)]
     effects = [rules.prior_odds * cause.share for cause in causes if cause.nuisance is None]
-    shares = effects + clocks + biases
+    shares = effects + [kind.odds for kind in apart] + biases
     return sum(np.log(share / (1.0 - share)) for share in shares)
 
 

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from quad_ident_ros.diagnose.candidates import Candidate
-from quad_ident_ros.diagnose.evidence import beam, excludes, linear_evidence, Quadratic
+from quad_ident_ros.diagnose.evidence import beam, excludes, linear_evidence, occam, Quadratic
 from quad_ident_ros.diagnose.rules import Rules
-from quad_ident_ros.greybox.nuisances import Nuisance, RARE
+from quad_ident_ros.greybox.nuisances import LIKELY, Nuisance, RARE
 
 RULES = Rules(prior_odds=0.03)
 CAUSES = tuple(Candidate(name, name, (k,), share=share) for k, (name, share) in enumerate(
@@ -107,3 +107,18 @@ def test_a_thrust_of_each_flight_stands_beside_that_of_all_and_not_beside_the_ma
     assert excludes(nuisance, Candidate('mass_offset', 'mass', (1,)))
     assert not excludes(nuisance, Candidate('thrust_scale', 'thrust', (0,)))
     assert not excludes(nuisance, Candidate('inertia_mismatch', 'inertia', (2,)))
+
+
+def test_a_sensor_with_one_bias_may_have_others_and_the_air_has_nothing_to_do_with_it():
+    def odds(*names):
+        kinds = [Nuisance(name, name, '', (k,), (0.01,), RARE,
+                          name.removesuffix('_by_flight') if 'by_flight' in name else '')
+                 for k, name in enumerate(names)]
+        return occam(np.zeros((2, 2)), np.ones(2), 1.0,
+                     [Candidate(kind.name, kind.name, kind.columns, nuisance=kind)
+                      for kind in kinds], RULES)
+
+    rare, likely = np.log(RARE / (1.0 - RARE)), np.log(LIKELY / (1.0 - LIKELY))
+    assert odds('rate_bias', 'attitude_bias') == pytest.approx(rare + likely)
+    assert odds('thrust_scale_by_flight', 'wind_by_flight') == pytest.approx(2.0 * rare)
+    assert odds('rate_bias', 'wind_by_flight') == pytest.approx(2.0 * rare)
