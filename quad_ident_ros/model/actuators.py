@@ -47,16 +47,22 @@ def actuated(t: np.ndarray, stamps: np.ndarray, commands: np.ndarray, thetas: np
     lies, those of the true speeds: a mean command would smooth what it drives.
     """
     laws = np.column_stack([thetas[:, DELAY], *law_of(thetas), thetas[:, FOLLOWED].any(axis=1)])
-    laws, law = np.unique(laws, axis=0, return_inverse=True)
-    shape = (len(laws), len(t), commands.shape[1])
-    acted = Actuation(np.empty(shape), np.empty(shape), np.zeros((*shape[:2], 3, shape[2])),
-                      law.reshape(-1))
-    for k, (*times, by_law) in enumerate(laws):
+    first, law = distinct(laws)
+    shape = (len(first), len(t), commands.shape[1])
+    acted = Actuation(np.empty(shape), np.empty(shape), np.zeros((*shape[:2], 3, shape[2])), law)
+    for k, (*times, by_law) in enumerate(laws[first]):
         if by_law:
             _act_by_law(t, stamps, commands, *times, *(part[k] for part in acted[:3]))
         else:
             _act(t, stamps, commands, *times[:2], *(part[k] for part in acted[:3]))
     return acted
+
+
+def distinct(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return where each row that differs from those before it stands, and which each row (T,) is."""
+    known: dict[bytes, int] = {}
+    which = np.array([known.setdefault(row.tobytes(), len(known)) for row in rows], np.int64)
+    return np.unique(which, return_index=True)[1], which
 
 
 def law_of(thetas: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

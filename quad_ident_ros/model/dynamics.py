@@ -11,7 +11,7 @@ from scipy.interpolate import CubicHermiteSpline
 
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.model.actuators import actuated, without_lag
+from quad_ident_ros.model.actuators import actuated, distinct, without_lag
 from quad_ident_ros.model.attitude import quaternion_from_euler
 from quad_ident_ros.model.rigid_body import INPUT, rotor_table, STATE, vehicle_vector
 from quad_ident_ros.model.rollout import roll_out, roll_out_one
@@ -149,7 +149,7 @@ def _guides(thetas: np.ndarray, sensors: Sensors, guide: np.ndarray, t: np.ndarr
     Args: thetas (T, P) and their Sensors; guide (N, 13) at t (N,) s; fine (M,) s of the
     integration.
     """
-    _, one, which = np.unique(thetas[:, TURNED], axis=0, return_index=True, return_inverse=True)
+    one, which = distinct(thetas[:, TURNED])
     leads = np.empty((len(one), len(t), GUIDE))
     lead(sensors.attitudes[one], sensors.rates[one], sensors.biases[one],
          np.ascontiguousarray(guide), leads)
@@ -161,7 +161,7 @@ def _guides(thetas: np.ndarray, sensors: Sensors, guide: np.ndarray, t: np.ndarr
         share = ((fine - t[place - 1]) / (t[place] - t[place - 1]))[:, None]
         rate = (1.0 - share) * rate[:, place - 1] + share * rate[:, place]
         leads = np.concatenate([q, rate], axis=-1)
-    return leads, which.reshape(-1)
+    return leads, which
 
 
 def _finer(t: np.ndarray, steps: int) -> np.ndarray:

@@ -204,5 +204,5 @@ def _kernel(lanes: int) -> Callable[..., None]:
     return roll_out
 
 
-roll_out = _kernel(48)
+roll_out = _kernel(32)
 roll_out_one = _kernel(1)
