@@ -136,7 +136,7 @@ def _descend(flights: Sequence[Flight], vehicle: Vehicle, z: np.ndarray, columns
             break
         if tangents is None:
             made += 1
-            tangents = slopes_at(flights, vehicle, z, nuisances.vectors(z), starts, raws,
+            tangents = slopes_at(flights, vehicle, z, nuisances.vectors(z), starts,
                                  layout.wanted).tangents
             at = z
         scales = [weights_of(raw, sigma, flight) / sigma
@@ -175,15 +175,17 @@ def _descend(flights: Sequence[Flight], vehicle: Vehicle, z: np.ndarray, columns
                      for part, linear in zip(aligned, linears, strict=True)]
         # In units of the noise, so that directions that are not determined do not count.
         length = np.sqrt(max(step @ normal.information @ step, 0.0) / max(1, len(step)))
+        # Where a step ends at the cost that the slopes say, they are what they were.
+        said = (normal.cost - step @ (2.0 * normal.gradient - normal.information @ step)
+                + precision @ (now + step) ** 2)
+        straight = share == 1.0 and abs(after - said) <= max(STRAIGHT * (before - said),
+                                                             NEARLY * scatter)
         # The first step is weighed by a first guess of the noise.
-        if share == 1.0 and length <= done * np.sqrt(scatter) and (known or count):
+        if (share == 1.0 and length <= done * np.sqrt(scatter) and (known or count)
+                and (fresh or straight)):
             converged = True
             break
-        # Where a step ends at the cost that the slopes say, they are what they were.
-        told_after = (normal.cost - step @ (2.0 * normal.gradient - normal.information @ step)
-                      + precision @ (now + step) ** 2)
-        if share < 1.0 or abs(after - told_after) > max(STRAIGHT * (before - told_after),
-                                                        NEARLY * scatter):
+        if not straight:
             tangents = None
     covariance = covariance_of(marginal(normal, shared, precision), size[:shared])
     # By the weights of these errors, not of those before the last step, to be held against others.

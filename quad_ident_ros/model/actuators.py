@@ -59,7 +59,7 @@ def actuated(t: np.ndarray, stamps: np.ndarray, commands: np.ndarray, thetas: np
 
 
 def distinct(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return where each row that differs from those before it stands, and which each row (T,) is."""
+    """Return where rows (T, K) that differ first stand, (D,), and which of them each is, (T,)."""
     known: dict[bytes, int] = {}
     which = np.array([known.setdefault(row.tobytes(), len(known)) for row in rows], np.int64)
     return np.unique(which, return_index=True)[1], which

@@ -139,10 +139,11 @@ def _kernel(lanes: int) -> Callable[..., None]:
         Args: vehicles (T, 16), places: see rigid_body; thetas (T, P) parameter sets; which (B,)
         the set of each rollout; x0 (B, 13) states at the start; t (N,) s; followed, speeds
         (A, N, n), added (A, N, 3, n) to each step from a sample on, law (T,) of each parameter
-        set: see actuators; inputs (N, INPUT), what else acts; first (B,) the sample at which a rollout starts; count of
-        samples; substeps per sample, 1 where anything is added or guided; guides (G, N, GUIDE):
-        quaternions and rates that a record gives, by which the centre of mass moves instead of by
-        the predicted ones; without any, G is 0; guide_of (T,) the guide of each parameter set.
+        set: see actuators; inputs (N, INPUT), what else acts; first (B,) the sample at which a
+        rollout starts; count of samples; substeps per sample, 1 where anything is added or guided;
+        guides (G, N, GUIDE): quaternions and rates that a record gives, by which the centre of
+        mass moves instead of by the predicted ones; without any, G is 0; guide_of (T,) the guide
+        of each parameter set.
         """
         rotor_count = places.shape[0]
         x = np.empty((STATE, lanes))

@@ -126,9 +126,9 @@ def change(acts: np.ndarray, arms: np.ndarray, attitudes: np.ndarray, rates: np.
 def lead(attitudes: np.ndarray, rates: np.ndarray, biases: np.ndarray, recorded: np.ndarray,
          out: np.ndarray) -> None:
     """
-    Write the attitudes and rates that recorded states (N, 13) have by G sensors into (G, N, GUIDE).
+    Write the attitudes and rates that recorded states (N, 13) stand for by G sensors into out.
 
-    The quaternions' signs are such that none jumps to its negative.
+    out (G, N, GUIDE). The quaternions' signs are such that none jumps to its negative.
     """
     x = np.empty(recorded.shape[1])
     for g in range(out.shape[0]):
@@ -165,7 +165,8 @@ def _turns(vectors: np.ndarray, out: np.ndarray) -> None:
         x, y, z = vectors[n, 0], vectors[n, 1], vectors[n, 2]
         half = 0.5 * math.sqrt(x * x + y * y + z * z)
         share = 0.5 * (math.sin(half) / half if half > 0.0 else 1.0)
-        out[n, 0], out[n, 1], out[n, 2], out[n, 3] = math.cos(half), share * x, share * y, share * z
+        out[n, 0] = math.cos(half)
+        out[n, 1], out[n, 2], out[n, 3] = share * x, share * y, share * z
 
 
 @compiled(fused=True, inlined=True)
