@@ -90,8 +90,8 @@ def estimate(flights: Sequence[Flight], vehicle: Vehicle, z: np.ndarray, columns
     estimated along unless it is given; outliers count less; with `clock` each flight's pose may
     be off in time against the rest; nuisances: what else differs by flight. Without
     `starts` (B, 13) per flight, the initial states, a few of the rollouts first bring z near.
-    iterations: how often slopes are made, at most; as many steps more go by slopes that are kept;
-    slopes: Slopes near, by which the first step is tried; scatter: what differences of the cost
+    iterations: how often slopes are made, at most; slopes: Slopes near, by which the first step is
+    tried, whereupon as many steps more may go by slopes that are kept; scatter: what differences of the cost
     are divided by: the more, the sooner a step is small.
     """
     columns = list(columns)
@@ -175,11 +175,12 @@ def _descend(flights: Sequence[Flight], vehicle: Vehicle, z: np.ndarray, columns
                      for part, linear in zip(aligned, linears, strict=True)]
         # In units of the noise, so that directions that are not determined do not count.
         length = np.sqrt(max(step @ normal.information @ step, 0.0) / max(1, len(step)))
-        # Where a step ends at the cost that the slopes say, they are what they were.
-        said = (normal.cost - step @ (2.0 * normal.gradient - normal.information @ step)
-                + precision @ (now + step) ** 2)
-        straight = share == 1.0 and abs(after - said) <= max(STRAIGHT * (before - said),
-                                                             NEARLY * scatter)
+        # Where a step ends at the cost that the slopes say, they are what they were; a fit that is
+        # not one of many makes them anew, for its standard errors are those of its end.
+        saved = step @ (2.0 * gradient - information @ step)
+        said = normal.cost + precision @ now ** 2 - saved
+        straight = (slopes is not None and share == 1.0
+                    and abs(after - said) <= max(STRAIGHT * saved, NEARLY * scatter))
         # The first step is weighed by a first guess of the noise.
         if (share == 1.0 and length <= done * np.sqrt(scatter) and (known or count)
                 and (fresh or straight)):
