@@ -91,8 +91,8 @@ def estimate(flights: Sequence[Flight], vehicle: Vehicle, z: np.ndarray, columns
     be off in time against the rest; nuisances: what else differs by flight. Without
     `starts` (B, 13) per flight, the initial states, a few of the rollouts first bring z near.
     iterations: how often slopes are made, at most; slopes: Slopes near, by which the first step is
-    tried, whereupon as many steps more may go by slopes that are kept; scatter: what differences of the cost
-    are divided by: the more, the sooner a step is small.
+    tried, whereupon as many steps more may go by slopes that are kept; scatter: what differences
+    of the cost are divided by: the more, the sooner a step is small.
     """
     columns = list(columns)
     nuisances = nuisances or NuisanceValues.of((), len(flights))
