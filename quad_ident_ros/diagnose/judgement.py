@@ -112,7 +112,7 @@ class Bench:
             cause.nuisance is not None and set(shared) & set(cause.nuisance.columns)))
         noise, scatter = self.selection.noise, self.selection.quadratic.scatter
         estimate = refitted(self.flights, self.vehicle, z, chosen, noise, fit.nuisances,
-                            fit.starts, self.selection.frame.slopes, scatter, fixed[:-1])
+                            fit.starts, scatter=scatter, fixed=fixed[:-1])
         usual = {cause.effect: cause for cause in self.selection.probability if cause.usual}
         chosen, estimate = within_bounds(chosen, estimate, usual, self.flights, self.vehicle,
                                          noise, scatter, fixed[:-1])
