@@ -20,7 +20,8 @@ from quad_ident_ros.effects.registry import bounds, EFFECTS, NULL, PLACES, SLICE
 from quad_ident_ros.model.actuators import actuated
 from quad_ident_ros.model.dynamics import Course, predict, states_of
 from quad_ident_ros.model.rigid_body import INPUT, rotor_table, STATE, vehicle_vector
-from quad_ident_ros.model.rollout import NO_GUIDE, roll_out, roll_out_one
+from quad_ident_ros.model.rollout import roll_out, roll_out_one
+from quad_ident_ros.model.sensors import NO_GUIDE
 from quad_ident_ros.model.vehicle import load_vehicle
 
 SAMPLES, PERIOD, BATCH = 100, 0.01, 1024
@@ -62,7 +63,7 @@ class Problem:
     def in_numpy(self):
         """Return what plain NumPy rolls out."""
         return rollout_numpy.roll_out(self.vehicle, self.theta, self.x0, self.t,
-                                      *(each[0] for each in self.acted), self.inputs[:, 5],
+                                      *(each[0] for each in self.acted[:3]), self.inputs[:, 5],
                                       self.first, self.samples)
 
     def speed(self, function, repeats):

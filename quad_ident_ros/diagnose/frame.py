@@ -59,7 +59,7 @@ def frame_at(flights: list, vehicle: Vehicle, fit: Estimate, wanted: list, rules
     wanted = sorted({*wanted, *WRENCH})
     raws = [errors_along(flight, vehicle, z, start)
             for flight, z, start in zip(flights, fit.vectors, fit.starts, strict=True)]
-    slopes = slopes_at(flights, vehicle, fit.z, fit.vectors, fit.starts, raws, wanted)
+    slopes = slopes_at(flights, vehicle, fit.z, fit.vectors, fit.starts, wanted)
     scale, basis, slope, block = [], [], [], []
     for tangent, raw, residual, sigma, flight in zip(slopes.tangents, raws, fit.residuals,
                                                      fit.noise, flights, strict=True):

@@ -23,7 +23,7 @@ from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.greybox.estimate import Estimate, estimate
 from quad_ident_ros.greybox.flights import Flight
-from quad_ident_ros.greybox.linear import errors_along, Slopes
+from quad_ident_ros.greybox.linear import errors_along
 from quad_ident_ros.greybox.noise import quick_noise, whole_noise
 from quad_ident_ros.greybox.normal import scatter_of
 from quad_ident_ros.greybox.nuisances import Layout, NuisanceValues
@@ -131,7 +131,8 @@ class _Search:
         self.noise, self.judged = noise, {}
         self.tried = {key: self.tried[key] for key in dict.fromkeys(known)}
         self.tried = {key: refitted(self.flights, self.vehicle, fit.z, key, noise, fit.nuisances,
-                                    fit.starts) for key, fit in self.tried.items()}
+                                    fit.starts, self.frame.slopes)
+                      for key, fit in self.tried.items()}
 
     def run(self, on_progress: Callable[[float], None]) -> None:
         """Look for the best set among the usual forms, then among all forms, around that."""
@@ -217,7 +218,6 @@ class _Search:
 
     def try_promising(self) -> None:
         """Fit the sets that the linear model finds promising, and judge them."""
-        around, slopes = self.frame.slopes, self.frame.slopes
         for chosen, distances in _promising(self.ranked, self.tried):
             start = nominal(self.vehicle)
             lower, upper, _ = limits(self.vehicle)
@@ -226,28 +226,28 @@ class _Search:
             everyone = NuisanceValues.of([one.nuisance for one in self.nuisances if one.nuisance],
                                          len(self.flights))
             everyone.values.flat[:] = distances[len(self.columns):]
-            self.fit(chosen, start, everyone, around.starts, slopes)
+            self.fit(chosen, start, everyone, self.frame.slopes.starts)
         for chosen, start in _other_actuator(self.best_key(), self.causes,
                                              self.tried[self.best_key()].z, self.vehicle):
             if chosen not in self.tried and self.quadratic.scatter > LOST:
                 fit = self.tried[self.best_key()]
-                self.fit(chosen, start, fit.nuisances, fit.starts, None)
+                self.fit(chosen, start, fit.nuisances, fit.starts)
 
     def best_key(self) -> tuple:
         """Return the set around which the flights are linearised."""
         return self.order()[0].chosen
 
     def fit(self, chosen: tuple, z: np.ndarray, nuisances: NuisanceValues,
-            starts: list[np.ndarray], slopes: Slopes | None) -> None:
+            starts: list[np.ndarray]) -> None:
         """Fit a set from a vector, and once more from its best subset where it gets lost."""
-        scatter = self.quadratic.scatter
+        scatter, slopes = self.quadratic.scatter, self.frame.slopes
         fit = refitted(self.flights, self.vehicle, z, chosen, self.noise, nuisances, starts,
                        slopes, scatter)
         subsets = [one for key, one in self.tried.items() if set(key) < set(chosen)]
         near = min(subsets, key=lambda one: one.cost, default=fit)
         if fit.cost > near.cost + LOST * scatter:
             again = refitted(self.flights, self.vehicle, near.z, chosen, self.noise,
-                             near.nuisances, near.starts)
+                             near.nuisances, near.starts, slopes, scatter)
             fit = min(fit, again, key=lambda one: one.cost)
         self.tried[chosen] = fit
         self.judge(chosen)

@@ -29,8 +29,8 @@ ITERATIONS = 20
 DONE = 0.2          # standard errors of a last step, which leaves a twentieth of that or less
 ROUGH = 30.0        # standard errors where only a few rollouts are looked at
 FEW = 8             # rollouts that bring a start near
-STRAIGHT = 0.1      # of what a step should save that it may save more or less: slopes are kept
-NEARLY = 4.0        # variances of the noise that slopes found elsewhere may leave out, in all
+STRAIGHT = 0.1      # of what a step should save that it may save more or less: slopes are kept;
+NEARLY = 1.0        # or this many variances of the noise, in all: half a unit of log evidence
 SHARES = tuple(0.5 ** k for k in range(7))  # of a step, tried until the cost does not rise
 SPARSE = 4          # every so many samples tell how far the bulk of them is off
 OUTLIER = 4.0       # noise deviations beyond which a sample counts less
@@ -90,8 +90,9 @@ def estimate(flights: Sequence[Flight], vehicle: Vehicle, z: np.ndarray, columns
     estimated along unless it is given; outliers count less; with `clock` each flight's pose may
     be off in time against the rest; nuisances: what else differs by flight. Without
     `starts` (B, 13) per flight, the initial states, a few of the rollouts first bring z near.
-    slopes: Slopes at the same starts, taken where the errors at z are what they say; scatter: what
-    differences of the cost are divided by: the more, the sooner a step is small.
+    iterations: how often slopes are made, at most; slopes: Slopes near, by which the first step is
+    tried, whereupon as many steps more may go by slopes that are kept; scatter: what differences
+    of the cost are divided by: the more, the sooner a step is small.
     """
     columns = list(columns)
     nuisances = nuisances or NuisanceValues.of((), len(flights))
@@ -105,7 +106,7 @@ def estimate(flights: Sequence[Flight], vehicle: Vehicle, z: np.ndarray, columns
             z, nuisances = near.z, near.nuisances
         starts = settled(flights, vehicle, nuisances.vectors(z), noise)
     return _descend(flights, vehicle, z, columns, box, noise, nuisances, starts, iterations, clock,
-                    DONE * np.sqrt(max(1.0, scatter)), slopes)
+                    DONE, slopes, max(1.0, scatter))
 
 
 def _fewer(flight: Flight, count: int) -> Flight:
@@ -117,7 +118,7 @@ def _fewer(flight: Flight, count: int) -> Flight:
 def _descend(flights: Sequence[Flight], vehicle: Vehicle, z: np.ndarray, columns: list[int],
              box: np.ndarray, noise: list[np.ndarray] | None, nuisances: NuisanceValues,
              starts: list[np.ndarray], iterations: int, clock: bool, done: float,
-             slopes: Slopes | None = None) -> Estimate:
+             slopes: Slopes | None = None, scatter: float = 1.0) -> Estimate:
     """Return the Estimate from z by steps of Gauss and Newton that do not raise the cost."""
     layout = Layout(columns, nuisances.columns, len(flights))
     shared, lower, upper, size, precision = _whole(box, nuisances, len(flights))
@@ -125,13 +126,17 @@ def _descend(flights: Sequence[Flight], vehicle: Vehicle, z: np.ndarray, columns
     raws = [errors_along(flight, vehicle, vector, start)
             for flight, vector, start in zip(flights, nuisances.vectors(z), starts, strict=True)]
     noise = known or [quick_noise(raw) for raw in raws]
-    tangents, converged = None, False
-    if slopes and slopes.missed(nuisances.vectors(z), raws, noise) < NEARLY:
+    tangents, at, converged = None, z, False
+    if slopes:
         tangents, at = slopes.of(layout.wanted), slopes.at
-    for count in range(iterations):
+    made = 0
+    for count in range(2 * iterations):
         fresh = tangents is None
+        if fresh and made == iterations:
+            break
         if tangents is None:
-            tangents = slopes_at(flights, vehicle, z, nuisances.vectors(z), starts, raws,
+            made += 1
+            tangents = slopes_at(flights, vehicle, z, nuisances.vectors(z), starts,
                                  layout.wanted).tangents
             at = z
         scales = [weights_of(raw, sigma, flight) / sigma
@@ -145,7 +150,7 @@ def _descend(flights: Sequence[Flight], vehicle: Vehicle, z: np.ndarray, columns
         step, free = bounded_step(information, gradient, now, lower, upper, size)
         told = _aligned(raws, tangents, scales, clock)
         before = _cost(told, scales) + precision @ now ** 2
-        for share in SHARES:
+        for share in SHARES if fresh else SHARES[:1]:
             there, new = z.copy(), now + share * step
             there[columns] = new[:shared]
             theirs = replace(nuisances, values=new[shared:].reshape(nuisances.values.shape))
@@ -170,13 +175,18 @@ def _descend(flights: Sequence[Flight], vehicle: Vehicle, z: np.ndarray, columns
                      for part, linear in zip(aligned, linears, strict=True)]
         # In units of the noise, so that directions that are not determined do not count.
         length = np.sqrt(max(step @ normal.information @ step, 0.0) / max(1, len(step)))
+        # Where a step ends at the cost that the slopes say, they are what they were; a fit that is
+        # not one of many makes them anew, for its standard errors are those of its end.
+        saved = step @ (2.0 * gradient - information @ step)
+        said = normal.cost + precision @ now ** 2 - saved
+        straight = (slopes is not None and share == 1.0
+                    and abs(after - said) <= max(STRAIGHT * saved, NEARLY * scatter))
         # The first step is weighed by a first guess of the noise.
-        if share == 1.0 and length <= done and (known or count):
+        if (share == 1.0 and length <= done * np.sqrt(scatter) and (known or count)
+                and (fresh or straight)):
             converged = True
             break
-        # Where a step saves what the slopes say, they are what they were.
-        saved = step @ (2.0 * gradient - information @ step)
-        if share < 1.0 or abs(before - after - saved) > STRAIGHT * saved:
+        if not straight:
             tangents = None
     covariance = covariance_of(marginal(normal, shared, precision), size[:shared])
     # By the weights of these errors, not of those before the last step, to be held against others.

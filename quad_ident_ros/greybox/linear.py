@@ -41,36 +41,18 @@ class Slopes:
     """
     The Tangents of flights in some columns (places in z) around a vector `at` (Z,).
 
-    vectors: that of each flight, (Z,); starts (B, 13) and raws (B, count + 1, 12), recorded minus
-    predicted, of each.
+    starts (B, 13): the initial states of each flight's rollouts.
     """
 
     at: np.ndarray
     columns: list[int]
-    vectors: list[np.ndarray]
     starts: list[np.ndarray]
-    raws: list[np.ndarray]
     tangents: list[Tangent]
 
     def of(self, columns: Iterable[int]) -> list[Tangent]:
         """Return the Tangents in some of the columns."""
         kept = [*range(ERRORS), *(ERRORS + self.columns.index(one) for one in columns), -1]
         return [Tangent(tangent.table[:, kept]) for tangent in self.tangents]
-
-    def missed(self, vectors: Sequence[np.ndarray], raws: Sequence[np.ndarray],
-               noise: Sequence[np.ndarray]) -> float:
-        """
-        Return what the slopes leave out of errors elsewhere: a sum of squares, over the noise.
-
-        Args: vectors (Z,), raws (B, count + 1, 12) there, of the same starts, and noise (12,).
-        """
-        total = 0.0
-        for k, (z, raw, sigma) in enumerate(zip(vectors, raws, noise, strict=True)):
-            move = (z - self.vectors[k])[self.columns]
-            told = move @ self.tangents[k].table[:, ERRORS:-1]
-            rest = raw - self.raws[k] + told.reshape(raw.shape)
-            total += float(np.sum((rest / sigma) ** 2))
-        return total
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,16 +115,15 @@ def linearise(flight: Flight, vehicle: Vehicle, z: np.ndarray, starts: np.ndarra
 
 
 def slopes_at(flights: Sequence[Flight], vehicle: Vehicle, z: np.ndarray,
-              vectors: list[np.ndarray], starts: list[np.ndarray], raws: list[np.ndarray],
-              columns: list[int]) -> Slopes:
+              vectors: list[np.ndarray], starts: list[np.ndarray], columns: list[int]) -> Slopes:
     """
     Return the Slopes of flights around z (Z,).
 
-    Args: vectors: z with the nuisances of each flight; starts (B, 13) and raws of errors_along
-    per flight; columns: places in z.
+    Args: vectors: z with the nuisances of each flight; starts (B, 13) per flight; columns: places
+    in z.
     """
     steps = STEP * limits(vehicle)[2, columns]
-    return Slopes(z, columns, vectors, starts, raws,
+    return Slopes(z, columns, starts,
                   [tangent_of(flight, vehicle, vector, start, columns, steps)
                    for flight, vector, start in zip(flights, vectors, starts, strict=True)])
 

@@ -3,6 +3,7 @@
 """The constants of the vehicle and the parameters of all effects as one vector."""
 
 from collections.abc import Iterable
+from functools import lru_cache
 
 import numpy as np
 
@@ -45,8 +46,9 @@ def constants_of(z: np.ndarray, vehicle: Vehicle) -> np.ndarray:
     return constants
 
 
+@lru_cache(maxsize=8)
 def limits(vehicle: Vehicle) -> np.ndarray:
-    """Return lower bounds, upper bounds and usual sizes (3, Z), SI."""
+    """Return lower bounds, upper bounds and usual sizes (3, Z), SI, not to be written to."""
     constants = vehicle_vector(vehicle)
     arm = vehicle.arm_length
     weight = vehicle.mass * vehicle.gravity
@@ -57,7 +59,9 @@ def limits(vehicle: Vehicle) -> np.ndarray:
     lower, upper = 0.05 * size, 20.0 * size
     lower[8:14] = 0.0
     table = np.array([lower, upper, 0.1 * size])
-    return np.concatenate([table, registry.bounds(vehicle)], axis=1)
+    whole = np.concatenate([table, registry.bounds(vehicle)], axis=1)
+    whole.flags.writeable = False
+    return whole
 
 
 def prior_sizes(vehicle: Vehicle, width: float) -> np.ndarray:

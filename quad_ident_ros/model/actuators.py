@@ -22,16 +22,17 @@ CLOSE = 1e-9    # of a step, within which a command changes at a sample
 
 class Actuation(NamedTuple):
     """
-    What rotors do along a flight under T parameter sets, rad/s.
+    What rotors do along a flight by A laws, rad/s.
 
-    followed (T, N, n): what their speeds tend to from each sample to the next, so that those at
-    the next one are right; speeds (T, N, n) at each sample; added (T, N, 3, n) to the speeds at
-    the begin, the middle and the end of a step, see actuated.
+    followed (A, N, n): what their speeds tend to from each sample to the next, so that those at
+    the next one are right; speeds (A, N, n) at each sample; added (A, N, 3, n) to the speeds at
+    the begin, the middle and the end of a step, see actuated; law (T,) of each parameter set.
     """
 
     followed: np.ndarray
     speeds: np.ndarray
     added: np.ndarray
+    law: np.ndarray
 
 
 def actuated(t: np.ndarray, stamps: np.ndarray, commands: np.ndarray, thetas: np.ndarray
@@ -45,27 +46,29 @@ def actuated(t: np.ndarray, stamps: np.ndarray, commands: np.ndarray, thetas: np
     changes within a step, `added` makes the thrust's mean over the step, and where in the step it
     lies, those of the true speeds: a mean command would smooth what it drives.
     """
-    known: dict[tuple[float, ...], Actuation] = {}
-    sets, shape = len(thetas), (len(t), commands.shape[1])
-    all_of = Actuation(np.empty((sets, *shape)), np.empty((sets, *shape)),
-                       np.empty((sets, shape[0], 3, shape[1])))
-    for k, theta in enumerate(thetas):
-        key = (theta[DELAY], *law_of(theta))
-        if key not in known:
-            acted = Actuation(np.empty(shape), np.empty(shape), np.zeros((shape[0], 3, shape[1])))
-            if theta[FOLLOWED].any():
-                _act_by_law(t, stamps, commands, *key, *acted)
-            else:
-                _act(t, stamps, commands, *key[:2], *acted)
-            known[key] = acted
-        for whole, part in zip(all_of, known[key], strict=True):
-            whole[k] = part
-    return all_of
+    laws = np.column_stack([thetas[:, DELAY], *law_of(thetas), thetas[:, FOLLOWED].any(axis=1)])
+    first, law = distinct(laws)
+    shape = (len(first), len(t), commands.shape[1])
+    acted = Actuation(np.empty(shape), np.empty(shape), np.zeros((*shape[:2], 3, shape[2])), law)
+    for k, (*times, by_law) in enumerate(laws[first]):
+        if by_law:
+            _act_by_law(t, stamps, commands, *times, *(part[k] for part in acted[:3]))
+        else:
+            _act(t, stamps, commands, *times[:2], *(part[k] for part in acted[:3]))
+    return acted
 
 
-def law_of(theta: np.ndarray) -> tuple[float, float, float]:
-    """Return the lags up and down, s, and the reciprocal of the fastest change of the speed."""
-    return theta[LAG] + theta[RISE], theta[LAG] + theta[FALL], theta[SLEW]
+def distinct(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return where rows (T, K) that differ first stand, (D,), and which of them each is, (T,)."""
+    known: dict[bytes, int] = {}
+    which = np.array([known.setdefault(row.tobytes(), len(known)) for row in rows], np.int64)
+    return np.unique(which, return_index=True)[1], which
+
+
+def law_of(thetas: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return lags up and down, s, and one over the fastest change of speed, of sets (..., P)."""
+    lag = thetas[..., LAG]
+    return lag + thetas[..., RISE], lag + thetas[..., FALL], thetas[..., SLEW]
 
 
 def without_lag(thetas: np.ndarray) -> np.ndarray:
@@ -84,9 +87,9 @@ def accelerations(t: np.ndarray, acted: Actuation, thetas: np.ndarray) -> np.nda
     lags = without_lag(thetas)[:, LAG]
     before = np.concatenate([acted.speeds[:, :1], acted.followed[:, :-1]], axis=1)
     steps = np.append(np.diff(t), t[-1] - t[-2])[:, None]
-    return np.array([(followed - speeds) / lag if lag > 0.0 else (followed - last) / steps
-                     for followed, speeds, last, lag in zip(
-                         acted.followed, acted.speeds, before, lags, strict=True)])
+    return np.array([(acted.followed[k] - acted.speeds[k]) / lag if lag > 0.0
+                     else (acted.followed[k] - before[k]) / steps
+                     for k, lag in zip(acted.law, lags, strict=True)])
 
 
 @compiled(fused=True, inlined=True)

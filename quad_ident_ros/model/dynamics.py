@@ -9,15 +9,22 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.interpolate import CubicHermiteSpline
 
-from quad_ident_ros.data.frames import continuous
 from quad_ident_ros.data.record import FlightRecord
-from quad_ident_ros.effects.registry import NULL
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.model.actuators import actuated, without_lag
+from quad_ident_ros.model.actuators import actuated, distinct, without_lag
 from quad_ident_ros.model.attitude import quaternion_from_euler
 from quad_ident_ros.model.rigid_body import INPUT, rotor_table, STATE, vehicle_vector
-from quad_ident_ros.model.rollout import NO_GUIDE, roll_out, roll_out_one
-from quad_ident_ros.model.sensors import acts, COM, product, recorded, SEEN, underlying
+from quad_ident_ros.model.rollout import roll_out, roll_out_one
+from quad_ident_ros.model.sensors import (
+    change,
+    lead,
+    NO_GUIDE,
+    product,
+    Sensors,
+    sensors_of,
+    TURNED,
+)
+from quad_ident_ros.model.situation import GUIDE
 from quad_ident_ros.model.vehicle import Vehicle
 
 STATES = ('px', 'py', 'pz', 'vx', 'vy', 'vz', 'qw', 'qx', 'qy', 'qz', 'wx', 'wy', 'wz')
@@ -111,63 +118,50 @@ def predict(vehicle: Vehicle, thetas: ArrayLike, course: Course, starts: np.ndar
     """
     thetas = np.atleast_2d(np.asarray(thetas, float))
     which = np.zeros(len(starts), np.int64) if which is None else np.asarray(which, np.int64)
-    first = np.asarray(first, np.int64)
     # Records that are slower than that are rolled out along a finer grid.
     steps = max(1, int(np.ceil(np.median(np.diff(course.t)) / LONGEST_STEP - 1e-6)))
-    t = _finer(course.t, steps)
+    t, first = _finer(course.t, steps), steps * np.asarray(first, np.int64)
     acted = actuated(t, course.stamps, course.commands, thetas)
     inputs = np.zeros((len(t), INPUT))
     rows = np.arange(len(t)) // steps
     inputs[:, 5], inputs[:, 6] = course.volt_drop[rows], course.volt_share[rows]
-    x0, elsewhere = np.array(starts, float), acts(thetas)[which]
-    shown = thetas[which[elsewhere]]
-    x0[elsewhere] = underlying(shown, x0[elsewhere])
-    guides = NO_GUIDE
-    if guide is not None:
-        guides = _guides(thetas, guide, course.t, t)
-        x0[elsewhere, :6] = underlying(shown, np.hstack(
-            [starts[elsewhere, :6], guide[first[elsewhere], 6:]]))[:, :6]
+    sensors = sensors_of(thetas)
+    guides = NO_GUIDE if guide is None else _guides(thetas, sensors, guide, course.t, t)
+    x0 = np.array(starts, float, order='C')
+    change(*sensors, which, *guides, first, steps, x0[:, None], False)
     out = np.empty((len(x0), steps * count + 1, STATE))
     kernel = roll_out if len(x0) > 1 else roll_out_one
     if constants is None:
         constants = np.tile(vehicle_vector(vehicle), (len(thetas), 1))
-    kernel(np.ascontiguousarray(constants), rotor_table(vehicle), without_lag(thetas), which,
-           np.ascontiguousarray(x0), t, *acted, inputs, steps * first, steps * count, 1, *guides,
-           out)
-    out = out[:, ::steps]
-    if elsewhere.any():
-        moved = recorded(shown, out[elsewhere])
-        if guide is not None:
-            rows = first[elsewhere, None] + np.arange(count + 1)
-            leads, lead_of = guides
-            given = leads[lead_of[which[elsewhere]][:, None], steps * rows]
-            moved[..., :6] = recorded(shown, np.concatenate(
-                [out[elsewhere][..., :6], given], axis=-1))[..., :6]
-        out[elsewhere] = moved
+    kernel(np.ascontiguousarray(constants), rotor_table(vehicle), without_lag(thetas), which, x0,
+           t, *acted, inputs, first, steps * count, 1, *guides, out)
+    if steps > 1:
+        out = out[:, ::steps].copy()
+    change(*sensors, which, *guides, first, steps, out, True)
     return out
 
 
-def _guides(thetas: np.ndarray, guide: np.ndarray, t: np.ndarray, fine: np.ndarray
-            ) -> tuple[np.ndarray, np.ndarray]:
+def _guides(thetas: np.ndarray, sensors: Sensors, guide: np.ndarray, t: np.ndarray,
+            fine: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """
-    Return the underlying attitudes and rates of a guide, (G, M, 7), and each set's one, (T,).
+    Return the underlying attitudes and rates of a guide, (G, M, GUIDE), and each set's one, (T,).
 
-    Args: thetas (T, P); guide (N, 13) at t (N,) s; fine (M,) s of the integration.
+    Args: thetas (T, P) and their Sensors; guide (N, 13) at t (N,) s; fine (M,) s of the
+    integration.
     """
-    places = [place for place in SEEN if not COM.start <= place < COM.stop]
-    each, which = np.unique(thetas[:, places], axis=0, return_inverse=True)
-    rows = np.tile(NULL, (len(each), 1))
-    rows[:, places] = each
-    states = underlying(rows, np.broadcast_to(guide, (len(rows), *guide.shape)))
-    q, rate = states[..., 6:10], states[..., 10:]
-    q = np.stack([continuous(each) for each in q])
+    one, which = distinct(thetas[:, TURNED])
+    leads = np.empty((len(one), len(t), GUIDE))
+    lead(sensors.attitudes[one], sensors.rates[one], sensors.biases[one],
+         np.ascontiguousarray(guide), leads)
     if len(fine) > len(t):
+        q, rate = leads[..., :4], leads[..., 4:]
         slope = 0.5 * product(q, np.concatenate([np.zeros((*rate.shape[:-1], 1)), rate], axis=-1))
         q = CubicHermiteSpline(t, q, slope, axis=1)(fine)
         place = np.searchsorted(t, fine, side='right').clip(1, len(t) - 1)
         share = ((fine - t[place - 1]) / (t[place] - t[place - 1]))[:, None]
         rate = (1.0 - share) * rate[:, place - 1] + share * rate[:, place]
-    return np.ascontiguousarray(np.concatenate([q, rate], axis=-1)), which.reshape(-1)
+        leads = np.concatenate([q, rate], axis=-1)
+    return leads, which
 
 
 def _finer(t: np.ndarray, steps: int) -> np.ndarray:

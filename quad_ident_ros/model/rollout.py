@@ -130,18 +130,20 @@ def _kernel(lanes: int) -> Callable[..., None]:
     @compiled(fused=True)
     def roll_out(vehicles: np.ndarray, places: np.ndarray, thetas: np.ndarray, which: np.ndarray,
                  x0: np.ndarray, t: np.ndarray, followed: np.ndarray, speeds: np.ndarray,
-                 added: np.ndarray, inputs: np.ndarray, first: np.ndarray, count: int,
-                 substeps: int, guides: np.ndarray, guide_of: np.ndarray, out: np.ndarray) -> None:
+                 added: np.ndarray, law: np.ndarray, inputs: np.ndarray, first: np.ndarray,
+                 count: int, substeps: int, guides: np.ndarray, guide_of: np.ndarray,
+                 out: np.ndarray) -> None:
         """
         Integrate rollouts by Runge-Kutta and write their states into out (B, count + 1, 13).
 
         Args: vehicles (T, 16), places: see rigid_body; thetas (T, P) parameter sets; which (B,)
         the set of each rollout; x0 (B, 13) states at the start; t (N,) s; followed, speeds
-        (T, N, n), added (T, N, 3, n) to each step from a sample on: see actuators; inputs
-        (N, INPUT), what else acts; first (B,) the sample at which a rollout starts; count of
-        samples; substeps per sample, 1 where anything is added or guided; guides (G, N, GUIDE):
-        quaternions and rates that a record gives, by which the centre of mass moves instead of by
-        the predicted ones; without any, G is 0; guide_of (T,) the guide of each parameter set.
+        (A, N, n), added (A, N, 3, n) to each step from a sample on, law (T,) of each parameter
+        set: see actuators; inputs (N, INPUT), what else acts; first (B,) the sample at which a
+        rollout starts; count of samples; substeps per sample, 1 where anything is added or guided;
+        guides (G, N, GUIDE): quaternions and rates that a record gives, by which the centre of
+        mass moves instead of by the predicted ones; without any, G is 0; guide_of (T,) the guide
+        of each parameter set.
         """
         rotor_count = places.shape[0]
         x = np.empty((STATE, lanes))
@@ -169,8 +171,8 @@ def _kernel(lanes: int) -> Callable[..., None]:
                 # Without lag the rotors still turn as before the command given there.
                 before = first[b] > 0 and thetas[which[b], LAG] == 0.0
                 for j in range(rotor_count):
-                    speed[j, i] = (followed[which[b], first[b] - 1, j] if before else
-                                   speeds[which[b], first[b], j])
+                    speed[j, i] = (followed[law[which[b]], first[b] - 1, j] if before else
+                                   speeds[law[which[b]], first[b], j])
             prepare(v, places, theta, s, rotors)
             for i in range(lanes):
                 s[GUIDED, i] = 1.0 if guides.shape[0] else 0.0
@@ -181,10 +183,11 @@ def _kernel(lanes: int) -> Callable[..., None]:
                     s[TIME, i] = t[row]
                     span[i] = t[row + 1] - t[row]
                     h[i] = span[i] / substeps
+                    acting = law[which[b]]
                     for j in range(rotor_count):
-                        command[j, i] = followed[which[b], row, j]
+                        command[j, i] = followed[acting, row, j]
                         for place in range(3):
-                            extra[place, j, i] = added[which[b], row, place, j]
+                            extra[place, j, i] = added[acting, row, place, j]
                     for n in range(INPUT):
                         u[n, i] = inputs[row, n]
                     if guides.shape[0]:
@@ -202,6 +205,5 @@ def _kernel(lanes: int) -> Callable[..., None]:
     return roll_out
 
 
-NO_GUIDE = (np.zeros((0, 0, GUIDE)), np.zeros(0, np.int64))
-roll_out = _kernel(48)
+roll_out = _kernel(32)
 roll_out_one = _kernel(1)

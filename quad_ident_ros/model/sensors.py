@@ -8,39 +8,60 @@ its rate may have a bias. States (..., 13): position, velocity (world), quaterni
 Parameter sets theta (P,), or (B, P) for states (B, ..., 13).
 """
 
+import math
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import ArrayLike
 
 from quad_ident_ros.compiled import compiled
 from quad_ident_ros.effects.registry import PLACES, SLICES
+from quad_ident_ros.model.situation import GUIDE
 
 COM, TILT, BIAS = (SLICES[name] for name in ('com_offset', 'attitude_misalignment', 'gyro_bias'))
 BLOCK, GYRO = (PLACES['attitude_misalignment', form] for form in ('sensor_block', 'gyro'))
-SEEN = [place for part in (COM, TILT, BIAS, BLOCK, GYRO)
-        for place in range(part.start, part.stop)]
+TURNED = [place for part in (TILT, BIAS, BLOCK, GYRO) for place in range(part.start, part.stop)]
+SEEN = [*range(COM.start, COM.stop), *TURNED]
+NO_GUIDE = (np.zeros((0, 0, GUIDE)), np.zeros(0, np.int64))
+
+
+class Sensors(NamedTuple):
+    """
+    What T parameter sets make of a state of the centre of mass.
+
+    acts (T,) whether they change it at all; arms (T, 3) m to the origin of the body; attitudes and
+    rates (T, 4), the turns from the body to the frames of attitude and of rate; biases (T, 3) of
+    the rate, rad/s.
+    """
+
+    acts: np.ndarray
+    arms: np.ndarray
+    attitudes: np.ndarray
+    rates: np.ndarray
+    biases: np.ndarray
 
 
 def product(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """Return the Hamilton products of quaternions (..., 4)."""
-    aw, ax, ay, az = np.moveaxis(a, -1, 0)
-    bw, bx, by, bz = np.moveaxis(b, -1, 0)
-    return np.stack([aw * bw - ax * bx - ay * by - az * bz,
-                     aw * bx + ax * bw + ay * bz - az * by,
-                     aw * by - ax * bz + ay * bw + az * bx,
-                     aw * bz + ax * by - ay * bx + az * bw], axis=-1)
+    a, b = np.broadcast_arrays(a, b)
+    out = np.empty(a.shape)
+    _products(np.ascontiguousarray(a).reshape(-1, 4), np.ascontiguousarray(b).reshape(-1, 4),
+              out.reshape(-1, 4))
+    return out
 
 
 def turn(vector: ArrayLike) -> np.ndarray:
     """Return the quaternions of rotation vectors (..., 3) rad."""
-    vector = np.asarray(vector, float)
-    angle = np.linalg.norm(vector, axis=-1, keepdims=True)
-    half = np.sinc(angle / (2 * np.pi)) / 2
-    return np.concatenate([np.cos(angle / 2), half * vector], axis=-1)
+    vector = np.ascontiguousarray(vector, float)
+    out = np.empty((*vector.shape[:-1], 4))
+    _turns(vector.reshape(-1, 3), out.reshape(-1, 4))
+    return out
 
 
-def acts(theta: np.ndarray) -> np.ndarray:
-    """Return whether what is recorded differs from the state of the centre of mass, (...)."""
-    return np.asarray(theta[..., SEEN].any(axis=-1))
+def sensors_of(theta: np.ndarray) -> Sensors:
+    """Return the Sensors of parameter sets (T, P)."""
+    arms, biases = (np.ascontiguousarray(theta[:, part]) for part in (COM, BIAS))
+    return Sensors(theta[:, SEEN].any(axis=1), arms, *tilts_of(theta), biases)
 
 
 def tilts_of(theta: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -62,51 +83,110 @@ def underlying(theta: np.ndarray, states: np.ndarray) -> np.ndarray:
 def _changed(theta: np.ndarray, states: np.ndarray, forward: bool) -> np.ndarray:
     """Return recorded states of underlying ones, or, backward, those of recorded ones."""
     states, theta = np.array(states, float), np.atleast_2d(theta)
-    if acts(theta).any():
-        arms, biases = (np.ascontiguousarray(theta[:, part]) for part in (COM, BIAS))
-        attitudes, rates = tilts_of(theta)
-        if not forward:
-            attitudes[:, 1:] *= -1.0
-        turned = bool(theta[:, BLOCK].any() or theta[:, GYRO].any())
-        _change(arms, attitudes, rates, turned, biases,
-                states.reshape(len(theta), -1, states.shape[-1]), forward)
+    sensors, each = sensors_of(theta), np.arange(len(theta))
+    if sensors.acts.any():
+        change(*sensors, each, *NO_GUIDE, each, 1,
+               states.reshape(len(theta), -1, states.shape[-1]), forward)
     return states
 
 
 @compiled(fused=True)
-def _change(arms: np.ndarray, tilts: np.ndarray, rates: np.ndarray, turned: bool,
-            biases: np.ndarray, states: np.ndarray, forward: bool) -> None:
+def change(acts: np.ndarray, arms: np.ndarray, attitudes: np.ndarray, rates: np.ndarray,
+           biases: np.ndarray, which: np.ndarray, guides: np.ndarray, guide_of: np.ndarray,
+           first: np.ndarray, stride: int, states: np.ndarray, forward: bool) -> None:
     """
-    Change states (B, N, 13) in place, by arms and biases (B, 3) and turns (B, 4).
+    Change states (B, M, 13) in place: those of the centre of mass to recorded ones, or back.
 
-    tilts: of the attitude, forward or back; rates: of the rate sensor, where any is turned.
+    Args: acts to biases: the Sensors of T parameter sets; which (B,) the set of each rollout.
+    guides (G, N, GUIDE): underlying attitudes and rates at which the arm counts for position and
+    velocity, instead of the states'; without any, G is 0; guide_of (T,) that of each set; first
+    (B,), stride: the samples of the guide at the first state of a rollout, and per state.
     """
     for b in range(states.shape[0]):
+        k = which[b]
+        if not acts[k]:
+            continue
         for n in range(states.shape[1]):
             x = states[b, n]
             if not forward:
-                for i in range(3):
-                    x[10 + i] -= biases[b, i]
-                if turned:
-                    _turn_rate(x, rates[b], 1.0)
-                _tilt(x, tilts[b])
-            _shift(x, arms[b], -1.0 if forward else 1.0)
+                _unturned(x, attitudes[k], rates[k], biases[k])
+            share = -1.0 if forward else 1.0
+            if guides.shape[0]:
+                _shift(x, guides[guide_of[k], first[b] + stride * n], arms[k], share)
+            else:
+                _shift(x, x[6:], arms[k], share)
             if forward:
-                _tilt(x, tilts[b])
-                if turned:
-                    _turn_rate(x, rates[b], -1.0)
+                _tilt(x, attitudes[k], 1.0)
+                _turn_rate(x, rates[k], -1.0)
                 for i in range(3):
-                    x[10 + i] += biases[b, i]
+                    x[10 + i] += biases[k, i]
+
+
+@compiled(fused=True)
+def lead(attitudes: np.ndarray, rates: np.ndarray, biases: np.ndarray, recorded: np.ndarray,
+         out: np.ndarray) -> None:
+    """
+    Write the attitudes and rates that recorded states (N, 13) stand for by G sensors into out.
+
+    out (G, N, GUIDE). The quaternions' signs are such that none jumps to its negative.
+    """
+    x = np.empty(recorded.shape[1])
+    for g in range(out.shape[0]):
+        for n in range(out.shape[1]):
+            x[6:] = recorded[n, 6:]
+            _unturned(x, attitudes[g], rates[g], biases[g])
+            sign = 1.0
+            if n:
+                last = out[g, n - 1]
+                if x[6] * last[0] + x[7] * last[1] + x[8] * last[2] + x[9] * last[3] < 0.0:
+                    sign = -1.0
+            for i in range(4):
+                out[g, n, i] = sign * x[6 + i]
+            for i in range(3):
+                out[g, n, 4 + i] = x[10 + i]
+
+
+@compiled(fused=True)
+def _products(a: np.ndarray, b: np.ndarray, out: np.ndarray) -> None:
+    """Write the Hamilton products of quaternions (N, 4) into out."""
+    for n in range(len(out)):
+        aw, ax, ay, az = a[n, 0], a[n, 1], a[n, 2], a[n, 3]
+        bw, bx, by, bz = b[n, 0], b[n, 1], b[n, 2], b[n, 3]
+        out[n, 0] = aw * bw - ax * bx - ay * by - az * bz
+        out[n, 1] = aw * bx + ax * bw + ay * bz - az * by
+        out[n, 2] = aw * by - ax * bz + ay * bw + az * bx
+        out[n, 3] = aw * bz + ax * by - ay * bx + az * bw
+
+
+@compiled(fused=True)
+def _turns(vectors: np.ndarray, out: np.ndarray) -> None:
+    """Write the quaternions of rotation vectors (N, 3) rad into out (N, 4)."""
+    for n in range(len(out)):
+        x, y, z = vectors[n, 0], vectors[n, 1], vectors[n, 2]
+        half = 0.5 * math.sqrt(x * x + y * y + z * z)
+        share = 0.5 * (math.sin(half) / half if half > 0.0 else 1.0)
+        out[n, 0] = math.cos(half)
+        out[n, 1], out[n, 2], out[n, 3] = share * x, share * y, share * z
 
 
 @compiled(fused=True, inlined=True)
-def _tilt(x: np.ndarray, tilt: np.ndarray) -> None:
-    """Turn the attitude of a state (13,) by a quaternion (4,) in the body."""
+def _unturned(x: np.ndarray, attitude: np.ndarray, rate: np.ndarray, bias: np.ndarray) -> None:
+    """Take bias and turns of sensors out of the attitude and the rate of a state (13,)."""
+    for i in range(3):
+        x[10 + i] -= bias[i]
+    _turn_rate(x, rate, 1.0)
+    _tilt(x, attitude, -1.0)
+
+
+@compiled(fused=True, inlined=True)
+def _tilt(x: np.ndarray, tilt: np.ndarray, sense: float) -> None:
+    """Turn the attitude of a state (13,) by a quaternion (4,) in the body, back where -1."""
     w, a, b, c = x[6], x[7], x[8], x[9]
-    x[6] = w * tilt[0] - a * tilt[1] - b * tilt[2] - c * tilt[3]
-    x[7] = w * tilt[1] + a * tilt[0] + b * tilt[3] - c * tilt[2]
-    x[8] = w * tilt[2] - a * tilt[3] + b * tilt[0] + c * tilt[1]
-    x[9] = w * tilt[3] + a * tilt[2] - b * tilt[1] + c * tilt[0]
+    t, i, j, k = tilt[0], sense * tilt[1], sense * tilt[2], sense * tilt[3]
+    x[6] = w * t - a * i - b * j - c * k
+    x[7] = w * i + a * t + b * k - c * j
+    x[8] = w * j - a * k + b * t + c * i
+    x[9] = w * k + a * j - b * i + c * t
 
 
 @compiled(fused=True, inlined=True)
@@ -121,17 +201,19 @@ def _turn_rate(x: np.ndarray, turned: np.ndarray, sense: float) -> None:
 
 
 @compiled(fused=True, inlined=True)
-def _shift(x: np.ndarray, arm: np.ndarray, share: float) -> None:
-    """Move position and velocity of a state (13,) by a share of an arm (3,) in the body."""
+def _shift(x: np.ndarray, lead: np.ndarray, arm: np.ndarray, share: float) -> None:
+    """Move position and velocity of a state (13,) by a share of an arm (3,), see _add_turned."""
     ax, ay, az = share * arm[0], share * arm[1], share * arm[2]
-    _add_turned(x, 0, ax, ay, az)
-    _add_turned(x, 3, x[11] * az - x[12] * ay, x[12] * ax - x[10] * az, x[10] * ay - x[11] * ax)
+    _add_turned(x, 0, lead, ax, ay, az)
+    _add_turned(x, 3, lead, lead[5] * az - lead[6] * ay, lead[6] * ax - lead[4] * az,
+                lead[4] * ay - lead[5] * ax)
 
 
 @compiled(fused=True, inlined=True)
-def _add_turned(x: np.ndarray, place: int, a: float, b: float, c: float) -> None:
-    """Add a vector of the body, in the world, to three elements of a state (13,)."""
-    w, i, j, k = x[6], x[7], x[8], x[9]
+def _add_turned(x: np.ndarray, place: int, lead: np.ndarray, a: float, b: float, c: float
+                ) -> None:
+    """Add a vector of a body with an attitude and a rate, lead (7,), to elements of a state."""
+    w, i, j, k = lead[0], lead[1], lead[2], lead[3]
     u, v, t = 2.0 * (j * c - k * b), 2.0 * (k * a - i * c), 2.0 * (i * b - j * a)
     x[place] += a + w * u + j * t - k * v
     x[place + 1] += b + w * v + k * u - i * t

@@ -15,8 +15,8 @@ from quad_ident_ros.errors import InputError
 from quad_ident_ros.model import attitude, equations, mixing
 from quad_ident_ros.model.actuators import actuated, FOLLOWED, without_lag
 from quad_ident_ros.model.rigid_body import INPUT, rotor_table, STATE, vehicle_vector
-from quad_ident_ros.model.rollout import NO_GUIDE, roll_out_one
-from quad_ident_ros.model.sensors import recorded
+from quad_ident_ros.model.rollout import roll_out_one
+from quad_ident_ros.model.sensors import NO_GUIDE, recorded
 from quad_ident_ros.model.vehicle import Vehicle
 
 Progress: TypeAlias = Callable[[float], object]

@@ -74,4 +74,4 @@ def acted(t, commands, delay=0.0, lag=0.0):
     """Return what delayed and lagging rotors do: followed, speeds (N, n), added (N, 3, n)."""
     theta = NULL.copy()
     theta[SLICES['actuation_delay']], theta[SLICES['motor_lag']] = delay, lag
-    return tuple(each[0] for each in actuated(t, t, commands, theta[None]))
+    return tuple(each[0] for each in actuated(t, t, commands, theta[None])[:3])

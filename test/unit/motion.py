@@ -6,7 +6,8 @@ import numpy as np
 
 from quad_ident_ros.effects.registry import NULL, SLICES
 from quad_ident_ros.model.rigid_body import derivatives, INPUT, vehicle_vector
-from quad_ident_ros.model.rollout import NO_GUIDE, roll_out_one
+from quad_ident_ros.model.rollout import roll_out_one
+from quad_ident_ros.model.sensors import NO_GUIDE
 
 NO_ROTORS = np.empty((0, 4))
 
@@ -37,5 +38,5 @@ def move(vehicle, state, t, substeps, omega_r=0.0):
     nothing = np.empty((1, len(t), 3, 0))
     one = np.zeros(1, np.int64)
     roll_out_one(constants[None], NO_ROTORS, theta[None], one, np.array([state], float), t, none,
-                 none, nothing, rows, one, len(t) - 1, substeps, *NO_GUIDE, out)
+                 none, nothing, one, rows, one, len(t) - 1, substeps, *NO_GUIDE, out)
     return out[0]

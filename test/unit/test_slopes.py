@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 
 from quad_ident_ros.flight.fly import fly_closed_loop
+from quad_ident_ros.greybox.errors import ERRORS
+from quad_ident_ros.greybox.estimate import estimate
 from quad_ident_ros.greybox.flights import flight_of, track_of
 from quad_ident_ros.greybox.linear import errors_along, slopes_at
-from quad_ident_ros.greybox.parameters import INDEX, nominal
+from quad_ident_ros.greybox.parameters import INDEX, limits, nominal
 from quad_ident_ros.model.vehicle import load_vehicle
 
 VEHICLE = load_vehicle('hummingbird')
@@ -30,31 +32,36 @@ def errors(flight, z):
 @pytest.fixture(scope='module')
 def slopes(flight):
     z = nominal(VEHICLE)
-    return slopes_at([flight], VEHICLE, z, [z], [flight.states[flight.first]],
-                     errors(flight, z), COLUMNS)
+    return slopes_at([flight], VEHICLE, z, [z], [flight.states[flight.first]], COLUMNS)
 
 
 def missed(slopes, flight, move):
-    z = nominal(VEHICLE)
-    z[INDEX['rotor_drag.coefficient']] += move
-    return slopes.missed([z], errors(flight, z), NOISE)
-
-
-def test_nothing_is_missed_where_they_were_taken(slopes, flight):
-    assert missed(slopes, flight, 0.0) == pytest.approx(0.0, abs=1e-12)
+    """Return what slopes leave out of a change of the drag: a sum of squares, over the noise."""
+    z, column = nominal(VEHICLE), INDEX['rotor_drag.coefficient']
+    z[column] += move
+    change = errors(flight, z)[0] - errors(flight, nominal(VEHICLE))[0]
+    told = move * slopes.of([column])[0].table[:, ERRORS].reshape(change.shape)
+    return np.sum(((change + told) / NOISE[0]) ** 2), np.sum((change / NOISE[0]) ** 2)
 
 
 def test_what_is_missed_is_of_second_order(slopes, flight):
-    near, far = missed(slopes, flight, 0.1), missed(slopes, flight, 0.2)
+    (near, _), (far, whole) = missed(slopes, flight, 0.1), missed(slopes, flight, 0.2)
     assert far / near == pytest.approx(16.0, rel=0.3)
-    z = nominal(VEHICLE)
-    z[INDEX['rotor_drag.coefficient']] += 0.2
-    moved = errors(flight, z)[0] - errors(flight, nominal(VEHICLE))[0]
-    assert far < 0.05 * np.sum((moved / NOISE[0]) ** 2)
+    assert far < 0.05 * whole
+
+
+def test_slopes_from_elsewhere_lead_to_the_same_fit(slopes, flight):
+    z, starts = nominal(VEHICLE), [flight.states[flight.first]]
+    z[COLUMNS] += 0.5 * limits(VEHICLE)[2, COLUMNS]
+    fresh, kept = (estimate([flight], VEHICLE, z, COLUMNS, noise=NOISE, starts=starts, slopes=one)
+                   for one in (None, slopes))
+    assert fresh.converged and kept.converged
+    assert np.all(np.abs(kept.z - fresh.z)[COLUMNS] < 0.5 * fresh.errors)
+    assert kept.cost == pytest.approx(fresh.cost, abs=1.0)
 
 
 def test_some_of_the_columns_are_what_they_are_in_all(slopes, flight):
     [some], z = slopes.of(COLUMNS[1:2]), nominal(VEHICLE)
     alone = slopes_at([flight], VEHICLE, z, [z], [flight.states[flight.first]],
-                      errors(flight, z), COLUMNS[1:2]).tangents[0]
+                      COLUMNS[1:2]).tangents[0]
     assert some.table == pytest.approx(alone.table, rel=1e-12, abs=1e-15)
