@@ -33,6 +33,7 @@ OTHERS = {
     ('battery_sag', 'time_and_load'): {'drain': 0.01, 'sink': 0.1},
     ('motor_lag', 'rise_fall'): {'rise': 0.03, 'fall': 0.06},
     ('motor_lag', 'slew'): {'slew': 2e-4},
+    ('motor_lag', 'second_order'): {'stage': 0.03},
     ('ground_effect', 'exponential'): {'gain': 0.5, 'length': 2.0},
     ('ground_effect', 'hayden'): {'hayden': 4.0},
     ('rotor_drag', 'axes'): {'x': 0.3, 'y': 0.2, 'z': -0.1},
