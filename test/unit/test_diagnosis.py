@@ -94,6 +94,20 @@ def test_each_effect_is_named_alone_with_its_parameters(effect):
     check(diagnose(flown(truth), VEHICLE).as_data(), truth)
 
 
+@pytest.mark.parametrize(('truth', 'form'), [
+    ({'motor_lag': {'stage': 0.02}}, 'second_order'),
+    ({'motor_lag': {'time_constant': 0.03}}, 'first_order'),
+    ({'actuation_delay': {'delay': 0.02}}, None),
+    ({'motor_lag': {'time_constant': 0.03}, 'actuation_delay': {'delay': 0.015}},
+     'first_order')], ids=['two lags', 'lag', 'delay', 'lag and delay'])
+def test_lags_of_either_order_and_a_delay_are_told_apart(truth, form):
+    data = diagnose(flown(truth), VEHICLE).as_data()
+    assert set(data['verdict']) == set(truth)
+    check(data, truth)
+    forms = {row['effect']: row['form'] for row in data['ranking']}
+    assert form is None or forms['motor_lag'] == form
+
+
 def test_several_at_once_are_named_together():
     truth = {name: TRUTHS[name] for name in SEVERAL}
     data = diagnose(flown(truth), VEHICLE).as_data()
