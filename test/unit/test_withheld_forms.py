@@ -114,7 +114,7 @@ def test_a_command_that_is_overtaken_is_lost():
 def test_an_oscillating_motor_overshoots_by_what_its_damping_says():
     motor = motors.Underdamped(2.0, PARAMS, None)
     speeds, shown = np.full(4, HOVER), []
-    for _ in range(400):
+    for _ in range(1000):
         speeds = motor.turn(speeds, np.full(4, 1.2 * HOVER), 0.0005)
         shown.append(speeds[0])
     over = np.exp(-np.pi * 0.5 / np.sqrt(1.0 - 0.5 ** 2))
