@@ -92,7 +92,7 @@ def linear_evidence(quadratic: Quadratic, sets: Sequence[tuple], rows: dict, rul
     for which, places in _by_size(free, np.arange(len(sets))):
         blocks = quadratic.information[places[:, :, None], places[:, None, :]]
         value[which] += _volume(blocks, quadratic.wide[places], quadratic.scatter)
-    acts = {cause: found[:, places].any(axis=1) for cause, places in rows.items()}
+    acts = {cause: np.any(found[:, places], axis=1) for cause, places in rows.items()}
     value += [_odds(chosen, rules) if all(acts[cause][k] for cause in chosen) else -np.inf
               for k, chosen in enumerate(sets)]
     return value, found

@@ -227,10 +227,10 @@ class _Search:
                                          len(self.flights))
             everyone.values.flat[:] = distances[len(self.columns):]
             self.fit(chosen, start, everyone, self.frame.slopes.starts)
-        for chosen, start in _other_actuator(self.best_key(), self.causes,
-                                             self.tried[self.best_key()].z, self.vehicle):
-            if chosen not in self.tried and self.quadratic.scatter > LOST:
-                fit = self.tried[self.best_key()]
+        best = self.best_key()
+        fit = self.tried[best]
+        for chosen, start in _other_actuator(best, self.causes, fit.z, self.vehicle):
+            if chosen not in self.tried:
                 self.fit(chosen, start, fit.nuisances, fit.starts)
 
     def best_key(self) -> tuple:
@@ -325,19 +325,20 @@ def _promising(ranked: list, tried: Collection[tuple]) -> list[tuple[tuple, np.n
 def _other_actuator(best: tuple, causes: Sequence[Candidate], z: np.ndarray, vehicle: Vehicle
                     ) -> list[tuple[tuple, np.ndarray]]:
     """
-    Return [(set, vector)] with a delay for a lag of a set and the reverse, at its usual size.
+    Return [(set, vector)] with another delay or lag for those of a set, at its usual size.
 
-    From a delay that does the work of a lag no slope leads to the lag.
+    From a delay that does the work of a lag no slope leads to the lag, nor from a delay and a lag
+    to two lags in series. Of one parameter: to more of them slopes lead from there.
     """
     found, size = [], limits(vehicle)[2]
-    actuators = [cause for cause in causes if EFFECTS[cause.effect].actuator]
-    for there in [cause for cause in actuators if cause in best]:
-        for other in [cause for cause in actuators if cause not in best]:
-            start = z.copy()
-            start[list(there.columns)] = nominal(vehicle)[list(there.columns)]
-            start[list(other.columns)] += size[list(other.columns)]
-            found.append((key_of((other, *(cause for cause in best if cause is not there))),
-                          start))
+    actuators = [cause for cause in causes if EFFECTS[cause.effect].actuator and cause.plain]
+    there = [cause for cause in best if cause.nuisance is None and EFFECTS[cause.effect].actuator]
+    gone = [column for cause in there for column in cause.columns]
+    for other in [cause for cause in actuators if there and cause not in there]:
+        start = z.copy()
+        start[gone] = nominal(vehicle)[gone]
+        start[list(other.columns)] += size[list(other.columns)]
+        found.append((key_of((other, *(cause for cause in best if cause not in there))), start))
     return found
 
 

@@ -126,18 +126,19 @@ def predict(vehicle: Vehicle, thetas: ArrayLike, course: Course, starts: np.ndar
     rows = np.arange(len(t)) // steps
     inputs[:, 5], inputs[:, 6] = course.volt_drop[rows], course.volt_share[rows]
     sensors = sensors_of(thetas)
-    guides = NO_GUIDE if guide is None else _guides(thetas, sensors, guide, course.t, t)
+    leads, lead_of = (NO_GUIDE if guide is None
+                      else _guides(thetas, sensors, guide, course.t, t))
     x0 = np.array(starts, float, order='C')
-    change(*sensors, which, *guides, first, steps, x0[:, None], False)
+    change(*sensors, which, leads, lead_of, first, steps, x0[:, None], False)
     out = np.empty((len(x0), steps * count + 1, STATE))
     kernel = roll_out if len(x0) > 1 else roll_out_one
     if constants is None:
         constants = np.tile(vehicle_vector(vehicle), (len(thetas), 1))
     kernel(np.ascontiguousarray(constants), rotor_table(vehicle), without_lag(thetas), which, x0,
-           t, *acted, inputs, first, steps * count, 1, *guides, out)
+           t, *acted, inputs, first, steps * count, 1, leads, lead_of, out)
     if steps > 1:
         out = out[:, ::steps].copy()
-    change(*sensors, which, *guides, first, steps, out, True)
+    change(*sensors, which, leads, lead_of, first, steps, out, True)
     return out
 
 

@@ -61,7 +61,7 @@ def turn(vector: ArrayLike) -> np.ndarray:
 def sensors_of(theta: np.ndarray) -> Sensors:
     """Return the Sensors of parameter sets (T, P)."""
     arms, biases = (np.ascontiguousarray(theta[:, part]) for part in (COM, BIAS))
-    return Sensors(theta[:, SEEN].any(axis=1), arms, *tilts_of(theta), biases)
+    return Sensors(np.any(theta[:, SEEN], axis=1), arms, *tilts_of(theta), biases)
 
 
 def tilts_of(theta: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

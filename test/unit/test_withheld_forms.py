@@ -113,12 +113,12 @@ def test_a_command_that_is_overtaken_is_lost():
 
 
 def test_an_oscillating_motor_overshoots_by_what_its_damping_says():
-    motor = motors.SecondOrder(2.0, PARAMS, None)
+    motor = motors.Underdamped(2.0, PARAMS, None)
     speeds, shown = np.full(4, HOVER), []
-    for _ in range(400):
+    for _ in range(1000):
         speeds = motor.turn(speeds, np.full(4, 1.2 * HOVER), 0.0005)
         shown.append(speeds[0])
-    over = np.exp(-np.pi * 0.8 / np.sqrt(1.0 - 0.8 ** 2))
+    over = np.exp(-np.pi * 0.5 / np.sqrt(1.0 - 0.5 ** 2))
     assert (max(shown) - 1.2 * HOVER) / (0.2 * HOVER) == pytest.approx(over, rel=0.02)
     assert shown[-1] == pytest.approx(1.2 * HOVER, rel=1e-4)
 

@@ -12,7 +12,7 @@ from withheld.forms import air, batteries, body, hung, motors
 
 # Those that one develops with, and those that nobody looks at before a release.
 DEVELOPMENT = {
-    'motor_lag': {'second_order': motors.SecondOrder, 'speed_dependent': motors.SpeedDependent,
+    'motor_lag': {'underdamped': motors.Underdamped, 'speed_dependent': motors.SpeedDependent,
                   'brushed': hung.identified('cf2x_P250'),
                   'brushless': hung.identified('cf21B_500')},
     'actuation_delay': {'jitter': motors.Jitter, 'staggered': motors.Staggered},

@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Motors and lines of commands that are no lag of the first order and no constant delay."""
+"""Motors and lines of commands that are neither one or two equal lags nor a constant delay."""
 
 import numpy as np
 
@@ -10,28 +10,26 @@ from withheld.constants import hover_speed
 TIME = 0.012        # s per size
 
 
-class SecondOrder(Motor):
-    """An oscillator, damped by 0.8, that takes no notice of small changes of its command."""
+class Underdamped(Motor):
+    """A rotor whose speed a controller with an integral part makes overshoot; damped by 0.5."""
 
-    DAMPING = 0.8
+    DAMPING = 0.5
 
     def __init__(self, size, params, rng):
-        """Set the time constant, 2 damping / frequency, and the dead zone."""
-        self.parameters = {'time': TIME * size, 'zone': 0.001 * size * hover_speed(params)}
+        """Set the time constant, 2 damping / frequency, which is the mean delay."""
+        self.parameters = {'time': TIME * size}
         self.rate = 2.0 * self.DAMPING / (TIME * size) if size else np.inf
-        self._zone, self._held, self._slope = self.parameters['zone'], None, 0.0
+        self._slope = 0.0
 
     def turn(self, speeds, command, step):
         """Return the speeds, by the solution for a held command."""
         if not np.isfinite(self.rate):
             return command
-        held = command if self._held is None else self._held
-        self._held = held = np.where(np.abs(command - held) > self._zone, command, held)
-        e, v, d = speeds - held, self._slope, self.DAMPING * self.rate
+        e, v, d = speeds - command, self._slope, self.DAMPING * self.rate
         w = np.sqrt(self.rate ** 2 - d ** 2)
         c, s, f = np.cos(w * step), np.sin(w * step), np.exp(-d * step)
         self._slope = f * (v * c - (d * v + self.rate ** 2 * e) / w * s)
-        return held + f * (e * c + (v + d * e) / w * s)
+        return command + f * (e * c + (v + d * e) / w * s)
 
 
 class SpeedDependent(Motor):
