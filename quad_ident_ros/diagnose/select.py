@@ -84,20 +84,15 @@ def select(flights: list[Flight], vehicle: Vehicle, causes: tuple[Candidate, ...
     noise that hangs together or what no effect explains, by all that is left, until it is so.
     """
     search = _Search(flights, vehicle, causes, rules)
-    search.run(lambda share: on_progress(0.5 * share))
-    for again in range(1, 1 + PASSES):
-        assert search.best is not None
-        whole = [whole_noise(raw, 1.0 - 1.0 / raw.shape[1])
-                 for raw in search.best.estimate.residuals]
-        ratio = np.median(np.array(whole) / search.noise, axis=0)
-        if max(np.max(ratio), np.max(1.0 / ratio)) <= COLOURED:
-            break
-        search.weigh(whole)
-
-        def later(share: float, rest: float = 0.5 ** again) -> None:
-            on_progress(1.0 - rest + 0.5 * rest * share)
-
-        search.run(later)
+    # First the usual form of each effect, then all forms, around what the usual ones led to.
+    usual = tuple(cause for cause in causes if cause.usual)
+    for stage, group in enumerate((usual, causes)):
+        for turn in range(1 + PASSES):
+            done, rest = 0.5 * stage + 0.5 * (1.0 - 0.5 ** turn), 0.5 ** (turn + 2)
+            search.look_among(group, lambda share, done=done, rest=rest:  # type: ignore[misc]
+                              on_progress(done + rest * share))
+            if turn == PASSES or not search.weigh_anew():
+                break
     search.settle()
     on_progress(1.0)
     return search.selection()
@@ -108,7 +103,6 @@ class _Search:
 
     tried: dict[tuple, Estimate]
     best: Fitted | None
-    plain: tuple
     judged: dict[tuple, Fitted]
     ranked: list
     frame: Frame
@@ -125,23 +119,25 @@ class _Search:
                                    iterations=2)}
         self.best, self.judged, self.ranked = None, {}, []
 
-    def weigh(self, noise: list[np.ndarray]) -> None:
-        """Weigh the residuals by another noise; the best sets so far are where to go on from."""
-        known = [*(one.chosen for one in self.order()[:REFITS]), self.plain, ()]
+    def weigh_anew(self) -> bool:
+        """
+        Weigh the residuals by all that is left where that is far from the noise they have.
+
+        Return whether it was. The best sets so far are where to go on from.
+        """
+        assert self.best is not None
+        noise = [whole_noise(raw, 1.0 - 1.0 / raw.shape[1])
+                 for raw in self.best.estimate.residuals]
+        ratio = np.median(np.array(noise) / self.noise, axis=0)
+        if max(np.max(ratio), np.max(1.0 / ratio)) <= COLOURED:
+            return False
+        known = [*(one.chosen for one in self.order()[:REFITS]), self.plain_best().chosen, ()]
         self.noise, self.judged = noise, {}
         self.tried = {key: self.tried[key] for key in dict.fromkeys(known)}
         self.tried = {key: refitted(self.flights, self.vehicle, fit.z, key, noise, fit.nuisances,
                                     fit.starts, self.frame.slopes)
                       for key, fit in self.tried.items()}
-
-    def run(self, on_progress: Callable[[float], None]) -> None:
-        """Look for the best set among the usual forms, then among all forms, around that."""
-        if self.best is None:
-            usual = tuple(cause for cause in self.all_causes if cause.usual)
-            self.look_among(usual, lambda share: on_progress(0.6 * share))
-            assert self.best is not None
-            self.plain = self.best.chosen
-        self.look_among(self.all_causes, lambda share: on_progress(0.6 + 0.4 * share))
+        return True
 
     def look_among(self, causes: tuple[Candidate, ...], on_progress: Callable[[float], None]
                    ) -> None:
@@ -252,6 +248,11 @@ class _Search:
         self.tried[chosen] = fit
         self.judge(chosen)
 
+    def plain_best(self) -> Fitted:
+        """Return the best of the sets in which no form has more parameters than the usual one."""
+        return max((self.judge(key) for key in self.tried if _plain(key)),
+                   key=lambda one: one.evidence)
+
     def settle(self) -> None:
         """
         Take the simplest of the sets that are about as good, and forms within their bounds.
@@ -262,10 +263,7 @@ class _Search:
         best = min((one for one in sets if one.evidence > sets[0].evidence - self.rules.alike),
                    key=lambda one: (len(one.chosen), -one.evidence))
         # More parameters are for what the fewer leave, not for a little of the noise.
-        for key in [key for key in self.tried if _plain(key)]:
-            self.judge(key)
-        plain = max((one for one in self.judged.values() if _plain(one.chosen)),
-                    key=lambda one: one.evidence)
+        plain = self.plain_best()
         if plain.estimate.cost < (1.0 + self.rules.worth) * best.estimate.cost:
             self.judged = {key: one for key, one in self.judged.items() if _plain(key)}
             self.ranked = [one for one in self.ranked if _plain(one[1])]
