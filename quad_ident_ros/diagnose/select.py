@@ -169,14 +169,14 @@ class _Search:
         self.frame = frame_at(self.flights, self.vehicle, fit, layout.wanted, self.rules)
         grids = size_grids(self.vehicle, self.noise, self.rules)
         before = [one.chosen for one in self.order()[:KEPT]]
-        sizes = self.judged[chosen].sizes if chosen in self.judged else (0, 0)
+        known, self.grids = self.judged.get(chosen), grids
+        sizes = known.sizes if known else (0, 0)
         self.quadratic = self.quadratic_of(fit, chosen, layout, everyone, grids, sizes)
-        self.grids, self.judged = grids, {}
-        self.judge(chosen)
-        # Now that the size of the discrepancy is known around here.
-        self.quadratic = self.quadratic_of(fit, chosen, layout, everyone, grids,
-                                           self.judged[chosen].sizes)
         self.judged = {}
+        if known is None:   # the size of the discrepancy shows around here
+            self.quadratic = self.quadratic_of(fit, chosen, layout, everyone, grids,
+                                               self.judge(chosen).sizes)
+            self.judged = {}
         for key in before:
             self.judge(key)
 

@@ -13,8 +13,8 @@ from quad_ident_ros.greybox.linear import errors_along
 from quad_ident_ros.model.vehicle import Vehicle
 
 SEGMENTS = (SEGMENT, 0.3, 0.2)      # s
-MOST = 240      # rollouts of all flights, four of 30 s: of more, every so many. Where that many do
-                # not tell an effect from noise, it makes no gap that matters
+MOST = 180      # rollouts of all flights, three of 30 s: of more, every so many. Where that many
+                # do not tell an effect from noise, it makes no gap that matters
 FAR = 0.8       # rad, of the attitude at the end: beyond it what the slopes say is not so
 
 
