@@ -6,12 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.effects.registry import EFFECTS, PLACES
 from quad_ident_ros.greybox.nuisances import Nuisance, nuisances
 from quad_ident_ros.greybox.parameters import SPLIT
 from quad_ident_ros.model.vehicle import Vehicle
-
-VOLTAGE = 0.02      # V that the battery must fall for its voltage to tell anything
 
 
 @dataclass(frozen=True)
@@ -34,11 +33,11 @@ class Candidate:
     nuisance: Nuisance | None = None
 
 
-def candidates(flights: list, vehicle: Vehicle,
+def candidates(flights: list, vehicle: Vehicle, rules: Rules,
                effects: list[str] | None = None) -> tuple[Candidate, ...]:
     """Return the Candidates, in the order of the registry; effects: names, by default all."""
     found = []
-    voltage = any(np.ptp(flight.course.volt_drop) > VOLTAGE for flight in flights)
+    voltage = any(np.ptp(flight.course.volt_drop) > rules.voltage for flight in flights)
     for name, effect in EFFECTS.items():
         if effects is not None and name not in effects:
             continue

@@ -41,7 +41,7 @@ def diagnose(records: list[FlightRecord], vehicle: Vehicle, *,
         if name not in EFFECTS:
             raise InputError(f'{name!r} is not among the effects: {", ".join(EFFECTS)}')
     intake = take_in(list(records), vehicle, hold_out, rules)
-    causes = candidates(intake.flights, vehicle, effects)
+    causes = candidates(intake.flights, vehicle, rules, effects)
     selection = select(intake.flights, vehicle, causes, rules,
                        lambda share: on_progress(0.7 * share))
     prompt = late_controller(selection, intake.flights)
@@ -65,11 +65,11 @@ def diagnose(records: list[FlightRecord], vehicle: Vehicle, *,
     unseen = advice.not_shown(selection, causes, verdict)
     return Diagnosis(
         vehicle=vehicle, verdict=verdict.names, minor=verdict.minor, ranking=verdict.ranking,
-        where=measure.channels(before, vehicle), gap=measure.open_loop_gap(bench, judged),
+        where=measure.channels(before, vehicle, rules), gap=measure.open_loop_gap(bench, judged),
         gap_given_attitude=measure.gap_given_attitude(bench, judged),
         tolerance={name: rules.tolerance(name, gap)
                    for name, gap in pooled(judged.noise).items()},
-        unknown=measure.unexplained(judged, measure.channels(after, vehicle)),
+        unknown=measure.unexplained(judged, measure.channels(after, vehicle, rules)),
         undetermined=verdict.undetermined, sure=verdict.sure,
         one_finding=advice.one_finding(verdict), not_shown=unseen,
         fly_next=advice.fly_next(selection, intake.flights, vehicle, model.z, verdict, unseen),

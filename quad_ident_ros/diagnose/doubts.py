@@ -21,10 +21,10 @@ def doubts_of(selection: Selection, named: Sequence[Candidate], rules: Rules
     each with the Fitted set that speaks for it: {cause: Fitted}.
     """
     total: dict[str, float] = {}
-    for cause, value in selection.probability.items():
+    for cause, value in selection.posterior.items():
         total[cause.effect] = total.get(cause.effect, 0.0) + value
     present = {cause.effect for cause in named}
-    others = [cause for cause in selection.probability
+    others = [cause for cause in selection.posterior
               if cause.effect not in present and total[cause.effect] > rules.doubt]
     found: dict[Candidate, Fitted] = {}
     for cause in named:

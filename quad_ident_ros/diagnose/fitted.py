@@ -19,7 +19,6 @@ from quad_ident_ros.greybox.nuisances import NuisanceValues
 from quad_ident_ros.greybox.parameters import limits, nominal, prior_sizes
 from quad_ident_ros.model.vehicle import Vehicle
 
-CLOSE = 1e-3        # usual sizes to a bound that are none
 FIT_STEPS = 5       # of Gauss and Newton: sets start near where they end
 
 
@@ -113,7 +112,7 @@ def fitted_of(chosen: tuple, fit: Estimate, vehicle: Vehicle, frame: Frame,
                   + occam(block, quadratic.wide[places], quadratic.scatter, chosen, rules), sizes)
 
 
-def out_of_bounds(cause: Candidate, fit: Estimate, vehicle: Vehicle) -> bool:
+def out_of_bounds(cause: Candidate, fit: Estimate, vehicle: Vehicle, rules: Rules) -> bool:
     """
     Return whether a further form of an effect has a parameter that wants to leave its bounds.
 
@@ -122,11 +121,11 @@ def out_of_bounds(cause: Candidate, fit: Estimate, vehicle: Vehicle) -> bool:
     null, (lower, upper, size) = nominal(vehicle), limits(vehicle)
     columns = [column for column in cause.columns if fit.z[column] != null[column]]
     room = np.minimum(fit.z - lower, upper - fit.z)[columns]
-    return not cause.usual and bool((room < CLOSE * size[columns]).any())
+    return not cause.usual and bool((room < rules.at_bound * size[columns]).any())
 
 
 def within_bounds(chosen: tuple, fit: Estimate, usual: dict, flights: Sequence[Flight],
-                  vehicle: Vehicle, noise: list, scatter: float = 1.0,
+                  vehicle: Vehicle, noise: list, rules: Rules, scatter: float = 1.0,
                   fixed: np.ndarray | None = None) -> tuple[tuple, Estimate]:
     """
     Return a set and its Estimate with the usual form for each that wants to leave its bounds.
@@ -135,7 +134,7 @@ def within_bounds(chosen: tuple, fit: Estimate, usual: dict, flights: Sequence[F
     """
     while True:
         swaps = {cause: usual[cause.effect] for cause in effects_in(chosen)
-                 if out_of_bounds(cause, fit, vehicle)}
+                 if out_of_bounds(cause, fit, vehicle, rules)}
         if not swaps:
             return chosen, fit
         z = fit.z.copy()

@@ -112,9 +112,9 @@ class Bench:
         noise, scatter = self.selection.noise, self.selection.quadratic.scatter
         estimate = refitted(self.flights, self.vehicle, z, chosen, noise, fit.nuisances,
                             fit.starts, scatter=scatter, fixed=fixed[:-1])
-        usual = {cause.effect: cause for cause in self.selection.probability if cause.usual}
+        usual = {cause.effect: cause for cause in self.selection.posterior if cause.usual}
         chosen, estimate = within_bounds(chosen, estimate, usual, self.flights, self.vehicle,
-                                         noise, scatter, fixed[:-1])
+                                         noise, self.rules, scatter, fixed[:-1])
         return self.model(chosen, estimate, fixed[-1])
 
 
@@ -216,7 +216,7 @@ def judge(bench: Bench) -> Judgement:
     there = {cause.effect: cause for cause in (*full.effects, *model.effects)}
     weights = {cause: weight for cause, weight in weights.items()
                if there.get(cause.effect) is cause}
-    present = probabilities(bench.selection.probability, weights, rules)
+    present = probabilities(bench.selection.posterior, weights, rules)
     absent = tuple(cause for cause in there.values() if present[cause.effect] < rules.present)
     material = tuple(cause for cause in model.effects if cause not in absent)
     if set(model.effects) <= set(full.effects):

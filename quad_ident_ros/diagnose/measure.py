@@ -18,6 +18,7 @@ from quad_ident_ros.diagnose.result import (
     Pictures,
     Unexplained,
 )
+from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.greybox.errors import UNITS
 from quad_ident_ros.greybox.flights import Track
 from quad_ident_ros.greybox.parameters import nominal
@@ -68,12 +69,13 @@ def residual_wrenches(bench: Bench, vectors: Sequence[np.ndarray], noise: np.nda
                  for track, z in zip(bench.tracks[:-1], vectors, strict=False))
 
 
-def channels(found: tuple[ResidualWrench, ...], vehicle: Vehicle) -> tuple[Channel, ...]:
+def channels(found: tuple[ResidualWrench, ...], vehicle: Vehicle, rules: Rules
+             ) -> tuple[Channel, ...]:
     """Return the Channels of residual wrenches, the one with the largest share first."""
     rows = []
     for channel, share in wrenches.shares(found, vehicle).items():
         column = wrenches.CHANNELS.index(channel)
-        regime, inside = wrenches.regime(found, channel)
+        regime, inside = wrenches.regime(found, channel, rules.regime)
         values, errors = (np.concatenate([getattr(one, name)[:, column] for one in found])
                           for name in ('values', 'errors'))
         rows.append(Channel(channel, float(share), regime, float(inside),

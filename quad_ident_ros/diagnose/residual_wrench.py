@@ -21,7 +21,6 @@ EVERY = 0.05        # s from one such window to the next: up to 5 Hz are seen
 STRETCH = 25.0      # s without a break that spectra are taken of,
 STRETCHES = 4       # and how many of them, spread over a longer flight
 FEWEST = 8          # windows of a stretch that has a spectrum
-EXCESS = 0.35       # of the energy that a regime must have beyond its share of the time
 COLUMNS = list(range(SPLIT + SLICES[RESIDUAL_WRENCH.name].start,
                      SPLIT + SLICES[RESIDUAL_WRENCH.name].stop))
 
@@ -90,7 +89,8 @@ def weights(vehicle: Vehicle) -> np.ndarray:
     return np.array([force, force, force, *moment])
 
 
-def regime(flights: Sequence[ResidualWrench], channel: str) -> tuple[str, float]:
+def regime(flights: Sequence[ResidualWrench], channel: str, excess: float
+           ) -> tuple[str, float]:
     """
     Return (text, share): the half-space of the regime in which most of a channel lies.
 
@@ -101,7 +101,7 @@ def regime(flights: Sequence[ResidualWrench], channel: str) -> tuple[str, float]
                              for flight in flights])
     if energy.sum() <= 0:
         return 'nowhere above the noise', 0.0
-    best = ('everywhere', 1.0, EXCESS)
+    best = ('everywhere', 1.0, excess)
     for name in flights[0].features:
         unit = flights[0].features[name][0]
         values = np.concatenate([flight.features[name][1] for flight in flights])

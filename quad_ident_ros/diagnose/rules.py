@@ -13,7 +13,12 @@ class Rules:
     Intake:
       shortest: s of a flight. Half of a single one is held out: four rollouts of half a second
         for each half; whether that tells anything is a matter of information, see `not_shown`.
+    Candidates:
+      voltage: V that a recorded voltage must change for it to tell anything of the battery: what
+        the coarsest loggers resolve. at_bound: usual sizes from a bound that are at it.
     Noise:
+      coloured: times that all that is left may be the noise from sample to sample, or a part of
+        it, before it takes its place as the weight: errors then hang together.
       levelling: rad, the usual error of the level of an attitude that accelerometer and GPS
         correct; autopilots' filters are good to half a degree to two. It does not show in their
         states. drift: m/s, that of the velocity of such a filter, which stays over a prediction.
@@ -29,6 +34,8 @@ class Rules:
         Bayes factor under 20 is not strong (Kass and Raftery, JASA 90, 1995).
       worth: share of the cost that further forms must save over the usual ones: a form that is
         wrong by 10 % of what an effect does leaves that much of a gap ten times the noise.
+      untried: log evidence, beside the best set, that the linear model alone may give a set: it
+        has been wrong by more.
     Discrepancy (see discrepancy.py):
       form_error: relative error of an effect's formula. Published laws of one effect differ from
         one another by 10 to 30 % over the range in which they are used.
@@ -55,6 +62,9 @@ class Rules:
       floors: m, m/s, rad, rad/s that no user of a simulation at 0.5 s minds.
       smallest: half of the usual floors: of what can be closed below it, shares mean nothing,
         whatever the tolerance of the user. Whether an effect is there is no matter of tolerance.
+    Where:
+      regime: of the energy of a residual that a half-space must have beyond its share of the time
+        to be named: for less, `everywhere` is the better word.
     Unknown:
       differs: times the gap that remains in the other flights from which on one flight differs.
       unexplained: share of the gap that the named effects close which may remain as error of
@@ -63,6 +73,9 @@ class Rules:
     """
 
     shortest: float = 4.0
+    voltage: float = 0.02
+    at_bound: float = 1e-3
+    coloured: float = 2.0
     levelling: float = 0.015
     drift: float = 0.05
     filtered_attitude: float = 5e-4
@@ -71,6 +84,7 @@ class Rules:
     prior_width: float = 3.0
     alike: float = 3.0
     worth: float = 0.01
+    untried: float = -2.0
     form_error: float = 0.2
     form_time: float = 1.0
     present: float = 0.5
@@ -89,6 +103,7 @@ class Rules:
         'position': 0.01, 'velocity': 0.02, 'attitude': 0.01, 'rate': 0.05})
     smallest: dict[str, float] = field(default_factory=lambda: {
         'position': 0.005, 'velocity': 0.01, 'attitude': 0.005, 'rate': 0.025})
+    regime: float = 0.35
     unexplained: float = 0.58
     differs: float = 2.0
 

@@ -34,10 +34,8 @@ ROUNDS = 6
 REFITS = 3          # sets that are refitted in a round
 KEPT = 10           # fitted sets that are judged anew around each new best one
 PASSES = 3          # times, at most, that the noise is taken anew from what is left
-COLOURED = 2.0      # times the noise from sample to sample that all that is left may be
 NEAR = 25.0         # log-evidence behind the best set by the slopes that may be made up for
 LOST = 4.0          # times the scatter that a fit may cost more than a subset does
-UNTRIED = -2.0      # log-evidence that the linear model alone may give a set, beside the best
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,13 +44,13 @@ class Selection:
     What the flights say of the candidates.
 
     best: the Fitted with the most evidence; fitted: it and the others that were refitted;
-    probability: of each candidate effect being present; quadratic, rows: the cost around the
+    posterior: probability of each candidate effect; quadratic, rows: the cost around the
     best, with all candidates free; noise: per flight (12,); frame: the flights around the best.
     """
 
     best: Fitted
     fitted: tuple
-    probability: dict
+    posterior: dict
     quadratic: Quadratic
     rows: dict
     noise: list
@@ -129,7 +127,7 @@ class _Search:
         noise = [whole_noise(raw, 1.0 - 1.0 / raw.shape[1])
                  for raw in self.best.estimate.residuals]
         ratio = np.median(np.array(noise) / self.noise, axis=0)
-        if max(np.max(ratio), np.max(1.0 / ratio)) <= COLOURED:
+        if max(np.max(ratio), np.max(1.0 / ratio)) <= self.rules.coloured:
             return False
         known = [*(one.chosen for one in self.order()[:REFITS]), self.plain_best().chosen, ()]
         self.noise, self.judged = noise, {}
@@ -270,7 +268,7 @@ class _Search:
             best = plain
         usual = {cause.effect: cause for cause in self.all_causes if cause.usual}
         chosen, fit = within_bounds(best.chosen, best.estimate, usual, self.flights,
-                                    self.vehicle, self.noise, self.quadratic.scatter)
+                                    self.vehicle, self.noise, self.rules, self.quadratic.scatter)
         self.tried[chosen] = fit
         self.best = self.judge(chosen)
 
@@ -279,12 +277,13 @@ class _Search:
         assert self.best is not None
         fitted = (self.best, *(one for one in self.order() if one is not self.best))
         return Selection(fitted[0], fitted,
-                         probabilities(fitted, self.ranked, self.all_causes, set(self.tried)),
+                         posteriors(fitted, self.ranked, self.all_causes, set(self.tried),
+                                    self.rules),
                          self.quadratic, self.rows, self.noise, self.frame)
 
 
-def probabilities(fitted: Sequence[Fitted], ranked: list, causes: Sequence[Candidate],
-                  tried: Collection[tuple]) -> dict:
+def posteriors(fitted: Sequence[Fitted], ranked: list, causes: Sequence[Candidate],
+               tried: Collection[tuple], rules: Rules) -> dict:
     """
     Return {effect candidate: probability of being present}: the evidence of sets that have it.
 
@@ -296,7 +295,7 @@ def probabilities(fitted: Sequence[Fitted], ranked: list, causes: Sequence[Candi
     if base is not None and np.isfinite(base):
         for value, chosen, _ in ranked:
             if chosen not in tried and len(set(chosen) ^ set(top.chosen)) <= 2:
-                weights[chosen] = min(value - base, UNTRIED)
+                weights[chosen] = min(value - base, rules.untried)
     values = np.array(list(weights.values()))
     shares = np.exp(np.clip(values - values.max(), -700, 0))
     shares /= shares.sum()

@@ -14,6 +14,7 @@ from quad_ident_ros.diagnose.residual_wrench import (
     ResidualWrench,
     shares,
 )
+from quad_ident_ros.diagnose.rules import RULES
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import Noise, Sensors
 from quad_ident_ros.greybox.flights import track_of
@@ -74,6 +75,6 @@ def test_the_regime_is_the_part_that_has_most_of_it():
     found = (ResidualWrench(values, np.full((600, 6), 1e-3), 0.05 * np.arange(600),
                             {'speed': ('m/s', np.linspace(0.0, 1.0, 600)),
                              'height': ('m', height)}, np.zeros(600, int)),)
-    text, share = regime(found, 'Fz')
+    text, share = regime(found, 'Fz', RULES.regime)
     assert text == f'height under {np.quantile(height, 0.25):.3g} m' and share > 0.9
-    assert regime(found, 'Mx')[0] in ('everywhere', 'nowhere above the noise')
+    assert regime(found, 'Mx', RULES.regime)[0] in ('everywhere', 'nowhere above the noise')

@@ -61,7 +61,7 @@ def test_from_a_delay_that_does_the_work_of_a_lag_the_lag_is_found():
                              duration=12.0, seed=1, noise=SENSORS['mocap_imu'])
     flights = [flight_of(track_of(record, vehicle))]
     causes = {}
-    for cause in candidates(flights, vehicle):
+    for cause in candidates(flights, vehicle, RULES):
         causes.setdefault(cause.effect, cause)      # the usual form first
 
     def fit(z, chosen, noise=None):
