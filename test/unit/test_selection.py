@@ -9,6 +9,7 @@ import pytest
 
 from quad_ident_ros.diagnose.candidates import Candidate, candidates
 from quad_ident_ros.diagnose.fitted import Fitted, refitted
+from quad_ident_ros.diagnose.rules import RULES
 from quad_ident_ros.diagnose.select import _other_actuator, Selection
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import SENSORS
