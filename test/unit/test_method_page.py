@@ -1,0 +1,23 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The page that explains the method names every threshold with the value that it has."""
+
+from dataclasses import fields
+from pathlib import Path
+
+import pytest
+
+from quad_ident_ros.diagnose.rules import RULES
+
+PAGE = (Path(__file__).parents[2] / 'docs' / 'method.md').read_text()
+
+
+@pytest.mark.parametrize('name', [field.name for field in fields(RULES)])
+def test_every_threshold_stands_in_the_table(name):
+    assert f'`{name}`' in PAGE
+
+
+def test_the_weights_of_the_probability_are_those_of_the_formula():
+    base, steady, share, form = RULES.calibration
+    assert f'ln(p / (1 - p)) = {base:g} + {steady:g} S + {share:g} log10(C) + {form:g} E' in PAGE
+    assert f'| `calibration` | {base:g}, {steady:g}, {share:g}, {form:g} |' in PAGE
