@@ -244,8 +244,9 @@ def _weight(model: Model, without: Model, before: dict, noise: dict, rules: Rule
     name = max(shares, key=lambda group: shares[group])
     there = beyond(without.gap[name], noise[name])
     remains = beyond(model.gap[name], noise[name])
+    explained = (there - remains) / max(there, rules.least(name, noise[name]))
     return Weight(float(shares[name]), stability(model.ends, without.ends, noise),
-                  float(np.clip(1.0 - remains / max(there, 1e-300), 0.0, 1.0)), without.gap)
+                  float(np.clip(explained, 0.0, 1.0)), without.gap)
 
 
 def pooled(gap: list) -> dict:

@@ -30,7 +30,8 @@ class Parameter:
     Bounds and size (what the parameter is usually about) are in units of the vehicle's own scale
     where the unit has mass or length in it, so that they hold for 30 g and for 3 kg: see scale.
     excited_by: the axis without whose motion no flight shows it, or None. A parameter that only
-    shapes a form (a length, an exponent) has no effect while the form's strength is null.
+    shapes a form (a length, an exponent) has no effect while the form's strength is null. beside:
+    the vector of the vehicle file and the axis that it adds to: their sum is not negative.
     """
 
     name: str
@@ -41,6 +42,7 @@ class Parameter:
     description: str
     null: float = 0.0
     excited_by: Axis | None = None
+    beside: tuple[Literal['linear_drag'], int] | None = None
 
     def scale(self, vehicle: Vehicle) -> float:
         """Return the vehicle's own measure of this parameter's unit: its mass, arm or inertia."""
@@ -51,6 +53,12 @@ class Parameter:
             'kg m^2': vehicle.inertia[0], 's^2/rad': 1.0 / vehicle.hover_speed,
             'N': weight, 'N m': weight * arm}
         return scales.get(self.unit, 1.0)
+
+    def bounds(self, vehicle: Vehicle) -> tuple[float, float, float]:
+        """Return the lower and the upper bound and the usual size for a vehicle, SI."""
+        scale = self.scale(vehicle)
+        given = getattr(vehicle, self.beside[0])[self.beside[1]] if self.beside else 0.0
+        return self.lower * scale - given, self.upper * scale, self.size * scale
 
 
 @dataclass(frozen=True)

@@ -78,9 +78,7 @@ OWNERS = np.array([ROWS_OF[name, form.name] for name, form in FORMS for _ in for
 
 def bounds(vehicle: Vehicle) -> Table:
     """Return the lower and upper bounds and the usual sizes of all parameters, (3, P), SI."""
-    table = np.array([[parameter.lower, parameter.upper, parameter.size]
-                      for _, parameter in PARAMETERS])
-    return table.T * [parameter.scale(vehicle) for _, parameter in PARAMETERS]
+    return np.array([parameter.bounds(vehicle) for _, parameter in PARAMETERS]).T
 
 
 def vector(effects: Mapping[str, Mapping[str, float]], vehicle: Vehicle,

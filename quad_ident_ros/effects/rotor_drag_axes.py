@@ -17,10 +17,11 @@ def wrench(p: Table, k: int, s: Table, _: Table) -> None:
 
 FORM = Form(
     name='axes', title='along each axis, whatever the rotor speeds',
-    parameters=tuple(Parameter(axis, 'kg/s', -5.0, 5.0, 0.1, f'force along body {axis} per air '
+    parameters=tuple(Parameter(axis, 'kg/s', 0.0, 5.0, 0.1, f'force along body {axis} per air '
                                'velocity, beside the nominal linear_drag',
-                               excited_by='vertical' if axis == 'z' else 'horizontal')
-                     for axis in 'xyz'),
+                               excited_by='vertical' if axis == 'z' else 'horizontal',
+                               beside=('linear_drag', number))
+                     for number, axis in enumerate('xyz')),
     source='force -(x vx, y vy, z vz) on the body: linear drag of all rotors together, Faessler, '
            'Franchi, Scaramuzza, IEEE Robotics and Automation Letters 3(2), 2018; also a nominal '
            'linear_drag that is off, either way',
