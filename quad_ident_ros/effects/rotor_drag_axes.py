@@ -18,7 +18,8 @@ def wrench(p: Table, k: int, s: Table, _: Table) -> None:
 FORM = Form(
     name='axes', title='along each axis, whatever the rotor speeds',
     parameters=tuple(Parameter(axis, 'kg/s', 0.0, 5.0, 0.1, f'force along body {axis} per air '
-                               'velocity, beside the nominal linear_drag',
+                               'velocity, beside the nominal linear_drag, whose sum with it is '
+                               'not negative',
                                excited_by='vertical' if axis == 'z' else 'horizontal',
                                beside=('linear_drag', number))
                      for number, axis in enumerate('xyz')),

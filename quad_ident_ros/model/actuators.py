@@ -17,7 +17,7 @@ from quad_ident_ros.effects.registry import PLACE, SLICES
 DELAY, LAG = SLICES['actuation_delay'].start, SLICES['motor_lag'].start
 RISE, FALL, SLEW, STAGE = (PLACE['motor_lag', name] for name in ('rise', 'fall', 'slew', 'stage'))
 FOLLOWED = [RISE, FALL, SLEW, STAGE]
-CLOSE = 1e-9    # of a step, within which a command changes at a sample
+CLOSE = 1e-9    # of a step, within which a command changes at a sample, and a stage is none
 
 
 class Actuation(NamedTuple):
@@ -253,7 +253,8 @@ def _follow(speed: np.ndarray, passed: np.ndarray, command: np.ndarray, length: 
     What passes is held over each half of the length, at values that have its mean over the whole
     and where in it that lies: right to fourth order, and to first order in a stage that is short.
     """
-    if stage == 0.0:
+    if stage <= CLOSE * length:
+        passed[:] = command
         _tend(speed, command, length, left, up, down, slew, sums)
         return
     share, gone = stage / length, np.exp(-length / stage)

@@ -9,7 +9,15 @@ import numpy as np
 import pytest
 
 from quad_ident_ros.data.record import FlightRecord
-from quad_ident_ros.effects.registry import bounds, EFFECTS, mapping, NULL, PARAMETERS, vector
+from quad_ident_ros.effects.registry import (
+    bounds,
+    EFFECTS,
+    mapping,
+    NULL,
+    PARAMETERS,
+    PLACES,
+    vector,
+)
 from quad_ident_ros.model.dynamics import course_of, predict
 
 # Those of the format of a diagnosis.
@@ -98,3 +106,11 @@ def test_a_prediction_leaves_the_states_that_it_starts_from_as_they_are():
     kept = starts.copy()
     predict(VEHICLE, vector(ALL, VEHICLE), steps(VEHICLE), starts, [0, 1, 2], 5)
     assert (starts == kept).all()
+
+
+def test_drag_and_that_of_the_vehicle_file_are_together_not_negative():
+    vehicle = replace(VEHICLE, linear_drag=(0.1, 0.2, 0.0))
+    lower = bounds(vehicle)[0][PLACES['rotor_drag', 'axes']]
+    assert lower == pytest.approx([-0.1, -0.2, 0.0])
+    assert (bounds(replace(vehicle, linear_drag=(0.0,) * 3))[0][
+        PLACES['rotor_drag', 'axes']] == 0.0).all()
