@@ -129,7 +129,8 @@ class _Search:
         ratio = np.median(np.array(noise) / self.noise, axis=0)
         if max(np.max(ratio), np.max(1.0 / ratio)) <= self.rules.coloured:
             return False
-        known = [*(one.chosen for one in self.order()[:REFITS]), self.plain_best().chosen, ()]
+        plain = self.simplest([key for key in self.tried if _plain(key)])
+        known = [*(one.chosen for one in self.order()[:REFITS]), plain.chosen, ()]
         self.noise, self.judged = noise, {}
         self.tried = {key: self.tried[key] for key in dict.fromkeys(known)}
         self.tried = {key: refitted(self.flights, self.vehicle, fit.z, key, noise, fit.nuisances,
@@ -246,10 +247,12 @@ class _Search:
         self.tried[chosen] = fit
         self.judge(chosen)
 
-    def plain_best(self) -> Fitted:
-        """Return the best of the sets in which no form has more parameters than the usual one."""
-        return max((self.judge(key) for key in self.tried if _plain(key)),
-                   key=lambda one: one.evidence)
+    def simplest(self, keys: Sequence[tuple]) -> Fitted:
+        """Return the simplest of those sets that are about as good as the best of them."""
+        sets = [self.judge(key) for key in keys]
+        least = max(one.evidence for one in sets) - self.rules.alike
+        return min((one for one in sets if one.evidence > least),
+                   key=lambda one: (len(one.chosen), -one.evidence))
 
     def settle(self) -> None:
         """
@@ -257,11 +260,9 @@ class _Search:
 
         Of a form that wants to leave its bounds the usual one takes the place.
         """
-        sets = self.order()
-        best = min((one for one in sets if one.evidence > sets[0].evidence - self.rules.alike),
-                   key=lambda one: (len(one.chosen), -one.evidence))
+        best = self.simplest(list(self.judged))
         # More parameters are for what the fewer leave, not for a little of the noise.
-        plain = self.plain_best()
+        plain = self.simplest([key for key in self.tried if _plain(key)])
         if plain.estimate.cost < (1.0 + self.rules.worth) * best.estimate.cost:
             self.judged = {key: one for key, one in self.judged.items() if _plain(key)}
             self.ranked = [one for one in self.ranked if _plain(one[1])]
@@ -324,8 +325,8 @@ def _other_actuator(best: tuple, causes: Sequence[Candidate], z: np.ndarray, veh
     """
     Return [(set, vector)] with another delay or lag for those of a set, at its usual size.
 
-    From a delay that does the work of a lag no slope leads to the lag, nor from a delay and a lag
-    to two lags in series. Of one parameter: to more of them slopes lead from there.
+    From a delay that does the work of a lag no slope leads to the lag. Of one parameter: to more
+    of them slopes lead from there.
     """
     found, size = [], limits(vehicle)[2]
     actuators = [cause for cause in causes if EFFECTS[cause.effect].actuator and cause.plain]

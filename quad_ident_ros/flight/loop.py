@@ -7,7 +7,7 @@ import numpy as np
 from quad_ident_ros.compiled import compiled
 from quad_ident_ros.effects.registry import SLICES, TABLE
 from quad_ident_ros.flight.controller import control, SEEN
-from quad_ident_ros.model.actuators import by_law, FALL, follow, RISE, SLEW, STAGE
+from quad_ident_ros.model.actuators import FALL, follow, RISE, SLEW
 from quad_ident_ros.model.rigid_body import derivative, INPUT, prepare, STATE
 from quad_ident_ros.model.rollout import step, take_up
 from quad_ident_ros.model.situation import (
@@ -62,13 +62,13 @@ def close_loop(v, places, theta, tilt, rate_tilt, dt, clock, fall, full, longest
     state, change, work = np.empty((STATE, 1)), np.empty((STATE, 1)), np.empty((4, STATE, 1))
     u, h = np.zeros((INPUT, 1)), np.empty(1)
     speed, command, extra = np.empty((n, 1)), np.empty((n, 1)), np.zeros((3, n, 1))
-    slew, stage, followed = theta[SLEW, 0], theta[STAGE, 0], by_law(theta, 0)
-    up, down = theta[LAG, 0] + stage + theta[RISE, 0], theta[LAG, 0] + stage + theta[FALL, 0]
+    up, down, slew = theta[LAG, 0] + theta[RISE, 0], theta[LAG, 0] + theta[FALL, 0], theta[SLEW, 0]
+    by_law = theta[RISE, 0] > 0.0 or theta[FALL, 0] > 0.0 or slew > 0.0
     acting = theta.copy()
-    if followed:
+    if by_law:
         acting[LAG, 0] = 0.0
     lag = acting[LAG]
-    end, passed, added = np.empty(n), np.empty(n), np.zeros((3, n))
+    end, added = np.empty(n), np.zeros((3, n))
     seen, force, lever = np.empty(SEEN), np.empty(3), np.empty(3)
     state[:, 0] = x
     prepare(v, places, theta, s, rotors)
@@ -84,7 +84,7 @@ def close_loop(v, places, theta, tilt, rate_tilt, dt, clock, fall, full, longest
         _look(state[:, 0], arm, tilt, rate_tilt, bias, errors[k], seen)
         control(seen, wanted[k], dt, gains, mixer, memory, commands[k])
         if k == 0:
-            speed[:, 0] = passed[:] = commands[0]
+            speed[:, 0] = commands[0]
         drop[k] = fall * energy
         u[5, 0], u[6, 0] = drop[k], drop[k] / full
         s[TIME, 0] = clock * k * dt
@@ -92,7 +92,7 @@ def close_loop(v, places, theta, tilt, rate_tilt, dt, clock, fall, full, longest
         before = max(k - whole - (1 if part > 0.0 else 0), 0)
         for j in range(n):
             command[j, 0] = commands[before, j]
-            rotors[j, SPEED, 0] = speed[j, 0] if followed or lag[0] > 0.0 else command[j, 0]
+            rotors[j, SPEED, 0] = speed[j, 0] if by_law or lag[0] > 0.0 else command[j, 0]
             speeds[k, j] = rotors[j, SPEED, 0]
         derivative(state, u, v, places, theta, s, rotors, change)
         for i in range(3):
@@ -113,10 +113,10 @@ def close_loop(v, places, theta, tilt, rate_tilt, dt, clock, fall, full, longest
             pieces = int(np.ceil(length / longest - 1e-9))
             h[0] = length / pieces
             for _ in range(pieces):
-                if followed:
+                if by_law:
                     end[:] = speed[:, 0]
-                    follow(end, passed, commands[before if piece == 0 else max(k - whole, 0)],
-                           h[0], up, down, slew, stage, added)
+                    follow(end, commands[before if piece == 0 else max(k - whole, 0)], h[0], up,
+                           down, slew, added)
                     command[:, 0], extra[:, :, 0] = end, added
                 take_up(state, speed, command, h, acting, places, s, rotors, work)
                 step(state, h, u, v, places, theta, speed, command, extra, lag, s, rotors, work)

@@ -15,9 +15,9 @@ from quad_ident_ros.compiled import compiled
 from quad_ident_ros.effects.registry import PLACE, SLICES
 
 DELAY, LAG = SLICES['actuation_delay'].start, SLICES['motor_lag'].start
-RISE, FALL, SLEW, STAGE = (PLACE['motor_lag', name] for name in ('rise', 'fall', 'slew', 'stage'))
-FOLLOWED = [RISE, FALL, SLEW, STAGE]
-CLOSE = 1e-9    # of a step, within which a command changes at a sample, and a stage is none
+RISE, FALL, SLEW = (PLACE['motor_lag', name] for name in ('rise', 'fall', 'slew'))
+FOLLOWED = [RISE, FALL, SLEW]
+CLOSE = 1e-9    # of a step, within which a command changes at a sample
 
 
 class Actuation(NamedTuple):
@@ -50,8 +50,8 @@ def actuated(t: np.ndarray, stamps: np.ndarray, commands: np.ndarray, thetas: np
     first, law = distinct(laws)
     shape = (len(first), len(t), commands.shape[1])
     acted = Actuation(np.empty(shape), np.empty(shape), np.zeros((*shape[:2], 3, shape[2])), law)
-    for k, (*times, followed) in enumerate(laws[first]):
-        if followed:
+    for k, (*times, by_law) in enumerate(laws[first]):
+        if by_law:
             _act_by_law(t, stamps, commands, *times, *(part[k] for part in acted[:3]))
         else:
             _act(t, stamps, commands, *times[:2], *(part[k] for part in acted[:3]))
@@ -65,21 +65,10 @@ def distinct(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return np.unique(which, return_index=True)[1], which
 
 
-def law_of(thetas: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """
-    Return lags up and down, s, one over the fastest change of speed, and a lag, of sets (..., P).
-
-    That, s, is of a first stage, which the command passes before the rest acts.
-    """
-    lag = thetas[..., LAG] + thetas[..., STAGE]
-    return lag + thetas[..., RISE], lag + thetas[..., FALL], thetas[..., SLEW], thetas[..., STAGE]
-
-
-@compiled(inlined=True)
-def by_law(theta: np.ndarray, lane: int) -> bool:
-    """Return whether the speeds of a lane of parameter sets (P, LANES) are followed here."""
-    return (theta[RISE, lane] > 0.0 or theta[FALL, lane] > 0.0 or theta[SLEW, lane] > 0.0
-            or theta[STAGE, lane] > 0.0)
+def law_of(thetas: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return lags up and down, s, and one over the fastest change of speed, of sets (..., P)."""
+    lag = thetas[..., LAG]
+    return lag + thetas[..., RISE], lag + thetas[..., FALL], thetas[..., SLEW]
 
 
 def without_lag(thetas: np.ndarray) -> np.ndarray:
@@ -199,11 +188,11 @@ def _advance(speed: np.ndarray, command: np.ndarray, length: float, left: float,
 
 @compiled
 def _act_by_law(t: np.ndarray, stamps: np.ndarray, commands: np.ndarray, delay: float, up: float,
-                down: float, slew: float, stage: float, followed: np.ndarray,
-                speeds: np.ndarray, added: np.ndarray) -> None:
+                down: float, slew: float, followed: np.ndarray, speeds: np.ndarray,
+                added: np.ndarray) -> None:
     """Write the Actuation of one delay and any law: see law_of."""
     count, last = len(t), len(stamps)
-    sums, passed = np.empty((3, commands.shape[1])), np.empty(commands.shape[1])
+    sums = np.empty((3, commands.shape[1]))
     at = 0
     for k in range(count):
         step = t[k + 1] - t[k] if k + 1 < count else t[k] - t[k - 1]
@@ -211,7 +200,7 @@ def _act_by_law(t: np.ndarray, stamps: np.ndarray, commands: np.ndarray, delay: 
         while at + 1 < last and stamps[at + 1] + delay <= t[k] + close:
             at += 1
         if k == 0:
-            speeds[k] = passed[:] = commands[at]
+            speeds[k] = commands[at]
         followed[k] = speeds[k]
         if k + 1 == count:
             break
@@ -219,57 +208,31 @@ def _act_by_law(t: np.ndarray, stamps: np.ndarray, commands: np.ndarray, delay: 
         sums[:] = 0.0
         while at + 1 < last and stamps[at + 1] + delay < t[k + 1] - close:
             length = stamps[at + 1] + delay - t[k] - done
-            _follow(followed[k], passed, commands[at], length, step - done, up, down, slew, stage,
-                    sums)
+            _follow(followed[k], commands[at], length, step - done, up, down, slew, sums)
             done += length
             at += 1
-        _follow(followed[k], passed, commands[at], step - done, step - done, up, down, slew,
-                stage, sums)
+        _follow(followed[k], commands[at], step - done, step - done, up, down, slew, sums)
         _match(sums, step, followed[k], added[k])
         speeds[k + 1] = followed[k]
 
 
 @compiled
-def follow(speed: np.ndarray, passed: np.ndarray, command: np.ndarray, step: float, up: float,
-           down: float, slew: float, stage: float, added: np.ndarray) -> None:
+def follow(speed: np.ndarray, command: np.ndarray, step: float, up: float, down: float,
+           slew: float, added: np.ndarray) -> None:
     """
     Advance speeds (n,) by a step s towards commands (n,), by any law: see law_of.
 
-    passed (n,) is what of the commands has passed the first stage, and advances, too. Writes into
-    added (3, n) what is to be added to the speeds at the end to have those at the
+    Writes into added (3, n) what is to be added to the speeds at the end to have those at the
     begin, the middle and the end of the step as its integration takes them.
     """
     sums = np.zeros((3, len(speed)))
-    _follow(speed, passed, command, step, step, up, down, slew, stage, sums)
+    _follow(speed, command, step, step, up, down, slew, sums)
     _match(sums, step, speed, added)
 
 
 @compiled
-def _follow(speed: np.ndarray, passed: np.ndarray, command: np.ndarray, length: float, left: float,
-            up: float, down: float, slew: float, stage: float, sums: np.ndarray) -> None:
-    """
-    Advance speeds (n,) and what has passed the first stage (n,) as _advance does, by any law.
-
-    What passes is held over each half of the length, at values that have its mean over the whole
-    and where in it that lies: right to fourth order, and to first order in a stage that is short.
-    """
-    if stage <= CLOSE * length:
-        passed[:] = command
-        _tend(speed, command, length, left, up, down, slew, sums)
-        return
-    share, gone = stage / length, np.exp(-length / stage)
-    mean = share * (1.0 - gone)
-    apart = 4.0 * share * (mean - 0.5 * (1.0 + gone))
-    gap = passed - command
-    half = 0.5 * length
-    _tend(speed, command + gap * (mean - apart), half, left, up, down, slew, sums)
-    _tend(speed, command + gap * (mean + apart), half, left - half, up, down, slew, sums)
-    passed[:] = command + gap * gone
-
-
-@compiled
-def _tend(speed: np.ndarray, command: np.ndarray, length: float, left: float, up: float,
-          down: float, slew: float, sums: np.ndarray) -> None:
+def _follow(speed: np.ndarray, command: np.ndarray, length: float, left: float, up: float,
+            down: float, slew: float, sums: np.ndarray) -> None:
     """Advance speeds (n,) as _advance does, by a lag up, another one down and a limited rate."""
     for j in range(len(speed)):
         gap = speed[j] - command[j]

@@ -94,30 +94,6 @@ def test_each_effect_is_named_alone_with_its_parameters(effect):
     check(diagnose(flown(truth), VEHICLE).as_data(), truth)
 
 
-@pytest.mark.parametrize(('truth', 'form'), [
-    ({'motor_lag': {'stage': 0.02}}, 'second_order'),
-    ({'motor_lag': {'time_constant': 0.03}}, 'first_order'),
-    ({'actuation_delay': {'delay': 0.02}}, None)], ids=['two lags', 'lag', 'delay'])
-def test_lags_of_either_order_and_a_delay_are_told_apart(truth, form):
-    data = diagnose(flown(truth), VEHICLE).as_data()
-    check(data, truth)
-    forms = {row['effect']: row['form'] for row in data['ranking']}
-    assert form is None or forms['motor_lag'] == form
-
-
-def test_a_lag_beside_a_delay_is_not_taken_for_two_lags():
-    """One of them alone closes nearly all of the gap: the other is there, and hardly matters."""
-    truth = {'motor_lag': {'time_constant': 0.03}, 'actuation_delay': {'delay': 0.015}}
-    data = diagnose(flown(truth), VEHICLE).as_data()
-    named = {*data['verdict'], *(row['effect'] for row in data['minor'])}
-    assert named == set(truth)
-    rows = {row['effect']: row['parameters'] for row in data['ranking']}
-    for effect, parameters in truth.items():
-        for name, value in parameters.items():
-            found = rows[effect][name]
-            assert abs(found['value'] - value) < 4.5 * found['std'], (effect, name)
-
-
 def test_several_at_once_are_named_together():
     truth = {name: TRUTHS[name] for name in SEVERAL}
     data = diagnose(flown(truth), VEHICLE).as_data()

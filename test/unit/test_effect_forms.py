@@ -33,7 +33,6 @@ OTHERS = {
     ('battery_sag', 'time_and_load'): {'drain': 0.01, 'sink': 0.1},
     ('motor_lag', 'rise_fall'): {'rise': 0.03, 'fall': 0.06},
     ('motor_lag', 'slew'): {'slew': 2e-4},
-    ('motor_lag', 'second_order'): {'stage': 0.03},
     ('ground_effect', 'exponential'): {'gain': 0.5, 'length': 2.0},
     ('ground_effect', 'hayden'): {'hayden': 4.0},
     ('rotor_drag', 'axes'): {'x': 0.3, 'y': 0.2, 'z': -0.1},
@@ -123,52 +122,6 @@ def test_a_limited_rotor_with_a_lag_ends_in_its_exponential():
     assert np.abs(speeds - exact).max() < 1e-9
 
 
-@pytest.mark.parametrize(('stage', 'within'), [(0.005, 6e-3), (0.02, 5e-5), (0.05, 2e-6)])
-def test_two_lags_in_series_answer_a_step_as_a_critically_damped_second_order(stage, within):
-    t = np.arange(61) * 0.01
-    commands = np.full((61, 1), 500.0)
-    commands[10:] = 700.0
-    speeds = law(t, commands, stage=stage)[1][:, 0]
-    past = np.maximum(t - 0.1, 0.0) / stage
-    # What the first stage lets through is a parabola's, to fourth order in step / stage.
-    assert np.abs(speeds - 700.0 + 200.0 * (1.0 + past) * np.exp(-past)).max() < within * 200.0
-
-
-@pytest.mark.parametrize('stage', [1e-6, 1e-3, 0.007, 0.03, 0.1])
-def test_two_lags_in_series_delay_by_the_sum_of_both(stage):
-    t = np.arange(301) * 0.01
-    step = 1e-3 * HOVER     # so small that its square counts little
-    commands = np.full((301, 1), HOVER)
-    commands[3:] += step
-    followed, _, added = law(t, commands, stage=stage)
-    squares = (followed[:, None] + added)[..., 0] ** 2
-    lifted = 0.01 * np.sum(squares[3:-1] @ [1 / 6, 4 / 6, 1 / 6] - HOVER ** 2)
-    delay = 2.97 - lifted / (2.0 * HOVER * step + step ** 2)
-    assert delay == pytest.approx(2.0 * stage, rel=1e-3)
-
-
-def test_two_lags_in_series_act_after_a_delay():
-    t = np.arange(61) * 0.01
-    commands = np.full((61, 1), 500.0)
-    commands[10:] = 700.0
-    theta = vector({'motor_lag': {'stage': 0.04}, 'actuation_delay': {'delay': 0.0135}}, BARE)
-    speeds = actuated(t, t, commands, theta[None]).speeds[0][:, 0]
-    past = np.maximum(t - 0.1135, 0.0) / 0.04
-    assert np.abs(speeds - 700.0 + 200.0 * (1.0 + past) * np.exp(-past)).max() < 1e-3
-
-
-@pytest.mark.parametrize('stage', [0.0, 0.01, 0.03])
-def test_slopes_by_differences_are_smooth_where_there_is_no_second_stage_too(stage):
-    course = steps(VEHICLE)
-    at, *beyond = (roll(VEHICLE, {'motor_lag': {'stage': stage + more}}, course, START)
-                   for more in (0.0, 3e-6, 3e-5))
-    if stage == 0.0:
-        assert (at == roll(VEHICLE, {}, course, START)).all()
-    near, far = ((one - at) / more for one, more in zip(beyond, (3e-6, 3e-5), strict=True))
-    assert np.linalg.norm(near - far) < 5e-3 * np.linalg.norm(near)
-    assert np.linalg.norm(near) > 1.0
-
-
 @FAST
 @given(st.floats(0, 0.2), st.floats(0.002, 0.2), st.integers(0, 1000))
 def test_the_same_lag_up_and_down_is_the_usual_form(delay, lag, seed):
@@ -187,8 +140,7 @@ def test_followed_speeds_drive_as_those_of_the_integration_do():
 
 
 @pytest.mark.parametrize('parameters', [{'rise': 0.02, 'fall': 0.05}, {'slew': 3e-4},
-                                        {'slew': 3e-4, 'time_constant': 0.02},
-                                        {'stage': 0.01}, {'stage': 0.02, 'time_constant': 0.02}])
+                                        {'slew': 3e-4, 'time_constant': 0.02}])
 def test_samples_of_10_ms_fly_as_samples_of_1_ms(parameters):
     course = steps(VEHICLE)
     fine = Course(np.arange(1001) * 1e-3, np.repeat(course.commands, 10, axis=0)[:1001],
@@ -214,11 +166,10 @@ def test_replayed_in_open_loop_a_flight_reproduces_itself(name, form):
     assert np.abs(found[:, -1] - states[first + 50]).max() < 1e-9
 
 
-@pytest.mark.parametrize('lag', [{'rise': 0.02, 'fall': 0.05}, {'stage': 0.02}])
-def test_a_lag_is_simulated_as_it_is_predicted(lag):
+def test_a_lag_is_simulated_as_it_is_predicted():
     rows = np.tile(VEHICLE.hover_input, (101, 1))
     rows[:, 1:] += np.where(np.arange(101) // 10 % 2, -1, 1)[:, None] * (0.05, -0.03, 0.02)
-    effects = {'motor_lag': lag}
+    effects = {'motor_lag': {'rise': 0.02, 'fall': 0.05}}
     isotropic = replace(VEHICLE, linear_drag=(0.1, 0.1, 0.1))
     record = simulate(replace(isotropic, effects=effects), 'newton_euler', rows, 0.01,
                       altitude=1.0).record
@@ -247,8 +198,7 @@ def test_rotors_that_jump_hand_their_momentum_to_the_body():
 
 
 @pytest.mark.parametrize('lag', [{}, {'time_constant': 0.05}, {'rise': 0.02, 'fall': 0.06},
-                                 {'slew': 1e-3}, {'stage': 0.03}],
-                         ids=lambda lag: '_'.join(lag) or 'jump')
+                                 {'slew': 1e-3}], ids=lambda lag: '_'.join(lag) or 'jump')
 def test_the_momentum_of_body_and_rotors_together_stays(lag):
     random = np.random.default_rng(4)
     course = held(FREE, TURNING, seconds=1.0)
