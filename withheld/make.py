@@ -175,7 +175,8 @@ def _beside(case, parts, params, log):
     names = {name for part in parts.values() for name in part.beside}
     if case.wrong_file:
         names |= {'inertia_mismatch'}
-        names |= {'rotor_drag'} if np.any(params['linear_drag']) else set()
+        # The drag of a file is linear, and that of neither rotors nor body by itself.
+        names |= {'rotor_drag', 'body_drag'} if np.any(params['linear_drag']) else set()
     if case.gusts:
         names |= {'wind', 'unknown'}
     if log.charge:
