@@ -53,8 +53,15 @@ def candidates(flights: list, vehicle: Vehicle, rules: Rules,
                 found.append(Candidate(name, f'{name} {form.name}', columns, form.name,
                                        form is forms[0],
                                        len(form.parameters) <= len(forms[0].parameters),
-                                       1.0 / len(forms)))
+                                       _share(form is forms[0], len(forms))))
     return tuple(found)
+
+
+def _share(usual: bool, count: int) -> float:
+    """Return a form's part of the prior probability of its effect: half is the usual one's."""
+    if count == 1:
+        return 1.0
+    return 0.5 if usual else 0.5 / (count - 1)
 
 
 def nuisance_candidates(vehicle: Vehicle, tracks: list) -> tuple[Candidate, ...]:

@@ -90,7 +90,7 @@ class Rules:
     present: float = 0.5
     doubt: float = 0.12
     instead: float = 2.0
-    calibration: tuple[float, float, float, float] = (-0.8, 0.11, 1.7, 3.5)
+    calibration: tuple[float, float, float, float] = (-1.9, 0.19, 1.6, 4.0)
     steadiest: float = 10.0
     faintest: float = 1e-3
     tied: float = 0.9

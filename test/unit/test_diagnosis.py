@@ -68,7 +68,8 @@ def check(data, truth):
     assert set(data['verdict']) <= set(truth) <= set(data['verdict']) | minor
     rows = {row['effect']: row for row in data['ranking']}
     for effect, parameters in truth.items():
-        assert rows[effect]['probability'] > 0.9
+        # Of what closes little, less is certain.
+        assert rows[effect]['probability'] > (0.5 if effect in minor else 0.9)
         for name, value in parameters.items():
             found = rows[effect]['parameters'][name]
             assert abs(found['value'] - value) < 4.5 * found['std'], (effect, name)
