@@ -11,7 +11,7 @@ from quad_ident_ros.diagnose.candidates import candidates
 from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.diagnose.intake import take_in
 from quad_ident_ros.diagnose.rules import RULES
-from quad_ident_ros.diagnose.select import COLOURED, select
+from quad_ident_ros.diagnose.select import select
 from quad_ident_ros.greybox.noise import whole_noise
 
 pytestmark = needs_real_flights
@@ -37,7 +37,7 @@ def test_the_errors_are_weighed_by_what_remains_of_them(flown):
     remains = [whole_noise(raw, 1.0 - 1.0 / raw.shape[1])
                for raw in selection.best.estimate.residuals]
     ratio = np.median(np.array(remains) / selection.noise, axis=0)
-    assert (ratio < COLOURED).all() and (ratio > 1.0 / COLOURED).all()
+    assert (ratio < RULES.coloured).all() and (ratio > 1.0 / RULES.coloured).all()
 
 
 @pytest.mark.xfail(strict=False, reason='two slow flights do not tell drag of the rotors from '
