@@ -40,7 +40,7 @@ def test_the_errors_are_weighed_by_what_remains_of_them(flown):
     assert (ratio < RULES.coloured).all() and (ratio > 1.0 / RULES.coloured).all()
 
 
-@pytest.mark.xfail(strict=False, reason='two slow flights do not tell drag of the rotors from '
+@pytest.mark.xfail(strict=True, reason='two slow flights do not tell drag of the rotors from '
                    'that of the body: see docs/diagnosis.md, Limits')
 def test_a_constant_moment_more_changes_no_verdict(found):
     as_flown, moved = found
@@ -53,8 +53,6 @@ def test_a_constant_moment_more_changes_no_verdict(found):
         assert one.verdict[-1] == 'unknown'
 
 
-@pytest.mark.xfail(strict=False, reason='two slow flights do not tell drag of the rotors from '
-                   'that of the body: see docs/diagnosis.md, Limits')
 def test_an_attitude_that_is_lost_hides_no_drag(found):
     """Given the recorded attitude the translation is explained, whatever turns the vehicle."""
     for one in found:
