@@ -288,9 +288,12 @@ def posteriors(fitted: Sequence[Fitted], ranked: list, causes: Sequence[Candidat
     """
     Return {effect candidate: probability of being present}: the evidence of sets that have it.
 
-    Sets that were not refitted count by the linear model, beside the best one, for little.
+    Sets that were not refitted count by the linear model, beside the best one, for little. The
+    best one is the simplest of those that are about as good: sets that only add effects to it
+    tell no more of these than was known before looking.
     """
     top = fitted[0]
+    best = set(top.causes)
     base = next((value for value, chosen, _ in ranked if chosen == top.chosen), None)
     weights = {one.chosen: one.evidence - top.evidence for one in fitted}
     if base is not None and np.isfinite(base):
@@ -300,8 +303,12 @@ def posteriors(fitted: Sequence[Fitted], ranked: list, causes: Sequence[Candidat
     values = np.array(list(weights.values()))
     shares = np.exp(np.clip(values - values.max(), -700, 0))
     shares /= shares.sum()
-    return {cause: float(sum(share for share, chosen in zip(shares, weights, strict=True)
-                             if cause in chosen)) for cause in causes}
+    found = dict.fromkeys(causes, 0.0)
+    for share, chosen in zip(shares, weights, strict=True):
+        for cause in effects_in(chosen):
+            adds = cause not in best and best <= set(chosen)
+            found[cause] += float(share) * (rules.prior_odds if adds else 1.0)
+    return found
 
 
 def _promising(ranked: list, tried: Collection[tuple]) -> list[tuple[tuple, np.ndarray]]:

@@ -10,7 +10,7 @@ import pytest
 from quad_ident_ros.diagnose.candidates import Candidate, candidates
 from quad_ident_ros.diagnose.fitted import Fitted, refitted
 from quad_ident_ros.diagnose.rules import RULES
-from quad_ident_ros.diagnose.select import _other_actuator, Selection
+from quad_ident_ros.diagnose.select import _other_actuator, posteriors, Selection
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import SENSORS
 from quad_ident_ros.greybox.flights import flight_of, track_of
@@ -54,6 +54,24 @@ def test_they_count_by_their_evidence():
 
 def test_sets_with_other_effects_do_not_count():
     assert errors(NARROW, fitted((EFFECT, OTHER), 2.0, 5.0, 3.0)) == pytest.approx([0.1])
+
+
+def test_an_effect_in_place_of_another_has_the_evidence_of_its_set():
+    one, other = (Candidate(name, name, (k,)) for k, name in enumerate(('lag', 'delay')))
+    sets = [SimpleNamespace(chosen=(cause,), causes=(cause,), evidence=value)
+            for cause, value in ((one, 0.0), (other, -1.0))]
+    share = 1.0 / (1.0 + np.exp(-1.0))
+    assert posteriors(sets, [], (one, other), set(), RULES) == {
+        one: pytest.approx(share), other: pytest.approx(1.0 - share)}
+
+
+def test_an_effect_beside_the_simplest_of_sets_that_are_alike_is_as_rare_as_before_looking():
+    one, other = (Candidate(name, name, (k,)) for k, name in enumerate(('drag', 'wind')))
+    sets = [SimpleNamespace(chosen=causes, causes=causes, evidence=value)
+            for causes, value in (((one,), 0.0), ((one, other), 2.0))]
+    found = posteriors(sets, [], (one, other), set(), RULES)
+    assert found[one] == pytest.approx(1.0)
+    assert found[other] == pytest.approx(RULES.prior_odds * np.exp(2.0) / (1.0 + np.exp(2.0)))
 
 
 def test_from_a_delay_that_does_the_work_of_a_lag_the_lag_is_found():
