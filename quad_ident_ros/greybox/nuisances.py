@@ -76,7 +76,8 @@ def nuisances(vehicle: Vehicle, tracks: Sequence[Track]) -> tuple[Nuisance, ...]
               for spread in (0.005, 0.0015)]
     kinds.append(('trim_moment', 'moment', 'N m', moment,
                   (0.02 * lever, 0.02 * lever, 0.05 * twist), RARE))
-    for name, effect in EFFECTS.items():
+    # One flight does not tell what is its alone from what is the vehicle's.
+    for name, effect in EFFECTS.items() if len(tracks) > 1 else ():
         differing = [(parameter, spread) for parameter, spread in
                      zip(effect.forms[0].parameters, effect.per_flight, strict=False) if spread]
         if differing:

@@ -257,3 +257,20 @@ def test_a_negative_delay_undoes_a_positive_one(name):
     np.testing.assert_allclose(back[:97], commands[:97], rtol=1e-9)
     # What the delay has pushed out of the record is gone: the last that is left is held.
     np.testing.assert_allclose(back[96:], np.tile(commands[96], (4, 1)), rtol=1e-9)
+
+
+def test_thrust_and_wind_by_flight_are_asked_of_several_flights_alone(dragged):
+    tracks = [track_of(record, VEHICLE) for record in dragged]
+    names = [{kind.name for kind in nuisances(VEHICLE, tracks[:count])} for count in (1, 2)]
+    assert names[1] - names[0] == {'thrust_scale_by_flight', 'wind_by_flight'}
+
+
+def test_a_battery_that_was_fuller_in_one_flight_is_no_effect():
+    truths = [{**DRAG, 'thrust_scale': {'factor': factor}} for factor in (1.02, 0.98, 1.0)]
+    flights = [fly_closed_loop(VEHICLE, truth, 'lissajous', duration=12.0, seed=seed,
+                               noise=SENSORS['mocap_imu']) for seed, truth in enumerate(truths)]
+    data = diagnose(flights, VEHICLE).as_data()
+    assert data['verdict'] == ['rotor_drag']
+    thrust = data['nuisances']['thrust_scale_by_flight']
+    assert np.ravel([*thrust['values'], thrust['held_out']]) == pytest.approx(
+        [0.02, -0.02, 0.0], abs=0.004)
