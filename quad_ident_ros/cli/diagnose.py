@@ -24,8 +24,8 @@ def add(commands):
         'diagnose', help='say where the sim-to-real gap lies, what causes it, how far it shrinks',
         formatter_class=argparse.RawDescriptionHelpFormatter,
         description='Hold flights of a real vehicle against its nominal description. The last '
-                    'flight named is held\nout: it takes no part in the fit or the choice, and '
-                    'the gap is told on it.',
+                    'flight named is held\nout: the effects are not fitted to it. It counts where '
+                    'contributions are judged, and the\ngap is told on it.',
         epilog='effects: ' + ', '.join(EFFECTS) + '\n\n'
                '  quad_ident diagnose monday_*.csv.gz --vehicle quad.yaml\n'
                '  quad_ident diagnose a.csv b.csv --hold-out c.csv --vehicle quad.yaml \\\n'
