@@ -26,7 +26,6 @@ NOISE_STARTS = 60               # starts at which the noise is carried along
 BLOCK = 2.0                     # s of the bootstrap's blocks
 DRAWS = 400
 LEAST = 0.01                    # of the noise's gap: what is less above it is none
-MEDIAN = 2.366                  # of the sum of three squared standard normal numbers
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,13 +73,6 @@ def gap(all_ends: Sequence[Ends]) -> dict[str, float]:
     """Return {group: root mean square error} of the Ends of flights."""
     errors = np.concatenate([one.errors for one in all_ends])
     return {name: float(np.sqrt(np.mean(np.sum(errors[:, part] ** 2, axis=1))))
-            for name, part in GROUPS.items()}
-
-
-def usual_gap(all_ends: Sequence[Ends]) -> dict[str, float]:
-    """Return {group: gap} that a few outliers do not change: by the median, for normal errors."""
-    errors = np.concatenate([one.errors for one in all_ends])
-    return {name: float(np.sqrt(np.median(np.sum(errors[:, part] ** 2, axis=1)) * 3.0 / MEDIAN))
             for name, part in GROUPS.items()}
 
 

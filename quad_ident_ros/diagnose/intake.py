@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from quad_ident_ros.data.clocks import clocks_of, on_one_clock
-from quad_ident_ros.data.quality import cautions
+from quad_ident_ros.data.quality import cautions, refuse_errors
 from quad_ident_ros.data.quality.finding import as_caution
 from quad_ident_ros.data.quality.ground import airborne, stands
 from quad_ident_ros.data.record import FlightRecord, refuse_twice, same_flight
@@ -78,10 +78,13 @@ def _fit_for_use(record: FlightRecord, vehicle: Vehicle, rules: Rules, findings:
                  ) -> FlightRecord:
     """Return a record with commands, off the ground, its cautions added to the findings."""
     record = with_commands(record, vehicle)
-    findings += [as_caution(finding, record) for finding in stands(record, vehicle)]
+    ground = stands(record, vehicle)
+    refuse_errors(record, ground)
+    findings += [as_caution(finding, record) for finding in ground]
     record = airborne(record, vehicle)
     refuse_short(record, rules)
-    findings += cautions(record, vehicle)
+    findings += [one for one in cautions(record, vehicle)
+                 if one['code'] not in {finding.code for finding in ground}]
     return record
 
 
@@ -115,5 +118,6 @@ def refuse_short(record: FlightRecord, rules: Rules) -> None:
     """Raise InputError where a flight record is too short for a diagnosis."""
     if length_of(record) < rules.shortest:
         name = record.info.get('source') or record.info.get('name', 'a record')
-        raise InputError(f'{name}: {length_of(record):.3g} s are '
+        cut = ' off the ground' if 'began' in record.info else ''
+        raise InputError(f'{name}: {length_of(record):.3g} s{cut} are '
                          f'too short for a diagnosis; at least {rules.shortest:g} s are needed')

@@ -102,13 +102,16 @@ class Bench:
         fixed = np.stack(model.vectors) - model.z
         alike = {column for cause in removed for column in _columns_alike(cause.effect)}
         shared = [column for column in sorted(alike) if fixed[:, column].any()]
-        others = [column for cause in model.chosen
-                  if cause.nuisance is not None and not set(cause.nuisance.columns) & set(shared)
-                  for column in cause.nuisance.columns]
-        fixed[:, others] = 0.0
+        # Thrust and wind of a flight do what many effects do: they stay as they are.
+        held = {cause for cause in model.chosen
+                if cause.nuisance is not None and (cause.nuisance.of_effect
+                                                   or set(cause.nuisance.columns) & set(shared))}
+        free = [column for cause in model.chosen
+                if cause.nuisance is not None and cause not in held
+                for column in cause.nuisance.columns]
+        fixed[:, free] = 0.0
         fixed[:, shared] -= fixed[:-1, shared].mean(axis=0)
-        chosen = tuple(cause for cause in model.chosen if cause not in removed and not (
-            cause.nuisance is not None and set(shared) & set(cause.nuisance.columns)))
+        chosen = tuple(cause for cause in model.chosen if cause not in {*removed, *held})
         noise, scatter = self.selection.noise, self.selection.quadratic.scatter
         estimate = refitted(self.flights, self.vehicle, z, chosen, noise, fit.nuisances,
                             fit.starts, scatter=scatter, fixed=fixed[:-1])
@@ -117,10 +120,9 @@ class Bench:
                                          noise, self.rules, scatter, fixed[:-1])
         return self.model(chosen, estimate, fixed[-1])
 
-
     def left_out(self, model: Model) -> tuple:
         """
-        Return the Ends of each flight by a Model refitted to the others, the one held out last.
+        Return the Ends of each flight by a Model's set refitted to the others, held-out one last.
 
         A flight that is the only one to learn from is predicted by the model as it is.
         """
@@ -129,13 +131,14 @@ class Bench:
             kept = [n for n in range(count) if n != k]
             fit, flights = model.estimate, [self.flights[n] for n in kept]
             nuisances = replace(fit.nuisances, values=fit.nuisances.values[kept])
+            fixed = fit.nuisances.fixed
             refit = refitted(flights, self.vehicle, fit.z, model.chosen,
                              [self.selection.noise[n] for n in kept], nuisances,
                              [fit.starts[n] for n in kept],
-                             scatter=self.selection.quadratic.scatter)
-            found.append(gaps.ends(self.tracks[k], self.vehicle,
-                                   refit.z + self._nuisances(k, refit.z, model.chosen),
-                                   gaps.HEADLINE))
+                             scatter=self.selection.quadratic.scatter,
+                             fixed=None if fixed is None else fixed[kept])
+            here = self._nuisances(k, refit.z, model.chosen, None if fixed is None else fixed[k])
+            found.append(gaps.ends(self.tracks[k], self.vehicle, refit.z + here, gaps.HEADLINE))
         return (*(found or model.ends[:-1]), model.ends[-1])
 
     def _nuisances(self, flight: int, z: np.ndarray, chosen: tuple,

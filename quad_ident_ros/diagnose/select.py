@@ -14,6 +14,7 @@ from quad_ident_ros.diagnose.fitted import (
     effects_in,
     Fitted,
     fitted_of,
+    out_of_bounds,
     refitted,
     size_grids,
     within_bounds,
@@ -33,7 +34,7 @@ from quad_ident_ros.model.vehicle import Vehicle
 ROUNDS = 6
 REFITS = 3          # sets that are refitted in a round
 KEPT = 10           # fitted sets that are judged anew around each new best one
-PASSES = 3          # times, at most, that the noise is taken anew from what is left
+PASSES = 3          # times, at most, in each stage, that the noise is taken anew
 NEAR = 25.0         # log-evidence behind the best set by the slopes that may be made up for
 LOST = 4.0          # times the scatter that a fit may cost more than a subset does
 
@@ -43,9 +44,10 @@ class Selection:
     """
     What the flights say of the candidates.
 
-    best: the Fitted with the most evidence; fitted: it and the others that were refitted;
-    posterior: probability of each candidate effect; quadratic, rows: the cost around the
-    best, with all candidates free; noise: per flight (12,); frame: the flights around the best.
+    best: the simplest Fitted of those with about the most evidence; fitted: it and the others
+    that were refitted; posterior: probability of each candidate effect; quadratic, rows: the cost
+    around the best, with all candidates free; noise: per flight (12,); frame: the flights around
+    the best.
     """
 
     best: Fitted
@@ -130,7 +132,8 @@ class _Search:
         if max(np.max(ratio), np.max(1.0 / ratio)) <= self.rules.coloured:
             return False
         plain = self.simplest([key for key in self.tried if _plain(key)])
-        known = [*(one.chosen for one in self.order()[:REFITS]), plain.chosen, ()]
+        known = [self.best.chosen, *(one.chosen for one in self.order()[:REFITS]), plain.chosen,
+                 ()]
         self.noise, self.judged = noise, {}
         self.tried = {key: self.tried[key] for key in dict.fromkeys(known)}
         self.tried = {key: refitted(self.flights, self.vehicle, fit.z, key, noise, fit.nuisances,
@@ -258,7 +261,7 @@ class _Search:
         """
         Take the simplest of the sets that are about as good, and forms within their bounds.
 
-        Of a form that wants to leave its bounds the usual one takes the place.
+        The usual form replaces one that wants to leave its bounds.
         """
         best = self.simplest(list(self.judged))
         # More parameters are for what the fewer leave, not for a little of the noise.
@@ -271,6 +274,9 @@ class _Search:
         chosen, fit = within_bounds(best.chosen, best.estimate, usual, self.flights,
                                     self.vehicle, self.noise, self.rules, self.quadratic.scatter)
         self.tried[chosen] = fit
+        self.judged = {key: one for key, one in self.judged.items()
+                       if not any(out_of_bounds(cause, one.estimate, self.vehicle, self.rules)
+                                  for cause in one.causes)}
         self.best = self.judge(chosen)
 
     def selection(self) -> Selection:
@@ -332,8 +338,8 @@ def _other_actuator(best: tuple, causes: Sequence[Candidate], z: np.ndarray, veh
     """
     Return [(set, vector)] with another delay or lag for those of a set, at its usual size.
 
-    From a delay that does the work of a lag no slope leads to the lag. Of one parameter: to more
-    of them slopes lead from there.
+    From a delay that does the work of a lag no slope leads to the lag. Only forms with one
+    parameter: slopes lead from these to the others.
     """
     found, size = [], limits(vehicle)[2]
     actuators = [cause for cause in causes if EFFECTS[cause.effect].actuator and cause.plain]

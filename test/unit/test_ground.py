@@ -8,6 +8,7 @@ import pytest
 from quad_ident_ros.data.quality.ground import airborne, standing, stands
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.diagnose.diagnosis import diagnose
+from quad_ident_ros.errors import InputError
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import MOCAP_IMU
 from quad_ident_ros.model.vehicle import load_vehicle
@@ -80,6 +81,69 @@ def test_of_two_flights_in_one_record_the_longer_is_taken(flight):
 def test_a_hover_is_no_standing():
     hover = fly_closed_loop(VEHICLE, {}, 'hover', duration=8.0, seed=3, noise=MOCAP_IMU)
     assert not standing(hover, VEHICLE).any()
+
+
+def changed(flight, **columns):
+    return FlightRecord(flight.t, {**flight.columns, **columns}, dict(flight.info))
+
+
+def test_what_is_held_in_a_hand_above_the_flight_is_no_flight(flight):
+    whole = grounded(flight, after=0.0)
+    held = np.arange(len(whole)) < len(whole) - len(flight)
+    whole = changed(whole, pz=np.where(held, flight.columns['pz'].max() + 1.5,
+                                       whole.columns['pz']))
+    assert len(airborne(whole, VEHICLE)) == len(flight)
+
+
+def test_a_hover_amid_brisk_flight_is_no_standing(flight):
+    """Where most of a flight needs twice the weight, the weight is half of what is usual."""
+    brisk = {f'cmd{j}': 1.5 * flight.columns[f'cmd{j}'] for j in range(1, 5)}
+    hover = (flight.t > 4.0) & (flight.t < 6.0)
+    still = {name: np.where(hover, 0.0, flight.columns[name]) for name in ('vx', 'vy', 'vz')}
+    calm = {name: np.where(hover, hover_of(VEHICLE), values) for name, values in brisk.items()}
+    assert not standing(changed(flight, **still, **calm), VEHICLE).any()
+
+
+def test_lost_rows_are_no_time_on_the_ground(flight):
+    low = np.isin(np.arange(len(flight)), (399, 450))
+    columns = {f'cmd{j}': np.where(low, 0.1, 1.0) * flight.columns[f'cmd{j}']
+               for j in range(1, 5)}
+    columns |= {name: np.where(low, 0.0, flight.columns[name]) for name in ('vx', 'vy', 'vz')}
+    slow = changed(flight, **columns)
+    kept = np.r_[0:400, 450:len(flight)]
+    gap = FlightRecord(slow.t[kept], {name: values[kept] for name, values in slow.columns.items()},
+                       {})
+    assert not standing(gap, VEHICLE).any()
+
+
+def test_a_record_that_never_leaves_the_ground_is_refused(flight):
+    whole = grounded(flight, before=12.0)
+    pad = whole.slice(0, len(whole) - len(flight) - round(STAND / flight.period()))
+    assert standing(pad, VEHICLE).all()
+    [finding] = stands(pad, VEHICLE)
+    assert finding.severity == 'error'
+    with pytest.raises(InputError, match='on the ground all the time'):
+        diagnose([pad], VEHICLE)
+
+
+def test_a_flight_that_is_short_off_the_ground_is_refused_so(flight):
+    with pytest.raises(InputError, match='3 s off the ground are too short'):
+        diagnose([grounded(flight.slice(0, 300), before=10.0)], VEHICLE)
+
+
+def test_a_part_that_begins_in_flight_does_not_begin_at_rest(flight):
+    whole = grounded(flight)
+    whole = FlightRecord(whole.t, whole.columns, {'starts_at_rest': True, 'start_ns': 5})
+    info = airborne(whole, VEHICLE).info
+    assert 'starts_at_rest' not in info and info['start_ns'] == 5 + round(STAND * 1e9)
+
+
+def test_records_without_height_velocity_or_commands_are_left_as_they_are(flight):
+    whole = grounded(flight)
+    for gone in ('pz', 'vx', 'cmd'):
+        columns = {name: values for name, values in whole.columns.items()
+                   if not name.startswith(gone)}
+        assert not standing(FlightRecord(whole.t, columns, {}), VEHICLE).any()
 
 
 def test_a_verdict_does_not_change_by_time_on_the_ground(flight):

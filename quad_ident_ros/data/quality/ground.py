@@ -11,7 +11,7 @@ from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.model.vehicle import Vehicle
 
 STILL = 0.2         # m/s: slower stands, or hovers
-IDLE = 0.5          # of the thrust that is usual in the record, with which nothing hovers
+IDLE = 0.5          # of the weight, or of the usual thrust if that is less: nothing hovers with it
 LEAST = 0.3         # s: whatever falls for that long with half the thrust is faster than STILL
 CLEAR = 0.05        # m above the height of standing where the ground is left
 
@@ -24,6 +24,10 @@ def stands(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     if not on_ground.any():
         return []
     part = airborne(record, vehicle)
+    if len(part) == len(record):
+        return [Finding('ground', 'error', f't = {record.t[0]:.3f} s',
+                        'the vehicle stands on the ground all the time',
+                        'give a record of a flight')]
     return [Finding(
         'ground', 'warning', f't = {record.t[on_ground][0]:.3f} s',
         f'the vehicle stands on the ground for {on_ground.sum() * record.period():.1f} s, where '
@@ -35,13 +39,14 @@ def stands(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
 def airborne(record: FlightRecord, vehicle: Vehicle) -> FlightRecord:
     """Return the longest part of a record off the ground; all of it where there is none."""
     flies = ~standing(record, vehicle)
-    runs = _runs(flies)
+    runs = [run for run in _runs(flies) if run[1] > run[0]]
     if flies.all() or not runs:
         return record
-    first, last = max(runs, key=lambda run: run[1] - run[0])
+    first, last = max(runs, key=lambda run: record.t[run[1]] - record.t[run[0]])
+    part = record.slice(0, last + 1).starting(first)
     # The battery has been emptying since the record began.
     began = record.info.get('began', record.t[0])
-    return replace(record.slice(first, last + 1), info={**record.info, 'began': began})
+    return replace(part, info={**part.info, 'began': began})
 
 
 def standing(record: FlightRecord, vehicle: Vehicle) -> np.ndarray:
@@ -49,27 +54,27 @@ def standing(record: FlightRecord, vehicle: Vehicle) -> np.ndarray:
     Return whether the vehicle stands on the ground at each sample, (N,) of bool.
 
     It does where it keeps still for LEAST with too little thrust to hover, and around that for
-    as long as it is no higher. All False where the record has no commands, height or velocity.
+    as long as it stays at that height. All False where the record has no commands, height or
+    velocity.
     """
     speed = _speed(record)
     thrust = _thrust(record, vehicle)
-    found = np.zeros(len(record), bool)
+    grounded = np.zeros(len(record), bool)
     if speed is None or thrust is None or not record.has('pz'):
-        return found
+        return grounded
     moving = speed > STILL
-    if not moving.any():
-        return found
-    usual = np.median(thrust[moving])
-    height = record.columns['pz']
-    still = ~moving & (thrust < IDLE * usual)
-    for first, last in _runs(still):
-        if record.t[last] - record.t[first] < LEAST:
+    hover = vehicle.mass * vehicle.gravity
+    usual = min(float(np.median(thrust[moving])), hover) if moving.any() else hover
+    height, period = record.columns['pz'], record.period()
+    for first, last in _runs(~moving & (thrust < IDLE * usual)):
+        # In samples, too: a gap in the record is no time on the ground.
+        if min(record.t[last] - record.t[first], (last - first) * period) < LEAST:
             continue
-        low = height < np.median(height[first:last + 1]) + CLEAR
-        for begin, end in _runs(low):
+        near = np.abs(height - np.median(height[first:last + 1])) < CLEAR
+        for begin, end in _runs(near):
             if begin <= last and end >= first:
-                found[min(begin, first):max(end, last) + 1] = True
-    return found
+                grounded[min(begin, first):max(end, last) + 1] = True
+    return grounded
 
 
 def _speed(record: FlightRecord) -> np.ndarray | None:
