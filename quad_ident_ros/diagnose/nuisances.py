@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""The nuisances of each flight, told: clocks, trims and biases, which are no effects."""
+"""The nuisances of each flight, told, which are no effects."""
 
 from collections.abc import Sequence
 from dataclasses import replace
