@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""The page that explains the method names every threshold with the value that it has."""
+"""The page that explains the method names every threshold, and has the weights in use."""
 
 from dataclasses import fields
 from pathlib import Path
