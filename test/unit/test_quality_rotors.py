@@ -12,7 +12,6 @@ from quality import CMD, named
 from real import needs_real_flights, real_flight, real_vehicle
 
 from quad_ident_ros.data.quality import findings
-from quad_ident_ros.data.quality.rotors import order_and_spin
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.flight.fly import fly_closed_loop
 
@@ -24,20 +23,6 @@ def test_every_wrong_order_of_the_rotors_is_found_and_named(order):
     [finding] = findings(changed(record, **named(CMD, record.stack(*names))), VEHICLE)
     assert finding.code == 'rotor_order'
     assert f'rotors {", ".join(str(k + 1) for k in order)} of' in finding.message
-
-
-@pytest.mark.parametrize('size, severity', [(0.0, 'error'), (0.2, 'warning')])
-def test_an_order_is_certain_only_where_the_rotors_alone_turn_the_body(size, severity):
-    """What else turns it, such as the air, may look like rotors in another order."""
-    record = flight()
-    rng = np.random.default_rng(4)
-    gusts = {name: np.convolve(rng.standard_normal(len(record)), np.hanning(60), 'same')
-             for name in ('wx', 'wy')}
-    rates = {name: record.columns[name] + size * np.std(record.columns[name]) / np.std(gust) * gust
-             for name, gust in gusts.items()}
-    mixed = changed(record, **rates, **named(CMD, record.stack('cmd2', 'cmd1', 'cmd3', 'cmd4')))
-    [finding] = order_and_spin(mixed, VEHICLE)
-    assert (finding.code, finding.severity) == ('rotor_order', severity)
 
 
 @pytest.mark.parametrize('columns', [{'cmd4': None}, {'cmd5': flight().columns['cmd1']}])

@@ -13,8 +13,6 @@ from quad_ident_ros.model.vehicle import hover_fault
 
 SURE, BETTER = 0.5, 0.2   # mean correlation that an explanation needs, and its lead
 SLOW = 1.0                # s; what changes more slowly is trim, aerodynamics and battery
-CERTAIN = 0.9             # correlation below which more than the rotors turns the body: where
-                          # commands are in another order, that order's is 0.99 in simulation
 LATEST = 0.08             # s, motors follow their commands within
 ROUNDING = 1e-12          # of a power: less is none
 COMPACT, WIDE = 0.01, 3.0   # moments of inertia over mass arm^2, beyond which no vehicle is built:
@@ -82,8 +80,7 @@ def order_and_spin(record, vehicle):
         return []
     if scores[best] > scores[declared] + BETTER:
         return [Finding(
-            'rotor_order', 'error' if scores[best] > CERTAIN else 'warning',
-            f'cmd1 to cmd{len(names)}',
+            'rotor_order', 'error', f'cmd1 to cmd{len(names)}',
             f'the commands turn the body as rotors {", ".join(str(k + 1) for k in best)} of '
             f'{vehicle.name} would (correlation {scores[best]:.2f}, as they are '
             f'{scores[declared]:.2f})',
