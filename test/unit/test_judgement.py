@@ -8,8 +8,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from quad_ident_ros.diagnose.gap import Ends
+from quad_ident_ros.diagnose.candidates import candidates
+from quad_ident_ros.diagnose.gap import Ends, gap
+from quad_ident_ros.diagnose.intake import take_in
 from quad_ident_ros.diagnose.judgement import (
+    Bench,
     beyond,
     lost_share,
     lost_shares,
@@ -18,8 +21,14 @@ from quad_ident_ros.diagnose.judgement import (
     stability,
     unexplained,
 )
+from quad_ident_ros.diagnose.noise import noise_of
 from quad_ident_ros.diagnose.rules import RULES
+from quad_ident_ros.diagnose.select import select
 from quad_ident_ros.diagnose.verdict import flight_checks
+from quad_ident_ros.flight.fly import fly_closed_loop
+from quad_ident_ros.flight.measure import SENSORS
+from quad_ident_ros.greybox.parameters import INDEX
+from quad_ident_ros.model.vehicle import load_vehicle
 
 GROUPS = ('position', 'velocity', 'attitude', 'rate')
 NOISE = {'position': 0.01, 'velocity': 0.04, 'attitude': 0.01, 'rate': 0.03}
@@ -173,3 +182,24 @@ def test_without_a_named_effect_less_remains_unsaid():
     """Beside an effect that closes 1 m/s an error of its form of 0.3 m/s is nothing new."""
     assert not any(one.differs for one in checks_of(0.05, 0.05, 0.3))
     assert checks_of(0.05, 0.05, 0.3, named=False)[2].differs
+
+
+def test_what_a_flight_has_by_itself_stays_when_effects_are_taken_out_and_flights_left_out():
+    """Its thrust is no part of what the others tell, and not free where an effect is gone."""
+    vehicle, noise = load_vehicle('hummingbird'), SENSORS['mocap_imu']
+    records = [fly_closed_loop(vehicle, {'gyro_bias': {'x': 0.05},
+                                         'thrust_scale': {'factor': factor}}, 'lissajous',
+                               duration=10.0, seed=seed, noise=noise)
+               for seed, factor in enumerate((1.06, 0.94, 1.0))]
+    intake = take_in(records, vehicle, None, RULES)
+    selection = select(intake.flights, vehicle, candidates(intake.flights, vehicle, RULES), RULES)
+    bench = Bench(intake.flights, (*intake.tracks, intake.held_out), vehicle, selection,
+                  noise_of(selection, intake, RULES), RULES)
+    model = bench.model(selection.best.chosen, selection.best.estimate)
+    assert [cause.effect for cause in model.effects] == ['gyro_bias']
+    less = bench.without(model, model.effects)
+    column = INDEX['thrust_scale.factor']
+    thrusts = [vector[column] for vector in less.vectors]
+    assert thrusts == pytest.approx([1.06, 0.94, 1.0], abs=0.01)
+    for unseen, as_fitted in zip(bench.left_out(less), less.ends, strict=True):
+        assert gap([unseen])['velocity'] == pytest.approx(gap([as_fitted])['velocity'], rel=0.05)
