@@ -63,7 +63,8 @@ setup(
         'rosbags>=0.11.9,<0.12',
         'pyulog>=1.2.4,<1.4',
     ],
-    extras_require={'test': ['pytest>=7.4', 'hypothesis>=6.80', 'mypy>=2.0', 'ruff>=0.4']},
+    extras_require={'test': ['pytest>=7.4', 'pytest-xdist>=3.5', 'hypothesis>=6.80', 'mypy>=2.0',
+                             'ruff>=0.4']},
     zip_safe=True,
     entry_points={'console_scripts': ['quad_ident = quad_ident_ros.cli.main:main']},
 )

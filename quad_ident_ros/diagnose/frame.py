@@ -97,7 +97,7 @@ def blocks_at(frame: Frame, fit: Estimate, distances: dict) -> Blocks:
                                                               fit.residuals, strict=True))])
 
 
-def normal_at(frame: Frame, flights: list, fit: Estimate, layout: Layout, distances: dict,
+def normal_at(frame: Frame, fit: Estimate, layout: Layout, distances: dict,
               sizes: tuple[float, float], rules: Rules) -> Normal:
     """
     Return the Normal in a Layout's columns with the discrepancy marginalised out.

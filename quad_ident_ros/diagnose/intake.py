@@ -2,11 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Flight records on their way into a diagnosis: commands, checks, clocks, one split, once."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 from quad_ident_ros.data.clocks import clocks_of, on_one_clock
-from quad_ident_ros.data.quality import cautions, refuse_errors
+from quad_ident_ros.data.quality import cautions, refuse_errors, refuted
 from quad_ident_ros.data.quality.finding import as_caution
 from quad_ident_ros.data.quality.ground import airborne, stands
 from quad_ident_ros.data.record import FlightRecord, refuse_twice, same_flight
@@ -60,10 +60,13 @@ def take_in(records: Sequence[FlightRecord], vehicle: Vehicle, hold_out: FlightR
     if hold_out is not None:    # among others it would take part in fit and choice
         records = [record for record in records if not same_flight(record, hold_out)]
     refuse_twice(records)
+    records = [with_commands(record, vehicle) for record in records]
+    hold_out = None if hold_out is None else with_commands(hold_out, vehicle)
+    wrong = refuted([*records, *([] if hold_out is None else [hold_out])], vehicle)
     findings: list[dict] = []
-    records = [_fit_for_use(record, vehicle, rules, findings) for record in records]
+    records = [_fit_for_use(record, vehicle, rules, wrong, findings) for record in records]
     if hold_out is not None:
-        hold_out = _fit_for_use(hold_out, vehicle, rules, findings)
+        hold_out = _fit_for_use(hold_out, vehicle, rules, wrong, findings)
     training, test = split(records, hold_out)
     records, late, answers = zip(*on_one_clock([*training, test]), strict=True)
     voltage = highest_voltage(records[:-1])
@@ -74,16 +77,15 @@ def take_in(records: Sequence[FlightRecord], vehicle: Vehicle, hold_out: FlightR
                   findings)
 
 
-def _fit_for_use(record: FlightRecord, vehicle: Vehicle, rules: Rules, findings: list
-                 ) -> FlightRecord:
-    """Return a record with commands, off the ground, its cautions added to the findings."""
-    record = with_commands(record, vehicle)
+def _fit_for_use(record: FlightRecord, vehicle: Vehicle, rules: Rules, wrong: Collection[str],
+                 findings: list) -> FlightRecord:
+    """Return a record off the ground, its cautions added to the findings; wrong: as refuted."""
     ground = stands(record, vehicle)
     refuse_errors(record, ground)
     findings += [as_caution(finding, record) for finding in ground]
     record = airborne(record, vehicle)
     refuse_short(record, rules)
-    findings += [one for one in cautions(record, vehicle)
+    findings += [one for one in cautions(record, vehicle, wrong)
                  if one['code'] not in {finding.code for finding in ground}]
     return record
 

@@ -12,7 +12,7 @@ from quad_ident_ros.diagnose.candidates import Candidate
 from quad_ident_ros.diagnose.fitted import effects_in, refitted, within_bounds
 from quad_ident_ros.diagnose.gap import Noise
 from quad_ident_ros.diagnose.nuisances import nuisances_of
-from quad_ident_ros.diagnose.probability import probabilities
+from quad_ident_ros.diagnose.probability import presence, probabilities, Weight
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.diagnose.select import Selection
 from quad_ident_ros.effects.registry import EFFECTS, PLACES
@@ -149,22 +149,6 @@ class Bench:
                             self.noise.deviation, self.flights[0].segment, fixed)
 
 
-@dataclass(frozen=True)
-class Weight:
-    """
-    What an effect weighs, by what is lost when it is taken out and everything else is refitted.
-
-    contribution: the share of the closable gap that is lost; stability: how steadily it helps,
-    see `stability`; explained: the share of what it is there for that its form explains;
-    gap {group: ...}: without it.
-    """
-
-    contribution: float
-    stability: float
-    explained: float
-    gap: dict
-
-
 @dataclass(frozen=True, eq=False)
 class Judgement:
     """
@@ -201,12 +185,16 @@ def judge(bench: Bench) -> Judgement:
     ends = bench.ends(tuple(null + vector - full.z for vector in full.vectors))
     noises = bench.noise_gaps(full)
     before, noise = gaps.gap(ends), pooled(noises)
-    weights, without = {}, {}
+    weights: dict[Candidate, Weight] = {}
+    without: dict[Candidate, Model] = {}
     while model.effects:
         smaller = {removed: bench.without(model, removed) for removed in _subsets(model, rules)}
         for removed, one in smaller.items():
             if len(removed) == 1:
-                weights[removed[0]] = _weight(model, one, before, noise, rules)
+                weight = _weight(model, one, before, noise, rules)
+                # Beside effects that do not matter it may show more clearly, or less.
+                weights[removed[0]] = max(weights.get(removed[0], weight), weight,
+                                          key=lambda each: presence(each, rules))
                 without[removed[0]] = one
         idle = [removed for removed, one in smaller.items()
                 if not matters(model.gap, one.gap, before, noise, rules)]

@@ -2,9 +2,27 @@
 # SPDX-License-Identifier: Apache-2.0
 """How probable it is that an effect is present: the one definition."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from quad_ident_ros.diagnose.rules import Rules
+
+
+@dataclass(frozen=True)
+class Weight:
+    """
+    What an effect weighs, by what is lost when it is taken out and everything else is refitted.
+
+    contribution: the share of the closable gap that is lost; stability: how steadily it helps,
+    see judgement.stability; explained: the share of what it is there for that its form explains;
+    gap {group: ...}: without it.
+    """
+
+    contribution: float
+    stability: float
+    explained: float
+    gap: dict
 
 
 def probabilities(posterior: dict, weights: dict, rules: Rules) -> dict[str, float]:
@@ -19,14 +37,13 @@ def probabilities(posterior: dict, weights: dict, rules: Rules) -> dict[str, flo
     found = {cause.effect: 0.0 for cause in posterior}
     for cause, value in posterior.items():
         found[cause.effect] += value
-    return found | {cause.effect: presence(weight.stability, weight.contribution,
-                                             weight.explained, rules)
-                    for cause, weight in weights.items()}
+    return found | {cause.effect: presence(weight, rules) for cause, weight in weights.items()}
 
 
-def presence(stability: float, contribution: float, explained: float, rules: Rules) -> float:
+def presence(weight: Weight, rules: Rules) -> float:
     """Return the probability that an effect of the best set is present."""
     base, steady, share, form = rules.calibration
-    value = (base + steady * np.clip(stability, -rules.steadiest, rules.steadiest)
-             + share * np.log10(np.clip(contribution, rules.faintest, 1.0)) + form * explained)
+    value = (base + steady * np.clip(weight.stability, -rules.steadiest, rules.steadiest)
+             + share * np.log10(np.clip(weight.contribution, rules.faintest, 1.0))
+             + form * weight.explained)
     return float(1.0 / (1.0 + np.exp(-value)))

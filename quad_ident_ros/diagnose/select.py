@@ -21,6 +21,7 @@ from quad_ident_ros.diagnose.fitted import (
 )
 from quad_ident_ros.diagnose.frame import Frame, frame_at, normal_at
 from quad_ident_ros.diagnose.rules import Rules
+from quad_ident_ros.diagnose.standard_errors import standard_errors
 from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.greybox.estimate import Estimate, estimate
 from quad_ident_ros.greybox.flights import Flight
@@ -47,7 +48,7 @@ class Selection:
     best: the simplest Fitted of those with about the most evidence; fitted: it and the others
     that were refitted; posterior: probability of each candidate effect; quadratic, rows: the cost
     around the best, with all candidates free; noise: per flight (12,); frame: the flights around
-    the best.
+    the best; least: the standard_errors (C,) of its columns.
     """
 
     best: Fitted
@@ -57,6 +58,7 @@ class Selection:
     rows: dict
     noise: list
     frame: Frame
+    least: np.ndarray
 
     @property
     def errors(self) -> np.ndarray:
@@ -64,7 +66,7 @@ class Selection:
         Return the standard errors (C,) of the best set's columns.
 
         How far flights usually differ is not known either: of all sets with the same effects, by
-        their evidence.
+        their evidence. Formulas may be wrong: at least the standard_errors of the best set.
         """
         same = [one for one in self.fitted if one.causes == self.best.causes]
         evidences = np.array([one.evidence for one in same])
@@ -72,7 +74,7 @@ class Selection:
         squares = [one.estimate.errors ** 2
                    + (one.estimate.z - self.best.estimate.z)[one.estimate.columns] ** 2
                    for one in same]
-        return np.sqrt(np.average(squares, axis=0, weights=shares))
+        return np.maximum(np.sqrt(np.average(squares, axis=0, weights=shares)), self.least)
 
 
 def select(flights: list[Flight], vehicle: Vehicle, causes: tuple[Candidate, ...],
@@ -107,6 +109,7 @@ class _Search:
     ranked: list
     frame: Frame
     quadratic: Quadratic
+    grids: tuple
 
     def __init__(self, flights: list[Flight], vehicle: Vehicle, causes: tuple[Candidate, ...],
                  rules: Rules) -> None:
@@ -185,7 +188,7 @@ class _Search:
     def quadratic_of(self, fit: Estimate, chosen: tuple, layout: Layout, everyone: NuisanceValues,
                      grids: tuple, sizes: tuple) -> Quadratic:
         """Return the Quadratic around an Estimate, all candidates free."""
-        normal = normal_at(self.frame, self.flights, fit, layout,
+        normal = normal_at(self.frame, fit, layout,
                            distances_of(chosen, fit, self.vehicle),
                            tuple(grid[k] for grid, k in zip(grids, sizes, strict=True)),
                            self.rules)
@@ -264,20 +267,22 @@ class _Search:
         The usual form replaces one that wants to leave its bounds.
         """
         best = self.simplest(list(self.judged))
-        # More parameters are for what the fewer leave, not for a little of the noise.
-        plain = self.simplest([key for key in self.tried if _plain(key)])
-        if plain.estimate.cost < (1.0 + self.rules.worth) * best.estimate.cost:
-            self.judged = {key: one for key, one in self.judged.items() if _plain(key)}
-            self.ranked = [one for one in self.ranked if _plain(one[1])]
-            best = plain
         usual = {cause.effect: cause for cause in self.all_causes if cause.usual}
         chosen, fit = within_bounds(best.chosen, best.estimate, usual, self.flights,
                                     self.vehicle, self.noise, self.rules, self.quadratic.scatter)
         self.tried[chosen] = fit
-        self.judged = {key: one for key, one in self.judged.items()
-                       if not any(out_of_bounds(cause, one.estimate, self.vehicle, self.rules)
-                                  for cause in one.causes)}
-        self.best = self.judge(chosen)
+        self.judge(chosen)
+        self.tried = {key: one for key, one in self.tried.items() if not any(
+            out_of_bounds(cause, one, self.vehicle, self.rules) for cause in effects_in(key))}
+        self.judged = {key: one for key, one in self.judged.items() if key in self.tried}
+        # The usual forms in its place may do less than other sets that were fitted.
+        self.best = self.simplest(list(self.tried))
+        # More parameters are for what the fewer leave, not for a little of the noise.
+        plain = self.simplest([key for key in self.tried if _plain(key)])
+        if plain.estimate.cost < (1.0 + self.rules.worth) * self.best.estimate.cost:
+            self.judged = {key: one for key, one in self.judged.items() if _plain(key)}
+            self.ranked = [one for one in self.ranked if _plain(one[1])]
+            self.best = plain
 
     def selection(self) -> Selection:
         """Return the Selection."""
@@ -286,7 +291,9 @@ class _Search:
         return Selection(fitted[0], fitted,
                          posteriors(fitted, self.ranked, self.all_causes, set(self.tried),
                                     self.rules),
-                         self.quadratic, self.rows, self.noise, self.frame)
+                         self.quadratic, self.rows, self.noise, self.frame,
+                         standard_errors(self.best, self.frame, self.vehicle, self.grids,
+                                         self.quadratic.scatter, self.rules))
 
 
 def posteriors(fitted: Sequence[Fitted], ranked: list, causes: Sequence[Candidate],

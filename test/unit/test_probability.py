@@ -4,42 +4,45 @@
 
 from collections import namedtuple
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from quad_ident_ros.diagnose.probability import presence, probabilities
+from quad_ident_ros.diagnose.probability import presence, probabilities, Weight
 from quad_ident_ros.diagnose.rules import RULES
 
 Named = namedtuple('Named', 'effect form')
 RULE = replace(RULES, calibration=(-1.0, 0.6, 1.5, 2.0))
 
 
+def of(stability, contribution, explained):
+    return Weight(contribution, stability, explained, {})
+
+
 @pytest.mark.parametrize(('stability', 'contribution', 'explained'),
                          [(0.0, 1.0, 0.0), (3.0, 0.1, 1.0), (-2.0, 0.01, 0.4)])
 def test_it_is_the_logistic_function_of_a_weighted_sum(stability, contribution, explained):
     value = -1.0 + 0.6 * stability + 1.5 * np.log10(contribution) + 2.0 * explained
-    assert presence(stability, contribution, explained, RULE) == pytest.approx(
+    assert presence(of(stability, contribution, explained), RULE) == pytest.approx(
         1.0 / (1.0 + np.exp(-value)))
 
 
 def test_more_of_anything_that_speaks_for_it_makes_it_more_probable():
-    base = presence(2.0, 0.1, 0.5, RULES)
-    assert presence(4.0, 0.1, 0.5, RULES) > base
-    assert presence(2.0, 0.5, 0.5, RULES) > base
-    assert presence(2.0, 0.1, 0.9, RULES) > base
+    base = presence(of(2.0, 0.1, 0.5), RULES)
+    assert presence(of(4.0, 0.1, 0.5), RULES) > base
+    assert presence(of(2.0, 0.5, 0.5), RULES) > base
+    assert presence(of(2.0, 0.1, 0.9), RULES) > base
 
 
 @pytest.mark.parametrize('stability', [-1e6, 1e6])
 @pytest.mark.parametrize('contribution', [-1.0, 0.0, 1e6])
 @pytest.mark.parametrize('explained', [0.0, 1.0])
 def test_nothing_is_certain(stability, contribution, explained):
-    assert 0.0 < presence(stability, contribution, explained, RULES) < 1.0
+    assert 0.0 < presence(of(stability, contribution, explained), RULES) < 1.0
 
 
 def test_what_is_not_in_the_best_set_keeps_its_posterior_summed_over_its_forms():
     drag, wind, gust = (Named('drag', 'a'), Named('wind', 'a'), Named('wind', 'b'))
-    weights = {drag: SimpleNamespace(stability=5.0, contribution=0.8, explained=0.9)}
+    weights = {drag: of(5.0, 0.8, 0.9)}
     found = probabilities({drag: 0.99, wind: 0.03, gust: 0.02}, weights, RULE)
-    assert found == {'drag': presence(5.0, 0.8, 0.9, RULE), 'wind': pytest.approx(0.05)}
+    assert found == {'drag': presence(of(5.0, 0.8, 0.9), RULE), 'wind': pytest.approx(0.05)}

@@ -11,7 +11,7 @@ import pytest
 from quality import CMD, named
 from real import needs_real_flights, real_flight, real_vehicle
 
-from quad_ident_ros.data.quality import findings
+from quad_ident_ros.data.quality import cautions, findings, refuted
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.flight.fly import fly_closed_loop
 
@@ -86,3 +86,17 @@ def test_saturated_commands_are_found():
     assert finding.code == 'saturation' and 'speed_max = 1080' in finding.message
     share = float(finding.message.split(' %')[0])
     assert share == pytest.approx(100 * (clipped >= limit - 2.0).any(axis=1).mean(), abs=0.3)
+
+
+def test_an_order_that_another_flight_refutes_is_a_warning():
+    """Rotors do not change places: one flight that shows the order is right speaks for all."""
+    right = replace(flight(), info={**flight().info, 'name': 'right'})
+    wrong = changed(flight(), **named(CMD, flight().stack('cmd2', 'cmd1', 'cmd3', 'cmd4')))
+    wrong = replace(wrong, info={**wrong.info, 'name': 'wrong'})
+    assert refuted([wrong], VEHICLE) == refuted([wrong, wrong], VEHICLE) == ()
+    with pytest.raises(InputError, match='rotors 2, 1, 3, 4'):
+        cautions(wrong, VEHICLE, refuted([wrong, wrong], VEHICLE))
+    [said] = [one for one in cautions(wrong, VEHICLE, refuted([wrong, right], VEHICLE))
+              if one['code'] == 'rotor_order']
+    assert said['severity'] == 'warning' and said['flight'] == 'wrong'
+    assert cautions(right, VEHICLE, refuted([wrong, right], VEHICLE)) == []

@@ -31,8 +31,8 @@ def fitted(chosen, value, error, evidence):
     return Fitted(chosen, estimate, evidence, (0, 0))
 
 
-def errors(*sets):
-    return Selection(sets[0], sets, {}, None, {}, [], None).errors
+def errors(*sets, least=0.0):
+    return Selection(sets[0], sets, {}, None, {}, [], None, np.array([least])).errors
 
 
 NARROW = fitted((EFFECT, own(0.003)), 1.0, 0.1, 0.0)
@@ -40,6 +40,10 @@ NARROW = fitted((EFFECT, own(0.003)), 1.0, 0.1, 0.0)
 
 def test_one_set_has_its_own():
     assert errors(NARROW) == pytest.approx([0.1])
+
+
+def test_no_error_is_smaller_than_what_formulas_may_be_wrong_by():
+    assert errors(NARROW, least=0.3) == pytest.approx([0.3])
 
 
 def test_sets_that_are_as_good_count_alike_with_what_they_differ_in():

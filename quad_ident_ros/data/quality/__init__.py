@@ -6,6 +6,8 @@ The quality of a flight record: what is wrong with it, and how to mend it.
 One file per subject, each with checks (record, vehicle or None) -> findings, entered in CHECKS.
 """
 
+from dataclasses import replace
+
 import numpy as np
 
 from quad_ident_ros.data.quality import (
@@ -42,7 +44,7 @@ CHECKS = (columns.known, columns.incomplete, columns.frozen, columns.dead, colum
           ground.stands, answer.commands, saturation.speeds, excitation.axes)
 
 __all__ = ['cautions', 'CHECKS', 'clock_offset', 'ClockOffset', 'command_offset', 'Finding',
-           'findings', 'refuse_errors', 'refuse_unfit', 'SEVERITIES', 'velocity_offset']
+           'findings', 'refuse_errors', 'refuse_unfit', 'refuted', 'SEVERITIES', 'velocity_offset']
 
 
 def findings(record, vehicle=None):
@@ -64,14 +66,28 @@ def refuse_unfit(record, vehicle):
     return found
 
 
-def cautions(record, vehicle):
+def cautions(record, vehicle, refuted=()):
     """
     Return what to be wary of in a record that bears a verdict, as data: the Findings of warning.
 
+    Args: refuted: codes of errors that other flights of the vehicle speak against: see `refuted`.
     Raises InputError for a fault that no verdict survives.
     """
-    return [as_caution(finding, record) for finding in refuse_unfit(record, vehicle)
-            if finding.severity == 'warning']
+    found = [replace(finding, severity='warning') if finding.code in refuted else finding
+             for finding in findings(record, vehicle)]
+    refuse_errors(record, found)
+    return [as_caution(finding, record) for finding in found if finding.severity == 'warning']
+
+
+def refuted(records, vehicle):
+    """
+    Return the codes of errors that cannot be so, by another one of the flights of a vehicle.
+
+    Rotors do not change their places from one flight to the next: where one flight shows that
+    order and spins are those of the vehicle file, something else turns the body in the others.
+    """
+    told = any(rotors.confirmed(record, vehicle) for record in records)
+    return ('rotor_order', 'rotor_spin') if len(records) > 1 and told else ()
 
 
 def refuse_errors(record, found):

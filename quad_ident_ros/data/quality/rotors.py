@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Whether the rotors carry the vehicle; their number, order and spin, by what commands do."""
 
+from dataclasses import dataclass
 from itertools import permutations, product
 
 import numpy as np
@@ -58,34 +59,68 @@ def order_and_spin(record, vehicle):
     The moment on the body, I dw/dt + w x I w, is correlated with what the squared commands give
     for each order (roll and pitch), then for each choice of spins (yaw).
     """
+    told = _told(record, vehicle)
+    if told is None:
+        return []
+    scores, declared = told.scores, told.declared
+    best = max(scores, key=scores.get)
+    if scores[best] < SURE:
+        return []
+    if scores[best] > scores[declared] + BETTER:
+        return [Finding(
+            'rotor_order', 'error', f'cmd1 to cmd{len(declared)}',
+            f'the commands turn the body as rotors {", ".join(str(k + 1) for k in best)} of '
+            f'{vehicle.name} would (correlation {scores[best]:.2f}, as they are '
+            f'{scores[declared]:.2f})',
+            'put the commands into the order of the vehicle file, or correct that')]
+    return _spin(told, vehicle)
+
+
+def confirmed(record, vehicle):
+    """Return whether a flight shows that order and spins are those of the vehicle file."""
+    told = _told(record, vehicle)
+    if told is None or told.scores[told.declared] < SURE:
+        return False
+    return not order_and_spin(record, vehicle)
+
+
+@dataclass(frozen=True, eq=False)
+class _Told:
+    """
+    What a flight says of the order of its rotors.
+
+    moment (N, 3) on the body and squared commands (N, n) at the times of a grid, fast parts alone;
+    lag: samples that the moment comes later; scores {order: mean correlation of roll and pitch};
+    declared: the order of the vehicle file.
+    """
+
+    grid: Grid
+    moment: np.ndarray
+    squared: np.ndarray
+    lag: int
+    scores: dict
+    declared: tuple
+
+
+def _told(record, vehicle):
+    """Return the _Told of a record, None where it cannot be held against the vehicle file."""
     names = record.numbered('cmd')
     grid = Grid.of(record)
     if (vehicle is None or grid is None or not record.has('wx', 'wy', 'wz')
             or not len(names) == len(vehicle.rotors) <= MOST_ROTORS):
-        return []
+        return None
     if frames.quaternion(record, vehicle) or frames.world(record, vehicle):
-        return []   # rates about other axes: that is to be mended first
+        return None   # rates about other axes: that is to be mended first
     rate = grid.smooth(grid.signal('wx', 'wy', 'wz'))
     inertia = np.array(vehicle.inertia)
     moment = _fast(grid, inertia * np.gradient(rate, grid.period, axis=0)
                    + np.cross(rate, inertia * rate))
     squared = _fast(grid, grid.smooth(grid.held(*names) ** 2))
     position = np.array([rotor.position for rotor in vehicle.rotors])
-    declared = tuple(range(len(names)))
     lag, scores = max((_scores(grid, moment, squared, position, shift) for shift in
                        range(round(LATEST / grid.period) + 1)),
                       key=lambda entry: max(entry[1].values()))
-    best = max(scores, key=scores.get)
-    if scores[best] < SURE:
-        return []
-    if scores[best] > scores[declared] + BETTER:
-        return [Finding(
-            'rotor_order', 'error', f'cmd1 to cmd{len(names)}',
-            f'the commands turn the body as rotors {", ".join(str(k + 1) for k in best)} of '
-            f'{vehicle.name} would (correlation {scores[best]:.2f}, as they are '
-            f'{scores[declared]:.2f})',
-            'put the commands into the order of the vehicle file, or correct that')]
-    return _spin(grid, moment, squared, vehicle, lag)
+    return _Told(grid, moment, squared, lag, scores, tuple(range(len(names))))
 
 
 def _fast(grid, signal):
@@ -112,8 +147,8 @@ def _scores(grid, moment, squared, position, lag):
     return lag, scores
 
 
-def _spin(grid, moment, squared, vehicle, lag):
-    target, drive = _aligned(grid, moment[:, 2:], squared, lag)
+def _spin(told, vehicle):
+    target, drive = _aligned(told.grid, told.moment[:, 2:], told.squared, told.lag)
     spins = tuple(rotor.spin for rotor in vehicle.rotors)
     power = np.sum(target ** 2)
     scores = {}

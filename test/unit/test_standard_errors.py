@@ -1,0 +1,64 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Standard errors of a set whose formula is exact, and of one whose formula is not."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from quad_ident_ros.diagnose.candidates import Candidate
+from quad_ident_ros.diagnose.fitted import Fitted, size_grids
+from quad_ident_ros.diagnose.frame import Frame, WRENCH
+from quad_ident_ros.diagnose.rules import RULES
+from quad_ident_ros.diagnose.standard_errors import standard_errors
+from quad_ident_ros.greybox.nuisances import NuisanceValues
+from quad_ident_ros.greybox.parameters import INDEX, nominal
+from quad_ident_ros.model.vehicle import load_vehicle
+
+VEHICLE = load_vehicle('hummingbird')
+DRAG = Candidate('rotor_drag', 'by_speed', (INDEX['rotor_drag.coefficient'],))
+BLOCKS, SAMPLES, NULLS = 60, 5, 12      # seconds, samples of 12 errors in each
+VALUE, SLOPE = 0.5, 100.0               # of the parameter; of the velocity per it, in noises
+
+
+def estimated(form_error, seed):
+    """
+    Return the estimate of a parameter by least squares, and its standard error.
+
+    From one rollout of SAMPLES per second whose velocity is noise and what a drag does that is
+    wrong by a relative error of its own in each second.
+    """
+    rng = np.random.default_rng(seed)
+    wanted = sorted({*DRAG.columns, *WRENCH})
+    length = SAMPLES * NULLS
+    slope = np.zeros((BLOCKS, length, len(wanted) + 1))
+    does = np.zeros((SAMPLES, NULLS))
+    does[:, 3] = SLOPE
+    slope[..., wanted.index(DRAG.columns[0])] = does.ravel()
+    strength = VALUE * (1.0 + form_error * rng.normal(size=BLOCKS))
+    errors = strength[:, None] * does.ravel() + rng.normal(size=(BLOCKS, length))
+    across = np.tile(does.ravel(), (BLOCKS, 1))
+    value = np.sum(across * errors) / np.sum(across ** 2)
+    z = nominal(VEHICLE)
+    z[DRAG.columns[0]] += value
+    residuals = (errors - value * across).reshape(BLOCKS, SAMPLES, NULLS)
+    fit = SimpleNamespace(z=z, vectors=[z], columns=list(DRAG.columns), residuals=[residuals],
+                          nuisances=NuisanceValues.of((), 1))
+    frame = Frame(wanted, [np.ones((BLOCKS, length))], [np.zeros((BLOCKS, length, NULLS))],
+                  [slope], [np.arange(BLOCKS)], None)
+    grids = size_grids(VEHICLE, [np.ones(NULLS)], RULES)
+    return value, standard_errors(Fitted((DRAG,), fit, 0.0, (0, 0)), frame, VEHICLE, grids, 1.0,
+                                  RULES)[0]
+
+
+@pytest.mark.parametrize('form_error', [0.0, 0.1, 0.3])
+def test_estimates_scatter_about_the_truth_as_their_standard_errors_say(form_error):
+    values, errors = np.array([estimated(form_error, seed) for seed in range(200)]).T
+    # By least squares: noise over the slope, and the mean of the relative errors.
+    expected = np.hypot(1.0 / (SLOPE * np.sqrt(BLOCKS * SAMPLES)),
+                        VALUE * form_error / np.sqrt(BLOCKS))
+    assert np.std(values) == pytest.approx(expected, rel=0.15)
+    assert np.median(errors) == pytest.approx(expected, rel=0.25)
+    inside = np.mean(np.abs(values - VALUE) < 1.96 * errors)
+    assert 0.88 < inside <= 1.0
