@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from quad_ident_ros.diagnose.accelerometer import residual_force
 from quad_ident_ros.effects.registry import RESIDUAL_WRENCH, SLICES
 from quad_ident_ros.greybox.estimate import settled, weights_of
 from quad_ident_ros.greybox.flights import Flight, flight_of, Track
@@ -53,9 +54,25 @@ def residual_wrench(track: Track, vehicle: Vehicle, z: np.ndarray, noise: np.nda
     information = np.einsum('bmc,bmd->bcd', linear.slope, linear.slope)
     inverse = np.linalg.inv(information)
     values = np.einsum('bcd,bmd,bm->bc', inverse, linear.slope, linear.error)
+    errors = np.sqrt(np.einsum('bcc->bc', inverse))
+    felt = residual_force(flight, vehicle, z)
+    if felt is not None:
+        values[:, :3], errors[:, :3] = _combined(values[:, :3], errors[:, :3], *felt)
     middle = flight.first + flight.count // 2
-    return ResidualWrench(values, np.sqrt(np.einsum('bcc->bc', inverse)), flight.course.t[middle],
+    return ResidualWrench(values, errors, flight.course.t[middle],
                           _features(flight, middle, vehicle, z), stretch)
+
+
+def _combined(values: np.ndarray, errors: np.ndarray, felt: np.ndarray, noise: np.ndarray
+              ) -> tuple[np.ndarray, np.ndarray]:
+    """
+    Return forces (B, 3) and their errors from those by the motion and those by an accelerometer.
+
+    By their variances. The offset of the accelerometer is what it has more in the mean.
+    """
+    weight, other = errors ** -2.0, np.maximum(noise, 1e-12) ** -2.0
+    felt = felt - np.average(felt - values, axis=0, weights=weight)
+    return ((weight * values + other * felt) / (weight + other), (weight + other) ** -0.5)
 
 
 def _stretches(flight: Flight) -> tuple[np.ndarray, np.ndarray]:

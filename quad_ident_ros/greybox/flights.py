@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from typing import TypeVar
 
 import numpy as np
+from scipy.ndimage import uniform_filter1d
 
 from quad_ident_ros.data.clocks import Clock
 from quad_ident_ros.data.frames import continuous
@@ -25,6 +26,7 @@ SEGMENT = 0.5       # s of a rollout
 WARM = 0.25         # s of commands before a rollout, from which the speeds of its rotors follow
 GAP = 1.6           # usual periods between two samples that no rollout crosses,
 SHORT_GAP = 0.013   # s, unless it is as short as this
+FORCE = ('ax', 'ay', 'az')
 BRIDGED = 0.08      # s, the longest step in time over lost rows whose commands are interpolated
 
 
@@ -37,7 +39,8 @@ class Track:
     it does not in rows that were lost and in attitudes that are off; period s, the usual one;
     clock: the Clock by which its commands were moved onto the states, or None where none shows;
     guide (N, 13): the states with attitudes that are off replaced, see dynamics.predict, or None
-    where the motion of the centre of mass is to follow from the predicted attitude.
+    where the motion of the centre of mass is to follow from the predicted attitude; force (N, 3)
+    m/s^2, body: what an accelerometer measured, or None without one.
     """
 
     name: str
@@ -47,6 +50,7 @@ class Track:
     period: float
     clock: Clock | None
     guide: np.ndarray | None = field(default=None, kw_only=True)
+    force: np.ndarray | None = field(default=None, kw_only=True)
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,12 +78,14 @@ def track_of(record: FlightRecord, vehicle: Vehicle, reference_voltage: float | 
     period = float(np.median(np.diff(course.t)))
     seen = np.ones((len(states), ERRORS), bool)
     seen[glitches(course.t, states[:, 6:10], states[:, 10:]), GROUPS['attitude']] = False
-    course, states, seen = _bridged(course, states, seen, period)
+    force = record.stack(*FORCE) if record.has(*FORCE) else None
+    course, states, seen, force = _bridged(course, states, seen, force, period)
     skip = max(1, int(1.0 / (period * RATE) + 0.5))
     if skip > 1:
-        course, states, seen = _thinned(course, states, seen, skip)
+        course, states, seen, force = _thinned(course, states, seen, force, skip)
         period *= skip
-    track = Track(record.info.get('name', 'flight'), course, states, seen, period, clock)
+    track = Track(record.info.get('name', 'flight'), course, states, seen, period, clock,
+                  force=force)
     return track if clock is None else moved(track, clock.late, clock.drift)
 
 
@@ -105,7 +111,7 @@ def flight_of(track: Track, segment: float = SEGMENT, every: float | None = None
         raise InputError(f'{track.name}: {course.t[-1]:.3g} s without a gap-free stretch of '
                          f'{segment:g} s are too short; give a longer flight')
     return Flight(track.name, course, track.states, seen, period, track.clock, first, count,
-                  guide=track.guide)
+                  guide=track.guide, force=track.force)
 
 
 def guided(track: Track) -> Track:
@@ -137,14 +143,14 @@ def highest_voltage(records: Iterable[FlightRecord]) -> float | None:
     return max(starts) if starts else None
 
 
-def _bridged(course: Course, states: np.ndarray, seen: np.ndarray, period: float
-             ) -> tuple[Course, np.ndarray, np.ndarray]:
-    """Return course, states and seen with rows in place of those that were lost."""
+def _bridged(course: Course, states: np.ndarray, seen: np.ndarray, force: np.ndarray | None,
+             period: float) -> tuple[Course, np.ndarray, np.ndarray, np.ndarray | None]:
+    """Return course, states, seen and force with rows in place of those that were lost."""
     steps = np.diff(course.t)
     count = np.round(steps / period).astype(int)
     count = np.where((count > 1) & (steps <= BRIDGED), count, 1)
     if not (count > 1).any():
-        return course, states, seen
+        return course, states, seen, force
     before = np.repeat(np.arange(len(steps)), count)
     place = np.arange(len(before)) - np.repeat(np.cumsum(count) - count, count)
     share = np.append(place / count[before], 1.0)
@@ -161,18 +167,20 @@ def _bridged(course: Course, states: np.ndarray, seen: np.ndarray, period: float
     there = (share == 0.0) | (share == 1.0)
     return (Course(between(course.t), between(course.commands), between(course.volt_drop),
                    reference_voltage=course.reference_voltage),
-            filled, seen[rows] & there[:, None])
+            filled, seen[rows] & there[:, None], None if force is None else between(force))
 
 
-def _thinned(course: Course, states: np.ndarray, seen: np.ndarray, skip: int
-             ) -> tuple[Course, np.ndarray, np.ndarray]:
-    """Return every so many samples, and all commands."""
+def _thinned(course: Course, states: np.ndarray, seen: np.ndarray, force: np.ndarray | None,
+             skip: int) -> tuple[Course, np.ndarray, np.ndarray, np.ndarray | None]:
+    """Return every so many samples, means of the voltage and of the force, and all commands."""
     rows = len(course.t) // skip * skip
+    if force is not None:   # about each sample that stays
+        force = uniform_filter1d(force, skip, axis=0, mode='nearest')[:rows:skip]
     drop = course.volt_drop[:rows].reshape(-1, skip).mean(axis=1)
     # A copy: an array with gaps would have the integrator compiled anew.
     return (Course(course.t[:rows:skip].copy(), course.commands, drop, course.stamps,
                    course.reference_voltage),
-            states[:rows:skip], seen[:rows:skip])
+            states[:rows:skip], seen[:rows:skip], force)
 
 
 def _starts(t: np.ndarray, seen: np.ndarray, period: float, count: int, step: int, warm: int

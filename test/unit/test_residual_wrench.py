@@ -27,11 +27,21 @@ NOISE = np.repeat([7e-4, 7e-3, 1.4e-3, 7e-3], 3)
 WAVE = 0.05     # of the thrust
 
 
+FORCE = ('ax', 'ay', 'az')
+
+
 @pytest.fixture(scope='module')
-def hover():
-    """Return a hover that is longer than what spectra are taken of."""
+def felt():
+    """Return a hover with an accelerometer, longer than what spectra are taken of."""
     return fly_closed_loop(VEHICLE, {}, 'hover', duration=130.0, seed=1,
-                           noise=Sensors(white=SIZES))
+                           noise=Sensors(white=replace(SIZES, force=0.05)))
+
+
+@pytest.fixture(scope='module')
+def hover(felt):
+    """Return the same without the accelerometer."""
+    return replace(felt, columns={name: column for name, column in felt.columns.items()
+                                  if name not in FORCE})
 
 
 def pushed(record, frequency):
@@ -66,6 +76,34 @@ def test_what_noise_makes_is_the_error_that_is_told(hover):
     found = residual_wrench(track_of(hover, VEHICLE), VEHICLE, nominal(VEHICLE), NOISE)
     np.testing.assert_allclose(np.std(found.values, axis=0),
                                np.sqrt(np.mean(found.errors ** 2, axis=0)), rtol=0.15)
+
+
+def test_the_accelerometer_shows_small_forces_more_clearly(hover, felt):
+    with_it, without = (residual_wrench(track_of(one, VEHICLE), VEHICLE, nominal(VEHICLE), NOISE)
+                        for one in (felt, hover))
+    # 0.05 m/s^2 over the 20 samples of a window; half of the noise of the velocity's slope is
+    # larger by far.
+    expected = VEHICLE.mass * 0.05 / np.sqrt(20.0)
+    np.testing.assert_allclose(with_it.errors[:, :3], expected, rtol=0.3)
+    assert (without.errors[:, :3] > 2.0 * with_it.errors[:, :3]).all()
+    np.testing.assert_allclose(np.std(with_it.values[:, :3], axis=0), expected, rtol=0.4)
+    np.testing.assert_array_equal(with_it.values[:, 3:], without.values[:, 3:])
+
+
+def test_a_wave_has_its_size_by_the_accelerometer(felt):
+    """The mean over a window of 0.2 s takes of 3 Hz what a sinc says."""
+    track = track_of(pushed(felt, 3.0), VEHICLE)
+    found = residual_wrench(track, VEHICLE, nominal(VEHICLE), NOISE)
+    rms = np.sqrt(np.mean(found.values[:, 2] ** 2 - found.errors[:, 2] ** 2))
+    whole = WAVE * VEHICLE.mass * VEHICLE.gravity / np.sqrt(2.0)
+    assert rms == pytest.approx(whole * np.sinc(3.0 * 0.2), rel=0.1)
+
+
+def test_an_offset_of_the_accelerometer_is_no_force(felt):
+    shifted = replace(felt, columns=felt.columns | {'ax': felt.columns['ax'] + 0.5})
+    one, other = (residual_wrench(track_of(record, VEHICLE), VEHICLE, nominal(VEHICLE), NOISE)
+                  for record in (felt, shifted))
+    np.testing.assert_allclose(other.values, one.values, atol=1e-9)
 
 
 def test_the_regime_is_the_part_that_has_most_of_it():
