@@ -4,23 +4,22 @@
 
 from pathlib import Path
 
-from quad_ident_ros.data.csv import read_csv
-from quad_ident_ros.data.foreign import read_mapped_bag
-from quad_ident_ros.data.replay import read_bag
+from quad_ident_ros.data.readers.registry import READERS
 from quad_ident_ros.errors import InputError
 
-_ULOG = b'ULog\x01\x12\x35'
-_BAGS = {b'\x89MCAP0\r\n': '.mcap', b'SQLite format 3\0': '.db3'}   # how they begin
+_START = 64     # bytes that tell what a file is
+_OTHERS = {b'\x89PNG': 'a picture (PNG)', b'\xff\xd8\xff': 'a picture (JPEG)',
+           b'GIF8': 'a picture (GIF)', b'%PDF': 'a PDF document',
+           b'PK\x03\x04': 'a ZIP archive or a spreadsheet', b'\x7fELF': 'a program'}
 
 
 def load(path, mapping=None, vehicle=None):
     """
     Return the FlightRecord in a file or bag that holds one flight.
 
-    CSV (plain or gzip), rosbag2 (folder, .mcap, .db3) and PX4 ULog (by its first bytes) are told
-    apart.
-    Args: path; mapping (data.mapping.Mapping) for bags of others and for the outputs of PX4;
-    vehicle (model.vehicle.Vehicle) for the speeds of its rotors.
+    What kind it is of (data.readers.registry) is told by its first bytes.
+    Args: path; mapping (data.mapping.Mapping) for records of others; vehicle
+    (model.vehicle.Vehicle) for the speeds of its rotors.
     Raises InputError in one line that names file, and row and column or topic and message.
     """
     flights = load_all(path, mapping, vehicle)
@@ -33,45 +32,39 @@ def load(path, mapping=None, vehicle=None):
 def load_all(path, mapping=None, vehicle=None):
     """Return the flight records in a file or bag, at least one; arguments and errors of load."""
     path = Path(path)
-    kind = _kind(path)
-    if kind == 'bag':
-        return [read_mapped_bag(path, mapping, vehicle)] if mapping else read_bag(path)
-    if kind == 'ulog':
-        return [_read_ulog(path, mapping, vehicle)]
-    if mapping is not None:
-        raise InputError(f'{path}: a mapping is for bags and logs; the columns of a CSV file have '
-                         'the names of the flight record, see docs/records.md')
-    return [read_csv(path)]
+    return _with_package(path, reader_of(path), lambda reader: reader.read(path, mapping, vehicle))
 
 
-def _read_ulog(path, mapping, vehicle):
-    # A ROS 2 installed by its packages may lack pyulog, which all else can do without.
-    try:
-        from quad_ident_ros.data.ulog import read_ulog
-    except ModuleNotFoundError as error:
-        if error.name != 'pyulog':
-            raise
-        raise InputError(f'{path}: logs of PX4 are read with pyulog, which is not installed; '
-                         'install it with: pip install pyulog') from None
-    return read_ulog(path, mapping, vehicle)
+def contents_of(path):
+    """Return (title of its kind, Content of each stream) of a file or bag; errors of load."""
+    path = Path(path)
+    reader = reader_of(path)
+    return reader.title, _with_package(path, reader, lambda one: one.contents(path))
 
 
-def _kind(path):
-    if path.is_dir():
-        return 'bag'
+def reader_of(path):
+    """Return the Reader of a path, by its first bytes; InputError for what is no record."""
     start = b''
     try:
         if path.is_file():
             with open(path, 'rb') as file:
-                start = file.read(16)
+                start = file.read(_START)
     except OSError as error:
         raise InputError(f'{path}: cannot be read: {error.strerror}') from None
-    for magic, suffix in _BAGS.items():
-        if start.startswith(magic) and path.suffix != suffix:
-            raise InputError(f'{path}: this is a bag, and is read under a name that ends in '
-                             f'{suffix}; rename it')
-    if path.suffix in _BAGS.values():
-        return 'bag'
-    if start.startswith(_ULOG) or path.suffix == '.ulg':
-        return 'ulog'
-    return 'csv'
+    for magic, title in _OTHERS.items():
+        if start.startswith(magic):
+            raise InputError(f'{path}: this is {title}; give a flight record, such as '
+                             f'{", ".join(reader.title for reader in READERS)}')
+    return next((reader for reader in READERS if reader.tells(path, start)), READERS[-1])
+
+
+def _with_package(path, reader, use):
+    """Return what use(reader) does; InputError where its package is not installed."""
+    try:
+        return use(reader)
+    except ModuleNotFoundError as error:
+        if not reader.module or (error.name or '').partition('.')[0] != reader.module:
+            raise
+        how = f"'quad_ident_ros[{reader.extra}]'" if reader.extra else reader.package
+        raise InputError(f'{path}: this is {reader.title}, which is read with {reader.package}; '
+                         f'it is not installed: pip install {how}') from None

@@ -1,0 +1,68 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What a kind of file has to offer: how it is told, what is in it, its flights."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from quad_ident_ros.data.mapping import Mapping
+from quad_ident_ros.data.record import FlightRecord
+from quad_ident_ros.model.vehicle import Vehicle
+
+
+@dataclass(frozen=True)
+class Content:
+    """
+    A stream of samples in a file.
+
+    name: of the topic or message; type: as the file has it; samples; start, duration: s, from
+    where the file's clock starts; rate: Hz, the usual one; fields: their names; roles: what of
+    mapping.ROLES it could be read for.
+    """
+
+    name: str
+    type: str
+    samples: int
+    start: float
+    duration: float
+    rate: float
+    fields: tuple[str, ...] = ()
+    roles: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Reader:
+    """
+    A kind of file.
+
+    name: in messages and data; title: as in `this is TITLE`; tells(path, first bytes): whether a
+    path is of this kind; read(path, mapping, vehicle): its flight records, at least one;
+    contents(path): the Content of all its streams; package: of PyPI that it needs beyond the
+    program's own, imported as `module`, and installed by the extra of this name.
+    Both raise InputError in one line.
+    """
+
+    name: str
+    title: str
+    tells: Callable[[Path, bytes], bool]
+    read: Callable[[Path, Mapping | None, Vehicle | None], list[FlightRecord]]
+    contents: Callable[[Path], list[Content]]
+    package: str = ''
+    module: str = ''
+    extra: str = ''
+
+
+def content_of(name: str, kind: str, stamps_ns: np.ndarray, origin_ns: int,
+               fields: Sequence[str] = (), roles: Sequence[str] = ()) -> Content:
+    """Return the Content of a stream by its stamps (N,) ns, from the start of the file's clock."""
+    stamps = np.asarray(stamps_ns, np.int64)
+    if not len(stamps):
+        return Content(name, kind, 0, 0.0, 0.0, 0.0, tuple(fields), tuple(roles))
+    first, last = int(stamps.min()), int(stamps.max())
+    steps = np.diff(np.sort(stamps))
+    period = float(np.median(steps[steps > 0])) if (steps > 0).any() else 0.0
+    return Content(name, kind, len(stamps), (first - origin_ns) * 1e-9, (last - first) * 1e-9,
+                   1e9 / period if period else 0.0, tuple(fields), tuple(roles))

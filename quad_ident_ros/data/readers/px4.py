@@ -1,0 +1,23 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Logs of PX4 (ULog)."""
+
+from quad_ident_ros.data.readers.base import Reader
+
+MAGIC = b'ULog\x01\x12\x35'
+
+
+def read(path, mapping=None, vehicle=None):
+    """Return the flight record of a log."""
+    from quad_ident_ros.data.ulog import read_ulog
+    return [read_ulog(path, mapping, vehicle)]
+
+
+def contents(path):
+    """Return the topics of a log."""
+    raise NotImplementedError
+
+
+READER = Reader('px4', 'a log of PX4 (ULog)',
+                lambda path, start: start.startswith(MAGIC) or path.suffix == '.ulg', read,
+                contents, package='pyulog', module='pyulog')
