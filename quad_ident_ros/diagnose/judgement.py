@@ -12,13 +12,13 @@ from quad_ident_ros.diagnose.candidates import Candidate
 from quad_ident_ros.diagnose.fitted import effects_in, refitted, within_bounds
 from quad_ident_ros.diagnose.gap import Noise
 from quad_ident_ros.diagnose.nuisances import nuisances_of
-from quad_ident_ros.diagnose.probability import presence, probabilities, Weight
+from quad_ident_ros.diagnose.probability import presence, probabilities, Weight, with_companions
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.diagnose.select import Selection
 from quad_ident_ros.effects.registry import EFFECTS, PLACES
 from quad_ident_ros.greybox.errors import ERRORS, GROUPS
 from quad_ident_ros.greybox.estimate import Estimate
-from quad_ident_ros.greybox.parameters import nominal, SPLIT
+from quad_ident_ros.greybox.parameters import limits, nominal, SPLIT
 from quad_ident_ros.model.vehicle import Vehicle
 
 
@@ -189,13 +189,14 @@ def judge(bench: Bench) -> Judgement:
     without: dict[Candidate, Model] = {}
     while model.effects:
         smaller = {removed: bench.without(model, removed) for removed in _subsets(model, rules)}
-        for removed, one in smaller.items():
-            if len(removed) == 1:
-                weight = _weight(model, one, before, noise, rules)
-                # Beside effects that do not matter it may show more clearly, or less.
-                weights[removed[0]] = max(weights.get(removed[0], weight), weight,
-                                          key=lambda each: presence(each, rules))
-                without[removed[0]] = one
+        alone = {removed[0]: one for removed, one in smaller.items() if len(removed) == 1}
+        without |= alone
+        for cause, weight in with_companions(
+                {cause: _weight(model, one, cause, bench.vehicle, before, noise, rules)
+                 for cause, one in alone.items()}, rules).items():
+            # Beside effects that do not matter it may show more clearly, or less.
+            weights[cause] = max(weights.get(cause, weight), weight,
+                                 key=lambda each: presence(each, rules))
         idle = [removed for removed, one in smaller.items()
                 if not matters(model.gap, one.gap, before, noise, rules)]
         if not idle:
@@ -229,15 +230,24 @@ def _columns_alike(name: str) -> list[int]:
             for place in range(part.start, part.stop)]
 
 
-def _weight(model: Model, without: Model, before: dict, noise: dict, rules: Rules) -> Weight:
-    """Return the Weight of what a Model has more than another."""
+def _weight(model: Model, without: Model, cause: Candidate, vehicle: Vehicle, before: dict,
+            noise: dict, rules: Rules) -> Weight:
+    """Return the Weight of an effect of a Model, by another one without it."""
     shares = lost_shares(model.gap, without.gap, before, noise, rules)
     name = max(shares, key=lambda group: shares[group])
     there = beyond(without.gap[name], noise[name])
     remains = beyond(model.gap[name], noise[name])
     explained = (there - remains) / max(there, rules.least(name, noise[name]))
     return Weight(float(shares[name]), stability(model.ends, without.ends, noise),
-                  float(np.clip(explained, 0.0, 1.0)), without.gap)
+                  float(np.clip(explained, 0.0, 1.0)), strength(cause, model.z, vehicle),
+                  without.gap)
+
+
+def strength(cause: Candidate, z: np.ndarray, vehicle: Vehicle) -> float:
+    """Return the size of an effect in a vector z (Z,), in usual ones, of its largest parameter."""
+    columns = list(cause.columns)
+    distance = np.abs(z - nominal(vehicle))[columns] / limits(vehicle)[2, columns]
+    return float(distance.max())
 
 
 def pooled(gap: list) -> dict:

@@ -61,15 +61,15 @@ def label(*effects, **options):
 
 def ranked(*effects, contribution=0.5):
     return {'ranking': [{'effect': name, 'stability': 20.0, 'contribution': contribution,
-                         'explained': 0.9} for name in effects]}
+                         'explained': 0.9, 'strength': 10.0, 'companions': 2} for name in effects]}
 
 
 def test_rows_are_those_of_the_best_set_with_the_librarys_limits():
     found = ranked('wind', 'inflow')
     found['ranking'].append({'effect': 'body_drag', 'stability': None, 'contribution': None})
     rows = calibrate.rows_of([(label('wind'), found)])
-    assert rows.names == ('stability', 'contribution', 'explained')
-    assert rows.x == pytest.approx(np.tile([10.0, np.log10(0.5), 0.9], (2, 1)))
+    assert rows.names == ('stability', 'contribution', 'explained', 'strength', 'companions')
+    assert rows.x == pytest.approx(np.tile([10.0, np.log10(0.5), 0.9, np.log10(3.0), 2.0], (2, 1)))
     assert rows.present.tolist() == [1.0, 0.0] and rows.groups == ('ours', 'ours')
 
 
