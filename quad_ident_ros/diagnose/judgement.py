@@ -18,7 +18,7 @@ from quad_ident_ros.diagnose.select import Selection
 from quad_ident_ros.effects.registry import EFFECTS, PLACES
 from quad_ident_ros.greybox.errors import ERRORS, GROUPS
 from quad_ident_ros.greybox.estimate import Estimate
-from quad_ident_ros.greybox.parameters import limits, nominal, SPLIT
+from quad_ident_ros.greybox.parameters import nominal, SPLIT
 from quad_ident_ros.model.vehicle import Vehicle
 
 
@@ -192,7 +192,7 @@ def judge(bench: Bench) -> Judgement:
         alone = {removed[0]: one for removed, one in smaller.items() if len(removed) == 1}
         without |= alone
         for cause, weight in with_companions(
-                {cause: _weight(model, one, cause, bench.vehicle, before, noise, rules)
+                {cause: _weight(model, one, before, noise, rules)
                  for cause, one in alone.items()}, rules).items():
             # Beside effects that do not matter it may show more clearly, or less.
             weights[cause] = max(weights.get(cause, weight), weight,
@@ -230,24 +230,21 @@ def _columns_alike(name: str) -> list[int]:
             for place in range(part.start, part.stop)]
 
 
-def _weight(model: Model, without: Model, cause: Candidate, vehicle: Vehicle, before: dict,
-            noise: dict, rules: Rules) -> Weight:
-    """Return the Weight of an effect of a Model, by another one without it."""
+def _weight(model: Model, without: Model, before: dict, noise: dict, rules: Rules) -> Weight:
+    """Return the Weight of what a Model has more than another."""
     shares = lost_shares(model.gap, without.gap, before, noise, rules)
-    name = max(shares, key=lambda group: shares[group])
-    there = beyond(without.gap[name], noise[name])
-    remains = beyond(model.gap[name], noise[name])
-    explained = (there - remains) / max(there, rules.least(name, noise[name]))
-    return Weight(float(shares[name]), stability(model.ends, without.ends, noise),
-                  float(np.clip(explained, 0.0, 1.0)), strength(cause, model.z, vehicle),
-                  without.gap)
+    explained = {name: _explained(model.gap[name], without.gap[name], noise[name],
+                                  rules.least(name, noise[name])) for name in shares}
+    # Where it does most: a small share of one group may be all that is explained in another.
+    name = max(shares, key=lambda group: shares[group] * explained[group])
+    return Weight(max(shares.values()), stability(model.ends, without.ends, noise),
+                  explained[name], without.gap)
 
 
-def strength(cause: Candidate, z: np.ndarray, vehicle: Vehicle) -> float:
-    """Return the size of an effect in a vector z (Z,), in usual ones, of its largest parameter."""
-    columns = list(cause.columns)
-    distance = np.abs(z - nominal(vehicle))[columns] / limits(vehicle)[2, columns]
-    return float(distance.max())
+def _explained(after: float, without: float, noise: float, least: float) -> float:
+    """Return the share that an effect explains of what is there without it, by gaps of a group."""
+    there = beyond(without, noise)
+    return float(np.clip((there - beyond(after, noise)) / max(there, least), 0.0, 1.0))
 
 
 def pooled(gap: list) -> dict:
@@ -282,7 +279,7 @@ def lost_shares(after: dict, without: dict, before: dict, noise: dict, rules: Ru
 
     Args: {group: gap} with all effects, without some, of the nominal vehicle, of the noise.
     """
-    return {name: (without[name] - after[name]) / max(
+    return {name: float(without[name] - after[name]) / max(
         before[name] - min(noise[name], after[name]), rules.least(name, noise[name]))
         for name in after}
 

@@ -16,14 +16,12 @@ class Weight:
 
     contribution: the share of the closable gap that is lost; stability: how steadily it helps,
     see judgement.stability; explained: the share of what it is there for that its form explains;
-    strength: its size, in usual ones of its parameters, the largest of them; gap {group: ...}:
-    without it; companions: how many other effects clearly contribute beside it.
+    gap {group: ...}: without it; companions: how many other effects clearly contribute beside it.
     """
 
     contribution: float
     stability: float
     explained: float
-    strength: float
     gap: dict
     companions: int = 0
 
@@ -46,9 +44,9 @@ def probabilities(posterior: dict, weights: dict, rules: Rules) -> dict[str, flo
     """
     Return {effect: probability of being present}.
 
-    Of those of the best set by a logistic regression on how steadily they help, on what they
-    contribute, on how much of what they are there for their form explains, on their size and on
-    their companions; of the others by the posterior of all sets that have them, in whichever form.
+    Of those of the best set by a logistic regression on what they contribute, on how much of what
+    they are there for their form explains and on their companions; of the others by the posterior
+    of all sets that have them, in whichever form.
     Args: posterior {candidate: ...} of the Selection; weights {candidate: Weight}.
     """
     found = {cause.effect: 0.0 for cause in posterior}
@@ -59,10 +57,7 @@ def probabilities(posterior: dict, weights: dict, rules: Rules) -> dict[str, flo
 
 def presence(weight: Weight, rules: Rules) -> float:
     """Return the probability that an effect of the best set is present."""
-    base, steady, share, form, size, beside = rules.calibration
-    value = (base + steady * np.clip(weight.stability, -rules.steadiest, rules.steadiest)
-             + share * np.log10(np.clip(weight.contribution, rules.faintest, 1.0))
-             + form * weight.explained
-             + size * np.log10(np.clip(weight.strength, *rules.strengths))
-             + beside * weight.companions)
+    base, share, form, beside = rules.calibration
+    value = (base + share * np.log10(np.clip(weight.contribution, rules.faintest, 1.0))
+             + form * weight.explained + beside * weight.companions)
     return float(1.0 / (1.0 + np.exp(-value)))

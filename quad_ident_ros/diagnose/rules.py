@@ -41,10 +41,10 @@ class Rules:
         one another by 10 to 30 % over the range in which they are used.
       form_time: s over which that error stays the same: that of a turn or a stop of a flight.
     Probability:
-      calibration: constant, and weights of stability, of log10 of the contribution, of the share
-        explained, of log10 of the strength and of the companions in the log odds of being present;
-        steadiest, faintest, strengths (usual sizes): where these end, for more says no more;
-        fitted to the flights of development of the withheld check: docs/method.md has the command.
+      calibration: constant, and weights of log10 of the contribution, of the share explained and
+        of the companions in the log odds of being present; faintest: where the first ends, for
+        less says no more; fitted to the flights of development of the withheld check:
+        docs/method.md has the command.
       companion: contribution and stability (standard errors) from which on another effect clearly
         contributes.
     Naming:
@@ -92,11 +92,8 @@ class Rules:
     present: float = 0.5
     doubt: float = 0.12
     instead: float = 2.0
-    calibration: tuple[float, float, float, float, float, float] = (-2.2, 0.15, 0.43, 4.3, 1.05,
-                                                                     0.56)
-    steadiest: float = 10.0
+    calibration: tuple[float, float, float, float] = (-1.5, 1.0, 4.4, 0.5)
     faintest: float = 1e-3
-    strengths: tuple[float, float] = (0.01, 3.0)
     companion: tuple[float, float] = (0.1, 3.0)
     tied: float = 0.9
     hidden: float = 1.0

@@ -97,7 +97,7 @@ def _ranking(bench: Bench, judged: Judgement, causes: tuple, total: dict) -> tup
         rows[cause.effect] = Ranked(
             cause.effect, total[cause.effect], weight and cause.form, weight and weight.explained,
             weight and weight.contribution, weight and weight.stability,
-            weight and weight.strength, weight and weight.companions, parameters, gap_after,
+            weight and weight.companions, parameters, gap_after,
             weight and weight.gap)
     named = {cause.effect for cause in judged.material}
     return tuple(sorted(rows.values(), key=lambda row: (
