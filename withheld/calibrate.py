@@ -21,9 +21,8 @@ Array = NDArray[np.float64]
 
 # Of a row of the ranking, as the library takes them (diagnose/probability.py), in its order.
 FEATURES: dict[str, Callable[[float], float]] = {
-    'stability': lambda value: float(np.clip(value, -RULES.steadiest, RULES.steadiest)),
     'contribution': lambda value: float(np.log10(np.clip(value, RULES.faintest, 1.0))),
-    'explained': float}
+    'explained': float, 'companions': float}
 # Effects that act alike: where one is there, it is no error of a probability to name the other.
 ALIKE = ({'thrust_scale', 'mass_offset'}, {'actuation_delay', 'motor_lag'})
 RIDGE = 0.01        # on the weights, in units of log likelihood: keeps what a few rows say finite

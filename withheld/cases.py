@@ -29,7 +29,7 @@ class Case:
     """
     One reality to make.
 
-    kind: single, none, pair, mixture, unknown, poor or datasheet; effects {name: strength};
+    kind: single, none, pair, mixture, unknown, poor, datasheet or whole; effects {name: strength};
     stranger (kind, strength) or None; faulty: with the faults of real records; forms {effect:
     form} of those that have another than the library's; wrong_file: every constant of the vehicle
     file is a little off; log: one of logs.LOGS; setup: which of the estimator's setups the states
@@ -129,6 +129,12 @@ def _datasheets(count):
     return [Case('datasheet', dict.fromkeys(DATASHEET)) for _ in range(count)]
 
 
+def _wholes(count, rng, part):
+    """Return vehicles as real ones are: four to seven effects at once, each in another form."""
+    return [Case('whole', **several(4 + i % 4, rng, part), wrong_file=i % 2 == 0,
+                 log='fast_control' if i % 3 == 1 else '') for i in range(count)]
+
+
 def quick_set(rng):
     """Return a small set to develop with: each effect at each strength once, and some others."""
     part = 'development'
@@ -136,6 +142,7 @@ def quick_set(rng):
     cases += _nones(6) + _many('pair', 6, 2, rng) + _many('mixture', 6, (3, 5), rng)
     cases += _strangers(part, (3.0,)) + _forms(part, (3.0,))
     cases += _many('pair', 4, 2, rng, part) + _many('mixture', 3, (3, 5), rng, part)
+    cases += _wholes(12, rng, part)
     cases += _singles((3.0,), bodies=True)[::6] + _gusty(2)
     cases += _singles((1.0, 3.0), wrong_file=True)[::3] + _nones(3, wrong_file=True)
     cases += _datasheets(2) + _logs(1)
@@ -155,7 +162,7 @@ def full_set(rng):
     cases += _strangers(part, (1.0, 3.0, 3.0))
     cases += [Case('poor', {} if name == 'none' else {name: 3.0}) for name in HOVERED]
     cases += _forms(part, (1.0, 3.0)) + _many('pair', 18, 2, rng, part)
-    cases += _many('mixture', 12, (3, 5), rng, part)
+    cases += _many('mixture', 12, (3, 5), rng, part) + _wholes(12, rng, part)
     cases += _singles((3.0,), bodies=True)[::2] + _gusty(6)
     cases += _singles((1.0, 3.0), wrong_file=True) + _nones(8, wrong_file=True)
     cases += _many('pair', 8, 2, rng, wrong_file=True)

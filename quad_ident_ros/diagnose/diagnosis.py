@@ -77,6 +77,7 @@ def diagnose(records: list[FlightRecord], vehicle: Vehicle, *,
             tuple(cause.nuisance for cause in model.chosen if cause.nuisance),
             [z - model.z for z in model.vectors], intake.late, intake.clocks, prompt),
         flights=intake.names[:-1], held_out=intake.names[-1],
-        flight_checks=verdict.flight_checks, findings=tuple(intake.findings), z=model.z,
+        flight_checks=verdict.flight_checks,
+        findings=(*intake.findings, *advice.at_bounds(model, vehicle, rules)), z=model.z,
         pictures=measure.pictures(bench, judged, before, after))
 

@@ -12,7 +12,7 @@ from quad_ident_ros.diagnose.candidates import Candidate
 from quad_ident_ros.diagnose.fitted import effects_in, refitted, within_bounds
 from quad_ident_ros.diagnose.gap import Noise
 from quad_ident_ros.diagnose.nuisances import nuisances_of
-from quad_ident_ros.diagnose.probability import presence, probabilities, Weight
+from quad_ident_ros.diagnose.probability import presence, probabilities, Weight, with_companions
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.diagnose.select import Selection
 from quad_ident_ros.effects.registry import EFFECTS, PLACES
@@ -189,13 +189,14 @@ def judge(bench: Bench) -> Judgement:
     without: dict[Candidate, Model] = {}
     while model.effects:
         smaller = {removed: bench.without(model, removed) for removed in _subsets(model, rules)}
-        for removed, one in smaller.items():
-            if len(removed) == 1:
-                weight = _weight(model, one, before, noise, rules)
-                # Beside effects that do not matter it may show more clearly, or less.
-                weights[removed[0]] = max(weights.get(removed[0], weight), weight,
-                                          key=lambda each: presence(each, rules))
-                without[removed[0]] = one
+        alone = {removed[0]: one for removed, one in smaller.items() if len(removed) == 1}
+        without |= alone
+        for cause, weight in with_companions(
+                {cause: _weight(model, one, before, noise, rules)
+                 for cause, one in alone.items()}, rules).items():
+            # Beside effects that do not matter it may show more clearly, or less.
+            weights[cause] = max(weights.get(cause, weight), weight,
+                                 key=lambda each: presence(each, rules))
         idle = [removed for removed, one in smaller.items()
                 if not matters(model.gap, one.gap, before, noise, rules)]
         if not idle:
@@ -232,12 +233,18 @@ def _columns_alike(name: str) -> list[int]:
 def _weight(model: Model, without: Model, before: dict, noise: dict, rules: Rules) -> Weight:
     """Return the Weight of what a Model has more than another."""
     shares = lost_shares(model.gap, without.gap, before, noise, rules)
-    name = max(shares, key=lambda group: shares[group])
-    there = beyond(without.gap[name], noise[name])
-    remains = beyond(model.gap[name], noise[name])
-    explained = (there - remains) / max(there, rules.least(name, noise[name]))
-    return Weight(float(shares[name]), stability(model.ends, without.ends, noise),
-                  float(np.clip(explained, 0.0, 1.0)), without.gap)
+    explained = {name: _explained(model.gap[name], without.gap[name], noise[name],
+                                  rules.least(name, noise[name])) for name in shares}
+    # Where it does most: a small share of one group may be all that is explained in another.
+    name = max(shares, key=lambda group: shares[group] * explained[group])
+    return Weight(max(shares.values()), stability(model.ends, without.ends, noise),
+                  explained[name], without.gap)
+
+
+def _explained(after: float, without: float, noise: float, least: float) -> float:
+    """Return the share that an effect explains of what is there without it, by gaps of a group."""
+    there = beyond(without, noise)
+    return float(np.clip((there - beyond(after, noise)) / max(there, least), 0.0, 1.0))
 
 
 def pooled(gap: list) -> dict:
@@ -272,7 +279,7 @@ def lost_shares(after: dict, without: dict, before: dict, noise: dict, rules: Ru
 
     Args: {group: gap} with all effects, without some, of the nominal vehicle, of the noise.
     """
-    return {name: (without[name] - after[name]) / max(
+    return {name: float(without[name] - after[name]) / max(
         before[name] - min(noise[name], after[name]), rules.least(name, noise[name]))
         for name in after}
 

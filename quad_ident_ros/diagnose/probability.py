@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """How probable it is that an effect is present: the one definition."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -16,22 +16,37 @@ class Weight:
 
     contribution: the share of the closable gap that is lost; stability: how steadily it helps,
     see judgement.stability; explained: the share of what it is there for that its form explains;
-    gap {group: ...}: without it.
+    gap {group: ...}: without it; companions: how many other effects clearly contribute beside it.
     """
 
     contribution: float
     stability: float
     explained: float
     gap: dict
+    companions: int = 0
+
+
+def with_companions(weights: dict, rules: Rules) -> dict:
+    """
+    Return {candidate: Weight} of the effects of one model with their companions.
+
+    How likely an effect is before looking at it shows in how many others are there (Scott and
+    Berger, Annals of Statistics 38, 2010).
+    """
+    contribution, steadiness = rules.companion
+    clear = {cause for cause, one in weights.items()
+             if one.contribution >= contribution and one.stability >= steadiness}
+    return {cause: replace(one, companions=len(clear - {cause}))
+            for cause, one in weights.items()}
 
 
 def probabilities(posterior: dict, weights: dict, rules: Rules) -> dict[str, float]:
     """
     Return {effect: probability of being present}.
 
-    Of those of the best set by a logistic regression on how steadily they help, on what they
-    contribute and on how much of what they are there for their form explains; of the others by
-    the posterior of all sets that have them, in whichever form.
+    Of those of the best set by a logistic regression on what they contribute, on how much of what
+    they are there for their form explains and on their companions; of the others by the posterior
+    of all sets that have them, in whichever form.
     Args: posterior {candidate: ...} of the Selection; weights {candidate: Weight}.
     """
     found = {cause.effect: 0.0 for cause in posterior}
@@ -42,8 +57,7 @@ def probabilities(posterior: dict, weights: dict, rules: Rules) -> dict[str, flo
 
 def presence(weight: Weight, rules: Rules) -> float:
     """Return the probability that an effect of the best set is present."""
-    base, steady, share, form = rules.calibration
-    value = (base + steady * np.clip(weight.stability, -rules.steadiest, rules.steadiest)
-             + share * np.log10(np.clip(weight.contribution, rules.faintest, 1.0))
-             + form * weight.explained)
+    base, share, form, beside = rules.calibration
+    value = (base + share * np.log10(np.clip(weight.contribution, rules.faintest, 1.0))
+             + form * weight.explained + beside * weight.companions)
     return float(1.0 / (1.0 + np.exp(-value)))

@@ -32,8 +32,9 @@ class Ranked:
 
     probability that it is present; form: the law by which it was fitted, and explained: the share
     of its contribution that this law explains, or None; contribution: the share of the closable
-    gap that is lost without it, everything else refitted, and without {group: gap} then; gap_after
-    {group: gap} on the flight held out with this effect alone.
+    gap that is lost without it, everything else refitted, and without {group: gap} then;
+    stability: how steadily it helps, and companions: how many others clearly contribute beside it;
+    gap_after {group: gap} on the flight held out with this effect alone.
     """
 
     effect: str
@@ -42,6 +43,7 @@ class Ranked:
     explained: float | None
     contribution: float | None
     stability: float | None
+    companions: int | None
     parameters: dict
     gap_after: dict
     without: dict | None

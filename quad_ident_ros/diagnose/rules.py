@@ -41,10 +41,12 @@ class Rules:
         one another by 10 to 30 % over the range in which they are used.
       form_time: s over which that error stays the same: that of a turn or a stop of a flight.
     Probability:
-      calibration: constant, and weights of stability, of log10 of the contribution and of the
-        share explained in the log odds of being present, steadiest and faintest: where the first
-        two end, for more says no more; fitted to the flights of development of the withheld check:
+      calibration: constant, and weights of log10 of the contribution, of the share explained and
+        of the companions in the log odds of being present; faintest: where the first ends, for
+        less says no more; fitted to the flights of development of the withheld check:
         docs/method.md has the command.
+      companion: contribution and stability (standard errors) from which on another effect clearly
+        contributes.
     Naming:
       present: probability from which on an effect is named: more likely there than not.
       doubt: probability of a rival from which on it is not ruled out; an effect of 1 - doubt is
@@ -90,9 +92,9 @@ class Rules:
     present: float = 0.5
     doubt: float = 0.12
     instead: float = 2.0
-    calibration: tuple[float, float, float, float] = (-1.9, 0.19, 1.6, 4.0)
-    steadiest: float = 10.0
+    calibration: tuple[float, float, float, float] = (-1.5, 1.0, 4.4, 0.5)
     faintest: float = 1e-3
+    companion: tuple[float, float] = (0.1, 3.0)
     tied: float = 0.9
     hidden: float = 1.0
     shown: float = 3.0

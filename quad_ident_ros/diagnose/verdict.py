@@ -96,7 +96,8 @@ def _ranking(bench: Bench, judged: Judgement, causes: tuple, total: dict) -> tup
                                             gaps.HEADLINE)])
         rows[cause.effect] = Ranked(
             cause.effect, total[cause.effect], weight and cause.form, weight and weight.explained,
-            weight and weight.contribution, weight and weight.stability, parameters, gap_after,
+            weight and weight.contribution, weight and weight.stability,
+            weight and weight.companions, parameters, gap_after,
             weight and weight.gap)
     named = {cause.effect for cause in judged.material}
     return tuple(sorted(rows.values(), key=lambda row: (

@@ -60,6 +60,13 @@ def test_the_full_set_has_every_effect_at_every_strength():
                                                             'unknown'}
 
 
+def test_whole_vehicles_have_many_effects_each_in_another_form():
+    wholes = [case for case in full_set(np.random.default_rng(1)) if case.kind == 'whole']
+    assert {len(case.effects) for case in wholes} == {4, 5, 6, 7}
+    assert all(set(case.forms) == set(case.effects) for case in wholes)
+    assert {case.wrong_file for case in wholes} == {True, False}
+
+
 SUBJECTS = {'vehicle': lists.VEHICLES, 'path': lists.PATHS, 'controller': lists.CONTROLLERS,
             'noise': lists.NOISES}
 

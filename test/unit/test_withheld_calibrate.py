@@ -22,8 +22,8 @@ def drawn(weights, constant, count=20000, seed=1):
 
 
 @pytest.mark.parametrize('weights', [
-    {'stability': 0.3, 'contribution': 2.0},
-    {'stability': 0.1, 'contribution': 1.7, 'explained': -0.8}])
+    {'contribution': 2.0, 'explained': 0.3},
+    {'contribution': 1.7, 'explained': -0.8, 'companions': 0.1}])
 def test_known_weights_come_out(weights):
     made = calibrate.fit(drawn(weights, -0.7))
     for (value, error), true in zip([made.constant, *made.weights.values()],
@@ -34,7 +34,7 @@ def test_known_weights_come_out(weights):
 
 
 def test_probabilities_are_frequencies_in_every_group():
-    made = calibrate.fit(drawn({'stability': 0.5, 'contribution': 1.0}, -1.0))
+    made = calibrate.fit(drawn({'explained': 0.5, 'contribution': 1.0}, -1.0))
     assert set(made.tables) == {'all', 'ours', 'faulty'}
     for table in made.tables.values():
         for row in table:
@@ -44,7 +44,7 @@ def test_probabilities_are_frequencies_in_every_group():
 
 
 def test_effects_that_tell_themselves_apart_have_finite_weights():
-    rows = calibrate.Rows(('stability',), np.array([[-2.0], [-1.0], [1.0], [2.0]]),
+    rows = calibrate.Rows(('explained',), np.array([[-2.0], [-1.0], [1.0], [2.0]]),
                           np.array([0.0, 0.0, 1.0, 1.0]), ('ours',) * 4)
     (value, _), = calibrate.fit(rows).weights.values()
     assert 1.0 < value < 20.0
@@ -52,7 +52,7 @@ def test_effects_that_tell_themselves_apart_have_finite_weights():
 
 def test_nothing_can_be_fitted_where_all_is_there():
     with pytest.raises(ValueError, match='nothing to fit'):
-        calibrate.fit(calibrate.Rows(('stability',), np.ones((3, 1)), np.ones(3), ('ours',) * 3))
+        calibrate.fit(calibrate.Rows(('explained',), np.ones((3, 1)), np.ones(3), ('ours',) * 3))
 
 
 def label(*effects, **options):
@@ -60,16 +60,16 @@ def label(*effects, **options):
 
 
 def ranked(*effects, contribution=0.5):
-    return {'ranking': [{'effect': name, 'stability': 20.0, 'contribution': contribution,
-                         'explained': 0.9} for name in effects]}
+    return {'ranking': [{'effect': name, 'contribution': contribution,
+                         'explained': 0.9, 'companions': 2} for name in effects]}
 
 
 def test_rows_are_those_of_the_best_set_with_the_librarys_limits():
     found = ranked('wind', 'inflow')
-    found['ranking'].append({'effect': 'body_drag', 'stability': None, 'contribution': None})
+    found['ranking'].append({'effect': 'body_drag', 'contribution': None})
     rows = calibrate.rows_of([(label('wind'), found)])
-    assert rows.names == ('stability', 'contribution', 'explained')
-    assert rows.x == pytest.approx(np.tile([10.0, np.log10(0.5), 0.9], (2, 1)))
+    assert rows.names == ('contribution', 'explained', 'companions')
+    assert rows.x == pytest.approx(np.tile([np.log10(0.5), 0.9, 2.0], (2, 1)))
     assert rows.present.tolist() == [1.0, 0.0] and rows.groups == ('ours', 'ours')
 
 
@@ -90,10 +90,10 @@ def test_another_feature_is_another_line():
 def kept(folder, name, rows, part='development'):
     (folder / 'found').mkdir(parents=True)
     labels = {}
-    for k, (there, stability, contribution) in enumerate(rows):
+    for k, (there, explained, contribution) in enumerate(rows):
         labels[f'{name}{k}'] = label('wind' if there else 'inflow')
-        found = {'ranking': [{'effect': 'wind', 'stability': stability,
-                              'contribution': contribution, 'explained': 0.5}]}
+        found = {'ranking': [{'effect': 'wind', 'contribution': contribution,
+                              'explained': explained}]}
         (folder / 'found' / f'{name}{k}.json').write_text(json.dumps(found))
     (folder / 'labels.json').write_text(json.dumps({'set': part, 'labels': labels}))
 

@@ -1,0 +1,37 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""A parameter that ends at its bound is told, for it may do the work of something else."""
+
+from types import SimpleNamespace
+
+import pytest
+
+from quad_ident_ros.diagnose.advice import at_bounds
+from quad_ident_ros.diagnose.candidates import Candidate
+from quad_ident_ros.diagnose.rules import RULES
+from quad_ident_ros.greybox.parameters import INDEX, limits, nominal
+from quad_ident_ros.model.vehicle import load_vehicle
+
+VEHICLE = load_vehicle('hummingbird')
+COLUMNS = tuple(INDEX[f'inertia_mismatch.factor_{axis}'] for axis in 'xyz')
+INERTIA = Candidate('inertia_mismatch', 'factors', COLUMNS)
+
+
+def told(**values):
+    z = nominal(VEHICLE)
+    for name, value in values.items():
+        z[INDEX[f'inertia_mismatch.{name}']] = value
+    return at_bounds(SimpleNamespace(effects=(INERTIA,), z=z), VEHICLE, RULES)
+
+
+def test_a_parameter_at_its_bound_is_named_with_its_value():
+    bound = limits(VEHICLE)[1, COLUMNS[0]]
+    [one] = told(factor_x=bound, factor_y=1.2)
+    assert one['where'] == 'inertia_mismatch' and one['severity'] == 'warning'
+    assert f'factor_x {bound:.3g} is the bound' in one['message']
+    assert 'factor_y' not in one['message']
+
+
+@pytest.mark.parametrize('values', [{}, {'factor_x': 1.3}])
+def test_parameters_inside_their_bounds_or_without_an_effect_are_not(values):
+    assert told(**values) == ()
