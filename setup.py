@@ -64,6 +64,8 @@ setup(
         'pyulog>=1.2.4,<1.4',
     ],
     extras_require={'ardupilot': ['pymavlink>=2.4.40'],
+                    'betaflight': ['orangebox>=0.4,<0.5'],
+                    'all': ['pymavlink>=2.4.40', 'orangebox>=0.4,<0.5'],
                     'test': ['pytest>=7.4', 'pytest-xdist>=3.5', 'hypothesis>=6.80', 'mypy>=2.0',
                              'ruff>=0.4']},
     zip_safe=True,

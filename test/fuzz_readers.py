@@ -24,6 +24,7 @@ import time
 import traceback
 import warnings
 
+from blackbox_files import blackbox, rows_of
 from dataflash_files import copter, dataflash
 from flightmaker import copy_bag, flight, others_bag, px4_samples, ulog, VEHICLE
 import numpy as np
@@ -42,10 +43,11 @@ WAITING = 300       # s for one input in all: a busy machine is no hang
 MEGABYTES = 1024    # for one input, beyond what the process has when it begins
 NAMES = {'csv': 'f.csv', 'csv_gz': 'f.csv.gz', 'mcap': 'f.mcap', 'mcap_topics': 'f.mcap',
          'mcap_mapped': 'f.mcap', 'sqlite3': 'f.db3', 'metadata': 'bag', 'ulog': 'f.ulg',
-         'crazyflie': 'log00', 'ardupilot': 'f.BIN', 'mapping': 'f.yaml'}
+         'crazyflie': 'log00', 'ardupilot': 'f.BIN', 'betaflight': 'f.bbl',
+         'mapping': 'f.yaml'}
 """File that each kind of input is written to."""
 
-LOGS = ('crazyflie', 'ardupilot')     # of which the contents are read as well
+LOGS = ('crazyflie', 'ardupilot', 'betaflight')     # of which the contents are read as well
 
 TOPICS = mapping_from({'topics': {
     'pose': {'topic': '/odom'}, 'velocity': {'topic': '/odom'}, 'rate': {'topic': '/imu'},
@@ -83,6 +85,7 @@ def valid_inputs(folder):
     found['ulog'] = ulog(px4_samples(record, outputs=outputs, motors=0 * outputs))
     found['crazyflie'] = usdlog(crazyflie_events(record, 20 * outputs))
     found['ardupilot'] = dataflash(copter(record, outputs))
+    found['betaflight'] = blackbox(rows_of(record, outputs))
     found['mapping'] = MAPPING.encode()
     return found
 
