@@ -24,13 +24,16 @@ import time
 import traceback
 import warnings
 
+from blackbox_files import blackbox, rows_of
+from dataflash_files import copter, dataflash
 from flightmaker import copy_bag, flight, others_bag, px4_samples, ulog, VEHICLE
 import numpy as np
 from rich.progress import Progress
 from rosbags.rosbag2 import StoragePlugin
+from usd_files import crazyflie_events, usdlog
 
 from quad_ident_ros.data.export import save, write_bag
-from quad_ident_ros.data.load import load_all
+from quad_ident_ros.data.load import contents_of, load_all
 from quad_ident_ros.data.mapping import load_mapping, mapping_from
 from quad_ident_ros.data.topics import EXACT_TOPIC
 from quad_ident_ros.errors import InputError
@@ -40,8 +43,11 @@ WAITING = 300       # s for one input in all: a busy machine is no hang
 MEGABYTES = 1024    # for one input, beyond what the process has when it begins
 NAMES = {'csv': 'f.csv', 'csv_gz': 'f.csv.gz', 'mcap': 'f.mcap', 'mcap_topics': 'f.mcap',
          'mcap_mapped': 'f.mcap', 'sqlite3': 'f.db3', 'metadata': 'bag', 'ulog': 'f.ulg',
+         'crazyflie': 'log00', 'ardupilot': 'f.BIN', 'betaflight': 'f.bbl',
          'mapping': 'f.yaml'}
 """File that each kind of input is written to."""
+
+LOGS = ('crazyflie', 'ardupilot', 'betaflight')     # of which the contents are read as well
 
 TOPICS = mapping_from({'topics': {
     'pose': {'topic': '/odom'}, 'velocity': {'topic': '/odom'}, 'rate': {'topic': '/imu'},
@@ -77,6 +83,9 @@ def valid_inputs(folder):
     found['sqlite3'] = next((folder / 'sql').glob('*.db3')).read_bytes()
     found['metadata'] = (folder / 'ours' / 'metadata.yaml').read_bytes()
     found['ulog'] = ulog(px4_samples(record, outputs=outputs, motors=0 * outputs))
+    found['crazyflie'] = usdlog(crazyflie_events(record, 20 * outputs))
+    found['ardupilot'] = dataflash(copter(record, outputs))
+    found['betaflight'] = blackbox(rows_of(record, outputs))
     found['mapping'] = MAPPING.encode()
     return found
 
@@ -143,6 +152,9 @@ def read(kind, path):
     elif kind == 'mcap_mapped':
         load_all(path, TOPICS)
     elif kind == 'ulog':
+        load_all(path, OUTPUTS, VEHICLE)
+    elif kind in LOGS:
+        contents_of(path)
         load_all(path, OUTPUTS, VEHICLE)
     else:
         load_all(path)

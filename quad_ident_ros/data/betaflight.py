@@ -1,0 +1,180 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Flight records from the blackbox logs of Betaflight.
+
+Its body axes are forward, left, up, as here; its world is north, west, up. Source: Betaflight's
+imu.c and blackbox.c, and the units of its log viewer.
+"""
+
+from pathlib import Path
+import re
+import struct
+
+import numpy as np
+
+from quad_ident_ros.data import frames
+from quad_ident_ros.data.autopilot import G, known_names, outputs_stream
+from quad_ident_ros.data.blackbox import read_logs
+from quad_ident_ros.data.readers.base import content_of
+from quad_ident_ros.data.record import FlightRecord, QUATERNION
+from quad_ident_ros.data.streams import INTERPOLATED, join, SLOW, Stream
+from quad_ident_ros.errors import InputError
+
+
+def _three(name):
+    return tuple(f'{name}[{k}]' for k in range(3))
+
+
+GYRO, ACCELEROMETER, ATTITUDE = _three('gyroADC'), _three('accSmooth'), _three('imuQuaternion')
+MOTORS = tuple(f'motor[{k}]' for k in range(8))
+SPEEDS = tuple(f'eRPM[{k}]' for k in range(8))
+ROLES = {'gyroADC[0]': 'rate', 'accSmooth[0]': 'specific_force', 'imuQuaternion[0]': 'pose',
+         'motor[0]': 'commands', 'eRPM[0]': 'rotors', 'vbatLatest': 'battery'}
+ORDER = "motors are in Betaflight's order: 1 rear right, 2 front right, 3 rear left, 4 front left"
+
+_WANTED = (*GYRO, *ACCELEROMETER, *ATTITUDE, *MOTORS, *SPEEDS, 'vbatLatest')
+_HALF = np.sqrt(0.5)
+_ENU_FROM_NWU = np.array([_HALF, 0.0, 0.0, _HALF])      # a quarter of a turn about z
+_REVISION = re.compile(r'Betaflight ([0-9]{1,4})\.([0-9]{1,4})')
+
+
+def read_betaflight(path, mapping=None, vehicle=None):
+    """
+    Return the FlightRecords of a blackbox file, one for each of its logs, in ENU and FLU.
+
+    The outputs to the motors become cmd1..N where the mapping says how (actuators), and stay
+    output1..N, as motorOutput counts them, where it does not. No field is required.
+    Args: path; mapping Mapping or None; vehicle Vehicle or None.
+    Raises InputError that names file and log.
+    """
+    path = Path(path)
+    mapping = known_names(path, 'a blackbox log', mapping)
+    logs = read_logs(path, _WANTED)
+    return [_record(path, log, len(logs), mapping.actuators, vehicle) for log in logs]
+
+
+def contents(path):
+    """Return the Content of each log in a blackbox file; errors of read_logs."""
+    return [content_of(f'log {log.number}', str(log.headers.get('Firmware revision',
+                                                                'blackbox'))[:60],
+                       _stamps(log), int(_stamps(log).min()), log.fields,
+                       [role for field, role in ROLES.items() if field in log.fields])
+            for log in read_logs(path, ())]
+
+
+def _record(path, log, count, actuators, vehicle):
+    where = str(path) if count == 1 else f'{path}, log {log.number}'
+    if str(log.headers.get('Firmware type', '')).startswith('Rotorflight'):
+        raise InputError(f'{where}: this is a log of Rotorflight, of a helicopter, which is no '
+                         'multirotor; give a log of Betaflight')
+    notes = list(log.notes)
+    streams = [_attitude(log), _rate(log, notes), _specific_force(log, notes),
+               _rotors(log, notes), _battery(log, notes)]
+    motors = [name for name in MOTORS if name in log.values]
+    if motors:
+        streams.append(outputs_stream(where, 'motor', _stamps(log), _stack(log, motors), actuators,
+                                      vehicle))
+        notes += [ORDER] if len(motors) == 4 else []
+        span = log.headers.get('motorOutput')
+        if isinstance(span, list) and len(span) == 2:
+            notes.append(f'outputs to the motors are from {span[0]} to {span[1]}'[:100])
+    elif actuators is not None:
+        raise InputError(f'{where}: has no field motor[0] for the actuators of the mapping; log '
+                         'it, or leave actuators out')
+    streams = [stream for stream in streams if stream is not None]
+    if not any(set(stream.columns) - {'vbat'} for stream in streams):
+        raise InputError(f'{where}: has none of the fields gyroADC, accSmooth and motor; log them')
+    start, t, columns, left_out = join(where, streams)
+    name = path.stem if count == 1 else f'{path.stem}_{log.number}'
+    return FlightRecord(t, columns, {'name': name, 'source': where, 'start_ns': start,
+                                     'notes': [*notes, *left_out]})
+
+
+def _stamps(log):
+    return log.values['time'].astype(np.int64) * 1000
+
+
+def _stack(log, names):
+    return np.stack([log.values[name] for name in names], axis=-1)
+
+
+def _stream(log, source, columns, values, between=INTERPOLATED):
+    return Stream(source, _stamps(log), dict(zip(columns, values.T, strict=True)), between)
+
+
+def _there(log, names):
+    return all(name in log.values for name in names)
+
+
+def _number(log, name):
+    """Return a header as a positive float, or None."""
+    value = log.headers.get(name)
+    try:
+        value = float(value)
+    except (OverflowError, TypeError, ValueError):
+        return None
+    return value if 0.0 < value < 1e12 else None
+
+
+def _rate(log, notes):
+    if not _there(log, GYRO):
+        return None
+    raw = log.headers.get('gyro_scale', log.headers.get('gyro.scale'))
+    scale = None
+    if isinstance(raw, int) and 0 < raw < 2 ** 32:      # the bits of a float
+        scale = struct.unpack('<f', struct.pack('<I', raw))[0]
+    if scale is None or not 1e-12 < scale < 1e3:
+        notes.append('gyroADC: the header has no gyro_scale; the values are taken for deg/s')
+        scale = 1.0
+    if scale < 1e-6:        # rad/us, of Baseflight; deg/s are 0.06 to 1
+        scale = np.degrees(scale * 1e6)
+    if _number(log, 'blackbox_high_resolution'):
+        scale /= 10.0
+    return _stream(log, 'gyroADC', ('wx', 'wy', 'wz'), np.radians(scale * _stack(log, GYRO)))
+
+
+def _specific_force(log, notes):
+    if not _there(log, ACCELEROMETER):
+        return None
+    one = _number(log, 'acc_1G')
+    if one is None:
+        notes.append('accSmooth: the header has no acc_1G, so that it is left out')
+        return None
+    return _stream(log, 'accSmooth', ('ax', 'ay', 'az'), _stack(log, ACCELEROMETER) * (G / one))
+
+
+def _attitude(log):
+    if not _there(log, ATTITUDE):
+        return None
+    vector = _stack(log, ATTITUDE) / 32767.0
+    real = np.sqrt(np.maximum(1.0 - np.sum(vector ** 2, axis=-1, keepdims=True), 0.0))
+    q = np.hstack([real, vector])
+    q = frames.multiply(_ENU_FROM_NWU, q / np.linalg.norm(q, axis=-1, keepdims=True))
+    return _stream(log, 'imuQuaternion', QUATERNION, q)
+
+
+def _rotors(log, notes):
+    names = [name for name in SPEEDS if name in log.values]
+    if not names:
+        return None
+    poles = _number(log, 'motor_poles')
+    if poles is None:
+        notes.append('eRPM: the header has no motor_poles, so that rotor speeds are left out')
+        return None
+    # Counted in hundreds of electrical turns a minute; two poles make one mechanical turn.
+    return _stream(log, 'eRPM', [f'rotor{k + 1}' for k in range(len(names))],
+                   _stack(log, names) * (200.0 / poles * np.pi / 30.0))
+
+
+def _battery(log, notes):
+    if 'vbatLatest' not in log.values:
+        return None
+    match = _REVISION.match(str(log.headers.get('Firmware revision', '')))
+    version = tuple(map(int, match.groups())) if match else (0, 0)
+    if version < (3, 1):
+        notes.append('vbatLatest: its unit is known for Betaflight 3.1 and later alone, so that '
+                     'it is left out')
+        return None
+    return _stream(log, 'vbatLatest', ('vbat',),
+                   _stack(log, ['vbatLatest']) / (100.0 if version >= (4, 0) else 10.0), SLOW)

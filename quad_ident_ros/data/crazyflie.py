@@ -1,0 +1,146 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Flight records from the micro-SD logs of a Crazyflie.
+
+Its frames are ENU and FLU, but for the pitch angle, whose sign is the other one. Source: log
+variables and coordinate system in Bitcraze's documentation.
+"""
+
+from pathlib import Path
+
+import numpy as np
+
+from quad_ident_ros.data import frames
+from quad_ident_ros.data.autopilot import G, known_names, outputs_stream, unit_quaternions
+from quad_ident_ros.data.readers.base import content_of
+from quad_ident_ros.data.record import FlightRecord, QUATERNION
+from quad_ident_ros.data.streams import INTERPOLATED, join, SLOW, Stream
+from quad_ident_ros.data.usdlog import read_events
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.model.attitude import quaternion_from_euler
+
+POSITION, VELOCITY = ('px', 'py', 'pz'), ('vx', 'vy', 'vz')
+RATE, FORCE = ('wx', 'wy', 'wz'), ('ax', 'ay', 'az')
+ROTORS = ('rotor1', 'rotor2', 'rotor3', 'rotor4')
+OUTPUTS = ('output1', 'output2', 'output3', 'output4')
+ORDER = ('motors are in the order of the Crazyflie: 1 front right, 2 rear right, 3 rear left, '
+         '4 front left')
+
+
+def _of(group, *names):
+    return tuple(f'{group}.{name}' for name in names)
+
+
+def _scaled(factor):
+    return lambda values: values * factor
+
+
+def _euler(degrees):
+    return quaternion_from_euler(np.radians(degrees * np.array([1.0, -1.0, 1.0])))
+
+
+def _turned(values):
+    """Return velocities in the world from those in the body and the quaternion beside them."""
+    return frames.rotate(unit_quaternions(values[:, 3:]), values[:, :3])
+
+
+_Q = ('q0', 'q1', 'q2', 'q3')
+SOURCES = (
+    ('pose', POSITION, INTERPOLATED, (
+        (_of('stateEstimate', 'x', 'y', 'z'), _scaled(1.0)),
+        (_of('kalman', 'stateX', 'stateY', 'stateZ'), _scaled(1.0)),
+        (_of('stateEstimateZ', 'x', 'y', 'z'), _scaled(1e-3)))),
+    ('velocity', VELOCITY, INTERPOLATED, (
+        (_of('stateEstimate', 'vx', 'vy', 'vz'), _scaled(1.0)),
+        (_of('kalman', 'statePX', 'statePY', 'statePZ', *_Q), _turned),
+        (_of('stateEstimateZ', 'vx', 'vy', 'vz'), _scaled(1e-3)))),
+    ('pose', QUATERNION, INTERPOLATED, (
+        (_of('stateEstimate', 'qw', 'qx', 'qy', 'qz'), unit_quaternions),
+        (_of('kalman', *_Q), unit_quaternions),
+        (_of('stateEstimate', 'roll', 'pitch', 'yaw'), _euler),
+        (_of('stabilizer', 'roll', 'pitch', 'yaw'), _euler))),
+    ('rate', RATE, INTERPOLATED, ((_of('gyro', *'xyz'), _scaled(np.pi / 180.0)),)),
+    ('specific_force', FORCE, INTERPOLATED, ((_of('acc', *'xyz'), _scaled(G)),)),
+    ('rotors', ROTORS, INTERPOLATED, ((_of('rpm', 'm1', 'm2', 'm3', 'm4'),
+                                       _scaled(np.pi / 30.0)),)),
+    ('battery', ('vbat',), SLOW, ((_of('pm', 'vbat'), _scaled(1.0)),
+                                  (_of('pm', 'vbatMV'), _scaled(1e-3)))),
+    ('commands', OUTPUTS, None, (
+        (_of('motor', 'm1', 'm2', 'm3', 'm4'), _scaled(1.0)),
+        (_of('pwm', 'm1_pwm', 'm2_pwm', 'm3_pwm', 'm4_pwm'), _scaled(1.0)))),
+)
+"""Role, columns, how they are held, and by preference (variables, what makes columns of them)."""
+
+
+def read_crazyflie(path, mapping=None, vehicle=None):
+    """
+    Return the FlightRecord of a micro-SD log.
+
+    The time base is that of the motors' commands, which become cmd1..4 where the mapping says how
+    (actuators), and stay output1..4, 0 to 65535, where it does not; without them it is that of
+    the first stream there is. No stream is required.
+    Args: path; mapping Mapping or None; vehicle Vehicle or None.
+    Raises InputError that names file and event or byte.
+    """
+    path = Path(path)
+    mapping = known_names(path, 'a Crazyflie log', mapping)
+    events, notes = read_events(path)
+    streams, used = [], set()
+    for _, columns, between, choices in SOURCES:
+        event, names, make = next(_there(events, choices), (None, (), None))
+        if event is None or (columns == ('vbat',) and len(event.stamps) < 2):
+            continue
+        used.update(names)
+        with np.errstate(all='ignore'):     # values of damaged rows
+            values = np.stack([event.values[name].astype(float) for name in names], axis=-1)
+            values = np.reshape(make(values), (len(values), -1))
+        source = f'event {event.name}'
+        if columns is OUTPUTS:
+            streams.append(outputs_stream(f'{path}, {source}', source, event.stamps, values,
+                                          mapping.actuators, vehicle))
+        else:
+            streams.append(Stream(source, event.stamps, dict(zip(columns, values.T, strict=True)),
+                                  between))
+    has = {name for stream in streams for name in stream.columns}
+    if not has - {'vbat'}:
+        raise InputError(f'{path}: none of the variables in this Crazyflie log is known (there '
+                         f'are: {_listed(_names(events))}); log acc, gyro, motor and '
+                         'stateEstimate')
+    if mapping.actuators is not None and 'cmd1' not in has:
+        raise InputError(f'{path}: has no motor.m1 to motor.m4 for the actuators of the mapping; '
+                         'log them, or leave actuators out')
+    start, t, columns, left_out = join(path, streams)
+    unread = [name for name in _names(events) if name not in used]
+    notes = [*notes, *([f'variables that are not read: {_listed(unread)}'] if unread else []),
+             *([ORDER] if has & {'cmd1', 'output1', 'rotor1'} else []), *left_out]
+    return FlightRecord(t, columns, {'name': path.stem, 'source': str(path), 'start_ns': start,
+                                     'notes': notes})
+
+
+def contents(path):
+    """Return the Content of each kind of event in a micro-SD log; errors of read_events."""
+    events, _ = read_events(path)
+    origin = min(int(event.stamps.min()) for event in events if len(event.stamps))
+    return [content_of(event.name, 'event', event.stamps, origin,
+                       [f'{name} ({letter})' for name, letter in event.types.items()],
+                       list(dict.fromkeys(role for role, _, _, choices in SOURCES
+                                          if next(_there([event], choices), None))))
+            for event in events]
+
+
+def _there(events, choices):
+    """Yield (event, names, make) of the choices whose variables an event with samples has."""
+    for names, make in choices:
+        for event in sorted(events, key=lambda event: -len(event.stamps)):
+            if len(event.stamps) and all(name in event.values for name in names):
+                yield event, names, make
+
+
+def _names(events):
+    return list(dict.fromkeys(name for event in events for name in event.values))
+
+
+def _listed(names, most=8):
+    more = f' and {len(names) - most} more' if len(names) > most else ''
+    return ', '.join(name[:40] for name in names[:most]) + more if names else 'none'
