@@ -10,6 +10,7 @@ from quad_ident_ros.data.quality import cautions, refuse_errors, refuted
 from quad_ident_ros.data.quality.finding import as_caution
 from quad_ident_ros.data.quality.ground import airborne, stands
 from quad_ident_ros.data.record import FlightRecord, refuse_twice, same_flight
+from quad_ident_ros.diagnose.blocks import interleaved
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.greybox.flights import Flight, guided, highest_voltage, moved, Track, track_of
@@ -54,7 +55,7 @@ def take_in(records: Sequence[FlightRecord], vehicle: Vehicle, hold_out: FlightR
     """
     Return the Intake of flight records.
 
-    The last one is held out, or hold_out, or the second half of a single one. Raises InputError
+    The last one is held out, or hold_out, or blocks of a single one. Raises InputError
     for a fault that no verdict survives, and where there is too little.
     """
     if hold_out is not None:    # among others it would take part in fit and choice
@@ -67,14 +68,22 @@ def take_in(records: Sequence[FlightRecord], vehicle: Vehicle, hold_out: FlightR
     records = [_fit_for_use(record, vehicle, rules, wrong, findings) for record in records]
     if hold_out is not None:
         hold_out = _fit_for_use(hold_out, vehicle, rules, wrong, findings)
-    training, test = split(records, hold_out)
-    records, late, answers = zip(*on_one_clock([*training, test]), strict=True)
-    voltage = highest_voltage(records[:-1])
-    clocks = clocks_of(answers[:-1], answers[-1:])
-    *tracks, held_out = (guided(track_of(record, vehicle, voltage, clock))
-                         for record, clock in zip(records, clocks, strict=True))
-    return Intake(vehicle, tuple(tracks), held_out, rollouts(tracks, vehicle), late, clocks,
-                  findings)
+    if not records:
+        raise InputError('no flight to learn from: name at least one flight record beside the one '
+                         'that is held out')
+    alone = hold_out is None and len(records) == 1
+    every = [*records, *([] if hold_out is None else [hold_out])]
+    every, late, answers = map(list, zip(*on_one_clock(every), strict=True))
+    learnt = every if alone else every[:-1]
+    voltage = highest_voltage(learnt)
+    clocks = clocks_of(answers[:len(learnt)], answers[len(learnt):])
+    tracks = [guided(track_of(record, vehicle, voltage, clock))
+              for record, clock in zip(every, clocks, strict=True)]
+    if alone:
+        tracks, late, clocks = list(interleaved(tracks[0])), 2 * late, 2 * clocks
+    *tracks, held_out = tracks
+    return Intake(vehicle, tuple(tracks), held_out, rollouts(tracks, vehicle), tuple(late),
+                  tuple(clocks), findings)
 
 
 def _fit_for_use(record: FlightRecord, vehicle: Vehicle, rules: Rules, wrong: Collection[str],
@@ -93,22 +102,6 @@ def _fit_for_use(record: FlightRecord, vehicle: Vehicle, rules: Rules, wrong: Co
 def rollouts(tracks: Sequence[Track], vehicle: Vehicle) -> list[Flight]:
     """Return the Flights of Tracks, cut so that the nominal vehicle stays near the record."""
     return near_flights(tracks, vehicle, nominal(vehicle))
-
-
-def split(records: Sequence[FlightRecord], hold_out: FlightRecord | None) -> tuple:
-    """Return the records to learn from and the one held out; InputError without a record."""
-    if not records:
-        raise InputError('no flight to learn from: name at least one flight record beside the one '
-                         'that is held out')
-    if hold_out is not None:
-        return records, hold_out
-    if len(records) > 1:
-        return records[:-1], records[-1]
-    record = records[0]
-    half, began = len(record) // 2, record.info.get('began', record.t[0])
-    later = record.slice(half, len(record))
-    # The battery goes on emptying from the start of the flight.
-    return [record.slice(0, half)], replace(later, info={**later.info, 'began': began})
 
 
 def length_of(record: FlightRecord) -> float:
