@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from quad_ident_ros.data import frames
-from quad_ident_ros.data.bag import read_bag_messages
+from quad_ident_ros.data.bag_file import read_bag_messages
 from quad_ident_ros.data.mapping import Actuators, rotor_speeds
 from quad_ident_ros.data.record import FlightRecord, QUATERNION
 from quad_ident_ros.data.streams import HELD, INTERPOLATED, join, SLOW, Stream

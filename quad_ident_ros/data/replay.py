@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from quad_ident_ros.data.bag import read_bag_messages
+from quad_ident_ros.data.bag_file import read_bag_messages
 from quad_ident_ros.data.buffer import Limits, RecordBuffer
 from quad_ident_ros.data.joiner import Joiner
 from quad_ident_ros.data.table import record_from_table

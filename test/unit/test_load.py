@@ -14,7 +14,8 @@ from rosbags.rosbag2 import StoragePlugin
 from rosbags.typesys import get_typestore, Stores
 
 from quad_ident_ros.cli.main import main
-from quad_ident_ros.data.bag import BagWriter, read_bag_messages
+from quad_ident_ros.data.bag import BagWriter
+from quad_ident_ros.data.bag_file import read_bag_messages
 from quad_ident_ros.data.csv import read_csv, write_csv
 from quad_ident_ros.data.export import save, write_bag
 from quad_ident_ros.data.frames import rotate

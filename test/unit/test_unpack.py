@@ -14,7 +14,7 @@ from rosbags.rosbag2.storage_mcap import decompress, zstd
 from rosbags.typesys import get_typestore, Stores
 
 from quad_ident_ros.data import limits
-from quad_ident_ros.data.bag import read_bag_messages
+from quad_ident_ros.data.bag_file import read_bag_messages
 from quad_ident_ros.data.export import write_bag
 from quad_ident_ros.data.limits import most, size_on_disk
 from quad_ident_ros.data.load import load
