@@ -209,6 +209,7 @@ class _Codec:
             candidates = [('', {})]
         else:
             candidates = list(layouts(self._type))
+        self._ships = not definition.data.strip() and self._type not in _defaults(ros1)
         if not candidates:
             raise TypesysError(f'topic {connection.topic}: the bag has no definition of '
                                f'{self._type}, and none ships; convert it to MCAP where the '
@@ -236,7 +237,7 @@ class _Codec:
                 continue
             self._chosen = read
             return message
-        if len(self._candidates) > 1:
+        if self._ships:
             raise TypesysError(f'topic {self._topic}: the bag has no definition of {self._type}, '
                                'and its messages have the length of none that ships; convert it '
                                'to MCAP where the package is installed: ros2 bag convert')
