@@ -5,7 +5,7 @@
 from array import array
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -36,6 +36,8 @@ _MESSAGE_BYTES = 1000   # that a message takes in memory besides its content
 _DEPTH = 10             # of messages in messages; those of ROS have 5
 _FIELDS = 400           # that are listed of a type
 _LONGEST = 1 << 26      # entries of a list in a message: the bytes of the largest image
+_UNROLLED = 1024        # texts or messages in an array, each of which costs the reader code
+_NO_FIELD = 'structure_needs_at_least_one_member'
 _IDL = '=' * 80 + '\nIDL: '
 
 
@@ -204,19 +206,19 @@ class _Codec:
         self._ros1 = ros1
         definition = connection.msgdef
         if definition.format != MessageDefinitionFormat.NONE and definition.data.strip():
-            candidates = [('', _parsed(definition, self._type))]
+            candidates = [('', definition)]
         elif self._type in _defaults(ros1):
-            candidates = [('', {})]
+            candidates = [('', None)]
         else:
-            candidates = list(layouts(self._type))
+            candidates = [(version, version) for version, _ in layouts(self._type)]
         self._ships = not definition.data.strip() and self._type not in _defaults(ros1)
         if not candidates:
             raise TypesysError(f'topic {connection.topic}: the bag has no definition of '
                                f'{self._type}, and none ships; convert it to MCAP where the '
                                'package is installed: ros2 bag convert')
         self._topic = connection.topic
-        self._candidates = [(version, _store(self._type, types, ros1))
-                            for version, types in candidates]
+        self._candidates = [(version, _store(self._type, source, ros1))
+                            for version, source in candidates]
         self._chosen = None
 
     def paths(self):
@@ -269,8 +271,18 @@ def _parsed(definition, msgtype):
     return types
 
 
-def _store(msgtype, types, ros1):
-    """Return a Typestore with a type and all that it is made of; TypesysError where one lacks."""
+@lru_cache(maxsize=64)
+def _store(msgtype, source, ros1):
+    """
+    Return a Typestore with a type and all that it is made of.
+
+    Args: source: the definition of a bag, the version of one that ships, or None for ROS' own.
+    Raises TypesysError where a definition is not there, or absurd.
+    """
+    if isinstance(source, str):
+        types = dict(layouts(msgtype))[source]
+    else:
+        types = {} if source is None else _parsed(source, msgtype)
     needed, open_types = {}, [(msgtype, 0)]
     while open_types:
         name, depth = open_types.pop()
@@ -312,7 +324,8 @@ def _check_lists(msgtype, types):
         if name in above:
             raise TypesysError(f'the definition of {name} contains itself')
         if name not in sizes:
-            sizes[name] = sum(bytes_of(field, (*above, name)) for _, field in types[name][1])
+            sizes[name] = sum(bytes_of(what, (*above, name)) for field, what in types[name][1]
+                              if field != _NO_FIELD)
         return sizes[name]
 
     def bytes_of(field, above):
@@ -325,7 +338,12 @@ def _check_lists(msgtype, types):
         one = bytes_of(element, above)
         if not one:
             raise TypesysError(f'the definition of {msgtype} has a list of empty messages')
-        return 4 if node == Nodetype.SEQUENCE else min(count, 1) * one
+        if node == Nodetype.SEQUENCE:
+            return 4
+        simple = element[0] == Nodetype.BASE and element[1][0] != 'string'
+        if count > (_LONGEST if simple else _UNROLLED):
+            raise TypesysError(f'the definition of {msgtype} has an array of {count} entries')
+        return count * one
 
     least(msgtype, ())
 
@@ -337,7 +355,7 @@ def _paths(msgtype, types):
     def walk(name, before):
         nonlocal left
         for field, (node, what) in types[name][1]:
-            if left <= 0 or field == 'structure_needs_at_least_one_member':
+            if left <= 0 or field == _NO_FIELD:
                 return
             path = f'{before}{field}'
             if node in (Nodetype.ARRAY, Nodetype.SEQUENCE):
