@@ -156,6 +156,8 @@ class BagFile:
                 left -= len(data) + _MESSAGE_BYTES
                 if left < 0:
                     raise TooLarge('its messages unpack to far more than measurements do')
+                if topics is not None and connection.topic not in topics:
+                    raise TypesysError('its index names messages of other topics')
                 if not -2 ** 63 <= stamp < 2 ** 63:
                     raise TypesysError(f'a message is stamped {stamp} ns, which is no time')
                 yield connection, stamp, data

@@ -110,6 +110,16 @@ def test_an_index_that_repeats_itself_is_refused(tmp_path):
         load_all(path)
 
 
+def test_an_index_that_names_messages_of_other_topics_is_refused(tmp_path):
+    path = write1(tmp_path / 'f.bag', [*odometry(SHORT), *esc_status(SHORT, SPEEDS.astype(int))])
+    data = bytearray(path.read_bytes())
+    at = data.index(b'conn=\x00', data.index(b'op=\x02') - 40)   # of the first message
+    data[at + 5] = 1
+    path.write_bytes(data)
+    with pytest.raises(InputError, match='other topics'):
+        list(read_bag_messages(path, {'/odom'}))
+
+
 def test_a_chunk_that_unpacks_to_too_much_is_refused(tmp_path, monkeypatch):
     for packing in Writer1.CompressionFormat:
         path = write1(tmp_path / f'{packing.name}.bag', odometry(SMALL), packing)
