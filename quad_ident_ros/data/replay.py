@@ -44,7 +44,7 @@ def is_recorded(path):
     """
     Whether a bag is of the recorder, of `quad_ident convert`, or of such topics.
 
-    `pose` and `twist` are common names, so one of them alone does not tell that.
+    `pose` and `twist` are common names, so they do not tell that.
     """
     path = _in_recording(path)
     with BagFile(path) as bag:
@@ -56,7 +56,7 @@ def is_recorded(path):
             spaces.setdefault(space, set()).add(name)
         if name == EXACT_TOPIC and topic.type == ARRAY_TYPE:
             return True
-    return any(len(names) > 1 or not names <= {'pose', 'twist', RUN_TOPIC}
+    return any(not names <= {'pose', 'twist'} and names != {RUN_TOPIC}
                for names in spaces.values())
 
 

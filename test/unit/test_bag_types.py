@@ -240,3 +240,12 @@ def test_a_bag_of_ros_1_that_was_cut_off_is_told_how_to_mend(tmp_path):
     path = write1(tmp_path / 'f.bag', odometry(SMALL))
     path.write_bytes(path.read_bytes()[:-200])
     refused(path, 'rosbag reindex')
+
+
+def test_pose_and_twist_of_a_motion_capture_are_none_of_the_recorder(tmp_path):
+    """Names that others use as well; their twist is in the world."""
+    speed = SMALL.stack(*SPEED)
+    twists = [('/vrpn/cf/twist', TWIST, ns, {'header': header(ns, 'world'),
+                                             'twist': {'linear': xyz(speed[k])}})
+              for k, (_, _, ns, _) in enumerate(poses(SMALL))]
+    agrees(load(write2(tmp_path / 'bag', [*poses(SMALL, '/vrpn/cf/pose'), *twists])), PLACE, SPEED)
