@@ -35,6 +35,11 @@ def _typestore():
     return get_typestore(Stores.ROS2_JAZZY)
 
 
+def is_known(msgtype):
+    """Whether a message type is one of ROS 2 Jazzy, which a bag can be written of."""
+    return msgtype in _typestore().fielddefs
+
+
 def serialize(msgtype, fields):
     """Return the serialized message of a type of ROS 2 Jazzy, given its fields as nested dicts."""
     return bytes(_typestore().serialize_cdr(_message(msgtype, fields), msgtype))

@@ -114,9 +114,31 @@ class TopicPart:
 
     def add(self, received, message):
         """Take a message and its time of receipt, ns; InputError where it does not hold this."""
+        for stamp, values in self._read(message, message.__msgtype__):
+            self._stamps.append(stamp)
+            self.received.append(received)
+            self._numbers.extend(values)
+
+    def samples(self, received, message, kind, mapping):
+        """
+        Return [(stamp in ns, columns -> numbers)] in a message, of which nothing is kept.
+
+        Args: received: its time of receipt, ns, where it has no stamp; kind its type; mapping
+        Mapping. Raises InputError where it does not hold this.
+        """
+        found = []
+        for stamp, values in self._read(message, kind):
+            columns = self._columns(np.array([values]), mapping, None)
+            found.append((stamp or received,
+                          {name: float(column[0]) for name, column in columns.items()}))
+        self._one_child()
+        return found
+
+    def _read(self, message, kind):
+        """Return [(stamp in ns or 0, numbers)] in a message."""
         self._messages += 1
         try:
-            self._take(received, message)
+            return [self._one(part, kind) for part in self._parts(message, kind)]
         except NoSuch as error:
             raise InputError(f'{self._here()}: {error}') from None
         except OTHER_SHAPE:
@@ -126,32 +148,30 @@ class TopicPart:
     def _here(self):
         return f'{self._where}, message {self._messages}'
 
-    def _take(self, received, message):
-        kind = message.__msgtype__
+    def _parts(self, message, kind):
+        """Return the message, or those of its transforms that are asked for."""
         if self._type is None:
             self._type = kind
         if kind != self._type:
             raise NoSuch(f'it is of type {kind}, the first is of {self._type}; record one type '
                          'on a topic')
-        if is_tf(kind) and not self.source.field:
-            for transform in message.transforms:
-                child = transform.child_frame_id.strip('/')
-                if self.source.child in ('', child):
-                    self._children.setdefault(child, transform.header.frame_id)
-                    self._keep(received, transform, kind)
-        else:
-            self._keep(received, message, kind)
+        if not is_tf(kind) or self.source.field:
+            return [message]
+        found = []
+        for transform in message.transforms:
+            child = transform.child_frame_id.strip('/')
+            if self.source.child in ('', child):
+                self._children.setdefault(child, transform.header.frame_id)
+                found.append(transform)
+        return found
 
-    def _keep(self, received, message, kind):
+    def _one(self, message, kind):
         values = tuple(map(float, self._values(message, kind)))
-        if not self._numbers:
-            self._width = len(values)
+        self._width = self._width or len(values)
         if len(values) != self._width:
             raise NoSuch(f'{len(values)} values where the first has {self._width}')
         stamp = stamp_of(message, kind)
-        self._stamps.append(stamp if 0 < stamp < 2 ** 63 else 0)
-        self.received.append(received)
-        self._numbers.extend(values)
+        return stamp if 0 < stamp < 2 ** 63 else 0, values
 
     def _values(self, message, kind):
         path = self.source.field
@@ -162,7 +182,7 @@ class TopicPart:
         reading = reading_of(self.role, kind, message)
         if reading.frame is not None:
             frame = reading.frame(message)
-            if self._numbers and frame != self._frame:
+            if self._reading is not None and frame != self._frame:
                 raise NoSuch('its velocity is in another frame than that of the first; record it '
                              'in one')
             self._frame = frame
@@ -175,16 +195,22 @@ class TopicPart:
             child = f' with child_frame_id {self.source.child}' if self.source.child else ''
             raise InputError(f'{self._where}: there is no such topic in this bag, or nothing on '
                              f'it{child}; see what there is with: quad_ident info')
+        self._one_child()
+        table = np.frombuffer(self._numbers, float).reshape(-1, self._width)
+        stamps = self._stamps if self._stamped else self.received
+        columns = self._columns(table, mapping, vehicle)
+        while len(columns) > 1 and 'output1' in columns and not list(columns.values())[-1].any():
+            columns.popitem()   # outputs without a motor come last
+        return Stream(f'topic {self.source.topic}', np.array(stamps, np.int64), columns,
+                      {'commands': HELD, 'battery': SLOW}.get(self.role, INTERPOLATED))
+
+    def _one_child(self):
+        """Refuse transforms of which the vehicle's is not known."""
         if len(self._children) > 1:
             names = ', '.join(sorted(self._children)[:_NAMED])
             raise InputError(f'{self._where}: holds transforms of several frames ({names}); name '
                              f'that of the vehicle: {self.role}: {{topic: {self.source.topic}, '
                              'child: FRAME}')
-        table = np.frombuffer(self._numbers, float).reshape(-1, self._width)
-        stamps = self._stamps if self._stamped else self.received
-        return Stream(f'topic {self.source.topic}', np.array(stamps, np.int64),
-                      self._columns(table, mapping, vehicle),
-                      {'commands': HELD, 'battery': SLOW}.get(self.role, INTERPOLATED))
 
     def _columns(self, table, mapping, vehicle):
         """Return the columns of the role from the rows of its messages."""
@@ -222,8 +248,6 @@ class TopicPart:
             order = actuators.order if actuators else ()
             actuators = Actuators(order, kind)
         elif kind and actuators is None:
-            used = np.flatnonzero((np.isfinite(table) & (table != 0)).any(axis=0))
-            table = table[:, :int(used[-1]) + 1 if len(used) else 1]
             return {f'output{k}': np.where(np.isfinite(column), column, 0.0)
                     for k, column in enumerate(table.T, 1)}
         speeds = rotor_speeds(self._where, table, actuators or Actuators(), vehicle)
