@@ -56,6 +56,7 @@ def read_mapped_bag(path, mapping, vehicle=None):
         for topic, received, message in bag.messages(by_topic):
             for part in by_topic[topic]:
                 part.add(received, message)
+    parts = [part for part in parts if not (notes and part.role == 'battery' and part.count < 2)]
     streams = [part.stream(mapping, vehicle) for part in parts]
     if np.ptp([part.offset for part in parts]) > ONE_CLOCK:
         streams = [Stream(stream.source, np.array(part.received, np.int64), stream.columns,
@@ -99,6 +100,11 @@ class TopicPart:
         self.received = array('q')
         self._messages = 0
         self._children = {}
+
+    @property
+    def count(self):
+        """The number of its samples that are finite."""
+        return int(np.isfinite(self._numbers).sum()) // (self._width or 1)
 
     @property
     def offset(self):

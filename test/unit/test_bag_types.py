@@ -249,3 +249,10 @@ def test_pose_and_twist_of_a_motion_capture_are_none_of_the_recorder(tmp_path):
                                              'twist': {'linear': xyz(speed[k])}})
               for k, (_, _, ns, _) in enumerate(poses(SMALL))]
     agrees(load(write2(tmp_path / 'bag', [*poses(SMALL, '/vrpn/cf/pose'), *twists])), PLACE, SPEED)
+
+
+def test_a_battery_that_is_recorded_once_does_not_keep_a_flight_from_being_read(tmp_path):
+    one = [row for row in px4(SMALL, SHARES) if 'battery' not in row[0]]
+    one += [row for row in px4(SMALL, SHARES) if 'battery' in row[0]][:1]
+    read = load(write2(tmp_path / 'bag', one))
+    assert not read.has('vbat') and read.has('px')
