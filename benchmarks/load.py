@@ -15,7 +15,7 @@ from std_msgs.msg import Float64MultiArray, String
 from std_srvs.srv import Trigger
 import yaml
 
-from quad_ident_ros.data.bag import read_bag_messages
+from quad_ident_ros.data.bag_file import read_bag_messages
 from quad_ident_ros.data.csv import write_csv
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.data.table import record_from_table

@@ -9,7 +9,8 @@ import numpy as np
 from rosbags.rosbag2 import Writer
 from rosbags.typesys import get_typestore, Stores
 
-from quad_ident_ros.data.bag import BagWriter, read_bag_messages, serialize
+from quad_ident_ros.data.bag import BagWriter, serialize
+from quad_ident_ros.data.bag_file import read_bag_messages
 from quad_ident_ros.data.frames import conjugate, multiply
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.model.attitude import rotation_matrix

@@ -44,7 +44,8 @@ MEGABYTES = 1024    # for one input, beyond what the process has when it begins
 NAMES = {'csv': 'f.csv', 'csv_gz': 'f.csv.gz', 'mcap': 'f.mcap', 'mcap_topics': 'f.mcap',
          'mcap_mapped': 'f.mcap', 'sqlite3': 'f.db3', 'metadata': 'bag', 'ulog': 'f.ulg',
          'crazyflie': 'log00', 'ardupilot': 'f.BIN', 'betaflight': 'f.bbl',
-         'mapping': 'f.yaml'}
+         'mapping': 'f.yaml', 'ros1': 'f.bag', 'ros1_lz4': 'f.bag', 'px4_bag': 'f.db3',
+         'bag_contents': 'f.bag'}
 """File that each kind of input is written to."""
 
 LOGS = ('crazyflie', 'ardupilot', 'betaflight')     # of which the contents are read as well
@@ -87,7 +88,22 @@ def valid_inputs(folder):
     found['ardupilot'] = dataflash(copter(record, outputs))
     found['betaflight'] = blackbox(rows_of(record, outputs))
     found['mapping'] = MAPPING.encode()
-    return found
+    return found | _bags(folder, record)
+
+
+def _bags(folder, record):
+    """Return the bytes of bags of ROS 1, and of one with px4_msgs but without definitions."""
+    sys.path.append(str(Path(__file__).parent / 'unit'))
+    from bag_files import esc_status, imu, lists, MAV, odometry, px4, transforms, write1, write_old
+    from rosbags.rosbag1 import Writer
+    speeds = record.stack('cmd1', 'cmd2', 'cmd3', 'cmd4')
+    rows = [*odometry(record), *imu(record), *transforms(record, ['a']),
+            *esc_status(record, speeds.astype(int)),
+            *lists(record, MAV, '/command/motor_speed', 'angular_velocities', speeds)]
+    found = {'ros1': write1(folder / 'plain', rows).read_bytes(),
+             'ros1_lz4': write1(folder / 'lz4', rows, Writer.CompressionFormat.LZ4).read_bytes(),
+             'px4_bag': write_old(folder / 'px4', px4(record, speeds / 2000)).read_bytes()}
+    return found | {'bag_contents': found['ros1']}
 
 
 def _mcap(folder, name, source, left_out):
@@ -156,6 +172,8 @@ def read(kind, path):
     elif kind in LOGS:
         contents_of(path)
         load_all(path, OUTPUTS, VEHICLE)
+    elif kind == 'bag_contents':
+        contents_of(path)
     else:
         load_all(path)
 

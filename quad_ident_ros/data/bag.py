@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Rosbag2 folders (MCAP): writing them so that a crash costs little, and reading them."""
+"""Rosbag2 folders (MCAP), written so that a crash costs little."""
 
 from contextlib import suppress
 from functools import cache
@@ -8,7 +8,6 @@ import os
 from pathlib import Path
 import shutil
 
-from rosbags.highlevel import AnyReader
 from rosbags.interfaces import (
     Nodetype,
     Qos,
@@ -22,12 +21,9 @@ from rosbags.rosbag2 import StoragePlugin, Writer
 from rosbags.rosbag2.storage_mcap import McapWriter
 from rosbags.typesys import get_typestore, Stores
 
-from quad_ident_ros.data.limits import most, size_on_disk
-from quad_ident_ros.data.unpack import TooLarge
 from quad_ident_ros.errors import InputError
 
 _PENDING_BYTES = 1 << 22
-_MESSAGE_BYTES = 1000   # that a message takes in memory besides its content
 _DISTRO = 'ros_distro: rosbags', 'ros_distro: jazzy'
 _FOREVER = QosTime(9223372036, 854775807)
 _QOS = Qos(QosHistory.KEEP_ALL, 0, QosReliability.RELIABLE, QosDurability.VOLATILE, _FOREVER,
@@ -37,6 +33,11 @@ _QOS = Qos(QosHistory.KEEP_ALL, 0, QosReliability.RELIABLE, QosDurability.VOLATI
 @cache
 def _typestore():
     return get_typestore(Stores.ROS2_JAZZY)
+
+
+def is_known(msgtype):
+    """Whether a message type is one of ROS 2 Jazzy, which a bag can be written of."""
+    return msgtype in _typestore().fielddefs
 
 
 def serialize(msgtype, fields):
@@ -151,36 +152,6 @@ class BagWriter:
     def __exit__(self, *_):
         """Close the bag."""
         self.close()
-
-
-def read_bag_messages(path, topics=None):
-    """
-    Yield the (topic, stamp in ns, message) of a rosbag2 folder (or .mcap file) by time.
-
-    Args: topics the names of those to read (others are not even deserialized), or None for all.
-    Raises InputError, at the first message at the latest, where there is no bag to read.
-    """
-    path = Path(path)
-    if not path.exists():
-        raise InputError(f'{path}: there is no such bag; give the path of a rosbag2 folder')
-    if path.is_dir() and not (path / 'metadata.yaml').exists():
-        raise InputError(f'{path}: no bag, it has no metadata.yaml; give the path of a rosbag2 '
-                         'folder, or make the file with: ros2 bag reindex FOLDER')
-    try:
-        with AnyReader([path], default_typestore=_typestore()) as reader:
-            wanted = [connection for connection in reader.connections
-                      if topics is None or connection.topic in topics]
-            left = most(size_on_disk(path))
-            # Without connections, messages() would yield those of all.
-            for connection, stamp, data in reader.messages(wanted) if wanted else ():
-                left -= len(data) + _MESSAGE_BYTES
-                if left < 0:
-                    raise TooLarge('its messages unpack to far more than measurements do')
-                yield connection.topic, stamp, reader.deserialize(data, connection.msgtype)
-    except Exception as error:  # a damaged bag makes the reader raise anything
-        reason = ' '.join(str(error).split())[:200] or type(error).__name__
-        raise InputError(f'{path}: this bag cannot be read ({reason}); check it with: ros2 bag '
-                         'info FOLDER, or record it again') from error
 
 
 class _TailedFile:

@@ -25,12 +25,13 @@ class RecordBuffer:
 
     A record is complete when the run that a notice announced has its last sample, when the next
     run begins, when the clock begins anew, or when the window is full.
-    Args: columns: raw columns of a row; limits: Limits.
+    Args: columns: raw columns of a row, to be set before the first record where they are not known
+    yet; limits: Limits.
     """
 
     def __init__(self, columns, limits):
         self.limits = limits
-        self._columns = tuple(columns)
+        self.columns = tuple(columns)
         self._rows = []
         self._runs = []
         self._run = None
@@ -114,7 +115,7 @@ class RecordBuffer:
         info.update(start_ns=int(stamps[0]), dropped=missing)
         table = np.array([row[1] for row in rows])
         return [FlightRecord((stamps - stamps[0]) * 1e-9,
-                             record_columns(self._columns, table), info)]
+                             record_columns(self.columns, table), info)]
 
     def _full(self):
         span = self._rows[-1][0] - self._rows[0][0]

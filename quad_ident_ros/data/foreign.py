@@ -1,63 +1,71 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Flight records from bags of others: a mapping file says which topic is what."""
+"""Flight records from bags of others: a mapping says which topic is what, or their types do."""
 
+from array import array
 import math
 
 import numpy as np
 
 from quad_ident_ros.data import frames
-from quad_ident_ros.data.bag import read_bag_messages
+from quad_ident_ros.data.bag_file import BagFile
+from quad_ident_ros.data.bag_guess import guessed
 from quad_ident_ros.data.mapping import Actuators, rotor_speeds
+from quad_ident_ros.data.message_roles import (
+    at_path,
+    is_px4,
+    is_tf,
+    NoSuch,
+    reading_of,
+    ROLES_OF,
+    shaped,
+    stamp_of,
+)
 from quad_ident_ros.data.record import FlightRecord, QUATERNION
 from quad_ident_ros.data.streams import HELD, INTERPOLATED, join, SLOW, Stream
-from quad_ident_ros.data.topics import not_unit, OTHER_SHAPE, stamp_ns
+from quad_ident_ros.data.topics import not_unit, OTHER_SHAPE
 from quad_ident_ros.errors import InputError
 
 BODY_VELOCITY = ('body_vx', 'body_vy', 'body_vz')
-
-_POSE = {
-    'nav_msgs/msg/Odometry': lambda m: m.pose.pose,
-    'geometry_msgs/msg/PoseStamped': lambda m: m.pose,
-    'geometry_msgs/msg/PoseWithCovarianceStamped': lambda m: m.pose.pose,
-}
-_TWIST = {
-    'nav_msgs/msg/Odometry': lambda m: m.twist.twist,
-    'geometry_msgs/msg/TwistStamped': lambda m: m.twist,
-    'geometry_msgs/msg/TwistWithCovarianceStamped': lambda m: m.twist.twist,
-}
-_RATE = {
-    'sensor_msgs/msg/Imu': lambda m: m.angular_velocity,
-    'geometry_msgs/msg/Vector3Stamped': lambda m: m.vector,
-    **{name: lambda m, twist=twist: twist(m).angular for name, twist in _TWIST.items()},
-}
-_SPECIFIC_FORCE = {
-    'sensor_msgs/msg/Imu': lambda m: m.linear_acceleration,
-    'geometry_msgs/msg/Vector3Stamped': lambda m: m.vector,
-    'geometry_msgs/msg/AccelStamped': lambda m: m.accel.linear,
-}
-_TRANSFORM = 'geometry_msgs/msg/TransformStamped'
+ONE_CLOCK = 1.0     # s between a stamp and its receipt that vary so much are of several clocks
+_NAMED = 12         # frames that a message lists
+_DEFAULT_FIELD = {'commands': 'data', 'rotors': 'data', 'battery': 'voltage'}
+_COLUMNS = {'position': ('px', 'py', 'pz'), 'velocity': ('vx', 'vy', 'vz'),
+            'rate': ('wx', 'wy', 'wz'), 'specific_force': ('ax', 'ay', 'az')}
 
 
 def read_mapped_bag(path, mapping, vehicle=None):
     """
-    Return the FlightRecord in a bag whose topics a mapping names.
+    Return the FlightRecord in a bag of ROS 1 or ROS 2 whose topics a mapping names.
 
-    Stamps are those of the headers where all messages of a topic have one, else the times of
-    receipt. Args: path of a folder, .mcap or .db3; mapping Mapping; vehicle Vehicle or None.
+    A mapping without topics is filled by the types of the topics, where these leave no doubt.
+    Stamps are those in the messages where all of a topic have one, else the times of receipt; all
+    are the times of receipt where the stamps are of several clocks.
+    Args: path of a bag; mapping Mapping; vehicle Vehicle or None.
     Raises InputError that names file, topic and message.
     """
-    wanted = {source.topic for source in mapping.topics.values()}
-    if not wanted:
-        raise InputError(f'{path}: the mapping names no topics; add topics: to it')
-    messages = {topic: [] for topic in wanted}
-    for topic, received, message in read_bag_messages(path, wanted):
-        messages[topic].append((received, message))
-    streams = [_stream(path, role, source, messages[source.topic], mapping, vehicle)
-               for role, source in mapping.topics.items()]
-    start, t, columns, notes = join(path, streams)
+    notes = []
+    with BagFile(path) as bag:
+        if not mapping.topics:
+            mapping, notes = guessed(path, bag, mapping)
+        parts = [TopicPart(f'{path}, topic {source.topic}', role, source)
+                 for role, source in mapping.topics.items()]
+        by_topic = {}
+        for part in parts:
+            by_topic.setdefault(part.source.topic, []).append(part)
+        for topic, received, message in bag.messages(by_topic):
+            for part in by_topic[topic]:
+                part.add(received, message)
+    parts = [part for part in parts if not (notes and part.role == 'battery' and part.count < 2)]
+    streams = [part.stream(mapping, vehicle) for part in parts]
+    if np.ptp([part.offset for part in parts]) > ONE_CLOCK:
+        streams = [Stream(stream.source, np.array(part.received, np.int64), stream.columns,
+                          stream.between) for part, stream in zip(parts, streams, strict=True)]
+        notes = [*notes, 'the stamps of the topics are of several clocks; times of receipt are '
+                 'used for all of them']
+    start, t, columns, left_out = join(path, streams)
     return FlightRecord(t, _velocity_in_world(path, columns),
-                        {'source': str(path), 'start_ns': start, 'notes': list(notes)})
+                        {'source': str(path), 'start_ns': start, 'notes': [*notes, *left_out]})
 
 
 def _velocity_in_world(path, columns):
@@ -72,125 +80,181 @@ def _velocity_in_world(path, columns):
     return columns
 
 
-def _stream(path, role, source, messages, mapping, vehicle):
-    """Return the stream of a role from the (time of receipt, message) of its topic."""
-    where = f'{path}, topic {source.topic}'
-    if not messages:
-        raise InputError(f'{where}: there is no such topic in this bag, or nothing on it; see '
-                         'what there is with: ros2 bag info')
-    kind = messages[0][1].__msgtype__
-    values, stamps = [], []
-    for number, (received, message) in enumerate(messages, 1):
+class TopicPart:
+    """
+    What the messages of one topic hold for one role.
+
+    Only numbers are kept, so that a long bag takes little memory.
+    Args: where: file and topic, for messages; role of mapping.ROLES; source mapping.Source.
+    """
+
+    def __init__(self, where, role, source):
+        self.role, self.source = role, source
+        self._where = where
+        self._type = None
+        self._reading = None
+        self._frame = ''
+        self._width = 0
+        self._numbers = array('d')
+        self._stamps = array('q')
+        self.received = array('q')
+        self._messages = 0
+        self._children = {}
+
+    @property
+    def count(self):
+        """The number of its samples that are finite."""
+        return int(np.isfinite(self._numbers).sum()) // (self._width or 1)
+
+    @property
+    def offset(self):
+        """The time from the stamps to the receipt, s: the median, or 0 where there are none."""
+        if not self._stamped:
+            return 0.0
+        late = np.array(self.received, np.int64) - np.array(self._stamps, np.int64)
+        return float(np.median(late)) * 1e-9
+
+    @property
+    def _stamped(self):
+        return min(self._stamps) > 0
+
+    def add(self, received, message):
+        """Take a message and its time of receipt, ns; InputError where it does not hold this."""
+        for stamp, values in self._read(message, message.__msgtype__):
+            self._stamps.append(stamp)
+            self.received.append(received)
+            self._numbers.extend(values)
+
+    def samples(self, received, message, kind, mapping):
+        """
+        Return [(stamp in ns, columns -> numbers)] in a message, of which nothing is kept.
+
+        Args: received: its time of receipt, ns, where it has no stamp; kind its type; mapping
+        Mapping. Raises InputError where it does not hold this.
+        """
+        found = []
+        for stamp, values in self._read(message, kind):
+            columns = self._columns(np.array([values]), mapping, None)
+            found.append((stamp or received,
+                          {name: float(column[0]) for name, column in columns.items()}))
+        self._one_child()
+        return found
+
+    def _read(self, message, kind):
+        """Return [(stamp in ns or 0, numbers)] in a message."""
+        self._messages += 1
         try:
-            values.append(tuple(map(float, _READERS[role](message, kind, source))))
-            stamps.append((_header_stamp(message), received))
-        except _NoSuch as error:
-            raise InputError(f'{where}, message {number}: {error}') from None
+            return [self._one(part, kind) for part in self._parts(message, kind)]
+        except NoSuch as error:
+            raise InputError(f'{self._here()}: {error}') from None
         except OTHER_SHAPE:
-            raise InputError(f'{where}, message {number}: the bag defines {kind} otherwise than '
+            raise InputError(f'{self._here()}: the bag defines {self._type} otherwise than '
                              'ROS 2 does; record it again') from None
-    if len({len(row) for row in values}) > 1:
-        number = next(k for k, row in enumerate(values) if len(row) != len(values[0]))
-        raise InputError(f'{where}, message {number + 1}: {len(values[number])} values where the '
-                         f'first has {len(values[0])}')
-    table = np.array(values, float)
-    return Stream(f'topic {source.topic}', _stamps(stamps),
-                  _columns(where, role, source, table, mapping, vehicle),
-                  {'commands': HELD, 'battery': SLOW}.get(role, INTERPOLATED))
 
+    def _here(self):
+        return f'{self._where}, message {self._messages}'
 
-def _header_stamp(message):
-    """Return the stamp in the header of a message, ns, or 0."""
-    return int(stamp_ns(message)) if hasattr(message, 'header') else 0
+    def _parts(self, message, kind):
+        """Return the message, or those of its transforms that are asked for."""
+        if self._type is None:
+            self._type = kind
+        if kind != self._type:
+            raise NoSuch(f'it is of type {kind}, the first is of {self._type}; record one type '
+                         'on a topic')
+        if not is_tf(kind) or self.source.field:
+            return [message]
+        found = []
+        for transform in message.transforms:
+            child = transform.child_frame_id.strip('/')
+            if self.source.child in ('', child):
+                self._children.setdefault(child, transform.header.frame_id)
+                found.append(transform)
+        return found
 
+    def _one(self, message, kind):
+        values = tuple(map(float, self._values(message, kind)))
+        self._width = self._width or len(values)
+        if len(values) != self._width:
+            raise NoSuch(f'{len(values)} values where the first has {self._width}')
+        stamp = stamp_of(message, kind)
+        return stamp if 0 < stamp < 2 ** 63 else 0, values
 
-def _stamps(stamps):
-    """Return the stamps (ns) of messages from (that of the header, time of receipt) of each."""
-    headers = [header for header, _ in stamps]
-    if min(headers) > 0 and max(headers) < 2 ** 63:
-        return np.array(headers, np.int64)
-    return np.array([received for _, received in stamps], np.int64)
+    def _values(self, message, kind):
+        path = self.source.field
+        if not path and kind not in ROLES_OF and self.role in _DEFAULT_FIELD:
+            path = _DEFAULT_FIELD[self.role]
+        if path:
+            return shaped(self.role, at_path(message, path, kind), path)
+        reading = reading_of(self.role, kind, message)
+        if reading.frame is not None:
+            frame = reading.frame(message)
+            if self._reading is not None and frame != self._frame:
+                raise NoSuch('its velocity is in another frame than that of the first; record it '
+                             'in one')
+            self._frame = frame
+        self._reading = reading
+        return reading.values(message)
 
+    def stream(self, mapping, vehicle):
+        """Return the Stream of the messages; InputError where there are none."""
+        if not self._numbers:
+            child = f' with child_frame_id {self.source.child}' if self.source.child else ''
+            raise InputError(f'{self._where}: there is no such topic in this bag, or nothing on '
+                             f'it{child}; see what there is with: quad_ident info')
+        self._one_child()
+        table = np.frombuffer(self._numbers, float).reshape(-1, self._width)
+        stamps = self._stamps if self._stamped else self.received
+        columns = self._columns(table, mapping, vehicle)
+        while len(columns) > 1 and 'output1' in columns and not list(columns.values())[-1].any():
+            columns.popitem()   # outputs without a motor come last
+        return Stream(f'topic {self.source.topic}', np.array(stamps, np.int64), columns,
+                      {'commands': HELD, 'battery': SLOW}.get(self.role, INTERPOLATED))
 
-def _columns(where, role, source, table, mapping, vehicle):
-    """Return the columns of a role from the rows of its messages."""
-    if role == 'pose':
-        bad = not_unit(table[:, 3:])
-        if bad.any():
-            raise InputError(f'{where}, message {int(np.argmax(bad)) + 1}: the quaternion has not '
-                             'the length 1; record a pose with an attitude')
-        attitude = frames.attitude(table[:, 3:], mapping.world, mapping.body)
-        position = frames.world_vector(table[:, :3], mapping.world)
-        return dict(zip(('px', 'py', 'pz', *QUATERNION),
-                        np.hstack([position, attitude]).T, strict=True))
-    if role == 'velocity' and source.frame == 'world':
-        return dict(zip(('vx', 'vy', 'vz'), frames.world_vector(table, mapping.world).T,
-                        strict=True))
-    if role in ('velocity', 'rate', 'specific_force'):
-        names = {'velocity': BODY_VELOCITY, 'rate': ('wx', 'wy', 'wz'),
-                 'specific_force': ('ax', 'ay', 'az')}[role]
-        return dict(zip(names, frames.body_vector(table, mapping.body).T, strict=True))
-    if role == 'battery':
-        return {'vbat': table[:, 0]}
-    name = 'cmd' if role == 'commands' else 'rotor'
-    speeds = rotor_speeds(where, table, mapping.actuators or Actuators(), vehicle)
-    return {f'{name}{k}': column for k, column in enumerate(speeds.T, 1)}
+    def _one_child(self):
+        """Refuse transforms of which the vehicle's is not known."""
+        if len(self._children) > 1:
+            names = ', '.join(sorted(self._children)[:_NAMED])
+            raise InputError(f'{self._where}: holds transforms of several frames ({names}); name '
+                             f'that of the vehicle: {self.role}: {{topic: {self.source.topic}, '
+                             'child: FRAME}')
 
+    def _columns(self, table, mapping, vehicle):
+        """Return the columns of the role from the rows of its messages."""
+        px4 = is_px4(self._type)
+        world, body = ('NED', 'FRD') if px4 else (mapping.world, mapping.body)
+        role = self.role
+        if role in ('pose', 'attitude'):
+            bad = not_unit(table[:, -4:])
+            if bad.any():
+                raise InputError(f'{self._where}, message {int(np.argmax(bad)) + 1}: the '
+                                 f'quaternion has not the length 1; record a {role} with an '
+                                 'attitude')
+            columns = dict(zip(QUATERNION, frames.attitude(table[:, -4:], world, body).T,
+                               strict=True))
+            if role == 'pose':
+                position = frames.world_vector(table[:, :3], world)
+                columns = {**dict(zip(_COLUMNS['position'], position.T, strict=True)), **columns}
+            return columns
+        if role == 'position':
+            return dict(zip(_COLUMNS[role], frames.world_vector(table, world).T, strict=True))
+        if role == 'velocity' and (self.source.frame or self._frame) == 'world':
+            return dict(zip(_COLUMNS[role], frames.world_vector(table, world).T, strict=True))
+        if role in _COLUMNS:
+            names = BODY_VELOCITY if role == 'velocity' else _COLUMNS[role]
+            return dict(zip(names, frames.body_vector(table, body).T, strict=True))
+        if role == 'battery':
+            return {'vbat': np.where(np.isfinite(table[:, 0]), table[:, 0], math.nan)}
+        return self._outputs(table, mapping.actuators, vehicle)
 
-class _NoSuch(Exception):
-    """A message does not hold what its role needs."""
-
-
-def _of(readers, message, kind):
-    if kind not in readers:
-        raise _NoSuch(f'{kind} cannot be read for this; possible are {", ".join(sorted(readers))}')
-    return readers[kind](message)
-
-
-def _xyz(vector):
-    return vector.x, vector.y, vector.z
-
-
-def _pose(message, kind, source):
-    if kind == _TRANSFORM:
-        position, q = message.transform.translation, message.transform.rotation
-    else:
-        pose = _of({**_POSE, _TRANSFORM: None}, message, kind)
-        position, q = pose.position, pose.orientation
-    return *_xyz(position), q.w, q.x, q.y, q.z
-
-
-def _field(message, kind, source):
-    """Return the numbers in the field of a message, data by default, as a tuple."""
-    value = message
-    for name in (source.field or 'data').split('.'):
-        fields = getattr(value, '__dataclass_fields__', {})
-        if name not in fields:
-            known = ', '.join(key for key in fields if not key.startswith('__'))
-            raise _NoSuch(f'{kind} has no field {name!r}; name one of: {known}')
-        value = getattr(value, name)
-    try:
-        with np.errstate(invalid='ignore'):   # nan of a kind that signals
-            numbers = np.atleast_1d(np.asarray(value, float))
-    except (TypeError, ValueError):
-        numbers = np.empty((0, 0))
-    if numbers.ndim != 1 or not 1 <= len(numbers) <= 64:
-        raise _NoSuch(f'the field {source.field or "data"!r} holds no list of 1 to 64 numbers')
-    return tuple(numbers.tolist())
-
-
-def _battery(message, kind, source):
-    values = _field(message, kind, source if source.field else
-                    type(source)(source.topic, 'voltage'))
-    return (values[0] if math.isfinite(values[0]) else math.nan,)
-
-
-_READERS = {
-    'pose': _pose,
-    'velocity': lambda m, kind, _: _xyz(_of(_TWIST, m, kind).linear),
-    'rate': lambda m, kind, _: _xyz(_of(_RATE, m, kind)),
-    'specific_force': lambda m, kind, _: _xyz(_of(_SPECIFIC_FORCE, m, kind)),
-    'commands': _field,
-    'rotors': _field,
-    'battery': _battery,
-}
+    def _outputs(self, table, actuators, vehicle):
+        """Return commands or rotor speeds in rad/s, or outputs where these are not known."""
+        name = 'cmd' if self.role == 'commands' else 'rotor'
+        kind = self._reading.kind if self._reading else ''
+        if kind in ('speed', 'rpm') and (actuators is None or name == 'rotor'):
+            order = actuators.order if actuators else ()
+            actuators = Actuators(order, kind)
+        elif kind and actuators is None:
+            return {f'output{k}': np.where(np.isfinite(column), column, 0.0)
+                    for k, column in enumerate(table.T, 1)}
+        speeds = rotor_speeds(self._where, table, actuators or Actuators(), vehicle)
+        return {f'{name}{k}': column for k, column in enumerate(speeds.T, 1)}

@@ -11,7 +11,8 @@ from quad_ident_ros import resources, schema
 from quad_ident_ros.data.frames import BODIES, WORLDS
 from quad_ident_ros.errors import InputError
 
-ROLES = ('pose', 'velocity', 'rate', 'specific_force', 'commands', 'rotors', 'battery')
+ROLES = ('pose', 'position', 'attitude', 'velocity', 'rate', 'specific_force', 'commands',
+         'rotors', 'battery')
 """What a topic can be read for."""
 
 KINDS = {'speed': None, 'rpm': None, 'pwm': (1000.0, 2000.0), 'normalised': (0.0, 1.0)}
@@ -41,11 +42,18 @@ class Actuators:
 
 @dataclass(frozen=True)
 class Source:
-    """A topic to read for a role: its name, the field with the value, and the frame of it."""
+    """
+    A topic to read for a role.
+
+    topic: its name; field: the path of the value in its messages, '' for where its type has it;
+    frame: of a velocity, body or world, '' for what its type says; child: the child_frame_id of
+    the transform to read of several.
+    """
 
     topic: str
     field: str = ''
-    frame: str = 'body'
+    frame: str = ''
+    child: str = ''
 
 
 @dataclass(frozen=True)
@@ -124,15 +132,15 @@ def rotor_speeds(where, outputs, actuators, vehicle):
 
 
 def _source(where, role, entry):
-    known = {'velocity': ('topic', 'frame'), 'commands': ('topic', 'field'),
-             'rotors': ('topic', 'field'), 'battery': ('topic', 'field')}.get(role, ('topic',))
+    known = ('topic', 'field', *{'velocity': ('frame',), 'pose': ('child',)}.get(role, ()))
     schema.check_keys(where, entry, known, ('topic',))
-    topic, path = entry['topic'], entry.get('field', '')
-    for key, value in (('topic', topic), ('field', path)):
-        if not isinstance(value, str) or not value.isprintable() or (key == 'topic' and not value):
+    texts = {key: entry.get(key, '') for key in ('topic', 'field', 'child')}
+    for key, value in texts.items():
+        if not isinstance(value, str) or not value.isprintable() or (key in entry and not value):
             raise InputError(f'{where}: {key}: expected a name, got {schema.shown(value)}')
-    frame = schema.choice(f'{where}: frame', entry.get('frame', 'body'), ('body', 'world'))
-    return Source(topic, path, frame)
+    frame = (schema.choice(f'{where}: frame', entry['frame'], ('body', 'world'))
+             if 'frame' in entry else '')
+    return Source(texts['topic'], texts['field'], frame, texts['child'].strip('/'))
 
 
 def _actuators(where, data):

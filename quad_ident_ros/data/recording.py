@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from quad_ident_ros.data.bag import BagWriter
+from quad_ident_ros.data.bag import BagWriter, is_known
 from quad_ident_ros.data.csv import CsvAppender
 from quad_ident_ros.data.topics import (
     FLIGHT_TOPICS,
@@ -26,17 +26,22 @@ class Recording:
     What was flushed survives a kill -9. A CSV file ends, and the next one begins, where the rows
     are not one flight any more: between announced runs, and where the clock begins anew.
     Args: parent: the folder in which recording_1, recording_2, ... is made; topics: the names of
-    the topics that rows consist of, and of `run`, each with the full name that the bag keeps.
+    the topics that rows consist of, and of `run`, each with the full name that the bag keeps;
+    types: the message types of topics that are not ours, of which the bag keeps those of ROS 2
+    itself: set columns to those of the rows then.
     Raises OSError where the disk refuses.
     """
 
-    def __init__(self, parent, topics):
+    def __init__(self, parent, topics, types=None):
         self.folder = _make_next(Path(parent).expanduser())
         self._full_names = dict(topics)
         joined = [name for name in topics if name != RUN_TOPIC]
-        self._raw = raw_columns(joined)
-        types = [(topics[name], FLIGHT_TOPICS[name].type) for name in joined]
-        self._bag = BagWriter(self.folder / 'bag', [*types, (topics[RUN_TOPIC], RUN_TYPE)])
+        self.columns = raw_columns(joined) if types is None else ()
+        types = types or {name: FLIGHT_TOPICS[name].type for name in joined}
+        self._kept = {name: kind for name, kind in {**types, RUN_TOPIC: RUN_TYPE}.items()
+                      if is_known(kind)}
+        self._bag = BagWriter(self.folder / 'bag',
+                              [(topics[name], kind) for name, kind in self._kept.items()])
         self._runs = []
         self._run = None
         self._last = None
@@ -47,7 +52,8 @@ class Recording:
 
     def write(self, topic, received_ns, cdr):
         """Take a message as it came: its topic, time of receipt (ns) and serialized bytes."""
-        self._bag.write(self._full_names[topic], received_ns, cdr)
+        if topic in self._kept:
+            self._bag.write(self._full_names[topic], received_ns, cdr)
 
     def add_run(self, notice):
         """Take the notice of a run: its rows go into a CSV file of their own."""
@@ -90,7 +96,7 @@ class Recording:
         if not rows:
             return
         stamps = np.array([row[0] for row in rows])
-        columns = record_columns(self._raw, np.array([row[1] for row in rows]))
+        columns = record_columns(self.columns, np.array([row[1] for row in rows]))
         if self._csv is None:
             self._number += 1
             self._origin = stamps[0]

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from quad_ident_ros.data.bag import read_bag_messages
+from quad_ident_ros.data.bag_file import BagFile, read_bag_messages
 from quad_ident_ros.data.buffer import Limits, RecordBuffer
 from quad_ident_ros.data.joiner import Joiner
 from quad_ident_ros.data.table import record_from_table
@@ -40,6 +40,32 @@ class _Named:
         return topic.rpartition('/')[2] in self._names
 
 
+def is_recorded(path):
+    """
+    Whether a bag is of the recorder, of `quad_ident convert`, or of such topics.
+
+    `pose` and `twist` are common names, so they do not tell that.
+    """
+    path = _in_recording(path)
+    with BagFile(path) as bag:
+        topics = bag.topics
+    spaces = {}
+    for topic in topics:
+        space, _, name = topic.name.rpartition('/')
+        if _TYPES.get(name) == topic.type:
+            spaces.setdefault(space, set()).add(name)
+        if name == EXACT_TOPIC and topic.type == ARRAY_TYPE:
+            return True
+    return any(not names <= {'pose', 'twist'} and names != {RUN_TOPIC}
+               for names in spaces.values())
+
+
+def _in_recording(path):
+    """Return the bag in a folder of the recorder, or the path itself."""
+    bag = Path(path) / 'bag'
+    return bag if (bag / 'metadata.yaml').exists() else path
+
+
 def read_bag(path):
     """
     Return the flight records in a bag, one per announced run, joined as the recorder does.
@@ -49,8 +75,7 @@ def read_bag(path):
     Raises InputError for a path that is no bag, or a bag with none of the topics of a flight or
     with those of several vehicles.
     """
-    if (Path(path) / 'bag' / 'metadata.yaml').exists():   # a recording of the recorder
-        path = Path(path) / 'bag'
+    path = _in_recording(path)
     exact = [_exact(path, topic, message)
              for topic, _, message in read_bag_messages(path, _Named((EXACT_TOPIC,)))
              if message.__msgtype__ == ARRAY_TYPE]

@@ -2,9 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Bags unpacked within limits: rosbags has none, and no way to set one."""
 
+import bz2
 from types import SimpleNamespace
 
 from lz4.frame import LZ4FrameDecompressor
+from rosbags.rosbag1 import reader as reader1
 from rosbags.rosbag2 import reader, storage_mcap
 from rosbags.rosbag2.errors import ReaderError
 
@@ -77,3 +79,42 @@ class _File:
 _zstd_module = storage_mcap.zstd
 storage_mcap.DECOMPRESSORS.update(zstd=_bounded(_zstd), lz4=_bounded(_lz4))
 reader.zstd = SimpleNamespace(decompress=_message, open=_open)
+
+
+class BoundedReader1(reader1.Reader):
+    """A reader of ROS 1 bags whose chunks and index are no larger than the file can mean."""
+
+    def open(self):
+        """Open the bag."""
+        self._packed = self.path.stat().st_size
+        self._left = limits.most(self._packed)
+        self._index = 0
+        super().open()
+
+    def read_chunk(self):
+        """Return the next chunk, which unpacks within limits."""
+        chunk = super().read_chunk()
+        return chunk._replace(decompressor=self._within(chunk.decompressor))
+
+    def read_index_data(self, pos, indexes):
+        """Read an index, of which all together are no longer than the file."""
+        before = self.bio.tell()
+        super().read_index_data(pos, indexes)
+        self._index += self.bio.tell() - before
+        if self._index > self._packed:
+            raise reader1.ReaderError('its index names the same messages again and again')
+
+    def _within(self, unpack):
+        machine = {reader1.bz2_decompress: bz2.BZ2Decompressor,
+                   reader1.lz4_decompress: LZ4FrameDecompressor}.get(unpack)
+
+        def bounded(data):
+            unpacked = (data if machine is None else
+                        machine().decompress(data, max_length=limits.PART + 1))
+            if len(unpacked) > limits.PART:
+                raise TooLarge(f'a chunk unpacks to over {_in_mb(limits.PART)}')
+            self._left -= len(unpacked)
+            if self._left < 0:
+                raise TooLarge('its chunks unpack to far more than measurements do')
+            return unpacked
+        return bounded

@@ -16,7 +16,9 @@ from std_srvs.srv import Trigger
 
 from quad_ident_ros.data.buffer import Limits, RecordBuffer
 from quad_ident_ros.data.joiner import Joiner
+from quad_ident_ros.data.mapping import load_mapping
 from quad_ident_ros.data.recording import Recording
+from quad_ident_ros.data.stream_joiner import StreamJoiner
 from quad_ident_ros.data.topics import (
     FLIGHT_TOPICS,
     JOINED_TOPIC,
@@ -28,6 +30,7 @@ from quad_ident_ros.data.topics import (
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.nodes import process
 from quad_ident_ros.nodes.losses import Losses
+from quad_ident_ros.nodes.mapped import KNOWN, known_mapping, MappedTopics, message_class
 from quad_ident_ros.nodes.messages import diagnostics_message, ERROR, OK, record_message, WARN
 from quad_ident_ros.nodes.parameters import help_text, NodeParameters, ParameterSpec
 from quad_ident_ros.nodes.qos import BEST_EFFORT, latched, LOSSLESS
@@ -43,8 +46,14 @@ KEPT_RECORDS = 16    # records that a late identifier still gets
 NEWS = 10.0          # s between two lines of log on windows that slide
 
 SPECS = (
-    ParameterSpec('topics', tuple(FLIGHT_TOPICS), 'Topics that a row needs.',
-                  choices=tuple(FLIGHT_TOPICS), fixed=True),
+    ParameterSpec('topics', tuple(FLIGHT_TOPICS), 'Topics that a row needs: of the first five, '
+                  'or of the last three.', choices=(*FLIGHT_TOPICS, *KNOWN), fixed=True),
+    ParameterSpec('mapping', '', 'File that says which topics of any installed type are what, as '
+                  'for bags (docs/records.md); empty: the topics of the parameter topics.',
+                  fixed=True),
+    ParameterSpec('gap', 0.1, 'Seconds between two samples of a topic of other rate or stamps '
+                  'beyond which rows between them are dropped (mapping, odometry, imu, '
+                  'actuators).', limits=(0.001, 10.0), fixed=True),
     ParameterSpec('window_samples', 60000, 'Samples after which a window is complete.',
                   limits=(2, 10_000_000), fixed=True),
     ParameterSpec('window_seconds', 600.0, 'Seconds after which a window is complete.',
@@ -59,10 +68,15 @@ SPECS = (
 HELP = f"""recorder: joins the topics of a flight into records, keeps and publishes them.
 
   ros2 run quad_ident_ros recorder --ros-args -p output:=flights
+  ros2 run quad_ident_ros recorder --ros-args -p mapping:=topics.yaml
+  ros2 run quad_ident_ros recorder --ros-args -p topics:="[odometry, imu, actuators]" \\
+    -r odometry:=/odom -r imu:=/imu/data -r actuators:=/command/motor_speed
   ros2 service call /recorder/flush std_srvs/srv/Trigger
 
 Subscribes (as the publisher offers, reliable first): attitude, altitude, pose, twist, input (types
-as the simulator publishes them), run (std_msgs/String, announces runs; not needed).
+as the simulator publishes them), run (std_msgs/String, announces runs; not needed). Or odometry
+(nav_msgs/Odometry), imu (sensor_msgs/Imu) and actuators (actuator_msgs/Actuators), or any topics
+that a mapping names, which are joined at the stamps of the pose, or else of the first state.
 Publishes:
   record        std_msgs/Float64MultiArray (latched, 16 deep)  samples x columns, see the labels
   ~/statistics  std_msgs/String (latched)                      JSON: received, joined, dropped,
@@ -83,9 +97,16 @@ class Recorder(Node):
         super().__init__('recorder', **kwargs)
         self._config = NodeParameters(self, SPECS, _validate)
         parameters = self._config
-        self._topics = tuple(parameters['topics'])
-        self._joiner = Joiner(self._topics)
-        self._buffer = RecordBuffer(raw_columns(self._topics), Limits(
+        self._mapped = _mapped(parameters)
+        if self._mapped is None:
+            self._topics = tuple(parameters['topics'])
+            self._joiner = Joiner(self._topics)
+            columns = raw_columns(self._topics)
+        else:
+            self._topics = tuple(self._mapped.streams)
+            self._joiner = StreamJoiner(self._mapped.streams, parameters['gap'])
+            columns = ()
+        self._buffer = RecordBuffer(columns, Limits(
             parameters['window_samples'], parameters['window_seconds'], parameters['overlap']))
         self._records = 0
         self._last_message = None
@@ -96,6 +117,7 @@ class Recorder(Node):
         self._recording = None
         self._disk_error = None
         self._trouble = None
+        self._unreadable = None
         self._record_publisher = self.create_publisher(Float64MultiArray, 'record',
                                                        latched(KEPT_RECORDS))
         self._statistics = self.create_publisher(String, '~/statistics', latched())
@@ -105,13 +127,16 @@ class Recorder(Node):
         self._subscriptions_by_topic = {}
         self._losses = {}
         self._refused = []
-        for name in self._topics:
-            self._subscribe(name, LOSSLESS)
-        runs = self.create_subscription(String, RUN_TOPIC, self._on_run, latched(32), raw=True)
-        if parameters['output']:
-            names = {name: subscription.topic_name
-                     for name, subscription in self._subscriptions_by_topic.items()}
-            self._on_disk(lambda: self._open_recording({**names, RUN_TOPIC: runs.topic_name}))
+        self._types = {}
+        if self._mapped is None:
+            for name in self._topics:
+                self._subscribe(name, LOSSLESS)
+        self._runs = self.create_subscription(String, RUN_TOPIC, self._on_run, latched(32),
+                                              raw=True)
+        if self._mapped is not None:
+            self._look_for_topics()
+        elif parameters['output']:
+            self._open_recording()
         self.create_service(Trigger, '~/flush', self._on_flush)
         self.create_timer(FLUSH_PERIOD, self._on_flush_timer, clock=self._steady)
         self.create_timer(1.0, self._report, clock=self._steady)
@@ -131,16 +156,50 @@ class Recorder(Node):
         for losses in self._losses.values():
             losses.close()
 
-    def _open_recording(self, names):
-        self._recording = Recording(self._config['output'], names)
-        self.get_logger().info(f'recording to {self._recording.folder}')
+    def _open_recording(self):
+        names = {name: subscription.topic_name
+                 for name, subscription in self._subscriptions_by_topic.items()}
+        names[RUN_TOPIC] = self._runs.topic_name
+
+        def make():
+            self._recording = Recording(self._config['output'], names, self._types or None)
+            self.get_logger().info(f'recording to {self._recording.folder}')
+        self._on_disk(make)
+
+    def _look_for_topics(self):
+        """Subscribe to the topics of the mapping that are there: only then are their types."""
+        missing = [name for name in self._mapped.topics if name not in self._types]
+        if not missing:
+            return
+        there = dict(self.get_topic_names_and_types())
+        for name in missing:
+            kinds = there.get(self.resolve_topic_name(name), ())
+            if len(kinds) > 1:
+                self.get_logger().error(f'{name}: has several types ({", ".join(kinds)}); '
+                                        'publish one', throttle_duration_sec=10.0)
+            elif kinds:
+                try:
+                    message_class(kinds[0])
+                except InputError as error:
+                    self.get_logger().error(f'{name}: {error}', throttle_duration_sec=10.0)
+                    continue
+                self._types[name] = kinds[0]
+                self._subscribe(name, LOSSLESS)
+        if self._config['output'] and len(self._types) == len(self._mapped.topics):
+            self._open_recording()
 
     def _subscribe(self, name, quality):
-        topic = FLIGHT_TOPICS[name]
-        kind = getattr(geometry_msgs.msg, topic.type.rsplit('/', 1)[1])
+        if self._mapped is None:
+            topic = FLIGHT_TOPICS[name]
+            kind = getattr(geometry_msgs.msg, topic.type.rsplit('/', 1)[1])
 
-        def on_message(raw):
-            self._on_message(topic, kind, raw)
+            def on_message(raw):
+                self._on_message(topic, kind, raw)
+        else:
+            kind = message_class(self._types[name])
+
+            def on_message(raw):
+                self._on_mapped(name, kind, raw)
 
         refused = 0
 
@@ -167,6 +226,26 @@ class Recorder(Node):
         if self.counts.restarts != restarts:
             self.get_logger().warning('the clock of the messages went back: a new record begins')
 
+    def _on_mapped(self, name, kind, raw):
+        self._last_message = self._steady.now().nanoseconds
+        self._write(name, raw)
+        try:
+            samples = self._mapped.samples(name, self._types[name],
+                                           self.get_clock().now().nanoseconds,
+                                           deserialize_message(raw, kind))
+        except InputError as error:
+            self._trouble = self._unreadable = str(error)
+            self.get_logger().error(self._unreadable, throttle_duration_sec=10.0)
+            return
+        restarts = self.counts.restarts
+        for role, stamp, values in samples:
+            rows = self._joiner.add(role, stamp, values)
+            if self.counts.restarts != restarts:
+                restarts = self.counts.restarts
+                self.get_logger().warning('the clock of the messages went back: a new record '
+                                          'begins')
+            self._keep(rows)
+
     def _write(self, name, raw):
         if self._recording is not None:
             now = self.get_clock().now().nanoseconds
@@ -186,6 +265,10 @@ class Recorder(Node):
 
     def _keep(self, rows):
         if rows:
+            if self._mapped is not None:
+                self._buffer.columns = self._joiner.raw_columns()
+                if self._recording is not None:
+                    self._recording.columns = self._buffer.columns
             self._last_row = self._steady.now().nanoseconds
             self._unacknowledged += len(rows)
             if self._unacknowledged >= ACKNOWLEDGED:
@@ -234,6 +317,8 @@ class Recorder(Node):
         if self._recording is not None:
             self._on_disk(self._recording.flush)
         self._adapt()
+        if self._mapped is not None:
+            self._look_for_topics()
 
     def _patience(self):
         if self._announced is not None and self._joiner.has_reached(self._announced):
@@ -283,8 +368,13 @@ class Recorder(Node):
             self._trouble = None
             return
         silent = [name for name in self._topics if not news[name]]
-        why = (f'nothing comes on {", ".join(silent)} (the parameter topics leaves topics out)'
-               if silent else 'the stamps of the topics are never equal')
+        apart = ('the stamps of the topics are never equal' if self._mapped is None else
+                 f'the samples of the topics are never within {self._config["gap"]:g} s of one '
+                 'another (parameter gap)')
+        way_out = ('the parameter topics leaves topics out' if self._mapped is None
+                   else 'a mapping names the topics that a row needs')
+        why = self._unreadable or (f'nothing comes on {", ".join(silent)} ({way_out})'
+                                   if silent else apart)
         self._trouble = f'no sample has been joined for {silence:.0f} s: {why}'
         self.get_logger().warning(self._trouble, throttle_duration_sec=10.0)
 
@@ -307,9 +397,21 @@ class Recorder(Node):
         self._diagnostics.publish(diagnostics_message(self, level, text, data))
 
 
+def _mapped(parameters):
+    """Return the MappedTopics of the parameters, or None for the topics of the simulator."""
+    if parameters['mapping']:
+        path = parameters['mapping']
+        return MappedTopics(load_mapping(path), path)
+    names = [name for name in parameters['topics'] if name in KNOWN]
+    return MappedTopics(known_mapping(names), 'parameter topics') if names else None
+
+
 def _validate(values):
     if not values['topics'] or len(set(values['topics'])) != len(values['topics']):
         raise InputError('parameter topics: name at least one topic, and each once')
+    if 0 < sum(name in KNOWN for name in values['topics']) < len(values['topics']):
+        raise InputError(f'parameter topics: {", ".join(KNOWN)} do not go with the others, which '
+                         'are joined by equal stamps; name only these, or a mapping')
 
 
 def main(args=None):

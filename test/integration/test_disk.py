@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from std_msgs.msg import Float64MultiArray, String
 
-from quad_ident_ros.data.bag import read_bag_messages
+from quad_ident_ros.data.bag_file import read_bag_messages
 from quad_ident_ros.data.csv import read_csv
 from quad_ident_ros.data.replay import read_bag
 from quad_ident_ros.nodes.qos import latched

@@ -20,7 +20,8 @@ from rosbags.rosbag2 import Reader, StoragePlugin, Writer
 from rosbags.typesys import get_typestore, Stores
 import yaml
 
-from quad_ident_ros.data.bag import BagWriter, read_bag_messages
+from quad_ident_ros.data.bag import BagWriter
+from quad_ident_ros.data.bag_file import read_bag_messages
 from quad_ident_ros.errors import InputError
 
 ARRAY, VECTOR = 'std_msgs/msg/Float64MultiArray', 'geometry_msgs/msg/Vector3'

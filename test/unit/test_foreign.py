@@ -67,7 +67,6 @@ BAD_MAPPINGS = [
      ('topic /odom, message 1', "no field 'post'", 'pose')),
     ({'topics': {'commands': {'topic': '/odom', 'field': 'pose'}}}, ('holds no list',)),
     ({'topics': {'velocity': {'topic': '/odom'}}}, ('needs an attitude',)),
-    ({}, ('names no topics',)),
     ({'topics': {'commands': {'topic': '/motors'}},
       'actuators': {'kind': 'speed', 'order': [1, 2, 3, 9]}}, ('no output 9', '1 to 4')),
     ({'topics': {'commands': {'topic': '/motors'}}, 'actuators': {'kind': 'pwm'}},
@@ -113,8 +112,3 @@ def test_arrays_that_change_their_size_are_refused(tmp_path):
                 'layout': {'dim': [], 'data_offset': 0}, 'data': np.zeros(size)}))
     mapping = mapping_from({'topics': {'commands': {'topic': '/m'}}}, 'm')
     refused(tmp_path / 'bag', 'topic /m, message 3', '3 values', mapping=mapping)
-
-
-def test_a_bag_of_others_without_a_mapping_points_to_it(tmp_path):
-    others_bag(tmp_path / 'bag', SMALL.slice(0, 5))
-    refused(tmp_path / 'bag', '--mapping')

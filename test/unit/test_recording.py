@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from rosbags.typesys import get_typestore, Stores
 
-from quad_ident_ros.data.bag import BagWriter, read_bag_messages
+from quad_ident_ros.data.bag import BagWriter
+from quad_ident_ros.data.bag_file import read_bag_messages
 from quad_ident_ros.data.csv import read_csv
 from quad_ident_ros.data.recording import Recording
 from quad_ident_ros.data.replay import read_bag

@@ -2,8 +2,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """All kinds of files that flights are read from."""
 
-from quad_ident_ros.data.readers import ardupilot, betaflight, crazyflie, px4, rosbag2, table
+from quad_ident_ros.data.readers import (
+    ardupilot,
+    betaflight,
+    crazyflie,
+    px4,
+    rosbag1,
+    rosbag2,
+    table,
+)
 
-READERS = (rosbag2.READER, px4.READER, ardupilot.READER, betaflight.READER,
+READERS = (rosbag1.READER, rosbag2.READER, px4.READER, ardupilot.READER, betaflight.READER,
            crazyflie.READER, table.READER)
 """In the order in which they are told: what is none of the others is a table."""

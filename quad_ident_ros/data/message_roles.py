@@ -1,0 +1,294 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+What the messages of common types can be read for, and how.
+
+The functions take any message object with the fields of its type, whether from a bag or from
+rclpy. Types are named package/msg/Name.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+import math
+
+import numpy as np
+
+from quad_ident_ros.data.topics import stamp_ns
+
+MOST_NUMBERS = 64   # in a list that is read: no vehicle has as many outputs
+_NED, _FRD_WORLD, _FRD_BODY = 1, 2, 3   # frames of px4_msgs/VehicleOdometry
+
+
+class NoSuch(Exception):
+    """A message does not hold what its role needs."""
+
+
+@dataclass(frozen=True)
+class Reading:
+    """
+    How a message is read for a role.
+
+    values(message): a tuple of numbers; rank: how far behind other types one is for the role, by
+    default, or None where the type alone does not say that it is meant; kind: of actuator outputs
+    (mapping.KINDS) where the type says it; frame(message): world or body, of a velocity.
+    """
+
+    values: Callable
+    rank: int | None = 0
+    kind: str = ''
+    frame: Callable | None = None
+
+
+def _xyz(v):
+    return v.x, v.y, v.z
+
+
+def _wxyz(q):
+    return q.w, q.x, q.y, q.z
+
+
+def _pose(pose):
+    return *_xyz(pose.position), *_wxyz(pose.orientation)
+
+
+def _transform(transform):
+    return *_xyz(transform.translation), *_wxyz(transform.rotation)
+
+
+def _odometry_frame(message):
+    """Return world where an Odometry says that its twist is in the frame of the pose, or ''."""
+    return 'world' if message.child_frame_id == message.header.frame_id != '' else ''
+
+
+def _known(index, covariance, values):
+    """Return values, nan where the message says by a covariance of -1 that it has none."""
+    return values if covariance[index] != -1 else tuple([math.nan] * len(values))
+
+
+def _px4_pose(m):
+    return *m.position, *m.q
+
+
+def _px4_velocity_frame(m):
+    code = m.velocity_frame
+    if code not in (_NED, _FRD_WORLD, _FRD_BODY):
+        raise NoSuch(f'its velocity_frame {code} is none that is known')
+    return 'body' if code == _FRD_BODY else 'world'
+
+
+def _either(new, old):
+    """Return a function that takes what a message of now has, or one of before PX4 1.14."""
+    return lambda m: new(m) if hasattr(m, 'position') else old(m)
+
+
+def _px4_old_velocity_frame(m):
+    return 'body' if m.velocity_frame == _FRD_BODY else 'world'
+
+
+def _esc_rpm(m):
+    return tuple(report.esc_rpm for report in m.esc[:max(int(m.esc_count), 1)])
+
+
+def _actuators(speeds):
+    def values(m):
+        found = tuple(getattr(m, speeds))
+        if not found:
+            raise NoSuch(f'the list {speeds} is empty; name another field, such as field: '
+                         'normalized')
+        return found
+    return values
+
+
+def _normalized(m):
+    return tuple(m.normalized)
+
+
+_TWIST_FRAMES = {'world': 'world map odom enu earth mocap vicon optitrack local_origin '
+                          'world_enu local_enu',
+                 'body': 'body base_link fcu imu imu_link base_footprint base'}
+_FRAME_OF = {name: frame for frame, names in _TWIST_FRAMES.items() for name in names.split()}
+
+
+def _twist_frame(m):
+    """Return what the frame_id of a twist says: world, body, or '' where it is not known."""
+    return _FRAME_OF.get(m.header.frame_id.strip('/').rpartition('/')[2], '')
+
+
+def _imu(m, field, index=0):
+    value = getattr(m, field)
+    values = _wxyz(value) if field == 'orientation' else _xyz(value)
+    return _known(index, getattr(m, f'{field}_covariance'), values)
+
+
+ROLES_OF = {
+    'nav_msgs/msg/Odometry': {
+        'pose': Reading(lambda m: _pose(m.pose.pose)),
+        'velocity': Reading(lambda m: _xyz(m.twist.twist.linear), frame=_odometry_frame),
+        'rate': Reading(lambda m: _xyz(m.twist.twist.angular), 2)},
+    'geometry_msgs/msg/PoseStamped': {'pose': Reading(lambda m: _pose(m.pose), 1)},
+    'geometry_msgs/msg/PoseWithCovarianceStamped': {
+        'pose': Reading(lambda m: _pose(m.pose.pose), 1)},
+    'geometry_msgs/msg/TransformStamped': {
+        'pose': Reading(lambda m: _transform(m.transform), 1)},
+    'tf2_msgs/msg/TFMessage': {'pose': Reading(lambda m: _transform(m.transform), 2)},
+    'tf/msg/tfMessage': {'pose': Reading(lambda m: _transform(m.transform), 2)},
+    'geometry_msgs/msg/PointStamped': {'position': Reading(lambda m: _xyz(m.point), 2)},
+    'geometry_msgs/msg/QuaternionStamped': {
+        'attitude': Reading(lambda m: _wxyz(m.quaternion), 2)},
+    'geometry_msgs/msg/TwistStamped': {
+        'velocity': Reading(lambda m: _xyz(m.twist.linear), 1, frame=_twist_frame),
+        'rate': Reading(lambda m: _xyz(m.twist.angular), None)},
+    'geometry_msgs/msg/TwistWithCovarianceStamped': {
+        'velocity': Reading(lambda m: _xyz(m.twist.twist.linear), 1, frame=_twist_frame),
+        'rate': Reading(lambda m: _xyz(m.twist.twist.angular), None)},
+    'geometry_msgs/msg/Vector3Stamped': {
+        role: Reading(lambda m: _xyz(m.vector), None)
+        for role in ('position', 'velocity', 'rate', 'specific_force')},
+    'geometry_msgs/msg/AccelStamped': {
+        'specific_force': Reading(lambda m: _xyz(m.accel.linear), None)},
+    'sensor_msgs/msg/Imu': {
+        'attitude': Reading(lambda m: _imu(m, 'orientation'), 3),
+        'rate': Reading(lambda m: _imu(m, 'angular_velocity')),
+        'specific_force': Reading(lambda m: _imu(m, 'linear_acceleration'))},
+    'sensor_msgs/msg/BatteryState': {'battery': Reading(lambda m: (m.voltage,))},
+    'px4_msgs/msg/VehicleOdometry': {
+        'pose': Reading(_either(_px4_pose, lambda m: (*_xyz(m), *m.q))),
+        'velocity': Reading(_either(lambda m: tuple(m.velocity), lambda m: (m.vx, m.vy, m.vz)),
+                            frame=_either(_px4_velocity_frame, _px4_old_velocity_frame)),
+        'rate': Reading(_either(lambda m: tuple(m.angular_velocity),
+                                lambda m: (m.rollspeed, m.pitchspeed, m.yawspeed)), 2)},
+    'px4_msgs/msg/VehicleAttitude': {'attitude': Reading(lambda m: tuple(m.q), 1)},
+    'px4_msgs/msg/VehicleLocalPosition': {
+        'position': Reading(_xyz, 1),
+        'velocity': Reading(lambda m: (m.vx, m.vy, m.vz), 1, frame=lambda m: 'world')},
+    'px4_msgs/msg/VehicleAngularVelocity': {'rate': Reading(lambda m: tuple(m.xyz))},
+    'px4_msgs/msg/VehicleAcceleration': {'specific_force': Reading(lambda m: tuple(m.xyz))},
+    'px4_msgs/msg/SensorCombined': {
+        'rate': Reading(lambda m: tuple(m.gyro_rad), 1),
+        'specific_force': Reading(lambda m: tuple(m.accelerometer_m_s2), 1)},
+    'px4_msgs/msg/ActuatorMotors': {
+        'commands': Reading(lambda m: tuple(m.control), 1, 'normalised')},
+    'px4_msgs/msg/ActuatorOutputs': {
+        'commands': Reading(lambda m: tuple(m.output[:max(int(m.noutputs), 1)]), 2, 'pwm')},
+    'px4_msgs/msg/EscStatus': {'rotors': Reading(_esc_rpm, 0, 'rpm')},
+    'px4_msgs/msg/BatteryStatus': {'battery': Reading(lambda m: (m.voltage_v,))},
+    'mavros_msgs/msg/ESCStatus': {
+        'rotors': Reading(lambda m: tuple(item.rpm for item in m.esc_status), 0, 'rpm')},
+    'mavros_msgs/msg/RCOut': {'commands': Reading(lambda m: tuple(m.channels), 3, 'pwm')},
+    'actuator_msgs/msg/Actuators': {
+        role: Reading(_actuators('velocity'), rank, 'speed')
+        for role, rank in (('commands', 0), ('rotors', 1))},
+    'mav_msgs/msg/Actuators': {
+        role: Reading(_actuators('angular_velocities'), rank, 'speed')
+        for role, rank in (('commands', 0), ('rotors', 1))},
+}
+"""Message type -> role of mapping.ROLES -> Reading."""
+
+NORMALISED = Reading(_normalized, 0, 'normalised')
+"""How Actuators without speeds are read."""
+
+_LISTS = frozenset(f'std_msgs/msg/{name}MultiArray' for name in (
+    'Float32', 'Float64', 'Int16', 'Int32', 'Int64', 'UInt16', 'UInt32', 'UInt64'))
+
+
+def roles_of(msgtype):
+    """Return the roles that a message type could be read for, as mapping.ROLES names them."""
+    if msgtype in _LISTS:
+        return ('commands', 'rotors')
+    return tuple(ROLES_OF.get(msgtype, ()))
+
+
+def is_tf(msgtype):
+    """Whether messages of a type hold transforms of any number of frames."""
+    return msgtype in ('tf2_msgs/msg/TFMessage', 'tf/msg/tfMessage')
+
+
+def is_px4(msgtype):
+    """Whether a type is PX4's: NED and FRD, with stamps in us."""
+    return msgtype.startswith('px4_msgs/')
+
+
+def reading_of(role, msgtype, message):
+    """Return the Reading of a role for a type, by one of its messages; NoSuch where none is."""
+    known = ROLES_OF.get(msgtype, {})
+    if role not in known:
+        types = ', '.join(sorted(name for name, roles in ROLES_OF.items() if role in roles))
+        raise NoSuch(f'{msgtype} cannot be read for this; possible are {types}, or any type with '
+                     'field:')
+    if known[role].kind == 'speed' and hasattr(message, 'normalized'):
+        speeds = getattr(message, 'velocity', getattr(message, 'angular_velocities', ()))
+        if len(speeds) == 0 < len(message.normalized):
+            return NORMALISED
+    return known[role]
+
+
+def stamp_of(message, msgtype):
+    """Return the stamp in a message, ns, or 0 where it has none."""
+    if is_px4(msgtype):
+        sample = int(getattr(message, 'timestamp_sample', 0))
+        return 1000 * (sample or int(getattr(message, 'timestamp', 0)))
+    return int(stamp_ns(message)) if hasattr(message, 'header') else 0
+
+
+def at_path(message, path, msgtype):
+    """
+    Return what the path of a field leads to: a value, or a list of them through a list.
+
+    Args: path such as pose.pose or esc_status[].rpm. Raises NoSuch that names what there is.
+    """
+    values, through_list = [message], False
+    for part in path.split('.'):
+        name = part.partition('[')[0]
+        following = []
+        for value in values:
+            fields = getattr(value, '__dataclass_fields__', None)
+            fields = fields or getattr(value, 'get_fields_and_field_types', dict)()
+            if name not in fields:
+                known = ', '.join(key for key in fields if not key.startswith('__'))
+                raise NoSuch(f'{msgtype} has no field {name!r}'
+                             + (f'; name one of: {known}' if known else ''))
+            value = getattr(value, name)
+            if isinstance(value, (list, tuple)) and value and not isinstance(
+                    value[0], (int, float, str, bytes)):
+                following += value
+                through_list = True
+            else:
+                following.append(value)
+            if len(following) > MOST_NUMBERS:
+                raise NoSuch(f'the field {path!r} is in a list of over {MOST_NUMBERS} messages')
+        values = following
+    return values if through_list else values[0]
+
+
+def shaped(role, value, path):
+    """Return the numbers of a role from what a path leads to; NoSuch where they are not that."""
+    try:
+        if role == 'pose':
+            while hasattr(value, 'pose'):
+                value = value.pose
+            return _pose(value) if hasattr(value, 'position') else _transform(
+                getattr(value, 'transform', value))
+        if role == 'attitude':
+            value = getattr(value, 'orientation', getattr(value, 'quaternion', value))
+            return _wxyz(value) if hasattr(value, 'w') else _numbers(value, path, 4)
+        if role in ('position', 'velocity', 'rate', 'specific_force'):
+            for name in {'velocity': ('twist', 'linear'), 'rate': ('twist', 'angular'),
+                         'position': ('point', 'position')}.get(role, ('vector',)):
+                value = getattr(value, name, value)
+            return _xyz(value) if hasattr(value, 'x') else _numbers(value, path, 3)
+    except AttributeError:
+        raise NoSuch(f'the field {path!r} holds no {role}') from None
+    return _numbers(value, path)
+
+
+def _numbers(value, path, count=None):
+    try:
+        with np.errstate(invalid='ignore'):   # nan of a kind that signals
+            numbers = np.atleast_1d(np.asarray(value, float))
+    except (TypeError, ValueError):
+        numbers = np.empty((0, 0))
+    if numbers.ndim != 1 or not 1 <= len(numbers) <= MOST_NUMBERS:
+        raise NoSuch(f'the field {path!r} holds no list of 1 to {MOST_NUMBERS} numbers')
+    if count not in (None, len(numbers)):
+        raise NoSuch(f'the field {path!r} holds {len(numbers)} numbers, not {count}')
+    return tuple(numbers.tolist())

@@ -1,0 +1,25 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What is in a bag of ROS 1 or ROS 2, topic by topic."""
+
+from pathlib import Path
+
+from quad_ident_ros.data.bag_file import BagFile
+from quad_ident_ros.data.message_roles import roles_of
+from quad_ident_ros.data.readers.base import content_of
+
+
+def topics_of(path):
+    """
+    Return the Content of each topic of a bag, by the stamps of receipt.
+
+    Messages are not deserialized. Raises InputError where the bag cannot be read.
+    """
+    if (Path(path) / 'bag' / 'metadata.yaml').exists():   # a recording of the recorder
+        path = Path(path) / 'bag'
+    with BagFile(path) as bag:
+        stamps = bag.stamps()
+        origin = min((int(times.min()) for times in stamps.values()), default=0)
+        return [content_of(topic.name, topic.type, stamps.get((topic.name, topic.type), ()),
+                           origin, bag.fields(topic), roles_of(topic.type))
+                for topic in bag.topics]

@@ -1,0 +1,179 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Live streams of different rates, joined into rows at the stamps of the first."""
+
+from bisect import bisect_left, bisect_right
+from collections import deque
+import math
+
+import numpy as np
+
+from quad_ident_ros.data.frames import continuous
+from quad_ident_ros.data.joiner import Counts, RESTART_NS
+from quad_ident_ros.data.record import QUATERNION
+from quad_ident_ros.data.streams import HELD, INTERPOLATED, slerp, SLOW
+
+
+class StreamJoiner:
+    """
+    Joins messages of several streams into rows at the stamps of the first stream.
+
+    Between its samples a stream is interpolated, attitudes along the shortest turn, or it holds
+    (commands, a battery), as data.streams.join has it for bags. A row waits until each stream has
+    gone on beyond its stamp, and is dropped where the samples around it are further apart than the
+    gap. Streams may run ahead of one another by any time, up to `most` waiting rows.
+    Args: streams: name -> INTERPOLATED, HELD or SLOW, of which the first gives the stamps;
+    gap: s; most.
+    """
+
+    def __init__(self, streams, gap, most=20000):
+        self.topics = tuple(streams)
+        self.counts = Counts(received=dict.fromkeys(streams, 0))
+        self.columns = {}
+        self._between = dict(streams)
+        self._base = self.topics[0]
+        self._gap = int(gap * 1e9)
+        self._most = most
+        self._samples = {name: _Samples() for name in streams}
+        self._waiting = deque()
+        self._last = dict.fromkeys(streams, -1)
+
+    def add(self, name, stamp_ns, values):
+        """
+        Take a sample, columns -> numbers, and return the rows (stamp_ns, values) now complete.
+
+        The values of a row are those of all streams in their order; columns names them.
+        """
+        counts = self.counts
+        counts.received[name] += 1
+        last = self._last[name]
+        if 0 <= stamp_ns < last - RESTART_NS:
+            self._restart(name, stamp_ns)
+        elif stamp_ns == last:
+            counts.duplicated += 1
+            return []
+        elif stamp_ns < max(last, 0):
+            counts.out_of_order += 1
+            return []
+        self._last[name] = stamp_ns
+        if not all(map(math.isfinite, values.values())):
+            counts.nan += 1
+            return []
+        self.columns.setdefault(name, tuple(values))
+        self._samples[name].add(stamp_ns, tuple(values.values()))
+        if name == self._base:
+            self._waiting.append(stamp_ns)
+        return self._ready(False)
+
+    def raw_columns(self):
+        """Return the names of the values of a row, once each stream has had a sample."""
+        return tuple(column for name in self.topics for column in self.columns[name])
+
+    def has_reached(self, stamp_ns):
+        """Whether each stream has delivered this stamp or a later one."""
+        return all(last >= stamp_ns for last in self._last.values())
+
+    def drain(self):
+        """Return the rows that are complete, giving up those that are not."""
+        return self._ready(True)
+
+    def _restart(self, name, stamp):
+        """Forget the samples of a stream whose clock began anew, and what is from before it."""
+        self._samples[name].clear()
+        if name != self._base:
+            return
+        self.counts.restarts += 1
+        self.counts.dropped += len(self._waiting)
+        self._waiting.clear()
+        for other in self.topics:
+            if self._last[other] > stamp + RESTART_NS:
+                self._samples[other].clear()
+                self._last[other] = -1
+
+    def _ready(self, drain):
+        rows = []
+        while self._waiting:
+            stamp = self._waiting[0]
+            parts = [self._at(name, stamp) for name in self.topics]
+            given_up = drain or len(self._waiting) > self._most
+            if any(part is None for part in parts) and not given_up:
+                break
+            self._waiting.popleft()
+            if all(parts):
+                rows.append((stamp, tuple(value for part in parts for value in part)))
+            else:
+                self.counts.dropped += 1
+        # What is before the sample before the next row will not be asked for again.
+        for name in self.topics:
+            until = self._waiting[0] if self._waiting else self._last[self._base]
+            self._samples[name].forget(until, self._most)
+        self.counts.joined += len(rows)
+        return rows
+
+    def _at(self, name, stamp):
+        """Return the values of a stream at a stamp, () where it has none, None if not yet."""
+        samples = self._samples[name]
+        before, after = samples.around(stamp)
+        if before is not None and before[0] == stamp:
+            return before[1]
+        between = self._between[name]
+        if between == SLOW and before is not None:
+            return before[1]
+        if after is None:
+            return None
+        if before is None or after[0] - before[0] > self._gap:
+            return after[1] if between == SLOW else ()
+        if between == HELD:
+            return before[1]
+        return _between(self.columns[name], before, after, stamp)
+
+
+class _Samples:
+    """The samples of a stream in order of time."""
+
+    def __init__(self):
+        self._stamps, self._values = [], []
+
+    def add(self, stamp, values):
+        """Take the next sample."""
+        self._stamps.append(stamp)
+        self._values.append(values)
+
+    def clear(self):
+        """Forget all of them."""
+        self._stamps.clear()
+        self._values.clear()
+
+    def around(self, stamp):
+        """Return the last (stamp, values) up to a stamp and the first from it on, or None."""
+        left, right = bisect_right(self._stamps, stamp) - 1, bisect_left(self._stamps, stamp)
+        return tuple((self._stamps[k], self._values[k]) if 0 <= k < len(self._stamps) else None
+                     for k in (left, right))
+
+    def forget(self, stamp, most):
+        """Forget what is before the last sample up to a stamp, and beyond `most` samples."""
+        done = max(bisect_right(self._stamps, stamp) - 1, len(self._stamps) - most)
+        if done > 64 or done == len(self._stamps) - most > 0:   # rarely, as it moves the rest
+            del self._stamps[:done], self._values[:done]
+
+
+def _between(columns, before, after, stamp):
+    """Return values at a stamp between two samples (stamp, values)."""
+    span = (after[0] - before[0]) * 1e-9
+    x = (stamp - before[0]) * 1e-9
+    share = x / span
+    values = [one + share * (other - one) for one, other in zip(before[1], after[1], strict=True)]
+    if QUATERNION[0] in columns:
+        at = columns.index(QUATERNION[0])
+        q = continuous(np.array([before[1][at:at + 4], after[1][at:at + 4]]))
+        values[at:at + 4] = slerp(np.array([0.0, span]), q, np.array([x]))[0].tolist()
+    return tuple(values)
+
+
+BETWEEN = {'commands': HELD, 'battery': SLOW}
+"""How the streams of roles (data.mapping.ROLES) are between their samples, if not INTERPOLATED."""
+
+
+def between_of(role):
+    """Return how the stream of a role is between its samples."""
+    return BETWEEN.get(role, INTERPOLATED)

@@ -1,0 +1,59 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Topics of any installed type that a mapping names, as streams that the recorder joins."""
+
+from importlib import import_module
+
+from quad_ident_ros.data.foreign import TopicPart
+from quad_ident_ros.data.mapping import mapping_from, ROLES
+from quad_ident_ros.data.stream_joiner import between_of
+from quad_ident_ros.errors import InputError
+
+KNOWN = {'odometry': ('pose', 'velocity', 'rate'), 'imu': ('rate', 'specific_force'),
+         'actuators': ('commands',)}
+"""Topics that need no mapping file, and what they are read for: a later one takes its role."""
+
+
+def known_mapping(names):
+    """Return the Mapping of some of the KNOWN topics."""
+    topics = {role: {'topic': name} for name in KNOWN if name in names for role in KNOWN[name]}
+    return mapping_from({'topics': topics}, 'parameter topics')
+
+
+class MappedTopics:
+    """
+    What the topics of a mapping hold.
+
+    Args: mapping Mapping; where: what names it, for messages. InputError where it names no topics.
+    """
+
+    def __init__(self, mapping, where):
+        if not mapping.topics:
+            raise InputError(f'{where}: the mapping names no topics; add topics: to it')
+        self._mapping = mapping
+        self._parts = {role: TopicPart(f'topic {mapping.topics[role].topic}', role,
+                                       mapping.topics[role])
+                       for role in ROLES if role in mapping.topics}
+        self.streams = {role: between_of(role) for role in self._parts}
+        self.topics = tuple(dict.fromkeys(part.source.topic for part in self._parts.values()))
+
+    def samples(self, topic, kind, received_ns, message):
+        """
+        Return [(role, stamp in ns, columns -> numbers)] in a message of a topic.
+
+        Args: kind its type, package/msg/Name; received_ns its time of receipt, where it has no
+        stamp. Raises InputError where it does not hold what the mapping says.
+        """
+        return [(role, stamp, values) for role, part in self._parts.items()
+                if part.source.topic == topic
+                for stamp, values in part.samples(received_ns, message, kind, self._mapping)]
+
+
+def message_class(kind):
+    """Return the class of a message type, package/msg/Name; InputError if not installed."""
+    package, _, name = kind.partition('/msg/')
+    try:
+        return getattr(import_module(f'{package}.msg'), name)
+    except (ImportError, AttributeError):
+        raise InputError(f'messages of type {kind} cannot be read: the package {package} is not '
+                         'installed here; install it or source its workspace') from None

@@ -1,0 +1,160 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Node recorder on topics of any type, that a mapping names, at rates of their own."""
+
+import json
+
+from geometry_msgs.msg import PoseStamped, TwistStamped
+import numpy as np
+import pytest
+from rclpy.qos import QoSProfile, ReliabilityPolicy
+from std_msgs.msg import Float64MultiArray, String
+
+from quad_ident_ros.data.load import load
+from quad_ident_ros.data.mapping import load_mapping
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.nodes.qos import latched
+from quad_ident_ros.nodes.recorder import Recorder
+
+START, MS = 10 ** 9, 10 ** 6
+MAPPING = """\
+topics:
+  pose: {topic: /mocap/cf}
+  velocity: {topic: /mocap/speed, frame: world}
+  rate: {topic: /gyro, field: twist.angular}
+"""
+
+
+@pytest.fixture
+def graph(fast_graph):
+    return fast_graph
+
+
+@pytest.fixture
+def mapping(tmp_path):
+    path = tmp_path / 'topics.yaml'
+    path.write_text(MAPPING)
+    return str(path)
+
+
+def stamped(message, ns):
+    message.header.stamp.sec, message.header.stamp.nanosec = divmod(ns, 10 ** 9)
+    return message
+
+
+def pose(ns, kind=PoseStamped):
+    message = stamped(kind(), ns)
+    place = message.pose if kind is PoseStamped else message.pose.pose
+    place.position.x, place.orientation.w = 2e-9 * ns, 1.0
+    return message
+
+
+def twist(ns, speed=0.0, rate=0.0):
+    message = stamped(TwistStamped(), ns)
+    message.twist.linear.y, message.twist.angular.z = float(speed), float(rate)
+    return message
+
+
+def fly(graph, count=60):
+    """Publish a pose each 10 ms, a velocity each 25 ms, a rate each 4 ms, that rises by 1/s."""
+    best_effort = QoSProfile(depth=1000, reliability=ReliabilityPolicy.BEST_EFFORT)
+    out = {name: graph.probe.create_publisher(kind, name, quality) for name, kind, quality in (
+        ('/mocap/cf', PoseStamped, 1000), ('/mocap/speed', TwistStamped, 1000),
+        ('/gyro', TwistStamped, best_effort))}
+    for publisher in out.values():
+        graph.await_listeners(publisher)
+    for t in range(0, 10 * count, 1):
+        ns = START + t * MS
+        if t % 10 == 0:
+            out['/mocap/cf'].publish(pose(ns))
+        if t % 25 == 3:
+            out['/mocap/speed'].publish(twist(ns, speed=1e-9 * ns))
+        if t % 4 == 1:
+            out['/gyro'].publish(twist(ns, rate=1e-9 * ns))
+        if t % 50 == 0:
+            graph.spin_for(0.02)
+    return out
+
+
+def test_streams_of_other_rates_are_joined_at_the_stamps_of_the_pose(graph, mapping, tmp_path):
+    recorder = graph.start(Recorder, {'mapping': mapping, 'output': str(tmp_path / 'out')})
+    records = graph.listen(Float64MultiArray, 'record', latched(16))
+    fly(graph)
+    graph.spin_until(lambda: recorder.counts.joined >= 50, '50 rows')
+    assert graph.trigger('recorder/flush').success
+    graph.spin_until(lambda: records, 'the record')
+    [record] = records.records()
+    t = record.t + record.info['start_ns'] * 1e-9
+    np.testing.assert_allclose(np.diff(t), 0.01, atol=1e-9)
+    np.testing.assert_allclose(record.columns['px'], 2 * t, rtol=1e-12)
+    np.testing.assert_allclose(record.columns['vy'], t, rtol=1e-9)
+    np.testing.assert_allclose(record.columns['wz'], t, rtol=1e-9)
+    graph.stop(recorder)
+    [flight] = (tmp_path / 'out').glob('recording_1/flight_1.csv')
+    np.testing.assert_allclose(load(flight).columns['vy'][:50], t[:50], rtol=1e-9)
+    # The same mapping reads the bag that it recorded.
+    again = load(tmp_path / 'out' / 'recording_1' / 'bag', load_mapping(mapping))
+    np.testing.assert_allclose(again.columns['wz'], again.t + again.info['start_ns'] * 1e-9,
+                               rtol=1e-9)
+
+
+def test_what_is_not_there_is_said(graph, mapping):
+    graph.start(Recorder, {'mapping': mapping})
+    statistics = graph.listen(String, 'recorder/statistics', latched())
+    publisher = graph.advertise(PoseStamped, '/mocap/cf', 1000)
+    for k in range(12):
+        publisher.publish(pose(START + k * 10 * MS))
+        graph.spin_for(0.3)
+    response = graph.trigger('recorder/flush')
+    assert not response.success and 'nothing comes on velocity, rate' in response.message
+    assert json.loads(statistics[-1].data)['received']['pose'] >= 10
+
+
+def test_a_message_that_holds_something_else_is_said(graph, tmp_path):
+    (tmp_path / 'm.yaml').write_text('topics:\n  pose: {topic: /p}\n  rate: {topic: /p}\n')
+    graph.start(Recorder, {'mapping': str(tmp_path / 'm.yaml')})
+    publisher = graph.advertise(PoseStamped, '/p', 1000)
+    for k in range(14):
+        publisher.publish(pose(START + k * 10 * MS))
+        graph.spin_for(0.3)
+    response = graph.trigger('recorder/flush')
+    assert 'topic /p' in response.message and 'cannot be read for this' in response.message
+
+
+@pytest.mark.parametrize('parameters, said', [
+    ({'mapping': '/none/m.yaml'}, '/none/m.yaml'),
+    ({'topics': ['odometry', 'pose']}, 'do not go with the others')])
+def test_parameters_that_cannot_be_are_refused(graph, parameters, said):
+    with pytest.raises(InputError, match=said):
+        graph.start(Recorder, parameters)
+
+
+def test_odometry_and_imu_need_no_mapping(graph):
+    reason = 'nav_msgs and sensor_msgs are not installed'
+    nav = pytest.importorskip('nav_msgs.msg', reason=reason)
+    sensor = pytest.importorskip('sensor_msgs.msg', reason=reason)
+    recorder = graph.start(Recorder, {'topics': ['odometry', 'imu']},
+                           arguments=['-r', 'odometry:=/odom'])
+    records = graph.listen(Float64MultiArray, 'record', latched(16))
+    odometry = graph.advertise(nav.Odometry, '/odom', 1000)
+    imu = graph.advertise(sensor.Imu, 'imu', 1000)
+    for k in range(100):
+        ns = START + k * 10 * MS
+        message = pose(ns, nav.Odometry)
+        # Turned by 90 degrees to the left: what is ahead in the body is y in the world.
+        message.pose.pose.orientation.w = message.pose.pose.orientation.z = float(np.sqrt(0.5))
+        message.twist.twist.linear.x = 3.0
+        odometry.publish(message)
+        gyro = stamped(sensor.Imu(), ns + 4 * MS)
+        gyro.angular_velocity.x, gyro.linear_acceleration.z = 1e-9 * ns, 9.81
+        imu.publish(gyro)
+        if k % 10 == 0:
+            graph.spin_for(0.02)
+    graph.spin_until(lambda: recorder.counts.joined >= 90, '90 rows')
+    graph.trigger('recorder/flush')
+    graph.spin_until(lambda: records, 'the record')
+    columns = records.records()[0].columns
+    np.testing.assert_allclose(columns['vy'], 3.0)
+    np.testing.assert_allclose(columns['vx'], 0.0, atol=1e-12)
+    np.testing.assert_allclose(columns['az'], 9.81)
+    np.testing.assert_allclose(np.diff(columns['wx']), 0.01, atol=1e-9)

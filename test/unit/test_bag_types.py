@@ -1,0 +1,258 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Bags of others without a mapping, and with types that only their definitions tell."""
+
+import sqlite3
+
+from bag_files import (
+    ACTUATORS,
+    esc_status,
+    header,
+    imu,
+    lists,
+    MAV,
+    odometry,
+    poses,
+    PX4,
+    px4,
+    store,
+    transforms,
+    TWIST,
+    write1,
+    write2,
+    write_old,
+    xyz,
+)
+from flightmaker import changed, VEHICLE
+import numpy as np
+import pytest
+from records import CMD, refused, SMALL
+from rosbags.rosbag1 import Writer as Writer1
+
+from quad_ident_ros.data.load import load
+from quad_ident_ros.data.mapping import mapping_from
+
+SPEEDS = SMALL.stack(*CMD)
+PLACE, SPEED, ATTITUDE = ('px', 'py', 'pz'), ('vx', 'vy', 'vz'), ('qw', 'qx', 'qy', 'qz')
+RATE, FORCE = ('wx', 'wy', 'wz'), ('ax', 'ay', 'az')
+SHARES = (SPEEDS - 100) / 1600
+
+
+def agrees(read, *groups, within=1e-9, record=SMALL):
+    """Check that a record has the motion of the flight."""
+    assert len(read) == len(record)
+    for group in groups:
+        if group == ATTITUDE:
+            both = np.abs(np.sum(read.stack(*group) * record.stack(*group), axis=1))
+            np.testing.assert_allclose(both, 1.0, atol=max(within, 1e-9))
+        else:
+            np.testing.assert_allclose(read.stack(*group), record.stack(*group), atol=within)
+
+
+def test_types_that_leave_no_doubt_need_no_mapping(tmp_path):
+    """Position, velocity of Odometry, rate and force of Imu, speeds of Actuators."""
+    write2(tmp_path / 'bag', [*odometry(SMALL), *imu(SMALL),
+                              *lists(SMALL, ACTUATORS, '/command/motor_speed', 'velocity', SPEEDS),
+                              *poses(SMALL, '/mocap/other')])
+    read = load(tmp_path / 'bag')
+    agrees(read, PLACE, SPEED, ATTITUDE, RATE, FORCE, CMD)
+    taken, others = read.info['notes']
+    assert 'pose and velocity from /odom (nav_msgs/msg/Odometry)' in taken
+    assert 'rate and specific_force from /imu' in taken and 'commands from /command' in taken
+    assert '/mocap/other (pose)' in others
+
+
+@pytest.mark.parametrize('velocity', ['world', 'body'])
+@pytest.mark.parametrize('old', [False, True])
+@pytest.mark.parametrize('write', [write2, write_old])
+def test_the_topics_of_px4_are_known_by_type(tmp_path, velocity, old, write):
+    """NED and FRD, stamps of the samples in us; the layouts of PX4 1.13 and of now."""
+    kinds = ('VehicleOdometry', 'SensorCombined')
+    types = store(versions={PX4 + kind: '1.13' for kind in kinds} if old else None)
+    path = write(tmp_path / 'bag', px4(SMALL, SHARES, velocity, old), types=types)
+    read = load(path)
+    agrees(read, PLACE, SPEED, ATTITUDE, RATE, FORCE, within=1e-5)
+    assert read.info['start_ns'] == 10 ** 12
+    np.testing.assert_allclose(read.stack(*[f'output{k}' for k in range(1, 5)]), SHARES, atol=1e-6)
+    assert not read.has('output5') and not read.has('cmd1')
+    assert set(read.columns['vbat']) == {15.5}
+    assert 'vehicle_visual_odometry' not in ' '.join(read.info['notes'])
+
+
+def test_a_mapping_without_topics_says_how_outputs_become_speeds(tmp_path):
+    write_old(tmp_path / 'old.db3', px4(SMALL, SHARES[:, [2, 0, 3, 1]]))
+    mapping = mapping_from({'actuators': {'kind': 'normalised', 'order': [2, 4, 1, 3]}}, 'm')
+    read = load(tmp_path / 'old.db3', mapping, VEHICLE)
+    np.testing.assert_allclose(read.stack(*CMD), SPEEDS, atol=0.01)
+
+
+def test_px4_without_odometry_is_read_from_position_and_attitude(tmp_path):
+    messages = [one for one in px4(SMALL, SHARES) if 'odometry' not in one[0]]
+    read = load(write_old(tmp_path / 'f.db3', messages))
+    agrees(read, PLACE, SPEED, ATTITUDE, RATE, FORCE, within=1e-5)
+
+
+def test_a_definition_of_another_length_is_said(tmp_path):
+    """A PX4 that is older or newer than what ships."""
+    types = store(versions={PX4 + 'VehicleAttitude': ''})
+    messages = [one for one in px4(SMALL, SHARES) if one[0].endswith('vehicle_attitude')]
+    path = write_old(tmp_path / 'f.db3', messages, types)
+    base = sqlite3.connect(path)
+    base.execute('UPDATE messages SET data = CAST(data || zeroblob(12) AS BLOB)')
+    base.commit()
+    base.close()
+    refused(path, 'no definition', 'VehicleAttitude', 'none that ships')
+
+
+def test_measured_speeds_become_rotor_speeds(tmp_path):
+    rpm = np.round(SPEEDS * 60 / (2 * np.pi)).astype(int)
+    for write in (write2, write_old):
+        read = load(write(tmp_path / write.__name__, [*odometry(SMALL), *esc_status(SMALL, rpm)]))
+        np.testing.assert_allclose(read.stack('rotor1', 'rotor4'), SPEEDS[:, [0, 3]], atol=0.06)
+    mapping = mapping_from({'topics': {'rotors': {'topic': '/mavros/esc_status',
+                                                  'field': 'esc_status[].rpm'},
+                                       'pose': {'topic': '/odom'}},
+                            'actuators': {'kind': 'rpm'}}, 'm')
+    read = load(tmp_path / 'write2', mapping)
+    np.testing.assert_allclose(read.stack('rotor1', 'rotor4'), SPEEDS[:, [0, 3]], atol=0.06)
+
+
+def test_commands_and_measured_speeds_are_told_by_the_names_of_their_topics(tmp_path):
+    """As RotorS and its followers have them; normalised ones stay outputs."""
+    path = write2(tmp_path / 'a', [
+        *odometry(SMALL), *lists(SMALL, MAV, '/x/command/motor_speed', 'angular_velocities',
+                                 SPEEDS),
+        *lists(SMALL, MAV, '/x/motor_speed', 'angular_velocities', SPEEDS + 1)])
+    read = load(path)
+    np.testing.assert_array_equal(read.stack(*CMD), SPEEDS)
+    np.testing.assert_array_equal(read.columns['rotor2'], SPEEDS[:, 1] + 1)
+    path = write2(tmp_path / 'b', [*odometry(SMALL), *lists(SMALL, ACTUATORS, '/m', 'normalized',
+                                                            SHARES)])
+    np.testing.assert_array_equal(load(path).columns['output1'], SHARES[:, 0])
+
+
+def test_transforms_of_one_vehicle_are_a_pose(tmp_path):
+    path = write2(tmp_path / 'one', [*transforms(SMALL, ['/cf1']), *imu(SMALL)])
+    agrees(load(path), PLACE, ATTITUDE, RATE)
+    path = write2(tmp_path / 'two', [*transforms(SMALL, ['cf1', 'cf2']), *imu(SMALL)])
+    refused(path, 'topic /tf', 'cf1, cf2', 'pose: {topic: /tf, child: FRAME}')
+    topics = {'pose': {'topic': '/tf', 'child': 'cf2'}, 'rate': {'topic': '/imu'}}
+    read = load(path, mapping_from({'topics': topics}, 'm'))
+    agrees(read, PLACE, ATTITUDE, record=changed(SMALL, px=SMALL.columns['px'] + 1))
+    topics['pose']['child'] = 'cf3'
+    refused(path, 'with child_frame_id cf3', mapping=mapping_from({'topics': topics}, 'm'))
+
+
+def test_two_topics_for_one_role_are_listed_with_the_lines_to_write(tmp_path):
+    path = write2(tmp_path / 'bag', [*odometry(SMALL, '/a/odom'), *odometry(SMALL, '/b/odom'),
+                                     *imu(SMALL)])
+    refused(path, 'pose: /a/odom, /b/odom', '--mapping', 'topics: {pose: {topic: /a/odom}',
+            'rate: {topic: /imu}')
+
+
+def test_what_is_asked_for_is_no_state(tmp_path):
+    """Setpoints are no measurements, and raw measurements are the second choice."""
+    path = write2(tmp_path / 'bag', [
+        *poses(SMALL, '/vrpn/cf/pose'),
+        *poses(changed(SMALL, px=SMALL.columns['px'] + 9), '/setpoint_position/local'),
+        *imu(SMALL, '/imu/data'), *imu(changed(SMALL, wx=SMALL.columns['wx'] + 9),
+                                       '/imu/data_raw')])
+    agrees(load(path), PLACE, RATE)
+
+
+def test_an_attitude_of_an_imu_serves_where_nothing_better_is_there(tmp_path):
+    q = SMALL.stack(*ATTITUDE)
+    turned = [(topic, kind, ns, {**fields, 'orientation': dict(zip('wxyz', map(float, q[k]),
+                                                                    strict=True))})
+              for k, (topic, kind, ns, fields) in enumerate(imu(SMALL))]
+    agrees(load(write2(tmp_path / 'a', turned)), ATTITUDE, RATE, FORCE)
+    assert not load(write2(tmp_path / 'b', imu(SMALL))).has('qw')   # zero: it has none
+    none = [*turned[0][:3], {**turned[0][3], 'orientation_covariance': np.full(9, -1.0)}]
+    assert not load(write2(tmp_path / 'c', [none, *turned[1:]])).has('qw')
+
+
+@pytest.mark.parametrize('frame, column', [('base_link', 'body'), ('map', 'world'),
+                                           ('somewhere', None)])
+def test_a_twist_is_taken_where_its_frame_is_known(tmp_path, frame, column):
+    speed = SMALL.stack(*SPEED)
+    twists = [('/speed', TWIST, ns, {'header': header(ns, frame),
+                                     'twist': {'linear': xyz(speed[k])}})
+              for k, (_, _, ns, _) in enumerate(poses(SMALL))]
+    read = load(write2(tmp_path / 'bag', [*poses(SMALL), *twists]))
+    if column == 'world':
+        agrees(read, PLACE, SPEED)
+    elif column == 'body':
+        assert np.abs(read.stack(*SPEED) - speed).max() > 0.01
+        np.testing.assert_allclose(np.linalg.norm(read.stack(*SPEED), axis=1),
+                                   np.linalg.norm(speed, axis=1))
+    else:
+        assert not read.has('vx')
+
+
+def test_an_odometry_whose_twist_is_in_the_frame_of_its_pose(tmp_path):
+    agrees(load(write2(tmp_path / 'bag', odometry(SMALL, frame='odom', child='odom'))), SPEED)
+
+
+def test_any_type_is_read_by_its_definition_and_the_path_of_a_field(tmp_path):
+    rows = [('/lab', 'lab_msgs/msg/State', ns, {
+        'where': fields['pose']['pose'], 'omega': SMALL.stack(*RATE)[k].astype(np.float32),
+        'rpm': SPEEDS[k]}) for k, (_, _, ns, fields) in enumerate(odometry(SMALL))]
+    path = write2(tmp_path / 'bag', rows)
+    refused(path, 'no topic of this bag is known', '/lab (lab_msgs/msg/State)', '--mapping')
+    topics = {'pose': {'topic': '/lab', 'field': 'where'}, 'rate': {'topic': '/lab',
+                                                                    'field': 'omega'},
+              'position': {'topic': '/lab', 'field': 'where.position'},
+              'commands': {'topic': '/lab', 'field': 'rpm'}}
+    read = load(path, mapping_from({'topics': topics}, 'm'))
+    agrees(read, PLACE, ATTITUDE, CMD)
+    agrees(read, RATE, within=1e-6)
+    topics['rate'] = {'topic': '/lab', 'field': 'rpm'}
+    refused(path, 'message 1', "'rpm' holds 4 numbers, not 3",
+            mapping=mapping_from({'topics': topics}, 'm'))
+    topics['rate'] = {'topic': '/lab', 'field': 'where.place'}
+    refused(path, "no field 'place'", 'position, orientation',
+            mapping=mapping_from({'topics': topics}, 'm'))
+
+
+def test_stamps_of_several_clocks_give_way_to_times_of_receipt(tmp_path):
+    """PX4's clock began at its start, the other's in 1970."""
+    late = [one for one in px4(SMALL, SHARES, late_us=990_000_000) if 'sensor' in one[0]]
+    read = load(write2(tmp_path / 'bag', [*odometry(SMALL), *late]))
+    agrees(read, PLACE, SPEED)
+    agrees(read, RATE, within=1e-5)
+    assert 'times of receipt' in ' '.join(read.info['notes'])
+
+
+@pytest.mark.parametrize('packing', [None, *Writer1.CompressionFormat])
+def test_bags_of_ros_1_are_read_alike(tmp_path, packing):
+    rpm = np.round(SPEEDS * 60 / (2 * np.pi)).astype(int)
+    path = write1(tmp_path / 'flight.dat', [
+        *odometry(SMALL), *imu(SMALL), *esc_status(SMALL, rpm), *transforms(SMALL, ['a', 'b']),
+        *lists(SMALL, MAV, '/x/command/motor_speed', 'angular_velocities', SPEEDS)], packing)
+    read = load(path)
+    agrees(read, PLACE, SPEED, ATTITUDE, RATE, FORCE, CMD)
+    np.testing.assert_allclose(read.columns['rotor1'], SPEEDS[:, 0], atol=0.06)
+    mapping = mapping_from({'topics': {'pose': {'topic': '/tf', 'child': 'a'}}}, 'm')
+    agrees(load(path, mapping), PLACE, ATTITUDE)
+
+
+def test_a_bag_of_ros_1_that_was_cut_off_is_told_how_to_mend(tmp_path):
+    path = write1(tmp_path / 'f.bag', odometry(SMALL))
+    path.write_bytes(path.read_bytes()[:-200])
+    refused(path, 'rosbag reindex')
+
+
+def test_pose_and_twist_of_a_motion_capture_are_none_of_the_recorder(tmp_path):
+    """Names that others use as well; their twist is in the world."""
+    speed = SMALL.stack(*SPEED)
+    twists = [('/vrpn/cf/twist', TWIST, ns, {'header': header(ns, 'world'),
+                                             'twist': {'linear': xyz(speed[k])}})
+              for k, (_, _, ns, _) in enumerate(poses(SMALL))]
+    agrees(load(write2(tmp_path / 'bag', [*poses(SMALL, '/vrpn/cf/pose'), *twists])), PLACE, SPEED)
+
+
+def test_a_battery_that_is_recorded_once_does_not_keep_a_flight_from_being_read(tmp_path):
+    one = [row for row in px4(SMALL, SHARES) if 'battery' not in row[0]]
+    one += [row for row in px4(SMALL, SHARES) if 'battery' in row[0]][:1]
+    read = load(write2(tmp_path / 'bag', one))
+    assert not read.has('vbat') and read.has('px')
