@@ -56,11 +56,12 @@ def read_mapped_bag(path, mapping, vehicle=None):
     streams = [_stream(path, role, source, messages[source.topic], mapping, vehicle)
                for role, source in mapping.topics.items()]
     start, t, columns, notes = join(path, streams)
-    return FlightRecord(t, _velocity_in_world(path, columns),
+    return FlightRecord(t, velocity_in_world(path, columns),
                         {'source': str(path), 'start_ns': start, 'notes': list(notes)})
 
 
-def _velocity_in_world(path, columns):
+def velocity_in_world(path, columns):
+    """Return columns whose velocity in body axes is turned into the world; raises InputError."""
     if BODY_VELOCITY[0] in columns:
         if not all(name in columns for name in QUATERNION):
             raise InputError(f'{path}: a velocity in body axes needs an attitude; map a pose, or '

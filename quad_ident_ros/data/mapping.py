@@ -54,7 +54,9 @@ class Mapping:
     The content of a mapping file.
 
     topics: role -> Source; world and body: the frames of the record, ENU or NED, FLU or FRD;
-    instances: ULog topic -> the instance (multi_id) to read; actuators: Actuators or None.
+    instances: ULog topic -> the instance (multi_id) to read; actuators: Actuators or None;
+    columns: column of the flight record, or q for all four of the quaternion -> Column of a
+    table; quaternion: order of those of q, wxyz or xyzw; separator of a table, '' if not told.
     """
 
     topics: Pairs = field(default_factory=dict)
@@ -62,6 +64,9 @@ class Mapping:
     body: str = 'FLU'
     instances: Pairs = field(default_factory=dict)
     actuators: Actuators = None
+    columns: Pairs = field(default_factory=dict)
+    quaternion: str = 'wxyz'
+    separator: str = ''
 
 
 def load_mapping(path):

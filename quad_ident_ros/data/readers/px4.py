@@ -8,14 +8,15 @@ MAGIC = b'ULog\x01\x12\x35'
 
 
 def read(path, mapping=None, vehicle=None):
-    """Return the flight record of a log."""
+    """Return the flight records of a log."""
     from quad_ident_ros.data.ulog import read_ulog
-    return [read_ulog(path, mapping, vehicle)]
+    return read_ulog(path, mapping, vehicle)
 
 
 def contents(path):
     """Return the topics of a log."""
-    raise NotImplementedError
+    from quad_ident_ros.data.ulog_index import contents as found
+    return found(path)
 
 
 READER = Reader('px4', 'a log of PX4 (ULog)',
