@@ -79,7 +79,8 @@ def vehicle_of_log(path, mapping=None):
 
 def _thrust(path, motors, mapping):
     """Return (thrust over mass and squared speeds, (low, high) rad/s, whether by rpm)."""
-    trial = Vehicle('trial', 1.0, (1.0, 1.0, 1.0), 9.80665, 1.0, 1.0, motors.rotors, speed_max=FULL)
+    trial = Vehicle('trial', 1.0, (1.0, 1.0, 1.0), 9.80665, 1.0, 1.0, motors.rotors,
+                    speed_max=FULL)
     records = read_ulog(path, mapping, trial)
     record = max(records, key=len)
     names = record.numbered('cmd')
@@ -107,7 +108,9 @@ def _text(path, motors, coefficient, ratio, speeds, measured):
         'taken, as no rpm is logged; thrust counts, not speed', source=motors.source)
     lines = []
     for rotor in motors.rotors:
-        place = (', '.join(f'{value + 0.0:.6g}' for value in rotor.position) if motors.known else 'null, null, 0')
+        place = 'null, null, 0'
+        if motors.known:
+            place = ', '.join(f'{value + 0.0:.6g}' for value in rotor.position)
         quarter = (f'{"front" if rotor.position[0] > 0 else "rear"} '
                    f'{"left" if rotor.position[1] > 0 else "right"}')
         lines.append(f'  - {{position: [{place}], spin: {rotor.spin}}}    # {quarter}\n')

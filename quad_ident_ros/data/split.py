@@ -160,7 +160,8 @@ def _steps(record, rest, least, value, say):
         along = (rest[k:k + width + 1] - rest[k]) @ ((rest[k + width] - rest[k]) / size)
         begin = k + int(np.flatnonzero(along < 0.05 * size)[-1])
         end = k + int(np.flatnonzero(along > 0.95 * size)[0])
-        later = np.median(rest[end:end + after], axis=0) - rest[k]
+        later = (np.median(rest[end:end + after], axis=0)
+                 - np.median(rest[max(begin - after, 0):begin + 1], axis=0))
         moved = np.linalg.norm(value[min(end, len(value) - 1)] - value[min(begin, end)])
         if begin < end and np.linalg.norm(later) > 0.5 * size and moved > least:
             found.append((float(record.t[begin]), float(record.t[end]), say(float(size))))
