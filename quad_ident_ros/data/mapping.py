@@ -4,11 +4,13 @@
 
 from collections.abc import Mapping as Pairs
 from dataclasses import dataclass, field
+import re
 
 import numpy as np
 
 from quad_ident_ros import resources, schema
 from quad_ident_ros.data.frames import BODIES, WORLDS
+from quad_ident_ros.data.record import KNOWN, unit
 from quad_ident_ros.errors import InputError
 
 ROLES = ('pose', 'velocity', 'rate', 'specific_force', 'commands', 'rotors', 'battery')
@@ -18,6 +20,22 @@ KINDS = {'speed': None, 'rpm': None, 'pwm': (1000.0, 2000.0), 'normalised': (0.0
 """Kinds of actuator outputs, with the output at the lowest and at the full speed by default."""
 
 CURVES = ('linear', 'thrust')
+
+ATTITUDE = 'q'
+"""Stands for all four columns of a quaternion."""
+
+UNITS = {
+    's': {'s': 1.0, 'ms': 1e-3, 'us': 1e-6, 'ns': 1e-9},
+    'm': {'m': 1.0, 'mm': 1e-3, 'cm': 1e-2},
+    'm/s': {'m/s': 1.0, 'mm/s': 1e-3, 'cm/s': 1e-2},
+    'rad': {'rad': 1.0, 'deg': np.pi / 180},
+    'rad/s': {'rad/s': 1.0, 'deg/s': np.pi / 180, 'rpm': np.pi / 30},
+    'm/s^2': {'m/s^2': 1.0, 'g': 9.80665, 'mg': 9.80665e-3},
+    'V': {'V': 1.0, 'mV': 1e-3},
+}
+"""Units that a column of a table may have, by the unit of the flight record."""
+
+_OUTPUT = re.compile(r'output[1-9][0-9]*')
 
 
 @dataclass(frozen=True)
@@ -49,6 +67,19 @@ class Source:
 
 
 @dataclass(frozen=True)
+class Column:
+    """
+    Columns of a table to read for one of the flight record: names, four of them for q.
+
+    unit: one of UNITS, '' for that of the flight record; frame: of a velocity, world or body.
+    """
+
+    names: tuple
+    unit: str = ''
+    frame: str = 'world'
+
+
+@dataclass(frozen=True)
 class Mapping:
     """
     The content of a mapping file.
@@ -76,7 +107,8 @@ def load_mapping(path):
 
 def mapping_from(data, where):
     """Return the Mapping that the content of a mapping file describes; raises InputError."""
-    schema.check_keys(where, data, ('topics', 'world', 'body', 'instances', 'actuators'))
+    schema.check_keys(where, data, ('topics', 'world', 'body', 'instances', 'actuators',
+                                    'columns', 'quaternion', 'separator'))
     topics = data.get('topics', {})
     schema.check_keys(f'{where}: topics', topics, ROLES)
     instances = data.get('instances', {})
@@ -90,7 +122,22 @@ def mapping_from(data, where):
         schema.choice(f'{where}: body', data.get('body', 'FLU'), BODIES),
         {str(topic): schema.integer(f'{where}: instances: {schema.shown(topic)}', number, 0)
          for topic, number in instances.items()},
-        _actuators(f'{where}: actuators', data['actuators']) if 'actuators' in data else None)
+        _actuators(f'{where}: actuators', data['actuators']) if 'actuators' in data else None,
+        _columns(f'{where}: columns', data.get('columns', {})),
+        schema.choice(f'{where}: quaternion', data.get('quaternion', 'wxyz'), ('wxyz', 'xyzw')),
+        schema.choice(f'{where}: separator', data.get('separator', ''), ('', ',', ';', '\t', ' ')))
+
+
+def factor_of(name, said):
+    """Return what values in a unit of UNITS are multiplied by for a column of the record."""
+    known = UNITS.get(unit_of(name), {})
+    return known.get(said, 1.0)
+
+
+def unit_of(name):
+    """Return the unit of a column of the flight record, '' for those that have none."""
+    return '' if name == ATTITUDE or _OUTPUT.fullmatch(name) else unit(name) or ''
+
 
 
 def rotor_speeds(where, outputs, actuators, vehicle):
@@ -138,6 +185,42 @@ def _source(where, role, entry):
             raise InputError(f'{where}: {key}: expected a name, got {schema.shown(value)}')
     frame = schema.choice(f'{where}: frame', entry.get('frame', 'body'), ('body', 'world'))
     return Source(topic, path, frame)
+
+
+def _columns(where, data):
+    if not isinstance(data, dict):
+        raise InputError(f'{where}: expected `column of the record: column of the file` lines, '
+                         f'got {schema.shown(data)}')
+    found = {}
+    for name, entry in data.items():
+        if name != ATTITUDE and not (isinstance(name, str) and (unit(name) is not None
+                                                                or _OUTPUT.fullmatch(name))):
+            raise schema.unknown_key(where, name, [*KNOWN, ATTITUDE, 'cmd1', 'rotor1', 'output1'])
+        found[name] = _column(f'{where}: {name}', name, entry)
+    if found and 't' not in found:
+        raise InputError(f"{where}: 't' is missing; name the column with the time")
+    return found
+
+
+def _column(where, name, entry):
+    if not isinstance(entry, dict):
+        entry = {'column': entry}
+    velocity = name in ('vx', 'vy', 'vz')
+    schema.check_keys(where, entry, ('column', 'unit', *(('frame',) if velocity else ())),
+                      ('column',))
+    names = entry['column']
+    names = tuple(names) if isinstance(names, list) else (names,)
+    count = 4 if name == ATTITUDE else 1
+    if len(names) != count or not all(isinstance(one, str) and one.strip() for one in names):
+        raise InputError(f'{where}: expected {"a list of 4 names" if count == 4 else "the name"} '
+                         f'of {"columns" if count == 4 else "a column"} of the file, got '
+                         f'{schema.shown(entry["column"])}')
+    said = ''
+    if 'unit' in entry:
+        said = schema.choice(f'{where}: unit', entry['unit'],
+                             tuple(UNITS.get(unit_of(name), {})) or ('1',))
+    frame = schema.choice(f'{where}: frame', entry.get('frame', 'world'), ('world', 'body'))
+    return Column(tuple(one.strip() for one in names), said, frame)
 
 
 def _actuators(where, data):

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """All kinds of files that flights are read from."""
 
-from quad_ident_ros.data.readers import px4, rosbag2, table
+from quad_ident_ros.data.readers import parquet, px4, rosbag2, table
 
-READERS = (rosbag2.READER, px4.READER, table.READER)
+READERS = (rosbag2.READER, px4.READER, parquet.READER, table.READER)
 """In the order in which they are told: what is none of the others is a table."""

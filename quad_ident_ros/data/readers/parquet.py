@@ -1,0 +1,24 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Tables in Parquet: columns by a mapping or by guess, as those of text."""
+
+from pathlib import Path
+
+from quad_ident_ros.data.readers.base import Reader
+from quad_ident_ros.data.readers.table import contents_of_table, record_from
+from quad_ident_ros.data.tabular import read_parquet
+
+
+def read(path, mapping=None, vehicle=None):
+    """Return the flight record of a Parquet file."""
+    path = Path(path)
+    return [record_from(path, read_parquet(path), mapping, vehicle)]
+
+
+def contents(path):
+    """Return the one stream of a Parquet file."""
+    return contents_of_table(read_parquet(Path(path)), 'Parquet')
+
+
+READER = Reader('parquet', 'a table in Parquet', lambda path, start: start.startswith(b'PAR1'),
+                read, contents, package='pyarrow', module='pyarrow', extra='parquet')
