@@ -45,6 +45,22 @@ def summarise(record, vehicle=None):
     }
 
 
+def contents(path, title, streams):
+    """Return what is in a file, JSON-able: its kind and the Content of its streams."""
+    return {'file': str(path), 'kind': title, 'streams': [
+        {'name': one.name, 'type': one.type, 'samples': one.samples, 'start_s': one.start,
+         'duration_s': one.duration, 'rate_hz': one.rate, 'fields': list(one.fields),
+         'roles': list(one.roles)} for one in streams]}
+
+
+def unread(path, error):
+    """Return the summary of a file that is no flight record, with an error as its finding."""
+    message = str(error).removeprefix(str(path)).lstrip(':, ')
+    return {'schema': 'quad_ident/info/1', 'source': str(path), 'name': None, 'findings': [
+        {'code': 'unread', 'severity': 'error', 'where': str(path), 'message': message,
+         'remedy': ''}]}
+
+
 def _column(name, values, t):
     finite = values[np.isfinite(values)]
     changes = int(np.count_nonzero(values[1:] != values[:-1]))

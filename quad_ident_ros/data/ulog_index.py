@@ -25,6 +25,7 @@ _DATA = struct.Struct('<HQ')
 _START = 16             # bytes before the first message
 _MOST_STREAMS = 4096
 _LATEST = 2 ** 63 // 1000 - 1   # us, of a stamp that fits into ns
+_BEFORE = 60 * 10 ** 9   # ns that a message may be older than the log
 _KINDS = frozenset(b'BFIMPQALRCSODT')
 _FIELD = re.compile(r'([A-Za-z0-9_]+(?:\[\d+\])?) ([A-Za-z0-9_]+)')
 
@@ -53,6 +54,9 @@ def contents(path):
         times = times[times <= _LATEST].astype(np.int64) * 1000
         if not len(times):
             continue
+        # Of messages from before the clock was set, such as parameters at the start.
+        lately = times >= origin_ns - _BEFORE
+        times = times[lately] if lately.any() else times
         label = name if instance == 0 else f'{name} {instance}'
         found.append(content_of(label, name, times, origin_ns, formats.get(name, ()),
                                 ROLES.get(name, ())))

@@ -4,6 +4,7 @@
 
 import gzip
 import random
+import sys
 
 from flightmaker import flight, frd, ned, ned_attitude, world_velocity_in_body
 import numpy as np
@@ -260,6 +261,12 @@ def test_parquet_is_read_by_the_same_rules(tmp_path):
     assert 'note' in said(load(path)) and contents_of(path)[1][0].samples == len(FLIGHT)
     path.write_bytes(path.read_bytes()[:-100])
     refused(path, 'Parquet')
+
+
+def test_without_pyarrow_the_extra_is_named(tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, 'pyarrow', None)
+    (tmp_path / 'f.parquet').write_bytes(b'PAR1')
+    refused(tmp_path / 'f.parquet', 'quad_ident_ros[parquet]', 'pyarrow')
 
 
 def test_mutated_tables_are_read_or_refused_in_a_line(tmp_path):
