@@ -26,11 +26,13 @@ import warnings
 
 from flightmaker import copy_bag, flight, others_bag, px4_samples, ulog, VEHICLE
 import numpy as np
+from px4_files import controls, esc, landed, log_of, parameters, status
 from rich.progress import Progress
 from rosbags.rosbag2 import StoragePlugin
+from table_files import others, table
 
 from quad_ident_ros.data.export import save, write_bag
-from quad_ident_ros.data.load import load_all
+from quad_ident_ros.data.load import contents_of, load_all
 from quad_ident_ros.data.mapping import load_mapping, mapping_from
 from quad_ident_ros.data.topics import EXACT_TOPIC
 from quad_ident_ros.errors import InputError
@@ -40,6 +42,7 @@ WAITING = 300       # s for one input in all: a busy machine is no hang
 MEGABYTES = 1024    # for one input, beyond what the process has when it begins
 NAMES = {'csv': 'f.csv', 'csv_gz': 'f.csv.gz', 'mcap': 'f.mcap', 'mcap_topics': 'f.mcap',
          'mcap_mapped': 'f.mcap', 'sqlite3': 'f.db3', 'metadata': 'bag', 'ulog': 'f.ulg',
+         'px4': 'f.ulg', 'table': 'f.csv', 'table_mapped': 'f.csv', 'parquet': 'f.parquet',
          'mapping': 'f.yaml'}
 """File that each kind of input is written to."""
 
@@ -47,6 +50,12 @@ TOPICS = mapping_from({'topics': {
     'pose': {'topic': '/odom'}, 'velocity': {'topic': '/odom'}, 'rate': {'topic': '/imu'},
     'specific_force': {'topic': '/imu'}, 'commands': {'topic': '/motors'}}}, 'mapping')
 OUTPUTS = mapping_from({'actuators': {'kind': 'pwm', 'order': [1, 3, 4, 2]}}, 'mapping')
+COLUMNS = mapping_from({'actuators': {'kind': 'pwm'}, 'columns': {
+    't': {'column': 'timestamp', 'unit': 'us'}, 'q': ['q_w', 'q_x', 'q_y', 'q_z'],
+    'px': {'column': 'pos_x', 'unit': 'mm'}, 'py': 'pos_y', 'pz': 'pos_z',
+    'vx': {'column': 'vel_x', 'frame': 'body'}, 'vy': 'vel_y', 'vz': 'vel_z',
+    'wx': 'gyro_x', 'wy': 'gyro_y', 'wz': 'gyro_z', 'output1': 'm1', 'output2': 'm2',
+    'output3': 'm3', 'output4': 'm4', 'vbat': 'vbat'}}, 'mapping')
 MAPPING = """\
 world: NED
 topics:
@@ -77,8 +86,24 @@ def valid_inputs(folder):
     found['sqlite3'] = next((folder / 'sql').glob('*.db3')).read_bytes()
     found['metadata'] = (folder / 'ours' / 'metadata.yaml').read_bytes()
     found['ulog'] = ulog(px4_samples(record, outputs=outputs, motors=0 * outputs))
+    first = 5_000_000
+    found['px4'] = log_of(record, [
+        status(first), landed(first, True), landed(first + 20_000, False),
+        esc(first + 1000, [500.0] * 4), esc(first + 90_000, [500.0] * 4)],
+        motors=controls(record), named=parameters(THR_MDL_FAC=0.3))
+    found['table'] = table(folder, others(record), separator=';', comma=True).read_bytes()
+    found['table_mapped'] = table(folder, others(record)).read_bytes()
+    found['parquet'] = _parquet(folder, record)
     found['mapping'] = MAPPING.encode()
     return found
+
+
+def _parquet(folder, record):
+    import pyarrow
+    from pyarrow import parquet
+    parquet.write_table(pyarrow.table({name: pyarrow.array(values) for name, values in
+                                       others(record).items()}), folder / 'p.parquet')
+    return (folder / 'p.parquet').read_bytes()
 
 
 def _mcap(folder, name, source, left_out):
@@ -144,6 +169,11 @@ def read(kind, path):
         load_all(path, TOPICS)
     elif kind == 'ulog':
         load_all(path, OUTPUTS, VEHICLE)
+    elif kind in ('px4', 'table', 'parquet'):
+        contents_of(path)
+        load_all(path, None, VEHICLE)
+    elif kind == 'table_mapped':
+        load_all(path, COLUMNS, VEHICLE)
     else:
         load_all(path)
 

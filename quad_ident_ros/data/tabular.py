@@ -15,6 +15,8 @@ from quad_ident_ros.errors import InputError
 SEPARATORS = (',', ';', '\t')
 _HEAD = 20      # lines in which the first numbers come
 _MOST_COLUMNS = 4096
+_FEW = 0.1      # of the cells of a column: with more text it is one of text
+_MISSING = frozenset(('none', 'null', 'n/a', 'na', '-', '--'))
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,15 +41,16 @@ def read_text(path, separator=''):
     Raises InputError that names file, line and column.
     """
     rows, truncated = rows_of(path)
-    rows = [row for row in rows if row.strip()]
+    places = [k for k, row in enumerate(rows, 1) if row.strip()]    # as editors count
+    rows = [rows[k - 1] for k in places]
     separator = separator or told_separator(rows)
     comma = separator != ',' and any(',' in row for row in rows[1:_HEAD])
     head, first = _head(path, rows, separator, comma)
-    names, units = _names(path, rows, head, first, separator)
+    names, units = _names(path, rows, places[head], head, first, separator)
     columns = _fast(rows[first:], names, separator, comma)
     notes = ['the last line has no line end and was left out'] if truncated else []
     if columns is None:
-        columns, left = _thorough(path, rows, first, names, separator, comma)
+        columns, left = _thorough(path, rows[first:], places[first:], names, separator, comma)
         notes += left
     if not columns or len(next(iter(columns.values()))) < 2:
         raise InputError(f'{path}: there are fewer than 2 lines of numbers; give a table with a '
@@ -137,7 +140,8 @@ def _number(cell, comma):
     try:
         return float(cell) if cell.isascii() and '_' not in cell else None
     except ValueError:
-        return {'true': 1.0, 'false': 0.0}.get(cell.lower())
+        cell = cell.lower()
+        return np.nan if cell in _MISSING else {'true': 1.0, 'false': 0.0}.get(cell)
 
 
 def _head(path, rows, separator, comma):
@@ -167,11 +171,11 @@ def _is_units(cells):
     return bool(said) and sum(cell in _UNITS for cell in said) >= 0.7 * len(said)
 
 
-def _names(path, rows, head, first, separator):
+def _names(path, rows, line, head, first, separator):
     """Return the names of the columns, with the line above where they alone repeat; units."""
     names = _cells(rows[head].lstrip('#% '), separator)
     if len(names) > _MOST_COLUMNS:
-        raise InputError(f'{path}, line {head + 1}: {len(names)} columns are no flight')
+        raise InputError(f'{path}, line {line}: {len(names)} columns are no flight')
     doubled = [name for name, count in Counter(names).items() if count > 1 and name]
     if doubled and head > 0:
         above = _cells(rows[head - 1], separator)
@@ -179,11 +183,11 @@ def _names(path, rows, head, first, separator):
             names = [f'{one} {name}'.strip() for one, name in zip(above, names, strict=True)]
             doubled = [name for name, count in Counter(names).items() if count > 1 and name]
     if doubled:
-        raise InputError(f'{path}, line {head + 1}, column {doubled[0][:40]!r}: the header names '
+        raise InputError(f'{path}, line {line}, column {doubled[0][:40]!r}: the header names '
                          'it twice; rename or remove one')
     bad = [name for name in names if not name.isprintable()]
     if bad:
-        raise InputError(f'{path}, line {head + 1}, column {bad[0][:40]!r}: this is no column '
+        raise InputError(f'{path}, line {line}, column {bad[0][:40]!r}: this is no column '
                          'name; use printable text')
     units = {}
     if first - head == 2:
@@ -208,10 +212,10 @@ def _fast(rows, names, separator, comma):
     return {name: column for name, column in zip(names, table.T.copy(), strict=True) if name}
 
 
-def _thorough(path, rows, first, names, separator, comma):
+def _thorough(path, rows, places, names, separator, comma):
     """Return the columns without text of any table, and notes of what is left out."""
     cells = []
-    for k, row in enumerate(rows[first:], first + 1):
+    for k, row in zip(places, rows, strict=True):
         line = _cells(row, separator)
         if len(line) == len(names) + 1 and not line[-1]:
             line.pop()      # a separator at the end
@@ -225,6 +229,12 @@ def _thorough(path, rows, first, names, separator, comma):
         if not name:
             continue
         if None in values:
+            wrong = [k for k, value in enumerate(values) if value is None]
+            if len(wrong) < _FEW * len(values):
+                k = wrong[0]
+                raise InputError(f'{path}, line {places[k]}, column {name[:40]!r}: '
+                                 f'{column[k][:40]!r} is no number; correct it or leave the cell '
+                                 'empty')
             text.append(name[:40])
         else:
             columns[name] = np.array(values, float)

@@ -11,7 +11,7 @@ import numpy as np
 from px4_files import controls, log_of, status
 import pytest
 from records import FAST, log
-from test_tables import named, others, Q, table
+from table_files import named, others, Q, table
 import yaml
 
 from quad_ident_ros.cli.info import FAULTY
@@ -85,7 +85,7 @@ def test_an_error_in_a_flight_has_the_exit_code(tmp_path, capsys):
 
 def test_a_mapping_to_begin_with_reads_the_table(tmp_path, capsys):
     """What is told is filled in, what is in doubt is said; after one correction it holds."""
-    columns = others()
+    columns = others(SHORT)
     q = columns.pop('q_x'), columns.pop('q_y'), columns.pop('q_z'), columns.pop('q_w')
     for name in ('gyro_x', 'gyro_y', 'gyro_z'):
         columns.pop(name)

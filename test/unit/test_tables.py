@@ -10,6 +10,8 @@ from flightmaker import flight, frd, ned, ned_attitude, world_velocity_in_body
 import numpy as np
 import pytest
 from records import CMD, refused
+from table_files import FORCE, named, PLACE, Q, RATE, SPEED, table
+from table_files import others as named_otherwise
 
 from quad_ident_ros.cli.main import main
 from quad_ident_ros.data.guess import command_kind, plain, time_unit
@@ -18,43 +20,12 @@ from quad_ident_ros.data.mapping import mapping_from
 from quad_ident_ros.errors import InputError
 
 FLIGHT = flight(seconds=6.0, noise=0.3)
-PLACE, SPEED = ('px', 'py', 'pz'), ('vx', 'vy', 'vz')
-Q, RATE, FORCE = ('qw', 'qx', 'qy', 'qz'), ('wx', 'wy', 'wz'), ('ax', 'ay', 'az')
 EVERY = (*PLACE, *SPEED, *Q, *RATE, *FORCE)
 
 
-def euler(record):
-    """Return roll, pitch and yaw (N, 3) rad."""
-    return record.euler()
-
-
-def table(folder, columns, name='flight.csv', separator=',', comma=False, above=''):
-    """Write a table of (N,) columns and return its path."""
-    rows = [separator.join(columns)]
-    for values in zip(*columns.values(), strict=True):
-        cells = ['' if np.isnan(value) else repr(float(value)) for value in values]
-        rows.append(separator.join(cell.replace('.', ',') if comma else cell for cell in cells))
-    text = (above + '\n'.join(rows) + '\n').encode()
-    path = folder / name
-    path.write_bytes(gzip.compress(text) if name.endswith('.gz') else text)
-    return path
-
-
-def named(names, values):
-    """Return columns of names and values (N, k)."""
-    return dict(zip(names, np.asarray(values).T, strict=True))
-
-
-def others(record=FLIGHT):
-    """Return the columns of a record as other programs name them."""
-    return {'timestamp': np.round(1e6 * record.t + 5e6),
-            **named(('pos_x', 'pos_y', 'pos_z'), record.stack(*PLACE)),
-            **named(('vel_x', 'vel_y', 'vel_z'), record.stack(*SPEED)),
-            **named(('q_w', 'q_x', 'q_y', 'q_z'), record.stack(*Q)),
-            **named(('gyro_x', 'gyro_y', 'gyro_z'), record.stack(*RATE)),
-            **named(('acc_x', 'acc_y', 'acc_z'), record.stack(*FORCE)),
-            **named(('m1', 'm2', 'm3', 'm4'), 1000 + record.stack(*CMD) / 2),
-            'vbat': record.columns['vbat']}
+def others():
+    """Return the columns of FLIGHT as other programs name them."""
+    return named_otherwise(FLIGHT)
 
 
 def close(read, record=FLIGHT, names=EVERY, atol=1e-5):
@@ -94,7 +65,7 @@ def test_names_are_known_in_other_spellings(tmp_path, rename):
 def test_units_are_told_by_names_and_values(tmp_path):
     columns = {'Time (ms)': 1e3 * FLIGHT.t,
                **named(('x [mm]', 'y [mm]', 'z [mm]'), 1e3 * FLIGHT.stack(*PLACE)),
-               **named(('roll', 'pitch', 'yaw'), np.degrees(euler(FLIGHT))),
+               **named(('roll', 'pitch', 'yaw'), np.degrees(FLIGHT.euler())),
                **named(('gyro.x', 'gyro.y', 'gyro.z'), np.degrees(FLIGHT.stack(*RATE))),
                **named(('acc.x', 'acc.y', 'acc.z'), FLIGHT.stack(*FORCE) / 9.80665)}
     read = load(table(tmp_path, columns))
@@ -177,6 +148,17 @@ def test_what_is_in_doubt_is_asked_with_the_lines_to_write(tmp_path):
     refused(path, 'foo, bar', 'columns: {t: time}', '--write-mapping')
     path = table(tmp_path, {'frame': FLIGHT.t, 'x': FLIGHT.t, 'y': FLIGHT.t, 'z': FLIGHT.t})
     refused(path, 'no column of a time')
+
+
+def test_a_cell_that_is_no_number_is_named_with_its_line(tmp_path):
+    path = table(tmp_path, others())
+    rows = path.read_text().splitlines()
+    rows[7] = rows[7].replace(rows[7].split(',')[2], '1.2.3')
+    path.write_text('\n'.join([rows[0], '', *rows[1:]]) + '\n')
+    refused(path, 'line 9', "'pos_y'", '1.2.3')
+    rows[7] = rows[7].replace('1.2.3', 'NULL')
+    path.write_text('\n'.join(rows) + '\n')
+    assert len(load(path)) == len(FLIGHT)
 
 
 def test_a_mapping_names_columns_units_and_frames(tmp_path):
