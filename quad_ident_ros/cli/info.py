@@ -80,7 +80,7 @@ def run(options):
     return FAULTY if errors else 0
 
 
-def show_streams(inside):
+def show_streams(inside: dict) -> None:
     """Print the streams of a file."""
     screen = console()
     screen.print(f'{inside["file"]}: {inside["kind"]}, {len(inside["streams"])} streams',
@@ -148,7 +148,7 @@ def _show_record(screen, say, summary):
                 f'{1e3 * clock["std_s"]:.2f} ms{drift}')
 
 
-def _text(value):
+def _text(value: str) -> str:
     """Return text that holds no markup."""
     return value.replace('[', r'\[')
 

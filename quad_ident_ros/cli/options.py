@@ -8,7 +8,7 @@ from quad_ident_ros.data.load import load_all, reader_of
 from quad_ident_ros.data.mapping import load_mapping
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.experiment import check_noise
-from quad_ident_ros.model.vehicle import load_nominal, load_vehicle
+from quad_ident_ros.model.vehicle import load_nominal, load_vehicle, Vehicle
 
 AUTO = 'auto'
 
@@ -35,7 +35,8 @@ def flights_from(path, mapping=None, vehicle=None):
     return load_all(path, load_mapping(mapping) if mapping else None, vehicle)
 
 
-def vehicle_from(option, path, mapping=None, nominal=False):
+def vehicle_from(option: str, path: str, mapping: str | None = None,
+                 nominal: bool = False) -> Vehicle:
     """
     Return the Vehicle of --vehicle: of a name, a file, or `auto`, the file beside a PX4 log.
 

@@ -2,11 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """A mapping file to begin with, from what is in a file."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
 from quad_ident_ros.data.guess import guess
 from quad_ident_ros.data.load import reader_of
 from quad_ident_ros.data.mapping_text import names_text, table_text, topics_text
+from quad_ident_ros.data.readers.base import Content
 from quad_ident_ros.data.tabular import read_parquet, read_text
 from quad_ident_ros.errors import InputError
 
@@ -14,7 +16,7 @@ BAGS = ('rosbag1', 'rosbag2')
 TABLES = {'csv': read_text, 'parquet': read_parquet}
 
 
-def begin_mapping(out, path, streams):
+def begin_mapping(out: str | Path, path: str | Path, streams: Sequence[Content]) -> None:
     """
     Write the mapping file that fits the kind of a file.
 

@@ -2,14 +2,20 @@
 # SPDX-License-Identifier: Apache-2.0
 """Flight records from tables whose columns a mapping names, or that are told without doubt."""
 
+from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Mapping as Pairs
+from pathlib import Path
+
 import numpy as np
 
 from quad_ident_ros.data import frames
 from quad_ident_ros.data.foreign import BODY_VELOCITY, velocity_in_world
-from quad_ident_ros.data.mapping import ATTITUDE, factor_of, rotor_speeds
+from quad_ident_ros.data.mapping import ATTITUDE, Column, factor_of, Mapping, rotor_speeds
 from quad_ident_ros.data.record import EULER, FlightRecord, QUATERNION, unit
 from quad_ident_ros.data.streams import HELD, INTERPOLATED, join, SLOW, Stream
+from quad_ident_ros.data.tabular import Table
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.model.vehicle import Vehicle
 
 POSITION, VELOCITY = ('px', 'py', 'pz'), ('vx', 'vy', 'vz')
 RATE, FORCE = ('wx', 'wy', 'wz'), ('ax', 'ay', 'az')
@@ -18,7 +24,8 @@ GROUPS = {'position': POSITION, 'velocity': VELOCITY, 'attitude': QUATERNION, 'e
 CLOCK = 1e8         # s: a clock that has run for longer counts from an epoch
 
 
-def record_of(path, table, mapping, vehicle, notes):
+def record_of(path: Path, table: Table, mapping: Mapping, vehicle: Vehicle | None,
+              notes: Sequence[str]) -> FlightRecord:
     """
     Return the FlightRecord of a table.
 
@@ -60,23 +67,25 @@ def record_of(path, table, mapping, vehicle, notes):
     return FlightRecord(seconds, {**columns, **kept}, info)
 
 
-def shown(names, most=12):
+def shown(names: Iterable[str], most: int = 12) -> str:
     """Return names as one short text."""
     names = [name[:40] for name in names]
     more = f' and {len(names) - most} more' if len(names) > most else ''
     return ', '.join(names[:most]) + more
 
 
-def _values(table, column):
+def _values(table: Table, column: Column) -> np.ndarray:
     """Return the values (N, k) of a Column of a mapping, as the table has them."""
     return np.stack([table.columns[name] for name in column.names], axis=-1)
 
 
-def _streams(path, table, mapping, vehicle, stamps, known):
+def _streams(path: Path, table: Table, mapping: Mapping, vehicle: Vehicle | None,
+             stamps: np.ndarray, known: np.ndarray) -> Iterator[Stream]:
     """Yield the streams of the mapped columns, in SI units, ENU and FLU."""
     chosen = mapping.columns
 
-    def stream(source, names, values, between=INTERPOLATED):
+    def stream(source: str, names: Iterable[str], values: np.ndarray,
+               between: str = INTERPOLATED) -> Stream:
         use = known & np.isfinite(values).any(axis=1)
         return Stream(f'columns {source}', stamps[use],
                       dict(zip(names, values[use].T, strict=True)), between)
@@ -123,7 +132,7 @@ def _streams(path, table, mapping, vehicle, stamps, known):
             yield stream(source, names, values, between)
 
 
-def _attitude(path, table, mapping):
+def _attitude(path: Path, table: Table, mapping: Mapping) -> tuple[list[str], np.ndarray] | None:
     """Return (names of columns, quaternions (N, 4) of FLU in ENU) or None."""
     chosen = mapping.columns
     if ATTITUDE in chosen:
@@ -154,7 +163,7 @@ def _attitude(path, table, mapping):
     return names, frames.attitude(q, mapping.world, mapping.body)
 
 
-def from_euler(roll, pitch, yaw):
+def from_euler(roll: np.ndarray, pitch: np.ndarray, yaw: np.ndarray) -> np.ndarray:
     """Return the quaternions (N, 4) of roll, pitch, yaw (N,) rad, turned in the order zyx."""
     zero = np.zeros_like(roll)
     turns = [np.stack([np.cos(angle / 2), *(np.sin(angle / 2) if k == axis else zero
@@ -163,7 +172,8 @@ def from_euler(roll, pitch, yaw):
     return frames.multiply(frames.multiply(turns[2], turns[1]), turns[0])
 
 
-def _kept(table, chosen, columns, stamps, known, seconds, start):
+def _kept(table: Table, chosen: Pairs, columns: Pairs, stamps: np.ndarray, known: np.ndarray,
+          seconds: np.ndarray, start: int) -> dict[str, np.ndarray]:
     """Return the other columns of a table at the rows of the record."""
     used = {name for column in chosen.values() for name in column.names}
     order = np.argsort(stamps, kind='stable')

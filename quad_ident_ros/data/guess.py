@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the columns of a table are, where their names and values leave no doubt."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 import re
 import warnings
@@ -12,6 +13,7 @@ from quad_ident_ros.data import frames
 from quad_ident_ros.data.columns import FORCE, from_euler, POSITION, RATE, VELOCITY
 from quad_ident_ros.data.mapping import ATTITUDE, Column, factor_of, Mapping
 from quad_ident_ros.data.record import EULER, QUATERNION
+from quad_ident_ros.data.tabular import Table
 
 RATES = 5.0, 5000.0     # Hz, of logs
 G = 9.80665
@@ -66,7 +68,7 @@ class Guess:
     candidates: dict = field(default_factory=dict)
 
 
-def guess(table, given=None):
+def guess(table: Table, given: Mapping | None = None) -> Guess:
     """
     Return the Guess of a table.
 
@@ -91,7 +93,7 @@ def guess(table, given=None):
     return made.guess
 
 
-def plain(name):
+def plain(name: str) -> tuple[str, str]:
     """Return a name in small letters with _ between its parts, and the unit that it says."""
     said = ''
     match = _UNIT.search(name)
@@ -109,7 +111,7 @@ def plain(name):
 class _Making:
     """A guess that is being made: what each step takes is open to the next."""
 
-    def __init__(self, table, given):
+    def __init__(self, table: Table, given: Mapping | None) -> None:
         self.table, self.given = table, given
         self.guess = Guess()
         self.columns, self.world, self.body = {}, given.world, given.body
@@ -126,25 +128,26 @@ class _Making:
 
     # --- what each step shares
 
-    def values(self, names):
+    def values(self, names: Sequence[str]) -> np.ndarray:
         return np.stack([self.table.columns[name] for name in names], axis=-1)
 
-    def scaled(self, group):
+    def scaled(self, group: Sequence[str]) -> np.ndarray:
         return np.stack([self.table.columns[self.columns[name].names[0]]
                          * factor_of(name, self.columns[name].unit) for name in group], axis=-1)
 
-    def take(self, names, columns, unit='', frame='world', role='', said=''):
+    def take(self, names: Sequence[str], columns: Sequence[str], unit: str = '',
+             frame: str = 'world', role: str = '', said: str = '') -> None:
         for name, column in zip(names, columns, strict=True):
             self.columns[name] = Column((column,), unit, frame)
         self._taken(columns, role)
         self.guess.said.append(f'{_together(columns)}: {said}')
 
-    def _taken(self, columns, role):
+    def _taken(self, columns: Sequence[str], role: str) -> None:
         self.free = [name for name in self.free if name not in columns]
         if role and role not in self.guess.roles:
             self.guess.roles.append(role)
 
-    def one(self, pattern):
+    def one(self, pattern: str) -> str | None:
         """Return the column of a pattern; the one of the shortest name where that is clear."""
         found = [name for name in self.free if re.search(pattern, self.names[name])]
         found.sort(key=lambda name: len(self.names[name]))
@@ -152,7 +155,7 @@ class _Making:
             return None
         return found[0] if found else None
 
-    def trio(self, group, entries):
+    def trio(self, group: Sequence[str], entries: str) -> list[str] | None:
         """Return the columns of a group of axes, of one prefix, or None."""
         found = {}
         for name in self.free:
@@ -174,12 +177,12 @@ class _Making:
                 return [names[letter] for letter in bare]
         return None
 
-    def dt(self):
+    def dt(self) -> np.ndarray:
         return np.diff(self.t)
 
     # --- steps
 
-    def time(self):
+    def time(self) -> None:
         found = [name for name in self.free if _TIME.search(self.names[name])]
         rising = [name for name in found if _rises(self.table.columns[name])]
         if not rising:
@@ -198,7 +201,7 @@ class _Making:
         self._taken([name], '')
         self.guess.said.append(f'{name}: time in {unit}')
 
-    def vectors(self):
+    def vectors(self) -> None:
         """Find the trios first: one that is found is not taken for another."""
         self.found = {group: self.trio(group, 'xyz')
                       for group in (POSITION, VELOCITY, RATE, FORCE)}
@@ -207,7 +210,7 @@ class _Making:
             if None not in turning:
                 self.found[RATE] = turning
 
-    def quaternion(self):
+    def quaternion(self) -> None:
         self.attitude = None
         letters = self.trio(QUATERNION, 'wxyz')
         if letters:
@@ -235,7 +238,7 @@ class _Making:
         q = _unit(self.values(numbers))
         self.attitude = q if order == 'wxyz' else q[:, [3, 0, 1, 2]]
 
-    def _order(self, q):
+    def _order(self, q: np.ndarray) -> str | None:
         """Return wxyz or xyzw by the tilt of what flies, and by the gyro, or None."""
         q = _unit(q)
         readings = {'wxyz': q, 'xyzw': q[:, [3, 0, 1, 2]]}
@@ -254,7 +257,7 @@ class _Making:
                 return best
         return None
 
-    def angles(self):
+    def angles(self) -> None:
         if self.attitude is not None:
             return
         names = [self.one(pattern) for pattern in _ANGLE.values()]
@@ -266,7 +269,7 @@ class _Making:
         self.take(EULER, names, unit, role='pose', said=f'roll, pitch, yaw in {unit}')
         self.attitude = from_euler(*(values.T * factor_of('phi', unit)))
 
-    def rates(self):
+    def rates(self) -> None:
         names = self.found[RATE]
         if names is None or any(name not in self.free for name in names):
             return
@@ -284,7 +287,7 @@ class _Making:
             unit = 'rad/s'
         self.take(RATE, names, unit, role='rate', said=f'body rate in {unit}')
 
-    def positions(self):
+    def positions(self) -> None:
         names = self.found[POSITION]
         if names is None or any(name not in self.free for name in names):
             return
@@ -297,7 +300,7 @@ class _Making:
             unit = 'mm' if len(speed) and np.quantile(speed, 0.9) > 100 else 'm'
         self.take(POSITION, names, unit or 'm', role='pose', said=f'position in {unit or "m"}')
 
-    def forces(self):
+    def forces(self) -> None:
         names = self.found[FORCE]
         if names is None or any(name not in self.free for name in names):
             return
@@ -314,7 +317,7 @@ class _Making:
             return
         self.guess.doubts.append(f'ax: the unit of {_together(names)}, {usual:.3g} as a rule')
 
-    def frames(self):
+    def frames(self) -> None:
         """Tell FLU or FRD, and ENU or NED, by where up is."""
         if (self.given.world, self.given.body) != ('ENU', 'FLU'):
             return
@@ -342,7 +345,7 @@ class _Making:
         said = f'by {why}' if why else 'taken, as nothing tells'
         self.guess.said.append(f'frames {self.world} and {self.body}, {said}')
 
-    def velocities(self):
+    def velocities(self) -> None:
         names = self.found[VELOCITY]
         if names is None or any(name not in self.free for name in names):
             return
@@ -361,7 +364,7 @@ class _Making:
         self.take(VELOCITY, names, unit, frame, role='velocity',
                   said=f'velocity in {unit}, {frame} axes, {said}')
 
-    def _off(self, speed):
+    def _off(self, speed: np.ndarray) -> list[float] | None:
         """Return how far off a velocity (N, 3) is, read in world and in body axes, or None."""
         if self.attitude is None or self.t is None:
             return None
@@ -388,7 +391,7 @@ class _Making:
                    for one in sums]
         return off if np.isfinite(off).all() else None
 
-    def motors(self):
+    def motors(self) -> None:
         measured = self._numbered(_SPEED)
         if measured:
             values = self.values(measured)
@@ -413,7 +416,7 @@ class _Making:
                                              ', kept as they are: a mapping with actuators says '
                                              'which rotor speeds they are'))
 
-    def battery(self):
+    def battery(self) -> None:
         name = self.one(_BATTERY.pattern)
         if name is None:
             return
@@ -422,13 +425,13 @@ class _Making:
         if 2 < usual * factor_of('vbat', unit) < 100:
             self.take(('vbat',), (name,), unit, role='battery', said=f'battery in {unit}')
 
-    def _unit(self, names, known):
+    def _unit(self, names: Sequence[str], known: Sequence[str]) -> str:
         units = {self.units[name] for name in names}
         units = {{'deg': 'deg/s', 'rad': 'rad/s'}.get(one, one) if 'deg/s' in known else one
                  for one in units}
         return units.pop() if len(units) == 1 and units <= set(known) else ''
 
-    def _numbered(self, pattern):
+    def _numbered(self, pattern: re.Pattern) -> list[str] | None:
         """Return the columns of 3 to 12 numbers from 0 or 1 on, of one name, or None."""
         groups = {}
         for name in self.free:
@@ -448,7 +451,7 @@ class _Making:
         return min(whole)[1] if whole else None
 
 
-def time_unit(values):
+def time_unit(values: np.ndarray) -> str:
     """Return the unit of times by their size and steps: s, ms, us, ns, or ''."""
     finite = values[np.isfinite(values)]
     steps = np.diff(finite)
@@ -468,13 +471,13 @@ def time_unit(values):
     return fits[0] if fits else ('s' if RATES[0] / 5 <= 1 / step else '')
 
 
-def angle_unit(values):
+def angle_unit(values: np.ndarray) -> str:
     """Return rad or deg of roll, pitch and yaw (N, 3): nobody flies tilted by a radian."""
     tilt = float(np.nanquantile(np.abs(values[:, :2]), 0.9))
     return 'deg' if tilt > 1.0 or np.nanmax(np.abs(values)) > 6.5 else 'rad'
 
 
-def command_kind(values):
+def command_kind(values: np.ndarray) -> str:
     """Return what kind of commands values are, as a message says it."""
     finite = values[np.isfinite(values)]
     if not len(finite):
@@ -496,34 +499,34 @@ def command_kind(values):
     return 'of an unknown kind'
 
 
-def _rises(values):
+def _rises(values: np.ndarray) -> bool:
     finite = values[np.isfinite(values)]
     steps = np.diff(finite)
     return len(steps) > 0 and (steps >= 0).mean() > 0.9 and finite[-1] > finite[0]
 
 
-def _together(names):
+def _together(names: Sequence[str]) -> str:
     names = [name[:30] for name in names]
     return f'{names[0]} to {names[-1]}' if len(names) > 4 else ', '.join(names)
 
 
-def _is_unit(q):
+def _is_unit(q: np.ndarray) -> bool:
     norm = np.linalg.norm(q, axis=-1)
     norm = norm[np.isfinite(norm)]
     return len(norm) > 1 and np.mean(np.abs(norm - 1.0) < 0.02) > 0.95
 
 
-def _unit(q):
+def _unit(q: np.ndarray) -> np.ndarray:
     with np.errstate(all='ignore'):
         return q / np.linalg.norm(q, axis=-1, keepdims=True)
 
 
-def _up(q):
+def _up(q: np.ndarray) -> float:
     """Return the median share of up along the body's own z axis."""
     return float(np.nanmedian(1 - 2 * (q[:, 1] ** 2 + q[:, 2] ** 2)))
 
 
-def _turning(q, t):
+def _turning(q: np.ndarray, t: np.ndarray) -> np.ndarray:
     """Return the body rate (N - 1, 3) rad/s between attitudes."""
     turn = frames.multiply(frames.conjugate(q[:-1]), q[1:])
     turn = turn * np.where(turn[:, :1] < 0, -1.0, 1.0)
@@ -531,7 +534,7 @@ def _turning(q, t):
         return 2.0 * turn[:, 1:] / np.diff(t)[:, None]
 
 
-def _alike(one, other):
+def _alike(one: np.ndarray, other: np.ndarray) -> float:
     """Return the correlation of two streams (N, 3), all axes together."""
     use = np.isfinite(one).all(axis=1) & np.isfinite(other).all(axis=1)
     if use.sum() < 10:
@@ -541,7 +544,7 @@ def _alike(one, other):
     return float(np.sum(a * b) / norm) if norm > 0 else 0.0
 
 
-def _ratio(one, other):
+def _ratio(one: np.ndarray, other: np.ndarray) -> float | None:
     """Return how much larger one stream (N, 3) is than another, or None where they differ."""
     use = np.isfinite(one).all(axis=1) & np.isfinite(other).all(axis=1)
     if use.sum() < 10 or abs(_alike(one, other)) < 0.5:

@@ -128,13 +128,13 @@ def mapping_from(data, where):
         schema.choice(f'{where}: separator', data.get('separator', ''), ('', ',', ';', '\t', ' ')))
 
 
-def factor_of(name, said):
+def factor_of(name: str, said: str) -> float:
     """Return what values in a unit of UNITS are multiplied by for a column of the record."""
     known = UNITS.get(unit_of(name), {})
     return known.get(said, 1.0)
 
 
-def unit_of(name):
+def unit_of(name: str) -> str:
     """Return the unit of a column of the flight record, '' for those that have none."""
     return '' if name == ATTITUDE or _OUTPUT.fullmatch(name) else unit(name) or ''
 
@@ -187,7 +187,7 @@ def _source(where, role, entry):
     return Source(topic, path, frame)
 
 
-def _columns(where, data):
+def _columns(where: str, data: object) -> dict[str, Column]:
     if not isinstance(data, dict):
         raise InputError(f'{where}: expected `column of the record: column of the file` lines, '
                          f'got {schema.shown(data)}')
@@ -202,7 +202,7 @@ def _columns(where, data):
     return found
 
 
-def _column(where, name, entry):
+def _column(where: str, name: str, entry: object) -> Column:
     if not isinstance(entry, dict):
         entry = {'column': entry}
     velocity = name in ('vx', 'vy', 'vz')

@@ -2,12 +2,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """A Mapping as the text of a mapping file."""
 
+from collections.abc import Mapping as Pairs
+from collections.abc import Sequence
 import json
 
-from quad_ident_ros.data.mapping import ATTITUDE, ROLES, unit_of
+from quad_ident_ros.data.mapping import ATTITUDE, Mapping, ROLES, unit_of
+from quad_ident_ros.data.readers.base import Content
 
 
-def columns_text(columns):
+def columns_text(columns: Pairs) -> dict[str, str]:
     """Return the lines of `columns:`, {column of the record: text of its entry}."""
     found = {}
     for name, column in columns.items():
@@ -22,13 +25,13 @@ def columns_text(columns):
     return found
 
 
-def flow(mapping):
+def flow(mapping: Mapping) -> str:
     """Return the columns of a Mapping in one line."""
     entries = columns_text(mapping.columns) or {'t': 'time', 'px': 'x'}
     return 'columns: {' + ', '.join(f'{name}: {text}' for name, text in entries.items()) + '}'
 
 
-def topics_text(source, found):
+def topics_text(source: object, found: Sequence[Content]) -> str:
     """
     Return a mapping file to begin with for a bag: a role with one candidate is filled in.
 
@@ -47,14 +50,14 @@ def topics_text(source, found):
                           'body: FLU                      # or FRD', head, *lines, *_ACTUATORS])
 
 
-def names_text(source, count):
+def names_text(source: object, count: int) -> str:
     """Return a mapping file to begin with for a log whose names are known; count of outputs."""
     order = ', '.join(map(str, range(1, max(count, 1) + 1)))
     return _text(source, ['instances: {}                  # of a topic that is there twice',
                           *(line.replace('[1, 2, 3, 4]', f'[{order}]') for line in _ACTUATORS)])
 
 
-def table_text(source, mapping, doubts, columns):
+def table_text(source: object, mapping: Mapping, doubts: Sequence[str], columns: Pairs) -> str:
     """
     Return a mapping file to begin with for a table.
 
@@ -82,13 +85,13 @@ _ACTUATORS = ['# actuators:                     # how outputs become rotor speed
               '#   curve: linear                # or thrust: the square of the speed is']
 
 
-def _text(source, lines):
+def _text(source: object, lines: Sequence[str]) -> str:
     clean = ' '.join(str(source).split())
     return '\n'.join([f'# Mapping to begin with, of {clean}: check each line; those after # do '
                       'not hold.', *lines]) + '\n'
 
 
-def _quoted(name):
+def _quoted(name: str) -> str:
     """Return a name as YAML reads it back."""
     plain = name.replace('_', '').replace('.', '').replace('/', '')
     sure = plain.isalnum() and plain.isascii() and not plain[0].isdigit() and name.lower() not in (

@@ -2,14 +2,19 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the parameters of a PX4 log say of the vehicle: kind, rotors, map of the motors."""
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 import math
+from pathlib import Path
+from typing import TypeAlias
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.model.vehicle import Rotor
+from quad_ident_ros.model.vehicle import Rotor, Vehicle
+
+Parameters: TypeAlias = Mapping[str, int | float]
 
 MOST_ROTORS = 12        # that the parameters of PX4 have places for
 FIRST_MOTOR = 101       # the output function of motor 1
@@ -42,7 +47,7 @@ class Motors:
     source: str
 
 
-def other_kind(parameters, status):
+def other_kind(parameters: Parameters, status: Mapping[str, np.ndarray] | None) -> str:
     """
     Return what a vehicle is that is no multirotor, or ''.
 
@@ -62,7 +67,7 @@ def other_kind(parameters, status):
     return ''
 
 
-def motors_of(parameters):
+def motors_of(parameters: Parameters) -> Motors | None:
     """Return the Motors that the parameters of a log describe, or None."""
     count = _number(parameters, 'CA_ROTOR_COUNT')
     if 1 <= count <= MOST_ROTORS:
@@ -91,7 +96,7 @@ def motors_of(parameters):
                   f'{"+" if layout is QUAD_PLUS else "x"}')
 
 
-def order_of(where, motors, vehicle):
+def order_of(where: str | Path, motors: Motors, vehicle: Vehicle) -> tuple[int, ...]:
     """
     Return for each rotor of a vehicle file the number of its motor in a log, from 1.
 
@@ -128,7 +133,8 @@ def order_of(where, motors, vehicle):
     return order
 
 
-def signal_limits(parameters, count, simulated):
+def signal_limits(parameters: Parameters, count: int,
+                  simulated: bool) -> tuple[np.ndarray, np.ndarray]:
     """
     Return (lowest, highest) PWM of outputs 1..count, (count,) us each.
 
@@ -146,7 +152,7 @@ def signal_limits(parameters, count, simulated):
     return (low, high) if (high > low).all() else (np.full(count, 1000.0), np.full(count, 2000.0))
 
 
-def channels_of(parameters, count):
+def channels_of(parameters: Parameters, count: int) -> list[int]:
     """Return the 0-based channel of motors 1.., (count,), by the functions of the outputs."""
     channels = {}
     for k in range(16):
@@ -158,13 +164,13 @@ def channels_of(parameters, count):
     return list(range(count))
 
 
-def thrust_factor(parameters):
+def thrust_factor(parameters: Parameters) -> float:
     """Return THR_MDL_FAC, the quadratic share of the thrust curve that is set, 0 for none."""
     factor = _number(parameters, 'THR_MDL_FAC', 0.0)
     return factor if 0.0 < factor <= 1.0 else 0.0
 
 
-def measured_map(signal, speed):
+def measured_map(signal: np.ndarray, speed: np.ndarray) -> tuple[str, tuple[float, float]] | None:
     """
     Return (curve, (low, high)) of the map from signal to rotor speed by measured speeds, or None.
 
@@ -193,16 +199,16 @@ def measured_map(signal, speed):
     return None if best is None or best[0] > np.std(y) / 3 else best[1:]
 
 
-def _number(parameters, name, default=math.nan):
+def _number(parameters: Parameters, name: str, default: float = math.nan) -> float:
     value = parameters.get(name, default)
     return float(value) if isinstance(value, int | float) and math.isfinite(value) else default
 
 
-def _direction(rotors):
+def _direction(rotors: Sequence[Rotor]) -> np.ndarray:
     return np.array([math.atan2(rotor.position[1], rotor.position[0]) for rotor in rotors])
 
 
-def _place(rotor):
+def _place(rotor: Rotor) -> str:
     return '[' + ', '.join(f'{value:g}' for value in rotor.position) + ']'
 
 

@@ -2,7 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Rotor speeds from the outputs of a PX4 log: by the mapping, or by the log's parameters."""
 
+from collections.abc import Sequence
 from dataclasses import replace
+from pathlib import Path
+from typing import TypeAlias
 
 import numpy as np
 
@@ -10,16 +13,23 @@ from quad_ident_ros.data.mapping import Actuators, rotor_speeds
 from quad_ident_ros.data.px4_airframe import (
     channels_of,
     measured_map,
+    Motors,
     order_of,
+    Parameters,
     signal_limits,
     thrust_factor,
 )
+from quad_ident_ros.model.vehicle import Vehicle
+
+Samples: TypeAlias = tuple[np.ndarray, np.ndarray]
+Columns: TypeAlias = dict[str, np.ndarray]
 
 PWM = 800.0, 2200.0     # us, between which every output of kind pwm lies; off is 0 or nan
 
 
-def commands(path, topic, outputs, measured, actuators, vehicle, motors, parameters, simulated,
-             notes):
+def commands(path: str | Path, topic: str, outputs: Samples, measured: Samples | None,
+             actuators: Actuators | None, vehicle: Vehicle | None, motors: Motors | None,
+             parameters: Parameters, simulated: bool, notes: list[str]) -> tuple[Columns, Columns]:
     """
     Return (columns of commands, columns rotor1..N of measured speeds); what was done is noted.
 
@@ -61,7 +71,8 @@ def commands(path, topic, outputs, measured, actuators, vehicle, motors, paramet
     return _named('cmd', rotor_speeds(where, share, replace(made, order=order), vehicle)), speeds
 
 
-def _signal(topic, values, motors, parameters, simulated):
+def _signal(topic: str, values: np.ndarray, motors: Motors | None, parameters: Parameters,
+            simulated: bool) -> tuple[np.ndarray | None, str]:
     """Return the signal (n, motors) of 0 to 1, below 0 for off, and what it was; None, why."""
     if motors is None:
         return None, ''
@@ -86,7 +97,8 @@ def _signal(topic, values, motors, parameters, simulated):
     return (chosen - low) / (high - low), f'PWM, {span}'
 
 
-def _map(signal, stamps, measured, parameters):
+def _map(signal: np.ndarray, stamps: np.ndarray, measured: Samples | None,
+         parameters: Parameters) -> tuple[Actuators, str]:
     """Return the Actuators of a signal of 0 to 1, and how they are known."""
     if measured is not None:
         at = np.searchsorted(stamps, measured[0], side='right') - 1
@@ -110,7 +122,8 @@ def _map(signal, stamps, measured, parameters):
         'vehicle file')
 
 
-def _relative(signal, topic, made, parameters):
+def _relative(signal: np.ndarray, topic: str, made: Actuators,
+              parameters: Parameters) -> np.ndarray:
     """Return what the curve of the Actuators is of: the share of thrust, or the signal."""
     factor = thrust_factor(parameters)
     if made.curve != 'thrust' or made.speeds is not None or topic == 'actuator_motors':
@@ -118,15 +131,15 @@ def _relative(signal, topic, made, parameters):
     return np.where(signal > 0, factor * signal ** 2 + (1 - factor) * signal, signal)
 
 
-def _within(values, low, high):
+def _within(values: np.ndarray, low: float, high: float) -> bool:
     """Return whether values are low to high where they are numbers, and some are."""
     finite = values[np.isfinite(values)]
     return bool(len(finite)) and bool((finite >= low).all() and (finite <= high).all())
 
 
-def _named(name, values):
+def _named(name: str, values: np.ndarray) -> Columns:
     return {f'{name}{k}': column for k, column in enumerate(values.T, 1)}
 
 
-def _listed(order):
+def _listed(order: Sequence[int]) -> str:
     return ', '.join(map(str, order))

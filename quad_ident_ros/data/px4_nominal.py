@@ -8,7 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from quad_ident_ros import resources
-from quad_ident_ros.data.px4_airframe import motors_of
+from quad_ident_ros.data.mapping import Mapping
+from quad_ident_ros.data.px4_airframe import Motors, motors_of
 from quad_ident_ros.data.ulog import parse, read_ulog
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.vehicle import Vehicle, vehicle_from_mapping
@@ -31,7 +32,7 @@ rotors:                         # in the order of the log's motors, by {source}
 """
 
 
-def vehicle_of_log(path, mapping=None):
+def vehicle_of_log(path: Path, mapping: Mapping | None = None) -> Vehicle:
     """
     Return the Vehicle of the file beside a PX4 log, which is written where there is none.
 
@@ -77,7 +78,8 @@ def vehicle_of_log(path, mapping=None):
     return vehicle_from_mapping(data, str(file))
 
 
-def _thrust(path, motors, mapping):
+def _thrust(path: Path, motors: Motors,
+            mapping: Mapping | None) -> tuple[float, tuple[float, float], bool]:
     """Return (thrust over mass and squared speeds, (low, high) rad/s, whether by rpm)."""
     trial = Vehicle('trial', 1.0, (1.0, 1.0, 1.0), 9.80665, 1.0, 1.0, motors.rotors,
                     speed_max=FULL)
@@ -99,7 +101,8 @@ def _thrust(path, motors, mapping):
     return float(np.median(force[use] / squares[use])), (0.0, high), bool(said)
 
 
-def _text(path, motors, coefficient, ratio, speeds, measured):
+def _text(path: Path, motors: Motors, coefficient: float, ratio: float,
+          speeds: tuple[float, float], measured: bool) -> str:
     low, high = speeds
     head = _HEAD.format(
         log=path.name, name=path.stem, coefficient=coefficient, ratio=ratio, low=low, high=high,

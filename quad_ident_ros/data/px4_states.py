@@ -2,7 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """When the vehicle of a PX4 log was in the air, and when its estimates were reset."""
 
+from collections.abc import Mapping, Sequence
+from typing import TypeAlias
+
 import numpy as np
+
+Topics: TypeAlias = Mapping[str, tuple[np.ndarray, Mapping[str, np.ndarray]]]
 
 ARMED = 2           # arming_state of vehicle_status
 SMALL = {'position': (0.1, 'm'), 'velocity': (0.1, 'm/s'), 'attitude': (np.radians(2.0), 'rad')}
@@ -21,7 +26,7 @@ _COUNTERS = {
 TWICE = 0.3         # s within which two topics tell of one reset
 
 
-def flown(data):
+def flown(data: Topics) -> tuple[list[tuple[int | None, int | None]] | None, str]:
     """
     Return (first, last) ns of each time armed and not landed, and what was looked at.
 
@@ -69,7 +74,7 @@ def flown(data):
     return spans, ' and '.join(said)
 
 
-def resets(data):
+def resets(data: Topics) -> tuple[list[tuple[int, int, str]], list[int]]:
     """
     Return (last stamp before, first stamp after, what) ns of each reset, and small ones' stamps.
 
@@ -93,13 +98,14 @@ def resets(data):
     return _merged(found), small
 
 
-def _said(size, kind):
+def _said(size: float, kind: str) -> str:
     if kind == 'attitude':
         return f' by {np.degrees(size):.0f} deg'
     return f' by {size:.2g} {SMALL[kind][1]}'
 
 
-def _size(fields, kind, deltas, k):
+def _size(fields: Mapping[str, np.ndarray], kind: str, deltas: Sequence[str],
+          k: int) -> float | None:
     """Return the size of a reset in m, m/s or rad, or None where it is not logged."""
     names = deltas or [f'delta_q_reset[{i}]' for i in range(4)]
     if not kind or any(name not in fields for name in names):
@@ -113,7 +119,7 @@ def _size(fields, kind, deltas, k):
     return None if length < 0.5 else float(2 * np.arccos(min(abs(values[0]) / length, 1.0)))
 
 
-def _merged(found):
+def _merged(found: list[tuple[int, int, str]]) -> list[tuple[int, int, str]]:
     """Return resets in order of time, those at one time as one."""
     merged = []
     for before, after, what in sorted(found):

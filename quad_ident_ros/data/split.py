@@ -2,12 +2,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """Records cut where an estimator was reset, and how resets are seen in the data."""
 
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from typing import TypeAlias
 
 import numpy as np
 
 from quad_ident_ros.data.frames import conjugate, continuous, multiply, rotate
-from quad_ident_ros.data.record import QUATERNION
+from quad_ident_ros.data.record import FlightRecord, QUATERNION
+
+Reset: TypeAlias = tuple[float, float, str]
 
 SHORTEST = 4.0      # s, of a piece: a diagnosis needs that much
 POSITION = 1.0      # m; estimators drift by less, and errors of measurement are smaller
@@ -18,7 +22,8 @@ CLEAR = 5.0         # times the usual disagreement of the streams
 GAP = 5.0           # periods; what happens in a longer silence is no jump
 
 
-def split(record, resets, shortest=SHORTEST):
+def split(record: FlightRecord, resets: Sequence[Reset],
+          shortest: float = SHORTEST) -> list[FlightRecord]:
     """
     Return the pieces of a record between resets, each with a note.
 
@@ -44,7 +49,7 @@ def split(record, resets, shortest=SHORTEST):
     return _noted(record, kept, len(pieces), resets, shortest)
 
 
-def part(record, begin, end):
+def part(record: FlightRecord, begin: int, end: int) -> FlightRecord:
     """Return the record of samples begin to end - 1, with its start and the battery's."""
     piece = record.slice(0, end).starting(begin)
     if begin == 0:
@@ -52,7 +57,7 @@ def part(record, begin, end):
     return replace(piece, info={**piece.info, 'began': record.info.get('began', record.t[0])})
 
 
-def jumps(record):
+def jumps(record: FlightRecord) -> list[Reset]:
     """
     Return the jumps of position and heading in a record, as split takes them.
 
@@ -73,13 +78,14 @@ def jumps(record):
     return _merged(found)
 
 
-def split_at_jumps(record):
+def split_at_jumps(record: FlightRecord) -> list[FlightRecord]:
     """Return the pieces of a record between the jumps that are seen in it."""
     with np.errstate(all='ignore'):
         return split(record, jumps(record))
 
 
-def _noted(record, kept, count, resets, shortest):
+def _noted(record: FlightRecord, kept: list[tuple[int, int]], count: int, resets: Sequence[Reset],
+           shortest: float) -> list[FlightRecord]:
     """Return the kept pieces with names and notes."""
     shown = '; '.join(f'{why} at t = {before:.2f} s' for before, _, why in resets[:4])
     more = f' and {len(resets) - 4} more' if len(resets) > 4 else ''
@@ -100,12 +106,12 @@ def _noted(record, kept, count, resets, shortest):
     return made
 
 
-def _length(record, piece):
+def _length(record: FlightRecord, piece: tuple[int, int]) -> float:
     begin, end = piece
     return float(record.t[end - 1] - record.t[begin]) + record.period()
 
 
-def _unexplained_position(record):
+def _unexplained_position(record: FlightRecord) -> np.ndarray | None:
     """Return the path less the integral of the velocity, (N, 3) m, or None."""
     if not record.has('px', 'py', 'pz', 'vx', 'vy', 'vz'):
         return None
@@ -115,7 +121,7 @@ def _unexplained_position(record):
     return _summed(record, steps - 0.5 * (velocity[1:] + velocity[:-1]) * dt)
 
 
-def _unexplained_heading(record):
+def _unexplained_heading(record: FlightRecord) -> tuple[np.ndarray, np.ndarray] | None:
     """Return (turn about the vertical less that of the rate, turn itself), (N,) rad, or None."""
     if not record.has(*QUATERNION, 'wx', 'wy', 'wz'):
         return None
@@ -135,13 +141,14 @@ def _unexplained_heading(record):
     return _summed(record, rest[:, None])[:, 0], _summed(record, whole[:, None])[:, 0]
 
 
-def _summed(record, steps):
+def _summed(record: FlightRecord, steps: np.ndarray) -> np.ndarray:
     """Return the running sum (N, k) of steps (N - 1, k), those over gaps left out."""
     steps = np.where(np.diff(record.t)[:, None] > GAP * record.period(), 0.0, steps)
     return np.vstack([np.zeros((1, steps.shape[1])), np.cumsum(steps, axis=0)])
 
 
-def _steps(record, rest, least, value, say):
+def _steps(record: FlightRecord, rest: np.ndarray, least: float, value: np.ndarray,
+           say: Callable[[float], str]) -> list[Reset]:
     """Return the steps in the sum of what is unexplained, (N, k), as split takes them."""
     period = record.period()
     width = max(1, round(WITHIN / period))
@@ -169,7 +176,7 @@ def _steps(record, rest, least, value, say):
     return found
 
 
-def _merged(found):
+def _merged(found: list[Reset]) -> list[Reset]:
     """Return jumps in order of time, those at one time as one."""
     merged = []
     for before, after, why in sorted(found):

@@ -5,6 +5,8 @@
 from collections import Counter
 import csv
 from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -34,7 +36,7 @@ class Table:
     how: str = ''
 
 
-def read_text(path, separator=''):
+def read_text(path: Path, separator: str = '') -> Table:
     """
     Return the Table of a text file; separator: '' to be told from the first lines.
 
@@ -59,7 +61,7 @@ def read_text(path, separator=''):
     return Table(columns, units, tuple(notes), f'{how}{", decimal commas" if comma else ""}')
 
 
-def told_separator(rows):
+def told_separator(rows: list[str]) -> str:
     """Return the separator that the lines of a table have most of, the same in each."""
     best, most_of = ',', 0
     for separator in SEPARATORS:
@@ -72,7 +74,7 @@ def told_separator(rows):
     return best
 
 
-def read_parquet(path):
+def read_parquet(path: Path) -> Table:
     """Return the Table of a Parquet file; raises InputError, ModuleNotFoundError for pyarrow."""
     import pyarrow
     from pyarrow import parquet
@@ -109,7 +111,7 @@ def read_parquet(path):
     return Table(columns, {}, tuple(notes), 'Parquet')
 
 
-def _numbers(pyarrow, column):
+def _numbers(pyarrow: Any, column: Any) -> np.ndarray | None:
     """Return the values of a column as float, or None where they are no numbers."""
     kind = column.type
     if pyarrow.types.is_timestamp(kind):
@@ -124,14 +126,14 @@ def _numbers(pyarrow, column):
     return np.array(values, float) * factor
 
 
-def _cells(row, separator):
+def _cells(row: str, separator: str) -> list[str]:
     try:
         return [cell.strip() for cell in next(csv.reader([row], delimiter=separator), [])]
     except csv.Error:
         return [cell.strip() for cell in row.split(separator)]
 
 
-def _number(cell, comma):
+def _number(cell: str, comma: bool) -> float | None:
     """Return the number in a cell, nan for an empty one, None for text."""
     if not cell:
         return np.nan
@@ -144,7 +146,7 @@ def _number(cell, comma):
         return np.nan if cell in _MISSING else {'true': 1.0, 'false': 0.0}.get(cell)
 
 
-def _head(path, rows, separator, comma):
+def _head(path: Path, rows: list[str], separator: str, comma: bool) -> tuple[int, int]:
     """Return the places of the line of names and of the first line of numbers."""
     for k, row in enumerate(rows[:_HEAD]):
         cells = _cells(row, separator)
@@ -165,13 +167,14 @@ _UNITS = frozenset('s sec ms us ns m mm cm m/s mm/s cm/s rad deg rad/s deg/s dps
                    'm/s^2 m/s² v mv us pwm % 1 - n'.split())
 
 
-def _is_units(cells):
+def _is_units(cells: list[str]) -> bool:
     """Return whether cells are units of what is above them."""
     said = [cell.strip('[]()').lower() for cell in cells if cell]
     return bool(said) and sum(cell in _UNITS for cell in said) >= 0.7 * len(said)
 
 
-def _names(path, rows, line, head, first, separator):
+def _names(path: Path, rows: list[str], line: int, head: int, first: int,
+           separator: str) -> tuple[list[str], dict[str, str]]:
     """Return the names of the columns, with the line above where they alone repeat; units."""
     names = _cells(rows[head].lstrip('#% '), separator)
     if len(names) > _MOST_COLUMNS:
@@ -197,7 +200,8 @@ def _names(path, rows, line, head, first, separator):
     return names, units
 
 
-def _fast(rows, names, separator, comma):
+def _fast(rows: list[str], names: list[str], separator: str,
+          comma: bool) -> dict[str, np.ndarray] | None:
     """Return the columns of a table of nothing but numbers; None for another."""
     if comma:
         if any('.' in row for row in rows[:_HEAD]):
@@ -212,7 +216,8 @@ def _fast(rows, names, separator, comma):
     return {name: column for name, column in zip(names, table.T.copy(), strict=True) if name}
 
 
-def _thorough(path, rows, places, names, separator, comma):
+def _thorough(path: Path, rows: list[str], places: list[int], names: list[str], separator: str,
+              comma: bool) -> tuple[dict[str, np.ndarray], list[str]]:
     """Return the columns without text of any table, and notes of what is left out."""
     cells = []
     for k, row in zip(places, rows, strict=True):

@@ -12,14 +12,15 @@ from pyulog import ULog
 
 from quad_ident_ros.data import frames
 from quad_ident_ros.data.foreign import BODY_VELOCITY, velocity_in_world
-from quad_ident_ros.data.mapping import KINDS, Mapping
-from quad_ident_ros.data.px4_airframe import FIRST_MOTOR, motors_of, other_kind
+from quad_ident_ros.data.mapping import Actuators, KINDS, Mapping
+from quad_ident_ros.data.px4_airframe import FIRST_MOTOR, Motors, motors_of, other_kind
 from quad_ident_ros.data.px4_motors import commands
 from quad_ident_ros.data.px4_states import flown, resets
 from quad_ident_ros.data.record import FlightRecord, QUATERNION
 from quad_ident_ros.data.split import part, SHORTEST, split
 from quad_ident_ros.data.streams import HELD, INTERPOLATED, join, SLOW, Stream
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.model.vehicle import Vehicle
 
 TOPICS = ('vehicle_attitude', 'estimator_attitude', 'vehicle_odometry', 'vehicle_local_position',
           'estimator_local_position', 'vehicle_angular_velocity', 'vehicle_acceleration',
@@ -35,7 +36,8 @@ _MOST_BYTES = 0xffff   # of one message, whose length is 16 bits
 _LATEST = 2 ** 63 // 1000 - 1   # us, of a stamp that fits into ns
 
 
-def read_ulog(path, mapping=None, vehicle=None):
+def read_ulog(path: str | Path, mapping: Mapping | None = None,
+              vehicle: Vehicle | None = None) -> list[FlightRecord]:
     """
     Return the FlightRecords of a PX4 log, at least one, in ENU and FLU.
 
@@ -75,7 +77,7 @@ def read_ulog(path, mapping=None, vehicle=None):
     return _flights(path, record, data)
 
 
-def _flights(path, record, data):
+def _flights(path: Path, record: FlightRecord, data: dict) -> list[FlightRecord]:
     """Return the parts of a record in the air and between resets."""
     start = record.info['start_ns']
     states = {name: (_stamps(path, name, data[name]), data[name]) for name in
@@ -90,7 +92,7 @@ def _flights(path, record, data):
     return [piece for one in parts for piece in split(one, times)]
 
 
-def _passing_over(record, times):
+def _passing_over(record: FlightRecord, times: list[float]) -> FlightRecord:
     """Return a record with a note of the small resets (s) in it."""
     count = sum(record.t[0] < time < record.t[-1] for time in times)
     if not count:
@@ -99,14 +101,15 @@ def _passing_over(record, times):
     return replace(record, info={**record.info, 'notes': [*record.info['notes'], note]})
 
 
-def _used(states):
+def _used(states: dict) -> dict:
     """Return the topics whose resets show in the record."""
     if 'vehicle_local_position' in states or 'vehicle_attitude' in states:
         return {name: state for name, state in states.items() if name != 'vehicle_odometry'}
     return states
 
 
-def _in_the_air(path, record, spans, looked_at):
+def _in_the_air(path: Path, record: FlightRecord, spans: list[tuple[int | None, int | None]],
+                looked_at: str) -> list[FlightRecord]:
     """Return the parts of a record in spans of time (ns)."""
     if not spans:
         raise InputError(f'{path}: there is no flight in this log: {looked_at}')
@@ -138,7 +141,7 @@ def _in_the_air(path, record, spans, looked_at):
     return made
 
 
-def _slow(streams):
+def _slow(streams: list[Stream]) -> list[str]:
     """Return notes of streams that are logged too slowly to tell lags and delays."""
     slow = []
     for stream in streams:
@@ -201,7 +204,7 @@ def _size(name, formats, depth):
     return total
 
 
-def parse(path):
+def parse(path: Path) -> ULog:
     """Return the ULog of a path with TOPICS and STATES; raises InputError."""
     try:
         with open(path, 'rb') as file:
@@ -335,7 +338,8 @@ def _battery(path, data):
     return _stream(path, topic, data[topic], ('vbat',), voltage, SLOW)
 
 
-def _outputs(path, log, data, actuators, vehicle, notes):
+def _outputs(path: Path, log: ULog, data: dict, actuators: Actuators | None,
+             vehicle: Vehicle | None, notes: list[str]) -> list[Stream]:
     """Return the streams of commands and of measured rotor speeds; what was done is noted."""
     if actuators is not None:
         choices = ('actuator_outputs', 'actuator_motors')
@@ -364,7 +368,8 @@ def _outputs(path, log, data, actuators, vehicle, notes):
     return streams
 
 
-def _measured(path, data, motors):
+def _measured(path: Path, data: dict | None, motors: Motors | None
+              ) -> tuple[np.ndarray, np.ndarray] | None:
     """Return (stamps, rotor speeds (n, m) rad/s in the order of the motors) or None."""
     if data is None or 'esc[0].esc_rpm' not in data:
         return None

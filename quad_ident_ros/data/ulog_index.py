@@ -9,7 +9,7 @@ import struct
 
 import numpy as np
 
-from quad_ident_ros.data.readers.base import content_of
+from quad_ident_ros.data.readers.base import Content, content_of
 from quad_ident_ros.errors import InputError
 
 ROLES = {
@@ -30,7 +30,7 @@ _KINDS = frozenset(b'BFIMPQALRCSODT')
 _FIELD = re.compile(r'([A-Za-z0-9_]+(?:\[\d+\])?) ([A-Za-z0-9_]+)')
 
 
-def contents(path):
+def contents(path: str | Path) -> list[Content]:
     """
     Return the Content of each topic of a ULog.
 
@@ -63,7 +63,7 @@ def contents(path):
     return sorted(found, key=lambda content: (not content.roles, content.name))
 
 
-def _walk(data):
+def _walk(data: bytes) -> tuple[dict, dict, dict]:
     """Return formats, streams (id -> instance, name) and stamps (id -> us) of a log's bytes."""
     formats, streams, stamps = {}, {}, {}
     at, end = _START, len(data)

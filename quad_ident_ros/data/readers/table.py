@@ -11,13 +11,14 @@ import numpy as np
 
 from quad_ident_ros.data.columns import record_of, shown
 from quad_ident_ros.data.csv import read_csv, rows_of
-from quad_ident_ros.data.guess import guess
+from quad_ident_ros.data.guess import Guess, guess
 from quad_ident_ros.data.mapping import factor_of, Mapping
 from quad_ident_ros.data.mapping_text import flow
 from quad_ident_ros.data.readers.base import Content, content_of, Reader
-from quad_ident_ros.data.record import unit
-from quad_ident_ros.data.tabular import read_text
+from quad_ident_ros.data.record import FlightRecord, unit
+from quad_ident_ros.data.tabular import read_text, Table
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.model.vehicle import Vehicle
 
 ROLES = {'px': 'pose', 'vx': 'velocity', 'wx': 'rate', 'ax': 'specific_force', 'cmd1': 'commands',
          'rotor1': 'rotors', 'vbat': 'battery'}
@@ -25,7 +26,8 @@ ROLES = {'px': 'pose', 'vx': 'velocity', 'wx': 'rate', 'ax': 'specific_force', '
 _HEAD = 1 << 16     # bytes that the first line has its end in
 
 
-def read(path, mapping=None, vehicle=None):
+def read(path: Path, mapping: Mapping | None = None,
+         vehicle: Vehicle | None = None) -> list[FlightRecord]:
     """Return the flight record of a CSV file: in our format, by a mapping, or by guess."""
     path = Path(path)
     if mapping in (None, Mapping()) and is_record(path):
@@ -34,7 +36,8 @@ def read(path, mapping=None, vehicle=None):
     return [record_from(path, table, mapping, vehicle)]
 
 
-def record_from(path, table, mapping, vehicle):
+def record_from(path: Path, table: Table, mapping: Mapping | None,
+                vehicle: Vehicle | None) -> FlightRecord:
     """Return the flight record of a Table, by the columns of a mapping or by guess."""
     mapping = mapping or Mapping()
     if mapping.topics or mapping.instances:
@@ -51,7 +54,7 @@ def record_from(path, table, mapping, vehicle):
     return record_of(path, table, mapping, vehicle, notes)
 
 
-def is_record(path):
+def is_record(path: Path) -> bool:
     """Return whether a file begins as our format does; raises InputError where it is no text."""
     names = [name.strip().strip('"') for name in _first_line(path).split(',')]
     if 't' not in names:
@@ -67,7 +70,7 @@ def is_record(path):
     return bool(found.doubts) or not found.roles
 
 
-def _first_line(path):
+def _first_line(path: Path) -> str:
     """Return the first line of a file; InputError where it is no text."""
     try:
         with (gzip.open if path.suffix == '.gz' else open)(path, 'rb') as file:
@@ -76,7 +79,7 @@ def _first_line(path):
         return rows_of(path)[0][0]
 
 
-def contents(path):
+def contents(path: Path) -> list[Content]:
     """Return the one stream of a CSV file."""
     path = Path(path)
     if not is_record(path):
@@ -90,7 +93,7 @@ def contents(path):
     return found
 
 
-def contents_of_table(table, kind):
+def contents_of_table(table: Table, kind: str) -> list[Content]:
     """Return the one stream of a Table of others."""
     found = guess(table)
     time = found.mapping.columns.get('t')
@@ -106,7 +109,7 @@ def contents_of_table(table, kind):
     return [replace(made, samples=count)]
 
 
-def _doubtful(path, table, found):
+def _doubtful(path: Path, table: Table, found: Guess) -> str:
     """Return the message of a table that names and values do not tell."""
     lines = flow(found.mapping)
     return (f'{path}: not told: {"; ".join(found.doubts[:4])[:300]}; the columns are '
