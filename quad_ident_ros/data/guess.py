@@ -30,7 +30,8 @@ _NOT = re.compile(r'(^|_)(sp|setpoint|des|desired|ref|reference|target|goal|cov|
 """Of names that are not what was measured."""
 
 _AXES = {
-    POSITION: r'(^|_)(p|pos|position|translation|loc|location|mocap)_?{}$',
+    POSITION: r'(^|_)(p|pos|position|translation|loc|location|mocap|vicon|state_estimate|drone|'
+              r'uav|quad|robot|rigid_body|ground_truth|gt|odom|pose)_?{}$',
     VELOCITY: r'(^|_)(v|vel|velocity|speed|linear_velocity|twist_linear|linear)_?{}$',
     FORCE: r'(^|_)(a|acc|accel|accelerometer|accelerations?|linear_acceleration|specific_force)'
            r'(_b|_body|_m_s2)?_?{}$',
@@ -44,9 +45,10 @@ _ANGLE = {'phi': r'(^|_)(roll|phi)$', 'theta': r'(^|_)(pitch|theta)$',
 _TURNING = ('roll', 'pitch', 'yaw')
 _TIME = re.compile(r'(^|_)(t|time|timestamp|time_?stamp|stamp|elapsed|clock|rosbagtimestamp)$')
 _MOTOR = re.compile(r'(^|_)(cmd|motor_cmd|m|mot|motor|motors|motor_m|pwm|esc|u|output|outputs|'
-                    r'control|actuator|throttle|duty|rc_?out|servo)_?(\d{1,2})$')
+                    r'control|actuator|throttle|duty|rc_?out|servo)(?:_(?:data|control|output|'
+                    r'velocities|angular_velocities))?_?(\d{1,2})$')
 _SPEED = re.compile(r'(^|_)(rotor|rotor_speed|motor_rpm|rpm|erpm|motor_speed|esc_rpm|propeller|'
-                    r'omega_m|rotor_vel)_?(\d{1,2})$')
+                    r'omega_m|rotor_vel|rotor_velocities)_?(\d{1,2})$')
 _BATTERY = re.compile(r'(^|_)(vbat|vbatt|v_bat|bat_v|battery|battery_voltage|voltage|vbatlatest|'
                       r'battery_v|bat_volt|supply_voltage)$')
 
@@ -169,13 +171,24 @@ class _Making:
         self.guess.candidates.setdefault(group, []).extend(
             [axes[axis] for axis in entries] for axes in whole)
         if whole:
-            return [whole[0][axis] for axis in entries]
+            names = [[axes[axis] for axis in entries] for axes in whole]
+            if len(names) > 1 and not self._same(group, names[0], names[1]):
+                self.guess.doubts.append(f'{group[0]}: {_together(names[0])} or '
+                                         f'{_together(names[1])}')
+            return names[0]
         bare = _BARE.get(group)
         if bare and len(entries) == 3:
             names = {self.names[name]: name for name in self.free}
             if all(letter in names for letter in bare):
                 return [names[letter] for letter in bare]
         return None
+
+    def _same(self, group: Sequence[str], one: list[str], other: list[str]) -> bool:
+        """Return whether the first of two trios is the plain one, or both tell the same."""
+        whole = re.compile(_AXES[group].format('[wxyz0-4]'))
+        if whole.fullmatch(self.names[one[-1]]) and not whole.fullmatch(self.names[other[-1]]):
+            return True
+        return _alike(self.values(one), self.values(other)) > 0.98
 
     def dt(self) -> np.ndarray:
         return np.diff(self.t)
@@ -487,7 +500,7 @@ def command_kind(values: np.ndarray) -> str:
     if low >= -1e-3 and high <= 1.001:
         return 'normalised, 0 to 1'
     if low >= 800 and high <= 2200:
-        return 'PWM, 1000 to 2000 us'
+        return 'PWM by their size, 1000 to 2000 us'
     if low >= 0 and high <= 100.001 and high > 2:
         return 'per cent, 0 to 100'
     if low >= 0 and high <= 65535 and whole and high > 2200:

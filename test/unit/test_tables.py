@@ -50,7 +50,7 @@ def test_common_names_need_no_mapping(tmp_path):
     close(read)
     np.testing.assert_allclose(read.t, FLIGHT.t + 5.0, atol=1e-6)
     assert 'timestamp: time in us' in said(read) and 'frames ENU and FLU' in said(read)
-    assert 'PWM, 1000 to 2000' in said(read) and read.has('output4', 'vbat')
+    assert 'PWM by their size' in said(read) and read.has('output4', 'vbat')
     assert not read.has('cmd1')
 
 
@@ -202,6 +202,55 @@ def test_columns_that_are_not_there_are_named(tmp_path):
     refused(path, "'zeit'", 'timestamp', mapping=mapping_from({'columns': {'t': 'zeit'}}, 'm'))
     refused(path, 'vy, vz', mapping=mapping_from(
         {'columns': {'t': 'timestamp', 'vx': 'vel_x'}}, 'm'))
+
+
+CRAZYFLIE = ('timestamp stateEstimate.x stateEstimate.y stateEstimate.z stateEstimate.vx '
+             'stateEstimate.vy stateEstimate.vz stabilizer.roll stabilizer.pitch stabilizer.yaw '
+             'gyro.x gyro.y gyro.z acc.x acc.y acc.z motor.m1 motor.m2 motor.m3 motor.m4').split()
+ECHO = ['%time', *(f'field.{name}' for name in (
+    *(f'pose.pose.position.{axis}' for axis in 'xyz'),
+    *(f'pose.pose.orientation.{axis}' for axis in 'xyzw'), 'pose.covariance0',
+    *(f'twist.twist.linear.{axis}' for axis in 'xyz'),
+    *(f'twist.twist.angular.{axis}' for axis in 'xyz')))]
+PLOTTED = ['__time', *(f'/odom/pose/pose/position/{axis}' for axis in 'xyz'),
+           *(f'/imu/orientation/{axis}' for axis in 'xyzw'),
+           *(f'/imu/angular_velocity/{axis}' for axis in 'xyz'),
+           *(f'/imu/linear_acceleration/{axis}' for axis in 'xyz'),
+           *(f'/motors/data[{k}]' for k in range(4))]
+TESTED = ['t', *(f'ang acc {axis}' for axis in 'xyz'), *(f'ang vel {axis}' for axis in 'xyz'),
+          *(f'quat {axis}' for axis in 'xyzw'), *(f'acc {axis}' for axis in 'xyz'),
+          *(f'vel {axis}' for axis in 'xyz'), *(f'pos {axis}' for axis in 'xyz'),
+          *(f'mot {k}' for k in range(1, 5)), 'vbat']
+
+
+@pytest.mark.parametrize('names, parts', [
+    (CRAZYFLIE, ('ms', PLACE, SPEED, 'euler', 'deg/s', 'g', 'duty')),
+    (ECHO, ('ns', PLACE, 'xyzw', 'zero', 'body', RATE)),
+    (PLOTTED, ('s', PLACE, 'xyzw', RATE, FORCE, CMD)),
+    (TESTED, ('s', 'zeros', RATE, 'xyzw', FORCE, SPEED, PLACE, CMD, ('vbat',)))])
+def test_headers_of_known_programs_need_no_mapping(tmp_path, names, parts):
+    zero = np.zeros((len(FLIGHT), 1))
+    special = {
+        's': FLIGHT.t[:, None], 'ms': 1e3 * FLIGHT.t[:, None],
+        'ns': 1.7e18 + 1e9 * FLIGHT.t[:, None], 'zero': zero, 'zeros': np.hstack([zero] * 3),
+        'euler': np.degrees(FLIGHT.euler()), 'deg/s': np.degrees(FLIGHT.stack(*RATE)),
+        'g': FLIGHT.stack(*FORCE) / 9.80665, 'xyzw': FLIGHT.stack(*Q[1:], Q[0]),
+        'duty': np.round(FLIGHT.stack(*CMD) / 1700 * 65535),
+        'body': world_velocity_in_body(FLIGHT)}
+    values = np.hstack([special[part] if isinstance(part, str) else FLIGHT.stack(*part)
+                        for part in parts])
+    read = load(table(tmp_path, named(names, values)))
+    close(read, names=[name for name in EVERY if read.has(name)])
+    assert read.has(*PLACE, *Q, *RATE)
+    assert read.has('output4') == ('duty' in parts or CMD in parts)
+
+
+def test_two_that_tell_of_different_things_are_in_doubt(tmp_path):
+    columns = others()
+    for name in ('pos_x', 'pos_y', 'pos_z'):
+        columns[f'one_{name}'] = columns.pop(name)
+        columns[f'two_{name}'] = columns[f'one_{name}'][::-1]
+    refused(table(tmp_path, columns), 'one_pos_x', 'or two_pos_x')
 
 
 def test_a_long_time_since_1970_becomes_the_start(tmp_path):

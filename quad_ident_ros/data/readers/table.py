@@ -23,6 +23,7 @@ from quad_ident_ros.model.vehicle import Vehicle
 ROLES = {'px': 'pose', 'vx': 'velocity', 'wx': 'rate', 'ax': 'specific_force', 'cmd1': 'commands',
          'rotor1': 'rotors', 'vbat': 'battery'}
 
+STATES = {'pose', 'velocity', 'rate', 'specific_force'}
 _HEAD = 1 << 16     # bytes that the first line has its end in
 
 
@@ -59,15 +60,14 @@ def is_record(path: Path) -> bool:
     names = [name.strip().strip('"') for name in _first_line(path).split(',')]
     if 't' not in names:
         return False
-    known = [name for name in names if name != 't' and unit(name) is not None]
-    if known:
+    if any(unit(name) is not None and name not in ('t', 'vbat') for name in names):
         return True
     # t and names of others: theirs if they tell a flight, and else columns that are kept.
     try:
         found = guess(read_text(path))
     except InputError:
         return True
-    return bool(found.doubts) or not found.roles
+    return bool(found.doubts) or not set(found.roles) & STATES
 
 
 def _first_line(path: Path) -> str:
@@ -112,8 +112,10 @@ def contents_of_table(table: Table, kind: str) -> list[Content]:
 def _doubtful(path: Path, table: Table, found: Guess) -> str:
     """Return the message of a table that names and values do not tell."""
     lines = flow(found.mapping)
+    if len(lines) > 300:
+        lines = lines[:lines.rindex(', ', 0, 300)] + ', ...}'
     return (f'{path}: not told: {"; ".join(found.doubts[:4])[:300]}; the columns are '
-            f'{shown(table.columns, 10)[:250]}; write a mapping such as {lines[:300]}, or begin '
+            f'{shown(table.columns, 10)[:250]}; write a mapping such as {lines}, or begin '
             'one with: quad_ident info FILE --write-mapping map.yaml')
 
 
