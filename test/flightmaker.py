@@ -133,17 +133,25 @@ ULOG_FORMATS = {
 }
 
 
-def ulog(samples, formats=ULOG_FORMATS):
+def ulog(samples, formats=ULOG_FORMATS, parameters=None, info=None):
     """
     Return the bytes of a ULog.
 
-    Args: samples: (topic, multi_id, stamp in us, values after the stamps) in order of time.
+    Args: samples: (topic, multi_id, stamp in us, values after the stamps, or their bytes) in
+    order of time; parameters: name -> int or float; info: name -> text.
     """
     data = bytearray(b'ULog\x01\x125\x01' + struct.pack('<Q', 1))
     add = _message(data)
     add(b'B', bytes(40))
     for name, fields in formats.items():
         add(b'F', f'{name}:{";".join(fields)};'.encode())
+    for name, value in (info or {}).items():
+        key = f'char[{len(value)}] {name}'.encode()
+        add(b'I', bytes([len(key)]) + key + value.encode())
+    for name, value in (parameters or {}).items():
+        kind, form = ('int32_t', '<i') if isinstance(value, int) else ('float', '<f')
+        key = f'{kind} {name}'.encode()
+        add(b'P', bytes([len(key)]) + key + struct.pack(form, value))
     numbers = {}
     for topic, instance, stamp, values in samples:
         if (topic, instance) not in numbers:
@@ -153,8 +161,8 @@ def ulog(samples, formats=ULOG_FORMATS):
         body = struct.pack(f'<{stamps}Q', *[stamp] * stamps)
         if topic == 'actuator_outputs':
             body += struct.pack('<I', 4)
-        add(b'D', struct.pack('<H', numbers[topic, instance]) + body
-            + struct.pack(f'<{len(values)}f', *values))
+        body += values if isinstance(values, bytes) else struct.pack(f'<{len(values)}f', *values)
+        add(b'D', struct.pack('<H', numbers[topic, instance]) + body)
     return bytes(data)
 
 

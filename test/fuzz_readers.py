@@ -28,8 +28,10 @@ from blackbox_files import blackbox, rows_of
 from dataflash_files import copter, dataflash
 from flightmaker import copy_bag, flight, others_bag, px4_samples, ulog, VEHICLE
 import numpy as np
+from px4_files import controls, esc, landed, log_of, parameters, status
 from rich.progress import Progress
 from rosbags.rosbag2 import StoragePlugin
+from table_files import others, table
 from usd_files import crazyflie_events, usdlog
 
 from quad_ident_ros.data.export import save, write_bag
@@ -44,6 +46,7 @@ MEGABYTES = 1024    # for one input, beyond what the process has when it begins
 NAMES = {'csv': 'f.csv', 'csv_gz': 'f.csv.gz', 'mcap': 'f.mcap', 'mcap_topics': 'f.mcap',
          'mcap_mapped': 'f.mcap', 'sqlite3': 'f.db3', 'metadata': 'bag', 'ulog': 'f.ulg',
          'crazyflie': 'log00', 'ardupilot': 'f.BIN', 'betaflight': 'f.bbl',
+         'px4': 'f.ulg', 'table': 'f.csv', 'table_mapped': 'f.csv', 'parquet': 'f.parquet',
          'mapping': 'f.yaml', 'ros1': 'f.bag', 'ros1_lz4': 'f.bag', 'px4_bag': 'f.db3',
          'bag_contents': 'f.bag'}
 """File that each kind of input is written to."""
@@ -54,6 +57,12 @@ TOPICS = mapping_from({'topics': {
     'pose': {'topic': '/odom'}, 'velocity': {'topic': '/odom'}, 'rate': {'topic': '/imu'},
     'specific_force': {'topic': '/imu'}, 'commands': {'topic': '/motors'}}}, 'mapping')
 OUTPUTS = mapping_from({'actuators': {'kind': 'pwm', 'order': [1, 3, 4, 2]}}, 'mapping')
+COLUMNS = mapping_from({'actuators': {'kind': 'pwm'}, 'columns': {
+    't': {'column': 'timestamp', 'unit': 'us'}, 'q': ['q_w', 'q_x', 'q_y', 'q_z'],
+    'px': {'column': 'pos_x', 'unit': 'mm'}, 'py': 'pos_y', 'pz': 'pos_z',
+    'vx': {'column': 'vel_x', 'frame': 'body'}, 'vy': 'vel_y', 'vz': 'vel_z',
+    'wx': 'gyro_x', 'wy': 'gyro_y', 'wz': 'gyro_z', 'output1': 'm1', 'output2': 'm2',
+    'output3': 'm3', 'output4': 'm4', 'vbat': 'vbat'}}, 'mapping')
 MAPPING = """\
 world: NED
 topics:
@@ -87,6 +96,14 @@ def valid_inputs(folder):
     found['crazyflie'] = usdlog(crazyflie_events(record, 20 * outputs))
     found['ardupilot'] = dataflash(copter(record, outputs))
     found['betaflight'] = blackbox(rows_of(record, outputs))
+    first = 5_000_000
+    found['px4'] = log_of(record, [
+        status(first), landed(first, True), landed(first + 20_000, False),
+        esc(first + 1000, [500.0] * 4), esc(first + 90_000, [500.0] * 4)],
+        motors=controls(record), named=parameters(THR_MDL_FAC=0.3))
+    found['table'] = table(folder, others(record), separator=';', comma=True).read_bytes()
+    found['table_mapped'] = table(folder, others(record)).read_bytes()
+    found['parquet'] = _parquet(folder, record)
     found['mapping'] = MAPPING.encode()
     return found | _bags(folder, record)
 
@@ -104,6 +121,14 @@ def _bags(folder, record):
              'ros1_lz4': write1(folder / 'lz4', rows, Writer.CompressionFormat.LZ4).read_bytes(),
              'px4_bag': write_old(folder / 'px4', px4(record, speeds / 2000)).read_bytes()}
     return found | {'bag_contents': found['ros1']}
+
+
+def _parquet(folder, record):
+    import pyarrow
+    from pyarrow import parquet
+    parquet.write_table(pyarrow.table({name: pyarrow.array(values) for name, values in
+                                       others(record).items()}), folder / 'p.parquet')
+    return (folder / 'p.parquet').read_bytes()
 
 
 def _mcap(folder, name, source, left_out):
@@ -174,6 +199,11 @@ def read(kind, path):
         load_all(path, OUTPUTS, VEHICLE)
     elif kind == 'bag_contents':
         contents_of(path)
+    elif kind in ('px4', 'table', 'parquet'):
+        contents_of(path)
+        load_all(path, None, VEHICLE)
+    elif kind == 'table_mapped':
+        load_all(path, COLUMNS, VEHICLE)
     else:
         load_all(path)
 

@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 
 from quad_ident_ros.cli.identify import progress_bar
-from quad_ident_ros.cli.options import flights_from
+from quad_ident_ros.cli.options import flights_from, vehicle_from
 from quad_ident_ros.cli.outputs import refuse_overwriting
 from quad_ident_ros.data.export import save
 from quad_ident_ros.data.record import CUT
@@ -33,7 +33,8 @@ def add(commands):
                         'the new folder of a bag')
     parser.add_argument('--mapping', metavar='FILE', help='which topics and outputs of other '
                         "people's records mean what (YAML)")
-    parser.add_argument('--vehicle', help='vehicle name or file, for the speeds of its rotors')
+    parser.add_argument('--vehicle', help='vehicle name or file, for the speeds of its '
+                        'rotors; auto: the file beside a PX4 log')
     parser.add_argument('--json', metavar='FILE', help='write what was done as data; - prints it')
     parser.set_defaults(run=run)
 
@@ -43,7 +44,9 @@ def run(options):
     out, done = Path(options.out), []
     with progress_bar() as bar:
         task = bar.add_task(f'reading {options.flight}', total=None)
-        flights = flights_from(options.flight, options.mapping, options.vehicle)
+        vehicle = options.vehicle and vehicle_from(options.vehicle, options.flight,
+                                                   options.mapping)
+        flights = flights_from(options.flight, options.mapping, vehicle)
         paths = [out] if len(flights) == 1 else [_numbered(out, number) for number in
                                                  range(1, len(flights) + 1)]
         for path in paths:

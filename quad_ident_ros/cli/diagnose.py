@@ -7,12 +7,12 @@ from dataclasses import replace
 import sys
 
 from quad_ident_ros.cli.identify import progress_bar
-from quad_ident_ros.cli.options import flights_from
+from quad_ident_ros.cli.options import flights_from, vehicle_from
 from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.diagnose.rules import RULES
 from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.greybox.errors import UNITS
-from quad_ident_ros.model.vehicle import load_nominal, write_vehicle
+from quad_ident_ros.model.vehicle import write_vehicle
 from quad_ident_ros.report.data import write_json
 from quad_ident_ros.report.diagnosis import show
 from quad_ident_ros.tolerances import EXAMPLE, rules_from
@@ -33,7 +33,8 @@ def add(commands):
                'docs/diagnosis.md explains every line of the answer.')
     parser.add_argument('flights', nargs='+', metavar='FLIGHT',
                         help='.csv, .csv.gz, bag (folder, .mcap, .db3) or .ulg')
-    parser.add_argument('--vehicle', required=True, help='vehicle name or file: the nominal one')
+    parser.add_argument('--vehicle', required=True, help='vehicle name or file: the nominal '
+                        'one; auto: the file beside a PX4 log, written from its parameters')
     parser.add_argument('--hold-out', metavar='FLIGHT',
                         help='the flight on which the gap is told (default: the last one named)')
     parser.add_argument('--mapping', metavar='FILE', help='which topics and outputs of other '
@@ -56,12 +57,12 @@ def run(options):
     """Read the flights, diagnose, and show what came of it."""
     rules = RULES if options.tolerance is None else rules_from(options.tolerance.split(','),
                                                                '--tolerance')
-    vehicle = load_nominal(options.vehicle)
+    vehicle = vehicle_from(options.vehicle, options.flights[0], options.mapping, nominal=True)
     effects = ([name.strip() for name in options.effects.split(',')]
                if options.effects is not None else None)
     records = [record for path in options.flights
-               for record in flights_from(path, options.mapping, options.vehicle)]
-    held = (flights_from(options.hold_out, options.mapping, options.vehicle)[-1]
+               for record in flights_from(path, options.mapping, vehicle)]
+    held = (flights_from(options.hold_out, options.mapping, vehicle)[-1]
             if options.hold_out else None)
     with progress_bar() as bar:
         task = bar.add_task('comparing sets of effects', total=1.0)

@@ -8,11 +8,17 @@ from rich import box
 from rich.table import Table
 
 from quad_ident_ros.cli.identify import progress_bar
-from quad_ident_ros.cli.options import flights_from
-from quad_ident_ros.data.summary import summarise
-from quad_ident_ros.model.vehicle import load_vehicle
+from quad_ident_ros.cli.options import flights_from, vehicle_from
+from quad_ident_ros.data.begin_mapping import begin_mapping
+from quad_ident_ros.data.load import contents_of
+from quad_ident_ros.data.mapping import load_mapping
+from quad_ident_ros.data.summary import contents, summarise, unread
+from quad_ident_ros.errors import InputError
 from quad_ident_ros.report.data import write_json
 from quad_ident_ros.report.table import console
+
+FAULTY = 3
+"""Exit code where there is a finding of severity error."""
 
 STYLE = {'error': 'bold red', 'warning': 'yellow', 'info': 'default'}
 
@@ -20,37 +26,81 @@ STYLE = {'error': 'bold red', 'warning': 'yellow', 'info': 'default'}
 def add(commands):
     """Add the command to the parser."""
     parser = commands.add_parser(
-        'info', help='say what is in a flight record, and what is wrong with it',
+        'info', help='say what is in a file or flight record, and what is wrong with it',
         formatter_class=argparse.RawDescriptionHelpFormatter,
-        description='Say what is in a flight: columns, rates, gaps, ranges, how much each axis '
-                    'is moved, the offset\nbetween the clocks of its streams, and what is wrong '
-                    'with it and how to mend that: units, frames,\nstale samples, saturation, '
-                    'order and spin of the rotors.',
+        description='Say what is in a file: its streams, their rates and spans, and what they '
+                    'could be read for; and of\nthe flight in it: columns, rates, gaps, ranges, '
+                    'how much each axis is moved, the offset between\nthe clocks of its streams, '
+                    'and what is wrong with it and how to mend that: units, frames, stale\n'
+                    'samples, saturation, order and spin of the rotors.',
         epilog='  quad_ident info flight.csv.gz --vehicle quad.yaml\n'
                '  quad_ident info log_12.ulg --mapping px4.yaml --vehicle quad.yaml --json -\n\n'
+               '  quad_ident info others_bag --write-mapping map.yaml\n\n'
                'Without --vehicle nothing is said of saturation and rotors. docs/records.md '
-               'explains the findings.')
-    parser.add_argument('flight', metavar='FLIGHT', help='.csv, .csv.gz, bag (folder, .mcap, '
-                        '.db3) or .ulg')
-    parser.add_argument('--vehicle', help='vehicle name or file')
+               'explains the findings.\n\n'
+               'exit code: 0; 2 for a file that cannot be read; 3 where a finding is an error, as '
+               'where a file\nis no flight record without a mapping.')
+    parser.add_argument('flight', metavar='FILE', help='a flight record, a log, a bag or a table')
+    parser.add_argument('--vehicle', help='vehicle name or file; auto: the file beside a PX4 log')
     parser.add_argument('--mapping', metavar='FILE', help='which topics and outputs of other '
                         "people's records mean what (YAML)")
+    parser.add_argument('--write-mapping', metavar='FILE.yaml', help='write a mapping file to '
+                        'begin with')
     parser.add_argument('--json', metavar='FILE', help='write it as data; - prints it')
     parser.set_defaults(run=run)
 
 
 def run(options):
-    """Read the flights and show what is in them."""
-    vehicle = load_vehicle(options.vehicle) if options.vehicle else None
+    """Read a file, show what is in it, and return the exit code."""
+    vehicle = options.vehicle and vehicle_from(options.vehicle, options.flight, options.mapping)
+    if options.mapping:
+        load_mapping(options.mapping)   # what is wrong with it is no fault of the flight
     with progress_bar() as bar:
         bar.add_task(f'reading {options.flight}', total=None)
-        found = [summarise(record, vehicle) for record in
-                 flights_from(options.flight, options.mapping, options.vehicle)]
+        title, streams = contents_of(options.flight)
+        if options.write_mapping:
+            begin_mapping(options.write_mapping, options.flight, streams)
+        try:
+            found = [summarise(record, vehicle) for record in
+                     flights_from(options.flight, options.mapping, vehicle)]
+        except InputError as error:
+            found = [unread(options.flight, error)]
+    inside = contents(options.flight, title, streams)
     if options.json != '-':
+        show_streams(inside)
         for summary in found:
             show(summary)
+        if options.write_mapping:
+            console().print(f'written: {options.write_mapping}', markup=False, highlight=False)
     if options.json:
+        found = [{**summary, **inside} for summary in found]
         write_json(options.json, found[0] if len(found) == 1 else found)
+    errors = any(finding['severity'] == 'error' for summary in found
+                 for finding in summary['findings'])
+    return FAULTY if errors else 0
+
+
+def show_streams(inside: dict) -> None:
+    """Print the streams of a file."""
+    screen = console()
+    screen.print(f'{inside["file"]}: {inside["kind"]}, {len(inside["streams"])} streams',
+                 markup=False, highlight=False, soft_wrap=True)
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1), header_style='bold')
+    for name in ('stream', 'type'):
+        table.add_column(name, overflow='fold')
+    for name in ('samples', 'Hz', 'from, s', 'to, s'):
+        table.add_column(name, justify='right', no_wrap=True)
+    table.add_column('could be', overflow='fold')
+    for stream in inside['streams']:
+        table.add_row(_text(stream['name']), _text(stream['type']), str(stream['samples']),
+                      f'{stream["rate_hz"]:.4g}', f'{stream["start_s"]:.2f}',
+                      f'{stream["start_s"] + stream["duration_s"]:.2f}',
+                      ', '.join(stream['roles']))
+    screen.print(table)
+    # A table of rows is told by its columns.
+    for stream in inside['streams'] if len(inside['streams']) == 1 else ():
+        screen.print(f'fields: {", ".join(stream["fields"])}', markup=False, highlight=False,
+                     soft_wrap=True)
 
 
 def show(summary):
@@ -60,6 +110,18 @@ def show(summary):
     def say(text, style=None):
         screen.print(text, style=style, markup=False, highlight=False, soft_wrap=True)
 
+    if 'time' in summary:
+        _show_record(screen, say, summary)
+    for finding in summary['findings']:
+        remedy = f'; {finding["remedy"]}' if finding['remedy'] else ''
+        say(f'{finding["severity"]}: {finding["where"]}: {finding["message"]}{remedy} '
+            f'[{finding["code"]}]', STYLE[finding['severity']])
+    if not summary['findings']:
+        say('no findings')
+
+
+def _show_record(screen, say, summary):
+    """Print the columns of a flight and how they fit together."""
     time = summary['time']
     say(f'{summary["source"] or summary["name"]}: {time["samples"]} samples, '
         f'{time["duration_s"]:.3f} s from t = {time["start_s"]:.3f} s, '
@@ -84,11 +146,11 @@ def show(summary):
                      f'{1e3 * clock["drift_std_s_per_s"]:.3f} ms/s')
             say(f'{name.replace("_", " ")}: {1e3 * clock["offset_s"]:+.2f} ± '
                 f'{1e3 * clock["std_s"]:.2f} ms{drift}')
-    for finding in summary['findings']:
-        say(f'{finding["severity"]}: {finding["where"]}: {finding["message"]}; '
-            f'{finding["remedy"]} [{finding["code"]}]', STYLE[finding['severity']])
-    if not summary['findings']:
-        say('no findings')
+
+
+def _text(value: str) -> str:
+    """Return text that holds no markup."""
+    return value.replace('[', r'\[')
 
 
 def _number(value):

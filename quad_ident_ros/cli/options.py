@@ -2,11 +2,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Options that several commands share."""
 
-from quad_ident_ros.data.load import load_all
+from pathlib import Path
+
+from quad_ident_ros.data.load import load_all, reader_of
 from quad_ident_ros.data.mapping import load_mapping
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.experiment import check_noise
-from quad_ident_ros.model.vehicle import load_vehicle
+from quad_ident_ros.model.vehicle import load_nominal, load_vehicle, Vehicle
+
+AUTO = 'auto'
 
 
 def noise_from(entries):
@@ -21,6 +25,28 @@ def noise_from(entries):
 
 
 def flights_from(path, mapping=None, vehicle=None):
-    """Return the flight records that a path and the files of --mapping and --vehicle stand for."""
-    return load_all(path, load_mapping(mapping) if mapping else None,
-                    load_vehicle(vehicle) if vehicle else None)
+    """
+    Return the flight records that a path stands for.
+
+    Args: mapping: file of --mapping, or None; vehicle: Vehicle, or name or file, or None.
+    """
+    if isinstance(vehicle, str):
+        vehicle = load_vehicle(vehicle)
+    return load_all(path, load_mapping(mapping) if mapping else None, vehicle)
+
+
+def vehicle_from(option: str, path: str, mapping: str | None = None,
+                 nominal: bool = False) -> Vehicle:
+    """
+    Return the Vehicle of --vehicle: of a name, a file, or `auto`, the file beside a PX4 log.
+
+    Args: path of the flight; mapping: file of --mapping, or None; nominal: refuse one with
+    effects. Raises InputError.
+    """
+    if option != AUTO:
+        return load_nominal(option) if nominal else load_vehicle(option)
+    if reader_of(Path(path)).name != 'px4':
+        raise InputError(f'{path}: --vehicle auto is for logs of PX4, whose parameters describe '
+                         'the vehicle; give a vehicle file')
+    from quad_ident_ros.data.px4_nominal import vehicle_of_log
+    return vehicle_of_log(path, load_mapping(mapping) if mapping else None)

@@ -31,7 +31,7 @@ def read_csv(path):
     Raises InputError that names file, line (from 1, as editors count) and column.
     """
     path = Path(path)
-    rows, truncated = _rows(path)
+    rows, truncated = rows_of(path)
     names = _header(path, rows[0])
     lines, columns = _parse_plain(rows, names) or _parse_any(path, rows, names)
     count = len(columns['t'])
@@ -130,7 +130,7 @@ def _error(path, line, column, problem, remedy):
     return InputError(f'{path}, line {line}{where}: {problem}; {remedy}')
 
 
-def _rows(path):
+def rows_of(path):
     """Return the whole lines of a file, header first, and whether a cut one was dropped."""
     data = _bytes(path)
     try:

@@ -64,11 +64,12 @@ def read_mapped_bag(path, mapping, vehicle=None):
         notes = [*notes, 'the stamps of the topics are of several clocks; times of receipt are '
                  'used for all of them']
     start, t, columns, left_out = join(path, streams)
-    return FlightRecord(t, _velocity_in_world(path, columns),
+    return FlightRecord(t, velocity_in_world(path, columns),
                         {'source': str(path), 'start_ns': start, 'notes': [*notes, *left_out]})
 
 
-def _velocity_in_world(path, columns):
+def velocity_in_world(path, columns):
+    """Return columns whose velocity in body axes is turned into the world; raises InputError."""
     if BODY_VELOCITY[0] in columns:
         if not all(name in columns for name in QUATERNION):
             raise InputError(f'{path}: a velocity in body axes needs an attitude; map a pose, or '

@@ -5,6 +5,7 @@
 from pathlib import Path
 
 from quad_ident_ros.data.readers.registry import READERS
+from quad_ident_ros.data.split import split_at_jumps
 from quad_ident_ros.errors import InputError
 
 _START = 64     # bytes that tell what a file is
@@ -30,9 +31,15 @@ def load(path, mapping=None, vehicle=None):
 
 
 def load_all(path, mapping=None, vehicle=None):
-    """Return the flight records in a file or bag, at least one; arguments and errors of load."""
+    """
+    Return the flight records in a file or bag, at least one; arguments and errors of load.
+
+    They are split where position or heading jump, as where an estimator was reset.
+    """
     path = Path(path)
-    return _with_package(path, reader_of(path), lambda reader: reader.read(path, mapping, vehicle))
+    flights = _with_package(path, reader_of(path),
+                            lambda reader: reader.read(path, mapping, vehicle))
+    return [piece for flight in flights for piece in split_at_jumps(flight)]
 
 
 def contents_of(path):

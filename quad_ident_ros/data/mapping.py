@@ -4,11 +4,13 @@
 
 from collections.abc import Mapping as Pairs
 from dataclasses import dataclass, field
+import re
 
 import numpy as np
 
 from quad_ident_ros import resources, schema
 from quad_ident_ros.data.frames import BODIES, WORLDS
+from quad_ident_ros.data.record import KNOWN, unit
 from quad_ident_ros.errors import InputError
 
 ROLES = ('pose', 'position', 'attitude', 'velocity', 'rate', 'specific_force', 'commands',
@@ -19,6 +21,22 @@ KINDS = {'speed': None, 'rpm': None, 'pwm': (1000.0, 2000.0), 'normalised': (0.0
 """Kinds of actuator outputs, with the output at the lowest and at the full speed by default."""
 
 CURVES = ('linear', 'thrust')
+
+ATTITUDE = 'q'
+"""Stands for all four columns of a quaternion."""
+
+UNITS = {
+    's': {'s': 1.0, 'ms': 1e-3, 'us': 1e-6, 'ns': 1e-9},
+    'm': {'m': 1.0, 'mm': 1e-3, 'cm': 1e-2},
+    'm/s': {'m/s': 1.0, 'mm/s': 1e-3, 'cm/s': 1e-2},
+    'rad': {'rad': 1.0, 'deg': np.pi / 180},
+    'rad/s': {'rad/s': 1.0, 'deg/s': np.pi / 180, 'rpm': np.pi / 30},
+    'm/s^2': {'m/s^2': 1.0, 'g': 9.80665, 'mg': 9.80665e-3},
+    'V': {'V': 1.0, 'mV': 1e-3},
+}
+"""Units that a column of a table may have, by the unit of the flight record."""
+
+_OUTPUT = re.compile(r'output[1-9][0-9]*')
 
 
 @dataclass(frozen=True)
@@ -57,12 +75,27 @@ class Source:
 
 
 @dataclass(frozen=True)
+class Column:
+    """
+    Columns of a table to read for one of the flight record: names, four of them for q.
+
+    unit: one of UNITS, '' for that of the flight record; frame: of a velocity, world or body.
+    """
+
+    names: tuple
+    unit: str = ''
+    frame: str = 'world'
+
+
+@dataclass(frozen=True)
 class Mapping:
     """
     The content of a mapping file.
 
     topics: role -> Source; world and body: the frames of the record, ENU or NED, FLU or FRD;
-    instances: ULog topic -> the instance (multi_id) to read; actuators: Actuators or None.
+    instances: ULog topic -> the instance (multi_id) to read; actuators: Actuators or None;
+    columns: column of the flight record, or q for all four of the quaternion -> Column of a
+    table; quaternion: order of those of q, wxyz or xyzw; separator of a table, '' if not told.
     """
 
     topics: Pairs = field(default_factory=dict)
@@ -70,6 +103,9 @@ class Mapping:
     body: str = 'FLU'
     instances: Pairs = field(default_factory=dict)
     actuators: Actuators = None
+    columns: Pairs = field(default_factory=dict)
+    quaternion: str = 'wxyz'
+    separator: str = ''
 
 
 def load_mapping(path):
@@ -79,7 +115,8 @@ def load_mapping(path):
 
 def mapping_from(data, where):
     """Return the Mapping that the content of a mapping file describes; raises InputError."""
-    schema.check_keys(where, data, ('topics', 'world', 'body', 'instances', 'actuators'))
+    schema.check_keys(where, data, ('topics', 'world', 'body', 'instances', 'actuators',
+                                    'columns', 'quaternion', 'separator'))
     topics = data.get('topics', {})
     schema.check_keys(f'{where}: topics', topics, ROLES)
     instances = data.get('instances', {})
@@ -93,7 +130,22 @@ def mapping_from(data, where):
         schema.choice(f'{where}: body', data.get('body', 'FLU'), BODIES),
         {str(topic): schema.integer(f'{where}: instances: {schema.shown(topic)}', number, 0)
          for topic, number in instances.items()},
-        _actuators(f'{where}: actuators', data['actuators']) if 'actuators' in data else None)
+        _actuators(f'{where}: actuators', data['actuators']) if 'actuators' in data else None,
+        _columns(f'{where}: columns', data.get('columns', {})),
+        schema.choice(f'{where}: quaternion', data.get('quaternion', 'wxyz'), ('wxyz', 'xyzw')),
+        schema.choice(f'{where}: separator', data.get('separator', ''), ('', ',', ';', '\t', ' ')))
+
+
+def factor_of(name: str, said: str) -> float:
+    """Return what values in a unit of UNITS are multiplied by for a column of the record."""
+    known = UNITS.get(unit_of(name), {})
+    return known.get(said, 1.0)
+
+
+def unit_of(name: str) -> str:
+    """Return the unit of a column of the flight record, '' for those that have none."""
+    return '' if name == ATTITUDE or _OUTPUT.fullmatch(name) else unit(name) or ''
+
 
 
 def rotor_speeds(where, outputs, actuators, vehicle):
@@ -141,6 +193,42 @@ def _source(where, role, entry):
     frame = (schema.choice(f'{where}: frame', entry['frame'], ('body', 'world'))
              if 'frame' in entry else '')
     return Source(texts['topic'], texts['field'], frame, texts['child'].strip('/'))
+
+
+def _columns(where: str, data: object) -> dict[str, Column]:
+    if not isinstance(data, dict):
+        raise InputError(f'{where}: expected `column of the record: column of the file` lines, '
+                         f'got {schema.shown(data)}')
+    found = {}
+    for name, entry in data.items():
+        if name != ATTITUDE and not (isinstance(name, str) and (unit(name) is not None
+                                                                or _OUTPUT.fullmatch(name))):
+            raise schema.unknown_key(where, name, [*KNOWN, ATTITUDE, 'cmd1', 'rotor1', 'output1'])
+        found[name] = _column(f'{where}: {name}', name, entry)
+    if found and 't' not in found:
+        raise InputError(f"{where}: 't' is missing; name the column with the time")
+    return found
+
+
+def _column(where: str, name: str, entry: object) -> Column:
+    if not isinstance(entry, dict):
+        entry = {'column': entry}
+    velocity = name in ('vx', 'vy', 'vz')
+    schema.check_keys(where, entry, ('column', 'unit', *(('frame',) if velocity else ())),
+                      ('column',))
+    names = entry['column']
+    names = tuple(names) if isinstance(names, list) else (names,)
+    count = 4 if name == ATTITUDE else 1
+    if len(names) != count or not all(isinstance(one, str) and one.strip() for one in names):
+        raise InputError(f'{where}: expected {"a list of 4 names" if count == 4 else "the name"} '
+                         f'of {"columns" if count == 4 else "a column"} of the file, got '
+                         f'{schema.shown(entry["column"])}')
+    said = ''
+    if 'unit' in entry:
+        said = schema.choice(f'{where}: unit', entry['unit'],
+                             tuple(UNITS.get(unit_of(name), {})) or ('1',))
+    frame = schema.choice(f'{where}: frame', entry.get('frame', 'world'), ('world', 'body'))
+    return Column(tuple(one.strip() for one in names), said, frame)
 
 
 def _actuators(where, data):

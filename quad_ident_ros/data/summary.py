@@ -2,14 +2,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """What is in a flight record, as data: columns, rates, ranges, excitation, findings."""
 
+from collections.abc import Sequence
 from dataclasses import asdict
+from pathlib import Path
 
 import numpy as np
 
 from quad_ident_ros.data.quality import clock_offset, command_offset, findings, velocity_offset
 from quad_ident_ros.data.quality.excitation import excitation
 from quad_ident_ros.data.quality.series import GAP
+from quad_ident_ros.data.readers.base import Content
 from quad_ident_ros.data.record import unit
+from quad_ident_ros.errors import InputError
 
 UNITS = {'roll': 'rad/s', 'pitch': 'rad/s', 'yaw': 'rad/s', 'vertical': 'm/s^2',
          'horizontal': 'm/s'}
@@ -43,6 +47,22 @@ def summarise(record, vehicle=None):
                            'accelerometer_against_commands'), map(_clock, clocks), strict=True)),
         'findings': [asdict(finding) for finding in findings(record, vehicle)],
     }
+
+
+def contents(path: str | Path, title: str, streams: Sequence[Content]) -> dict:
+    """Return what is in a file, JSON-able: its kind and the Content of its streams."""
+    return {'file': str(path), 'kind': title, 'streams': [
+        {'name': one.name, 'type': one.type, 'samples': one.samples, 'start_s': one.start,
+         'duration_s': one.duration, 'rate_hz': one.rate, 'fields': list(one.fields),
+         'roles': list(one.roles)} for one in streams]}
+
+
+def unread(path: str | Path, error: InputError) -> dict:
+    """Return the summary of a file that is no flight record, with an error as its finding."""
+    message = str(error).removeprefix(str(path)).lstrip(':, ')
+    return {'schema': 'quad_ident/info/1', 'source': str(path), 'name': None, 'findings': [
+        {'code': 'unread', 'severity': 'error', 'where': str(path), 'message': message,
+         'remedy': ''}]}
 
 
 def _column(name, values, t):

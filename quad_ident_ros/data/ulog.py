@@ -3,6 +3,7 @@
 """Flight records from the logs of PX4 (ULog)."""
 
 import contextlib
+from dataclasses import replace
 import io
 from pathlib import Path
 
@@ -10,48 +11,149 @@ import numpy as np
 from pyulog import ULog
 
 from quad_ident_ros.data import frames
-from quad_ident_ros.data.mapping import KINDS, Mapping, rotor_speeds
+from quad_ident_ros.data.foreign import BODY_VELOCITY, velocity_in_world
+from quad_ident_ros.data.mapping import Actuators, KINDS, Mapping
+from quad_ident_ros.data.px4_airframe import FIRST_MOTOR, Motors, motors_of, other_kind
+from quad_ident_ros.data.px4_motors import commands
+from quad_ident_ros.data.px4_states import flown, resets
 from quad_ident_ros.data.record import FlightRecord, QUATERNION
+from quad_ident_ros.data.split import part, SHORTEST, split
 from quad_ident_ros.data.streams import HELD, INTERPOLATED, join, SLOW, Stream
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.model.vehicle import Vehicle
 
-TOPICS = ('vehicle_attitude', 'vehicle_local_position', 'vehicle_angular_velocity',
-          'vehicle_acceleration', 'sensor_combined', 'actuator_outputs', 'actuator_motors',
+TOPICS = ('vehicle_attitude', 'estimator_attitude', 'vehicle_odometry', 'vehicle_local_position',
+          'estimator_local_position', 'vehicle_angular_velocity', 'vehicle_acceleration',
+          'sensor_combined', 'actuator_outputs', 'actuator_motors', 'esc_status',
           'battery_status')
+STATES = ('vehicle_status', 'actuator_armed', 'vehicle_land_detected')
+
+COARSE = 0.025      # s between samples; lags and delays of motors are of this size
+PROFILE = ('set SDLOG_PROFILE to 25 (default set, system identification and high rate) and log '
+           'again')
 
 _MOST_BYTES = 0xffff   # of one message, whose length is 16 bits
 _LATEST = 2 ** 63 // 1000 - 1   # us, of a stamp that fits into ns
 
 
-def read_ulog(path, mapping=None, vehicle=None):
+def read_ulog(path: str | Path, mapping: Mapping | None = None,
+              vehicle: Vehicle | None = None) -> list[FlightRecord]:
     """
-    Return the FlightRecord of a PX4 log, in ENU and FLU.
+    Return the FlightRecords of a PX4 log, at least one, in ENU and FLU.
 
-    The time base is that of the actuator outputs, which become cmd1..N where the mapping says how
-    (actuators), and stay output1..N as they are where it does not; without outputs it is that of
-    the attitude. The estimator's stamps of samples are used where the log has them.
+    One for each time armed and not landed, and between resets of the estimator. The time base is
+    that of the actuator outputs, which become cmd1..N where the mapping says how (actuators) or
+    else the parameters of the log, for a vehicle with these rotors, and stay output1..N as they
+    are where neither does; without outputs it is that of the attitude. The estimator's stamps of
+    samples are used where the log has them.
     Args: path; mapping Mapping or None; vehicle Vehicle or None.
     Raises InputError that names file and topic.
     """
     path, mapping = Path(path), mapping or Mapping()
-    if mapping.topics or mapping.world != 'ENU' or mapping.body != 'FLU':
+    if mapping.topics or mapping.columns or mapping.world != 'ENU' or mapping.body != 'FLU':
         raise InputError(f'{path}: the topics and frames of a PX4 log are known; of a mapping '
                          'only instances and actuators hold for it')
-    log = _parse(path)
+    log = parse(path)
     for topic in mapping.instances:
         if topic not in TOPICS:
             raise InputError(f'{path}: instances: {topic!r} is not read; name one of '
                              f'{", ".join(TOPICS)}')
-    data = {name: _instance(path, log, name, mapping.instances.get(name)) for name in TOPICS}
-    streams = [_attitude(path, data), _position(path, data), _rate(path, data),
-               _specific_force(path, data), _battery(path, data),
-               _outputs(path, data, mapping.actuators, vehicle)]
-    streams = [stream for stream in streams if stream is not None]
-    start, t, columns, notes = join(path, streams)
+    data = {name: _instance(path, log, name, mapping.instances.get(name))
+            for name in (*TOPICS, *STATES)}
+    other = other_kind(log.initial_parameters, data['vehicle_status'])
+    if other:
+        raise InputError(f'{path}: this is the log of {other} (MAV_TYPE, vehicle_status), whose '
+                         'wings, servos or wheels no multirotor has; give the log of a multirotor')
     notes = [*(['parts of the log are damaged and left out'] if log.file_corruption else []),
-             *([f'{len(log.dropouts)} dropouts while logging'] if log.dropouts else []), *notes]
-    return FlightRecord(t, columns, {'name': path.stem, 'source': str(path), 'start_ns': start,
-                                     'notes': notes})
+             *([f'{len(log.dropouts)} dropouts while logging'] if log.dropouts else [])]
+    streams = [_attitude(path, data), *_position(path, data), _rate(path, data),
+               _specific_force(path, data), _battery(path, data)]
+    streams += _outputs(path, log, data, mapping.actuators, vehicle, notes)
+    streams = [stream for stream in streams if stream is not None]
+    notes += _slow(streams)
+    start, t, columns, joined = join(path, streams)
+    record = FlightRecord(t, velocity_in_world(path, columns), {
+        'name': path.stem, 'source': str(path), 'start_ns': start, 'notes': [*notes, *joined]})
+    return _flights(path, record, data)
+
+
+def _flights(path: Path, record: FlightRecord, data: dict) -> list[FlightRecord]:
+    """Return the parts of a record in the air and between resets."""
+    start = record.info['start_ns']
+    states = {name: (_stamps(path, name, data[name]), data[name]) for name in
+              (*STATES, 'vehicle_local_position', 'vehicle_attitude', 'vehicle_odometry')
+              if data[name] is not None and len(data[name]['timestamp'])}
+    spans, looked_at = flown(states)
+    parts = [record] if spans is None else _in_the_air(path, record, spans, looked_at)
+    found, small = resets(_used(states))
+    parts = [_passing_over(piece, [(stamp - start) * 1e-9 for stamp in small]) for piece in parts]
+    times = [((before - start) * 1e-9, (after - start) * 1e-9, what)
+             for before, after, what in found]
+    return [piece for one in parts for piece in split(one, times)]
+
+
+def _passing_over(record: FlightRecord, times: list[float]) -> FlightRecord:
+    """Return a record with a note of the small resets (s) in it."""
+    count = sum(record.t[0] < time < record.t[-1] for time in times)
+    if not count:
+        return record
+    note = f'{count} resets of the estimator, each by less than its noise, are passed over'
+    return replace(record, info={**record.info, 'notes': [*record.info['notes'], note]})
+
+
+def _used(states: dict) -> dict:
+    """Return the topics whose resets show in the record."""
+    if 'vehicle_local_position' in states or 'vehicle_attitude' in states:
+        return {name: state for name, state in states.items() if name != 'vehicle_odometry'}
+    return states
+
+
+def _in_the_air(path: Path, record: FlightRecord, spans: list[tuple[int | None, int | None]],
+                looked_at: str) -> list[FlightRecord]:
+    """Return the parts of a record in spans of time (ns)."""
+    if not spans:
+        raise InputError(f'{path}: there is no flight in this log: {looked_at}')
+    start, parts = record.info['start_ns'], []
+    for first, last in spans:
+        begin = 0 if first is None else np.searchsorted(record.t, (first - start) * 1e-9)
+        end = len(record) if last is None else np.searchsorted(record.t, (last - start) * 1e-9)
+        if end - begin >= 2:
+            parts.append((int(begin), int(end)))
+    long = [(begin, end) for begin, end in parts
+            if record.t[end - 1] - record.t[begin] + record.period() >= SHORTEST]
+    kept = long or parts[:1]
+    if not kept:
+        raise InputError(f'{path}: there is no flight in this log: while the vehicle was '
+                         f'{looked_at} not all streams were logged')
+    if kept == [(0, len(record))]:
+        return [record]
+    made = []
+    for number, (begin, end) in enumerate(kept, 1):
+        piece = part(record, begin, end)
+        note = (f'kept: t = {piece.t[0]:.2f} to {piece.t[-1]:.2f} s of {record.t[-1]:.2f} s, '
+                f'{looked_at}')
+        if len(parts) > len(kept):
+            note += f'; {len(parts) - len(kept)} flights shorter than {SHORTEST:g} s left out'
+        info = {**piece.info, 'notes': [*piece.info['notes'], note]}
+        if len(kept) > 1:
+            info |= {'name': f'{info["name"]}_{number}', 'source': f'{path}, flight {number}'}
+        made.append(replace(piece, info=info))
+    return made
+
+
+def _slow(streams: list[Stream]) -> list[str]:
+    """Return notes of streams that are logged too slowly to tell lags and delays."""
+    slow = []
+    for stream in streams:
+        stamps = np.sort(stream.stamps)
+        if stream.between != SLOW and 'rotor1' not in stream.columns and len(stamps) > 2:
+            period = float(np.median(np.diff(stamps))) * 1e-9
+            if period > COARSE:
+                slow.append(f'{stream.source.removeprefix("topic ")} at {1 / period:.0f} Hz')
+    if not slow:
+        return []
+    return [f'{", ".join(slow)}: below {1 / COARSE:.0f} Hz lags and delays cannot be told; '
+            f'{PROFILE}']
 
 
 class _Content(io.BytesIO):
@@ -102,7 +204,8 @@ def _size(name, formats, depth):
     return total
 
 
-def _parse(path):
+def parse(path: Path) -> ULog:
+    """Return the ULog of a path with TOPICS and STATES; raises InputError."""
     try:
         with open(path, 'rb') as file:
             content = _Content(file.read())
@@ -111,7 +214,7 @@ def _parse(path):
     try:
         # It prints what it finds damaged; that is kept in file_corruption.
         with contextlib.redirect_stdout(io.StringIO()):
-            return _Log(content, list(TOPICS))
+            return _Log(content, [*TOPICS, *STATES])
     except Exception as error:  # a damaged log makes the parser raise anything
         reason = ' '.join(str(error).split())[:200] or type(error).__name__
         raise InputError(f'{path}: this log cannot be read ({reason}); download it from '
@@ -162,9 +265,11 @@ def _stream(path, topic, data, names, values, between=INTERPOLATED):
 
 
 def _attitude(path, data):
-    topic = 'vehicle_attitude'
-    if data[topic] is None:
-        raise InputError(f'{path}: has no topic {topic}; log it (SDLOG_PROFILE, default set)')
+    topic = next((name for name in ('vehicle_attitude', 'vehicle_odometry', 'estimator_attitude')
+                  if data[name] is not None), None)
+    if topic is None:
+        raise InputError(f'{path}: has no topic vehicle_attitude, vehicle_odometry or '
+                         'estimator_attitude; log it (SDLOG_PROFILE, default set)')
     q = _values(path, topic, data[topic], _indexed('q', 4))
     with np.errstate(all='ignore'):
         norm = np.linalg.norm(q, axis=-1, keepdims=True)
@@ -173,13 +278,30 @@ def _attitude(path, data):
 
 
 def _position(path, data):
-    topic = 'vehicle_local_position'
-    if data[topic] is None:
-        return None
-    values = _values(path, topic, data[topic], ('x', 'y', 'z', 'vx', 'vy', 'vz'))
-    both = [frames.world_vector(values[:, part], 'NED') for part in (slice(3), slice(3, 6))]
-    return _stream(path, topic, data[topic], ('px', 'py', 'pz', 'vx', 'vy', 'vz'),
-                   np.hstack(both))
+    """Return the streams of position and velocity."""
+    for topic in ('vehicle_local_position', 'vehicle_odometry', 'estimator_local_position'):
+        if data[topic] is not None:
+            break
+    else:
+        return []
+    if topic != 'vehicle_odometry':
+        values = _values(path, topic, data[topic], ('x', 'y', 'z', 'vx', 'vy', 'vz'))
+        both = [frames.world_vector(values[:, part], 'NED') for part in (slice(3), slice(3, 6))]
+        return [_stream(path, topic, data[topic], ('px', 'py', 'pz', 'vx', 'vy', 'vz'),
+                        np.hstack(both))]
+    found = data[topic]
+    new = 'position[0]' in found
+    place = _values(path, topic, found, _indexed('position', 3) if new else ('x', 'y', 'z'))
+    speed = _values(path, topic, found, _indexed('velocity', 3) if new else ('vx', 'vy', 'vz'))
+    in_body = np.asarray(found.get('velocity_frame', np.zeros(len(speed)))) == 3
+    streams = [_stream(path, topic, found, ('px', 'py', 'pz'), frames.world_vector(place, 'NED'))]
+    if in_body.all():
+        streams.append(_stream(path, topic, found, BODY_VELOCITY,
+                               frames.body_vector(speed, 'FRD')))
+    elif not in_body.any():
+        streams.append(_stream(path, topic, found, ('vx', 'vy', 'vz'),
+                               frames.world_vector(speed, 'NED')))
+    return streams
 
 
 def _rate(path, data):
@@ -188,6 +310,11 @@ def _rate(path, data):
             values = _values(path, topic, data[topic], _indexed(field, 3))
             return _stream(path, topic, data[topic], ('wx', 'wy', 'wz'),
                            frames.body_vector(values, 'FRD'))
+    topic = 'vehicle_odometry'
+    if data[topic] is not None and 'angular_velocity[0]' in data[topic]:
+        values = _values(path, topic, data[topic], _indexed('angular_velocity', 3))
+        return _stream(path, topic, data[topic], ('wx', 'wy', 'wz'),
+                       frames.body_vector(values, 'FRD'))
     return None
 
 
@@ -211,25 +338,53 @@ def _battery(path, data):
     return _stream(path, topic, data[topic], ('vbat',), voltage, SLOW)
 
 
-def _outputs(path, data, actuators, vehicle):
-    """Return the stream of commands, from the topic that fits the kind of the outputs."""
-    choices = {'actuator_outputs': 'output', 'actuator_motors': 'control'}
-    if actuators is not None and actuators.kind == 'normalised':
-        choices = {'actuator_motors': 'control'}
+def _outputs(path: Path, log: ULog, data: dict, actuators: Actuators | None,
+             vehicle: Vehicle | None, notes: list[str]) -> list[Stream]:
+    """Return the streams of commands and of measured rotor speeds; what was done is noted."""
+    if actuators is not None:
+        choices = ('actuator_outputs', 'actuator_motors')
+        choices = choices[1:] if actuators.kind == 'normalised' else choices
+    else:
+        choices = ('actuator_motors', 'actuator_outputs')
     topic = next((name for name in choices if data[name] is not None), None)
     if topic is None:
         if actuators is not None:
             raise InputError(f'{path}: has no topic {" or ".join(choices)} for outputs of kind '
                              f'{actuators.kind}; log it, or name another of '
                              f'{", ".join(KINDS)}')
+        return []
+    field = {'actuator_outputs': 'output', 'actuator_motors': 'control'}[topic]
+    count = sum(name.startswith(f'{field}[') for name in data[topic])
+    values = _values(path, topic, data[topic], _indexed(field, max(count, 1)))
+    stamps = _stamps(path, topic, data[topic])
+    motors = motors_of(log.initial_parameters)
+    speeds = _measured(path, data['esc_status'], motors)
+    simulated = 'SITL' in str(log.msg_info_dict.get('ver_hw', ''))
+    columns, measured = commands(path, topic, (stamps, values), speeds, actuators, vehicle, motors,
+                                 log.initial_parameters, simulated, notes)
+    streams = [Stream(f'topic {topic}', stamps, columns, HELD)]
+    if measured:
+        streams.append(Stream('topic esc_status', speeds[0], measured, INTERPOLATED))
+    return streams
+
+
+def _measured(path: Path, data: dict | None, motors: Motors | None
+              ) -> tuple[np.ndarray, np.ndarray] | None:
+    """Return (stamps, rotor speeds (n, m) rad/s in the order of the motors) or None."""
+    if data is None or 'esc[0].esc_rpm' not in data:
         return None
-    found, field = data[topic], choices[topic]
-    count = sum(name.startswith(f'{field}[') for name in found)
-    values = _values(path, topic, found, _indexed(field, max(count, 1)))
-    if actuators is not None:
-        values, name = rotor_speeds(f'{path}, topic {topic}', values, actuators, vehicle), 'cmd'
-    else:
-        values = values[:, np.isfinite(values).any(axis=0)]
-        values, name = np.where(np.isfinite(values), values, 0.0), 'output'
-    return _stream(path, topic, found, [f'{name}{k + 1}' for k in range(values.shape[1])], values,
-                   HELD)
+    count = sum(name.endswith('].esc_rpm') for name in data)
+    if motors is not None:
+        count = min(count, len(motors.rotors))
+    elif 'esc_count' in data and len(data['esc_count']):
+        count = min(count, max(int(np.max(data['esc_count'])), 1))
+    places = list(range(count))
+    for k in range(sum(name.endswith('].esc_rpm') for name in data)):
+        function = data.get(f'esc[{k}].actuator_function')
+        motor = int(function[-1]) - FIRST_MOTOR if function is not None and len(function) else -1
+        if 0 <= motor < count:
+            places[motor] = k
+    rpm = _values(path, 'esc_status', data, [f'esc[{k}].esc_rpm' for k in places])
+    if not (np.abs(rpm) > 0).any(axis=0).all() or len(rpm) < 2:
+        return None     # of controllers that tell no speed
+    return _stamps(path, 'esc_status', data), np.abs(rpm) * (2 * np.pi / 60)

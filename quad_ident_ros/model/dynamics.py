@@ -65,7 +65,11 @@ def course_of(record: FlightRecord, vehicle: Vehicle, reference_voltage: float |
     vbat, the voltage is taken not to fall. Raises InputError without the commands of all rotors.
     """
     names = [f'cmd{j}' for j in range(1, len(vehicle.rotors) + 1)]
-    _refuse_without(record, names, 'or u1, u2, u3, u4, the thrust and moments')
+    instead = 'or u1, u2, u3, u4, the thrust and moments'
+    if record.has('output1'):
+        instead = ('which outputs become by a mapping with actuators (kind, order, speeds), see '
+                   'docs/records.md')
+    _refuse_without(record, names, instead)
     commands = record.stack(*names)
     drop, reference = np.zeros(len(record)), np.inf
     if reference_voltage is not None and record.has('vbat'):

@@ -13,6 +13,8 @@ from quad_ident_ros.model.vehicle import load_nominal, Vehicle
 PLACE = Path('shared') / 'flights' / 'nanobench'
 NANOBENCH = next((folder / PLACE for folder in Path(__file__).resolve().parents
                   if (folder / PLACE).is_dir()), None)
+SHARED = next((folder / PLACE.parent for folder in Path(__file__).resolve().parents
+               if (folder / PLACE.parent).is_dir()), None)
 WHY = f'the real flights are not there: {PLACE}'
 needs_real_flights = pytest.mark.skipif(NANOBENCH is None, reason=WHY)
 CUTS = {'star_fast': 8.0, 'oval_fast': 10.0}    # s at which a cut begins, in full flight

@@ -6,7 +6,7 @@ from flightmaker import copy_bag, flight, px4_samples, ulog, VEHICLE
 from hypothesis import given
 from hypothesis import strategies as st
 import numpy as np
-from records import FAST, refused, SMALL
+from records import ALL_TOPICS, FAST, refused, SMALL
 from rosbags.rosbag2 import StoragePlugin
 
 from quad_ident_ros.data.csv import write_csv
@@ -78,9 +78,9 @@ def test_a_bad_csv_names_row_and_column(tmp_path):
     refused(path, 'line 3', "'pz'", 'high')
 
 
-def test_a_mapping_does_not_rename_csv(tmp_path):
+def test_topics_are_not_for_csv(tmp_path):
     write_csv(tmp_path / 'f.csv', SMALL)
-    refused(tmp_path / 'f.csv', 'docs/records.md', mapping=mapping_from({}, 'm'))
+    refused(tmp_path / 'f.csv', 'columns', mapping=mapping_from(ALL_TOPICS, 'm'))
 
 
 @FAST

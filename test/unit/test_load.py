@@ -179,7 +179,7 @@ def test_info_shows_what_the_json_has(tmp_path, capsys):
     record = changed(flight(), wx=np.degrees(flight().columns['wx']),
                      wy=np.degrees(flight().columns['wy']), wz=np.degrees(flight().columns['wz']))
     write_csv(tmp_path / 'f.csv', record)
-    assert main(['info', str(tmp_path / 'f.csv'), '--json', str(tmp_path / 'i.json')]) == 0
+    assert main(['info', str(tmp_path / 'f.csv'), '--json', str(tmp_path / 'i.json')]) == 3
     shown = capsys.readouterr().out
     data = json.loads((tmp_path / 'i.json').read_text())
     assert data['time']['rate_hz'] == pytest.approx(100)
@@ -194,7 +194,7 @@ def test_info_shows_what_the_json_has(tmp_path, capsys):
 def test_info_takes_any_record(tmp_path, capsys):
     (tmp_path / 'f.csv').write_text('t,x\n0,1e308\n1,-1e308\n2,\n')
     assert main(['info', str(tmp_path / 'f.csv'), '--vehicle', 'paper_quadrotor', '--json',
-                 '-']) == 0
+                 '-']) == 3
     data = json.loads(capsys.readouterr().out)
     assert data['columns']['x']['missing'] == 1
     assert {finding['code'] for finding in data['findings']} == {'no_columns', 'slow'}

@@ -2,20 +2,27 @@
 # SPDX-License-Identifier: Apache-2.0
 """Logs of PX4 (ULog)."""
 
-from quad_ident_ros.data.readers.base import Reader
+from pathlib import Path
+
+from quad_ident_ros.data.mapping import Mapping
+from quad_ident_ros.data.readers.base import Content, Reader
+from quad_ident_ros.data.record import FlightRecord
+from quad_ident_ros.model.vehicle import Vehicle
 
 MAGIC = b'ULog\x01\x12\x35'
 
 
-def read(path, mapping=None, vehicle=None):
-    """Return the flight record of a log."""
+def read(path: str | Path, mapping: Mapping | None = None,
+         vehicle: Vehicle | None = None) -> list[FlightRecord]:
+    """Return the flight records of a log."""
     from quad_ident_ros.data.ulog import read_ulog
-    return [read_ulog(path, mapping, vehicle)]
+    return read_ulog(path, mapping, vehicle)
 
 
-def contents(path):
+def contents(path: str | Path) -> list[Content]:
     """Return the topics of a log."""
-    raise NotImplementedError
+    from quad_ident_ros.data.ulog_index import contents as found
+    return found(path)
 
 
 READER = Reader('px4', 'a log of PX4 (ULog)',

@@ -6,6 +6,7 @@ from quad_ident_ros.data.readers import (
     ardupilot,
     betaflight,
     crazyflie,
+    parquet,
     px4,
     rosbag1,
     rosbag2,
@@ -13,5 +14,5 @@ from quad_ident_ros.data.readers import (
 )
 
 READERS = (rosbag1.READER, rosbag2.READER, px4.READER, ardupilot.READER, betaflight.READER,
-           crazyflie.READER, table.READER)
+           crazyflie.READER, parquet.READER, table.READER)
 """In the order in which they are told: what is none of the others is a table."""

@@ -1,26 +1,89 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Tables of text, plain or gzip: flight records as CSV."""
+"""Tables of text, plain or gzip: flight records as CSV, and the tables of others."""
 
-from quad_ident_ros.data.csv import read_csv
+from dataclasses import replace
+import gzip
+from pathlib import Path
+import zlib
+
+import numpy as np
+
+from quad_ident_ros.data.columns import record_of, shown
+from quad_ident_ros.data.csv import read_csv, rows_of
+from quad_ident_ros.data.guess import Guess, guess
+from quad_ident_ros.data.mapping import factor_of, Mapping
+from quad_ident_ros.data.mapping_text import flow
 from quad_ident_ros.data.readers.base import Content, content_of, Reader
-from quad_ident_ros.data.record import unit
+from quad_ident_ros.data.record import FlightRecord, unit
+from quad_ident_ros.data.tabular import read_text, Table
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.model.vehicle import Vehicle
 
 ROLES = {'px': 'pose', 'vx': 'velocity', 'wx': 'rate', 'ax': 'specific_force', 'cmd1': 'commands',
          'rotor1': 'rotors', 'vbat': 'battery'}
 
-
-def read(path, mapping=None, vehicle=None):
-    """Return the flight record of a CSV file."""
-    if mapping is not None:
-        raise InputError(f'{path}: a mapping is for bags and logs; the columns of a CSV file have '
-                         'the names of the flight record, see docs/records.md')
-    return [read_csv(path)]
+STATES = {'pose', 'velocity', 'rate', 'specific_force'}
+_HEAD = 1 << 16     # bytes that the first line has its end in
 
 
-def contents(path):
+def read(path: Path, mapping: Mapping | None = None,
+         vehicle: Vehicle | None = None) -> list[FlightRecord]:
+    """Return the flight record of a CSV file: in our format, by a mapping, or by guess."""
+    path = Path(path)
+    if mapping in (None, Mapping()) and is_record(path):
+        return [read_csv(path)]
+    table = read_text(path, mapping.separator if mapping else '')
+    return [record_from(path, table, mapping, vehicle)]
+
+
+def record_from(path: Path, table: Table, mapping: Mapping | None,
+                vehicle: Vehicle | None) -> FlightRecord:
+    """Return the flight record of a Table, by the columns of a mapping or by guess."""
+    mapping = mapping or Mapping()
+    if mapping.topics or mapping.instances:
+        raise InputError(f'{path}: topics and instances are for bags and logs; a mapping of a '
+                         'table has columns: which column of the file is what')
+    notes = []
+    if not mapping.columns:
+        found = guess(table, mapping)
+        if found.doubts:
+            raise InputError(_doubtful(path, table, found))
+        mapping = found.mapping
+        notes = [f'cells between {table.how}' if table.how != 'Parquet' else 'Parquet',
+                 *found.said]
+    return record_of(path, table, mapping, vehicle, notes)
+
+
+def is_record(path: Path) -> bool:
+    """Return whether a file begins as our format does; raises InputError where it is no text."""
+    names = [name.strip().strip('"') for name in _first_line(path).split(',')]
+    if 't' not in names:
+        return False
+    if any(unit(name) is not None and name not in ('t', 'vbat') for name in names):
+        return True
+    # t and names of others: theirs if they tell a flight, and else columns that are kept.
+    try:
+        found = guess(read_text(path))
+    except InputError:
+        return True
+    return bool(found.doubts) or not set(found.roles) & STATES
+
+
+def _first_line(path: Path) -> str:
+    """Return the first line of a file; InputError where it is no text."""
+    try:
+        with (gzip.open if path.suffix == '.gz' else open)(path, 'rb') as file:
+            return file.read(_HEAD).replace(b'\r', b'\n').partition(b'\n')[0].decode('utf-8-sig')
+    except (OSError, EOFError, zlib.error, UnicodeDecodeError):
+        return rows_of(path)[0][0]
+
+
+def contents(path: Path) -> list[Content]:
     """Return the one stream of a CSV file."""
+    path = Path(path)
+    if not is_record(path):
+        return contents_of_table(read_text(path), 'CSV')
     record = read_csv(path)
     fields = [name if unit(name) is None else f'{name} ({unit(name)})'
               for name in record.columns]
@@ -28,6 +91,32 @@ def contents(path):
     roles = [role for column, role in ROLES.items() if record.has(column)]
     found: list[Content] = [content_of('rows', 'CSV', stamps, 0, fields, roles)]
     return found
+
+
+def contents_of_table(table: Table, kind: str) -> list[Content]:
+    """Return the one stream of a Table of others."""
+    found = guess(table)
+    time = found.mapping.columns.get('t')
+    count = len(next(iter(table.columns.values())))
+    if time is None:
+        return [Content('rows', kind, count, 0.0, 0.0, 0.0, tuple(table.columns),
+                        tuple(found.roles))]
+    t = table.columns[time.names[0]] * factor_of('t', time.unit)
+    t = t[np.isfinite(t)]
+    t = t[np.abs(t - t[0]) < 1e8]
+    stamps = np.round((t - t[0]) * 1e9).astype(np.int64)
+    made = content_of('rows', kind, stamps, 0, tuple(table.columns), tuple(found.roles))
+    return [replace(made, samples=count)]
+
+
+def _doubtful(path: Path, table: Table, found: Guess) -> str:
+    """Return the message of a table that names and values do not tell."""
+    lines = flow(found.mapping)
+    if len(lines) > 300:
+        lines = lines[:lines.rindex(', ', 0, 300)] + ', ...}'
+    return (f'{path}: not told: {"; ".join(found.doubts[:4])[:300]}; the columns are '
+            f'{shown(table.columns, 10)[:250]}; write a mapping such as {lines}, or begin '
+            'one with: quad_ident info FILE --write-mapping map.yaml')
 
 
 READER = Reader('csv', 'a table of text (CSV)', lambda path, start: False, read, contents)

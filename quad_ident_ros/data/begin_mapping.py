@@ -1,0 +1,45 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""A mapping file to begin with, from what is in a file."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from quad_ident_ros.data.guess import guess
+from quad_ident_ros.data.load import reader_of
+from quad_ident_ros.data.mapping_text import names_text, table_text, topics_text
+from quad_ident_ros.data.readers.base import Content
+from quad_ident_ros.data.tabular import read_parquet, read_text
+from quad_ident_ros.errors import InputError
+
+BAGS = ('rosbag1', 'rosbag2')
+TABLES = {'csv': read_text, 'parquet': read_parquet}
+
+
+def begin_mapping(out: str | Path, path: str | Path, streams: Sequence[Content]) -> None:
+    """
+    Write the mapping file that fits the kind of a file.
+
+    Args: out: path of a file that does not exist yet; path of the file; streams: its Content.
+    Raises InputError.
+    """
+    out, path = Path(out), Path(path)
+    if out.suffix not in ('.yaml', '.yml'):
+        raise InputError(f'{out}: a mapping is written to a .yaml file; name one')
+    name = reader_of(path).name
+    if name in BAGS:
+        text = topics_text(path, streams)
+    elif name in TABLES:
+        table = TABLES[name](path)
+        found = guess(table)
+        text = table_text(path, found.mapping, found.doubts, list(table.columns))
+    else:
+        text = names_text(path, 4)
+    try:
+        with open(out, 'x', encoding='utf-8') as file:
+            file.write(text)
+    except FileExistsError:
+        raise InputError(f'{out}: there is such a file, which may have been edited; name '
+                         'another') from None
+    except OSError as error:
+        raise InputError(f'{out}: cannot be written: {error.strerror}') from None

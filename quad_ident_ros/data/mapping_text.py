@@ -1,0 +1,99 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""A Mapping as the text of a mapping file."""
+
+from collections.abc import Mapping as Pairs
+from collections.abc import Sequence
+import json
+
+from quad_ident_ros.data.mapping import ATTITUDE, Mapping, ROLES, unit_of
+from quad_ident_ros.data.readers.base import Content
+
+
+def columns_text(columns: Pairs) -> dict[str, str]:
+    """Return the lines of `columns:`, {column of the record: text of its entry}."""
+    found = {}
+    for name, column in columns.items():
+        names = (_quoted(column.names[0]) if len(column.names) == 1 else
+                 '[' + ', '.join(map(_quoted, column.names)) + ']')
+        more = []
+        if column.unit and column.unit != unit_of(name):
+            more.append(f'unit: {column.unit}')
+        if column.frame != 'world' and name in ('vx', 'vy', 'vz'):
+            more.append(f'frame: {column.frame}')
+        found[name] = f'{{{", ".join([f"column: {names}", *more])}}}' if more else names
+    return found
+
+
+def flow(mapping: Mapping) -> str:
+    """Return the columns of a Mapping in one line."""
+    entries = columns_text(mapping.columns) or {'t': 'time', 'px': 'x'}
+    return 'columns: {' + ', '.join(f'{name}: {text}' for name, text in entries.items()) + '}'
+
+
+def topics_text(source: object, found: Sequence[Content]) -> str:
+    """
+    Return a mapping file to begin with for a bag: a role with one candidate is filled in.
+
+    Args: source: what the file is of; found: the Content of its topics.
+    """
+    roles = {role: [content.name for content in found if role in content.roles] for role in ROLES}
+    lines = []
+    for role, topics in roles.items():
+        more = ', field: data' if role in ('commands', 'rotors') else ''
+        sign = '' if len(topics) == 1 else '# '
+        lines += [f'  {sign}{role}: {{topic: {_quoted(topic)}{more}}}' for topic in topics]
+        if not topics:
+            lines.append(f'  # {role}: no topic has a type that is known for this')
+    head = 'topics:' if any(not line.startswith('  #') for line in lines) else '# topics:'
+    return _text(source, ['world: ENU                     # or NED',
+                          'body: FLU                      # or FRD', head, *lines, *_ACTUATORS])
+
+
+def names_text(source: object, count: int) -> str:
+    """Return a mapping file to begin with for a log whose names are known; count of outputs."""
+    order = ', '.join(map(str, range(1, max(count, 1) + 1)))
+    return _text(source, ['instances: {}                  # of a topic that is there twice',
+                          *(line.replace('[1, 2, 3, 4]', f'[{order}]') for line in _ACTUATORS)])
+
+
+def table_text(source: object, mapping: Mapping, doubts: Sequence[str], columns: Pairs) -> str:
+    """
+    Return a mapping file to begin with for a table.
+
+    Args: source; mapping and doubts of a guess.Guess; columns: names of all in the file.
+    """
+    used = {name for column in mapping.columns.values() for name in column.names}
+    lines = [f'# not told by names and values: {doubt}' for doubt in doubts]
+    lines += [f'world: {mapping.world}', f'body: {mapping.body}']
+    if ATTITUDE in mapping.columns:
+        lines.append(f'quaternion: {mapping.quaternion}')
+    entries = [f'  {name}: {text}' for name, text in columns_text(mapping.columns).items()]
+    if 't' not in mapping.columns:      # without a time nothing else can be read
+        entries = ['  # t: {column: time, unit: us}', *(f'  # {line[2:]}' for line in entries)]
+    others = [name for name in columns if name not in used]
+    if others:
+        entries.append('  # columns that are not read: ' + ', '.join(map(_quoted, others)))
+    head = 'columns:' if 't' in mapping.columns else '# columns:'
+    outputs = any(name.startswith('output') for name in mapping.columns)
+    return _text(source, [*lines, head, *entries, *(_ACTUATORS if outputs else [])])
+
+
+_ACTUATORS = ['# actuators:                     # how outputs become rotor speeds',
+              '#   kind: pwm                    # speed, rpm, pwm or normalised',
+              '#   order: [1, 2, 3, 4]          # the output of each rotor of the vehicle file',
+              '#   curve: linear                # or thrust: the square of the speed is']
+
+
+def _text(source: object, lines: Sequence[str]) -> str:
+    clean = ' '.join(str(source).split())
+    return '\n'.join([f'# Mapping to begin with, of {clean}: check each line; those after # do '
+                      'not hold.', *lines]) + '\n'
+
+
+def _quoted(name: str) -> str:
+    """Return a name as YAML reads it back."""
+    plain = name.replace('_', '').replace('.', '').replace('/', '')
+    sure = plain.isalnum() and plain.isascii() and not plain[0].isdigit() and name.lower() not in (
+        'y', 'n', 'yes', 'no', 'on', 'off', 'true', 'false', 'null')
+    return name if sure and not name.startswith('.') else json.dumps(name, ensure_ascii=False)

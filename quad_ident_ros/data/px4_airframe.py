@@ -1,0 +1,214 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What the parameters of a PX4 log say of the vehicle: kind, rotors, map of the motors."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+import math
+from pathlib import Path
+from typing import TypeAlias
+
+import numpy as np
+from scipy.optimize import linear_sum_assignment
+
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.model.vehicle import Rotor, Vehicle
+
+Parameters: TypeAlias = Mapping[str, int | float]
+
+MOST_ROTORS = 12        # that the parameters of PX4 have places for
+FIRST_MOTOR = 101       # the output function of motor 1
+NEAR = math.radians(30)     # rotors of a hexacopter are 60 deg apart
+
+MULTIROTORS = {0: 'generic', 2: 'quadrotor', 13: 'hexarotor', 14: 'octorotor',
+               29: 'dodecarotor', 35: 'decarotor'}
+OTHERS = {1: 'a fixed wing', 3: 'a coaxial helicopter', 4: 'a helicopter', 7: 'an airship',
+          8: 'a balloon', 10: 'a rover', 11: 'a boat', 12: 'a submarine', 15: 'a tricopter',
+          **{kind: 'a VTOL' for kind in range(19, 26)}}
+"""MAV_TYPE of MAVLink."""
+
+# Directions (forward, right) and senses of turning of motors 1.. where the parameters name none.
+QUAD_X = ((1, 1, 1), (-1, -1, 1), (1, -1, -1), (-1, 1, -1))
+QUAD_PLUS = ((0, 1, 1), (0, -1, 1), (1, 0, -1), (-1, 0, -1))
+
+
+@dataclass(frozen=True)
+class Motors:
+    """
+    The motors of a log: rotors in their order, in FLU; ratio torque over thrust in m or nan.
+
+    known: whether the places are those of the vehicle, or only their directions; source: which
+    parameters say so.
+    """
+
+    rotors: tuple[Rotor, ...]
+    ratio: float
+    known: bool
+    source: str
+
+
+def other_kind(parameters: Parameters, status: Mapping[str, np.ndarray] | None) -> str:
+    """
+    Return what a vehicle is that is no multirotor, or ''.
+
+    Args: parameters name -> number; status: fields of vehicle_status, name -> (n,), or None.
+    """
+    status = status or {}
+    if any(np.any(status[name] == 1) for name in ('is_vtol',) if name in status):
+        return 'a VTOL'
+    kind = parameters.get('MAV_TYPE')
+    if kind is None and len(status.get('system_type', ())):
+        kind = status['system_type'][-1]
+    if kind in OTHERS:
+        return OTHERS[int(kind)]
+    types = status.get('vehicle_type', ())
+    if len(types) and np.all(np.asarray(types) == 2):
+        return 'a fixed wing'
+    return ''
+
+
+def motors_of(parameters: Parameters) -> Motors | None:
+    """Return the Motors that the parameters of a log describe, or None."""
+    count = _number(parameters, 'CA_ROTOR_COUNT')
+    if 1 <= count <= MOST_ROTORS:
+        rotors, ratios = [], []
+        for k in range(int(count)):
+            place = [_number(parameters, f'CA_ROTOR{k}_P{axis}', 0.0) for axis in 'XYZ']
+            turning = _number(parameters, f'CA_ROTOR{k}_KM', 0.05)
+            if not np.isfinite([*place, turning]).all():
+                return None
+            # Counterclockwise from above is positive: its reaction torque is about -z.
+            rotors.append(Rotor((place[0], -place[1], -place[2]), -1 if turning > 0 else 1))
+            ratios.append(abs(turning))
+        if any(math.hypot(*rotor.position[:2]) > 0 for rotor in rotors):
+            # The airframe "generic quad" has its rotors 1 m out; no frame that flies has arms
+            # of exactly that in both directions.
+            unit = all(abs(abs(value) - 1.0) < 1e-6 for rotor in rotors
+                       for value in rotor.position[:2])
+            return Motors(tuple(rotors), float(np.mean(ratios)), not unit, 'CA_ROTOR*')
+    start = int(_number(parameters, 'SYS_AUTOSTART', 0))
+    if int(_number(parameters, 'MAV_TYPE', -1)) != 2:
+        return None
+    layout = QUAD_PLUS if 5000 <= start < 6000 else QUAD_X
+    half = math.sqrt(0.5) if layout is QUAD_X else 1.0
+    return Motors(tuple(Rotor((x * half, -y * half, 0.0), -turning) for x, y, turning in layout),
+                  math.nan, False, f'MAV_TYPE 2, SYS_AUTOSTART {start}: quad '
+                  f'{"+" if layout is QUAD_PLUS else "x"}')
+
+
+def order_of(where: str | Path, motors: Motors, vehicle: Vehicle) -> tuple[int, ...]:
+    """
+    Return for each rotor of a vehicle file the number of its motor in a log, from 1.
+
+    They are matched by their direction from the middle; rotors above each other by height and
+    sense of turning.
+    Args: where the file, for messages; motors Motors; vehicle Vehicle.
+    Raises InputError that names what does not match.
+    """
+    if len(motors.rotors) != len(vehicle.rotors):
+        raise InputError(f'{where}: the vehicle of the log has {len(motors.rotors)} motors '
+                         f'({motors.source}), {vehicle.name} has {len(vehicle.rotors)} rotors; '
+                         'give the vehicle file of this vehicle')
+    angles = np.abs(np.angle(np.exp(1j * (_direction(vehicle.rotors)[:, None]
+                                          - _direction(motors.rotors)[None, :]))))
+    turning = np.not_equal.outer([rotor.spin for rotor in vehicle.rotors],
+                                 [rotor.spin for rotor in motors.rotors])
+    # A sense of turning that differs decides only among motors in one direction.
+    rows, columns = linear_sum_assignment(angles + 0.01 * turning)
+    order = tuple(int(columns[k]) + 1 for k in np.argsort(rows))
+    for k, motor in enumerate(order):
+        away = angles[k, motor - 1]
+        if away > NEAR:
+            raise InputError(
+                f'{where}: rotors[{k}] of {vehicle.name} at {_place(vehicle.rotors[k])} has no '
+                f'motor of the log ({motors.source}) in its direction, the nearest, motor '
+                f'{motor}, is {math.degrees(away):.0f} deg away; correct the positions in the '
+                'vehicle file (x forward, y left), or give the order in a mapping')
+        if turning[k, motor - 1]:
+            spin = motors.rotors[motor - 1].spin
+            raise InputError(
+                f'{where}: rotors[{k}] of {vehicle.name} has spin {vehicle.rotors[k].spin:+d}, '
+                f'motor {motor} of the log ({motors.source}), which lies there, has {spin:+d}; '
+                'correct the spin in the vehicle file, or give the order in a mapping')
+    return order
+
+
+def signal_limits(parameters: Parameters, count: int,
+                  simulated: bool) -> tuple[np.ndarray, np.ndarray]:
+    """
+    Return (lowest, highest) PWM of outputs 1..count, (count,) us each.
+
+    Those of each channel where they are set, else those of all channels. PX4's simulator has
+    1000 to 2000 whatever the parameters say.
+    """
+    limits = []
+    for ending, usual in (('MIN', 1000.0), ('MAX', 2000.0)):
+        shared = next((value for value in (_number(parameters, f'{name}_{ending}') for name in
+                                           ('PWM_MAIN', 'PWM')) if 800 <= value <= 2200), usual)
+        each = [_number(parameters, f'PWM_MAIN_{ending}{k}') for k in range(1, count + 1)]
+        limits.append(np.array([usual if simulated else value if 800 <= value <= 2200 else shared
+                                for value in each]))
+    low, high = limits
+    return (low, high) if (high > low).all() else (np.full(count, 1000.0), np.full(count, 2000.0))
+
+
+def channels_of(parameters: Parameters, count: int) -> list[int]:
+    """Return the 0-based channel of motors 1.., (count,), by the functions of the outputs."""
+    channels = {}
+    for k in range(16):
+        function = _number(parameters, f'PWM_MAIN_FUNC{k + 1}')
+        if FIRST_MOTOR <= function < FIRST_MOTOR + MOST_ROTORS:
+            channels[int(function) - FIRST_MOTOR] = k
+    if all(motor in channels for motor in range(count)):
+        return [channels[motor] for motor in range(count)]
+    return list(range(count))
+
+
+def thrust_factor(parameters: Parameters) -> float:
+    """Return THR_MDL_FAC, the quadratic share of the thrust curve that is set, 0 for none."""
+    factor = _number(parameters, 'THR_MDL_FAC', 0.0)
+    return factor if 0.0 < factor <= 1.0 else 0.0
+
+
+def measured_map(signal: np.ndarray, speed: np.ndarray) -> tuple[str, tuple[float, float]] | None:
+    """
+    Return (curve, (low, high)) of the map from signal to rotor speed by measured speeds, or None.
+
+    Args: signal (n, m) of 0 to 1; speed (n, m) rad/s at the same times, of turning rotors.
+    The curve is linear (speed) or thrust (its square), whichever leaves less unexplained.
+    """
+    use = np.isfinite(signal) & np.isfinite(speed) & (signal > 0.05) & (speed > 0)
+    x, y = signal[use], speed[use]
+    # 50 samples over a fifth of the range: fewer do not show which of the two curves it is.
+    if len(x) < 50 or np.ptp(x) < 0.2 or np.ptp(y) < 1e-9:
+        return None
+    best = None
+    for curve in ('linear', 'thrust'):
+        values = y if curve == 'linear' else y ** 2
+        slope, offset = np.polyfit(x, values, 1)
+        high, low = offset + slope, max(offset, 0.0)
+        if curve == 'thrust':
+            high, low = math.sqrt(max(high, 0.0)), math.sqrt(low)
+            fitted = np.sqrt(np.maximum(offset + slope * x, 0.0))
+        else:
+            fitted = offset + slope * x
+        rest = float(np.std(y - fitted))
+        if high > low and (best is None or rest < best[0]):
+            best = rest, curve, (low, high)
+    # Speeds that the signal explains to a third of their spread are its answer.
+    return None if best is None or best[0] > np.std(y) / 3 else best[1:]
+
+
+def _number(parameters: Parameters, name: str, default: float = math.nan) -> float:
+    value = parameters.get(name, default)
+    return float(value) if isinstance(value, int | float) and math.isfinite(value) else default
+
+
+def _direction(rotors: Sequence[Rotor]) -> np.ndarray:
+    return np.array([math.atan2(rotor.position[1], rotor.position[0]) for rotor in rotors])
+
+
+def _place(rotor: Rotor) -> str:
+    return '[' + ', '.join(f'{value:g}' for value in rotor.position) + ']'
+
+

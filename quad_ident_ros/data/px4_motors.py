@@ -1,0 +1,145 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Rotor speeds from the outputs of a PX4 log: by the mapping, or by the log's parameters."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TypeAlias
+
+import numpy as np
+
+from quad_ident_ros.data.mapping import Actuators, rotor_speeds
+from quad_ident_ros.data.px4_airframe import (
+    channels_of,
+    measured_map,
+    Motors,
+    order_of,
+    Parameters,
+    signal_limits,
+    thrust_factor,
+)
+from quad_ident_ros.model.vehicle import Vehicle
+
+Samples: TypeAlias = tuple[np.ndarray, np.ndarray]
+Columns: TypeAlias = dict[str, np.ndarray]
+
+PWM = 800.0, 2200.0     # us, between which every output of kind pwm lies; off is 0 or nan
+
+
+def commands(path: str | Path, topic: str, outputs: Samples, measured: Samples | None,
+             actuators: Actuators | None, vehicle: Vehicle | None, motors: Motors | None,
+             parameters: Parameters, simulated: bool, notes: list[str]) -> tuple[Columns, Columns]:
+    """
+    Return (columns of commands, columns rotor1..N of measured speeds); what was done is noted.
+
+    Args: outputs (stamps (n,) ns, values (n, m)); measured the same in rad/s in the order of the
+    motors, or None; actuators of the mapping or None; vehicle, motors (px4_airframe.Motors) or
+    None; parameters of the log; simulated: whether it is of PX4's simulator.
+    Raises InputError where the vehicle's rotors do not match those of the log.
+    """
+    stamps, values = outputs
+    where = f'{path}, topic {topic}'
+    order = None
+    if vehicle is not None and motors is not None and not (actuators and actuators.order):
+        order = order_of(path, motors, vehicle)
+    speeds = {}
+    if measured is not None:
+        chosen = measured[1] if order is None else measured[1][:, [k - 1 for k in order]]
+        speeds = {f'rotor{k}': column for k, column in enumerate(chosen.T, 1)}
+    if actuators is not None:
+        if order is not None and topic == 'actuator_motors':
+            actuators = replace(actuators, order=order)
+        elif order is not None:
+            channels = channels_of(parameters, len(order))
+            actuators = replace(actuators, order=tuple(channels[k - 1] + 1 for k in order))
+        return _named('cmd', rotor_speeds(where, values, actuators, vehicle)), speeds
+    signal, what = (None, '') if vehicle is None else _signal(topic, values, motors, parameters,
+                                                              simulated)
+    if signal is None:
+        if vehicle is not None:
+            notes.append(f'{topic} stays as output1..N: '
+                         + (what or 'the log does not say which motor lies where (CA_ROTOR*, '
+                            'MAV_TYPE)')
+                         + '; give a mapping with actuators: kind and order')
+        values = values[:, np.isfinite(values).any(axis=0)]
+        return _named('output', np.where(np.isfinite(values), values, 0.0)), speeds
+    made, said = _map(signal, stamps, measured, parameters)
+    notes.append(f'commands: {topic} ({what}), motors {_listed(order)} of the log by their '
+                 f'direction ({motors.source}); {said}')
+    share = _relative(signal, topic, made, parameters)
+    return _named('cmd', rotor_speeds(where, share, replace(made, order=order), vehicle)), speeds
+
+
+def _signal(topic: str, values: np.ndarray, motors: Motors | None, parameters: Parameters,
+            simulated: bool) -> tuple[np.ndarray | None, str]:
+    """Return the signal (n, motors) of 0 to 1, below 0 for off, and what it was; None, why."""
+    if motors is None:
+        return None, ''
+    count = len(motors.rotors)
+    if topic == 'actuator_motors':
+        if values.shape[1] < count or not _within(values[:, :count], -1e-3, 1.001):
+            return None, f'its values are not the shares of full thrust of {count} motors'
+        return values[:, :count], 'normalised, 0 to 1'
+    channels = channels_of(parameters, count)
+    if max(channels) >= values.shape[1]:
+        return None, f'there are no outputs for {count} motors'
+    chosen = values[:, channels]
+    if _within(chosen, -1e-3, 1.001):
+        return chosen, 'normalised, 0 to 1'
+    chosen = np.where(chosen > 0, chosen, np.nan)
+    if not _within(chosen, *PWM):
+        return None, 'its values are neither shares of 0 to 1 nor PWM'
+    low, high = signal_limits(parameters, max(channels) + 1, simulated)
+    low, high = low[channels], high[channels]
+    span = (f'{low[0]:g} to {high[0]:g} us' if np.ptp(low) == np.ptp(high) == 0 else
+            f'{low.min():g} to {high.max():g} us, limits of each channel')
+    return (chosen - low) / (high - low), f'PWM, {span}'
+
+
+def _map(signal: np.ndarray, stamps: np.ndarray, measured: Samples | None,
+         parameters: Parameters) -> tuple[Actuators, str]:
+    """Return the Actuators of a signal of 0 to 1, and how they are known."""
+    if measured is not None:
+        at = np.searchsorted(stamps, measured[0], side='right') - 1
+        inside = at >= 0
+        count = min(signal.shape[1], measured[1].shape[1])
+        found = measured_map(signal[np.maximum(at, 0), :count][inside],
+                             measured[1][inside, :count])
+        if found is not None:
+            curve, (low, high) = found
+            return Actuators((), 'normalised', 0.0, 1.0, (low, high), curve), (
+                f'rotor speed {low:.4g} to {high:.4g} rad/s, '
+                f'{"linear" if curve == "linear" else "its square linear"} in the signal, '
+                'by the rpm of esc_status')
+    factor = thrust_factor(parameters)
+    if factor:
+        return Actuators((), 'normalised', 0.0, 1.0, None, 'thrust'), (
+            f'thrust is {factor:g} x^2 + {1 - factor:.3g} x of the signal x (THR_MDL_FAC); '
+            'speeds at its ends from the vehicle file')
+    return Actuators((), 'normalised', 0.0, 1.0, None, 'linear'), (
+        'rotor speed linear in the signal (THR_MDL_FAC is not set); speeds at its ends from the '
+        'vehicle file')
+
+
+def _relative(signal: np.ndarray, topic: str, made: Actuators,
+              parameters: Parameters) -> np.ndarray:
+    """Return what the curve of the Actuators is of: the share of thrust, or the signal."""
+    factor = thrust_factor(parameters)
+    if made.curve != 'thrust' or made.speeds is not None or topic == 'actuator_motors':
+        return signal   # actuator_motors is a share of thrust, before THR_MDL_FAC is applied
+    return np.where(signal > 0, factor * signal ** 2 + (1 - factor) * signal, signal)
+
+
+def _within(values: np.ndarray, low: float, high: float) -> bool:
+    """Return whether values are low to high where they are numbers, and some are."""
+    finite = values[np.isfinite(values)]
+    return bool(len(finite)) and bool((finite >= low).all() and (finite <= high).all())
+
+
+def _named(name: str, values: np.ndarray) -> Columns:
+    return {f'{name}{k}': column for k, column in enumerate(values.T, 1)}
+
+
+def _listed(order: Sequence[int]) -> str:
+    return ', '.join(map(str, order))

@@ -1,0 +1,188 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Records cut where an estimator was reset, and how resets are seen in the data."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import TypeAlias
+
+import numpy as np
+
+from quad_ident_ros.data.frames import conjugate, continuous, multiply, rotate
+from quad_ident_ros.data.record import FlightRecord, QUATERNION
+
+Reset: TypeAlias = tuple[float, float, str]
+
+SHORTEST = 4.0      # s, of a piece: a diagnosis needs that much
+POSITION = 1.0      # m; estimators drift by less, and errors of measurement are smaller
+HEADING = np.radians(20.0)
+WITHIN = 0.2        # s in which a jump is over: streams of 5 Hz and more, interpolated
+RETURNS = 1.0       # s; what has come back by then was a glitch, and no reset
+CLEAR = 5.0         # times the usual disagreement of the streams
+GAP = 5.0           # periods; what happens in a longer silence is no jump
+
+
+def split(record: FlightRecord, resets: Sequence[Reset],
+          shortest: float = SHORTEST) -> list[FlightRecord]:
+    """
+    Return the pieces of a record between resets, each with a note.
+
+    Args: record FlightRecord; resets: (last time before, first time after, what happened) of
+    each, s as in record.t; samples strictly between the two are left out; shortest: s, of a piece.
+    Pieces that are shorter are left out; where all are, the longest stays.
+    """
+    resets = sorted((before, max(before, after), why) for before, after, why in resets
+                    if before < record.t[-1] and after > record.t[0])
+    if not resets:
+        return [record]
+    bounds, first = [], 0
+    for before, after, _ in resets:
+        bounds.append((first, int(np.searchsorted(record.t, before, side='right'))))
+        first = max(first, int(np.searchsorted(record.t, max(after, np.nextafter(before, np.inf)),
+                                               side='left')))
+    bounds.append((first, len(record)))
+    pieces = [(begin, end) for begin, end in bounds if end - begin >= 2]
+    if not pieces:
+        return [record]
+    kept = [piece for piece in pieces if _length(record, piece) >= shortest]
+    kept = kept or [max(pieces, key=lambda piece: _length(record, piece))]
+    return _noted(record, kept, len(pieces), resets, shortest)
+
+
+def part(record: FlightRecord, begin: int, end: int) -> FlightRecord:
+    """Return the record of samples begin to end - 1, with its start and the battery's."""
+    piece = record.slice(0, end).starting(begin)
+    if begin == 0:
+        return piece
+    return replace(piece, info={**piece.info, 'began': record.info.get('began', record.t[0])})
+
+
+def jumps(record: FlightRecord) -> list[Reset]:
+    """
+    Return the jumps of position and heading in a record, as split takes them.
+
+    A position jumps where it changes by more than POSITION within WITHIN, beyond what the
+    velocity explains, a heading by more than HEADING beyond what the rate explains; by far more
+    than the streams usually disagree, and not to come back. Without velocity or rate none is
+    told: what only moves fast is no jump.
+    """
+    found = []
+    rest = _unexplained_position(record)
+    if rest is not None:
+        found += _steps(record, rest, POSITION, record.stack('px', 'py', 'pz'),
+                        lambda size: f'the position jumps by {size:.2g} m')
+    rest = _unexplained_heading(record)
+    if rest is not None:
+        found += _steps(record, rest[0][:, None], HEADING, rest[1][:, None],
+                        lambda size: f'the heading jumps by {np.degrees(size):.0f} deg')
+    return _merged(found)
+
+
+def split_at_jumps(record: FlightRecord) -> list[FlightRecord]:
+    """Return the pieces of a record between the jumps that are seen in it."""
+    with np.errstate(all='ignore'):
+        return split(record, jumps(record))
+
+
+def _noted(record: FlightRecord, kept: list[tuple[int, int]], count: int, resets: Sequence[Reset],
+           shortest: float) -> list[FlightRecord]:
+    """Return the kept pieces with names and notes."""
+    shown = '; '.join(f'{why} at t = {before:.2f} s' for before, _, why in resets[:4])
+    more = f' and {len(resets) - 4} more' if len(resets) > 4 else ''
+    dropped = count - len(kept)
+    name, source = record.info.get('name'), record.info.get('source')
+    made = []
+    for number, (begin, end) in enumerate(kept, 1):
+        piece = part(record, begin, end)
+        note = (f'part {number} of {len(kept)}, t = {piece.t[0]:.2f} to {piece.t[-1]:.2f} s, '
+                f'split where the estimator was reset: {shown}{more}')
+        if dropped:
+            note += f'; {dropped} parts shorter than {shortest:g} s are left out'
+        info = {**piece.info, 'notes': [*piece.info.get('notes', ()), note]}
+        if len(kept) > 1:
+            info |= {'name': f'{name}_{number}'} if name else {}
+            info |= {'source': f'{source}, part {number}'} if source else {}
+        made.append(replace(piece, info=info))
+    return made
+
+
+def _length(record: FlightRecord, piece: tuple[int, int]) -> float:
+    begin, end = piece
+    return float(record.t[end - 1] - record.t[begin]) + record.period()
+
+
+def _unexplained_position(record: FlightRecord) -> np.ndarray | None:
+    """Return the path less the integral of the velocity, (N, 3) m, or None."""
+    if not record.has('px', 'py', 'pz', 'vx', 'vy', 'vz'):
+        return None
+    velocity = record.stack('vx', 'vy', 'vz')
+    dt = np.diff(record.t)[:, None]
+    steps = np.diff(record.stack('px', 'py', 'pz'), axis=0)
+    return _summed(record, steps - 0.5 * (velocity[1:] + velocity[:-1]) * dt)
+
+
+def _unexplained_heading(record: FlightRecord) -> tuple[np.ndarray, np.ndarray] | None:
+    """Return (turn about the vertical less that of the rate, turn itself), (N,) rad, or None."""
+    if not record.has(*QUATERNION, 'wx', 'wy', 'wz'):
+        return None
+    quaternion = record.stack(*QUATERNION)
+    norm = np.linalg.norm(quaternion, axis=-1, keepdims=True)
+    if not (norm > 0.5).all():
+        return None
+    q = continuous(quaternion / norm)
+    turn = multiply(conjugate(q[:-1]), q[1:])
+    turn *= np.where(turn[:, :1] < 0, -1.0, 1.0)
+    sine = np.linalg.norm(turn[:, 1:], axis=-1, keepdims=True)
+    angle = 2.0 * np.arctan2(sine, turn[:, :1])
+    vector = turn[:, 1:] * np.where(sine > 1e-9, angle / np.maximum(sine, 1e-9), 2.0)
+    rate = record.stack('wx', 'wy', 'wz')
+    explained = 0.5 * (rate[1:] + rate[:-1]) * np.diff(record.t)[:, None]
+    rest, whole = rotate(q[:-1], vector - explained)[:, 2], rotate(q[:-1], vector)[:, 2]
+    return _summed(record, rest[:, None])[:, 0], _summed(record, whole[:, None])[:, 0]
+
+
+def _summed(record: FlightRecord, steps: np.ndarray) -> np.ndarray:
+    """Return the running sum (N, k) of steps (N - 1, k), those over gaps left out."""
+    steps = np.where(np.diff(record.t)[:, None] > GAP * record.period(), 0.0, steps)
+    return np.vstack([np.zeros((1, steps.shape[1])), np.cumsum(steps, axis=0)])
+
+
+def _steps(record: FlightRecord, rest: np.ndarray, least: float, value: np.ndarray,
+           say: Callable[[float], str]) -> list[Reset]:
+    """Return the steps in the sum of what is unexplained, (N, k), as split takes them."""
+    period = record.period()
+    width = max(1, round(WITHIN / period))
+    if len(record) <= 2 * width or not np.isfinite(rest).all():
+        return []
+    change = np.linalg.norm(rest[width:] - rest[:-width], axis=-1)
+    # Nine tenths of a record with a few resets have none of them.
+    limit = max(least, CLEAR * float(np.quantile(change, 0.9)))
+    after, found, at = max(1, round(RETURNS / period)), [], 0
+    while at < len(change):
+        if not change[at] > limit:
+            at += 1
+            continue
+        k = at + int(np.argmax(change[at:at + width + 1]))
+        size = change[k]
+        along = (rest[k:k + width + 1] - rest[k]) @ ((rest[k + width] - rest[k]) / size)
+        begin = k + int(np.flatnonzero(along < 0.05 * size)[-1])
+        end = k + int(np.flatnonzero(along > 0.95 * size)[0])
+        later = (np.median(rest[end:end + after], axis=0)
+                 - np.median(rest[max(begin - after, 0):begin + 1], axis=0))
+        moved = np.linalg.norm(value[min(end, len(value) - 1)] - value[min(begin, end)])
+        if begin < end and np.linalg.norm(later) > 0.5 * size and moved > least:
+            found.append((float(record.t[begin]), float(record.t[end]), say(float(size))))
+        at = k + width + 1
+    return found
+
+
+def _merged(found: list[Reset]) -> list[Reset]:
+    """Return jumps in order of time, those at one time as one."""
+    merged = []
+    for before, after, why in sorted(found):
+        if merged and before <= merged[-1][1]:
+            last = merged[-1]
+            merged[-1] = last[0], max(last[1], after), f'{last[2]} and {why}'
+        else:
+            merged.append((before, after, why))
+    return merged

@@ -1,0 +1,247 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Tables of other people: text with any separator, decimal commas, units in a line; Parquet."""
+
+from collections import Counter
+import csv
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from quad_ident_ros.data.csv import rows_of
+from quad_ident_ros.data.limits import most
+from quad_ident_ros.errors import InputError
+
+SEPARATORS = (',', ';', '\t')
+_HEAD = 20      # lines in which the first numbers come
+_MOST_COLUMNS = 4096
+_FEW = 0.1      # of the cells of a column: with more text it is one of text
+_MISSING = frozenset(('none', 'null', 'n/a', 'na', '-', '--'))
+
+
+@dataclass(frozen=True, eq=False)
+class Table:
+    """
+    The numbers of a table.
+
+    columns: name -> (N,) float, nan for an empty cell; units: name -> unit, where a line says
+    them; notes: what was left out; how: what separates the cells, for messages.
+    """
+
+    columns: dict
+    units: dict
+    notes: tuple = ()
+    how: str = ''
+
+
+def read_text(path: Path, separator: str = '') -> Table:
+    """
+    Return the Table of a text file; separator: '' to be told from the first lines.
+
+    Raises InputError that names file, line and column.
+    """
+    rows, truncated = rows_of(path)
+    places = [k for k, row in enumerate(rows, 1) if row.strip()]    # as editors count
+    rows = [rows[k - 1] for k in places]
+    separator = separator or told_separator(rows)
+    comma = separator != ',' and any(',' in row for row in rows[1:_HEAD])
+    head, first = _head(path, rows, separator, comma)
+    names, units = _names(path, rows, places[head], head, first, separator)
+    columns = _fast(rows[first:], names, separator, comma)
+    notes = ['the last line has no line end and was left out'] if truncated else []
+    if columns is None:
+        columns, left = _thorough(path, rows[first:], places[first:], names, separator, comma)
+        notes += left
+    if not columns or len(next(iter(columns.values()))) < 2:
+        raise InputError(f'{path}: there are fewer than 2 lines of numbers; give a table with a '
+                         'header and samples')
+    how = {',': 'commas', ';': 'semicolons', '\t': 'tabs'}.get(separator, repr(separator))
+    return Table(columns, units, tuple(notes), f'{how}{", decimal commas" if comma else ""}')
+
+
+def told_separator(rows: list[str]) -> str:
+    """Return the separator that the lines of a table have most of, the same in each."""
+    best, most_of = ',', 0
+    for separator in SEPARATORS:
+        counts = Counter(row.count(separator) for row in rows[:_HEAD])
+        count, lines = counts.most_common(1)[0] if counts else (0, 0)
+        # Decimal commas are as many as cells at most, and the header has none of them.
+        share = count * lines if rows and rows[0].count(separator) else 0
+        if share > most_of:
+            best, most_of = separator, share
+    return best
+
+
+def read_parquet(path: Path) -> Table:
+    """Return the Table of a Parquet file; raises InputError, ModuleNotFoundError for pyarrow."""
+    import pyarrow
+    from pyarrow import parquet
+    try:
+        with parquet.ParquetFile(path) as file:
+            meta = file.metadata
+            if meta.num_columns > _MOST_COLUMNS or (
+                    8 * meta.num_rows * max(meta.num_columns, 1) > most(path.stat().st_size)):
+                raise InputError(f'{path}: unpacks to far more than flights do; write the '
+                                 'columns of the flight alone')
+            found = file.read()
+        for _ in range(8):      # fields of fields
+            if not any(pyarrow.types.is_struct(field.type) for field in found.schema):
+                break
+            found = found.flatten()
+        columns, notes = {}, []
+        for name, column in zip(found.column_names, found.columns, strict=True):
+            values = _numbers(pyarrow, column)
+            if values is None or name in columns:
+                notes.append(f'column {name[:40]!r} holds no numbers and is left out')
+            elif name.isprintable() and name.strip():
+                columns[name.strip()] = values
+    except InputError:
+        raise
+    except OSError as error:
+        raise InputError(f'{path}: this is no whole Parquet file '
+                         f'({" ".join(str(error).split())[:120]}); write it again') from None
+    except Exception as error:  # a damaged file makes the parser raise anything
+        raise InputError(f'{path}: this is no whole Parquet file '
+                         f'({type(error).__name__}); write it again') from None
+    if not columns or found.num_rows < 2:
+        raise InputError(f'{path}: there are fewer than 2 rows of numbers; give a table with '
+                         'samples')
+    return Table(columns, {}, tuple(notes), 'Parquet')
+
+
+def _numbers(pyarrow: Any, column: Any) -> np.ndarray | None:
+    """Return the values of a column as float, or None where they are no numbers."""
+    kind = column.type
+    if pyarrow.types.is_timestamp(kind):
+        column, factor = column.cast(pyarrow.int64()), {
+            's': 1e9, 'ms': 1e6, 'us': 1e3, 'ns': 1.0}[kind.unit]
+    elif (pyarrow.types.is_integer(kind) or pyarrow.types.is_floating(kind)
+          or pyarrow.types.is_boolean(kind)):
+        factor = 1.0
+    else:
+        return None
+    values = column.cast(pyarrow.float64(), safe=False).to_numpy()
+    return np.array(values, float) * factor
+
+
+def _cells(row: str, separator: str) -> list[str]:
+    try:
+        return [cell.strip() for cell in next(csv.reader([row], delimiter=separator), [])]
+    except csv.Error:
+        return [cell.strip() for cell in row.split(separator)]
+
+
+def _number(cell: str, comma: bool) -> float | None:
+    """Return the number in a cell, nan for an empty one, None for text."""
+    if not cell:
+        return np.nan
+    if comma:
+        cell = cell.replace('.', '').replace(',', '.') if ',' in cell else cell
+    try:
+        return float(cell) if cell.isascii() and '_' not in cell else None
+    except ValueError:
+        cell = cell.lower()
+        return np.nan if cell in _MISSING else {'true': 1.0, 'false': 0.0}.get(cell)
+
+
+def _head(path: Path, rows: list[str], separator: str, comma: bool) -> tuple[int, int]:
+    """Return the places of the line of names and of the first line of numbers."""
+    for k, row in enumerate(rows[:_HEAD]):
+        cells = _cells(row, separator)
+        values = [_number(cell, comma) for cell in cells]
+        numbers = sum(value is not None and not np.isnan(value) for value in values)
+        if len(cells) > 1 and numbers >= max(2, 0.5 * sum(map(bool, cells))):
+            if k == 0:
+                raise InputError(f'{path}, line 1: there are numbers where the names of the '
+                                 'columns belong; begin with a line of names')
+            if k > 1 and _is_units(_cells(rows[k - 1], separator)):
+                return k - 2, k
+            return k - 1, k
+    raise InputError(f'{path}: there is no line of numbers among the first {_HEAD}; give a table '
+                     'with a header and samples')
+
+
+_UNITS = frozenset('s sec ms us ns m mm cm m/s mm/s cm/s rad deg rad/s deg/s dps rpm g mg m/s2 '
+                   'm/s^2 m/s² v mv us pwm % 1 - n'.split())
+
+
+def _is_units(cells: list[str]) -> bool:
+    """Return whether cells are units of what is above them."""
+    said = [cell.strip('[]()').lower() for cell in cells if cell]
+    return bool(said) and sum(cell in _UNITS for cell in said) >= 0.7 * len(said)
+
+
+def _names(path: Path, rows: list[str], line: int, head: int, first: int,
+           separator: str) -> tuple[list[str], dict[str, str]]:
+    """Return the names of the columns, with the line above where they alone repeat; units."""
+    names = _cells(rows[head].lstrip('#% '), separator)
+    if len(names) > _MOST_COLUMNS:
+        raise InputError(f'{path}, line {line}: {len(names)} columns are no flight')
+    doubled = [name for name, count in Counter(names).items() if count > 1 and name]
+    if doubled and head > 0:
+        above = _cells(rows[head - 1], separator)
+        if len(above) == len(names):
+            names = [f'{one} {name}'.strip() for one, name in zip(above, names, strict=True)]
+            doubled = [name for name, count in Counter(names).items() if count > 1 and name]
+    if doubled:
+        raise InputError(f'{path}, line {line}, column {doubled[0][:40]!r}: the header names '
+                         'it twice; rename or remove one')
+    bad = [name for name in names if not name.isprintable()]
+    if bad:
+        raise InputError(f'{path}, line {line}, column {bad[0][:40]!r}: this is no column '
+                         'name; use printable text')
+    units = {}
+    if first - head == 2:
+        cells = _cells(rows[head + 1], separator)
+        units = {name: cell.strip('[]()') for name, cell in zip(names, cells, strict=False)
+                 if name and cell}
+    return names, units
+
+
+def _fast(rows: list[str], names: list[str], separator: str,
+          comma: bool) -> dict[str, np.ndarray] | None:
+    """Return the columns of a table of nothing but numbers; None for another."""
+    if comma:
+        if any('.' in row for row in rows[:_HEAD]):
+            return None
+        rows = [row.replace(',', '.') for row in rows]
+    try:
+        table = np.loadtxt(rows, delimiter=separator, comments=None, ndmin=2)
+    except ValueError:
+        return None
+    if table.shape[1] != len(names):
+        return None
+    return {name: column for name, column in zip(names, table.T.copy(), strict=True) if name}
+
+
+def _thorough(path: Path, rows: list[str], places: list[int], names: list[str], separator: str,
+              comma: bool) -> tuple[dict[str, np.ndarray], list[str]]:
+    """Return the columns without text of any table, and notes of what is left out."""
+    cells = []
+    for k, row in zip(places, rows, strict=True):
+        line = _cells(row, separator)
+        if len(line) == len(names) + 1 and not line[-1]:
+            line.pop()      # a separator at the end
+        if len(line) != len(names):
+            raise InputError(f'{path}, line {k}: {len(line)} cells where the header has '
+                             f'{len(names)}; complete the line or remove it')
+        cells.append(line)
+    columns, text = {}, []
+    for name, column in zip(names, zip(*cells, strict=True), strict=True):
+        values = [_number(cell, comma) for cell in column]
+        if not name:
+            continue
+        if None in values:
+            wrong = [k for k, value in enumerate(values) if value is None]
+            if len(wrong) < _FEW * len(values):
+                k = wrong[0]
+                raise InputError(f'{path}, line {places[k]}, column {name[:40]!r}: '
+                                 f'{column[k][:40]!r} is no number; correct it or leave the cell '
+                                 'empty')
+            text.append(name[:40])
+        else:
+            columns[name] = np.array(values, float)
+    shown = ', '.join(text[:5]) + (f' and {len(text) - 5} more' if len(text) > 5 else '')
+    return columns, [f'columns that are no numbers are left out: {shown}'] if text else []
