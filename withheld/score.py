@@ -9,7 +9,10 @@ from withheld.hybrids import judge as judge_hybrid
 
 COLUMNS = ('ours', 'forms', 'files', 'logs', 'estimator', 'faulty')
 TITLES = {'ours': 'forms as ours', 'forms': 'other forms', 'files': 'wrong files',
-          'logs': 'logs', 'estimator': 'estimator states', 'faulty': 'faulty records'}
+          'logs': 'logs', 'estimator': 'estimator states', 'faulty': 'faulty records',
+          'hybrids': 'real flights, changed'}
+MEASURES = ('first', 'exact', 'alarm', 'unknown', 'instead', 'undetermined', 'closed',
+            'precision', 'recall')      # of judge
 BINS = (0.0, 0.05, 0.2, 0.4, 0.6, 0.8, 0.95, 1.0)
 # Between samples there is nothing to tell a delay from a lag by, where both are over at the next.
 PASSED = {'actuation_delay': ('delay', 1.0), 'motor_lag': ('time_constant', 0.5)}   # periods
@@ -90,10 +93,8 @@ def judge(label, found):
     truth = truth_of(label)
     out = {'refused': 'refused' in found, 'failed': 'failed' in found,
            'seconds': found.get('seconds')}
-    keys = ('first', 'exact', 'alarm', 'unknown', 'instead', 'undetermined', 'closed',
-            'precision', 'recall')
     if out['refused']:
-        return out | dict.fromkeys(keys)
+        return out | dict.fromkeys(MEASURES)
     verdict, findings = set(found.get('verdict', ())), findings_of(found)
     doubts = undetermined_of(found)
     named, effects = verdict & set(EFFECTS), truth & set(EFFECTS)
@@ -204,6 +205,11 @@ def score(labels, found):
             effects.setdefault(f'{column}: {effect}', {}).setdefault(
                 f'{strength:g}', []).append(row)
     seconds = [row['seconds'] for _, row in rows if row['seconds'] is not None]
+    changes = hybrids_of(labels, found)
+    if changes:
+        groups['hybrids: changed'] = [
+            dict.fromkeys(MEASURES) | {'exact': row['right'], 'refused': row['refused'],
+                                       'failed': row['failed']} for row in changes]
     return {
         'count': len(rows), 'chance': chance(pairs),
         'cases': [case_of(name, *pair, row) for name, pair, (_, row) in zip(
@@ -212,7 +218,7 @@ def score(labels, found):
         'columns': {name: _column(columns[name]) for name in COLUMNS if name in columns},
         'effects': {name: {strength: summary(some) for strength, some in sorted(by.items())}
                     for name, by in sorted(effects.items())},
-        'gap_agrees': agreement(pairs), 'hybrids': hybrids_of(labels, found),
+        'gap_agrees': agreement(pairs), 'hybrids': changes,
         'seconds': {'median': float(np.median(seconds)), 'most': float(np.max(seconds))}
         if seconds else None}
 
@@ -246,21 +252,51 @@ def text_of(name: str, label: dict, found: dict) -> str:
     about += [key for key in ('bodies', 'gusts') if label.get(key)]
     if label.get('setup') is not None:
         about.append(f'estimator {label["setup"] + 1}')
-    said = found.get('refused') or found.get('failed') or ', '.join(found.get('verdict', ()))
-    return f'`{name}` {" + ".join(effects) or "none"} ({", ".join(about)}): {said}'
+    return f'`{name}` {" + ".join(effects) or "none"} ({", ".join(about)}): {_said(found)}'
 
 
-def hybrids_of(labels, found):
-    """Return [{'change', and what hybrids.judge makes of it}] of the changes to real flights."""
+def hybrids_of(labels: dict[str, dict], found: dict[str, dict]) -> list[dict]:
+    """
+    Return the changes to real flights, each as hybrids.judge makes of it, by name of the change.
+
+    Beside that: name; change; text: what it is, what was said and what of that is wrong; refused,
+    failed: the flights were, as flown or changed. What was refused is neither right nor wrong,
+    what failed is wrong.
+    """
+    missing = {'failed': 'no diagnosis was written'}
     rows = []
     for name, label in labels.items():
         if label['kind'] != 'hybrid' or name == label['base']:
             continue
-        both = [found.get(one, {}) for one in (label['base'], name)]
-        judged = {'gained': None} if any('verdict' not in one for one in both) else judge_hybrid(
-            label, *both)
-        rows.append({'change': label['change']} | judged)
-    return sorted(rows, key=lambda row: row['change'])
+        base, changed = (found.get(one, missing) for one in (label['base'], name))
+        refused, failed = ('refused' in base or 'refused' in changed,
+                           'failed' in base or 'failed' in changed)
+        row = {'name': name, 'change': label['change'], 'refused': refused, 'failed': failed}
+        if refused or failed:
+            row |= dict.fromkeys(('named', 'gained', 'moved'), None) | {
+                'lost': [], 'added': [], 'right': None if refused else False}
+        else:
+            row |= judge_hybrid(label, base, changed)
+        rows.append(row | {'text': _text_of_change(label, row, base, changed)})
+    return sorted(rows, key=lambda row: (row['change'], row['name']))
+
+
+def _text_of_change(label: dict, row: dict, base: dict, changed: dict) -> str:
+    """Return a change to real flights in words: what it is, what was said, what is wrong."""
+    amounts = [' '.join([effect, *(f'{parameter} {value:.3g}' for parameter, value in
+                                   parameters.items())])
+               for effect, parameters in label['effects'].items()]
+    said = _said(changed) if 'verdict' in base else f'as flown: {_said(base)}'
+    wrong = [text for applies, text in (
+        (row['named'] is False, 'not named'), (row['moved'] is False, 'moved by another amount'),
+        (row['lost'], f'lost {", ".join(row["lost"])}'),
+        (row['added'], f'added {", ".join(row["added"])}')) if applies]
+    return '; '.join([f'`{row["name"]}` {row["change"]} ({", ".join(amounts)}): {said}', *wrong])
+
+
+def _said(found: dict) -> str:
+    """Return a diagnosis in words: its verdict, or why there is none."""
+    return found.get('refused') or found.get('failed') or ', '.join(found.get('verdict', ()))
 
 
 def _column(some):

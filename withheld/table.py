@@ -117,8 +117,8 @@ def _calibration(found):
 def _hybrids(found):
     """Return the table of the changes to real flights, in a list, empty where there are none."""
     words = {True: 'yes', False: 'no', None: '-'}
-    rows = [(f'`{row["change"]}`', words[row['gained']], words[row.get('moved')],
-             ', '.join(row.get('added', ())) or '-', ', '.join(row.get('lost', ())) or '-')
+    rows = [(f'`{row["change"]}`', words[row['right']], words[row['gained']],
+             words[row['moved']], ', '.join(row['added']) or '-', ', '.join(row['lost']) or '-')
             for row in found['hybrids']]
-    return [_rows(('real flights, changed', 'named', 'moved as much', 'also named', 'no longer'),
-                  rows)] if rows else []
+    return [_rows((TITLES['hybrids'], 'right', 'newly named', 'moved as much', 'also named',
+                   'no longer'), rows)] if rows else []

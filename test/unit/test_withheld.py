@@ -366,16 +366,82 @@ def test_refusals_are_told_by_column():
     assert refused.figure == '100 % of 1' and 'clocks' in refused.missed[0]
 
 
-def test_changes_to_real_flights_are_told_beside_the_rates():
-    labels = {'a': {'kind': 'hybrid', 'change': 'base', 'effects': {}, 'twins': [], 'by': 'sum',
-                    'base': 'a'},
-              'b': {'kind': 'hybrid', 'change': 'weaker', 'effects': {'thrust_scale': {}},
-                    'twins': [], 'by': 'product', 'base': 'a'}}
-    found = {'a': diagnosis('rotor_drag'), 'b': diagnosis('rotor_drag', 'thrust_scale')}
-    result = scores.score(labels, found)
+def changed(flown, **verdicts):
+    """Return labels and diagnoses of changes to real flights: by name, what was said of each."""
+    effects = {'weaker': {'thrust_scale': {'factor': 0.9}}, 'later_2': {
+        'actuation_delay': {'delay': 0.02}}, 'biased': {'gyro_bias': {'x': 0.05}}}
+    labels = {'flown': {'kind': 'hybrid', 'change': 'base', 'effects': {}, 'twins': [],
+                        'by': 'sum', 'base': 'flown'}}
+    labels |= {f'of_{name}': {'kind': 'hybrid', 'change': name, 'effects': effects[name],
+                              'twins': [], 'by': 'product' if name == 'weaker' else 'sum',
+                              'base': 'flown'} for name in verdicts}
+    return labels, {'flown': flown} | {f'of_{name}': one for name, one in verdicts.items()}
+
+
+def valued(effect, parameter, value):
+    return {effect: {parameter: {'value': value, 'std': 0.001}}}
+
+
+def test_changes_to_real_flights_have_a_row_of_their_own():
+    result = scores.score(*changed(
+        diagnosis('rotor_drag', 'wind'),
+        weaker=diagnosis('rotor_drag', 'wind', 'thrust_scale',
+                         parameters=valued('thrust_scale', 'factor', 0.9)),
+        later_2=diagnosis('rotor_drag', 'actuation_delay', 'inflow',
+                          parameters=valued('actuation_delay', 'delay', 0.02))))
     assert result['count'] == 0
-    assert [(row['change'], row['gained']) for row in result['hybrids']] == [('weaker', True)]
-    assert '| `weaker` | yes |' in markdown(result)
+    text = markdown(result)
+    assert '| hybrids: changed | 2 | - | 50 % (2) |' in text
+    assert ('| the change named, and nothing else | real flights, changed | 50 % of 2 | - | - |'
+            in text)
+    assert '| `weaker` | yes | yes | yes | - | - |' in text
+    assert '| `later_2` | no | yes | yes | inflow | wind |' in text
+    assert ('  - `of_later_2` later_2 (actuation_delay delay 0.02): rotor_drag, actuation_delay, '
+            'inflow; lost wind; added inflow') in text
+    assert '- `of_weaker`' not in text
+
+
+@pytest.mark.parametrize(('factor', 'right', 'wrong'), [
+    (0.9, 100, None), (0.97, 0, 'moved by another amount'), (None, 0, 'not named')])
+def test_a_change_is_right_where_it_is_named_and_as_large(factor, right, wrong):
+    said = diagnosis('rotor_drag') if factor is None else diagnosis(
+        'rotor_drag', 'thrust_scale', parameters=valued('thrust_scale', 'factor', factor))
+    labels, found = changed(diagnosis('rotor_drag'), weaker=said)
+    row = reached(labels, found, 'hybrids')['the change named, and nothing else']
+    assert row.figure == f'{right} % of 1' and row.met is None
+    assert [case.split('; ')[1:] for case in row.missed] == ([[wrong]] if wrong else [])
+
+
+def test_what_flew_before_may_have_the_effect_and_must_not_lose_it():
+    flown = diagnosis('thrust_scale', parameters=valued('thrust_scale', 'factor', 0.95))
+    more = diagnosis('thrust_scale', parameters=valued('thrust_scale', 'factor', 0.855))
+    for said, figure in ((more, '100 % of 1'), (diagnosis('none'), '0 % of 1')):
+        rows = reached(*changed(flown, weaker=said), 'hybrids')
+        assert rows['the change named, and nothing else'].figure == figure
+    # Named as before, by no amount: nothing to judge by.
+    untold = reached(*changed(diagnosis('thrust_scale'), weaker=diagnosis('thrust_scale')),
+                     'hybrids')
+    assert untold['the change named, and nothing else'].figure == '-'
+
+
+def test_a_refused_change_is_in_no_share_and_a_failed_one_is_wrong():
+    labels, found = changed(diagnosis('rotor_drag'), weaker={'refused': 'order of the rotors'},
+                            later_2={'failed': 'ZeroDivisionError'})
+    rows = reached(labels, found, 'hybrids')
+    assert rows['the change named, and nothing else'].figure == '0 % of 1'
+    assert rows['refused'].figure == '50 % of 2'
+    assert 'order of the rotors' in rows['refused'].missed[0]
+    found['flown'] = {'refused': 'clocks'}
+    rows = reached(labels, found, 'hybrids')
+    assert rows['refused'].figure == '100 % of 2'
+    assert 'as flown: clocks' in rows['refused'].missed[0]
+
+
+def test_without_changes_to_real_flights_there_is_no_row_of_them():
+    labels, found = {'a': label(['wind'])}, {'a': diagnosis('wind')}
+    assert not reached(labels, found, 'hybrids')
+    text = markdown(scores.score(labels, found))
+    assert 'hybrids' not in text and 'real flights' not in text
 
 
 def test_a_seal_opens_with_its_key_alone():
