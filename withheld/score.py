@@ -3,6 +3,7 @@
 """Diagnoses held against what was withheld: counts and rates, without any tuning."""
 
 import numpy as np
+from numpy.typing import NDArray
 
 from withheld.cases import EFFECTS
 from withheld.hybrids import judge as judge_hybrid
@@ -219,6 +220,7 @@ def score(labels, found):
         'effects': {name: {strength: summary(some) for strength, some in sorted(by.items())}
                     for name, by in sorted(effects.items())},
         'gap_agrees': agreement(pairs), 'hybrids': changes,
+        'calibration': calibration(pairs),
         'seconds': {'median': float(np.median(seconds)), 'most': float(np.max(seconds))}
         if seconds else None}
 
@@ -327,16 +329,25 @@ def calibration(pairs):
     if not both:
         return None
     given, present = np.array(both, float).T
-    which = np.clip(np.searchsorted(BINS, given, side='right') - 1, 0, len(BINS) - 2)
-    inside = [(k, which == k) for k in range(len(BINS) - 1) if (which == k).any()]
-    table = [{'from': BINS[k], 'to': BINS[k + 1], 'count': int(some.sum()),
-              'given': float(given[some].mean()), 'present': float(present[some].mean())}
-             for k, some in inside]
+    table = reliability(given, present)
     middle = [row for row in table if row['from'] > BINS[0] and row['to'] < BINS[-1]]
     return {'table': table, 'brier': float(np.mean((given - present) ** 2)),
             'error': _error(table), 'count': len(given), 'middle': _error(middle),
             'middle_count': sum(row['count'] for row in middle),
             'brier_of_base_rate': float(present.mean() * (1.0 - present.mean()))}
+
+
+def reliability(given: NDArray[np.float64], present: NDArray[np.float64]) -> list[dict]:
+    """
+    Return [{'from', 'to', 'count', 'given', 'present'}] of probabilities by BINS, empty ones not.
+
+    Args: given (N,): probabilities; present (N,): 1 where the effect is there, or 0.
+    """
+    which = np.clip(np.searchsorted(BINS, given, side='right') - 1, 0, len(BINS) - 2)
+    return [{'from': BINS[k], 'to': BINS[k + 1], 'count': int((which == k).sum()),
+             'given': float(given[which == k].mean()),
+             'present': float(present[which == k].mean())}
+            for k in range(len(BINS) - 1) if (which == k).any()]
 
 
 def given_and_present(label: dict, found: dict) -> list[tuple[float, bool]]:

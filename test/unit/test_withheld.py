@@ -264,6 +264,23 @@ def test_the_error_of_calibration_leaves_out_what_is_nearly_sure():
     assert found['error'] == pytest.approx(0.96 * 0.01 + 0.04 * 0.25)
 
 
+def test_calibration_is_told_by_group():
+    labels = {f'{group}{k}': label(['wind'] if k else [], kind='single' if k else 'none',
+                                   faulty=group == 'b')
+              for group, count in (('a', 4), ('b', 2)) for k in range(count)}
+    found = {name: diagnosis('wind', probability=0.75 if name[0] == 'a' else 0.97)
+             for name in labels}
+    rows = {line.split(' | ')[0].strip('| '): line.strip('| ').split(' | ')[1:]
+            for line in markdown(scores.score(labels, found)).splitlines()
+            if line.startswith('|')}
+    titles = rows['probability: mean given / present (count)']
+    assert titles == ['all', 'forms as ours', 'faulty records']
+    assert rows['0.6 to 0.8'] == ['0.750 / 0.750 (4)', '0.750 / 0.750 (4)', '-']
+    assert rows['0.95 to 1'] == ['0.970 / 0.500 (2)', '-', '0.970 / 0.500 (2)']
+    assert rows['error, 0.05 to 0.95'] == ['0.000 (4)', '0.000 (4)', '-']
+    assert rows['error'] == ['0.157 (6)', '0.000 (4)', '0.470 (2)']
+
+
 def test_coverage_leaves_out_what_means_something_else():
     truth = label(['wind'], values={'wind': {'x': 1.0}})
     truth['effects']['wind']['comparable'] = False
