@@ -5,6 +5,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from quad_ident_ros.effects.registry import EFFECTS as LIBRARY
 from withheld.cases import EFFECTS
 from withheld.hybrids import judge as judge_hybrid
 
@@ -17,6 +18,12 @@ MEASURES = ('first', 'exact', 'alarm', 'unknown', 'instead', 'undetermined', 'cl
 BINS = (0.0, 0.05, 0.2, 0.4, 0.6, 0.8, 0.95, 1.0)
 # Between samples there is nothing to tell a delay from a lag by, where both are over at the next.
 PASSED = {'actuation_delay': ('delay', 1.0), 'motor_lag': ('time_constant', 0.5)}   # periods
+# Effects of which a ratio shows, and {effect: the parameters that change with the one that stands
+# for it}: of what scales the whole motion all, of the rest those with mass in their unit.
+OF_A_RATIO = {name for name, effect in LIBRARY.items() if effect.ratio}
+RESCALED = {name: {parameter.name for parameter in effect.parameters
+                   if effect.scale_group or parameter.unit.startswith(('kg', 'N'))}
+            for name, effect in LIBRARY.items()}
 ROOM = 0.03         # of the noise: a gap that is less above it has no share that was closed
 
 
@@ -366,7 +373,8 @@ def coverage(pairs):
     """
     Return {effect: {'rate', 'count'}} of true parameters inside their 95 % intervals.
 
-    Only where the set is exact, and of the parameters that mean the same as the library's.
+    Only where the set is exact, and of the parameters that mean the same as the library's, also
+    in this diagnosis: see rescaled.
     """
     inside = {}
     for pair in pairs:
@@ -377,18 +385,31 @@ def coverage(pairs):
             for name, values in [('all', every), *sorted(inside.items())] if values}
 
 
+def rescaled(label: dict, found: dict) -> bool:
+    """
+    Return whether a diagnosis names another effect of a ratio (thrust per mass) than is there.
+
+    Motion shows ratios only: where m times the mass is told as 1 / m of the thrust, inertia, drag
+    and all else with mass in its unit come out as 1 / m of what they are.
+    """
+    there, beside = set(label['effects']), set(label.get('beside', ()))
+    said = set(found.get('verdict', ())) | minor_of(found)
+    return bool(OF_A_RATIO & ((there - said) | (said - there - beside)))
+
+
 def _inside(label: dict, found: dict) -> dict[str, list[bool]]:
     """Return {effect: [whether each true parameter is inside its interval]} of one case."""
     inside = {}
     if label['stranger'] or not is_exact(label, found):
         return inside
+    other = rescaled(label, found)
     for row in found.get('ranking', ()):
         true = label['effects'].get(row['effect'])
         if true is None or not true.get('comparable', True):
             continue
         for name, value in true['parameters'].items():
             got = row['parameters'].get(name)
-            if got is not None:
+            if got is not None and not (other and name in RESCALED[row['effect']]):
                 inside.setdefault(row['effect'], []).append(
                     abs(got['value'] - value) <= 1.96 * got['std'])
     return inside

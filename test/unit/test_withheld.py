@@ -288,6 +288,41 @@ def test_coverage_leaves_out_what_means_something_else():
     assert scores.coverage([(truth, given)]) == {}
 
 
+def rescaled_pair(mass, *verdict):
+    """Return label and diagnosis of a mass and others: half of each but lag without the mass."""
+    true = {'mass_offset': {'mass': mass}, 'inertia_mismatch': {'factor_x': 1.2},
+            'rotor_drag': {'coefficient': 0.1}, 'motor_lag': {'time_constant': 0.03}}
+    scale = 1.0 if 'mass_offset' in verdict else 0.5
+    values = {'thrust_scale': {'factor': scale}, 'mass_offset': {'mass': mass},
+              'inertia_mismatch': {'factor_x': 1.2 * scale},
+              'rotor_drag': {'coefficient': 0.1 * scale}, 'motor_lag': {'time_constant': 0.03}}
+    given = {effect: {name: {'value': value, 'std': 1e-3 * value} for name, value in one.items()}
+             for effect, one in values.items()}
+    return label(true, kind='mixture', values=true), diagnosis(*verdict, parameters=given) | {
+        'one_finding': [{'effects': ['mass_offset', 'thrust_scale']}]}
+
+
+def test_coverage_leaves_out_what_is_scaled_by_another_name_of_the_ratio():
+    others = ('inertia_mismatch', 'rotor_drag', 'motor_lag')
+    swapped = rescaled_pair(0.5, 'thrust_scale', *others)
+    assert scores.is_exact(*swapped)
+    assert set(scores.coverage([swapped])) == {'all', 'motor_lag'}
+    assert not scores.case_of('a', *swapped, scores.judge(*swapped))['outside']
+    told = scores.coverage([rescaled_pair(0.5, 'mass_offset', *others)])
+    assert told.pop('all') == {'rate': 1.0, 'count': 4}
+    assert set(told) == {'mass_offset', *others}
+    # Both are named, for nothing tells them apart: what is there by which share is not told.
+    both = rescaled_pair(0.5, 'mass_offset', 'thrust_scale', *others)
+    assert set(scores.coverage([both])) == {'all', 'motor_lag'}
+
+
+def test_coverage_has_what_is_scaled_where_the_thrust_may_be_named_too():
+    truth = label(['inertia_mismatch'], values={'inertia_mismatch': {'factor_x': 1.2}})
+    given = diagnosis('inertia_mismatch', 'thrust_scale', parameters={
+        'inertia_mismatch': {'factor_x': {'value': 1.2, 'std': 0.01}}})
+    assert scores.coverage([(truth | {'beside': ['thrust_scale']}, given)])['all']['count'] == 1
+
+
 def test_coverage_counts_true_values_inside_their_intervals():
     truth = label(['wind'], values={'wind': {'x': 1.0, 'y': 2.0}})
     given = diagnosis('wind', parameters={'wind': {'x': {'value': 1.1, 'std': 0.1},
