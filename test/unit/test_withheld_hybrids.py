@@ -139,6 +139,7 @@ def test_factors_are_multiplied_and_twins_count():
     assert hybrids.judge(truth, base, other)['moved'] is None
 
 
+@pytest.mark.slow
 def test_all_cases_are_written_and_no_two_alike(tmp_path):
     source = tmp_path / 'source'
     source.mkdir()
