@@ -24,9 +24,14 @@ def markdown(head, rows):
 
 
 def targets(rows):
-    """Return the table of targets, from (what, target as text, measured as text, whether met)."""
+    """
+    Return the table of targets, from (what, target as text, measured as text, whether met).
+
+    Whether it is met is None where nothing was measured.
+    """
+    met = {True: 'yes', False: '**no**', None: '–'}
     return markdown(('what', 'target', 'measured', 'met'),
-                    [(*row[:3], 'yes' if row[3] else '**no**') for row in rows])
+                    [(*row[:3], met[row[3]]) for row in rows])
 
 
 def keep(document, name, text):

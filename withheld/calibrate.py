@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize
 
 from quad_ident_ros.diagnose.rules import RULES
-from withheld.score import BINS, column_of, findings_of, named_in, TITLES
+from withheld.score import column_of, findings_of, named_in, reliability, TITLES
 
 Array = NDArray[np.float64]
 
@@ -117,15 +117,6 @@ def fit(rows: Rows) -> Calibration:
         pairs[0], dict(zip(rows.names, pairs[1:], strict=True)), tables,
         float(np.mean(-y * np.log(p) - (1.0 - y) * np.log1p(-p))),
         float(-base * np.log(base) - (1.0 - base) * np.log1p(-base)))
-
-
-def reliability(given: Array, present: Array) -> list[dict[str, float]]:
-    """Return [{'from', 'to', 'count', 'given', 'present'}] of probabilities by BINS."""
-    which = np.clip(np.searchsorted(BINS, given, side='right') - 1, 0, len(BINS) - 2)
-    return [{'from': BINS[k], 'to': BINS[k + 1], 'count': int((which == k).sum()),
-             'given': float(given[which == k].mean()),
-             'present': float(present[which == k].mean())}
-            for k in range(len(BINS) - 1) if (which == k).any()]
 
 
 def text_of(rows: Rows, made: Calibration) -> str:

@@ -61,7 +61,7 @@ def goals(found: dict) -> list[Reached]:
     rows = [(_Column.first,), *((_Column.exact, kind) for kind in SIDES), (_Column.alarm,),
             (_Column.unknown,), (_Column.instead,), (_Column.coverage,), (_Column.calibration,),
             (_Column.closed, 'median'), (_Column.closed, 'tenth'), (_Column.refused,)]
-    return [make(column, *which) for make, *which in rows for column in columns]
+    return [make(column, *which) for make, *which in rows for column in columns] + _changes(found)
 
 
 class _Column:
@@ -149,6 +149,24 @@ class _Column:
         one = self.all['refused']
         return self._reached('refused', one['rate'], one['count'],
                              wrong=lambda case: case['refused'])
+
+
+def _changes(found: dict) -> list[Reached]:
+    """Return the Reached of the changes to real flights, of which no share is asked."""
+    rows = found['hybrids']
+    if not rows:
+        return []
+    wrong, refused = ([row['text'] for row in rows if row[key] is value]
+                      for key, value in (('right', False), ('refused', True)))
+    told = sum(row['right'] is not None for row in rows)
+    return [Reached('the change named, and nothing else', 'hybrids',
+                    _share(told - len(wrong), told), missed=tuple(wrong)),
+            Reached('refused', 'hybrids', _share(len(refused), len(rows)),
+                    missed=tuple(refused))]
+
+
+def _share(count: int, whole: int) -> str:
+    return f'{100 * count / whole:.0f} % of {whole}' if whole else '-'
 
 
 def _target(least: float | None, most: float | None) -> str:

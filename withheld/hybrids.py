@@ -5,8 +5,9 @@ Hybrids: flights of a real vehicle, of which software changes one thing by a kno
 
 Nobody knows all that a real vehicle has; what was changed is known. A case is one of `CHANGES`
 made to every flight of a set (or to its vehicle file), diagnosed beside the same set as it was
-flown, and scored by `judge`: the verdict gains the changed effect, or what it had of that effect
-moves by as much as was changed. `make_hybrids` writes the cases, the set as flown under 'base'.
+flown, and scored by `judge`: the verdict names the changed effect, which moves by as much as was
+changed, and nothing else of it changes. `make_hybrids` writes the cases, the set as flown under
+'base'.
 """
 
 from dataclasses import dataclass, field
@@ -203,10 +204,11 @@ def judge(label, base, found):
     """
     Return what came of one change.
 
-    gained: the verdict has the effect, or one of its twins, and that of the base has not; moved:
-    whether each of its parameters moved by the amount, within the interval of the two, or None
-    where one of the two does not tell it; lost: what the base names and this verdict does not;
-    added: what else it names.
+    named: the verdict has the effect, or one of its twins; gained: it has, and that of the base
+    has not; moved: whether each of its parameters moved by the amount, within the interval of the
+    two, or None where one of the two does not tell it; lost: what the base names and this verdict
+    does not; added: what else it names. right: it is named and did not move by another amount,
+    and nothing is lost or added; None where the base names it too and its amounts are not told.
 
     Args: label of make_hybrids; base, found: diagnoses as formats.md has them.
     """
@@ -217,9 +219,12 @@ def judge(label, base, found):
                                            for one in (base, found)))
              for parameter, amount in amounts.items()]
     known = [one for one in moved if one is not None]
-    return {'gained': bool(names & after) and not names & before,
-            'moved': all(known) if moved and len(known) == len(moved) else None,
-            'lost': sorted(before - after - names), 'added': sorted(after - before - names)}
+    moved = all(known) if moved and len(known) == len(moved) else None
+    named, lost, added = bool(names & after), before - after - names, after - before - names
+    gained = named and not names & before
+    right = named and moved is not False and not lost and not added
+    return {'named': named, 'gained': gained, 'moved': moved, 'lost': sorted(lost),
+            'added': sorted(added), 'right': None if right and not (gained or moved) else right}
 
 
 def _value(found, effect, parameter):

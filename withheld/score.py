@@ -3,16 +3,27 @@
 """Diagnoses held against what was withheld: counts and rates, without any tuning."""
 
 import numpy as np
+from numpy.typing import NDArray
 
+from quad_ident_ros.effects.registry import EFFECTS as LIBRARY
 from withheld.cases import EFFECTS
 from withheld.hybrids import judge as judge_hybrid
 
 COLUMNS = ('ours', 'forms', 'files', 'logs', 'estimator', 'faulty')
 TITLES = {'ours': 'forms as ours', 'forms': 'other forms', 'files': 'wrong files',
-          'logs': 'logs', 'estimator': 'estimator states', 'faulty': 'faulty records'}
+          'logs': 'logs', 'estimator': 'estimator states', 'faulty': 'faulty records',
+          'hybrids': 'real flights, changed'}
+MEASURES = ('first', 'exact', 'alarm', 'unknown', 'instead', 'undetermined', 'closed',
+            'precision', 'recall')      # of judge
 BINS = (0.0, 0.05, 0.2, 0.4, 0.6, 0.8, 0.95, 1.0)
 # Between samples there is nothing to tell a delay from a lag by, where both are over at the next.
 PASSED = {'actuation_delay': ('delay', 1.0), 'motor_lag': ('time_constant', 0.5)}   # periods
+# Effects of which a ratio shows, and {effect: the parameters that change with the one that stands
+# for it}: of what scales the whole motion all, of the rest those with mass in their unit.
+OF_A_RATIO = {name for name, effect in LIBRARY.items() if effect.ratio}
+RESCALED = {name: {parameter.name for parameter in effect.parameters
+                   if effect.scale_group or parameter.unit.startswith(('kg', 'N'))}
+            for name, effect in LIBRARY.items()}
 ROOM = 0.03         # of the noise: a gap that is less above it has no share that was closed
 
 
@@ -90,10 +101,8 @@ def judge(label, found):
     truth = truth_of(label)
     out = {'refused': 'refused' in found, 'failed': 'failed' in found,
            'seconds': found.get('seconds')}
-    keys = ('first', 'exact', 'alarm', 'unknown', 'instead', 'undetermined', 'closed',
-            'precision', 'recall')
     if out['refused']:
-        return out | dict.fromkeys(keys)
+        return out | dict.fromkeys(MEASURES)
     verdict, findings = set(found.get('verdict', ())), findings_of(found)
     doubts = undetermined_of(found)
     named, effects = verdict & set(EFFECTS), truth & set(EFFECTS)
@@ -204,6 +213,11 @@ def score(labels, found):
             effects.setdefault(f'{column}: {effect}', {}).setdefault(
                 f'{strength:g}', []).append(row)
     seconds = [row['seconds'] for _, row in rows if row['seconds'] is not None]
+    changes = hybrids_of(labels, found)
+    if changes:
+        groups['hybrids: changed'] = [
+            dict.fromkeys(MEASURES) | {'exact': row['right'], 'refused': row['refused'],
+                                       'failed': row['failed']} for row in changes]
     return {
         'count': len(rows), 'chance': chance(pairs),
         'cases': [case_of(name, *pair, row) for name, pair, (_, row) in zip(
@@ -212,7 +226,8 @@ def score(labels, found):
         'columns': {name: _column(columns[name]) for name in COLUMNS if name in columns},
         'effects': {name: {strength: summary(some) for strength, some in sorted(by.items())}
                     for name, by in sorted(effects.items())},
-        'gap_agrees': agreement(pairs), 'hybrids': hybrids_of(labels, found),
+        'gap_agrees': agreement(pairs), 'hybrids': changes,
+        'calibration': calibration(pairs),
         'seconds': {'median': float(np.median(seconds)), 'most': float(np.max(seconds))}
         if seconds else None}
 
@@ -246,21 +261,51 @@ def text_of(name: str, label: dict, found: dict) -> str:
     about += [key for key in ('bodies', 'gusts') if label.get(key)]
     if label.get('setup') is not None:
         about.append(f'estimator {label["setup"] + 1}')
-    said = found.get('refused') or found.get('failed') or ', '.join(found.get('verdict', ()))
-    return f'`{name}` {" + ".join(effects) or "none"} ({", ".join(about)}): {said}'
+    return f'`{name}` {" + ".join(effects) or "none"} ({", ".join(about)}): {_said(found)}'
 
 
-def hybrids_of(labels, found):
-    """Return [{'change', and what hybrids.judge makes of it}] of the changes to real flights."""
+def hybrids_of(labels: dict[str, dict], found: dict[str, dict]) -> list[dict]:
+    """
+    Return the changes to real flights, each as hybrids.judge makes of it, by name of the change.
+
+    Beside that: name; change; text: what it is, what was said and what of that is wrong; refused,
+    failed: the flights were, as flown or changed. What was refused is neither right nor wrong,
+    what failed is wrong.
+    """
+    missing = {'failed': 'no diagnosis was written'}
     rows = []
     for name, label in labels.items():
         if label['kind'] != 'hybrid' or name == label['base']:
             continue
-        both = [found.get(one, {}) for one in (label['base'], name)]
-        judged = {'gained': None} if any('verdict' not in one for one in both) else judge_hybrid(
-            label, *both)
-        rows.append({'change': label['change']} | judged)
-    return sorted(rows, key=lambda row: row['change'])
+        base, changed = (found.get(one, missing) for one in (label['base'], name))
+        refused, failed = ('refused' in base or 'refused' in changed,
+                           'failed' in base or 'failed' in changed)
+        row = {'name': name, 'change': label['change'], 'refused': refused, 'failed': failed}
+        if refused or failed:
+            row |= dict.fromkeys(('named', 'gained', 'moved'), None) | {
+                'lost': [], 'added': [], 'right': None if refused else False}
+        else:
+            row |= judge_hybrid(label, base, changed)
+        rows.append(row | {'text': _text_of_change(label, row, base, changed)})
+    return sorted(rows, key=lambda row: (row['change'], row['name']))
+
+
+def _text_of_change(label: dict, row: dict, base: dict, changed: dict) -> str:
+    """Return a change to real flights in words: what it is, what was said, what is wrong."""
+    amounts = [' '.join([effect, *(f'{parameter} {value:.3g}' for parameter, value in
+                                   parameters.items())])
+               for effect, parameters in label['effects'].items()]
+    said = _said(changed) if 'verdict' in base else f'as flown: {_said(base)}'
+    wrong = [text for applies, text in (
+        (row['named'] is False, 'not named'), (row['moved'] is False, 'moved by another amount'),
+        (row['lost'], f'lost {", ".join(row["lost"])}'),
+        (row['added'], f'added {", ".join(row["added"])}')) if applies]
+    return '; '.join([f'`{row["name"]}` {row["change"]} ({", ".join(amounts)}): {said}', *wrong])
+
+
+def _said(found: dict) -> str:
+    """Return a diagnosis in words: its verdict, or why there is none."""
+    return found.get('refused') or found.get('failed') or ', '.join(found.get('verdict', ()))
 
 
 def _column(some):
@@ -291,16 +336,25 @@ def calibration(pairs):
     if not both:
         return None
     given, present = np.array(both, float).T
-    which = np.clip(np.searchsorted(BINS, given, side='right') - 1, 0, len(BINS) - 2)
-    inside = [(k, which == k) for k in range(len(BINS) - 1) if (which == k).any()]
-    table = [{'from': BINS[k], 'to': BINS[k + 1], 'count': int(some.sum()),
-              'given': float(given[some].mean()), 'present': float(present[some].mean())}
-             for k, some in inside]
+    table = reliability(given, present)
     middle = [row for row in table if row['from'] > BINS[0] and row['to'] < BINS[-1]]
     return {'table': table, 'brier': float(np.mean((given - present) ** 2)),
             'error': _error(table), 'count': len(given), 'middle': _error(middle),
             'middle_count': sum(row['count'] for row in middle),
             'brier_of_base_rate': float(present.mean() * (1.0 - present.mean()))}
+
+
+def reliability(given: NDArray[np.float64], present: NDArray[np.float64]) -> list[dict]:
+    """
+    Return [{'from', 'to', 'count', 'given', 'present'}] of probabilities by BINS, empty ones not.
+
+    Args: given (N,): probabilities; present (N,): 1 where the effect is there, or 0.
+    """
+    which = np.clip(np.searchsorted(BINS, given, side='right') - 1, 0, len(BINS) - 2)
+    return [{'from': BINS[k], 'to': BINS[k + 1], 'count': int((which == k).sum()),
+             'given': float(given[which == k].mean()),
+             'present': float(present[which == k].mean())}
+            for k in range(len(BINS) - 1) if (which == k).any()]
 
 
 def given_and_present(label: dict, found: dict) -> list[tuple[float, bool]]:
@@ -319,7 +373,8 @@ def coverage(pairs):
     """
     Return {effect: {'rate', 'count'}} of true parameters inside their 95 % intervals.
 
-    Only where the set is exact, and of the parameters that mean the same as the library's.
+    Only where the set is exact, and of the parameters that mean the same as the library's, also
+    in this diagnosis: see rescaled.
     """
     inside = {}
     for pair in pairs:
@@ -330,18 +385,31 @@ def coverage(pairs):
             for name, values in [('all', every), *sorted(inside.items())] if values}
 
 
+def rescaled(label: dict, found: dict) -> bool:
+    """
+    Return whether a diagnosis names another effect of a ratio (thrust per mass) than is there.
+
+    Motion shows ratios only: where m times the mass is told as 1 / m of the thrust, inertia, drag
+    and all else with mass in its unit come out as 1 / m of what they are.
+    """
+    there, beside = set(label['effects']), set(label.get('beside', ()))
+    said = set(found.get('verdict', ())) | minor_of(found)
+    return bool(OF_A_RATIO & ((there - said) | (said - there - beside)))
+
+
 def _inside(label: dict, found: dict) -> dict[str, list[bool]]:
     """Return {effect: [whether each true parameter is inside its interval]} of one case."""
     inside = {}
     if label['stranger'] or not is_exact(label, found):
         return inside
+    other = rescaled(label, found)
     for row in found.get('ranking', ()):
         true = label['effects'].get(row['effect'])
         if true is None or not true.get('comparable', True):
             continue
         for name, value in true['parameters'].items():
             got = row['parameters'].get(name)
-            if got is not None:
+            if got is not None and not (other and name in RESCALED[row['effect']]):
                 inside.setdefault(row['effect'], []).append(
                     abs(got['value'] - value) <= 1.96 * got['std'])
     return inside

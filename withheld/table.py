@@ -3,7 +3,7 @@
 """The score as tables in Markdown, for the screen and for docs/withheld.md."""
 
 from withheld.goals import goals
-from withheld.score import TITLES
+from withheld.score import BINS, TITLES
 
 STRENGTHS = ('0.3', '1', '3', '10')
 
@@ -24,7 +24,7 @@ def markdown(found):
     """Return all tables of a score."""
     return '\n\n'.join([
         *_goals(found), *_not_flown(found), _groups(found), _claims(found), _effects(found),
-        _coverage(found), _calibration(found), *_hybrids(found)])
+        _coverage(found), *_calibration(found), *_hybrids(found)])
 
 
 def _goals(found):
@@ -99,26 +99,34 @@ def _coverage(found):
 
 
 def _calibration(found):
-    parts = []
-    for name, column in found['columns'].items():
-        one = column['calibration']
-        if one is None:
-            continue
-        parts.append(f'Calibration, {TITLES[name]}: error {one["error"]:.3f}, Brier score '
-                     f'{one["brier"]:.4f} (always the share present: '
-                     f'{one["brier_of_base_rate"]:.4f}), {one["count"]} probabilities.')
-        parts.append(_rows(('probability', 'count', 'mean given', 'present'),
-                           [(f'{row["from"]:g} to {row["to"]:g}', row['count'],
-                             f'{row["given"]:.3f}', f'{row["present"]:.3f}')
-                            for row in one['table']]))
-    return '\n\n'.join(parts)
+    """Return the reliability table by group, with its errors, in a list, empty without any."""
+    parts = {'all': found['calibration']} | {
+        TITLES[name]: column['calibration'] for name, column in found['columns'].items()}
+    parts = {title: one for title, one in parts.items() if one}
+    bins = sorted({(row['from'], row['to']) for one in parts.values() for row in one['table']})
+    rows = [(f'{low:g} to {high:g}', *(_bin(one, low) for one in parts.values()))
+            for low, high in bins]
+    rows += [
+        (f'error, {BINS[1]:g} to {BINS[-2]:g}', *(
+            '-' if one['middle'] is None else f'{one["middle"]:.3f} ({one["middle_count"]})'
+            for one in parts.values())),
+        ('error', *(f'{one["error"]:.3f} ({one["count"]})' for one in parts.values())),
+        ('Brier score / of always the share present', *(
+            f'{one["brier"]:.4f} / {one["brier_of_base_rate"]:.4f}' for one in parts.values()))]
+    return [_rows(('probability: mean given / present (count)', *parts), rows)] if parts else []
+
+
+def _bin(one, low):
+    """Return 'mean given / present (count)' of the bin that begins at low."""
+    return next((f'{row["given"]:.3f} / {row["present"]:.3f} ({row["count"]})'
+                 for row in one['table'] if row['from'] == low), '-')
 
 
 def _hybrids(found):
     """Return the table of the changes to real flights, in a list, empty where there are none."""
     words = {True: 'yes', False: 'no', None: '-'}
-    rows = [(f'`{row["change"]}`', words[row['gained']], words[row.get('moved')],
-             ', '.join(row.get('added', ())) or '-', ', '.join(row.get('lost', ())) or '-')
+    rows = [(f'`{row["change"]}`', words[row['right']], words[row['gained']],
+             words[row['moved']], ', '.join(row['added']) or '-', ', '.join(row['lost']) or '-')
             for row in found['hybrids']]
-    return [_rows(('real flights, changed', 'named', 'moved as much', 'also named', 'no longer'),
-                  rows)] if rows else []
+    return [_rows((TITLES['hybrids'], 'right', 'newly named', 'moved as much', 'also named',
+                   'no longer'), rows)] if rows else []

@@ -16,6 +16,7 @@ def pytest_collection_modifyitems(items):
     for item in items:
         if here in item.path.parents:
             item.add_marker(pytest.mark.ros)
+            item.add_marker(pytest.mark.slow)
             item.add_marker(pytest.mark.xdist_group('ros'))
 
 

@@ -134,6 +134,7 @@ def test_a_stream_whose_offset_cannot_be_told_stays_where_it_is():
     assert told.keys() == {'pose'}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('truth', [{}, {'rotor_drag': {'coefficient': 0.15}}],
                          ids=['none', 'drag'])
 @pytest.mark.parametrize('sensors, stream, offset', [

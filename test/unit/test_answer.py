@@ -140,6 +140,7 @@ def test_streams_that_were_moved_leave_open_which_of_them_is_answered():
     assert len(moved) < len(record)
 
 
+@pytest.mark.slow
 def test_a_delay_is_told_beside_clocks_that_differ():
     flights = [stamped(flown(seed, DELAY), late) for seed, late in enumerate(LATE)]
     data = diagnose(flights, VEHICLE).as_data()
@@ -152,6 +153,7 @@ def test_a_delay_is_told_beside_clocks_that_differ():
     assert clocks['hidden_delay'] is None
 
 
+@pytest.mark.slow
 def test_clocks_that_are_alike_in_all_flights_are_no_delay():
     flights = [stamped(flown(seed), 0.02) for seed in range(3)]
     data = diagnose(flights, VEHICLE).as_data()
@@ -170,6 +172,7 @@ def answering_late(seed):
     return replace(record, t=record.t[1:], columns=columns)
 
 
+@pytest.mark.slow
 def test_a_lag_of_the_controller_is_no_delay_whatever_the_clocks():
     """Beside clocks that differ no record tells it from commands that act late by as much."""
     one_clock = [answering_late(seed) for seed in range(3)]
@@ -185,6 +188,7 @@ def test_a_lag_of_the_controller_is_no_delay_whatever_the_clocks():
     assert clocks['hidden_delay'] == pytest.approx(0.01, abs=0.003)
 
 
+@pytest.mark.slow
 def test_clocks_that_drift_are_put_right():
     flights = [stamped(flown(seed, duration=30.0), 0.012, drift=8e-4) for seed in range(3)]
     data = diagnose(flights, VEHICLE).as_data()

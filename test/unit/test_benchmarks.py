@@ -2,10 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the benchmarks measure with: problems, bounds, best costs and tables. No peer is needed."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
+from real import needs_real_flights, real_vehicle
 
-from benchmarks import problems, reference, rollout, tables
+from benchmarks import diagnosis, problems, reference, rollout, tables
 from benchmarks.__main__ import SECTIONS
 from benchmarks.bound import bound, derivatives, FIRST, SECOND
 from benchmarks.compare import rmse_over_bound
@@ -135,6 +138,37 @@ def test_plain_numpy_rolls_out_what_the_compiled_model_does():
 def test_a_table_is_aligned():
     assert tables.markdown(('what', 'n'), [('a', 1), ('long', 100)]).splitlines() == [
         '| what |   n |', '| ---- | --: |', '| a    |   1 |', '| long | 100 |']
+
+
+def test_a_target_is_met_or_not_or_nothing_was_measured():
+    text = tables.targets([('a', '≤ 1 s', '0.5 s', np.True_), ('b', '≤ 1 s', '2 s', False),
+                           ('c', '≤ 1 s', 'nothing', None)])
+    assert [line.split('|')[-2].strip() for line in text.splitlines()[2:]] == ['yes', '**no**',
+                                                                              '–']
+
+
+def test_without_real_flights_their_target_says_so(tmp_path):
+    assert diagnosis.found_beside(tmp_path / 'file') is None
+    what, _, measured, met = diagnosis.on_real_flights(None, diagnosis.REAL)
+    assert what == 'CPU time, 7 real flights' and met is None
+    assert measured == f'not there: {diagnosis.PLACE}'
+
+
+@needs_real_flights
+@pytest.mark.parametrize(('seconds', 'met'), [(14.0, True), (20.0, False)])
+def test_real_flights_are_timed_where_they_are_there(monkeypatch, seconds, met):
+    seen = []
+
+    def timed(function, *arguments):
+        seen.append((function, *arguments))
+        return None, seconds
+
+    monkeypatch.setattr(diagnosis, 'timed', timed)
+    folder = diagnosis.found_beside(Path(__file__))
+    row = diagnosis.on_real_flights(folder, ('figure8_fast', 'circle_slow'))
+    assert row[2:] == (f'{seconds:.1f} s', met)
+    [(function, flights, vehicle)] = seen
+    assert function is diagnosis.diagnose and len(flights) == 2 and vehicle == real_vehicle()
 
 
 @pytest.mark.parametrize(('value', 'text'), [

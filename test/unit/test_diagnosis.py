@@ -16,6 +16,7 @@ from quad_ident_ros.flight.measure import Noise, Sensors
 from quad_ident_ros.model.vehicle import load_vehicle
 from quad_ident_ros.report.diagnosis import show
 
+pytestmark = pytest.mark.slow
 # With a drag that is known: without any no wind is felt.
 VEHICLE = replace(load_vehicle('hummingbird'), linear_drag=(0.15, 0.15, 0.15))
 HALF = Noise(position=7e-4, velocity=7e-3, attitude=1.4e-3, rate=7e-3, voltage=0.01)

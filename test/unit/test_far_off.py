@@ -14,7 +14,7 @@ from quad_ident_ros.diagnose.rules import RULES
 from quad_ident_ros.diagnose.select import select
 from quad_ident_ros.greybox.noise import whole_noise
 
-pytestmark = needs_real_flights
+pytestmark = [needs_real_flights, pytest.mark.slow]
 
 
 @pytest.fixture(scope='module')

@@ -59,6 +59,7 @@ def draws(problem):
     return found
 
 
+@pytest.mark.slow
 def test_errors_are_those_of_the_cramer_rao_bound(problem, draws):
     misses = np.array([values(found) - problem.truth for found in draws]) / problem.bound
     assert np.sqrt(np.mean(misses ** 2)) <= 1.15
@@ -66,6 +67,7 @@ def test_errors_are_those_of_the_cramer_rao_bound(problem, draws):
     assert np.abs(misses.mean(axis=0)).max() < 4 / np.sqrt(DRAWS)
 
 
+@pytest.mark.slow
 def test_95_percent_intervals_hold_the_truth_as_often_as_they_say(problem, draws):
     inside = np.array([np.abs(values(found) - problem.truth) <= 1.96 * values(found, 'std')
                        for found in draws])
@@ -74,6 +76,7 @@ def test_95_percent_intervals_hold_the_truth_as_often_as_they_say(problem, draws
     np.testing.assert_allclose(stds.mean(axis=0), 1.0, atol=0.1)
 
 
+@pytest.mark.slow
 def test_every_start_converges_and_the_noise_comes_out(draws):
     assert all(found.estimate.converged for found in draws)
     noise = np.array([found.estimate.noise[0] for found in draws])

@@ -23,6 +23,7 @@ from quad_ident_ros.greybox.parameters import INDEX, nominal
 from quad_ident_ros.model.vehicle import load_vehicle
 from quad_ident_ros.report.diagnosis import show
 
+pytestmark = pytest.mark.slow
 VEHICLE = load_vehicle('hummingbird')
 WHITE = Sensors(white=MOCAP_IMU.white)
 PAYLOAD = {'mass_offset': {'mass': 0.015 * VEHICLE.mass}}

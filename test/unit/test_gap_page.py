@@ -25,6 +25,7 @@ from quad_ident_ros.report.diagnosis import show
 from quad_ident_ros.report.gap_pictures import _by_third, save_map, save_probabilities
 from quad_ident_ros.report.received import diagnosis_from
 
+pytestmark = pytest.mark.slow
 VEHICLE = load_vehicle('hummingbird')
 
 

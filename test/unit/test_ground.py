@@ -146,6 +146,7 @@ def test_records_without_height_velocity_or_commands_are_left_as_they_are(flight
         assert not standing(FlightRecord(whole.t, columns, {}), VEHICLE).any()
 
 
+@pytest.mark.slow
 def test_a_verdict_does_not_change_by_time_on_the_ground(flight):
     flights = [fly_closed_loop(VEHICLE, {'motor_lag': {'time_constant': 0.03}}, 'lissajous',
                                duration=12.0, seed=seed, noise=MOCAP_IMU) for seed in (1, 2)]

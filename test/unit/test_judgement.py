@@ -184,6 +184,7 @@ def test_without_a_named_effect_less_remains_unsaid():
     assert checks_of(0.05, 0.05, 0.3, named=False)[2].differs
 
 
+@pytest.mark.slow
 def test_what_a_flight_has_by_itself_stays_when_effects_are_taken_out_and_flights_left_out():
     """Its thrust is no part of what the others tell, and not free where an effect is gone."""
     vehicle, noise = load_vehicle('hummingbird'), SENSORS['mocap_imu']

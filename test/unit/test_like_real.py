@@ -17,6 +17,7 @@ from quad_ident_ros.greybox.flights import track_of
 from quad_ident_ros.greybox.parameters import nominal, SPLIT
 from quad_ident_ros.model.vehicle import load_vehicle
 
+pytestmark = pytest.mark.slow
 TRUTH = {'rotor_drag': {'coefficient': 0.25}, 'mass_offset': {'mass': 0.08}}
 NOMINAL = load_experiment('closed_loop')
 

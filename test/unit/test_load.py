@@ -36,6 +36,7 @@ COLUMNS = st.lists(st.sampled_from(
      'a "quote"', 'Höhe']), unique=True, min_size=1)
 
 
+@pytest.mark.slow
 @FAST
 @given(names=COLUMNS, data=st.data())
 def test_any_record_survives_every_format(tmp_path_factory, names, data):

@@ -185,6 +185,7 @@ def test_wide_bounds_do_not_move_the_result(method):
     assert found.model == fit(flight, method).model
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('method', SWARMS)
 @pytest.mark.parametrize(('system', 'start'), [('stable', 0.0), ('integrating', 0.7)])
 def test_a_free_initial_state_is_found(system, start, method):

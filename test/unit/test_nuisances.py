@@ -22,6 +22,7 @@ from quad_ident_ros.model.attitude import rotation_matrix
 from quad_ident_ros.model.dynamics import STATES
 from quad_ident_ros.model.sensors import product, turn
 
+pytestmark = pytest.mark.slow
 EXPERIMENT = load_experiment('closed_loop')
 VEHICLE = EXPERIMENT.vehicle
 DRAG = {'rotor_drag': {'coefficient': 0.25}}

@@ -15,6 +15,7 @@ from quad_ident_ros.identify.online import Tracker
 from quad_ident_ros.identify.signals import Signal
 from quad_ident_ros.identify.vp import vp
 
+pytestmark = pytest.mark.slow
 WINDOW, STRIDE = 500, 5     # 20 windows a second
 SETTINGS = Settings(methods=('vp',), initial_state='free')
 

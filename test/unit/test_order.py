@@ -62,6 +62,7 @@ def test_missing_samples_do_not_matter():
     assert names == ['third order']
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('at_rest', [True, False])
 @pytest.mark.parametrize('truth', ['second order', 'third order'])
 def test_of_long_records_a_few_samples_are_compared_but_every_input_counts(truth, at_rest):

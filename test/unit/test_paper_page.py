@@ -15,6 +15,7 @@ from quad_ident_ros.identify.methods import METHODS
 from quad_ident_ros.report.html import Markup, markup, table, tag
 from quad_ident_ros.report.picture import save_spread
 
+pytestmark = pytest.mark.xdist_group('paper_page')      # one run for all tests
 VOID = ('meta', 'br', 'img')
 PRESETS = ['paper_unit_steps_newton_euler', 'paper_table3']
 SEEDS = '2'
@@ -68,6 +69,7 @@ def text(written):
     return (written[0] / 'paper.html').read_text(encoding='utf-8')
 
 
+@pytest.mark.slow
 def test_the_page_is_whole_and_needs_nothing_else(written, text):
     page = Page(text)
     pictures = [value for value in page.references if value.startswith('data:image/png;base64,')]
@@ -78,6 +80,7 @@ def test_the_page_is_whole_and_needs_nothing_else(written, text):
     assert 'url(' not in text and '@import' not in text and '<script' not in text
 
 
+@pytest.mark.slow
 def test_the_page_shows_all_presets_methods_and_claims(text, data):
     said = ' '.join(Page(text).text)
     for word in (*PRESETS, 'Table 1', 'Table 2', 'Table 3', 'ITSE', 'no rotor speeds give',
@@ -87,6 +90,7 @@ def test_the_page_shows_all_presets_methods_and_claims(text, data):
     assert list(data['presets']) == PRESETS
 
 
+@pytest.mark.slow
 def test_another_run_gives_the_same_but_for_times(data, tmp_path, capsys):
     def timeless(value):
         if isinstance(value, dict):
@@ -101,6 +105,7 @@ def test_another_run_gives_the_same_but_for_times(data, tmp_path, capsys):
         assert again[key] == data[key]
 
 
+@pytest.mark.slow
 def test_the_terminal_has_errors_conclusions_and_files(written, data):
     folder, shown = written
     for text in ('NRMSE', 'PSO-CS', *PRESETS, 'does not hold', '59 of 64', 'took',

@@ -19,6 +19,7 @@ from quad_ident_ros.paper.ranking import between, compare, comparisons, interval
 from quad_ident_ros.paper.reproduce import as_data, reproduce
 from quad_ident_ros.paper.study import DIRECT, EFFORTS, EQUAL_BUDGET, middle, steps, study, SWARMS
 
+pytestmark = pytest.mark.xdist_group('paper_study')     # one reproduction for all tests
 SEEDS = 3
 
 

@@ -46,6 +46,7 @@ def test_a_drift_is_estimated_with_its_uncertainty():
     assert np.abs((clock.offsets - truth) / clock.stds).max() < 5
 
 
+@pytest.mark.slow
 def test_standard_errors_of_the_offset_are_honest():
     """Over 60 draws of the noise the errors scatter as the standard errors say."""
     pulls = []
@@ -55,6 +56,7 @@ def test_standard_errors_of_the_offset_are_honest():
     assert 0.6 < np.std(pulls) < 1.5 and abs(np.mean(pulls)) < 0.5
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('trajectory', ['figure8', 'lissajous', 'circle'])
 def test_standard_errors_know_that_an_autopilot_follows_errors_of_the_attitude(trajectory):
     """Coloured errors of the attitude move the vehicle, and so hang together with its gyro."""

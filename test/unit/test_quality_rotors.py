@@ -31,6 +31,7 @@ def test_the_commands_of_another_vehicle_are_found(columns):
     assert finding.code == 'rotor_count' and finding.severity == 'error'
 
 
+@pytest.mark.slow
 @needs_real_flights
 @pytest.mark.parametrize('name', ['star_fast', 'oval_fast'])
 def test_wrong_orders_are_found_in_real_flights(name):

@@ -51,6 +51,7 @@ def pushed(record, frequency):
         f'cmd{j}': record.columns[f'cmd{j}'] * factor for j in range(1, 5)})
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('frequency', [0.4, 3.0])
 def test_a_line_is_found_where_it_is_in_a_long_flight(hover, frequency):
     track = track_of(pushed(hover, frequency), VEHICLE)
@@ -60,6 +61,7 @@ def test_a_line_is_found_where_it_is_in_a_long_flight(hover, frequency):
     assert shares(found, VEHICLE)['Fz'] > 0.8
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('frequency', [0.4, 3.0])
 def test_it_has_the_size_of_the_force_over_a_window(hover, frequency):
     """The slope of the velocity over a window weighs a force by a parabola."""
@@ -72,6 +74,7 @@ def test_it_has_the_size_of_the_force_over_a_window(hover, frequency):
     assert rms == pytest.approx(whole * smoothed, rel=0.1)
 
 
+@pytest.mark.slow
 def test_what_noise_makes_is_the_error_that_is_told(hover):
     found = residual_wrench(track_of(hover, VEHICLE), VEHICLE, nominal(VEHICLE), NOISE)
     np.testing.assert_allclose(np.std(found.values, axis=0),

@@ -33,6 +33,7 @@ def test_only_the_effects_differ_and_a_file_holds_them(tmp_path):
         assert (reality.name, reality.mass) == (NOMINAL.name, NOMINAL.mass)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('name', EFFECTS)
 def test_what_is_drawn_can_be_flown(name):
     experiment = load_experiment('closed_loop')

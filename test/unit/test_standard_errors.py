@@ -52,6 +52,7 @@ def estimated(form_error, seed):
                                   RULES)[0]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('form_error', [0.0, 0.1, 0.3])
 def test_estimates_scatter_about_the_truth_as_their_standard_errors_say(form_error):
     values, errors = np.array([estimated(form_error, seed) for seed in range(200)]).T

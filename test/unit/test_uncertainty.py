@@ -72,6 +72,7 @@ def draws(system, noise, at_rest=True):
     return np.array(found), np.array(said, float)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(('system', 'at_rest'), [
     ('real', True), ('integrating', True), ('unstable', True), ('complex', True), ('real', False),
     ('integrating', False)])
@@ -84,6 +85,7 @@ def test_standard_errors_are_the_scatter(system, at_rest):
     assert np.abs(ratio - 1).max() < 0.17, dict(zip(KEYS, ratio, strict=True))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('system', ['real', 'complex'])
 def test_estimates_lie_about_the_truth(system):
     found, _ = draws(system, 0.003)
@@ -178,6 +180,7 @@ def test_what_a_record_does_not_tell_is_named():
     assert set(uncertainty(nothing, Objective(nothing).fit(1.0, 0.5)).unidentifiable) == set(KEYS)
 
 
+@pytest.mark.slow
 def test_correlations_are_those_of_the_draws():
     found, _ = draws('real', 0.003)
     signal = measured(SYSTEMS['real'], 0.003, 0)

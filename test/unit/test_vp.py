@@ -109,6 +109,7 @@ def test_no_start_value_is_needed(form, noise):
         assert found.cost <= near.cost * (1 + 1e-9) + 1e-24, (k, truth)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('poles', COMPLEX_PENALTY)
 def test_from_a_free_start_no_start_value_is_needed_either(poles):
     """In less than 1 % of records a descent from the truth ends lower, and by less than 1 %."""

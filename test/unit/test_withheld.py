@@ -271,11 +271,63 @@ def test_the_error_of_calibration_leaves_out_what_is_nearly_sure():
     assert found['error'] == pytest.approx(0.96 * 0.01 + 0.04 * 0.25)
 
 
+def test_calibration_is_told_by_group():
+    labels = {f'{group}{k}': label(['wind'] if k else [], kind='single' if k else 'none',
+                                   faulty=group == 'b')
+              for group, count in (('a', 4), ('b', 2)) for k in range(count)}
+    found = {name: diagnosis('wind', probability=0.75 if name[0] == 'a' else 0.97)
+             for name in labels}
+    rows = {line.split(' | ')[0].strip('| '): line.strip('| ').split(' | ')[1:]
+            for line in markdown(scores.score(labels, found)).splitlines()
+            if line.startswith('|')}
+    titles = rows['probability: mean given / present (count)']
+    assert titles == ['all', 'forms as ours', 'faulty records']
+    assert rows['0.6 to 0.8'] == ['0.750 / 0.750 (4)', '0.750 / 0.750 (4)', '-']
+    assert rows['0.95 to 1'] == ['0.970 / 0.500 (2)', '-', '0.970 / 0.500 (2)']
+    assert rows['error, 0.05 to 0.95'] == ['0.000 (4)', '0.000 (4)', '-']
+    assert rows['error'] == ['0.157 (6)', '0.000 (4)', '0.470 (2)']
+
+
 def test_coverage_leaves_out_what_means_something_else():
     truth = label(['wind'], values={'wind': {'x': 1.0}})
     truth['effects']['wind']['comparable'] = False
     given = diagnosis('wind', parameters={'wind': {'x': {'value': 1.0, 'std': 0.1}}})
     assert scores.coverage([(truth, given)]) == {}
+
+
+def rescaled_pair(mass, *verdict):
+    """Return label and diagnosis of a mass and others: half of each but lag without the mass."""
+    true = {'mass_offset': {'mass': mass}, 'inertia_mismatch': {'factor_x': 1.2},
+            'rotor_drag': {'coefficient': 0.1}, 'motor_lag': {'time_constant': 0.03}}
+    scale = 1.0 if 'mass_offset' in verdict else 0.5
+    values = {'thrust_scale': {'factor': scale}, 'mass_offset': {'mass': mass},
+              'inertia_mismatch': {'factor_x': 1.2 * scale},
+              'rotor_drag': {'coefficient': 0.1 * scale}, 'motor_lag': {'time_constant': 0.03}}
+    given = {effect: {name: {'value': value, 'std': 1e-3 * value} for name, value in one.items()}
+             for effect, one in values.items()}
+    return label(true, kind='mixture', values=true), diagnosis(*verdict, parameters=given) | {
+        'one_finding': [{'effects': ['mass_offset', 'thrust_scale']}]}
+
+
+def test_coverage_leaves_out_what_is_scaled_by_another_name_of_the_ratio():
+    others = ('inertia_mismatch', 'rotor_drag', 'motor_lag')
+    swapped = rescaled_pair(0.5, 'thrust_scale', *others)
+    assert scores.is_exact(*swapped)
+    assert set(scores.coverage([swapped])) == {'all', 'motor_lag'}
+    assert not scores.case_of('a', *swapped, scores.judge(*swapped))['outside']
+    told = scores.coverage([rescaled_pair(0.5, 'mass_offset', *others)])
+    assert told.pop('all') == {'rate': 1.0, 'count': 4}
+    assert set(told) == {'mass_offset', *others}
+    # Both are named, for nothing tells them apart: what is there by which share is not told.
+    both = rescaled_pair(0.5, 'mass_offset', 'thrust_scale', *others)
+    assert set(scores.coverage([both])) == {'all', 'motor_lag'}
+
+
+def test_coverage_has_what_is_scaled_where_the_thrust_may_be_named_too():
+    truth = label(['inertia_mismatch'], values={'inertia_mismatch': {'factor_x': 1.2}})
+    given = diagnosis('inertia_mismatch', 'thrust_scale', parameters={
+        'inertia_mismatch': {'factor_x': {'value': 1.2, 'std': 0.01}}})
+    assert scores.coverage([(truth | {'beside': ['thrust_scale']}, given)])['all']['count'] == 1
 
 
 def test_coverage_counts_true_values_inside_their_intervals():
@@ -373,16 +425,82 @@ def test_refusals_are_told_by_column():
     assert refused.figure == '100 % of 1' and 'clocks' in refused.missed[0]
 
 
-def test_changes_to_real_flights_are_told_beside_the_rates():
-    labels = {'a': {'kind': 'hybrid', 'change': 'base', 'effects': {}, 'twins': [], 'by': 'sum',
-                    'base': 'a'},
-              'b': {'kind': 'hybrid', 'change': 'weaker', 'effects': {'thrust_scale': {}},
-                    'twins': [], 'by': 'product', 'base': 'a'}}
-    found = {'a': diagnosis('rotor_drag'), 'b': diagnosis('rotor_drag', 'thrust_scale')}
-    result = scores.score(labels, found)
+def changed(flown, **verdicts):
+    """Return labels and diagnoses of changes to real flights: by name, what was said of each."""
+    effects = {'weaker': {'thrust_scale': {'factor': 0.9}}, 'later_2': {
+        'actuation_delay': {'delay': 0.02}}, 'biased': {'gyro_bias': {'x': 0.05}}}
+    labels = {'flown': {'kind': 'hybrid', 'change': 'base', 'effects': {}, 'twins': [],
+                        'by': 'sum', 'base': 'flown'}}
+    labels |= {f'of_{name}': {'kind': 'hybrid', 'change': name, 'effects': effects[name],
+                              'twins': [], 'by': 'product' if name == 'weaker' else 'sum',
+                              'base': 'flown'} for name in verdicts}
+    return labels, {'flown': flown} | {f'of_{name}': one for name, one in verdicts.items()}
+
+
+def valued(effect, parameter, value):
+    return {effect: {parameter: {'value': value, 'std': 0.001}}}
+
+
+def test_changes_to_real_flights_have_a_row_of_their_own():
+    result = scores.score(*changed(
+        diagnosis('rotor_drag', 'wind'),
+        weaker=diagnosis('rotor_drag', 'wind', 'thrust_scale',
+                         parameters=valued('thrust_scale', 'factor', 0.9)),
+        later_2=diagnosis('rotor_drag', 'actuation_delay', 'inflow',
+                          parameters=valued('actuation_delay', 'delay', 0.02))))
     assert result['count'] == 0
-    assert [(row['change'], row['gained']) for row in result['hybrids']] == [('weaker', True)]
-    assert '| `weaker` | yes |' in markdown(result)
+    text = markdown(result)
+    assert '| hybrids: changed | 2 | - | 50 % (2) |' in text
+    assert ('| the change named, and nothing else | real flights, changed | 50 % of 2 | - | - |'
+            in text)
+    assert '| `weaker` | yes | yes | yes | - | - |' in text
+    assert '| `later_2` | no | yes | yes | inflow | wind |' in text
+    assert ('  - `of_later_2` later_2 (actuation_delay delay 0.02): rotor_drag, actuation_delay, '
+            'inflow; lost wind; added inflow') in text
+    assert '- `of_weaker`' not in text
+
+
+@pytest.mark.parametrize(('factor', 'right', 'wrong'), [
+    (0.9, 100, None), (0.97, 0, 'moved by another amount'), (None, 0, 'not named')])
+def test_a_change_is_right_where_it_is_named_and_as_large(factor, right, wrong):
+    said = diagnosis('rotor_drag') if factor is None else diagnosis(
+        'rotor_drag', 'thrust_scale', parameters=valued('thrust_scale', 'factor', factor))
+    labels, found = changed(diagnosis('rotor_drag'), weaker=said)
+    row = reached(labels, found, 'hybrids')['the change named, and nothing else']
+    assert row.figure == f'{right} % of 1' and row.met is None
+    assert [case.split('; ')[1:] for case in row.missed] == ([[wrong]] if wrong else [])
+
+
+def test_what_flew_before_may_have_the_effect_and_must_not_lose_it():
+    flown = diagnosis('thrust_scale', parameters=valued('thrust_scale', 'factor', 0.95))
+    more = diagnosis('thrust_scale', parameters=valued('thrust_scale', 'factor', 0.855))
+    for said, figure in ((more, '100 % of 1'), (diagnosis('none'), '0 % of 1')):
+        rows = reached(*changed(flown, weaker=said), 'hybrids')
+        assert rows['the change named, and nothing else'].figure == figure
+    # Named as before, by no amount: nothing to judge by.
+    untold = reached(*changed(diagnosis('thrust_scale'), weaker=diagnosis('thrust_scale')),
+                     'hybrids')
+    assert untold['the change named, and nothing else'].figure == '-'
+
+
+def test_a_refused_change_is_in_no_share_and_a_failed_one_is_wrong():
+    labels, found = changed(diagnosis('rotor_drag'), weaker={'refused': 'order of the rotors'},
+                            later_2={'failed': 'ZeroDivisionError'})
+    rows = reached(labels, found, 'hybrids')
+    assert rows['the change named, and nothing else'].figure == '0 % of 1'
+    assert rows['refused'].figure == '50 % of 2'
+    assert 'order of the rotors' in rows['refused'].missed[0]
+    found['flown'] = {'refused': 'clocks'}
+    rows = reached(labels, found, 'hybrids')
+    assert rows['refused'].figure == '100 % of 2'
+    assert 'as flown: clocks' in rows['refused'].missed[0]
+
+
+def test_without_changes_to_real_flights_there_is_no_row_of_them():
+    labels, found = {'a': label(['wind'])}, {'a': diagnosis('wind')}
+    assert not reached(labels, found, 'hybrids')
+    text = markdown(scores.score(labels, found))
+    assert 'hybrids' not in text and 'real flights' not in text
 
 
 def test_a_seal_opens_with_its_key_alone():

@@ -29,6 +29,7 @@ def made(effect, form, size=SIZE):
     return part
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(('effect', 'form'), FORCES)
 def test_a_force_or_moment_is_no_form_of_the_library(effect, form):
     part = made(effect, form)
@@ -64,6 +65,7 @@ def followed(turn, command):
     return out
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('form', EVALUATION['motor_lag'])
 def test_a_motor_is_no_lag_of_the_first_order_up_or_down(form):
     motor, (command, _) = made('motor_lag', form), commands()

@@ -119,11 +119,13 @@ def test_an_effect_is_gained_or_it_moves():
     base = diagnosis(['rotor_drag'])
     gained = hybrids.judge(truth, base, diagnosis(['actuation_delay', 'rotor_drag'],
                                                   actuation_delay={'delay': (0.021, 0.001)}))
-    assert gained == {'gained': True, 'moved': True, 'lost': [], 'added': []}
+    assert gained == {'named': True, 'gained': True, 'moved': True, 'lost': [], 'added': [],
+                      'right': True}
     base = diagnosis(['actuation_delay'], actuation_delay={'delay': (0.04, 0.001)})
     stays = diagnosis(['wind'], actuation_delay={'delay': (0.041, 0.001)})
-    assert hybrids.judge(truth, base, stays) == {'gained': False, 'moved': False, 'lost': [],
-                                                 'added': ['wind']}
+    assert hybrids.judge(truth, base, stays) == {
+        'named': False, 'gained': False, 'moved': False, 'lost': [], 'added': ['wind'],
+        'right': False}
 
 
 def test_factors_are_multiplied_and_twins_count():
@@ -137,6 +139,7 @@ def test_factors_are_multiplied_and_twins_count():
     assert hybrids.judge(truth, base, other)['moved'] is None
 
 
+@pytest.mark.slow
 def test_all_cases_are_written_and_no_two_alike(tmp_path):
     source = tmp_path / 'source'
     source.mkdir()
