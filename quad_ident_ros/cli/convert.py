@@ -18,7 +18,7 @@ def add(commands):
     parser = commands.add_parser(
         'convert', help='write a flight record in another format',
         formatter_class=argparse.RawDescriptionHelpFormatter,
-        description='Read a flight (CSV, rosbag2, PX4 ULog) and write it as CSV or as a bag. '
+        description='Read a flight of any kind that is known and write it as CSV or as a bag. '
                     'Nothing is lost: every\ncolumn, known or not, reads back number for number; '
                     'what could not be read is noted.\nA bag with several flights makes several '
                     'files, OUT_1, OUT_2, ...',
@@ -27,8 +27,9 @@ def add(commands):
                '  quad_ident convert log_12.ulg out.csv --mapping px4.yaml --vehicle quad.yaml\n'
                '  quad_ident convert others_bag flight.csv --mapping topics.yaml\n\n'
                'docs/records.md describes the formats and the mapping file.')
-    parser.add_argument('flight', metavar='IN', help='.csv, .csv.gz, bag (folder, .mcap, .db3) '
-                        'or .ulg')
+    parser.add_argument('flight', metavar='IN',
+                        help='a table (CSV, Parquet), a bag (ROS 1 or 2), or a log of PX4, '
+                             'ArduPilot, Crazyflie or Betaflight')
     parser.add_argument('out', metavar='OUT', help='.csv, .csv.gz, .mcap, or without an ending: '
                         'the new folder of a bag')
     parser.add_argument('--mapping', metavar='FILE', help='which topics and outputs of other '

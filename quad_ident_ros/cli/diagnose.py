@@ -32,7 +32,8 @@ def add(commands):
                '      --json diagnosis.json --out-vehicle like_real.yaml\n\n'
                'docs/diagnosis.md explains every line of the answer.')
     parser.add_argument('flights', nargs='+', metavar='FLIGHT',
-                        help='.csv, .csv.gz, bag (folder, .mcap, .db3) or .ulg')
+                        help='a table (CSV, Parquet), a bag (ROS 1 or 2), or a log of PX4, '
+                             'ArduPilot, Crazyflie or Betaflight')
     parser.add_argument('--vehicle', required=True, help='vehicle name or file: the nominal '
                         'one; auto: the file beside a PX4 log, written from its parameters')
     parser.add_argument('--hold-out', metavar='FLIGHT',

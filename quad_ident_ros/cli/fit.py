@@ -35,7 +35,8 @@ def add(commands):
                'weigh.\n\nexample:\n  quad_ident fit flight.csv --vehicle v.yaml --free '
                'inertia,thrust_coefficient,motor_lag --out-vehicle v2.yaml')
     parser.add_argument('flights', nargs='+', metavar='FLIGHT',
-                        help='.csv, .csv.gz, bag (folder, .mcap, .db3) or .ulg')
+                        help='a table (CSV, Parquet), a bag (ROS 1 or 2), or a log of PX4, '
+                             'ArduPilot, Crazyflie or Betaflight')
     parser.add_argument('--mapping', metavar='FILE', help='which topics and outputs of other '
                         "people's records mean what (YAML)")
     parser.add_argument('--vehicle', required=True, help='vehicle name or file: the start, and '

@@ -46,6 +46,9 @@ def residual_wrench(track: Track, vehicle: Vehicle, z: np.ndarray, noise: np.nda
                     ) -> ResidualWrench:
     """Return the ResidualWrench of a Track with a parameter vector z (Z,) and noise (12,)."""
     flight = flight_of(track, WINDOW, EVERY)
+    # A window whose end is not seen, at the end of a block, tells nothing.
+    flight = replace(flight, first=flight.first[
+        flight.seen[flight.first + flight.count].all(axis=1)])
     first, stretch = _stretches(flight)
     flight = replace(flight, first=first)
     [starts] = settled([flight], vehicle, [z], [noise])

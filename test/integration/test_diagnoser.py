@@ -142,7 +142,7 @@ def test_it_answers_while_it_diagnoses_and_can_be_cancelled(graph, draggy):
 
 
 def test_each_window_is_diagnosed_in_continuous_mode(graph, draggy):
-    """A window of a single flight: its first half is for the fit, its second is held out."""
+    """A window of a single flight, of which every other block is held out."""
     bench = Bench(graph, {'mode': 'continuous', 'window': 8.0, 'effects': ['rotor_drag', 'wind']})
     bench.feed(draggy[:1])
     first = bench.await_diagnosis()
@@ -150,7 +150,8 @@ def test_each_window_is_diagnosed_in_continuous_mode(graph, draggy):
     assert {row['effect'] for row in first['ranking']} == {'rotor_drag', 'wind'}
     bench.feed(draggy[1:])
     graph.spin_until(lambda: len(bench.diagnoses) == 2, 'the second window', PATIENCE)
-    assert bench.diagnoses.data()[1]['flights'] == ['two/circle']
+    [name] = bench.diagnoses.data()[1]['flights']
+    assert name.startswith('two/circle ')
 
 
 @pytest.mark.parametrize('spoil, said', [
@@ -201,5 +202,6 @@ def test_flights_that_are_too_short_are_refused_in_one_line(graph):
 def test_the_short_end_of_a_flight_is_left_aside_in_continuous_mode(graph, draggy):
     bench = Bench(graph, {'mode': 'continuous', 'effects': ['rotor_drag']})
     bench.feed([draggy[0].slice(0, 300), draggy[1]])
-    assert bench.await_diagnosis()['flights'] == ['two/circle']
+    [name] = bench.await_diagnosis()['flights']
+    assert name.startswith('two/circle ')
     assert len(bench.diagnoses) == 1

@@ -223,7 +223,7 @@ def test_a_flight_that_is_given_twice_is_refused():
         diagnose(flights[:1], VEHICLE, hold_out=flights[0])
 
 
-def test_the_second_half_of_a_flight_is_not_the_beginning_of_a_battery():
+def test_a_battery_that_empties_is_found_in_a_single_flight():
     truth = {'battery_sag': {'per_second': 0.003}}
     record = fly_closed_loop(VEHICLE, truth, 'lissajous', duration=40.0, seed=3, noise=WHITE)
     columns = {name: values for name, values in record.columns.items() if name != 'vbat'}
