@@ -198,7 +198,8 @@ def judge(bench: Bench) -> Judgement:
             weights[cause] = max(weights.get(cause, weight), weight,
                                  key=lambda each: presence(each, rules))
         idle = [removed for removed, one in smaller.items()
-                if not matters(model.gap, one.gap, before, noise, rules)]
+                if not (len(removed) == 1 and clear(weights[removed[0]], rules))
+                and not matters(model.gap, one.gap, before, noise, rules)]
         if not idle:
             break
         first = max(idle, key=lambda removed: (len(removed), -lost_share(
@@ -302,6 +303,17 @@ def matters(after: dict, without: dict, before: dict, noise: dict, rules: Rules)
                and beyond(without[name], after[name])
                >= rules.form_error * beyond(before[name], without[name])
                for name, share in shares.items())
+
+
+def clear(weight: Weight, rules: Rules) -> bool:
+    """
+    Return whether an effect is probable and clearly contributes.
+
+    How much of the gap the errors of form of others may be is then no matter: it explains more of
+    what is there without it than they do.
+    """
+    return (weight.contribution >= rules.companion[0]
+            and presence(weight, rules) >= rules.present)
 
 
 def unexplained(gap: dict, before: dict, noise: dict, named: bool, rules: Rules) -> dict:
