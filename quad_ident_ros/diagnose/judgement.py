@@ -198,8 +198,8 @@ def judge(bench: Bench) -> Judgement:
             weights[cause] = max(weights.get(cause, weight), weight,
                                  key=lambda each: presence(each, rules))
         idle = [removed for removed, one in smaller.items()
-                if not (len(removed) == 1 and clear(weights[removed[0]], rules))
-                and not matters(model.gap, one.gap, before, noise, rules)]
+                if not matters(model.gap, one.gap, before, noise, rules,
+                               len(removed) == 1 and clear(weights[removed[0]], rules))]
         if not idle:
             break
         first = max(idle, key=lambda removed: (len(removed), -lost_share(
@@ -290,18 +290,20 @@ def lost_share(after: dict, without: dict, before: dict, noise: dict, rules: Rul
     return float(max(lost_shares(after, without, before, noise, rules).values()))
 
 
-def matters(after: dict, without: dict, before: dict, noise: dict, rules: Rules) -> bool:
+def matters(after: dict, without: dict, before: dict, noise: dict, rules: Rules,
+            apart: bool = False) -> bool:
     """
     Return whether effects matter, by the gap with and without them.
 
     In some group of outputs the share that is lost without them is material, beside the tolerance
-    of the user, too, and more than the error of form of the other effects may be.
+    of the user, too, and more than the error of form of the other effects may be, unless it is
+    known apart from these.
     """
     shares = lost_shares(after, without, before, noise, rules)
     return any(share >= rules.material
                and without[name] - after[name] >= 0.5 * rules.material * rules.floors[name]
-               and beyond(without[name], after[name])
-               >= rules.form_error * beyond(before[name], without[name])
+               and (apart or beyond(without[name], after[name])
+                    >= rules.form_error * beyond(before[name], without[name]))
                for name, share in shares.items())
 
 
