@@ -7,10 +7,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from quad_ident_ros.diagnose import select as selecting
 from quad_ident_ros.diagnose.candidates import Candidate, candidates
 from quad_ident_ros.diagnose.fitted import Fitted, refitted
 from quad_ident_ros.diagnose.rules import RULES
-from quad_ident_ros.diagnose.select import _other_actuator, posteriors, Selection
+from quad_ident_ros.diagnose.select import _other_actuator, _Search, posteriors, Selection
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import SENSORS
 from quad_ident_ros.greybox.flights import flight_of, track_of
@@ -44,6 +45,31 @@ def test_one_set_has_its_own():
 
 def test_no_error_is_smaller_than_what_formulas_may_be_wrong_by():
     assert errors(NARROW, least=0.3) == pytest.approx([0.3])
+
+
+def test_a_form_at_its_bound_gives_way_to_the_best_of_all_sets_that_were_fitted(monkeypatch):
+    """The usual form in its place is far worse here than a set that was not judged of late."""
+    usual, odd = Candidate('a', 'usual', (0,)), Candidate('a', 'odd', (0,), usual=False)
+    other = Candidate('b', 'b', (1,))
+    evidence = {(odd,): 100.0, (usual,): 0.0, (other,): 90.0}
+    search = object.__new__(_Search)
+    search.all_causes, search.rules, search.ranked = (usual, odd, other), RULES, []
+    search.flights = search.vehicle = search.noise = None
+    search.quadratic = SimpleNamespace(scatter=1.0)
+    search.tried = {key: SimpleNamespace(cost=-value) for key, value in evidence.items()}
+    search.judged = {}
+
+    def judge(key):
+        made = Fitted(key, search.tried[key], evidence[key], (0, 0))
+        return search.judged.setdefault(key, made)
+
+    search.judge = judge
+    judge((odd,))
+    monkeypatch.setattr(selecting, 'within_bounds',
+                        lambda *_: ((usual,), search.tried[(usual,)]))
+    monkeypatch.setattr(selecting, 'out_of_bounds', lambda cause, *_: cause is odd)
+    search.settle()
+    assert search.best.chosen == (other,)
 
 
 def test_sets_that_are_as_good_count_alike_with_what_they_differ_in():

@@ -66,14 +66,14 @@ def refuse_unfit(record, vehicle):
     return found
 
 
-def cautions(record, vehicle, refuted=()):
+def cautions(record, vehicle, doubtful=()):
     """
     Return what to be wary of in a record that bears a verdict, as data: the Findings of warning.
 
-    Args: refuted: codes of errors that other flights of the vehicle speak against: see `refuted`.
+    Args: doubtful: codes of errors that other flights of the vehicle speak against: see refuted.
     Raises InputError for a fault that no verdict survives.
     """
-    found = [replace(finding, severity='warning') if finding.code in refuted else finding
+    found = [replace(finding, severity='warning') if finding.code in doubtful else finding
              for finding in findings(record, vehicle)]
     refuse_errors(record, found)
     return [as_caution(finding, record) for finding in found if finding.severity == 'warning']

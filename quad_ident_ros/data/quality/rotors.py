@@ -60,8 +60,18 @@ def order_and_spin(record, vehicle):
     for each order (roll and pitch), then for each choice of spins (yaw).
     """
     told = _told(record, vehicle)
-    if told is None:
-        return []
+    return [] if told is None else _wrong(told, vehicle)
+
+
+def confirmed(record, vehicle):
+    """Return whether a flight shows that order and spins are those of the vehicle file."""
+    told = _told(record, vehicle)
+    return (told is not None and told.scores[told.declared] >= SURE
+            and not _wrong(told, vehicle))
+
+
+def _wrong(told, vehicle):
+    """Return the Findings on the order and the spins by what a flight says of them."""
     scores, declared = told.scores, told.declared
     best = max(scores, key=scores.get)
     if scores[best] < SURE:
@@ -74,14 +84,6 @@ def order_and_spin(record, vehicle):
             f'{scores[declared]:.2f})',
             'put the commands into the order of the vehicle file, or correct that')]
     return _spin(told, vehicle)
-
-
-def confirmed(record, vehicle):
-    """Return whether a flight shows that order and spins are those of the vehicle file."""
-    told = _told(record, vehicle)
-    if told is None or told.scores[told.declared] < SURE:
-        return False
-    return not order_and_spin(record, vehicle)
 
 
 @dataclass(frozen=True, eq=False)
