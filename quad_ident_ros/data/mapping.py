@@ -12,13 +12,11 @@ from quad_ident_ros import resources, schema
 from quad_ident_ros.data.frames import BODIES, WORLDS
 from quad_ident_ros.data.record import KNOWN, unit
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.model.motors import KINDS, shares, TO_SPEED
 
 ROLES = ('pose', 'position', 'attitude', 'velocity', 'rate', 'specific_force', 'commands',
          'rotors', 'battery')
 """What a topic can be read for."""
-
-KINDS = {'speed': None, 'rpm': None, 'pwm': (1000.0, 2000.0), 'normalised': (0.0, 1.0)}
-"""Kinds of actuator outputs, with the output at the lowest and at the full speed by default."""
 
 CURVES = ('linear', 'thrust')
 
@@ -168,19 +166,17 @@ def rotor_speeds(where, outputs, actuators, vehicle):
                          f'{len(vehicle.rotors)} rotors of {vehicle.name}; name one for each')
     chosen = outputs[:, [number - 1 for number in order]]
     if KINDS[actuators.kind] is None:
-        return chosen * (2 * np.pi / 60 if actuators.kind == 'rpm' else 1.0)
+        return chosen * TO_SPEED[actuators.kind]
     speeds = actuators.speeds
     if speeds is None and vehicle is not None and np.isfinite(vehicle.speed_max):
         speeds = vehicle.speed_min, vehicle.speed_max
     if speeds is None:
         raise InputError(f'{where}: actuators: the rotor speeds at minimum and maximum are not '
                          'known; give speeds: [low, high] in rad/s, or a vehicle with them')
-    share = (chosen - actuators.minimum) / (actuators.maximum - actuators.minimum)
+    share = shares(chosen, actuators.minimum, actuators.maximum)
     low, high = speeds
-    full = np.clip(share, 0.0, 1.0)
-    turning = (low + full * (high - low) if actuators.curve == 'linear'
-               else np.sqrt(low ** 2 + full * (high ** 2 - low ** 2)))
-    return np.where(share >= 0.0, turning, 0.0)
+    return np.nan_to_num(low + share * (high - low) if actuators.curve == 'linear'
+                         else np.sqrt(low ** 2 + share * (high ** 2 - low ** 2)))
 
 
 def _source(where, role, entry):

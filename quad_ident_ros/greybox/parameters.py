@@ -8,6 +8,7 @@ from functools import lru_cache
 import numpy as np
 
 from quad_ident_ros.effects import registry
+from quad_ident_ros.model.motors import spread
 from quad_ident_ros.model.rigid_body import vehicle_vector
 from quad_ident_ros.model.vehicle import Vehicle
 
@@ -84,7 +85,26 @@ def prior_sizes(vehicle: Vehicle, width: float) -> np.ndarray:
                 sizes[INDEX[factor]] = one / constants[INDEX[name]]
     if 'mass' in vehicle.uncertainty:
         sizes[INDEX['mass_offset.mass']] = vehicle.uncertainty['mass']
+    _put_in_map(sizes, vehicle)
     return sizes
+
+
+def _put_in_map(sizes: np.ndarray, vehicle: Vehicle) -> None:
+    """Enter how well the map of the motors is known: the thrust at hover, and its power."""
+    if vehicle.motors is None:
+        return
+    k = vehicle.thrust_coefficient
+    level, power = spread(vehicle.motors, k, k * vehicle.hover_speed ** 2)
+    if level is not None:
+        if vehicle.motors.gives == 'speed':     # of a thrust the coefficient plays no part
+            coefficient = vehicle.uncertainty.get('thrust_coefficient', 0.0)
+            level = float(np.hypot(level, np.asarray(coefficient) / k))
+        for factor in FACTORS['thrust_coefficient']:
+            sizes[INDEX[factor]] = level
+    if power is not None:
+        sizes[INDEX['thrust_scale.exponent']] = power
+        # The power of (speed + offset)^2 is 2 / (1 + offset) at hover.
+        sizes[INDEX['thrust_scale.offset']] = 0.5 * power
 
 
 def columns_of(effects: Iterable[str], rotor_count: int) -> list[int]:

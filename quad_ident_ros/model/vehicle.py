@@ -13,6 +13,7 @@ import yaml
 from quad_ident_ros import resources, schema
 from quad_ident_ros.effects import registry
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.model.motors import Motors, motors_from, motors_to_mapping
 
 Uncertainty: TypeAlias = float | tuple[float | None, ...]
 
@@ -40,7 +41,8 @@ class Vehicle:
     linear_drag (3,) N/(m/s); rotational_drag (3,) N m/(rad/s)^2; speeds rad/s; effects that it
     has beside the nominal model, {effect: {parameter: value}}, see effects.registry; uncertainty:
     standard deviations of the constants that have one, in the constant's unit, by key (those of
-    places by 'rotors[0].position'); those of lists are tuples, None where an entry has none.
+    places by 'rotors[0].position'); those of lists are tuples, None where an entry has none;
+    motors: what the signals of its records are, or None.
     """
 
     name: str
@@ -58,6 +60,7 @@ class Vehicle:
     speed_max: float = float('inf')
     effects: registry.Values = field(default_factory=dict, hash=False)
     uncertainty: dict[str, Uncertainty] = field(default_factory=dict, hash=False)
+    motors: Motors | None = None
 
     @property
     def arm_length(self) -> float:
@@ -138,6 +141,8 @@ def vehicle_from_mapping(data: Any, where: str) -> Vehicle:
         raise InputError(f'{where}: rotors: all of them lie on the z axis; give their places')
     if vehicle.speed_max <= vehicle.speed_min:
         raise InputError(f'{where}: speed_max must be greater than speed_min')
+    if 'motors' in data:
+        vehicle = replace(vehicle, motors=motors_from(f'{where}: motors', data['motors']))
     if 'effects' in data:
         theta = registry.vector(data['effects'], vehicle, f'{where}: effects')
         vehicle = replace(vehicle, effects=registry.mapping(theta))
@@ -148,11 +153,13 @@ def vehicle_to_mapping(vehicle: Vehicle) -> dict[str, Any]:
     """Return the mapping of a vehicle file that describes the vehicle."""
     stds = vehicle.uncertainty
     data = {key: _with_std(value, stds.get(key)) for key, value in asdict(vehicle).items()
-            if key != 'uncertainty'}
+            if key not in ('uncertainty', 'motors')}
     data['rotors'] = [{'position': _with_std(rotor.position, stds.get(_place_of(i))),
                        'spin': rotor.spin} for i, rotor in enumerate(vehicle.rotors)]
     if math.isinf(vehicle.speed_max):
         del data['speed_max']
+    if vehicle.motors is not None:
+        data['motors'] = motors_to_mapping(vehicle.motors)
     if not vehicle.effects:
         del data['effects']
     return data

@@ -16,6 +16,7 @@ from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.greybox.parameters import INDEX, limits, NAMES, prior_sizes
 from quad_ident_ros.model.mixing import infeasibility, squared_speeds
+from quad_ident_ros.model.motors import Motors
 from quad_ident_ros.model.vehicle import (
     load_vehicle,
     Rotor,
@@ -199,7 +200,12 @@ def vehicles(draw):
         draw(st.just(float('inf')) | st.floats(101, 1e6)),
         {name: values for name, values in effects.items()
          if name not in ('com_offset', 'inflow', 'body_drag', 'blade_flapping', 'rotor_gyro')},
-        {key: draw(known[key]) for key in draw(st.sets(st.sampled_from(sorted(known))))})
+        {key: draw(known[key]) for key in draw(st.sets(st.sampled_from(sorted(known))))},
+        draw(st.none() | st.builds(
+            Motors, st.just('pwm'), st.floats(0, 1000), st.floats(1001, 3000),
+            st.sampled_from(['speed', 'thrust']), positive, positive, positive,
+            voltage_reference=positive, voltage_exponent=positive, uncertainty=st.dictionaries(
+                st.sampled_from(['minimum', 'gain', 'voltage_exponent']), positive))))
 
 
 @FAST
