@@ -14,6 +14,7 @@ import numpy as np
 from quad_ident_ros.data import frames
 from quad_ident_ros.data.autopilot import known_names, outputs_stream, unit_quaternions
 from quad_ident_ros.data.dataflash import read_messages
+from quad_ident_ros.data.motor_order import about_motors, quad
 from quad_ident_ros.data.readers.base import content_of
 from quad_ident_ros.data.record import FlightRecord, QUATERNION
 from quad_ident_ros.data.streams import INTERPOLATED, join, SLOW, Stream
@@ -38,21 +39,23 @@ _PLACES = {(1, 0): '1 right, 2 left, 3 front, 4 rear',
            (1, 1): '1 front right, 2 rear left, 3 front left, 4 rear right'}
 """Where motors are, by FRAME_CLASS and FRAME_TYPE; quad plus and quad X."""
 
+_ROTORS = {(1, 0): quad((0, -1), (0, 1), (1, 0), (-1, 0)),
+           (1, 1): quad((1, -1), (-1, 1), (1, 1), (-1, -1))}
+
 _MOTOR = re.compile(r'SERVO([1-9]|[12][0-9]|3[0-2])_FUNCTION')
 _MAP = ('MOT_PWM_MIN', 'MOT_PWM_MAX', 'MOT_SPIN_ARM', 'MOT_SPIN_MIN', 'MOT_SPIN_MAX',
         'MOT_THST_EXPO')
 _AXIS, _FLATTENING = 6378137.0, 1 / 298.257223563      # WGS 84
 
 
-def read_ardupilot(path, mapping=None, vehicle=None):
+def read_ardupilot(path, mapping=None):
     """
     Return the FlightRecord of a log of ArduCopter, in ENU and FLU.
 
     The time base is that of the outputs (RCOU), in the order of the motors as SERVOn_FUNCTION
-    tells it; they become cmd1..N where the mapping says how (actuators), and stay output1..N, us
-    of PWM, where it does not. Of EKF cores, sensors and batteries the first is read, or that of
-    the mapping's instances. No stream is required.
-    Args: path; mapping Mapping or None; vehicle Vehicle or None.
+    tells it: output1..N, us of PWM. Of EKF cores, sensors and batteries the first is read, or
+    that of the mapping's instances. No stream is required.
+    Args: path; mapping Mapping or None.
     Raises InputError that names file and message, also for vehicles that are no multirotor.
     """
     path = Path(path)
@@ -70,7 +73,7 @@ def read_ardupilot(path, mapping=None, vehicle=None):
     streams = [_attitude(data), *_motion(data), _rate(data), _specific_force(data),
                _battery(data)]
     channels = _channels(parameters)
-    outputs = _outputs(path, data['RCOU'], channels, mapping.actuators, vehicle, notes)
+    outputs = _outputs(path, data['RCOU'], channels, mapping.actuators, notes)
     rotors = _rotors(found.get('ESC'), channels, notes)
     streams = [stream for stream in [*streams, outputs, *rotors] if stream is not None]
     if not any(set(stream.columns) - {'vbat'} for stream in streams):
@@ -80,7 +83,8 @@ def read_ardupilot(path, mapping=None, vehicle=None):
         notes += _order_notes(parameters, bool(channels))
     start, t, columns, left_out = join(path, streams)
     return FlightRecord(t, columns, {'name': path.stem, 'source': str(path), 'start_ns': start,
-                                     'notes': [*notes, *left_out]})
+                                     'notes': [*notes, *left_out],
+                                     'motors': _about_motors(parameters, channels)})
 
 
 def contents(path):
@@ -261,7 +265,7 @@ def _channels(parameters):
     return {motor: found[motor] for motor in found if all(k in found for k in range(1, motor))}
 
 
-def _outputs(path, messages, channels, actuators, vehicle, notes):
+def _outputs(path, messages, channels, actuators, notes):
     """Return the stream of the motors' outputs, or None."""
     where = f'{path}, message RCOU'
     letters = () if messages is None else [name for name in messages.fields
@@ -285,8 +289,7 @@ def _outputs(path, messages, channels, actuators, vehicle, notes):
         notes.append('no parameter SERVOn_FUNCTION tells which outputs are motors: all outputs '
                      'that are used are kept, as they come')
     values = _stack(messages, [by_channel[channel] for channel in order])
-    return outputs_stream(where, 'message RCOU', messages.rows['TimeUS'].astype(np.int64) * 1000,
-                          values, actuators, vehicle)
+    return outputs_stream('message RCOU', messages.rows['TimeUS'].astype(np.int64) * 1000, values)
 
 
 def _rotors(messages, channels, notes):
@@ -309,6 +312,13 @@ def _rotors(messages, channels, notes):
     return [Stream(f'message ESC[{number}]', one.rows['TimeUS'].astype(np.int64) * 1000,
                    {f'rotor{k}': one.values('RPM') * (np.pi / 30.0)})
             for k, (number, one) in enumerate(zip(instances, some, strict=True), 1)]
+
+
+def _about_motors(parameters, channels):
+    """Return what is known of the motors, for the info of a record."""
+    frame = tuple(parameters.get(name) for name in ('FRAME_CLASS', 'FRAME_TYPE'))
+    rotors = _ROTORS.get(frame, ()) if len(channels) == 4 else ()
+    return about_motors(rotors, "ArduPilot's order for FRAME_CLASS and FRAME_TYPE", 'pwm')
 
 
 def _order_notes(parameters, known):

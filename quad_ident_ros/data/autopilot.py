@@ -4,7 +4,7 @@
 
 import numpy as np
 
-from quad_ident_ros.data.mapping import Mapping, rotor_speeds
+from quad_ident_ros.data.mapping import Mapping
 from quad_ident_ros.data.streams import HELD, Stream
 from quad_ident_ros.errors import InputError
 
@@ -27,16 +27,9 @@ def known_names(path, title, mapping, instances=False):
     return mapping
 
 
-def outputs_stream(where, source, stamps, values, actuators, vehicle):
-    """
-    Return the HELD Stream of actuator outputs (N, m): cmd1..n with Actuators, or output1..m.
-
-    Raises InputError as mapping.rotor_speeds.
-    """
-    name = 'output'
-    if actuators is not None:
-        values, name = rotor_speeds(where, values, actuators, vehicle), 'cmd'
-    return Stream(source, stamps, {f'{name}{k + 1}': column
+def outputs_stream(source, stamps, values):
+    """Return the HELD Stream output1..m of actuator outputs (N, m), of motors 1..m."""
+    return Stream(source, stamps, {f'output{k + 1}': column
                                    for k, column in enumerate(np.asarray(values, float).T)}, HELD)
 
 

@@ -16,6 +16,7 @@ import numpy as np
 from quad_ident_ros.data import frames
 from quad_ident_ros.data.autopilot import G, known_names, outputs_stream
 from quad_ident_ros.data.blackbox import read_logs
+from quad_ident_ros.data.motor_order import about_motors, quad
 from quad_ident_ros.data.readers.base import content_of
 from quad_ident_ros.data.record import FlightRecord, QUATERNION
 from quad_ident_ros.data.streams import INTERPOLATED, join, SLOW, Stream
@@ -33,25 +34,27 @@ ROLES = {'gyroADC[0]': 'rate', 'accSmooth[0]': 'specific_force', 'imuQuaternion[
          'motor[0]': 'commands', 'eRPM[0]': 'rotors', 'vbatLatest': 'battery'}
 ORDER = "motors are in Betaflight's order: 1 rear right, 2 front right, 3 rear left, 4 front left"
 
+QUAD_X = quad((-1, -1), (1, -1), (-1, 1), (1, 1))
+
+_KINDS = {2047: 'dshot', 2000: 'pwm'}       # by the highest output of the header
 _WANTED = (*GYRO, *ACCELEROMETER, *ATTITUDE, *MOTORS, *SPEEDS, 'vbatLatest')
 _HALF = np.sqrt(0.5)
 _ENU_FROM_NWU = np.array([_HALF, 0.0, 0.0, _HALF])      # a quarter of a turn about z
 _REVISION = re.compile(r'Betaflight ([0-9]{1,4})\.([0-9]{1,4})')
 
 
-def read_betaflight(path, mapping=None, vehicle=None):
+def read_betaflight(path, mapping=None):
     """
     Return the FlightRecords of a blackbox file, one for each of its logs, in ENU and FLU.
 
-    The outputs to the motors become cmd1..N where the mapping says how (actuators), and stay
-    output1..N, as motorOutput counts them, where it does not. No field is required.
-    Args: path; mapping Mapping or None; vehicle Vehicle or None.
+    The outputs to the motors are output1..N, as motorOutput counts them. No field is required.
+    Args: path; mapping Mapping or None.
     Raises InputError that names file and log.
     """
     path = Path(path)
     mapping = known_names(path, 'a blackbox log', mapping)
     logs = read_logs(path, _WANTED)
-    return [_record(path, log, len(logs), mapping.actuators, vehicle) for log in logs]
+    return [_record(path, log, len(logs), mapping.actuators) for log in logs]
 
 
 def contents(path):
@@ -63,7 +66,7 @@ def contents(path):
             for log in read_logs(path, ())]
 
 
-def _record(path, log, count, actuators, vehicle):
+def _record(path, log, count, actuators):
     where = str(path) if count == 1 else f'{path}, log {log.number}'
     if str(log.headers.get('Firmware type', '')).startswith('Rotorflight'):
         raise InputError(f'{where}: this is a log of Rotorflight, of a helicopter, which is no '
@@ -72,13 +75,14 @@ def _record(path, log, count, actuators, vehicle):
     streams = [_attitude(log), _rate(log, notes), _specific_force(log, notes),
                _rotors(log, notes), _battery(log, notes)]
     motors = [name for name in MOTORS if name in log.values]
+    kind = ''
     if motors:
-        streams.append(outputs_stream(where, 'motor', _stamps(log), _stack(log, motors), actuators,
-                                      vehicle))
+        streams.append(outputs_stream('motor', _stamps(log), _stack(log, motors)))
         notes += [ORDER] if len(motors) == 4 else []
         span = log.headers.get('motorOutput')
         if isinstance(span, list) and len(span) == 2:
             notes.append(f'outputs to the motors are from {span[0]} to {span[1]}'[:100])
+            kind = _KINDS.get(span[1], '')
     elif actuators is not None:
         raise InputError(f'{where}: has no field motor[0] for the actuators of the mapping; log '
                          'it, or leave actuators out')
@@ -88,7 +92,9 @@ def _record(path, log, count, actuators, vehicle):
     start, t, columns, left_out = join(where, streams)
     name = path.stem if count == 1 else f'{path.stem}_{log.number}'
     return FlightRecord(t, columns, {'name': name, 'source': where, 'start_ns': start,
-                                     'notes': [*notes, *left_out]})
+                                     'notes': [*notes, *left_out],
+                                     'motors': about_motors(QUAD_X if len(motors) == 4 else (),
+                                                            "Betaflight's order, quad X", kind)})
 
 
 def _stamps(log):

@@ -10,12 +10,12 @@ import numpy as np
 
 from quad_ident_ros.data import frames
 from quad_ident_ros.data.foreign import BODY_VELOCITY, velocity_in_world
-from quad_ident_ros.data.mapping import ATTITUDE, Column, factor_of, Mapping, rotor_speeds
+from quad_ident_ros.data.mapping import ATTITUDE, Column, factor_of, Mapping
 from quad_ident_ros.data.record import EULER, FlightRecord, QUATERNION, unit
 from quad_ident_ros.data.streams import HELD, INTERPOLATED, join, SLOW, Stream
 from quad_ident_ros.data.tabular import Table
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.model.vehicle import Vehicle
+from quad_ident_ros.model.motors import MOTORS_OFF
 
 POSITION, VELOCITY = ('px', 'py', 'pz'), ('vx', 'vy', 'vz')
 RATE, FORCE = ('wx', 'wy', 'wz'), ('ax', 'ay', 'az')
@@ -24,14 +24,13 @@ GROUPS = {'position': POSITION, 'velocity': VELOCITY, 'attitude': QUATERNION, 'e
 CLOCK = 1e8         # s: a clock that has run for longer counts from an epoch
 
 
-def record_of(path: Path, table: Table, mapping: Mapping, vehicle: Vehicle | None,
-              notes: Sequence[str]) -> FlightRecord:
+def record_of(path: Path, table: Table, mapping: Mapping, notes: Sequence[str]) -> FlightRecord:
     """
     Return the FlightRecord of a table.
 
     Streams whose cells are empty in between are joined as those of a bag. Columns that are not
     mapped are kept where they have a value in each row of the record.
-    Args: table tabular.Table; mapping Mapping with columns; vehicle Vehicle or None; notes list.
+    Args: table tabular.Table; mapping Mapping with columns; notes list.
     Raises InputError that names the column.
     """
     chosen = mapping.columns
@@ -52,7 +51,7 @@ def record_of(path: Path, table: Table, mapping: Mapping, vehicle: Vehicle | Non
     known = np.isfinite(t)
     stamps = np.where(known, np.round((np.where(known, t, origin) - origin) * 1e9), 0).astype(
         np.int64)
-    streams = list(_streams(path, table, mapping, vehicle, stamps, known))
+    streams = list(_streams(path, table, mapping, stamps, known))
     if not streams:
         raise InputError(f'{path}: columns: only the time is mapped; name what was measured')
     start, seconds, columns, joined = join(path, streams)
@@ -79,8 +78,8 @@ def _values(table: Table, column: Column) -> np.ndarray:
     return np.stack([table.columns[name] for name in column.names], axis=-1)
 
 
-def _streams(path: Path, table: Table, mapping: Mapping, vehicle: Vehicle | None,
-             stamps: np.ndarray, known: np.ndarray) -> Iterator[Stream]:
+def _streams(path: Path, table: Table, mapping: Mapping, stamps: np.ndarray,
+             known: np.ndarray) -> Iterator[Stream]:
     """Yield the streams of the mapped columns, in SI units, ENU and FLU."""
     chosen = mapping.columns
 
@@ -122,14 +121,10 @@ def _streams(path: Path, table: Table, mapping: Mapping, vehicle: Vehicle | None
         values = np.hstack([_values(table, chosen[name]) * factor_of(name, chosen[name].unit)
                             for name in names])
         source = shown([chosen[name].names[0] for name in names])
-        if prefix == 'output' and mapping.actuators is not None:
-            use = known & np.isfinite(values).any(axis=1)
-            speeds = rotor_speeds(f'{path}, columns {source}', values[use], mapping.actuators,
-                                  vehicle)
-            yield Stream(f'columns {source}', stamps[use],
-                         {f'cmd{k}': column for k, column in enumerate(speeds.T, 1)}, HELD)
-        else:
-            yield stream(source, names, values, between)
+        if prefix == 'output':      # a motor that is off has no number
+            off = ~np.isfinite(values) & np.isfinite(values).any(axis=1, keepdims=True)
+            values = np.where(off, MOTORS_OFF, values)
+        yield stream(source, names, values, between)
 
 
 def _attitude(path: Path, table: Table, mapping: Mapping) -> tuple[list[str], np.ndarray] | None:

@@ -13,6 +13,7 @@ import numpy as np
 
 from quad_ident_ros.data import frames
 from quad_ident_ros.data.autopilot import G, known_names, outputs_stream, unit_quaternions
+from quad_ident_ros.data.motor_order import about_motors, quad
 from quad_ident_ros.data.readers.base import content_of
 from quad_ident_ros.data.record import FlightRecord, QUATERNION
 from quad_ident_ros.data.streams import INTERPOLATED, join, SLOW, Stream
@@ -26,6 +27,8 @@ ROTORS = ('rotor1', 'rotor2', 'rotor3', 'rotor4')
 OUTPUTS = ('output1', 'output2', 'output3', 'output4')
 ORDER = ('motors are in the order of the Crazyflie: 1 front right, 2 rear right, 3 rear left, '
          '4 front left')
+MOTORS = about_motors(quad((1, -1), (-1, -1), (-1, 1), (1, 1)), 'the order of the Crazyflie',
+                      'duty16')
 
 
 def _of(group, *names):
@@ -73,14 +76,13 @@ SOURCES = (
 """Role, columns, how they are held, and by preference (variables, what makes columns of them)."""
 
 
-def read_crazyflie(path, mapping=None, vehicle=None):
+def read_crazyflie(path, mapping=None):
     """
     Return the FlightRecord of a micro-SD log.
 
-    The time base is that of the motors' commands, which become cmd1..4 where the mapping says how
-    (actuators), and stay output1..4, 0 to 65535, where it does not; without them it is that of
-    the first stream there is. No stream is required.
-    Args: path; mapping Mapping or None; vehicle Vehicle or None.
+    The time base is that of the motors' commands, output1..4, 0 to 65535; without them it is that
+    of the first stream there is. No stream is required.
+    Args: path; mapping Mapping or None.
     Raises InputError that names file and event or byte.
     """
     path = Path(path)
@@ -97,8 +99,7 @@ def read_crazyflie(path, mapping=None, vehicle=None):
             values = np.reshape(make(values), (len(values), -1))
         source = f'event {event.name}'
         if columns is OUTPUTS:
-            streams.append(outputs_stream(f'{path}, {source}', source, event.stamps, values,
-                                          mapping.actuators, vehicle))
+            streams.append(outputs_stream(source, event.stamps, values))
         else:
             streams.append(Stream(source, event.stamps, dict(zip(columns, values.T, strict=True)),
                                   between))
@@ -107,15 +108,15 @@ def read_crazyflie(path, mapping=None, vehicle=None):
         raise InputError(f'{path}: none of the variables in this Crazyflie log is known (there '
                          f'are: {_listed(_names(events))}); log acc, gyro, motor and '
                          'stateEstimate')
-    if mapping.actuators is not None and 'cmd1' not in has:
+    if mapping.actuators is not None and 'output1' not in has:
         raise InputError(f'{path}: has no motor.m1 to motor.m4 for the actuators of the mapping; '
                          'log them, or leave actuators out')
     start, t, columns, left_out = join(path, streams)
     unread = [name for name in _names(events) if name not in used]
     notes = [*notes, *([f'variables that are not read: {_listed(unread)}'] if unread else []),
-             *([ORDER] if has & {'cmd1', 'output1', 'rotor1'} else []), *left_out]
+             *([ORDER] if has & {'output1', 'rotor1'} else []), *left_out]
     return FlightRecord(t, columns, {'name': path.stem, 'source': str(path), 'start_ns': start,
-                                     'notes': notes})
+                                     'notes': notes, 'motors': MOTORS})
 
 
 def contents(path):

@@ -25,6 +25,7 @@ from quad_ident_ros.data.record import FlightRecord, QUATERNION
 from quad_ident_ros.data.streams import HELD, INTERPOLATED, join, SLOW, Stream
 from quad_ident_ros.data.topics import not_unit, OTHER_SHAPE
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.model.motors import MOTORS_OFF, TO_SPEED
 
 BODY_VELOCITY = ('body_vx', 'body_vy', 'body_vz')
 ONE_CLOCK = 1.0     # s between a stamp and its receipt that vary so much are of several clocks
@@ -34,14 +35,14 @@ _COLUMNS = {'position': ('px', 'py', 'pz'), 'velocity': ('vx', 'vy', 'vz'),
             'rate': ('wx', 'wy', 'wz'), 'specific_force': ('ax', 'ay', 'az')}
 
 
-def read_mapped_bag(path, mapping, vehicle=None):
+def read_mapped_bag(path, mapping):
     """
     Return the FlightRecord in a bag of ROS 1 or ROS 2 whose topics a mapping names.
 
     A mapping without topics is filled by the types of the topics, where these leave no doubt.
     Stamps are those in the messages where all of a topic have one, else the times of receipt; all
     are the times of receipt where the stamps are of several clocks.
-    Args: path of a bag; mapping Mapping; vehicle Vehicle or None.
+    Args: path of a bag; mapping Mapping.
     Raises InputError that names file, topic and message.
     """
     notes = []
@@ -57,7 +58,7 @@ def read_mapped_bag(path, mapping, vehicle=None):
             for part in by_topic[topic]:
                 part.add(received, message)
     parts = [part for part in parts if not (notes and part.role == 'battery' and part.count < 2)]
-    streams = [part.stream(mapping, vehicle) for part in parts]
+    streams = [part.stream(mapping) for part in parts]
     if np.ptp([part.offset for part in parts]) > ONE_CLOCK:
         streams = [Stream(stream.source, np.array(part.received, np.int64), stream.columns,
                           stream.between) for part, stream in zip(parts, streams, strict=True)]
@@ -135,7 +136,10 @@ class TopicPart:
         """
         found = []
         for stamp, values in self._read(message, kind):
-            columns = self._columns(np.array([values]), mapping, None)
+            columns = self._columns(np.array([values]), mapping)
+            if 'output1' in columns and mapping.actuators is not None:
+                speeds = rotor_speeds(self._where, [values], mapping.actuators, None)
+                columns = {f'cmd{k}': column for k, column in enumerate(speeds.T, 1)}
             found.append((stamp or received,
                           {name: float(column[0]) for name, column in columns.items()}))
         self._one_child()
@@ -196,7 +200,7 @@ class TopicPart:
         self._reading = reading
         return reading.values(message)
 
-    def stream(self, mapping, vehicle):
+    def stream(self, mapping):
         """Return the Stream of the messages; InputError where there are none."""
         if not self._numbers:
             child = f' with child_frame_id {self.source.child}' if self.source.child else ''
@@ -205,8 +209,9 @@ class TopicPart:
         self._one_child()
         table = np.frombuffer(self._numbers, float).reshape(-1, self._width)
         stamps = self._stamps if self._stamped else self.received
-        columns = self._columns(table, mapping, vehicle)
-        while len(columns) > 1 and 'output1' in columns and not list(columns.values())[-1].any():
+        columns = self._columns(table, mapping)
+        outputs = 'output1' in columns
+        while outputs and len(columns) > 1 and not (list(columns.values())[-1] > 0).any():
             columns.popitem()   # outputs without a motor come last
         return Stream(f'topic {self.source.topic}', np.array(stamps, np.int64), columns,
                       {'commands': HELD, 'battery': SLOW}.get(self.role, INTERPOLATED))
@@ -219,7 +224,7 @@ class TopicPart:
                              f'that of the vehicle: {self.role}: {{topic: {self.source.topic}, '
                              'child: FRAME}')
 
-    def _columns(self, table, mapping, vehicle):
+    def _columns(self, table, mapping):
         """Return the columns of the role from the rows of its messages."""
         px4 = is_px4(self._type)
         world, body = ('NED', 'FRD') if px4 else (mapping.world, mapping.body)
@@ -245,17 +250,18 @@ class TopicPart:
             return dict(zip(names, frames.body_vector(table, body).T, strict=True))
         if role == 'battery':
             return {'vbat': np.where(np.isfinite(table[:, 0]), table[:, 0], math.nan)}
-        return self._outputs(table, mapping.actuators, vehicle)
+        return self._outputs(table, mapping.actuators)
 
-    def _outputs(self, table, actuators, vehicle):
+    def _outputs(self, table, actuators):
         """Return commands or rotor speeds in rad/s, or outputs where these are not known."""
-        name = 'cmd' if self.role == 'commands' else 'rotor'
         kind = self._reading.kind if self._reading else ''
-        if kind in ('speed', 'rpm') and (actuators is None or name == 'rotor'):
-            order = actuators.order if actuators else ()
-            actuators = Actuators(order, kind)
-        elif kind and actuators is None:
-            return {f'output{k}': np.where(np.isfinite(column), column, 0.0)
-                    for k, column in enumerate(table.T, 1)}
-        speeds = rotor_speeds(self._where, table, actuators or Actuators(), vehicle)
+        if self.role == 'rotors':
+            told = actuators or Actuators()
+            if kind in TO_SPEED:
+                told = Actuators(told.order, kind)
+            speeds, name = rotor_speeds(self._where, table, told, None), 'rotor'
+        elif actuators is None and kind in ('', *TO_SPEED):
+            speeds, name = table * TO_SPEED[kind or 'speed'], 'cmd'
+        else:
+            speeds, name = np.where(np.isfinite(table), table, MOTORS_OFF), 'output'
         return {f'{name}{k}': column for k, column in enumerate(speeds.T, 1)}

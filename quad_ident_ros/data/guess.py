@@ -13,6 +13,7 @@ from quad_ident_ros.data import frames
 from quad_ident_ros.data.columns import FORCE, from_euler, POSITION, RATE, VELOCITY
 from quad_ident_ros.data.mapping import ATTITUDE, Column, factor_of, Mapping
 from quad_ident_ros.data.record import EULER, QUATERNION
+from quad_ident_ros.data.signal_kind import kinds_of, TITLES
 from quad_ident_ros.data.tabular import Table
 
 RATES = 5.0, 5000.0     # Hz, of logs
@@ -59,14 +60,13 @@ class Guess:
     What the columns of a table are taken for.
 
     mapping: as a mapping file would say it; said: what was taken for what; doubts: what names and
-    values do not tell; roles: what there is, of data.mapping.ROLES; commands: their kind.
+    values do not tell; roles: what there is, of data.mapping.ROLES.
     """
 
     mapping: Mapping = None
     said: list = field(default_factory=list)
     doubts: list = field(default_factory=list)
     roles: list = field(default_factory=list)
-    commands: str = ''
     candidates: dict = field(default_factory=dict)
 
 
@@ -417,17 +417,15 @@ class _Making:
         if not names:
             return
         values = self.values(names)
-        kind = command_kind(values)
-        self.guess.commands = kind
+        kinds = kinds_of(values)
         unit = self._unit(names, ('rad/s', 'rpm'))
         if unit:
             self.take([f'cmd{k}' for k in range(1, len(names) + 1)], names, unit,
                       role='commands', said=f'rotor speed commands in {unit}')
             return
+        what = ' or '.join(TITLES[kind] for kind in kinds)
         self.take([f'output{k}' for k in range(1, len(names) + 1)], names, role='commands',
-                  said=f'outputs, {kind}' + ('' if self.given.actuators else
-                                             ', kept as they are: a mapping with actuators says '
-                                             'which rotor speeds they are'))
+                  said='outputs, ' + (f'{what} by their size' if what else 'of an unknown kind'))
 
     def battery(self) -> None:
         name = self.one(_BATTERY.pattern)
@@ -488,28 +486,6 @@ def angle_unit(values: np.ndarray) -> str:
     """Return rad or deg of roll, pitch and yaw (N, 3): nobody flies tilted by a radian."""
     tilt = float(np.nanquantile(np.abs(values[:, :2]), 0.9))
     return 'deg' if tilt > 1.0 or np.nanmax(np.abs(values)) > 6.5 else 'rad'
-
-
-def command_kind(values: np.ndarray) -> str:
-    """Return what kind of commands values are, as a message says it."""
-    finite = values[np.isfinite(values)]
-    if not len(finite):
-        return 'empty'
-    low, high = float(finite.min()), float(finite.max())
-    whole = bool(np.all(finite == np.round(finite)))
-    if low >= -1e-3 and high <= 1.001:
-        return 'normalised, 0 to 1'
-    if low >= 800 and high <= 2200:
-        return 'PWM by their size, 1000 to 2000 us'
-    if low >= 0 and high <= 100.001 and high > 2:
-        return 'per cent, 0 to 100'
-    if low >= 0 and high <= 65535 and whole and high > 2200:
-        return 'duty, 0 to 65535'
-    if 0 <= low and high < 4000:
-        return 'rad/s by their size'
-    if 0 <= low and high < 60000:
-        return 'rpm by their size'
-    return 'of an unknown kind'
 
 
 def _rises(values: np.ndarray) -> bool:

@@ -4,6 +4,7 @@
 
 from pathlib import Path
 
+from quad_ident_ros.data.outputs import commanded
 from quad_ident_ros.data.readers.registry import READERS
 from quad_ident_ros.data.split import split_at_jumps
 from quad_ident_ros.errors import InputError
@@ -34,12 +35,14 @@ def load_all(path, mapping=None, vehicle=None):
     """
     Return the flight records in a file or bag, at least one; arguments and errors of load.
 
-    They are split where position or heading jump, as where an estimator was reset.
+    They are split where position or heading jump, as where an estimator was reset. Outputs to the
+    motors become commands by the mapping or the vehicle, see data.outputs.
     """
     path = Path(path)
     flights = _with_package(path, reader_of(path),
                             lambda reader: reader.read(path, mapping, vehicle))
-    return [piece for flight in flights for piece in split_at_jumps(flight)]
+    pieces = [piece for flight in flights for piece in split_at_jumps(flight)]
+    return commanded(pieces, vehicle, mapping.actuators if mapping else None)
 
 
 def contents_of(path):

@@ -3,7 +3,7 @@
 """The mapping file: which topics and outputs of other people's records mean what."""
 
 from collections.abc import Mapping as Pairs
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 import re
 
 import numpy as np
@@ -12,7 +12,8 @@ from quad_ident_ros import resources, schema
 from quad_ident_ros.data.frames import BODIES, WORLDS
 from quad_ident_ros.data.record import KNOWN, unit
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.model.motors import KINDS, shares, TO_SPEED
+from quad_ident_ros.model import motors
+from quad_ident_ros.model.motors import KINDS, Motors, TO_SPEED
 
 ROLES = ('pose', 'position', 'attitude', 'velocity', 'rate', 'specific_force', 'commands',
          'rotors', 'battery')
@@ -145,16 +146,24 @@ def unit_of(name: str) -> str:
     return '' if name == ATTITUDE or _OUTPUT.fullmatch(name) else unit(name) or ''
 
 
-
 def rotor_speeds(where, outputs, actuators, vehicle):
     """
     Return rotor speeds in rad/s, (N, n), in the order of the vehicle file.
 
     Below the minimum, and where an output is nan as PX4 writes for one that is off, a rotor
-    stands still; over the maximum it turns no faster.
+    stands still; over the maximum it turns no faster. A speed that is nan stays so.
     Args: outputs (N, m); actuators Actuators; vehicle a Vehicle or None, for the speeds.
     Raises InputError where the order names an output that is not there, or no speeds are known.
     """
+    chosen = chosen_outputs(where, outputs, actuators, vehicle)
+    if actuators.kind in TO_SPEED:
+        return chosen * TO_SPEED[actuators.kind]
+    return motors.rotor_speeds(motors_of(where, actuators, vehicle), chosen,
+                               _thrust_coefficient(vehicle))
+
+
+def chosen_outputs(where, outputs, actuators, vehicle):
+    """Return the outputs (N, n) of the rotors by the order of Actuators; as rotor_speeds."""
     outputs = np.asarray(outputs, float)
     count = outputs.shape[1]
     order = actuators.order or tuple(range(1, (len(vehicle.rotors) if vehicle else count) + 1))
@@ -164,19 +173,39 @@ def rotor_speeds(where, outputs, actuators, vehicle):
     if vehicle is not None and len(order) != len(vehicle.rotors):
         raise InputError(f'{where}: actuators: order: {len(order)} outputs for the '
                          f'{len(vehicle.rotors)} rotors of {vehicle.name}; name one for each')
-    chosen = outputs[:, [number - 1 for number in order]]
-    if KINDS[actuators.kind] is None:
-        return chosen * TO_SPEED[actuators.kind]
+    return outputs[:, [number - 1 for number in order]]
+
+
+def motors_of(where, actuators, vehicle):
+    """
+    Return the model.motors.Motors that Actuators stand for.
+
+    Without speeds of their own the map is that of the vehicle's motors, or goes from its lowest
+    to its highest speed. Raises InputError where neither is known.
+    """
+    if actuators.kind in TO_SPEED:
+        return Motors(actuators.kind)
+    limits = {'kind': actuators.kind, 'minimum': actuators.minimum, 'maximum': actuators.maximum}
     speeds = actuators.speeds
-    if speeds is None and vehicle is not None and np.isfinite(vehicle.speed_max):
-        speeds = vehicle.speed_min, vehicle.speed_max
+    if speeds is None and vehicle is not None:
+        if vehicle.motors is not None and vehicle.motors.gives:
+            return motors.completed(replace(vehicle.motors, **limits), vehicle.thrust_coefficient,
+                                    vehicle.speed_min, vehicle.speed_max)
+        if np.isfinite(vehicle.speed_max):
+            speeds = vehicle.speed_min, vehicle.speed_max
     if speeds is None:
         raise InputError(f'{where}: actuators: the rotor speeds at minimum and maximum are not '
                          'known; give speeds: [low, high] in rad/s, or a vehicle with them')
-    share = shares(chosen, actuators.minimum, actuators.maximum)
     low, high = speeds
-    return np.nan_to_num(low + share * (high - low) if actuators.curve == 'linear'
-                         else np.sqrt(low ** 2 + share * (high ** 2 - low ** 2)))
+    if actuators.curve == 'linear':
+        return Motors(**limits, gives='speed', offset=low, gain=high - low)
+    k = _thrust_coefficient(vehicle)
+    return Motors(**limits, gives='thrust', offset=k * low ** 2, gain=k * (high ** 2 - low ** 2))
+
+
+def _thrust_coefficient(vehicle):
+    """Return that of a vehicle; without one it plays no part."""
+    return 1.0 if vehicle is None else vehicle.thrust_coefficient
 
 
 def _source(where, role, entry):

@@ -2,23 +2,19 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the parameters of a PX4 log say of the vehicle: kind, rotors, map of the motors."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 import math
-from pathlib import Path
 from typing import TypeAlias
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment
 
-from quad_ident_ros.errors import InputError
-from quad_ident_ros.model.vehicle import Rotor, Vehicle
+from quad_ident_ros.model.vehicle import Rotor
 
 Parameters: TypeAlias = Mapping[str, int | float]
 
 MOST_ROTORS = 12        # that the parameters of PX4 have places for
 FIRST_MOTOR = 101       # the output function of motor 1
-NEAR = math.radians(30)     # rotors of a hexacopter are 60 deg apart
 
 MULTIROTORS = {0: 'generic', 2: 'quadrotor', 13: 'hexarotor', 14: 'octorotor',
                29: 'dodecarotor', 35: 'decarotor'}
@@ -96,43 +92,6 @@ def motors_of(parameters: Parameters) -> Motors | None:
                   f'{"+" if layout is QUAD_PLUS else "x"}')
 
 
-def order_of(where: str | Path, motors: Motors, vehicle: Vehicle) -> tuple[int, ...]:
-    """
-    Return for each rotor of a vehicle file the number of its motor in a log, from 1.
-
-    They are matched by their direction from the middle; rotors above each other by height and
-    sense of turning.
-    Args: where the file, for messages; motors Motors; vehicle Vehicle.
-    Raises InputError that names what does not match.
-    """
-    if len(motors.rotors) != len(vehicle.rotors):
-        raise InputError(f'{where}: the vehicle of the log has {len(motors.rotors)} motors '
-                         f'({motors.source}), {vehicle.name} has {len(vehicle.rotors)} rotors; '
-                         'give the vehicle file of this vehicle')
-    angles = np.abs(np.angle(np.exp(1j * (_direction(vehicle.rotors)[:, None]
-                                          - _direction(motors.rotors)[None, :]))))
-    turning = np.not_equal.outer([rotor.spin for rotor in vehicle.rotors],
-                                 [rotor.spin for rotor in motors.rotors])
-    # A sense of turning that differs decides only among motors in one direction.
-    rows, columns = linear_sum_assignment(angles + 0.01 * turning)
-    order = tuple(int(columns[k]) + 1 for k in np.argsort(rows))
-    for k, motor in enumerate(order):
-        away = angles[k, motor - 1]
-        if away > NEAR:
-            raise InputError(
-                f'{where}: rotors[{k}] of {vehicle.name} at {_place(vehicle.rotors[k])} has no '
-                f'motor of the log ({motors.source}) in its direction, the nearest, motor '
-                f'{motor}, is {math.degrees(away):.0f} deg away; correct the positions in the '
-                'vehicle file (x forward, y left), or give the order in a mapping')
-        if turning[k, motor - 1]:
-            spin = motors.rotors[motor - 1].spin
-            raise InputError(
-                f'{where}: rotors[{k}] of {vehicle.name} has spin {vehicle.rotors[k].spin:+d}, '
-                f'motor {motor} of the log ({motors.source}), which lies there, has {spin:+d}; '
-                'correct the spin in the vehicle file, or give the order in a mapping')
-    return order
-
-
 def signal_limits(parameters: Parameters, count: int,
                   simulated: bool) -> tuple[np.ndarray, np.ndarray]:
     """
@@ -202,13 +161,3 @@ def measured_map(signal: np.ndarray, speed: np.ndarray) -> tuple[str, tuple[floa
 def _number(parameters: Parameters, name: str, default: float = math.nan) -> float:
     value = parameters.get(name, default)
     return float(value) if isinstance(value, int | float) and math.isfinite(value) else default
-
-
-def _direction(rotors: Sequence[Rotor]) -> np.ndarray:
-    return np.array([math.atan2(rotor.position[1], rotor.position[0]) for rotor in rotors])
-
-
-def _place(rotor: Rotor) -> str:
-    return '[' + ', '.join(f'{value:g}' for value in rotor.position) + ']'
-
-

@@ -10,21 +10,27 @@ from typing import TypeAlias
 import numpy as np
 
 from quad_ident_ros.data.mapping import Actuators, rotor_speeds
+from quad_ident_ros.data.motor_order import order_of
 from quad_ident_ros.data.px4_airframe import (
     channels_of,
     measured_map,
     Motors,
-    order_of,
     Parameters,
     signal_limits,
     thrust_factor,
 )
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.model.motors import MOTORS_OFF
 from quad_ident_ros.model.vehicle import Vehicle
 
 Samples: TypeAlias = tuple[np.ndarray, np.ndarray]
 Columns: TypeAlias = dict[str, np.ndarray]
 
 PWM = 800.0, 2200.0     # us, between which every output of kind pwm lies; off is 0 or nan
+
+UNORDERED = ('{topic}: the log does not say which motor lies where (CA_ROTOR*, MAV_TYPE): outputs '
+             'are taken in the order of the rotors; if they are in another one, give a mapping '
+             'with actuators: kind and order')
 
 
 def commands(path: str | Path, topic: str, outputs: Samples, measured: Samples | None,
@@ -33,6 +39,8 @@ def commands(path: str | Path, topic: str, outputs: Samples, measured: Samples |
     """
     Return (columns of commands, columns rotor1..N of measured speeds); what was done is noted.
 
+    Commands are cmd1..N by the log's parameters, or output1..N in the order of the rotors for a
+    mapping or the motors of the vehicle file, or where the log does not know their map.
     Args: outputs (stamps (n,) ns, values (n, m)); measured the same in rad/s in the order of the
     motors, or None; actuators of the mapping or None; vehicle, motors (px4_airframe.Motors) or
     None; parameters of the log; simulated: whether it is of PX4's simulator.
@@ -42,33 +50,43 @@ def commands(path: str | Path, topic: str, outputs: Samples, measured: Samples |
     where = f'{path}, topic {topic}'
     order = None
     if vehicle is not None and motors is not None and not (actuators and actuators.order):
-        order = order_of(path, motors, vehicle)
+        order = order_of(path, motors.rotors, motors.source, vehicle)
     speeds = {}
     if measured is not None:
         chosen = measured[1] if order is None else measured[1][:, [k - 1 for k in order]]
         speeds = {f'rotor{k}': column for k, column in enumerate(chosen.T, 1)}
-    if actuators is not None:
-        if order is not None and topic == 'actuator_motors':
-            actuators = replace(actuators, order=order)
-        elif order is not None:
-            channels = channels_of(parameters, len(order))
-            actuators = replace(actuators, order=tuple(channels[k - 1] + 1 for k in order))
-        return _named('cmd', rotor_speeds(where, values, actuators, vehicle)), speeds
     signal, what = (None, '') if vehicle is None else _signal(topic, values, motors, parameters,
                                                               simulated)
-    if signal is None:
-        if vehicle is not None:
-            notes.append(f'{topic} stays as output1..N: '
-                         + (what or 'the log does not say which motor lies where (CA_ROTOR*, '
-                            'MAV_TYPE)')
-                         + '; give a mapping with actuators: kind and order')
-        values = values[:, np.isfinite(values).any(axis=0)]
-        return _named('output', np.where(np.isfinite(values), values, 0.0)), speeds
+    if actuators is not None or vehicle is None or vehicle.motors is not None or signal is None:
+        shares = vehicle is not None and vehicle.motors is not None and actuators is None and (
+            vehicle.motors.kind == 'normalised')
+        if order is not None and shares and signal is not None:
+            values = signal[:, [k - 1 for k in order]]
+        elif order is not None:
+            values = values[:, _channels(where, topic, parameters, order, values.shape[1])]
+        elif actuators is None:
+            values = values[:, np.isfinite(values).any(axis=0)]
+            if vehicle is not None:
+                notes.append(UNORDERED.format(topic=topic))
+        return _named('output', np.where(np.isfinite(values), values, MOTORS_OFF)), speeds
     made, said = _map(signal, stamps, measured, parameters)
     notes.append(f'commands: {topic} ({what}), motors {_listed(order)} of the log by their '
                  f'direction ({motors.source}); {said}')
     share = _relative(signal, topic, made, parameters)
     return _named('cmd', rotor_speeds(where, share, replace(made, order=order), vehicle)), speeds
+
+
+def _channels(where: str, topic: str, parameters: Parameters, order: Sequence[int],
+              count: int) -> list[int]:
+    """Return the column of the outputs of each rotor, whose motors are in this order."""
+    channels = list(range(len(order)))
+    if topic == 'actuator_outputs':
+        channels = channels_of(parameters, len(order))
+    chosen = [channels[motor - 1] for motor in order]
+    if max(chosen) >= count:
+        raise InputError(f'{where}: there is no output {max(chosen) + 1} of a motor, there are '
+                         f'{count}; log them all, or give the order in a mapping')
+    return chosen
 
 
 def _signal(topic: str, values: np.ndarray, motors: Motors | None, parameters: Parameters,

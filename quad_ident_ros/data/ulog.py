@@ -344,6 +344,8 @@ def _outputs(path: Path, log: ULog, data: dict, actuators: Actuators | None,
     if actuators is not None:
         choices = ('actuator_outputs', 'actuator_motors')
         choices = choices[1:] if actuators.kind == 'normalised' else choices
+    elif vehicle is not None and vehicle.motors is not None and vehicle.motors.kind == 'pwm':
+        choices = ('actuator_outputs', 'actuator_motors')
     else:
         choices = ('actuator_motors', 'actuator_outputs')
     topic = next((name for name in choices if data[name] is not None), None)

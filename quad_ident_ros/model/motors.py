@@ -21,6 +21,9 @@ KINDS: dict[str, tuple[float, float] | None] = {
 TO_SPEED = {'speed': 1.0, 'rpm': math.pi / 30.0}
 """Factor to rad/s of the kinds that are rotor speeds."""
 
+MOTORS_OFF = -1.0
+"""Stands in the signals of a record for a motor that is off: below the minimum of any kind."""
+
 MAPS = ('speed', 'thrust')
 CURVE = ('offset', 'gain', 'exponent')
 MOST = 4        # coefficients of a curve; published ones have three
@@ -75,12 +78,12 @@ def rotor_speeds(motors: Motors, signals: ArrayLike, thrust_coefficient: float,
     Return the rotor speeds (N, n), rad/s, of signals (N, n).
 
     Those of a thrust are sqrt(thrust / thrust_coefficient). A signal that is off, below its
-    minimum or nan, is a rotor that stands; so is a speed or thrust below 0.
+    minimum or nan, is a rotor that stands; so is one whose map gives less than 0.
     Args: motors, whole; thrust_coefficient N/(rad/s)^2; voltage (N,) V, for a map that needs it.
     """
     signals = np.asarray(signals, float)
     if motors.kind in TO_SPEED:
-        return np.maximum(np.nan_to_num(signals) * TO_SPEED[motors.kind], 0.0)
+        return np.nan_to_num(signals) * TO_SPEED[motors.kind]
     value = _curve(motors, shares(signals, motors.minimum, motors.maximum))
     if motors.voltage_reference is not None and voltage is not None:
         ratio = np.maximum(voltage, 0.0) / motors.voltage_reference
@@ -202,8 +205,8 @@ def motors_to_mapping(motors: Motors) -> dict[str, Any]:
         data[motors.gives] = [number(_place_of(k), value)
                               for k, value in enumerate(motors.coefficients)]
     elif motors.gives:
-        data[motors.gives] = {name: number(name, getattr(motors, name)) for name in CURVE
-                              if getattr(motors, name) is not None}
+        names = CURVE if motors.gain is not None else ('exponent',)
+        data[motors.gives] = {name: number(name, getattr(motors, name)) for name in names}
     if motors.voltage_reference is not None:
         data['voltage'] = {
             'reference': number('voltage_reference', motors.voltage_reference),
@@ -250,6 +253,8 @@ def _map_from(where: str, data: Any, numbers: dict[str, Any], stds: dict[str, fl
         positive = name != 'offset'
         numbers[name], stds[name] = schema.uncertain(
             f'{where}: {name}', data[name], 0.0 if positive else -math.inf, positive)
+    if 'offset' in numbers and 'gain' not in numbers:
+        raise InputError(f'{where}: offset: it says nothing without the gain; give both, or none')
     if 'gain' in numbers and numbers['gain'] + numbers.get('offset', 0.0) <= 0.0:
         raise InputError(f'{where}: offset: {numbers["offset"]:g} leaves nothing of the gain, '
                          f'{numbers["gain"]:g}, at full signal')

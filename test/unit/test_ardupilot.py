@@ -19,7 +19,7 @@ from quad_ident_ros.errors import InputError
 
 pytest.importorskip('pymavlink', reason='pymavlink is not installed: pip install pymavlink')
 
-PWM = mapping_from({'actuators': {'kind': 'pwm'}}, 'm')
+PWM = mapping_from({'actuators': {'kind': 'pwm', 'order': [1, 2, 3, 4]}}, 'm')
 OUTPUTS = 1000 + 1000 * (SMALL.stack(*CMD) - 100) / 1600
 ROTORS = ('rotor1', 'rotor2', 'rotor3', 'rotor4')
 QUATERNION = ('qw', 'qx', 'qy', 'qz')

@@ -20,7 +20,7 @@ from quad_ident_ros.errors import InputError
 
 pytest.importorskip('orangebox', reason='orangebox is not installed: pip install orangebox')
 
-DSHOT = mapping_from({'actuators': {'kind': 'pwm', 'minimum': 48, 'maximum': 2047}}, 'm')
+DSHOT = mapping_from({'actuators': {'kind': 'dshot', 'order': [1, 2, 3, 4]}}, 'm')
 MOTORS = 48 + 1999 * (SMALL.stack(*CMD) - 100) / 1600
 ROWS = rows_of(SMALL, MOTORS)
 

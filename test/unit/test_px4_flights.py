@@ -101,9 +101,9 @@ def test_a_vehicle_that_does_not_match_is_named(tmp_path):
     assert load(other, mapping, VEHICLE).has('cmd4')
 
 
-def test_without_parameters_outputs_stay_and_it_is_said(tmp_path):
+def test_without_parameters_outputs_are_taken_in_order_and_it_is_said(tmp_path):
     read = load(log(tmp_path, log_of(SMALL, motors=controls(SMALL), named={})), vehicle=VEHICLE)
-    assert read.has('output4') and not read.has('cmd1')
+    assert read.has('cmd4') and not read.has('output1')
     assert 'CA_ROTOR' in notes(read) and 'mapping' in notes(read)
 
 

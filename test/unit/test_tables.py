@@ -14,7 +14,7 @@ from table_files import FORCE, named, PLACE, Q, RATE, SPEED, table
 from table_files import others as named_otherwise
 
 from quad_ident_ros.cli.main import main
-from quad_ident_ros.data.guess import command_kind, plain, time_unit
+from quad_ident_ros.data.guess import plain, time_unit
 from quad_ident_ros.data.load import contents_of, load, load_all
 from quad_ident_ros.data.mapping import mapping_from
 from quad_ident_ros.errors import InputError
@@ -275,10 +275,6 @@ def test_names_and_kinds():
     assert plain('q[0]') == ('q_0', '') and plain('time_us') == ('time', 'us')
     assert time_unit(np.arange(0, 10, 0.01)) == 's'
     assert time_unit(np.arange(0, 1e7, 1e4)) == 'us'
-    kinds = {(0.1, 0.9): 'normalised', (1000, 1900): 'PWM', (0, 40000): 'duty',
-             (310.5, 820.2): 'rad/s', (5100.3, 9000.2): 'rpm'}
-    for values, kind in kinds.items():
-        assert kind in command_kind(np.array(values))
 
 
 def test_parquet_is_read_by_the_same_rules(tmp_path):

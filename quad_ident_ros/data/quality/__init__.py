@@ -68,7 +68,9 @@ def refuse_unfit(record, vehicle):
 
 def cautions(record, vehicle, doubtful=()):
     """
-    Return what to be wary of in a record that bears a verdict, as data: the Findings of warning.
+    Return what to be wary of in a record that bears a verdict, as data.
+
+    These are the Findings of warning, and what its outputs to the motors were taken for.
 
     Args: doubtful: codes of errors that other flights of the vehicle speak against: see refuted.
     Raises InputError for a fault that no verdict survives.
@@ -76,7 +78,8 @@ def cautions(record, vehicle, doubtful=()):
     found = [replace(finding, severity='warning') if finding.code in doubtful else finding
              for finding in findings(record, vehicle)]
     refuse_errors(record, found)
-    return [as_caution(finding, record) for finding in found if finding.severity == 'warning']
+    return [as_caution(finding, record) for finding in found
+            if finding.severity == 'warning' or finding.code == 'commands']
 
 
 def refuted(records, vehicle):

@@ -80,6 +80,7 @@ def truncated(record, vehicle):
 
 def reader_notes(record, vehicle):
     """Pass on what the reader took for what, and what it left out."""
-    return [Finding('reader', 'info', 'file', note,
+    commands = record.info.get('commands', ())
+    return [Finding('commands' if note in commands else 'reader', 'info', 'file', note,
                     'nothing needs to be done where this is right')
             for note in record.info.get('notes', ()) if isinstance(note, str)]

@@ -20,7 +20,7 @@ def tells(path, start):
 
 def read(path, mapping=None, vehicle=None):
     """Return the flight record of a log."""
-    return [read_ardupilot(path, mapping, vehicle)]
+    return [read_ardupilot(path, mapping)]
 
 
 READER = Reader('ardupilot', 'a log of ArduPilot (DataFlash)', tells, read, contents,

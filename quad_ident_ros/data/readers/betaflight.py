@@ -7,5 +7,6 @@ from quad_ident_ros.data.blackbox import MAGIC
 from quad_ident_ros.data.readers.base import Reader
 
 READER = Reader('betaflight', 'a blackbox log of Betaflight',
-                lambda path, start: start.startswith(MAGIC), read_betaflight, contents,
+                lambda path, start: start.startswith(MAGIC),
+                lambda path, mapping, vehicle: read_betaflight(path, mapping), contents,
                 package='orangebox', module='orangebox', extra='betaflight')

@@ -9,7 +9,7 @@ from quad_ident_ros.data.readers.base import Reader
 
 def read(path, mapping=None, vehicle=None):
     """Return the flight record of a log."""
-    return [read_crazyflie(path, mapping, vehicle)]
+    return [read_crazyflie(path, mapping)]
 
 
 READER = Reader('crazyflie', 'a Crazyflie log (micro-SD card)',

@@ -16,7 +16,7 @@ def read(path: str | Path, mapping: Mapping | None = None,
          vehicle: Vehicle | None = None) -> list[FlightRecord]:
     """Return the flight record of a Parquet file."""
     path = Path(path)
-    return [record_from(path, read_parquet(path), mapping, vehicle)]
+    return [record_from(path, read_parquet(path), mapping)]
 
 
 def contents(path: str | Path) -> list[Content]:

@@ -34,11 +34,10 @@ def read(path: Path, mapping: Mapping | None = None,
     if mapping in (None, Mapping()) and is_record(path):
         return [read_csv(path)]
     table = read_text(path, mapping.separator if mapping else '')
-    return [record_from(path, table, mapping, vehicle)]
+    return [record_from(path, table, mapping)]
 
 
-def record_from(path: Path, table: Table, mapping: Mapping | None,
-                vehicle: Vehicle | None) -> FlightRecord:
+def record_from(path: Path, table: Table, mapping: Mapping | None) -> FlightRecord:
     """Return the flight record of a Table, by the columns of a mapping or by guess."""
     mapping = mapping or Mapping()
     if mapping.topics or mapping.instances:
@@ -52,7 +51,7 @@ def record_from(path: Path, table: Table, mapping: Mapping | None,
         mapping = found.mapping
         notes = [f'cells between {table.how}' if table.how != 'Parquet' else 'Parquet',
                  *found.said]
-    return record_of(path, table, mapping, vehicle, notes)
+    return record_of(path, table, mapping, notes)
 
 
 def is_record(path: Path) -> bool:

@@ -1,0 +1,240 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Rotor speed commands from the outputs to the motors in the records of a file."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from quad_ident_ros.data.mapping import Actuators, chosen_outputs, motors_of
+from quad_ident_ros.data.motor_order import order_of, rotors_of
+from quad_ident_ros.data.record import FlightRecord
+from quad_ident_ros.data.signal_kind import described, kinds_of
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.model.motors import (
+    completed,
+    KINDS,
+    Motors,
+    MOTORS_OFF,
+    rotor_speeds,
+    TO_SPEED,
+)
+from quad_ident_ros.model.vehicle import Vehicle
+
+UNITS = {'speed': 'rad/s', 'thrust': 'N'}
+BEYOND, MANY = 0.05, 0.01   # of the range and of the samples: more is another kind of signal
+
+
+def commanded(records: Sequence[FlightRecord], vehicle: Vehicle | None,
+              actuators: Actuators | None = None) -> list[FlightRecord]:
+    """
+    Return the flight records of one file with cmd1..n in place of output1..m.
+
+    By the actuators of a mapping, or else by the motors of the vehicle, or else from its lowest
+    to its highest speed, by the kind that the reader knows or the values tell. Motors that a
+    reader knows the places of, and their measured speeds, come into the order of the vehicle.
+    Args: records; vehicle Vehicle or None; actuators Actuators or None; with neither outputs stay.
+    Raises InputError, with the lines to write, where the outputs leave a doubt.
+    """
+    if vehicle is None and actuators is None:
+        return list(records)
+    found = [_in_order(record, vehicle, actuators) for record in records]
+    there = [k for k, record in enumerate(found)
+             if record.has('output1') and not record.has('cmd1')]
+    if not there:
+        return found
+    some = [found[k] for k in there]
+    for k, record in zip(there, _with_commands(some, vehicle, actuators), strict=True):
+        found[k] = record
+    return found
+
+
+@dataclass(frozen=True)
+class _Map:
+    """Motors that have a map, and how it is known, for notes."""
+
+    motors: Motors
+    said: str
+
+
+def _with_commands(records: list[FlightRecord], vehicle: Vehicle | None,
+                   actuators: Actuators | None) -> list[FlightRecord]:
+    """Return records of the same motors with commands, the outputs in the vehicle's order."""
+    where = _where(records[0])
+    signals = [_signals(record, vehicle, actuators) for record in records]
+    made = _map_of(where, records[0].info.get('motors', {}), np.concatenate(signals), vehicle,
+                   actuators)
+    if made is None:
+        note = (f'the motors stand: outputs stay as output1..{signals[0].shape[1]}, of which the '
+                'values do not tell the kind')
+        return [_noted(record, note) for record in records]
+    _refuse_voltage(records, made.motors)
+    thrust = 1.0 if vehicle is None else vehicle.thrust_coefficient
+    done = []
+    for record, values in zip(records, signals, strict=True):
+        voltage = record.columns['vbat'] if made.motors.needs_voltage else None
+        speeds = rotor_speeds(made.motors, values, thrust, voltage)
+        columns = {name: column for name, column in record.columns.items()
+                   if name not in record.numbered('output')}
+        columns |= {f'cmd{k}': column for k, column in enumerate(speeds.T, 1)}
+        done.append(_noted(FlightRecord(record.t, columns, record.info), made.said))
+    return done
+
+
+def _in_order(record: FlightRecord, vehicle: Vehicle | None,
+              actuators: Actuators | None) -> FlightRecord:
+    """Return a record whose outputs and measured speeds are in the order of the vehicle."""
+    about = record.info.get('motors', {})
+    rotors, note = rotors_of(about), ''
+    if not rotors:
+        return record
+    order = actuators.order if actuators is not None else ()
+    prefixes = ['rotor'] if order else ['output', 'rotor']  # the mapping's order is of outputs
+    if not order and vehicle is not None:
+        order = order_of(_where(record), rotors, about['source'], vehicle)
+        note = (f'rotors of {vehicle.name} are motors {", ".join(map(str, order))} of the log, by '
+                f'their direction ({about["source"]})')
+    columns = dict(record.columns)
+    for prefix in prefixes:
+        if order and len(record.numbered(prefix)) >= max(order):
+            columns |= {f'{prefix}{k}': record.columns[f'{prefix}{motor}']
+                        for k, motor in enumerate(order, 1)}
+    info = {**record.info, 'motors': {**about, 'rotors': []}} if order else record.info
+    return _noted(FlightRecord(record.t, columns, info), note)
+
+
+def _signals(record: FlightRecord, vehicle: Vehicle | None,
+             actuators: Actuators | None) -> np.ndarray:
+    """Return the signals (N, n) of the rotors, nan where a motor is off; InputError."""
+    where, names = _where(record), record.numbered('output')
+    values = record.stack(*names)
+    values = np.where(values == MOTORS_OFF, np.nan, values)
+    if actuators is not None:
+        return chosen_outputs(where, values, actuators, vehicle)
+    assert vehicle is not None
+    count = len(vehicle.rotors)
+    alive = [k for k, column in enumerate(values.T, 1) if np.nanmax(column, initial=0.0) > 0
+             and np.ptp(column[np.isfinite(column)]) > 0]
+    if len(names) < count:
+        raise InputError(f'{where}: there are {len(names)} outputs for the {count} rotors of '
+                         f'{vehicle.name}; name the vehicle that flew')
+    if any(number > count for number in alive):
+        raise InputError(f'{where}: outputs {", ".join(map(str, alive))} of {len(names)} change, '
+                         f'{vehicle.name} has {count} rotors; say in a mapping which they are: '
+                         f'actuators: {{kind: {_likely(values, vehicle)}, order: '
+                         f'{alive[:count]}}}')
+    return values[:, :count]
+
+
+def _map_of(where: str, about: dict, values: np.ndarray, vehicle: Vehicle | None,
+            actuators: Actuators | None) -> _Map | None:
+    """Return the _Map of signals (N, n), or None where the motors stand; InputError."""
+    if actuators is not None:
+        motors = motors_of(where, actuators, vehicle)
+        return _Map(motors, '')     # who wrote the mapping knows
+    assert vehicle is not None
+    told = vehicle.motors
+    if told is None:
+        kind, how = about.get('kind', ''), 'as the log has them'
+        if not kind:
+            kinds = kinds_of(values, vehicle.hover_speed)
+            if len(kinds) != 1:
+                if not np.nanmax(np.ptp(np.nan_to_num(values), axis=0), initial=0.0) > 0:
+                    return None
+                raise _doubt(where, values, kinds)
+            kind, how = kinds[0], 'by their size'
+        told = _of_kind(kind)
+    else:
+        _refuse_range(where, values, vehicle)
+        how = f'by motors: of {vehicle.name}'
+    motors = completed(told, vehicle.thrust_coefficient, vehicle.speed_min, vehicle.speed_max)
+    if not motors.whole:
+        raise InputError(
+            f'{where}: the speed of the rotors at full signal is not known; give the vehicle '
+            'file speed_max (rad/s), or motors: with a map')
+    return _Map(motors, f'commands: outputs taken for {described(told.kind)}, {how}; '
+                        f'{_said(motors)}')
+
+
+def _of_kind(kind: str) -> Motors:
+    low, high = KINDS[kind] or (0.0, 1.0)
+    return Motors(kind, low, high)
+
+
+def _said(motors: Motors) -> str:
+    """Return what the map of Motors is, for a note."""
+    if motors.kind in TO_SPEED:
+        return 'which are rotor speeds'
+    coefficients = motors.coefficients or (motors.offset, motors.gain or 0.0)
+    terms = ' + '.join(f'{value:.4g}' + _power(k if motors.coefficients else k * motors.exponent)
+                       for k, value in enumerate(coefficients) if value)
+    by = '' if motors.voltage_reference is None else (
+        f', times (voltage / {motors.voltage_reference:g} V)^{motors.voltage_exponent:g}')
+    return (f'{motors.gives} in {UNITS[motors.gives]}: {terms}, x = 0 at {motors.minimum:g}, 1 at '
+            f'{motors.maximum:g}{by}')
+
+
+def _power(exponent: float) -> str:
+    return '' if exponent == 0 else ' x' if exponent == 1 else f' x^{exponent:.4g}'
+
+
+def _doubt(where: str, values: np.ndarray, kinds: Sequence[str]) -> InputError:
+    """Return the InputError for signals that could be of several kinds, or of none."""
+    low, high = np.nanmin(values), np.nanmax(values)
+    what = (f'could be {" or ".join(map(described, kinds))}' if kinds else
+            'are of no kind that is known by its size')
+    line = ('{kind: ' + kinds[0] + '}' if kinds else
+            f'{{kind: pwm, minimum: {low:.6g}, maximum: {high:.6g}}}')
+    return InputError(f'{where}: the outputs, {low:.6g} to {high:.6g}, {what}; write into the '
+                      f'vehicle file what they are, such as motors: {line}, or into a mapping as '
+                      f'actuators: {line}; kinds are {", ".join(KINDS)}')
+
+
+def _refuse_range(where: str, values: np.ndarray, vehicle: Vehicle) -> None:
+    """Raise InputError where signals are not of the kind that the vehicle file says."""
+    motors = vehicle.motors
+    if motors is None or motors.kind in TO_SPEED:
+        return
+    on = values[np.isfinite(values) & (values > 0)]
+    if not len(on):
+        return
+    span = motors.maximum - motors.minimum
+    over = np.mean(on > motors.maximum + BEYOND * span) > MANY
+    if over or not (on > motors.minimum).any():
+        raise InputError(
+            f'{where}: the outputs, {on.min():.6g} to {on.max():.6g}, are not what {vehicle.name} '
+            f'says of its motors: {motors.kind} from {motors.minimum:g} to {motors.maximum:g}; '
+            f'correct kind, minimum and maximum there{_perhaps(values, vehicle)}')
+
+
+def _perhaps(values: np.ndarray, vehicle: Vehicle) -> str:
+    kinds = kinds_of(values, vehicle.hover_speed)
+    return f' (kind: {" or ".join(kinds)} by their size)' if kinds else ''
+
+
+def _likely(values: np.ndarray, vehicle: Vehicle) -> str:
+    if vehicle.motors is not None:
+        return vehicle.motors.kind
+    return next(iter(kinds_of(values, vehicle.hover_speed)), 'pwm')
+
+
+def _refuse_voltage(records: Sequence[FlightRecord], motors: Motors) -> None:
+    for record in records:
+        if motors.needs_voltage and not record.has('vbat'):
+            raise InputError(f'{_where(record)}: motors: voltage: the map depends on the voltage, '
+                             'and the record has no vbat; log the battery, or leave voltage out '
+                             'of the vehicle file')
+
+
+def _noted(record: FlightRecord, note: str) -> FlightRecord:
+    """Return a record with a note, if any, on its commands: also in its info `commands`."""
+    if not note:
+        return record
+    said = [*record.info.get('commands', ()), note]
+    return replace(record, info={**record.info, 'commands': said,
+                                 'notes': [*record.info.get('notes', ()), note]})
+
+
+def _where(record: FlightRecord) -> str:
+    return str(record.info.get('source') or record.info.get('name', 'the flight record'))

@@ -1,0 +1,60 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What kind of signals to motors values are, by their size."""
+
+import numpy as np
+
+from quad_ident_ros.model.motors import KINDS, TO_SPEED
+
+PWM = 800.0, 2200.0     # us, between which pulses to motors lie
+LEAST = 0.1             # of full throttle, which a flight exceeds for a tenth of the time
+LEAST_DUTY = 10000.0    # a sixth of 65535: less lifts nothing
+NEAR_HOVER = 0.75, 1.33  # of the hover speed: thrust coefficients are off by less than half
+FASTEST = {'speed': 4000.0, 'rpm': 60000.0}     # rad/s and rpm of rotors that fly anything
+
+TITLES = {'speed': 'rad/s', 'rpm': 'rpm', 'pwm': 'PWM', 'normalised': 'normalised',
+          'percent': 'per cent', 'duty16': 'duty', 'dshot': 'DSHOT'}
+
+
+def kinds_of(values: np.ndarray, hover: float | None = None) -> tuple[str, ...]:
+    """
+    Return the kinds (of KINDS) that values may be, the likeliest first.
+
+    Values of 0 and less are motors that are off.
+    Args: values, any shape; hover: rad/s, the hover speed of the vehicle, or None.
+    """
+    on = values[np.isfinite(values) & (values > 0)]
+    if not len(on):
+        return ()
+    low, high, usual = float(on.min()), float(on.max()), float(np.median(on))
+    whole = bool(np.all(on == np.round(on)))
+    if high <= 1.001:
+        return ('normalised',)
+    if 2.0 < high <= 100.001:
+        return ('percent',)
+    found = []
+    strong = float(np.quantile(on, 0.9))
+    if PWM[0] <= low and high <= PWM[1] and strong > _at(LEAST, 'pwm'):
+        found.append('pwm')
+    elif whole and 48 <= low and high <= 2047 and strong > _at(LEAST, 'dshot'):
+        found.append('dshot')
+    if whole and LEAST_DUTY < high <= 65535:
+        found.append('duty16')
+    if hover is not None:
+        found += [kind for kind, factor in TO_SPEED.items()
+                  if NEAR_HOVER[0] < usual * factor / hover < NEAR_HOVER[1]]
+    elif not found:     # what it would be without a vehicle to hold it against
+        found += [kind for kind in TO_SPEED if 100.0 < high < FASTEST[kind]][:1]
+    return tuple(found)
+
+
+def _at(share: float, kind: str) -> float:
+    """Return the signal of a kind at a share of full throttle."""
+    low, high = KINDS[kind] or (0.0, 1.0)
+    return low + share * (high - low)
+
+
+def described(kind: str) -> str:
+    """Return a kind with its range, as messages say it."""
+    limits = KINDS[kind]
+    return TITLES[kind] + ('' if limits is None else f', {limits[0]:g} to {limits[1]:g}')

@@ -1,0 +1,160 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Outputs to the motors become rotor speed commands, whatever file they come from."""
+
+from dataclasses import replace
+
+from blackbox_files import blackbox, rows_of
+from dataflash_files import copter, dataflash
+from flightmaker import flight, VEHICLE
+import numpy as np
+import pytest
+from usd_files import crazyflie_events, usdlog
+
+from quad_ident_ros.data.csv import write_csv
+from quad_ident_ros.data.load import load
+from quad_ident_ros.data.quality import cautions, findings
+from quad_ident_ros.data.record import FlightRecord
+from quad_ident_ros.data.signal_kind import kinds_of
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.model.motors import KINDS, Motors, motors_from
+
+FLIGHT = flight(seconds=4.0, noise=0.0)
+CMD, OUTPUTS = ('cmd1', 'cmd2', 'cmd3', 'cmd4'), ('output1', 'output2', 'output3', 'output4')
+SPEEDS = FLIGHT.stack(*CMD)
+SHARES = (SPEEDS - 100) / 1600      # of VEHICLE's speeds, 100 to 1700 rad/s
+TURNED = replace(VEHICLE, rotors=(*VEHICLE.rotors[1:], VEHICLE.rotors[0]))
+
+
+def with_outputs(tmp_path, outputs, name='f.csv', **more):
+    """Write FLIGHT as CSV with outputs in place of its commands; return the path."""
+    columns = {key: values for key, values in FLIGHT.columns.items() if key not in CMD}
+    columns |= {f'output{k}': column for k, column in enumerate(np.asarray(outputs).T, 1)} | more
+    write_csv(tmp_path / name, FlightRecord(FLIGHT.t, columns))
+    return tmp_path / name
+
+
+def refused(path, *words, vehicle=VEHICLE):
+    with pytest.raises(InputError) as error:
+        load(path, vehicle=vehicle)
+    message = str(error.value)
+    assert message.startswith(str(path)) and '\n' not in message and len(message) < 500
+    for word in words:
+        assert word in message, message
+
+
+@pytest.mark.parametrize('kind', ['normalised', 'percent', 'pwm', 'duty16'])
+def test_the_kind_is_told_by_the_values_and_said(tmp_path, kind):
+    low, high = KINDS[kind]
+    values = low + SHARES * (high - low)
+    read = load(with_outputs(tmp_path, np.round(values) if high > 1000 else values),
+                vehicle=VEHICLE)
+    np.testing.assert_allclose(read.stack(*CMD), SPEEDS, atol=1.0 if high > 100 else 1e-6)
+    assert not read.has('output1')
+    said = [one.message for one in findings(read, VEHICLE) if one.code == 'commands']
+    assert len(said) == 1 and f'{low:g} to {high:g}, by their size' in said[0]
+    assert 'speed in rad/s: 100 + 1600 x' in said[0]
+    assert [one['code'] for one in cautions(read, VEHICLE)] == ['commands']
+
+
+@pytest.mark.parametrize('factor', [1.0, 30 / np.pi])
+def test_speeds_and_rpm_are_told_by_the_hover_speed(tmp_path, factor):
+    read = load(with_outputs(tmp_path, SPEEDS * factor), vehicle=VEHICLE)
+    np.testing.assert_allclose(read.stack(*CMD), SPEEDS, rtol=1e-9)
+
+
+def test_without_a_vehicle_outputs_stay(tmp_path):
+    path = with_outputs(tmp_path, SHARES)
+    np.testing.assert_array_equal(load(path).stack(*OUTPUTS), SHARES)
+
+
+def test_the_motors_of_the_vehicle_hold_before_what_values_tell(tmp_path):
+    """A rotor's thrust is published as c0 + c1 u + c2 u^2: each speed comes at the u of it."""
+    section = {'kind': 'duty16', 'thrust': [0.05, 0.3, 2.0]}
+    vehicle = replace(VEHICLE, motors=motors_from('v', section))
+    thrust = VEHICLE.thrust_coefficient * SPEEDS ** 2
+    u = (-0.3 + np.sqrt(0.3 ** 2 + 4 * 2.0 * (thrust - 0.05))) / 4.0
+    read = load(with_outputs(tmp_path, 65535 * u), vehicle=vehicle)
+    np.testing.assert_allclose(read.stack(*CMD), SPEEDS, rtol=1e-9)
+    assert 'thrust in N: 0.05 + 0.3 x + 2 x^2' in read.info['notes'][-1]
+    assert 'by motors: of half_kilogram' in read.info['notes'][-1]
+
+
+def test_a_map_that_hangs_on_the_voltage_needs_it(tmp_path):
+    section = {'kind': 'percent', 'speed': {'offset': 100, 'gain': 1600},
+               'voltage': {'reference': 12.0, 'exponent': 1}}
+    vehicle = replace(VEHICLE, motors=motors_from('v', section))
+    volts = np.linspace(12.6, 10.8, len(FLIGHT))
+    path = with_outputs(tmp_path, 100 * SHARES, vbat=volts)
+    read = load(path, vehicle=vehicle)
+    np.testing.assert_allclose(read.stack(*CMD), SPEEDS * volts[:, None] / 12.0, rtol=1e-9)
+    columns = {key: values for key, values in load(path).columns.items() if key != 'vbat'}
+    write_csv(tmp_path / 'no.csv', FlightRecord(FLIGHT.t, columns))
+    refused(tmp_path / 'no.csv', 'motors: voltage:', 'no vbat', vehicle=vehicle)
+
+
+def test_doubtful_values_are_refused_with_the_lines_to_write(tmp_path):
+    slow = replace(VEHICLE, thrust_coefficient=0.5 * VEHICLE.thrust_coefficient)   # hovers at 1430
+    path = with_outputs(tmp_path, 1000 + 1000 * SHARES)
+    refused(path, 'could be PWM, 1000 to 2000 or rad/s', 'motors: {kind: pwm}',
+            'actuators: {kind: pwm}', vehicle=slow)
+    told = replace(slow, motors=Motors('pwm', 1000.0, 2000.0))
+    np.testing.assert_allclose(load(path, vehicle=told).stack(*CMD), SPEEDS, rtol=1e-9)
+    refused(with_outputs(tmp_path, 5000 * SHARES), 'are of no kind', 'minimum: ', 'maximum: ')
+
+
+def test_motors_that_are_not_those_of_the_record_are_refused(tmp_path):
+    vehicle = replace(VEHICLE, motors=Motors('pwm', 1000.0, 2000.0))
+    refused(with_outputs(tmp_path, np.round(65535 * SHARES)), 'pwm from 1000 to 2000',
+            'duty16 by their size', vehicle=vehicle)
+    refused(with_outputs(tmp_path, SHARES), 'normalised by their size', vehicle=vehicle)
+
+
+def test_more_or_fewer_outputs_than_rotors_are_refused(tmp_path):
+    refused(with_outputs(tmp_path, SHARES[:, :3]), '3 outputs for the 4 rotors')
+    refused(with_outputs(tmp_path, np.hstack([SHARES, SHARES[:, :1]])), 'outputs 1, 2, 3, 4, 5',
+            'actuators: {kind: normalised, order: [1, 2, 3, 4]}')
+    # Channels that nothing is on are no motors.
+    read = load(with_outputs(tmp_path, np.hstack([SHARES, 0 * SHARES])), vehicle=VEHICLE)
+    np.testing.assert_allclose(read.stack(*CMD), SPEEDS, rtol=1e-9)
+
+
+def test_motors_that_stand_are_left_as_they_are(tmp_path):
+    read = load(with_outputs(tmp_path, 0 * SHARES), vehicle=VEHICLE)
+    assert read.has('output1') and 'the motors stand' in read.info['notes'][-1]
+
+
+PLACES = {'crazyflie': ((1, -1), (-1, -1), (-1, 1), (1, 1)),
+          'betaflight': ((-1, -1), (1, -1), (-1, 1), (1, 1)),
+          'ardupilot': ((1, -1), (-1, 1), (1, 1), (-1, -1))}
+"""Where motors 1 to 4 are, forward and left, by the firmware."""
+
+
+@pytest.mark.parametrize('vehicle', [VEHICLE, TURNED], ids=['as it is', 'turned'])
+@pytest.mark.parametrize('name', PLACES)
+def test_motors_are_matched_by_direction_where_the_log_knows_it(tmp_path, name, vehicle):
+    """Each motor has an output that tells its place: the rotor there gets it."""
+    places = PLACES[name]
+    share = {place: 0.3 + 0.1 * k for k, place in enumerate(sorted(places))}
+    wave = 0.02 * np.sin(5 * FLIGHT.t)[:, None]
+    shares = np.array([share[place] for place in places]) + wave
+    path = tmp_path / {'crazyflie': 'log00', 'betaflight': 'l.bbl', 'ardupilot': 'l.bin'}[name]
+    path.write_bytes({
+        'crazyflie': lambda: usdlog(crazyflie_events(FLIGHT, 65535 * shares)),
+        'betaflight': lambda: blackbox(rows_of(FLIGHT, 48 + 1999 * shares)),
+        'ardupilot': lambda: dataflash(copter(FLIGHT, 1000 + 1000 * shares))}[name]())
+    read = load(path, vehicle=vehicle)
+    found = np.median(read.stack(*CMD), axis=0)
+    wanted = [100 + 1600 * share[tuple(np.sign(rotor.position[:2]))] for rotor in vehicle.rotors]
+    np.testing.assert_allclose(found, wanted, atol=25)
+    assert any('by their direction' in note for note in read.info['commands'])
+    assert any('as the log has them' in note for note in read.info['commands'])
+
+
+def test_kinds_without_a_vehicle_are_by_size_alone():
+    kinds = {(0.1, 0.9): 'normalised', (1000, 1900): 'pwm', (0, 40000): 'duty16',
+             (310.5, 820.2): 'speed', (5100.3, 9000.2): 'rpm', (12, 80): 'percent',
+             (300, 1700): 'dshot'}
+    for values, kind in kinds.items():
+        assert kinds_of(np.array(values)) == (kind,)
+    assert kinds_of(np.zeros(3)) == () and kinds_of(np.array([np.nan, -1.0])) == ()
