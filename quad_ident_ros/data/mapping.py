@@ -181,21 +181,21 @@ def motors_of(where, actuators, vehicle):
     Return the model.motors.Motors that Actuators stand for.
 
     Without speeds of their own the map is that of the vehicle's motors, or goes from its lowest
-    to its highest speed. Raises InputError where neither is known.
+    to its highest speed; where neither is known their gain is not. InputError without a vehicle.
     """
     if actuators.kind in TO_SPEED:
         return Motors(actuators.kind)
     limits = {'kind': actuators.kind, 'minimum': actuators.minimum, 'maximum': actuators.maximum}
     speeds = actuators.speeds
-    if speeds is None and vehicle is not None:
-        if vehicle.motors is not None and vehicle.motors.gives:
-            return motors.completed(replace(vehicle.motors, **limits), vehicle.thrust_coefficient,
-                                    vehicle.speed_min, vehicle.speed_max)
-        if np.isfinite(vehicle.speed_max):
-            speeds = vehicle.speed_min, vehicle.speed_max
-    if speeds is None:
+    if speeds is None and vehicle is None:
         raise InputError(f'{where}: actuators: the rotor speeds at minimum and maximum are not '
                          'known; give speeds: [low, high] in rad/s, or a vehicle with them')
+    if speeds is None and vehicle.motors is not None and vehicle.motors.gives:
+        return motors.completed(replace(vehicle.motors, **limits), vehicle.thrust_coefficient,
+                                vehicle.speed_min, vehicle.speed_max)
+    if speeds is None and not np.isfinite(vehicle.speed_max):
+        return Motors(**limits, gives='speed' if actuators.curve == 'linear' else 'thrust')
+    speeds = speeds or (vehicle.speed_min, vehicle.speed_max)
     low, high = speeds
     if actuators.curve == 'linear':
         return Motors(**limits, gives='speed', offset=low, gain=high - low)

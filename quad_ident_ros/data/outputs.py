@@ -11,6 +11,7 @@ from quad_ident_ros.data.mapping import Actuators, chosen_outputs, motors_of
 from quad_ident_ros.data.motor_order import order_of, rotors_of
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.data.signal_kind import described, kinds_of
+from quad_ident_ros.data.thrust_level import full_speed, LEVEL, levelled
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.motors import (
     completed,
@@ -32,8 +33,10 @@ def commanded(records: Sequence[FlightRecord], vehicle: Vehicle | None,
     Return the flight records of one file with cmd1..n in place of output1..m.
 
     By the actuators of a mapping, or else by the motors of the vehicle, or else from its lowest
-    to its highest speed, by the kind that the reader knows or the values tell. Motors that a
-    reader knows the places of, and their measured speeds, come into the order of the vehicle.
+    to its highest speed, by the kind that the reader knows or the values tell. Where neither has
+    the speed at full signal, it is that by which thrust carries the weight: see thrust_level.
+    Motors that a reader knows the places of, and their measured speeds, come into the order of
+    the vehicle.
     Args: records; vehicle Vehicle or None; actuators Actuators or None; with neither outputs stay.
     Raises InputError, with the lines to write, where the outputs leave a doubt.
     """
@@ -52,7 +55,7 @@ def commanded(records: Sequence[FlightRecord], vehicle: Vehicle | None,
 
 @dataclass(frozen=True)
 class _Map:
-    """Motors that have a map, and how it is known, for notes."""
+    """Motors, whose gain may not be known, and how they are told, for notes."""
 
     motors: Motors
     said: str
@@ -69,16 +72,23 @@ def _with_commands(records: list[FlightRecord], vehicle: Vehicle | None,
         note = (f'the motors stand: outputs stay as output1..{signals[0].shape[1]}, of which the '
                 'values do not tell the kind')
         return [_noted(record, note) for record in records]
-    _refuse_voltage(records, made.motors)
+    motors, said, info = made.motors, made.said, {}
+    _refuse_voltage(records, motors)
     thrust = 1.0 if vehicle is None else vehicle.thrust_coefficient
+    if not motors.whole:
+        assert vehicle is not None
+        motors, by = levelled(where, records, signals, motors, vehicle)
+        info = {LEVEL: full_speed(motors, thrust)}
+        said += (f'{_said(motors)}; the gain is that by which thrust carries the weight of '
+                 f'{vehicle.name} ({by})')
     done = []
     for record, values in zip(records, signals, strict=True):
-        voltage = record.columns['vbat'] if made.motors.needs_voltage else None
-        speeds = rotor_speeds(made.motors, values, thrust, voltage)
+        voltage = record.columns['vbat'] if motors.needs_voltage else None
+        speeds = rotor_speeds(motors, values, thrust, voltage)
         columns = {name: column for name, column in record.columns.items()
                    if name not in record.numbered('output')}
         columns |= {f'cmd{k}': column for k, column in enumerate(speeds.T, 1)}
-        done.append(_noted(FlightRecord(record.t, columns, record.info), made.said))
+        done.append(_noted(FlightRecord(record.t, columns, {**record.info, **info}), said))
     return done
 
 
@@ -149,12 +159,8 @@ def _map_of(where: str, about: dict, values: np.ndarray, vehicle: Vehicle | None
         _refuse_range(where, values, vehicle)
         how = f'by motors: of {vehicle.name}'
     motors = completed(told, vehicle.thrust_coefficient, vehicle.speed_min, vehicle.speed_max)
-    if not motors.whole:
-        raise InputError(
-            f'{where}: the speed of the rotors at full signal is not known; give the vehicle '
-            'file speed_max (rad/s), or motors: with a map')
-    return _Map(motors, f'commands: outputs taken for {described(told.kind)}, {how}; '
-                        f'{_said(motors)}')
+    said = f'commands: outputs taken for {described(told.kind)}, {how}; '
+    return _Map(motors, said + (_said(motors) if motors.whole else ''))
 
 
 def _of_kind(kind: str) -> Motors:
@@ -168,7 +174,7 @@ def _said(motors: Motors) -> str:
         return 'which are rotor speeds'
     coefficients = motors.coefficients or (motors.offset, motors.gain or 0.0)
     terms = ' + '.join(f'{value:.4g}' + _power(k if motors.coefficients else k * motors.exponent)
-                       for k, value in enumerate(coefficients) if value)
+                       for k, value in enumerate(coefficients) if value).replace('+ -', '- ')
     by = '' if motors.voltage_reference is None else (
         f', times (voltage / {motors.voltage_reference:g} V)^{motors.voltage_exponent:g}')
     return (f'{motors.gives} in {UNITS[motors.gives]}: {terms}, x = 0 at {motors.minimum:g}, 1 at '

@@ -2,14 +2,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the flights could not show or tell apart, and what would."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from quad_ident_ros.diagnose import fly_next as design
+from quad_ident_ros.diagnose.candidates import SCALES
 from quad_ident_ros.diagnose.judgement import Model
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.diagnose.select import Selection
 from quad_ident_ros.diagnose.verdict import Verdict
 from quad_ident_ros.effects.registry import EFFECTS
+from quad_ident_ros.greybox.flights import Flight
 from quad_ident_ros.greybox.parameters import limits, NAMES, nominal
 from quad_ident_ros.model.vehicle import Vehicle
 
@@ -21,6 +25,15 @@ def not_shown(selection: Selection, causes: tuple, verdict: Verdict) -> tuple[st
     named = {*verdict.sure, *verdict.undetermined}
     return tuple(design.hidden(selection, [cause for cause in causes if cause.effect not in named],
                                list(verdict.certain)))
+
+
+def cannot_show(flights: Sequence[Flight], verdict: Verdict) -> tuple[str, ...]:
+    """Return the names of effects that no flights with commands like these would show."""
+    if not any(flight.levelled for flight in flights):
+        return ()
+    named = {*verdict.sure, *verdict.undetermined}
+    return tuple(name for name in EFFECTS if name not in named
+                 and any(NAMES[column].partition('.')[0] == name for column in SCALES))
 
 
 def fly_next(selection: Selection, flights: list, vehicle: Vehicle, z: np.ndarray,

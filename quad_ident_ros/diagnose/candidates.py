@@ -9,8 +9,11 @@ import numpy as np
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.effects.registry import EFFECTS, PLACES
 from quad_ident_ros.greybox.nuisances import Nuisance, nuisances
-from quad_ident_ros.greybox.parameters import SPLIT
+from quad_ident_ros.greybox.parameters import FACTORS, INDEX, SPLIT
 from quad_ident_ros.model.vehicle import Vehicle
+
+SCALES = tuple(INDEX[name] for name in (*FACTORS['thrust_coefficient'], 'mass_offset.mass'))
+"""Columns that scale thrust over mass."""
 
 
 @dataclass(frozen=True)
@@ -35,16 +38,25 @@ class Candidate:
 
 def candidates(flights: list, vehicle: Vehicle, rules: Rules,
                effects: list[str] | None = None) -> tuple[Candidate, ...]:
-    """Return the Candidates, in the order of the registry; effects: names, by default all."""
+    """
+    Return the Candidates, in the order of the registry; effects: names, by default all.
+
+    Where the weight set the scale of the commands, none changes thrust over mass by a constant
+    factor alone.
+    """
     found = []
     voltage = any(np.ptp(flight.course.volt_drop) > rules.voltage for flight in flights)
+    known = SCALES if any(flight.levelled for flight in flights) else ()
     for name, effect in EFFECTS.items():
         if effects is not None and name not in effects:
             continue
         forms = [form for form in effect.forms if voltage or not form.needs_voltage]
         for form in forms:
             place = PLACES[name, form.name]
-            columns = tuple(range(SPLIT + place.start, SPLIT + place.stop))
+            columns = tuple(column for column in range(SPLIT + place.start, SPLIT + place.stop)
+                            if column not in known)
+            if not columns:
+                continue
             if effect.per_rotor:
                 found += [Candidate(name, f'{name} {j + 1}', columns[j:j + 1], form.name,
                                     share=1.0 / len(vehicle.rotors))

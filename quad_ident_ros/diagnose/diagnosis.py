@@ -71,7 +71,8 @@ def diagnose(records: list[FlightRecord], vehicle: Vehicle, *,
                    for name, gap in pooled(judged.noise).items()},
         unknown=measure.unexplained(judged, measure.channels(after, vehicle, rules)),
         undetermined=verdict.undetermined, sure=verdict.sure,
-        one_finding=advice.one_finding(verdict), not_shown=unseen,
+        one_finding=advice.one_finding(verdict), not_shown=tuple(dict.fromkeys(
+            (*unseen, *advice.cannot_show(intake.flights, verdict)))),
         fly_next=advice.fly_next(selection, intake.flights, vehicle, model.z, verdict, unseen),
         nuisances=nuisances_as_data(
             tuple(cause.nuisance for cause in model.chosen if cause.nuisance),

@@ -10,7 +10,7 @@ import numpy as np
 from quad_ident_ros.diagnose.candidates import Candidate
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.effects.registry import EFFECTS
-from quad_ident_ros.greybox.nuisances import CLOCK, LIKELY
+from quad_ident_ros.greybox.nuisances import CLOCK, LEVEL, LIKELY
 
 BEAM = 12           # sets kept per size
 MOST = 8            # causes in a set, beside the nuisances of flights
@@ -53,7 +53,7 @@ def _volume(information: np.ndarray, wide: np.ndarray, scatter: float) -> np.nda
 def _odds(causes: Sequence[Candidate], rules: Rules) -> float:
     nuisances = [cause.nuisance for cause in causes if cause.nuisance is not None]
     # A sensor with one bias may have others. Clocks, thrust and wind have nothing to do with them.
-    apart = [kind for kind in nuisances if kind.name == CLOCK or kind.of_effect]
+    apart = [kind for kind in nuisances if kind.name in (CLOCK, LEVEL) or kind.of_effect]
     biases = [kind.odds if k == 0 else LIKELY for k, kind in
               enumerate(kind for kind in nuisances if kind not in apart)]
     effects = [rules.prior_odds * cause.share for cause in causes if cause.nuisance is None]

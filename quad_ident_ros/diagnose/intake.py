@@ -10,6 +10,7 @@ from quad_ident_ros.data.quality import cautions, refuse_errors, refuted
 from quad_ident_ros.data.quality.finding import as_caution
 from quad_ident_ros.data.quality.ground import airborne, stands
 from quad_ident_ros.data.record import FlightRecord, refuse_twice, same_flight
+from quad_ident_ros.data.thrust_level import on_one_level
 from quad_ident_ros.diagnose.blocks import interleaved
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.errors import InputError
@@ -61,8 +62,9 @@ def take_in(records: Sequence[FlightRecord], vehicle: Vehicle, hold_out: FlightR
     if hold_out is not None:    # among others it would take part in fit and choice
         records = [record for record in records if not same_flight(record, hold_out)]
     refuse_twice(records)
-    records = [with_commands(record, vehicle) for record in records]
-    hold_out = None if hold_out is None else with_commands(hold_out, vehicle)
+    held = [] if hold_out is None else [hold_out]
+    every = on_one_level([with_commands(record, vehicle) for record in (*records, *held)])
+    records, hold_out = (every, None) if hold_out is None else (every[:-1], every[-1])
     wrong = refuted([*records, *([] if hold_out is None else [hold_out])], vehicle)
     findings: list[dict] = []
     records = [_fit_for_use(record, vehicle, rules, wrong, findings) for record in records]

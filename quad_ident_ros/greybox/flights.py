@@ -14,6 +14,7 @@ from quad_ident_ros.data.frames import continuous
 from quad_ident_ros.data.quality import refuse_errors, timing
 from quad_ident_ros.data.quality.glitches import glitches
 from quad_ident_ros.data.record import FlightRecord
+from quad_ident_ros.data.thrust_level import LEVEL
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.greybox.errors import ERRORS, GROUPS
 from quad_ident_ros.model.dynamics import Course, course_of, states_of
@@ -40,7 +41,8 @@ class Track:
     clock: the Clock by which its commands were moved onto the states, or None where none shows;
     guide (N, 13): the states with attitudes that are off replaced, see dynamics.predict, or None
     where the motion of the centre of mass is to follow from the predicted attitude; force (N, 3)
-    m/s^2, body: what an accelerometer measured, or None without one.
+    m/s^2, body: what an accelerometer measured, or None without one; levelled: whether the scale
+    of its commands is that by which thrust carries the weight.
     """
 
     name: str
@@ -51,6 +53,7 @@ class Track:
     clock: Clock | None
     guide: np.ndarray | None = field(default=None, kw_only=True)
     force: np.ndarray | None = field(default=None, kw_only=True)
+    levelled: bool = field(default=False, kw_only=True)
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,7 +88,7 @@ def track_of(record: FlightRecord, vehicle: Vehicle, reference_voltage: float | 
         course, states, seen, force = _thinned(course, states, seen, force, skip)
         period *= skip
     track = Track(record.info.get('name', 'flight'), course, states, seen, period, clock,
-                  force=force)
+                  force=force, levelled=LEVEL in record.info)
     return track if clock is None else moved(track, clock.late, clock.drift)
 
 
@@ -111,7 +114,7 @@ def flight_of(track: Track, segment: float = SEGMENT, every: float | None = None
         raise InputError(f'{track.name}: {course.t[-1]:.3g} s without a gap-free stretch of '
                          f'{segment:g} s are too short; give a longer flight')
     return Flight(track.name, course, track.states, seen, period, track.clock, first, count,
-                  guide=track.guide, force=track.force)
+                  guide=track.guide, force=track.force, levelled=track.levelled)
 
 
 def guided(track: Track) -> Track:

@@ -21,6 +21,9 @@ from quad_ident_ros.model.vehicle import Vehicle
 
 CLOCK = 'clock_offset'
 CLOCK_TITLE = 'how much later than the commands the states are stamped'
+LEVEL = 'thrust_level'
+LEVEL_TITLE = 'thrust over that by which commands were set to carry the weight'
+OFF_LEVEL = 0.1     # how far that usually is off: drag, wind, a battery that empties
 RARE, LIKELY = 1e-4, 0.5    # odds of flights having one, before looking
 APART = 0.02        # s, how far clocks usually are apart where nothing shows it,
 REST = 0.001        # s, or
@@ -76,8 +79,13 @@ def nuisances(vehicle: Vehicle, tracks: Sequence[Track]) -> tuple[Nuisance, ...]
               for spread in (0.005, 0.0015)]
     kinds.append(('trim_moment', 'moment', 'N m', moment,
                   (0.02 * lever, 0.02 * lever, 0.05 * twist), RARE))
+    level = any(track.levelled for track in tracks)
+    if level:
+        kinds.append((LEVEL, LEVEL_TITLE, '1', ('thrust_scale.factor',), (OFF_LEVEL,), LIKELY))
     # One flight does not tell what is its alone from what is the vehicle's.
     for name, effect in EFFECTS.items() if len(tracks) > 1 else ():
+        if level and effect.ratio is not None:
+            continue    # the same by another name
         differing = [(parameter, spread) for parameter, spread in
                      zip(effect.forms[0].parameters, effect.per_flight, strict=False) if spread]
         if differing:

@@ -40,7 +40,8 @@ CHECKS = (columns.known, columns.incomplete, columns.frozen, columns.dead, colum
           units.rates_in_degrees, units.euler_in_degrees, units.force_in_g,
           units.position_in_millimetres, units.speeds_in_rpm, frames.quaternion, frames.world,
           frames.velocity_in_body, frames.signs, rotors.hover, rotors.size, rotors.count,
-          rotors.order_and_spin, thrust.carried, clock.attitude, clock.velocity, clock.commands,
+          rotors.order_and_spin, thrust.carried,
+          thrust.level, clock.attitude, clock.velocity, clock.commands,
           ground.stands, answer.commands, saturation.speeds, excitation.axes)
 
 __all__ = ['cautions', 'CHECKS', 'clock_offset', 'ClockOffset', 'command_offset', 'Finding',

@@ -7,11 +7,24 @@ import numpy as np
 from quad_ident_ros.data.quality import units
 from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.quality.series import GRAVITY, Grid
+from quad_ident_ros.data.thrust_level import LEVEL
 
 APART = 10.0      # times too much or too little: no vehicle file is that wrong,
 LONGEST = 1.0     # s in all, in which motors may still follow
 MOVING = 0.2      # m/s: what stands on the ground needs no thrust
 FLYING = 0.5      # of the weight, from which on a thrust is needed
+
+
+def level(record, vehicle):
+    """Find commands whose scale is that by which thrust carries the weight."""
+    if LEVEL not in record.info:
+        return []
+    return [Finding(
+        'thrust_level', 'warning', 'commands',
+        f'the rotor speed at full signal is not known; it is set to {record.info[LEVEL]:.4g} '
+        'rad/s, so that thrust carries the weight on average: a constant factor of thrust, and a '
+        'mass that is off, cannot be told and are not named',
+        'give the vehicle file motors: with a gain, or speed_max')]
 
 
 def carried(record, vehicle):

@@ -1,0 +1,95 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The speed of rotors at full signal where no file has it: thrust carries the weight."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from quad_ident_ros.data import frames
+from quad_ident_ros.data.record import FlightRecord, QUATERNION
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.model.motors import Motors, rotor_speeds
+from quad_ident_ros.model.vehicle import Vehicle
+
+WINDOW = 0.5    # s of a mean: longer than lags of motors, of which many fit into a flight
+FLYING = 0.4    # of what strong thrusts of the flight are: less is a landing, or the ground
+
+LEVEL = 'full_speed'
+"""Info of a record: speed in rad/s at full signal, where the weight tells it."""
+
+
+def levelled(where: str, records: Sequence[FlightRecord], signals: Sequence[np.ndarray],
+             motors: Motors, vehicle: Vehicle) -> tuple[Motors, str]:
+    """
+    Return Motors with the gain by which thrust carries the weight, and what told the weight.
+
+    It is the median over windows of what is needed over what a gain of 1 gives.
+    Args: records of flights with the same motors; signals (N, n) of each; motors without a gain.
+    Raises InputError where no thrust is to be seen.
+    """
+    k, ratios, told = vehicle.thrust_coefficient, [], []
+    unit = replace(motors, gain=1.0)
+    for record, values in zip(records, signals, strict=True):
+        voltage = record.columns['vbat'] if motors.needs_voltage else None
+        given = k * np.sum(rotor_speeds(unit, values, k, voltage) ** 2, axis=1)
+        lift, how = _lift(record, vehicle.gravity)
+        window = ((record.t - record.t[0]) / WINDOW).astype(int)
+        count = np.maximum(np.bincount(window), 1)
+        given, lift = (np.bincount(window, column) / count for column in (given, lift))
+        strong = np.quantile(given[given > 0], 0.9) if (given > 0).any() else np.inf
+        flying = (given > FLYING * strong) & np.isfinite(lift)
+        ratios.append(vehicle.mass * lift[flying] / given[flying])
+        told.append(how)
+    ratio = float(np.median(np.concatenate(ratios))) if sum(map(len, ratios)) else 0.0
+    if not ratio > 0.0:
+        raise InputError(f'{where}: the speed of the rotors at full signal is not known, and no '
+                         'flight that carries the weight tells it; give the vehicle file '
+                         'speed_max (rad/s), or motors: with a gain')
+    gain = ratio if motors.gives == 'thrust' else float(np.sqrt(ratio))
+    return replace(motors, gain=gain), ' and '.join(dict.fromkeys(told))
+
+
+def full_speed(motors: Motors, thrust_coefficient: float) -> float:
+    """Return the rotor speed at full signal, rad/s, of whole Motors."""
+    volts = None if motors.voltage_reference is None else np.array([motors.voltage_reference])
+    return float(rotor_speeds(motors, [[motors.maximum]], thrust_coefficient, volts)[0, 0])
+
+
+def on_one_level(records: Sequence[FlightRecord]) -> list[FlightRecord]:
+    """
+    Return records whose commands, where the weight told their scale, have one scale.
+
+    The same motors have the same map in all flights: it is the mean by their lengths.
+    """
+    told = [record for record in records if LEVEL in record.info]
+    if len({record.info[LEVEL] for record in told}) < 2:
+        return list(records)
+    weights = [record.t[-1] - record.t[0] for record in told]
+    common = float(np.average([record.info[LEVEL] for record in told], weights=weights))
+    return [_scaled(record, common) if LEVEL in record.info else record for record in records]
+
+
+def _scaled(record: FlightRecord, speed: float) -> FlightRecord:
+    factor = speed / record.info[LEVEL]
+    columns = {**record.columns, **{name: factor * record.columns[name]
+                                    for name in record.numbered('cmd')}}
+    return FlightRecord(record.t, columns, {**record.info, LEVEL: speed})
+
+
+def _lift(record: FlightRecord, gravity: float) -> tuple[np.ndarray, str]:
+    """Return the specific force along the body's z axis (N,), m/s^2, and what tells it."""
+    if record.has('az'):
+        return record.columns['az'], 'the accelerometer'
+    if not record.has(*QUATERNION):
+        return np.full(len(record), gravity), 'hover on average, without accelerometer or attitude'
+    attitude = record.stack(*QUATERNION)
+    with np.errstate(all='ignore'):
+        attitude = attitude / np.linalg.norm(attitude, axis=1, keepdims=True)
+        up = frames.rotate(attitude, np.tile([0.0, 0.0, 1.0], (len(record), 1)))
+        if not record.has('vx', 'vy', 'vz'):
+            return gravity / np.maximum(up[:, 2], 0.1), 'the tilt, level on average'
+        force = np.gradient(record.stack('vx', 'vy', 'vz'), record.t, axis=0)
+    force[:, 2] += gravity
+    return np.sum(force * up, axis=1), 'velocity and tilt'

@@ -1,0 +1,95 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The scale of commands that no file has: by the weight, and what then is not named."""
+
+from dataclasses import replace
+import math
+
+from flightmaker import flight, VEHICLE
+import numpy as np
+import pytest
+
+from quad_ident_ros.data.outputs import commanded
+from quad_ident_ros.data.quality import findings
+from quad_ident_ros.data.record import FlightRecord
+from quad_ident_ros.data.thrust_level import LEVEL, on_one_level
+from quad_ident_ros.diagnose.candidates import candidates, nuisance_candidates
+from quad_ident_ros.diagnose.rules import RULES
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.greybox.flights import flight_of, track_of
+from quad_ident_ros.greybox.parameters import NAMES
+from quad_ident_ros.model.motors import motors_from
+
+FLIGHT = flight(seconds=10.0, noise=0.0)
+CMD, FORCE = ('cmd1', 'cmd2', 'cmd3', 'cmd4'), ('ax', 'ay', 'az')
+SPEEDS = FLIGHT.stack(*CMD)
+FULL = 1650.0       # rad/s at full signal, which no file has
+UNLIMITED = replace(VEHICLE, speed_min=0.0, speed_max=math.inf)
+
+
+def told(outputs, leave_out=(), **columns):
+    """Return FLIGHT with outputs in place of its commands, and without some columns."""
+    kept = {name: values for name, values in FLIGHT.columns.items()
+            if name not in (*CMD, *leave_out)}
+    outputs = {f'output{k}': column for k, column in enumerate(outputs.T, 1)}
+    return FlightRecord(FLIGHT.t, {**kept, **outputs, **columns}, FLIGHT.info)
+
+
+@pytest.mark.parametrize(('leave_out', 'by', 'error'), [
+    ((), 'the accelerometer', 1e-3), (FORCE, 'velocity and tilt', 1e-2),
+    ((*FORCE, 'vx', 'vy', 'vz'), 'the tilt', 2e-2),
+    ((*FORCE, 'vx', 'vy', 'vz', 'qw', 'qx', 'qy', 'qz'), 'hover on average', 5e-2)])
+def test_the_speed_at_full_signal_is_that_by_which_thrust_carries_the_weight(leave_out, by,
+                                                                             error):
+    [read] = commanded([told(np.round(65535 * SPEEDS / FULL), leave_out)], UNLIMITED)
+    assert read.info[LEVEL] == pytest.approx(FULL, rel=error)
+    np.testing.assert_allclose(read.stack(*CMD), SPEEDS, rtol=1.1 * error)
+    assert by in read.info['notes'][-1]
+    assert [one.severity for one in findings(read, UNLIMITED) if one.code == 'thrust_level'] == [
+        'warning']
+
+
+def test_the_gain_of_a_thrust_curve_of_known_power_is_found_as_well():
+    vehicle = replace(UNLIMITED, motors=motors_from('v', {
+        'kind': 'percent', 'thrust': {'exponent': 1.4}}))
+    share = (SPEEDS / FULL) ** (2 / 1.4)
+    [read] = commanded([told(100 * share)], vehicle)
+    np.testing.assert_allclose(read.stack(*CMD), SPEEDS, rtol=1e-3)
+
+
+def test_ground_time_and_an_emptying_battery_do_not_move_the_level():
+    """Idle motors on the ground carry nothing: those windows are left out."""
+    ground = np.arange(len(FLIGHT)) < len(FLIGHT) // 4
+    outputs = np.where(ground[:, None], 0.1, SPEEDS / FULL)
+    columns = {name: np.where(ground, 9.81 if name == 'az' else 0.0, FLIGHT.columns[name])
+               for name in FORCE}
+    [read] = commanded([told(outputs, FORCE, **columns)], UNLIMITED)
+    assert read.info[LEVEL] == pytest.approx(FULL, rel=5e-3)
+
+
+def test_motors_that_never_carry_are_refused_with_the_way_out():
+    falling = {name: np.zeros(len(FLIGHT)) for name in FORCE}
+    with pytest.raises(InputError, match='speed_max .rad/s., or motors: with a gain'):
+        commanded([told(SPEEDS / FULL, FORCE, **falling)], UNLIMITED)
+
+
+def test_flights_of_the_same_motors_get_one_scale():
+    one, other = (commanded([told(SPEEDS / full)], UNLIMITED)[0] for full in (1600.0, 1700.0))
+    same = on_one_level([one, FLIGHT, other])
+    assert same[1] is FLIGHT
+    assert same[0].info[LEVEL] == same[2].info[LEVEL] == pytest.approx(1650, rel=1e-3)
+    np.testing.assert_allclose(same[0].columns['cmd1'], SPEEDS[:, 0] * 1650 / 1600, rtol=1e-3)
+
+
+def test_what_scales_thrust_over_mass_is_not_among_the_candidates():
+    [read] = commanded([told(SPEEDS / FULL)], UNLIMITED)
+    for record, known in ((FLIGHT, True), (read, False)):
+        flights = [flight_of(track_of(record, VEHICLE)) for _ in range(2)]
+        found = candidates(flights, VEHICLE, RULES)
+        names = {NAMES[column] for one in found for column in one.columns}
+        assert ('mass_offset.mass' in names) == ('thrust_scale.factor' in names) == known
+        assert ('thrust_scale.at_hover' in names) == known
+        assert {'thrust_scale.offset', 'thrust_scale.exponent', 'battery_sag.per_second'} <= names
+        kinds = [one.label for one in nuisance_candidates(VEHICLE, flights)]
+        assert ('thrust_level' in kinds) == (not known)
+        assert ('thrust_scale_by_flight' in kinds) == known
