@@ -8,6 +8,7 @@ import json
 
 from quad_ident_ros.data.mapping import ATTITUDE, Mapping, ROLES, unit_of
 from quad_ident_ros.data.readers.base import Content
+from quad_ident_ros.model.motors import KINDS
 
 
 def columns_text(columns: Pairs) -> dict[str, str]:
@@ -80,7 +81,7 @@ def table_text(source: object, mapping: Mapping, doubts: Sequence[str], columns:
 
 
 _ACTUATORS = ['# actuators:                     # how outputs become rotor speeds',
-              '#   kind: pwm                    # speed, rpm, pwm or normalised',
+              '#   kind: pwm                    # ' + ', '.join(KINDS),
               '#   order: [1, 2, 3, 4]          # the output of each rotor of the vehicle file',
               '#   curve: linear                # or thrust: the square of the speed is']
 

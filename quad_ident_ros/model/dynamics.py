@@ -67,8 +67,8 @@ def course_of(record: FlightRecord, vehicle: Vehicle, reference_voltage: float |
     names = [f'cmd{j}' for j in range(1, len(vehicle.rotors) + 1)]
     instead = 'or u1, u2, u3, u4, the thrust and moments'
     if record.has('output1'):
-        instead = ('which outputs become by a mapping with actuators (kind, order, speeds), see '
-                   'docs/records.md')
+        instead = ('which outputs become by motors of the vehicle file, or by a mapping with '
+                   'actuators (kind, order, speeds), see docs/records.md')
     _refuse_without(record, names, instead)
     commands = record.stack(*names)
     drop, reference = np.zeros(len(record)), np.inf

@@ -23,7 +23,8 @@ def level(record, vehicle):
         'thrust_level', 'warning', 'commands',
         f'the rotor speed at full signal is not known; it is set to {record.info[LEVEL]:.4g} '
         'rad/s, so that thrust carries the weight on average: a constant factor of thrust, and a '
-        'mass that is off, cannot be told and are not named',
+        'mass that is off, cannot be told and are not named; inertia and drag are told in '
+        'proportion to the mass',
         'give the vehicle file motors: with a gain, or speed_max')]
 
 
