@@ -41,7 +41,8 @@ def diagnose(records: list[FlightRecord], vehicle: Vehicle, *,
         if name not in EFFECTS:
             raise InputError(f'{name!r} is not among the effects: {", ".join(EFFECTS)}')
     intake = take_in(list(records), vehicle, hold_out, rules)
-    causes = candidates(intake.flights, vehicle, rules, effects)
+    causes = tuple(cause for cause in candidates(intake.flights, vehicle, rules, effects)
+                   if cause.effect not in intake.refuted)
     selection = select(intake.flights, vehicle, causes, rules,
                        lambda share: on_progress(0.7 * share))
     prompt = late_controller(selection, intake.flights)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 from quad_ident_ros.data.clocks import clocks_of, on_one_clock
 from quad_ident_ros.data.quality import cautions, refuse_errors, refuted
-from quad_ident_ros.data.quality.finding import as_caution
+from quad_ident_ros.data.quality.finding import as_caution, Finding
 from quad_ident_ros.data.quality.ground import airborne, stands
 from quad_ident_ros.data.record import FlightRecord, refuse_twice, same_flight
 from quad_ident_ros.data.thrust_level import on_one_level
@@ -17,6 +17,7 @@ from quad_ident_ros.errors import InputError
 from quad_ident_ros.greybox.flights import Flight, guided, highest_voltage, moved, Track, track_of
 from quad_ident_ros.greybox.near import near_flights
 from quad_ident_ros.greybox.parameters import nominal
+from quad_ident_ros.greybox.rotor_answer import rotor_answer, RotorAnswer, ruled_out_by
 from quad_ident_ros.model.mixing import with_commands
 from quad_ident_ros.model.vehicle import Vehicle
 
@@ -28,7 +29,8 @@ class Intake:
 
     tracks: those learnt from; held_out: that which takes no part; flights: the tracks cut into
     rollouts; late: {stream: s} that was moved in each, and clocks: the Clock, or None, of each,
-    the one held out last; findings: what to be wary of, as data.
+    the one held out last; findings: what to be wary of, as data; refuted: effects of the actuators
+    that measured rotor speeds speak against.
     """
 
     vehicle: Vehicle
@@ -38,6 +40,7 @@ class Intake:
     late: tuple
     clocks: tuple
     findings: list
+    refuted: tuple[str, ...] = ()
 
     @property
     def names(self) -> tuple:
@@ -77,6 +80,10 @@ def take_in(records: Sequence[FlightRecord], vehicle: Vehicle, hold_out: FlightR
     every = [*records, *([] if hold_out is None else [hold_out])]
     every, late, answers = map(list, zip(*on_one_clock(every), strict=True))
     learnt = every if alone else every[:-1]
+    told = [rotor_answer(record) for record in every]
+    ruled_out = ruled_out_by(told)
+    findings += [as_caution(_of_rotors(answer, ruled_out), record)
+                 for answer, record in zip(told, every, strict=True) if answer is not None]
     voltage = highest_voltage(learnt)
     clocks = clocks_of(answers[:len(learnt)], answers[len(learnt):])
     tracks = [guided(track_of(record, vehicle, voltage, clock))
@@ -85,7 +92,14 @@ def take_in(records: Sequence[FlightRecord], vehicle: Vehicle, hold_out: FlightR
         tracks, late, clocks = list(interleaved(tracks[0])), 2 * late, 2 * clocks
     *tracks, held_out = tracks
     return Intake(vehicle, tuple(tracks), held_out, rollouts(tracks, vehicle), tuple(late),
-                  tuple(clocks), findings)
+                  tuple(clocks), findings, ruled_out)
+
+
+def _of_rotors(answer: RotorAnswer, ruled_out: Sequence[str]) -> Finding:
+    """Return what measured rotor speeds say of the actuators."""
+    so = f'; {" and ".join(ruled_out)} is ruled out by that' if ruled_out else ''
+    return Finding('rotor_answer', 'info', 'rotor1, rotor2, ...', answer.said() + so,
+                   'nothing needs to be done where this is right')
 
 
 def _fit_for_use(record: FlightRecord, vehicle: Vehicle, rules: Rules, wrong: Collection[str],

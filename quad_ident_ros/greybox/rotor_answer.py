@@ -1,0 +1,163 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""How measured rotor speeds answer their commands: delay, lag and sag, whatever the body does."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import minimize
+
+from quad_ident_ros.data.record import FlightRecord
+from quad_ident_ros.effects.registry import NULL
+from quad_ident_ros.greybox.flights import RATE
+from quad_ident_ros.model.actuators import actuated, DELAY, LAG
+
+MOST = 20_000           # samples, from the middle of a flight: more tell nothing new
+LEAST_RATE = 40.0       # Hz of measured speeds; slower ones do not show lags
+BLOCK = 2.0             # s over which errors may hang together
+FOLLOWS = 0.5           # of the spread of the speeds that commands explain, at least
+COPY, COPIED = 1e-9, 1e-4   # of the variance, and s: what is left, and how late, by a copy of
+                            # the commands, which no sensor measures
+DELAYS, LAGS = np.arange(-0.02, 0.121, 0.01), np.array([0.0, 0.01, 0.02, 0.04, 0.08, 0.16])
+SMALL = 0.5 / RATE      # s: half a sample of what a diagnosis looks at
+SURE = 3.0              # standard errors
+FINEST = 1e-5           # s: no clock tells more
+
+
+@dataclass(frozen=True)
+class RotorAnswer:
+    """
+    What measured speeds say of the actuators of a flight, each with its standard error.
+
+    delay, lag (s): of the speeds behind the commands, by one lag up and down; gain: of the speed
+    over the command; per_volt (1/V): share by which a speed rises with the battery's voltage at
+    one command, or None without it; explained: share of the spread of the speeds.
+    """
+
+    delay: tuple[float, float]
+    lag: tuple[float, float]
+    gain: tuple[float, float]
+    per_volt: tuple[float, float] | None
+    explained: float
+
+    def said(self) -> str:
+        """Return it in words."""
+        text = (f'measured rotor speeds follow the commands {_ms(self.delay)} late, with a lag of '
+                f'{_ms(self.lag)}, and change by {self.gain[0]:.3f} ± {self.gain[1]:.3f} of '
+                'theirs')
+        if self.per_volt is not None:
+            text += (f'; at one command they change by {100 * self.per_volt[0]:.2f} ± '
+                     f'{100 * self.per_volt[1]:.2f} % per volt')
+        return text
+
+
+def ruled_out_by(answers: Iterable[RotorAnswer | None]) -> tuple[str, ...]:
+    """
+    Return the effects of the actuators that measured speeds of the flights speak against.
+
+    Those whose time is surely less than a diagnosis resolves, by all flights together, and by
+    none of them surely more.
+    """
+    some = [answer for answer in answers if answer is not None]
+    found = []
+    for name, pairs in (('motor_lag', [answer.lag for answer in some]),
+                        ('actuation_delay', [answer.delay for answer in some])):
+        values, errors = np.array(pairs).reshape(-1, 2).T
+        if not len(values):
+            continue
+        weights = 1.0 / np.maximum(errors, FINEST) ** 2
+        mean = float(np.sum(weights * values) / weights.sum())
+        error = SURE / float(np.sqrt(weights.sum()))
+        if abs(mean) + error < SMALL and (np.abs(values) - SURE * errors < SMALL).all():
+            found.append(name)
+    return tuple(found)
+
+
+def rotor_answer(record: FlightRecord) -> RotorAnswer | None:
+    """
+    Return the RotorAnswer of a record, None where its measured speeds do not tell.
+
+    Where they are missing, slow, a copy of the commands, or of something else than these.
+    """
+    names, measured = record.numbered('cmd'), record.numbered('rotor')
+    if not names or len(names) != len(measured):
+        return None
+    begin = max(0, (len(record) - MOST) // 2)
+    part = slice(begin, begin + MOST)
+    t = record.t[part] - record.t[part][0]
+    commands = np.ascontiguousarray(record.stack(*names)[part])
+    speeds = record.stack(*measured)[part]
+    if t[-1] < 2 * BLOCK or _rate(t, speeds) < LEAST_RATE or not np.ptp(commands, axis=0).all():
+        return None
+
+    def acted(delay: float, lag: float) -> np.ndarray:
+        theta = NULL.copy()
+        theta[DELAY], theta[LAG] = delay, max(lag, 0.0)
+        return actuated(t, t, commands, theta[None]).speeds[0]
+
+    beside = _sag(record, part, speeds)
+
+    def left(place: np.ndarray) -> float:
+        return float(np.sum(_apart(speeds, [acted(*place), *beside])[0] ** 2))
+
+    starts = [np.array([delay, lag]) for delay in DELAYS for lag in LAGS]
+    near = min(starts, key=left)
+    best = minimize(left, near, method='Nelder-Mead', options={
+        'initial_simplex': near + np.array([[0.0, 0.0], [0.005, 0.0], [0.0, 0.005]]),
+        'xatol': 1e-5, 'fatol': 0.0, 'maxiter': 120}).x
+    delay, lag = float(best[0]), max(float(best[1]), 0.0)
+    there = [acted(delay, lag), *beside]
+    rest, values = _apart(speeds, there)
+    spread = float(np.sum((speeds - speeds.mean(axis=0)) ** 2))
+    explained = 1.0 - float(np.sum(rest ** 2)) / max(spread, 1e-300)
+    copied = 1.0 - explained < COPY and max(abs(delay), lag) < COPIED
+    if explained < FOLLOWS or copied:
+        return None
+    # Samples do not show what happens between them: slopes are those over half a period.
+    step = 0.5 * float(np.median(np.diff(t)))
+    slopes = [(acted(delay + step, lag) - acted(delay - step, lag)) / (2 * step),
+              (acted(delay, lag + step) - acted(delay, lag)) / step]
+    columns = [values[0] * _apart(slope, there)[0] for slope in slopes]
+    errors = _errors(t, np.stack(columns, axis=-1), rest)
+    if lag < 2 * step:      # steps of speed from one sample to the next: anywhere between them
+        errors[0] = np.hypot(errors[0], 2 * step / np.sqrt(12.0))
+    others = _errors(t, np.stack([one - one.mean(axis=0) for one in there], axis=-1), rest)
+    per_volt = (float(values[1]), float(others[1])) if beside else None
+    return RotorAnswer((delay, float(errors[0])), (lag, float(errors[1])),
+                       (float(values[0]), float(others[0])), per_volt, explained)
+
+
+def _apart(speeds: np.ndarray, columns: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+    """Return speeds (N, n) less an offset of each rotor and values (C,) times columns; these."""
+    centred = speeds - speeds.mean(axis=0)
+    table = np.stack([(one - one.mean(axis=0)).ravel() for one in columns], axis=-1)
+    values = np.linalg.lstsq(table.T @ table, table.T @ centred.ravel(), rcond=1e-12)[0]
+    return centred - (table @ values).reshape(centred.shape), values
+
+
+def _errors(t: np.ndarray, columns: np.ndarray, rest: np.ndarray) -> np.ndarray:
+    """Return standard errors (C,) of what columns (N, n, C) fit, by blocks of the rest (N, n)."""
+    block = (t / BLOCK).astype(int)
+    scores = np.zeros((block[-1] + 1, columns.shape[-1]))
+    np.add.at(scores, block, np.einsum('tjc,tj->tc', columns, rest))
+    inverse = np.linalg.pinv(np.einsum('tjc,tjd->cd', columns, columns))
+    return np.sqrt(np.maximum(np.diag(inverse @ (scores.T @ scores) @ inverse), 0.0))
+
+
+def _sag(record: FlightRecord, part: slice, speeds: np.ndarray) -> list[np.ndarray]:
+    """Return [what a speed that goes with the voltage would change by, per 1/V], or []."""
+    if not record.has('vbat') or not np.ptp(record.columns['vbat'][part]) > 0:
+        return []
+    volts = record.columns['vbat'][part]
+    return [(volts - volts.mean())[:, None] * speeds.mean(axis=0)]
+
+
+def _rate(t: np.ndarray, speeds: np.ndarray) -> float:
+    """Return how often a second speeds are measured: between two samples they lie on a line."""
+    bends = np.abs(np.diff(speeds, 2, axis=0)) > 1e-9 * np.abs(speeds).max(initial=1e-300)
+    return float(bends.any(axis=1).sum() / (t[-1] - t[0]))
+
+
+def _ms(pair: tuple[float, float]) -> str:
+    return f'{1e3 * pair[0]:.1f} ± {1e3 * pair[1]:.1f} ms'
