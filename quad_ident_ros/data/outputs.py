@@ -47,8 +47,9 @@ def commanded(records: Sequence[FlightRecord], vehicle: Vehicle | None,
              if record.has('output1') and not record.has('cmd1')]
     if not there:
         return found
-    some = [found[k] for k in there]
-    for k, record in zip(there, _with_commands(some, vehicle, actuators), strict=True):
+    with np.errstate(all='ignore'):     # values so large that no motor has them
+        done = _with_commands([found[k] for k in there], vehicle, actuators)
+    for k, record in zip(there, done, strict=True):
         found[k] = record
     return found
 

@@ -41,8 +41,9 @@ def diagnose(records: list[FlightRecord], vehicle: Vehicle, *,
         if name not in EFFECTS:
             raise InputError(f'{name!r} is not among the effects: {", ".join(EFFECTS)}')
     intake = take_in(list(records), vehicle, hold_out, rules)
-    causes = tuple(cause for cause in candidates(intake.flights, vehicle, rules, effects)
-                   if cause.effect not in intake.refuted)
+    every = candidates(intake.flights, vehicle, rules, effects)
+    causes = tuple(cause for cause in every if cause.effect not in intake.refuted)
+    ruled_out = tuple(dict.fromkeys(cause.effect for cause in every if cause not in causes))
     selection = select(intake.flights, vehicle, causes, rules,
                        lambda share: on_progress(0.7 * share))
     prompt = late_controller(selection, intake.flights)
@@ -55,7 +56,7 @@ def diagnose(records: list[FlightRecord], vehicle: Vehicle, *,
                   rules)
     judged = judge(bench)
     on_progress(0.85)
-    verdict = verdict_of(bench, judged, causes)
+    verdict = verdict_of(bench, judged, causes, ruled_out)
     z0, model = nominal(vehicle), judged.model
     whole = np.median([whole_noise(raw, 1.0 - 1.0 / raw.shape[1])
                        for raw in model.estimate.residuals], axis=0)

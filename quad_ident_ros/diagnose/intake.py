@@ -5,7 +5,9 @@
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
-from quad_ident_ros.data.clocks import clocks_of, on_one_clock
+import numpy as np
+
+from quad_ident_ros.data.clocks import Clock, clocks_of, on_one_clock
 from quad_ident_ros.data.quality import cautions, refuse_errors, refuted
 from quad_ident_ros.data.quality.finding import as_caution, Finding
 from quad_ident_ros.data.quality.ground import airborne, stands
@@ -17,7 +19,7 @@ from quad_ident_ros.errors import InputError
 from quad_ident_ros.greybox.flights import Flight, guided, highest_voltage, moved, Track, track_of
 from quad_ident_ros.greybox.near import near_flights
 from quad_ident_ros.greybox.parameters import nominal
-from quad_ident_ros.greybox.rotor_answer import rotor_answer, RotorAnswer, ruled_out_by
+from quad_ident_ros.greybox.rotor_answer import rotor_answer, ruled_out_by
 from quad_ident_ros.model.mixing import with_commands
 from quad_ident_ros.model.vehicle import Vehicle
 
@@ -80,12 +82,9 @@ def take_in(records: Sequence[FlightRecord], vehicle: Vehicle, hold_out: FlightR
     every = [*records, *([] if hold_out is None else [hold_out])]
     every, late, answers = map(list, zip(*on_one_clock(every), strict=True))
     learnt = every if alone else every[:-1]
-    told = [rotor_answer(record) for record in every]
-    ruled_out = ruled_out_by(told)
-    findings += [as_caution(_of_rotors(answer, ruled_out), record)
-                 for answer, record in zip(told, every, strict=True) if answer is not None]
     voltage = highest_voltage(learnt)
     clocks = clocks_of(answers[:len(learnt)], answers[len(learnt):])
+    ruled_out = _of_rotors(every, clocks, len(learnt), findings)
     tracks = [guided(track_of(record, vehicle, voltage, clock))
               for record, clock in zip(every, clocks, strict=True)]
     if alone:
@@ -95,11 +94,24 @@ def take_in(records: Sequence[FlightRecord], vehicle: Vehicle, hold_out: FlightR
                   tuple(clocks), findings, ruled_out)
 
 
-def _of_rotors(answer: RotorAnswer, ruled_out: Sequence[str]) -> Finding:
-    """Return what measured rotor speeds say of the actuators."""
+def _of_rotors(records: Sequence[FlightRecord], clocks: Sequence[Clock | None], learnt: int,
+               findings: list) -> tuple[str, ...]:
+    """
+    Return the effects that measured rotor speeds of the first, learnt, records speak against.
+
+    What they say in each is added to the findings.
+    """
+    told = [rotor_answer(record) for record in records]
+    # Commands of another clock than the states': whose clock the speeds have is not known.
+    ruled_out = ruled_out_by([
+        replace(answer, delay=(answer.delay[0], np.inf)) if answer and clock and clock.late
+        else answer for answer, clock in zip(told[:learnt], clocks, strict=False)])
     so = f'; {" and ".join(ruled_out)} is ruled out by that' if ruled_out else ''
-    return Finding('rotor_answer', 'info', 'rotor1, rotor2, ...', answer.said() + so,
-                   'nothing needs to be done where this is right')
+    findings += [as_caution(Finding('rotor_answer', 'info', 'rotor1, rotor2, ...',
+                                    answer.said() + so,
+                                    'nothing needs to be done where this is right'), record)
+                 for answer, record in zip(told, records, strict=True) if answer is not None]
+    return ruled_out
 
 
 def _fit_for_use(record: FlightRecord, vehicle: Vehicle, rules: Rules, wrong: Collection[str],

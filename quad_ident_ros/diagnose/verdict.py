@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """From contributions and evidence to the names of a verdict and the ranking of all effects."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -33,8 +34,9 @@ class Verdict:
     flight_checks: tuple[FlightCheck, ...]
 
 
-def verdict_of(bench: Bench, judged: Judgement, causes: tuple) -> Verdict:
-    """Return the Verdict of a Judgement."""
+def verdict_of(bench: Bench, judged: Judgement, causes: tuple,
+               ruled_out: Sequence[str] = ()) -> Verdict:
+    """Return the Verdict of a Judgement; ruled_out: effects that were no candidates for it."""
     rules, checks = bench.rules, flight_checks(bench, judged)
     total = judged.probability
     named = sorted(judged.material, key=lambda cause: -judged.weights[cause].contribution)
@@ -46,8 +48,8 @@ def verdict_of(bench: Bench, judged: Judgement, causes: tuple) -> Verdict:
     certain = tuple(cause for cause in named if cause not in doubts)
     sure = tuple(dict.fromkeys(cause.effect for cause in certain))
     names = ((*sure, 'unknown') if unknown else ('undetermined',) if doubts else sure or ('none',))
-    return Verdict(names, minor, _ranking(bench, judged, causes, total), certain, sure, doubts,
-                   tuple(sorted({cause.effect for cause in doubts})), checks)
+    return Verdict(names, minor, _ranking(bench, judged, causes, total, ruled_out), certain, sure,
+                   doubts, tuple(sorted({cause.effect for cause in doubts})), checks)
 
 
 def flight_checks(bench: Bench, judged: Judgement) -> tuple[FlightCheck, ...]:
@@ -70,7 +72,8 @@ def flight_checks(bench: Bench, judged: Judgement) -> tuple[FlightCheck, ...]:
     return tuple(rows)
 
 
-def _ranking(bench: Bench, judged: Judgement, causes: tuple, total: dict) -> tuple[Ranked, ...]:
+def _ranking(bench: Bench, judged: Judgement, causes: tuple, total: dict,
+             ruled_out: Sequence[str]) -> tuple[Ranked, ...]:
     """Return every effect, the named ones by contribution, then the most probable first."""
     z0, model, best = nominal(bench.vehicle), judged.model, bench.selection.best
     errors = dict(zip(model.estimate.columns, model.estimate.errors, strict=True))
@@ -99,6 +102,8 @@ def _ranking(bench: Bench, judged: Judgement, causes: tuple, total: dict) -> tup
             weight and weight.contribution, weight and weight.stability,
             weight and weight.companions, parameters, gap_after,
             weight and weight.gap)
+    for name in ruled_out:
+        rows[name] = Ranked(name, 0.0, None, None, None, None, None, {}, before, None)
     named = {cause.effect for cause in judged.material}
     return tuple(sorted(rows.values(), key=lambda row: (
         row.effect not in named, -(row.contribution or 0.0) if row.effect in named

@@ -63,7 +63,8 @@ def ruled_out_by(answers: Iterable[RotorAnswer | None]) -> tuple[str, ...]:
     found = []
     for name, pairs in (('motor_lag', [answer.lag for answer in some]),
                         ('actuation_delay', [answer.delay for answer in some])):
-        values, errors = np.array(pairs).reshape(-1, 2).T
+        values, errors = np.array([pair for pair in pairs if np.isfinite(pair[1])]).reshape(
+            -1, 2).T
         if not len(values):
             continue
         weights = 1.0 / np.maximum(errors, FINEST) ** 2

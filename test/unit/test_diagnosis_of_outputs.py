@@ -43,9 +43,9 @@ def test_the_diagnosis_is_that_of_rotor_speeds(vehicle, told):
     records = [commanded([with_outputs(record, told)], vehicle)[0] for record in flown(TRUTH)]
     found = diagnose(records, vehicle)
     assert set(found.verdict) == set(TRUTH) and found.gap.closed > 0.98
-    for entry in found.ranking:
-        for name, value in TRUTH.get(entry['effect'], {}).items():
-            assert entry['parameters'][name]['value'] == pytest.approx(value, rel=0.02)
+    for row in found.ranking:
+        for name, value in TRUTH.get(row.effect, {}).items():
+            assert row.parameters[name].value == pytest.approx(value, rel=0.02)
     codes = {one['code'] for one in found.findings}
     assert 'commands' in codes
     assert ('thrust_level' in codes) == (vehicle is NOWHERE)
@@ -57,9 +57,9 @@ def test_a_curve_that_is_bent_is_named_where_the_weight_sets_its_scale():
                for record in flown({'thrust_scale': {'at_hover': 1.2, 'offset': 0.4}})]
     found = diagnose(records, NOWHERE)
     assert found.verdict[0] == 'thrust_scale' and 'mass_offset' not in found.verdict
-    [entry] = [one for one in found.ranking if one['effect'] == 'thrust_scale']
-    assert set(entry['parameters']) == {'offset'}
-    assert entry['parameters']['offset']['value'] == pytest.approx(0.4, abs=0.02)
+    [row] = [one for one in found.ranking if one.effect == 'thrust_scale']
+    assert row.parameters.keys() == {'offset'}
+    assert row.parameters['offset'].value == pytest.approx(0.4, abs=0.02)
 
 
 @pytest.mark.parametrize(('truth', 'other'), [
@@ -68,6 +68,6 @@ def test_a_curve_that_is_bent_is_named_where_the_weight_sets_its_scale():
 def test_measured_speeds_rule_out_the_other_actuator(truth, other):
     found = diagnose(flown(truth), VEHICLE)
     assert set(found.verdict) == set(truth)
-    assert other not in [entry['effect'] for entry in found.ranking]
+    assert [row.probability for row in found.ranking if row.effect == other] == [0.0]
     said = [one['message'] for one in found.findings if one['code'] == 'rotor_answer']
     assert len(said) == 4 and f'{other} is ruled out' in said[0]
