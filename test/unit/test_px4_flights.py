@@ -30,6 +30,7 @@ from quad_ident_ros.cli.main import main
 from quad_ident_ros.data.load import contents_of, load, load_all
 from quad_ident_ros.data.mapping import mapping_from
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.model.motors import motors_from
 from quad_ident_ros.model.vehicle import load_vehicle, Rotor
 
 FIRST = 5_000_000   # us, of px4_samples
@@ -65,6 +66,19 @@ def test_pwm_is_undone_with_its_limits_and_curve(tmp_path):
     path = log(tmp_path, log_of(SMALL, outputs=low + signal * (high - low), named=named))
     np.testing.assert_allclose(load(path, vehicle=VEHICLE).stack(*CMD), SMALL.stack(*CMD),
                                atol=1e-2)
+
+
+def test_the_motors_of_the_vehicle_hold_before_the_parameters(tmp_path):
+    curve = {'offset': 100, 'gain': 1600}
+    for kind, outputs in (('normalised', {'motors': controls(SMALL)}),
+                          ('normalised', {'outputs': 1000 + 1000 * controls(SMALL)}),
+                          ('pwm', {'outputs': 1000 + 1000 * controls(SMALL),
+                                   'motors': 0 * controls(SMALL)})):
+        vehicle = replace(VEHICLE, speed_max=9000.0,
+                          motors=motors_from('v', {'kind': kind, 'speed': curve}))
+        read = load(log(tmp_path, log_of(SMALL, **outputs)), vehicle=vehicle)
+        np.testing.assert_allclose(read.stack(*CMD), SMALL.stack(*CMD), atol=1e-3)
+        assert 'by motors: of half_kilogram' in notes(read)
 
 
 def test_outputs_are_found_by_their_functions(tmp_path):
