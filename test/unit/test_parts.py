@@ -1,0 +1,119 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Parts of a file: --segment, --from and --to, wherever flights are read."""
+
+import json
+
+from flightmaker import changed, flight
+import numpy as np
+import pytest
+
+from quad_ident_ros.cli.main import main
+from quad_ident_ros.data.csv import read_csv, write_csv
+from quad_ident_ros.data.load import load_all
+from quad_ident_ros.data.selection import selected, Selection
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.model.dynamics import course_of
+from quad_ident_ros.model.vehicle import load_vehicle
+
+WHOLE = flight(seconds=20.0)
+
+
+@pytest.fixture
+def jumped(tmp_path):
+    """Return the path of a flight whose position jumps at 8 s: a file of two segments."""
+    path = tmp_path / 'f.csv'
+    write_csv(path, changed(WHOLE, px=WHOLE.columns['px'] + 2.5 * (WHOLE.t > 7.995)))
+    return path
+
+
+def test_times_keep_the_samples_between_them():
+    [kept] = selected('f', [WHOLE], Selection(begin=3.2, end=18.4))
+    assert kept.t[0] == pytest.approx(3.2) and kept.t[-1] == pytest.approx(18.4)
+    np.testing.assert_array_equal(kept.columns['px'], WHOLE.columns['px'][320:1841])
+    assert 't = 3.200 to 18.400 s of 0.000 to 19.990 s' in kept.info['notes'][-1]
+    [early] = selected('f', [WHOLE], Selection(end=5.0))
+    assert early.t[0] == 0.0 and 'began' not in early.info
+    assert selected('f', [WHOLE], Selection()) == [WHOLE]
+    assert selected('f', [WHOLE], Selection(begin=-3.0, end=90.0)) == [WHOLE]
+
+
+def test_the_battery_has_been_emptying_since_the_record_began():
+    """What falls with time counts from the first sample of the file, however often it is cut."""
+    vehicle = load_vehicle('iris')
+    [late] = selected('f', [WHOLE], Selection(begin=6.0))
+    [later] = selected('f', [late], Selection(begin=9.0))
+    assert course_of(later, vehicle).t[0] == pytest.approx(9.0)
+    known = type(WHOLE)(WHOLE.t, WHOLE.columns, {'start_ns': 7, 'starts_at_rest': True})
+    [late] = selected('f', [known], Selection(begin=6.0))
+    assert late.info['start_ns'] == 7 + 6_000_000_000 and 'starts_at_rest' not in late.info
+
+
+def test_a_segment_is_taken_by_its_number(jumped):
+    pieces = load_all(jumped)
+    [second] = selected(jumped, pieces, Selection(segment=2))
+    np.testing.assert_array_equal(second.t, pieces[1].t)
+    assert 'segment 2 of 2' in second.info['notes'][-1]
+    [rest] = selected(jumped, pieces, Selection(end=6.0))   # nothing is left of the other
+    assert rest.t[-1] == pytest.approx(6.0)
+    assert len(selected(jumped, pieces, Selection(begin=2.0, end=18.0))) == 2
+
+
+@pytest.mark.parametrize(('selection', 'words'), [
+    (Selection(begin=35.0, end=65.0), ['--from 35 --to 65', 't = 0.00 to 19.99 s']),
+    (Selection(end=-1.0), ['--to -1', 'leaves nothing', 't = 0.00 to 19.99 s']),
+    (Selection(segment=3), ['--segment 3', 'one segment']),
+])
+def test_where_nothing_is_left_the_span_is_told(selection, words):
+    with pytest.raises(InputError) as caught:
+        selected('f.csv', [WHOLE], selection)
+    assert all(word in str(caught.value) for word in ['f.csv', *words])
+    assert str(caught.value).count('\n') == 0
+
+
+def test_many_segments_are_told_in_one_short_line():
+    pieces = [WHOLE.slice(100 * k, 100 * k + 90) for k in range(20)]
+    with pytest.raises(InputError, match='20 segments, 1: t = 0.00 to 0.89 s, 2:') as caught:
+        selected('f.csv', pieces, Selection(segment=21))
+    assert len(str(caught.value)) < 400
+
+
+@pytest.mark.parametrize(('options', 'words'), [
+    (['--from', '9', '--to', '9'], '--from 9 --to 9'), (['--from', 'nan'], '--from nan'),
+    (['--to', 'inf'], '--to inf'), (['--segment', '0'], '--segment 0')])
+def test_what_no_file_can_meet_is_refused_at_once(options, words, capsys):
+    assert main(['info', 'none.csv', *options]) == 2
+    said = capsys.readouterr().err
+    assert words in said and said.count('\n') == 1
+
+
+def test_info_lists_the_segments_and_shows_one(jumped, capsys):
+    assert main(['info', str(jumped)]) == 0
+    said = capsys.readouterr().out
+    assert '2 segments' in said and '--segment N' in said and '11.99' in said
+    assert main(['info', str(jumped), '--segment', '2', '--json', '-']) == 0
+    data = json.loads(capsys.readouterr().out)
+    assert [one['number'] for one in data['segments']] == [1, 2]
+    assert data['segments'][1]['start_s'] == data['time']['start_s'] == pytest.approx(8.0)
+    assert main(['info', str(jumped), '--segment', '5']) == 2
+    assert 'has 2 segments, 1: t = 0.00 to 7.99 s' in capsys.readouterr().err
+
+
+def test_convert_writes_the_part(jumped, tmp_path):
+    out = tmp_path / 'part.csv'
+    assert main(['convert', str(jumped), str(out), '--segment', '2', '--from', '9',
+                 '--to', '15']) == 0
+    record = read_csv(out)
+    assert record.t[0] == pytest.approx(9.0) and record.t[-1] == pytest.approx(15.0)
+
+
+def test_every_command_that_reads_flights_takes_a_part(jumped, capsys):
+    """One that leaves nothing shows that it is heeded, before anything is computed."""
+    calls = [['info', jumped], ['convert', jumped, jumped.with_name('o.csv')],
+             ['identify', jumped, '--vehicle', 'iris'],
+             ['fit', jumped, '--vehicle', 'iris', '--free', 'mass'],
+             ['diagnose', jumped, '--vehicle', 'iris'],
+             ['diagnose', jumped, '--vehicle', 'iris', '--hold-out', jumped]]
+    for call in calls:
+        assert main([*map(str, call), '--from', '70']) == 2
+        assert '--from 70 is asked for, which leaves nothing' in capsys.readouterr().err
