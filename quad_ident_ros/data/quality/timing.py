@@ -44,7 +44,7 @@ def gaps(record, vehicle):
         f't = {record.t[longest]:.3f} s',
         f'{len(wide)} gaps, {missing} samples ({100 * share:.1f} %) are missing; the longest is '
         f'{steps[longest]:.3f} s',
-        'predictions stop at gaps; record with a lossless transport, or cut the flight there')]
+        'predictions stop at gaps; record with a lossless transport')]
 
 
 def duplicates(record, vehicle):
