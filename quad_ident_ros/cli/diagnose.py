@@ -8,6 +8,7 @@ import sys
 
 from quad_ident_ros.cli.identify import progress_bar
 from quad_ident_ros.cli.options import add_selection, flights_from, selection_of, vehicle_from
+from quad_ident_ros.data.split import joined
 from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.diagnose.rules import RULES
 from quad_ident_ros.effects.registry import EFFECTS
@@ -66,7 +67,7 @@ def run(options):
                if options.effects is not None else None)
     records = [record for path in options.flights
                for record in flights_from(path, options.mapping, vehicle, selection)]
-    held = (flights_from(options.hold_out, options.mapping, vehicle, selection)[-1]
+    held = (joined(flights_from(options.hold_out, options.mapping, vehicle, selection))[-1]
             if options.hold_out else None)
     with progress_bar() as bar:
         task = bar.add_task('comparing sets of effects', total=1.0)

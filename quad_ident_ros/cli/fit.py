@@ -8,7 +8,9 @@ import textwrap
 
 from quad_ident_ros.cli.identify import progress_bar
 from quad_ident_ros.cli.options import add_selection, flights_from, selection_of
-from quad_ident_ros.data.quality import refuse_unfit
+from quad_ident_ros.data.quality import refuse_errors, refuse_unfit
+from quad_ident_ros.data.quality.ground import airborne, stands
+from quad_ident_ros.data.split import joined
 from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.greybox.cautions import cautions
 from quad_ident_ros.greybox.free import columns_of_names, UNITS
@@ -65,7 +67,12 @@ def run(options):
             records += [with_commands(record, vehicle) for record in
                         flights_from(path, options.mapping, options.vehicle, selection)]
         bar.update(task, description='looking for faults')
-        quality = [refuse_unfit(record, vehicle) for record in records]
+        quality = []
+        for number, record in enumerate(records := joined(records)):
+            ground = stands(record, vehicle)
+            refuse_errors(record, ground)
+            records[number] = airborne(record, vehicle)
+            quality.append((*ground, *refuse_unfit(records[number], vehicle)))
         found = fit(records, vehicle, names, lambda share: bar.update(
             task, description='fitting', completed=share))
     found = replace(found, findings=(*found.findings, *cautions(

@@ -10,6 +10,7 @@ from quad_ident_ros.data.quality import cautions, refuse_errors, refuted
 from quad_ident_ros.data.quality.finding import as_caution
 from quad_ident_ros.data.quality.ground import airborne, stands
 from quad_ident_ros.data.record import FlightRecord, refuse_twice, same_flight
+from quad_ident_ros.data.split import joined
 from quad_ident_ros.diagnose.blocks import interleaved
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.errors import InputError
@@ -58,6 +59,7 @@ def take_in(records: Sequence[FlightRecord], vehicle: Vehicle, hold_out: FlightR
     The last one is held out, or hold_out, or blocks of a single one. Raises InputError
     for a fault that no verdict survives, and where there is too little.
     """
+    records = joined(records)
     if hold_out is not None:    # among others it would take part in fit and choice
         records = [record for record in records if not same_flight(record, hold_out)]
     refuse_twice(records)
@@ -92,8 +94,8 @@ def _fit_for_use(record: FlightRecord, vehicle: Vehicle, rules: Rules, wrong: Co
     ground = stands(record, vehicle)
     refuse_errors(record, ground)
     findings += [as_caution(finding, record) for finding in ground]
-    record = airborne(record, vehicle)
-    refuse_short(record, rules)
+    whole, record = record, airborne(record, vehicle)
+    refuse_short(record, rules, ' off the ground' if len(record) < len(whole) else '')
     findings += [one for one in cautions(record, vehicle, wrong)
                  if one['code'] not in {finding.code for finding in ground}]
     return record
@@ -109,10 +111,9 @@ def length_of(record: FlightRecord) -> float:
     return round(float(record.t[-1] - record.t[0]) + record.period(), 6)
 
 
-def refuse_short(record: FlightRecord, rules: Rules) -> None:
-    """Raise InputError where a flight record is too short for a diagnosis."""
+def refuse_short(record: FlightRecord, rules: Rules, where: str = '') -> None:
+    """Raise InputError where a flight record, where it was cut to, is too short."""
     if length_of(record) < rules.shortest:
         name = record.info.get('source') or record.info.get('name', 'a record')
-        cut = ' off the ground' if 'began' in record.info else ''
-        raise InputError(f'{name}: {length_of(record):.3g} s{cut} are '
+        raise InputError(f'{name}: {length_of(record):.3g} s{where} are '
                          f'too short for a diagnosis; at least {rules.shortest:g} s are needed')

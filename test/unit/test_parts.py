@@ -12,6 +12,7 @@ from quad_ident_ros.cli.main import main
 from quad_ident_ros.data.csv import read_csv, write_csv
 from quad_ident_ros.data.load import load_all
 from quad_ident_ros.data.selection import selected, Selection
+from quad_ident_ros.data.split import joined
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.dynamics import course_of
 from quad_ident_ros.model.vehicle import load_vehicle
@@ -117,3 +118,26 @@ def test_every_command_that_reads_flights_takes_a_part(jumped, capsys):
     for call in calls:
         assert main([*map(str, call), '--from', '70']) == 2
         assert '--from 70 is asked for, which leaves nothing' in capsys.readouterr().err
+
+
+def test_the_parts_of_one_recording_are_one_flight_again(jumped):
+    """With a gap between them, over which nothing is taken; its time goes on."""
+    pieces = load_all(jumped)
+    [whole] = joined(pieces)
+    assert len(whole) > len(WHOLE) - 20
+    assert 0.099 < np.diff(whole.t).max() < 0.2 and whole.info['source'] == str(jumped)
+    assert whole.info['name'] == 'f (2 parts)'
+    assert '2 parts of one recording are one flight' in whole.info['notes'][-1]
+    [cut] = whole.info['cuts']
+    assert cut == pytest.approx(8.1, abs=0.03)
+    again = joined([whole])
+    assert again == [whole]
+
+
+def test_flights_of_several_recordings_stay_apart(jumped, tmp_path):
+    other = tmp_path / 'g.csv'
+    write_csv(other, WHOLE)
+    names = [one.info['name'] for one in joined([*load_all(jumped), *load_all(other)])]
+    assert names == ['f (2 parts)', 'g']
+    unnamed = [changed(WHOLE.slice(0, 500)), changed(WHOLE.slice(500))]
+    assert len(joined(unnamed)) == 2

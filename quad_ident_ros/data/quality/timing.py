@@ -33,7 +33,8 @@ def slow(record, vehicle):
 def gaps(record, vehicle):
     """Find steps in time of over three median periods."""
     steps, period = np.diff(record.t), record.period()
-    wide = np.flatnonzero(steps > GAP * period)
+    wide = np.flatnonzero((steps > GAP * period)
+                          & ~np.isin(record.t[1:], record.info.get('cuts', ())))
     if not len(wide):
         return []
     longest = wide[np.argmax(steps[wide])]
