@@ -38,6 +38,7 @@ _PLACES = {(1, 0): '1 right, 2 left, 3 front, 4 rear',
            (1, 1): '1 front right, 2 rear left, 3 front left, 4 rear right'}
 """Where motors are, by FRAME_CLASS and FRAME_TYPE; quad plus and quad X."""
 
+_BOARD = re.compile(r'([\w-]+) ((?:[0-9A-F]{8} ?){3})')     # name, and serial number of its chip
 _MOTOR = re.compile(r'SERVO([1-9]|[12][0-9]|3[0-2])_FUNCTION')
 _MAP = ('MOT_PWM_MIN', 'MOT_PWM_MAX', 'MOT_SPIN_ARM', 'MOT_SPIN_MIN', 'MOT_SPIN_MAX',
         'MOT_THST_EXPO')
@@ -80,7 +81,7 @@ def read_ardupilot(path, mapping=None, vehicle=None):
         notes += _order_notes(parameters, bool(channels))
     start, t, columns, left_out = join(path, streams)
     return FlightRecord(t, columns, {'name': path.stem, 'source': str(path), 'start_ns': start,
-                                     'notes': [*notes, *left_out]})
+                                     'notes': [*notes, *left_out], 'hardware': _hardware(found)})
 
 
 def contents(path):
@@ -143,6 +144,14 @@ def _has(messages, *fields):
     return messages is not None and all(
         field in messages.fields and (messages.rows[field].dtype.kind in 'iuf'
                                       or field in ('Name', 'Message')) for field in fields)
+
+
+def _hardware(found):
+    """Return what a log knows of the vehicle: its board and the serial number of that."""
+    if not _has(found.get('MSG'), 'Message') or found['MSG'].rows['Message'].dtype.kind != 'S':
+        return {}
+    told = filter(None, map(_BOARD.fullmatch, found['MSG'].texts('Message')))
+    return next(({'board': one[1], 'id': one[2]} for one in told), {})
 
 
 def _refuse_others(path, found, parameters):

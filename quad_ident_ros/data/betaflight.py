@@ -88,7 +88,10 @@ def _record(path, log, count, actuators, vehicle):
     start, t, columns, left_out = join(where, streams)
     name = path.stem if count == 1 else f'{path.stem}_{log.number}'
     return FlightRecord(t, columns, {'name': name, 'source': where, 'start_ns': start,
-                                     'notes': [*notes, *left_out]})
+                                     'notes': [*notes, *left_out], 'hardware': {
+                                         key: str(log.headers[name]) for key, name in
+                                         (('board', 'Board information'), ('craft', 'Craft name'))
+                                         if log.headers.get(name)}})
 
 
 def _stamps(log):

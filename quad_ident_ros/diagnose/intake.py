@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from quad_ident_ros.data.clocks import clocks_of, on_one_clock
 from quad_ident_ros.data.quality import cautions, refuse_errors, refuted
 from quad_ident_ros.data.quality.finding import as_caution
+from quad_ident_ros.data.quality.fleet import vehicles
 from quad_ident_ros.data.quality.ground import airborne, stands
 from quad_ident_ros.data.record import FlightRecord, refuse_twice, same_flight
 from quad_ident_ros.data.split import joined
@@ -66,7 +67,7 @@ def take_in(records: Sequence[FlightRecord], vehicle: Vehicle, hold_out: FlightR
     records = [with_commands(record, vehicle) for record in records]
     hold_out = None if hold_out is None else with_commands(hold_out, vehicle)
     wrong = refuted([*records, *([] if hold_out is None else [hold_out])], vehicle)
-    findings: list[dict] = []
+    findings = vehicles([*records, *([] if hold_out is None else [hold_out])])
     records = [_fit_for_use(record, vehicle, rules, wrong, findings) for record in records]
     if hold_out is not None:
         hold_out = _fit_for_use(hold_out, vehicle, rules, wrong, findings)

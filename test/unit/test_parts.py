@@ -2,18 +2,27 @@
 # SPDX-License-Identifier: Apache-2.0
 """Parts of a file: --segment, --from and --to, wherever flights are read."""
 
+from dataclasses import replace
 import json
 
+from blackbox_files import blackbox, rows_of
+from dataflash_files import copter, dataflash
 from flightmaker import changed, flight
 import numpy as np
+from px4_files import log_of
 import pytest
 
 from quad_ident_ros.cli.main import main
 from quad_ident_ros.data.csv import read_csv, write_csv
 from quad_ident_ros.data.load import load_all
+from quad_ident_ros.data.quality.fleet import vehicles
+from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.data.selection import selected, Selection
 from quad_ident_ros.data.split import joined
+from quad_ident_ros.diagnose.intake import take_in
+from quad_ident_ros.diagnose.rules import RULES
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.model.dynamics import course_of
 from quad_ident_ros.model.vehicle import load_vehicle
 
@@ -141,3 +150,60 @@ def test_flights_of_several_recordings_stay_apart(jumped, tmp_path):
     assert names == ['f (2 parts)', 'g']
     unnamed = [changed(WHOLE.slice(0, 500)), changed(WHOLE.slice(500))]
     assert len(joined(unnamed)) == 2
+
+
+def known(name, **hardware):
+    return FlightRecord(WHOLE.t, WHOLE.columns, {'name': name, 'hardware': hardware})
+
+
+def test_flights_of_several_vehicles_are_told_apart():
+    one, other = ({'board': 'PX4_FMU_V5', 'id': f'00020{k}'} for k in (1, 2))
+    assert vehicles([known('a', **one), known('b', **one), known('c')]) == []
+    [caution] = vehicles([known('a', **one), known('b', **other), known('c', **one), known('d')])
+    assert caution['code'] == 'vehicles' and caution['severity'] == 'warning'
+    assert caution['message'] == ('they are of 2 vehicles: a, c of PX4_FMU_V5 000201; '
+                                  'b of PX4_FMU_V5 000202')
+
+
+def test_what_only_one_log_knows_tells_no_vehicles_apart():
+    assert vehicles([known('a', board='X', id='1'), known('b', board='X')]) == []
+    assert len(vehicles([known('a', board='X', id='1'), known('b', board='Y')])) == 1
+    # The third knows what tells the first two apart.
+    assert len(vehicles([known('a', board='X'), known('b', id='1'), known('c', board='Z')])) == 1
+
+
+def test_logs_know_their_vehicle(tmp_path):
+    px4 = tmp_path / 'log.ulg'
+    px4.write_bytes(log_of(WHOLE, info={'ver_hw': 'PX4_FMU_V5', 'sys_uuid': '0002af'}))
+    assert load_all(px4)[0].info['hardware'] == {'board': 'PX4_FMU_V5', 'id': '0002af'}
+    px4.write_bytes(log_of(WHOLE))
+    assert load_all(px4)[0].info['hardware'] == {}
+
+
+def test_logs_of_ardupilot_know_their_board(tmp_path):
+    pytest.importorskip('pymavlink')
+    path = tmp_path / 'f.BIN'
+    messages = copter(WHOLE.slice(0, 500), np.full((500, 4), 1500.0))
+    path.write_bytes(dataflash([*messages[:1], (
+        'MSG', (messages[0][1][0], 'CubeBlack 0034003C 31355104 33393633')), *messages[1:]]))
+    assert load_all(path)[0].info['hardware'] == {'board': 'CubeBlack',
+                                                  'id': '0034003C 31355104 33393633'}
+
+
+def test_logs_of_betaflight_know_their_craft(tmp_path):
+    pytest.importorskip('orangebox')
+    path, part = tmp_path / 'f.bbl', WHOLE.slice(0, 300)
+    path.write_bytes(blackbox(rows_of(part, np.full((300, 4), 900)),
+                              **{'Board information': 'SPBE F405', 'Craft name': 'five inch'}))
+    assert load_all(path)[0].info['hardware'] == {'board': 'SPBE F405', 'craft': 'five inch'}
+
+
+@pytest.mark.slow
+def test_a_diagnosis_warns_of_several_vehicles():
+    hummingbird = load_vehicle('hummingbird')
+    flights = [fly_closed_loop(hummingbird, {}, 'lissajous', duration=8.0, seed=seed)
+               for seed in (1, 2)]
+    flights = [replace(flight, info={**flight.info, 'hardware': {'id': str(number)}})
+               for number, flight in enumerate(flights)]
+    found = take_in(flights, hummingbird, None, RULES)
+    assert 'vehicles' in {one['code'] for one in found.findings}
