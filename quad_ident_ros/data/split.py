@@ -80,6 +80,14 @@ def joined(records: Sequence[FlightRecord]) -> list[FlightRecord]:
     return [rejoined(group) for group in groups.values()]
 
 
+def spans(record: FlightRecord) -> list[tuple[float, float]]:
+    """Return the first and last time (s) of each part that a record was joined from."""
+    firsts = np.searchsorted(record.t, [record.t[0], *record.info.get('cuts', ())])
+    edges = [*np.unique(firsts[firsts < len(record)]), len(record)]
+    return [(float(record.t[begin]), float(record.t[end - 1]))
+            for begin, end in zip(edges[:-1], edges[1:], strict=True)]
+
+
 def rejoined(pieces: Sequence[FlightRecord]) -> FlightRecord:
     """Return parts of one recording, at least one, as one record; see joined."""
     if len(pieces) == 1:

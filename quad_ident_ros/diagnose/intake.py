@@ -7,11 +7,11 @@ from dataclasses import dataclass, replace
 
 from quad_ident_ros.data.clocks import clocks_of, on_one_clock
 from quad_ident_ros.data.quality import cautions, refuse_errors, refuted
-from quad_ident_ros.data.quality.finding import as_caution
+from quad_ident_ros.data.quality.finding import as_caution, Finding
 from quad_ident_ros.data.quality.fleet import vehicles
 from quad_ident_ros.data.quality.ground import airborne, stands
 from quad_ident_ros.data.record import FlightRecord, refuse_twice, same_flight
-from quad_ident_ros.data.split import joined
+from quad_ident_ros.data.split import joined, spans
 from quad_ident_ros.diagnose.blocks import interleaved
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.errors import InputError
@@ -92,6 +92,8 @@ def take_in(records: Sequence[FlightRecord], vehicle: Vehicle, hold_out: FlightR
 def _fit_for_use(record: FlightRecord, vehicle: Vehicle, rules: Rules, wrong: Collection[str],
                  findings: list) -> FlightRecord:
     """Return a record off the ground, its cautions added to the findings; wrong: as refuted."""
+    if 'whole' in record.info:
+        findings.append(as_caution(_cut(record), record))
     ground = stands(record, vehicle)
     refuse_errors(record, ground)
     findings += [as_caution(finding, record) for finding in ground]
@@ -100,6 +102,13 @@ def _fit_for_use(record: FlightRecord, vehicle: Vehicle, rules: Rules, wrong: Co
     findings += [one for one in cautions(record, vehicle, wrong)
                  if one['code'] not in {finding.code for finding in ground}]
     return record
+
+
+def _cut(record: FlightRecord) -> Finding:
+    """Return the Finding that says which parts of a recording are used."""
+    used = ' and '.join(f't = {begin:.2f} to {end:.2f} s' for begin, end in spans(record))
+    return Finding('kept', 'info', used, 'this part of the recording is used',
+                   'nothing needs to be done; --segment, --from and --to choose another part')
 
 
 def rollouts(tracks: Sequence[Track], vehicle: Vehicle) -> list[Flight]:

@@ -16,7 +16,7 @@ from quad_ident_ros.flight.measure import SENSORS
 from quad_ident_ros.greybox.flights import flight_of, track_of
 from quad_ident_ros.greybox.parameters import nominal
 from quad_ident_ros.model.vehicle import load_vehicle
-from quad_ident_ros.report.diagnosis import size_line
+from quad_ident_ros.report.diagnosis import caution_lines, size_line
 
 VEHICLE = load_vehicle('hummingbird')
 DRAG = {'rotor_drag': {'coefficient': 0.2}}
@@ -72,3 +72,7 @@ def test_a_flight_that_hovers_in_the_end_shows_its_drag(half_hovered):
     data = found.as_data()
     assert 'every other 3 s' in data['flights'][0] and 'the 3 s between' in data['held_out']
     assert f'On {found.held_out}, which took no part' in size_line(found)
+    used = {'code': 'kept', 'severity': 'info', 'flight': 'f', 'where': 't = 1 to 9 s',
+            'message': 'this part of the recording is used', 'remedy': ''}
+    assert caution_lines(replace(found, findings=(used,))) == [
+        'f: t = 1 to 9 s: this part of the recording is used']

@@ -18,7 +18,7 @@ from quad_ident_ros.data.load import load_all
 from quad_ident_ros.data.quality.fleet import vehicles
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.data.selection import selected, Selection
-from quad_ident_ros.data.split import joined
+from quad_ident_ros.data.split import joined, split
 from quad_ident_ros.diagnose.intake import take_in
 from quad_ident_ros.diagnose.rules import RULES
 from quad_ident_ros.errors import InputError
@@ -207,3 +207,18 @@ def test_a_diagnosis_warns_of_several_vehicles():
                for number, flight in enumerate(flights)]
     found = take_in(flights, hummingbird, None, RULES)
     assert 'vehicles' in {one['code'] for one in found.findings}
+
+
+@pytest.mark.slow
+def test_a_diagnosis_says_which_part_is_used():
+    hummingbird = load_vehicle('hummingbird')
+    whole = fly_closed_loop(hummingbird, {}, 'lissajous', duration=14.0, seed=1)
+    cut = selected('f', split(whole, [(6.0, 6.01, 'it was reset')]), Selection(begin=1.0))
+    cut = [replace(one, info={**one.info, 'whole': ['f', 'f.csv']}) for one in cut]
+    intake = take_in(cut, hummingbird, None, RULES)
+    [finding] = [one for one in intake.findings if one['code'] == 'kept']
+    assert finding['severity'] == 'info' and finding['flight'] == 'f (2 parts)'
+    assert finding['where'] == 't = 1.00 to 6.00 s and t = 6.10 to 14.00 s'
+    assert 'every other' in intake.names[0] and 'between' in intake.names[1]
+    assert not [one for one in take_in([whole], hummingbird, None, RULES).findings
+                if one['code'] == 'kept']
