@@ -12,6 +12,7 @@ from quad_ident_ros.data.split import part
 from quad_ident_ros.errors import InputError
 
 MOST_SHOWN = 8      # segments that a message lists
+ROUNDING = 1e-6     # s: a sample that is shown to be at a time is at it
 
 
 @dataclass(frozen=True)
@@ -69,8 +70,9 @@ def selected(path: object, records: Sequence[FlightRecord],
 def _between(record: FlightRecord, selection: Selection) -> FlightRecord | None:
     """Return the samples of a record between the times, or None where fewer than two are."""
     t = record.t
-    first = 0 if selection.begin is None else int(np.searchsorted(t, selection.begin, 'left'))
-    last = len(t) if selection.end is None else int(np.searchsorted(t, selection.end, 'right'))
+    begin, end = selection.begin, selection.end
+    first = 0 if begin is None else int(np.searchsorted(t, begin - ROUNDING, 'left'))
+    last = len(t) if end is None else int(np.searchsorted(t, end + ROUNDING, 'right'))
     if last - first < 2:
         return None
     if last - first == len(t):

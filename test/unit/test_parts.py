@@ -42,6 +42,8 @@ def test_times_keep_the_samples_between_them():
     assert kept.t[0] == pytest.approx(3.2) and kept.t[-1] == pytest.approx(18.4)
     np.testing.assert_array_equal(kept.columns['px'], WHOLE.columns['px'][320:1841])
     assert 't = 3.200 to 18.400 s of 0.000 to 19.990 s' in kept.info['notes'][-1]
+    [exact] = selected('f', [changed(WHOLE, t=WHOLE.t - 1e-12)], Selection(begin=3.2, end=3.4))
+    assert len(exact) == 21
     [early] = selected('f', [WHOLE], Selection(end=5.0))
     assert early.t[0] == 0.0 and 'began' not in early.info
     assert selected('f', [WHOLE], Selection()) == [WHOLE]
