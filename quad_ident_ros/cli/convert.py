@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 
 from quad_ident_ros.cli.identify import progress_bar
-from quad_ident_ros.cli.options import flights_from, vehicle_from
+from quad_ident_ros.cli.options import add_selection, flights_from, selection_of, vehicle_from
 from quad_ident_ros.cli.outputs import refuse_overwriting
 from quad_ident_ros.data.export import save
 from quad_ident_ros.data.record import CUT
@@ -25,7 +25,8 @@ def add(commands):
         epilog='  quad_ident convert flight.csv.gz flight.mcap\n'
                '  quad_ident convert recording_1/bag flights.csv\n'
                '  quad_ident convert log_12.ulg out.csv --mapping px4.yaml --vehicle quad.yaml\n'
-               '  quad_ident convert others_bag flight.csv --mapping topics.yaml\n\n'
+               '  quad_ident convert others_bag flight.csv --mapping topics.yaml\n'
+               '  quad_ident convert flight.csv part.csv --from 3.2 --to 18.4\n\n'
                'docs/records.md describes the formats and the mapping file.')
     parser.add_argument('flight', metavar='IN',
                         help='a table (CSV, Parquet), a bag (ROS 1 or 2), or a log of PX4, '
@@ -37,17 +38,18 @@ def add(commands):
     parser.add_argument('--vehicle', help='vehicle name or file, for the speeds of its '
                         'rotors; auto: the file beside a PX4 log')
     parser.add_argument('--json', metavar='FILE', help='write what was done as data; - prints it')
+    add_selection(parser)
     parser.set_defaults(run=run)
 
 
 def run(options):
     """Read the flights, write them, and say what was written."""
-    out, done = Path(options.out), []
+    out, done, selection = Path(options.out), [], selection_of(options)
     with progress_bar() as bar:
         task = bar.add_task(f'reading {options.flight}', total=None)
         vehicle = options.vehicle and vehicle_from(options.vehicle, options.flight,
                                                    options.mapping)
-        flights = flights_from(options.flight, options.mapping, vehicle)
+        flights = flights_from(options.flight, options.mapping, vehicle, selection)
         paths = [out] if len(flights) == 1 else [_numbered(out, number) for number in
                                                  range(1, len(flights) + 1)]
         for path in paths:

@@ -7,7 +7,8 @@ from dataclasses import replace
 import sys
 
 from quad_ident_ros.cli.identify import progress_bar
-from quad_ident_ros.cli.options import flights_from, vehicle_from
+from quad_ident_ros.cli.options import add_selection, flights_from, selection_of, vehicle_from
+from quad_ident_ros.data.split import joined
 from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.diagnose.rules import RULES
 from quad_ident_ros.effects.registry import EFFECTS
@@ -29,7 +30,8 @@ def add(commands):
         epilog='effects: ' + ', '.join(EFFECTS) + '\n\n'
                '  quad_ident diagnose monday_*.csv.gz --vehicle quad.yaml\n'
                '  quad_ident diagnose a.csv b.csv --hold-out c.csv --vehicle quad.yaml \\\n'
-               '      --json diagnosis.json --out-vehicle like_real.yaml\n\n'
+               '      --json diagnosis.json --out-vehicle like_real.yaml\n'
+               '  quad_ident diagnose log_12.ulg --vehicle auto --segment 2 --from 35 --to 95\n\n'
                'docs/diagnosis.md explains every line of the answer.')
     parser.add_argument('flights', nargs='+', metavar='FLIGHT',
                         help='a table (CSV, Parquet), a bag (ROS 1 or 2), or a log of PX4, '
@@ -51,6 +53,7 @@ def add(commands):
                         help='write a page for a browser: the verdict, pictures, all numbers')
     parser.add_argument('--out-vehicle', metavar='FILE',
                         help='write the vehicle file with the effects named, for the simulator')
+    add_selection(parser)
     parser.set_defaults(run=run)
 
 
@@ -58,12 +61,13 @@ def run(options):
     """Read the flights, diagnose, and show what came of it."""
     rules = RULES if options.tolerance is None else rules_from(options.tolerance.split(','),
                                                                '--tolerance')
+    selection = selection_of(options)
     vehicle = vehicle_from(options.vehicle, options.flights[0], options.mapping, nominal=True)
     effects = ([name.strip() for name in options.effects.split(',')]
                if options.effects is not None else None)
     records = [record for path in options.flights
-               for record in flights_from(path, options.mapping, vehicle)]
-    held = (flights_from(options.hold_out, options.mapping, vehicle)[-1]
+               for record in flights_from(path, options.mapping, vehicle, selection)]
+    held = (joined(flights_from(options.hold_out, options.mapping, vehicle, selection))[-1]
             if options.hold_out else None)
     with progress_bar() as bar:
         task = bar.add_task('comparing sets of effects', total=1.0)

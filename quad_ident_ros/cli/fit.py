@@ -7,8 +7,10 @@ from dataclasses import replace
 import textwrap
 
 from quad_ident_ros.cli.identify import progress_bar
-from quad_ident_ros.cli.options import flights_from
-from quad_ident_ros.data.quality import refuse_unfit
+from quad_ident_ros.cli.options import add_selection, flights_from, selection_of
+from quad_ident_ros.data.quality import refuse_errors, refuse_unfit
+from quad_ident_ros.data.quality.ground import airborne, stands
+from quad_ident_ros.data.split import joined
 from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.greybox.cautions import cautions
 from quad_ident_ros.greybox.free import columns_of_names, UNITS
@@ -45,6 +47,7 @@ def add(commands):
     parser.add_argument('--out-vehicle', metavar='FILE',
                         help='write the vehicle file with what was found')
     parser.add_argument('--json', metavar='FILE', help='write the results as data; - prints them')
+    add_selection(parser)
     parser.set_defaults(run=run)
 
 
@@ -53,6 +56,7 @@ def run(options):
     from quad_ident_ros.greybox.fit import as_data, fit, fitted_vehicle
     names = [name.strip() for name in options.free.split(',') if name.strip()]
     vehicle = load_vehicle(options.vehicle)
+    selection = selection_of(options)
     free = columns_of_names(names, vehicle)   # before the flights are read: a name that is wrong
     with progress_bar() as bar:
         task = bar.add_task('', total=1.0)
@@ -61,9 +65,14 @@ def run(options):
             bar.update(task, description=f'reading {path}',
                        completed=number / len(options.flights))
             records += [with_commands(record, vehicle) for record in
-                        flights_from(path, options.mapping, options.vehicle)]
+                        flights_from(path, options.mapping, options.vehicle, selection)]
         bar.update(task, description='looking for faults')
-        quality = [refuse_unfit(record, vehicle) for record in records]
+        quality = []
+        for number, record in enumerate(records := joined(records)):
+            ground = stands(record, vehicle)
+            refuse_errors(record, ground)
+            records[number] = airborne(record, vehicle)
+            quality.append((*ground, *refuse_unfit(records[number], vehicle)))
         found = fit(records, vehicle, names, lambda share: bar.update(
             task, description='fitting', completed=share))
     found = replace(found, findings=(*found.findings, *cautions(

@@ -8,8 +8,8 @@ import sys
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn
 
+from quad_ident_ros.cli.options import add_selection, flights_from, selection_of
 from quad_ident_ros.data.commands import with_inputs
-from quad_ident_ros.data.load import load_all
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.identify.identify import identify, Settings, with_budget
 from quad_ident_ros.identify.methods import METHODS
@@ -59,6 +59,7 @@ def add(commands):
     parser.add_argument('--json', metavar='FILE', help='write the results as data; - prints them')
     parser.add_argument('--picture', metavar='FILE',
                         help='draw measured and fitted responses (.png, .svg, .pdf)')
+    add_selection(parser)
     parser.set_defaults(run=run)
 
 
@@ -77,7 +78,9 @@ def run(options):
         pole_bounds=options.pole_bounds, gain_bounds=options.gain_bounds,
         initial_state=options.initial_state, trim=trim)
     settings = with_budget(settings, options.evaluations)
-    records = [record for path in options.flights for record in load_all(path)]
+    selection = selection_of(options)
+    records = [record for path in options.flights
+               for record in flights_from(path, selection=selection)]
     if options.vehicle:
         vehicle = load_vehicle(options.vehicle)
         records = [with_inputs(record, vehicle) for record in records]

@@ -8,11 +8,12 @@ from rich import box
 from rich.table import Table
 
 from quad_ident_ros.cli.identify import progress_bar
-from quad_ident_ros.cli.options import flights_from, vehicle_from
+from quad_ident_ros.cli.options import add_selection, flights_from, selection_of, vehicle_from
 from quad_ident_ros.data.begin_mapping import begin_mapping
 from quad_ident_ros.data.load import contents_of
 from quad_ident_ros.data.mapping import load_mapping
-from quad_ident_ros.data.summary import contents, summarise, unread
+from quad_ident_ros.data.selection import selected
+from quad_ident_ros.data.summary import contents, segments, summarise, unread
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.report.data import write_json
 from quad_ident_ros.report.table import console
@@ -35,7 +36,8 @@ def add(commands):
                     'samples, saturation, order and spin of the rotors.',
         epilog='  quad_ident info flight.csv.gz --vehicle quad.yaml\n'
                '  quad_ident info log_12.ulg --mapping px4.yaml --vehicle quad.yaml --json -\n\n'
-               '  quad_ident info others_bag --write-mapping map.yaml\n\n'
+               '  quad_ident info others_bag --write-mapping map.yaml\n'
+               '  quad_ident info log_12.ulg --segment 2 --from 35 --to 95\n\n'
                'Without --vehicle nothing is said of saturation and rotors. docs/records.md '
                'explains the findings.\n\n'
                'exit code: 0; 2 for a file that cannot be read; 3 where a finding is an error, as '
@@ -47,12 +49,14 @@ def add(commands):
     parser.add_argument('--write-mapping', metavar='FILE.yaml', help='write a mapping file to '
                         'begin with')
     parser.add_argument('--json', metavar='FILE', help='write it as data; - prints it')
+    add_selection(parser)
     parser.set_defaults(run=run)
 
 
 def run(options):
     """Read a file, show what is in it, and return the exit code."""
     vehicle = options.vehicle and vehicle_from(options.vehicle, options.flight, options.mapping)
+    selection = selection_of(options)
     if options.mapping:
         load_mapping(options.mapping)   # what is wrong with it is no fault of the flight
     with progress_bar() as bar:
@@ -61,13 +65,17 @@ def run(options):
         if options.write_mapping:
             begin_mapping(options.write_mapping, options.flight, streams)
         try:
-            found = [summarise(record, vehicle) for record in
-                     flights_from(options.flight, options.mapping, vehicle)]
+            records = flights_from(options.flight, options.mapping, vehicle)
         except InputError as error:
-            found = [unread(options.flight, error)]
-    inside = contents(options.flight, title, streams)
+            records, found = [], [unread(options.flight, error)]
+        else:
+            found = [summarise(record, vehicle) for record in
+                     selected(options.flight, records, selection)]
+    inside = {**contents(options.flight, title, streams), 'segments': segments(records)}
     if options.json != '-':
         show_streams(inside)
+        if len(records) > 1:
+            show_segments(inside)
         for summary in found:
             show(summary)
         if options.write_mapping:
@@ -101,6 +109,22 @@ def show_streams(inside: dict) -> None:
     for stream in inside['streams'] if len(inside['streams']) == 1 else ():
         screen.print(f'fields: {", ".join(stream["fields"])}', markup=False, highlight=False,
                      soft_wrap=True)
+
+
+def show_segments(inside: dict) -> None:
+    """Print the records that a file holds."""
+    screen = console()
+    screen.print(f'{len(inside["segments"])} segments; --segment N takes one of them',
+                 markup=False, highlight=False, soft_wrap=True)
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1), header_style='bold')
+    for name in ('N', 'from t, s', 'to t, s', 'duration, s'):
+        table.add_column(name, justify='right', no_wrap=True)
+    table.add_column('what', overflow='fold')
+    for one in inside['segments']:
+        end = one['start_s'] + one['duration_s']
+        table.add_row(str(one['number']), f'{one["start_s"]:.2f}', f'{end:.2f}',
+                      f'{one["duration_s"]:.2f}', _text(one['name'] or ''))
+    screen.print(table)
 
 
 def show(summary):

@@ -2,10 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Options that several commands share."""
 
+import argparse
 from pathlib import Path
 
 from quad_ident_ros.data.load import load_all, reader_of
 from quad_ident_ros.data.mapping import load_mapping
+from quad_ident_ros.data.record import FlightRecord
+from quad_ident_ros.data.selection import selected, Selection
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.experiment import check_noise
 from quad_ident_ros.model.vehicle import load_nominal, load_vehicle, Vehicle
@@ -24,15 +27,38 @@ def noise_from(entries):
     return check_noise('--noise', noise)
 
 
-def flights_from(path, mapping=None, vehicle=None):
+def add_selection(parser: argparse.ArgumentParser) -> None:
+    """Add the options that say which part of each flight is taken."""
+    group = parser.add_argument_group(
+        'part of a flight', 'in s by the t that `quad_ident info` prints; they hold for each '
+        'flight named. For one\nof several, write that part as a record first: quad_ident '
+        'convert IN OUT --from 3.2 --to 18.4')
+    group.add_argument('--from', dest='begin', type=float, metavar='SECONDS',
+                       help='leave out what is before (default: the begin)')
+    group.add_argument('--to', dest='end', type=float, metavar='SECONDS',
+                       help='leave out what is after (default: the end)')
+    group.add_argument('--segment', type=int, metavar='N',
+                       help='of a file that holds several flights or pieces of one, the one of '
+                            'this number in the list of `quad_ident info`')
+
+
+def selection_of(options: argparse.Namespace) -> Selection:
+    """Return the Selection that the options stand for; raises InputError."""
+    return Selection(options.segment, options.begin, options.end)
+
+
+def flights_from(path: str | Path, mapping: str | None = None,
+                 vehicle: Vehicle | str | None = None,
+                 selection: Selection | None = None) -> list[FlightRecord]:
     """
-    Return the flight records that a path stands for.
+    Return the flight records that a path stands for, or what a Selection keeps of them.
 
     Args: mapping: file of --mapping, or None; vehicle: Vehicle, or name or file, or None.
     """
     if isinstance(vehicle, str):
         vehicle = load_vehicle(vehicle)
-    return load_all(path, load_mapping(mapping) if mapping else None, vehicle)
+    found = load_all(path, load_mapping(mapping) if mapping else None, vehicle)
+    return found if selection is None else selected(path, found, selection)
 
 
 def vehicle_from(option: str, path: str, mapping: str | None = None,

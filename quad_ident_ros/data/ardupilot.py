@@ -42,6 +42,7 @@ _PLACES = {(1, 0): '1 right, 2 left, 3 front, 4 rear',
 _ROTORS = {(1, 0): quad((0, -1), (0, 1), (1, 0), (-1, 0)),
            (1, 1): quad((1, -1), (-1, 1), (1, 1), (-1, -1))}
 
+_BOARD = re.compile(r'([\w-]+) ((?:[0-9A-F]{8} ?){3})')     # name, and serial number of its chip
 _MOTOR = re.compile(r'SERVO([1-9]|[12][0-9]|3[0-2])_FUNCTION')
 _MAP = ('MOT_PWM_MIN', 'MOT_PWM_MAX', 'MOT_SPIN_ARM', 'MOT_SPIN_MIN', 'MOT_SPIN_MAX',
         'MOT_THST_EXPO')
@@ -84,7 +85,8 @@ def read_ardupilot(path, mapping=None):
     start, t, columns, left_out = join(path, streams)
     return FlightRecord(t, columns, {'name': path.stem, 'source': str(path), 'start_ns': start,
                                      'notes': [*notes, *left_out],
-                                     'motors': _about_motors(parameters, channels)})
+                                     'motors': _about_motors(parameters, channels),
+                                     'hardware': _hardware(found)})
 
 
 def contents(path):
@@ -147,6 +149,14 @@ def _has(messages, *fields):
     return messages is not None and all(
         field in messages.fields and (messages.rows[field].dtype.kind in 'iuf'
                                       or field in ('Name', 'Message')) for field in fields)
+
+
+def _hardware(found):
+    """Return what a log knows of the vehicle: its board and the serial number of that."""
+    if not _has(found.get('MSG'), 'Message') or found['MSG'].rows['Message'].dtype.kind != 'S':
+        return {}
+    told = filter(None, map(_BOARD.fullmatch, found['MSG'].texts('Message')))
+    return next(({'board': one[1], 'id': one[2]} for one in told), {})
 
 
 def _refuse_others(path, found, parameters):

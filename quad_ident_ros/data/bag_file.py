@@ -22,6 +22,7 @@ from rosbags.typesys.msg import normalize_msgtype
 
 from quad_ident_ros.data.definitions import layouts, START
 from quad_ident_ros.data.limits import most, size_on_disk
+from quad_ident_ros.data.readers.others import is_text
 from quad_ident_ros.data.unpack import BoundedReader1, TooLarge
 from quad_ident_ros.errors import InputError
 
@@ -60,7 +61,9 @@ def kind_of(path, start=None):
             start = file.read(16)
     told = next((suffix for magic, suffix in MAGIC.items() if (start or b'').startswith(magic)),
                 None)
-    return told or (path.suffix if path.suffix in MAGIC.values() else '')
+    if told:
+        return told
+    return path.suffix if path.suffix in MAGIC.values() and not is_text(start or b'') else ''
 
 
 class BagFile:

@@ -94,7 +94,11 @@ def _record(path, log, count, actuators):
     return FlightRecord(t, columns, {'name': name, 'source': where, 'start_ns': start,
                                      'notes': [*notes, *left_out],
                                      'motors': about_motors(QUAD_X if len(motors) == 4 else (),
-                                                            "Betaflight's order, quad X", kind)})
+                                                            "Betaflight's order, quad X", kind),
+                                     'hardware': {
+                                         key: str(log.headers[name]) for key, name in
+                                         (('board', 'Board information'), ('craft', 'Craft name'))
+                                         if log.headers.get(name)}})
 
 
 def _stamps(log):

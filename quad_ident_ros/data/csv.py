@@ -146,13 +146,19 @@ def rows_of(path):
     return rows or [rest], bool(rows and rest.strip())
 
 
+def is_packed(path: Path) -> bool:
+    """Return whether a file is packed by gzip, or named so; raises OSError."""
+    with open(path, 'rb') as file:
+        return path.suffix == '.gz' or file.read(2) == b'\x1f\x8b'
+
+
 def _bytes(path):
-    """Return the content of a file, unpacked where its name ends in .gz."""
+    """Return the content of a file, unpacked where it is packed by gzip, or named so."""
     try:
         if not path.is_file():
             problem = 'this is no file' if path.exists() else 'there is no such file'
             raise InputError(f'{path}: {problem}; give the path of a .csv or .csv.gz file')
-        packed = path.suffix == '.gz'
+        packed = is_packed(path)
         limit = most(path.stat().st_size)
         with (gzip.open if packed else open)(path, 'rb') as file:
             data = file.read(limit + 1 if packed else -1)

@@ -51,7 +51,7 @@ def write_bag(path, record, on_progress=None):
     shift = (record.t - record.t[0]) * 1e9
     if start < 0 or not start + shift[-1] < 2.0 ** 63:
         raise InputError(f'{path}: times of {record.t[-1]:g} s after {start} ns do not fit into '
-                         'the stamps of a bag; cut the flight, or write it as CSV')
+                         'the stamps of a bag; write it as CSV')
     stamps = start + np.round(shift).astype(np.int64)
     topics = _topics(record)
     table, labels = record_table(record)

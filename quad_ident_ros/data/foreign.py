@@ -10,7 +10,7 @@ import numpy as np
 from quad_ident_ros.data import frames
 from quad_ident_ros.data.bag_file import BagFile
 from quad_ident_ros.data.bag_guess import guessed
-from quad_ident_ros.data.mapping import Actuators, rotor_speeds
+from quad_ident_ros.data.mapping import Actuators, in_record_unit, rotor_speeds
 from quad_ident_ros.data.message_roles import (
     at_path,
     is_px4,
@@ -31,6 +31,7 @@ BODY_VELOCITY = ('body_vx', 'body_vy', 'body_vz')
 ONE_CLOCK = 1.0     # s between a stamp and its receipt that vary so much are of several clocks
 _NAMED = 12         # frames that a message lists
 _DEFAULT_FIELD = {'commands': 'data', 'rotors': 'data', 'battery': 'voltage'}
+_SPEEDS = {'rad/s': 'speed', 'rpm': 'rpm'}      # kinds of outputs by the unit of measured speeds
 _COLUMNS = {'position': ('px', 'py', 'pz'), 'velocity': ('vx', 'vy', 'vz'),
             'rate': ('wx', 'wy', 'wz'), 'specific_force': ('ax', 'ay', 'az')}
 
@@ -177,7 +178,8 @@ class TopicPart:
         return found
 
     def _one(self, message, kind):
-        values = tuple(map(float, self._values(message, kind)))
+        values = tuple(map(float, in_record_unit(self.role, self._values(message, kind),
+                                                 self.source.unit)))
         self._width = self._width or len(values)
         if len(values) != self._width:
             raise NoSuch(f'{len(values)} values where the first has {self._width}')
@@ -189,7 +191,11 @@ class TopicPart:
         if not path and kind not in ROLES_OF and self.role in _DEFAULT_FIELD:
             path = _DEFAULT_FIELD[self.role]
         if path:
-            return shaped(self.role, at_path(message, path, kind), path)
+            angles = self.role == 'attitude' and self.source.unit
+            return shaped('angles' if angles else self.role, at_path(message, path, kind), path)
+        if self.role == 'attitude' and self.source.unit:
+            raise NoSuch(f'{kind} has a quaternion, which has no unit; leave unit out, or name '
+                         'the field with roll, pitch and yaw')
         reading = reading_of(self.role, kind, message)
         if reading.frame is not None:
             frame = reading.frame(message)
@@ -254,7 +260,7 @@ class TopicPart:
 
     def _outputs(self, table, actuators):
         """Return commands or rotor speeds in rad/s, or outputs where these are not known."""
-        kind = self._reading.kind if self._reading else ''
+        kind = _SPEEDS.get(self.source.unit) or (self._reading.kind if self._reading else '')
         if self.role == 'rotors':
             told = actuators or Actuators()
             if kind in TO_SPEED:

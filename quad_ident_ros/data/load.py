@@ -5,14 +5,15 @@
 from pathlib import Path
 
 from quad_ident_ros.data.outputs import commanded
+from quad_ident_ros.data.readers.others import (
+    refuse_no_file,
+    refuse_others,
+    refuse_unknown,
+    START,
+)
 from quad_ident_ros.data.readers.registry import READERS
 from quad_ident_ros.data.split import split_at_jumps
 from quad_ident_ros.errors import InputError
-
-_START = 64     # bytes that tell what a file is
-_OTHERS = {b'\x89PNG': 'a picture (PNG)', b'\xff\xd8\xff': 'a picture (JPEG)',
-           b'GIF8': 'a picture (GIF)', b'%PDF': 'a PDF document',
-           b'PK\x03\x04': 'a ZIP archive or a spreadsheet', b'\x7fELF': 'a program'}
 
 
 def load(path, mapping=None, vehicle=None):
@@ -54,18 +55,21 @@ def contents_of(path):
 
 def reader_of(path):
     """Return the Reader of a path, by its first bytes; InputError for what is no record."""
+    refuse_no_file(path)
     start = b''
     try:
         if path.is_file():
             with open(path, 'rb') as file:
-                start = file.read(_START)
+                start = file.read(START)
+            if not start:
+                raise InputError(f'{path}: the file is empty; copy it again, or record again')
     except OSError as error:
         raise InputError(f'{path}: cannot be read: {error.strerror}') from None
-    for magic, title in _OTHERS.items():
-        if start.startswith(magic):
-            raise InputError(f'{path}: this is {title}; give a flight record, such as '
-                             f'{", ".join(reader.title for reader in READERS)}')
-    return next((reader for reader in READERS if reader.tells(path, start)), READERS[-1])
+    refuse_others(path, start)
+    told = next((reader for reader in READERS if reader.tells(path, start)), None)
+    if told is None:
+        refuse_unknown(path, start, ', '.join(reader.title for reader in READERS))
+    return told or READERS[-1]
 
 
 def _with_package(path, reader, use):

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The mapping file: which topics and outputs of other people's records mean what."""
 
-from collections.abc import Mapping as Pairs
+from collections.abc import Mapping as Pairs, Sequence
 from dataclasses import dataclass, field, replace
 import re
 
@@ -13,6 +13,7 @@ from quad_ident_ros.data.frames import BODIES, WORLDS
 from quad_ident_ros.data.record import KNOWN, unit
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model import motors
+from quad_ident_ros.model.attitude import quaternion_from_euler
 from quad_ident_ros.model.motors import KINDS, Motors, TO_SPEED
 
 ROLES = ('pose', 'position', 'attitude', 'velocity', 'rate', 'specific_force', 'commands',
@@ -33,7 +34,11 @@ UNITS = {
     'm/s^2': {'m/s^2': 1.0, 'g': 9.80665, 'mg': 9.80665e-3},
     'V': {'V': 1.0, 'mV': 1e-3},
 }
-"""Units that a column of a table may have, by the unit of the flight record."""
+"""Units that a column of a table or a topic may have, by the unit of the flight record."""
+
+UNIT_OF_ROLE = {'pose': 'm', 'position': 'm', 'attitude': 'rad', 'velocity': 'm/s',
+                'rate': 'rad/s', 'specific_force': 'm/s^2', 'rotors': 'rad/s', 'battery': 'V'}
+"""Role of a topic -> its unit in the flight record. That of an attitude makes it three angles."""
 
 _OUTPUT = re.compile(r'output[1-9][0-9]*')
 
@@ -64,13 +69,14 @@ class Source:
 
     topic: its name; field: the path of the value in its messages, '' for where its type has it;
     frame: of a velocity, body or world, '' for what its type says; child: the child_frame_id of
-    the transform to read of several.
+    the transform to read of several; unit: one of UNITS, '' for that of the flight record.
     """
 
     topic: str
     field: str = ''
     frame: str = ''
     child: str = ''
+    unit: str = ''
 
 
 @dataclass(frozen=True)
@@ -141,6 +147,21 @@ def factor_of(name: str, said: str) -> float:
     return known.get(said, 1.0)
 
 
+def in_record_unit(role: str, values: Sequence[float], said: str) -> Sequence[float]:
+    """
+    Return the numbers of a role from those in a unit of UNITS; '' is the record's.
+
+    Roll, pitch and yaw become the quaternion, scalar first, that turns by them. Speeds of rotors
+    stay as they are: data.foreign reads them by their kind.
+    """
+    if not said or role == 'rotors':
+        return values
+    scaled = [UNITS[UNIT_OF_ROLE[role]][said] * value for value in values]
+    if role == 'attitude':
+        return quaternion_from_euler(np.array(scaled)).tolist()
+    return [*scaled[:3], *values[3:]]       # behind the position of a pose comes its quaternion
+
+
 def unit_of(name: str) -> str:
     """Return the unit of a column of the flight record, '' for those that have none."""
     return '' if name == ATTITUDE or _OUTPUT.fullmatch(name) else unit(name) or ''
@@ -209,7 +230,8 @@ def _thrust_coefficient(vehicle):
 
 
 def _source(where, role, entry):
-    known = ('topic', 'field', *{'velocity': ('frame',), 'pose': ('child',)}.get(role, ()))
+    known = ('topic', 'field', *{'velocity': ('frame',), 'pose': ('child',)}.get(role, ()),
+             *(('unit',) if role in UNIT_OF_ROLE else ()))
     schema.check_keys(where, entry, known, ('topic',))
     texts = {key: entry.get(key, '') for key in ('topic', 'field', 'child')}
     for key, value in texts.items():
@@ -217,7 +239,9 @@ def _source(where, role, entry):
             raise InputError(f'{where}: {key}: expected a name, got {schema.shown(value)}')
     frame = (schema.choice(f'{where}: frame', entry['frame'], ('body', 'world'))
              if 'frame' in entry else '')
-    return Source(texts['topic'], texts['field'], frame, texts['child'].strip('/'))
+    units = ('rad/s', 'rpm') if role == 'rotors' else tuple(UNITS.get(UNIT_OF_ROLE.get(role), ()))
+    said = schema.choice(f'{where}: unit', entry['unit'], units) if 'unit' in entry else ''
+    return Source(texts['topic'], texts['field'], frame, texts['child'].strip('/'), said)
 
 
 def _columns(where: str, data: object) -> dict[str, Column]:

@@ -271,10 +271,13 @@ def shaped(role, value, path):
         if role == 'attitude':
             value = getattr(value, 'orientation', getattr(value, 'quaternion', value))
             return _wxyz(value) if hasattr(value, 'w') else _numbers(value, path, 4)
-        if role in ('position', 'velocity', 'rate', 'specific_force'):
+        if role in ('position', 'velocity', 'rate', 'specific_force', 'angles'):
             for name in {'velocity': ('twist', 'linear'), 'rate': ('twist', 'angular'),
                          'position': ('point', 'position')}.get(role, ('vector',)):
                 value = getattr(value, name, value)
+            if role == 'angles' and hasattr(value, 'w'):
+                raise NoSuch(f'the field {path!r} holds a quaternion, which has no unit; leave '
+                             'unit out')
             return _xyz(value) if hasattr(value, 'x') else _numbers(value, path, 3)
     except AttributeError:
         raise NoSuch(f'the field {path!r} holds no {role}') from None

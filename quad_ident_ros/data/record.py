@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from quad_ident_ros.data.cutting import without
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.attitude import euler_from_quaternion, unwrap_euler
 
@@ -148,7 +149,8 @@ class FlightRecord:
         norm = np.linalg.norm(quaternion, axis=-1)
         if norm.min() < 1e-3:
             raise InputError(f'{self._label()}, sample {int(norm.argmin())}, columns qw..qz: the '
-                             'quaternion is zero; remove the sample or fill in its attitude')
+                             'quaternion is zero; '
+                             + without(self.t, norm < 1e-3, 'fill in its attitude'))
         folded = euler_from_quaternion(quaternion / norm[:, None])
         return unwrap_euler(folded, folded[0])
 

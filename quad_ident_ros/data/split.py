@@ -20,6 +20,7 @@ WITHIN = 0.2        # s in which a jump is over: streams of 5 Hz and more, inter
 RETURNS = 1.0       # s; what has come back by then was a glitch, and no reset
 CLEAR = 5.0         # times the usual disagreement of the streams
 GAP = 5.0           # periods; what happens in a longer silence is no jump
+APART = 0.1         # s between two parts: what is lost for that long is not bridged by a fit
 
 
 def split(record: FlightRecord, resets: Sequence[Reset],
@@ -50,11 +51,66 @@ def split(record: FlightRecord, resets: Sequence[Reset],
 
 
 def part(record: FlightRecord, begin: int, end: int) -> FlightRecord:
-    """Return the record of samples begin to end - 1, with its start and the battery's."""
+    """
+    Return the record of samples begin to end - 1.
+
+    Its info says when the recording began (`began`, s), for the battery has been emptying since,
+    and of which recording it is a part (`whole`: name and source), see joined.
+    """
     piece = record.slice(0, end).starting(begin)
-    if begin == 0:
-        return piece
-    return replace(piece, info={**piece.info, 'began': record.info.get('began', record.t[0])})
+    info = {**piece.info, 'whole': record.info.get('whole', [record.info.get('name'),
+                                                             record.info.get('source')])}
+    if begin > 0:
+        info['began'] = record.info.get('began', record.t[0])
+    return replace(piece, info=info)
+
+
+def joined(records: Sequence[FlightRecord]) -> list[FlightRecord]:
+    """
+    Return records in which the parts of one recording are one, with gaps between them.
+
+    They are in the order in which the recordings come first. What is between the parts is told in
+    the info: `cuts`, the times (s) at which a part begins.
+    """
+    groups: dict[str, list[FlightRecord]] = {}
+    for number, record in enumerate(records):
+        whole = record.info.get('whole')
+        alone = whole is None or whole[1] is None
+        groups.setdefault(f'{number}' if alone else f'of {whole[1]}', []).append(record)
+    return [rejoined(group) for group in groups.values()]
+
+
+def spans(record: FlightRecord) -> list[tuple[float, float]]:
+    """Return the first and last time (s) of each part that a record was joined from."""
+    firsts = np.searchsorted(record.t, [record.t[0], *record.info.get('cuts', ())])
+    edges = [*np.unique(firsts[firsts < len(record)]), len(record)]
+    return [(float(record.t[begin]), float(record.t[end - 1]))
+            for begin, end in zip(edges[:-1], edges[1:], strict=True)]
+
+
+def rejoined(pieces: Sequence[FlightRecord]) -> FlightRecord:
+    """Return parts of one recording, at least one, as one record; see joined."""
+    if len(pieces) == 1:
+        return pieces[0]
+    pieces = sorted(pieces, key=lambda piece: piece.t[0])
+    name, source = pieces[0].info['whole']
+    kept = [pieces[0]]
+    for piece in pieces[1:]:
+        # Nothing is to be taken from between two parts, however soon the next one begins.
+        least = kept[-1].t[-1] + max(APART, GAP * piece.period())
+        first = int(np.searchsorted(piece.t, least))
+        if len(piece) - first >= 2:
+            kept.append(piece.slice(first))
+    columns = [column for column in kept[0].columns if all(one.has(column) for one in kept)]
+    notes = list(dict.fromkeys(note for piece in kept for note in piece.info.get('notes', ())))
+    cuts = sorted({*(float(piece.t[0]) for piece in kept[1:]),
+                   *(cut for piece in kept for cut in piece.info.get('cuts', ()))})
+    spans = ', '.join(f't = {piece.t[0]:.2f} to {piece.t[-1]:.2f} s' for piece in kept)
+    return FlightRecord(
+        np.concatenate([piece.t for piece in kept]),
+        {column: np.concatenate([piece.columns[column] for piece in kept]) for column in columns},
+        {**kept[0].info, 'name': f'{name} ({len(kept)} parts)', 'source': source, 'cuts': cuts,
+         'notes': [*notes, f'{len(kept)} parts of one recording are one flight: {spans}']})
 
 
 def jumps(record: FlightRecord) -> list[Reset]:

@@ -12,7 +12,7 @@ from quad_ident_ros.data.quality import clock_offset, command_offset, findings, 
 from quad_ident_ros.data.quality.excitation import excitation
 from quad_ident_ros.data.quality.series import GAP
 from quad_ident_ros.data.readers.base import Content
-from quad_ident_ros.data.record import unit
+from quad_ident_ros.data.record import FlightRecord, unit
 from quad_ident_ros.errors import InputError
 
 UNITS = {'roll': 'rad/s', 'pitch': 'rad/s', 'yaw': 'rad/s', 'vertical': 'm/s^2',
@@ -55,6 +55,13 @@ def contents(path: str | Path, title: str, streams: Sequence[Content]) -> dict:
         {'name': one.name, 'type': one.type, 'samples': one.samples, 'start_s': one.start,
          'duration_s': one.duration, 'rate_hz': one.rate, 'fields': list(one.fields),
          'roles': list(one.roles)} for one in streams]}
+
+
+def segments(records: Sequence[FlightRecord]) -> list[dict]:
+    """Return the numbers and spans of the records of a file, JSON-able."""
+    return [{'number': number, 'name': record.info.get('name'), 'start_s': float(record.t[0]),
+             'duration_s': float(record.t[-1] - record.t[0])}
+            for number, record in enumerate(records, 1)]
 
 
 def unread(path: str | Path, error: InputError) -> dict:

@@ -73,8 +73,16 @@ def read_ulog(path: str | Path, mapping: Mapping | None = None,
     notes += _slow(streams)
     start, t, columns, joined = join(path, streams)
     record = FlightRecord(t, velocity_in_world(path, columns), {
-        'name': path.stem, 'source': str(path), 'start_ns': start, 'notes': [*notes, *joined]})
+        'name': path.stem, 'source': str(path), 'start_ns': start, 'notes': [*notes, *joined],
+        'hardware': _hardware(log)})
     return _flights(path, record, data)
+
+
+def _hardware(log: object) -> dict[str, str]:
+    """Return what a log knows of the vehicle: the kind of its board, and the id of that."""
+    about = getattr(log, 'msg_info_dict', {})
+    return {name: str(about[key]) for name, key in (('board', 'ver_hw'), ('id', 'sys_uuid'))
+            if about.get(key)}
 
 
 def _flights(path: Path, record: FlightRecord, data: dict) -> list[FlightRecord]:

@@ -18,7 +18,9 @@ def interleaved(track: Track) -> tuple[Track, Track]:
     Of each two blocks that follow one another one is held out, whichever keeps the motion of both
     parts alike: of two halves one may only hover. The rows of the other part are there, unseen.
     """
-    t = track.course.t
+    # Time flown: between the parts of a flight there is nothing to hold out.
+    steps = np.diff(track.course.t)
+    t = np.append(0.0, np.cumsum(np.where(steps > BLOCK, track.period, steps)))
     pairs = max(1, round((t[-1] - t[0]) / (2.0 * BLOCK)))
     edges = np.linspace(t[0], t[-1], 2 * pairs + 1)
     block = np.searchsorted(edges[1:-1], t, side='right')

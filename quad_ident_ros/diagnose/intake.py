@@ -10,8 +10,10 @@ import numpy as np
 from quad_ident_ros.data.clocks import Clock, clocks_of, on_one_clock
 from quad_ident_ros.data.quality import cautions, refuse_errors, refuted
 from quad_ident_ros.data.quality.finding import as_caution, Finding
+from quad_ident_ros.data.quality.fleet import vehicles
 from quad_ident_ros.data.quality.ground import airborne, stands
 from quad_ident_ros.data.record import FlightRecord, refuse_twice, same_flight
+from quad_ident_ros.data.split import joined, spans
 from quad_ident_ros.data.thrust_level import on_one_level
 from quad_ident_ros.diagnose.blocks import interleaved
 from quad_ident_ros.diagnose.rules import Rules
@@ -64,6 +66,7 @@ def take_in(records: Sequence[FlightRecord], vehicle: Vehicle, hold_out: FlightR
     The last one is held out, or hold_out, or blocks of a single one. Raises InputError
     for a fault that no verdict survives, and where there is too little.
     """
+    records = joined(records)
     if hold_out is not None:    # among others it would take part in fit and choice
         records = [record for record in records if not same_flight(record, hold_out)]
     refuse_twice(records)
@@ -71,7 +74,7 @@ def take_in(records: Sequence[FlightRecord], vehicle: Vehicle, hold_out: FlightR
     every = on_one_level([with_commands(record, vehicle) for record in (*records, *held)])
     records, hold_out = (every, None) if hold_out is None else (every[:-1], every[-1])
     wrong = refuted([*records, *([] if hold_out is None else [hold_out])], vehicle)
-    findings: list[dict] = []
+    findings = vehicles([*records, *([] if hold_out is None else [hold_out])])
     records = [_fit_for_use(record, vehicle, rules, wrong, findings) for record in records]
     if hold_out is not None:
         hold_out = _fit_for_use(hold_out, vehicle, rules, wrong, findings)
@@ -117,14 +120,23 @@ def _of_rotors(records: Sequence[FlightRecord], clocks: Sequence[Clock | None], 
 def _fit_for_use(record: FlightRecord, vehicle: Vehicle, rules: Rules, wrong: Collection[str],
                  findings: list) -> FlightRecord:
     """Return a record off the ground, its cautions added to the findings; wrong: as refuted."""
+    if 'whole' in record.info:
+        findings.append(as_caution(_cut(record), record))
     ground = stands(record, vehicle)
     refuse_errors(record, ground)
     findings += [as_caution(finding, record) for finding in ground]
-    record = airborne(record, vehicle)
-    refuse_short(record, rules)
+    whole, record = record, airborne(record, vehicle)
+    refuse_short(record, rules, ' off the ground' if len(record) < len(whole) else '')
     findings += [one for one in cautions(record, vehicle, wrong)
                  if one['code'] not in {finding.code for finding in ground}]
     return record
+
+
+def _cut(record: FlightRecord) -> Finding:
+    """Return the Finding that says which parts of a recording are used."""
+    used = ' and '.join(f't = {begin:.2f} to {end:.2f} s' for begin, end in spans(record))
+    return Finding('kept', 'info', used, 'this part of the recording is used',
+                   'nothing needs to be done; --segment, --from and --to choose another part')
 
 
 def rollouts(tracks: Sequence[Track], vehicle: Vehicle) -> list[Flight]:
@@ -137,10 +149,9 @@ def length_of(record: FlightRecord) -> float:
     return round(float(record.t[-1] - record.t[0]) + record.period(), 6)
 
 
-def refuse_short(record: FlightRecord, rules: Rules) -> None:
-    """Raise InputError where a flight record is too short for a diagnosis."""
+def refuse_short(record: FlightRecord, rules: Rules, where: str = '') -> None:
+    """Raise InputError where a flight record, where it was cut to, is too short."""
     if length_of(record) < rules.shortest:
         name = record.info.get('source') or record.info.get('name', 'a record')
-        cut = ' off the ground' if 'began' in record.info else ''
-        raise InputError(f'{name}: {length_of(record):.3g} s{cut} are '
+        raise InputError(f'{name}: {length_of(record):.3g} s{where} are '
                          f'too short for a diagnosis; at least {rules.shortest:g} s are needed')

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from quad_ident_ros.data.cutting import options, without
 from quad_ident_ros.errors import InputError
 
 OUTPUTS = ('phi', 'theta', 'psi', 'z')
@@ -121,7 +122,9 @@ def _check_size(t, inputs, measured):
     largest = max(np.abs(inputs).max(), np.abs(measured).max())
     if largest > LARGEST:
         raise InputError(f'the record holds a value of {largest:.3g}; above {LARGEST:g} nothing '
-                         'can be computed: check the units, or cut off where it diverged')
+                         'can be computed: '
+                         + without(t, np.abs(np.hstack([inputs, measured])).max(axis=1) > LARGEST,
+                                   'check the units'))
     steps = np.diff(t)
     if steps.min() < 1 / LARGEST_PERIOD or steps.max() > LARGEST_PERIOD:
         raise InputError(f'the samples are {steps.min():.3g} to {steps.max():.3g} s apart; '
@@ -168,7 +171,8 @@ def _even_grid(t, inputs, measured):
         k = int(np.argmax(steps))
         raise InputError(f'the record has a gap of {steps[k]:.3g} s after t = {t[k]:.6g} s '
                          f'({steps[k] / period:.0f} periods; at most {LONGEST_GAP} can be '
-                         'bridged): identify the parts before and after it by themselves')
+                         f'bridged): leave out what is after it, {options(t, 0, k)}, or before '
+                         f'it, {options(t, k + 1, len(t) - 1)}')
     if not fits:
         grid = np.arange(t[0], t[-1] + GRID_TOLERANCE * period, period)
     missing = len(grid) - len(t)

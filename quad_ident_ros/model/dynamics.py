@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.interpolate import CubicHermiteSpline
 
+from quad_ident_ros.data.cutting import without
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.actuators import actuated, distinct, without_lag
@@ -101,9 +102,10 @@ def states_of(record: FlightRecord) -> np.ndarray:
         states = np.hstack([record.stack(*STATES[:6]), attitude, record.stack(*STATES[10:])])
     norm = np.linalg.norm(states[:, 6:10], axis=1, keepdims=True)
     if not (norm > 0.5).all():
+        mend = without(record.t, ~(norm[:, 0] > 0.5), 'see what writes the attitude')
         name = record.info.get('source') or record.info.get('name', 'flight')
         raise InputError(f'{name}: sample {int(np.argmin(norm))}: the quaternion qw, qx, qy, qz '
-                         f'has the length {float(norm.min()):g}, expected 1')
+                         f'has the length {float(norm.min()):g}, expected 1; {mend}')
     states[:, 6:10] /= norm
     return states
 

@@ -208,7 +208,7 @@ def caution_lines(found: Diagnosis) -> list[str]:
     alike: dict = {}
     for one in found.findings:
         alike.setdefault((one['code'], one['where'].partition(', t =')[0]), []).append(one)
-    lines = [f'{"of" if first["severity"] == "info" else "be wary of"} {first["flight"]}'
+    lines = [f'{"" if first.get("severity") == "info" else "be wary of "}{first["flight"]}'
              + (f' ({", ".join(one["flight"] for one in others)} alike)' if others else '')
              + f': {first["where"]}: {first["message"]}' for first, *others in alike.values()]
     return [*(farther if found.gap.closed < 0.0 else []), *lines]

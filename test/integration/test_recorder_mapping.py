@@ -98,6 +98,20 @@ def test_streams_of_other_rates_are_joined_at_the_stamps_of_the_pose(graph, mapp
                                rtol=1e-9)
 
 
+def test_a_unit_holds_live_as_in_a_bag(graph, tmp_path):
+    path = tmp_path / 'm.yaml'
+    path.write_text(MAPPING.replace('twist.angular}', 'twist.angular, unit: deg/s}'))
+    recorder = graph.start(Recorder, {'mapping': str(path)})
+    records = graph.listen(Float64MultiArray, 'record', latched(16))
+    fly(graph)
+    graph.spin_until(lambda: recorder.counts.joined >= 50, '50 rows')
+    assert graph.trigger('recorder/flush').success
+    graph.spin_until(lambda: records, 'the record')
+    [record] = records.records()
+    t = record.t + record.info['start_ns'] * 1e-9
+    np.testing.assert_allclose(record.columns['wz'], np.radians(t), rtol=1e-9)
+
+
 def test_what_is_not_there_is_said(graph, mapping):
     graph.start(Recorder, {'mapping': mapping})
     statistics = graph.listen(String, 'recorder/statistics', latched())

@@ -18,7 +18,9 @@ POSE, TWIST = 'geometry_msgs/msg/PoseStamped', 'geometry_msgs/msg/TwistStamped'
 TF, ESC = 'tf2_msgs/msg/TFMessage', 'mavros_msgs/msg/ESCStatus'
 ACTUATORS, MAV = 'actuator_msgs/msg/Actuators', 'mav_msgs/msg/Actuators'
 PX4 = 'px4_msgs/msg/'
-OTHERS = {'lab_msgs/msg/State': 'geometry_msgs/Pose where\nfloat32[3] omega\nfloat64[] rpm\n',
+CRAZYFLIE = 'crazyflie_interfaces/msg/LogDataGeneric'
+OTHERS = {CRAZYFLIE: 'std_msgs/Header header\nuint32 timestamp\nfloat32[] values\n',
+          'lab_msgs/msg/State': 'geometry_msgs/Pose where\nfloat32[3] omega\nfloat64[] rpm\n',
           TF: 'geometry_msgs/TransformStamped[] transforms\n'}
 
 

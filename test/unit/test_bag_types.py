@@ -6,6 +6,7 @@ import sqlite3
 
 from bag_files import (
     ACTUATORS,
+    CRAZYFLIE,
     esc_status,
     header,
     imu,
@@ -31,6 +32,7 @@ from rosbags.rosbag1 import Writer as Writer1
 
 from quad_ident_ros.data.load import load
 from quad_ident_ros.data.mapping import mapping_from
+from quad_ident_ros.model.attitude import euler_from_quaternion
 
 SPEEDS = SMALL.stack(*CMD)
 PLACE, SPEED, ATTITUDE = ('px', 'py', 'pz'), ('vx', 'vy', 'vz'), ('qw', 'qx', 'qy', 'qz')
@@ -256,3 +258,43 @@ def test_a_battery_that_is_recorded_once_does_not_keep_a_flight_from_being_read(
     one += [row for row in px4(SMALL, SHARES) if 'battery' in row[0]][:1]
     read = load(write2(tmp_path / 'bag', one))
     assert not read.has('vbat') and read.has('px')
+
+
+def test_a_topic_in_other_units_is_read_by_its_unit(tmp_path):
+    """As Crazyswarm2 publishes log variables: lists of float32, rates in deg/s, forces in g."""
+    rpm = SPEEDS * 30 / np.pi
+    messages = [one for topic, table in (
+        ('/cf1/place', 1000 * SMALL.stack(*PLACE)), ('/cf1/speed', 100 * SMALL.stack(*SPEED)),
+        ('/cf1/gyro', np.degrees(SMALL.stack(*RATE))), ('/cf1/acc', SMALL.stack(*FORCE) / 9.80665),
+        ('/cf1/rpm', rpm), ('/cf1/angles', np.degrees(euler_from_quaternion(
+            SMALL.stack(*ATTITUDE)))), ('/cf1/vbat', np.full((len(SMALL), 1), 3900.0)))
+        for one in lists(SMALL, CRAZYFLIE, topic, 'values', table.astype(np.float32))]
+    path = write2(tmp_path / 'bag', messages)
+    units = {'position': ('place', 'mm'), 'velocity': ('speed', 'cm/s'), 'rate': ('gyro', 'deg/s'),
+             'specific_force': ('acc', 'g'), 'rotors': ('rpm', 'rpm'),
+             'attitude': ('angles', 'deg'), 'battery': ('vbat', 'mV')}
+    topics = {role: {'topic': f'/cf1/{name}', 'field': 'values', 'unit': unit}
+              for role, (name, unit) in units.items()}
+    topics['velocity']['frame'] = 'world'
+    # What the commands are does not matter for speeds that are measured in rpm.
+    actuators = {'kind': 'pwm', 'maximum': 65535, 'minimum': 0, 'speeds': [0, 2000]}
+    read = load(path, mapping_from({'topics': topics, 'actuators': actuators}, 'm'))
+    agrees(read, PLACE, SPEED, RATE, FORCE, within=2e-5)
+    agrees(read, ATTITUDE, within=1e-6)
+    np.testing.assert_allclose(read.stack('rotor1', 'rotor4'), SPEEDS[:, [0, 3]], rtol=1e-6)
+    np.testing.assert_allclose(read.columns['vbat'], 3.9)
+
+
+def test_a_pose_in_mm_keeps_its_attitude(tmp_path):
+    big = changed(SMALL, **{name: 1000 * SMALL.columns[name] for name in PLACE})
+    write2(tmp_path / 'bag', poses(big))
+    topics = {'pose': {'topic': '/pose_of_it', 'unit': 'mm'}}
+    agrees(load(tmp_path / 'bag', mapping_from({'topics': topics}, 'm')), PLACE, ATTITUDE)
+
+
+def test_a_quaternion_has_no_unit(tmp_path):
+    write2(tmp_path / 'bag', poses(SMALL))
+    for field in ({}, {'field': 'pose.orientation'}):
+        topics = {'attitude': {'topic': '/pose_of_it', 'unit': 'deg', **field}}
+        refused(tmp_path / 'bag', 'a quaternion, which has no unit; leave unit out',
+                mapping=mapping_from({'topics': topics}, 'm'))

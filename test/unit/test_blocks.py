@@ -16,6 +16,7 @@ from quad_ident_ros.flight.measure import SENSORS
 from quad_ident_ros.greybox.flights import flight_of, track_of
 from quad_ident_ros.greybox.parameters import nominal
 from quad_ident_ros.model.vehicle import load_vehicle
+from quad_ident_ros.report.diagnosis import caution_lines, size_line
 
 VEHICLE = load_vehicle('hummingbird')
 DRAG = {'rotor_drag': {'coefficient': 0.2}}
@@ -45,6 +46,17 @@ def test_both_parts_move_alike_and_share_no_row(half_hovered):
                                                 for one in (learnt, held_out))
 
 
+def test_time_between_the_parts_of_a_flight_makes_no_blocks(half_hovered):
+    """Five minutes on the ground are five minutes without anything to hold out."""
+    later = replace(half_hovered, t=half_hovered.t + 300.0 * (half_hovered.t > 20.0))
+    learnt, held_out = interleaved(track_of(later, VEHICLE))
+    as_one, _ = interleaved(track_of(half_hovered, VEHICLE))
+    assert learnt.name == as_one.name and 'every other 3 s' in learnt.name
+    for rows in (learnt.course.t < 20.0, learnt.course.t > 300.0):
+        share = held_out.seen[rows, 0].sum() / rows.sum()
+        assert 0.3 < share < 0.7
+
+
 def test_predictions_of_the_part_held_out_begin_and_end_in_it(half_hovered):
     _, held_out = interleaved(track_of(half_hovered, VEHICLE))
     starts = ends(held_out, VEHICLE, nominal(VEHICLE), 0.5).t
@@ -57,3 +69,10 @@ def test_a_flight_that_hovers_in_the_end_shows_its_drag(half_hovered):
     found = diagnose([half_hovered], VEHICLE)
     assert found.verdict == ('rotor_drag',)
     assert found.gap.closed > 0.8
+    data = found.as_data()
+    assert 'every other 3 s' in data['flights'][0] and 'the 3 s between' in data['held_out']
+    assert f'On {found.held_out}, which took no part' in size_line(found)
+    used = {'code': 'kept', 'severity': 'info', 'flight': 'f', 'where': 't = 1 to 9 s',
+            'message': 'this part of the recording is used', 'remedy': ''}
+    assert caution_lines(replace(found, findings=(used,))) == [
+        'f: t = 1 to 9 s: this part of the recording is used']

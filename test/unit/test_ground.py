@@ -2,10 +2,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """Time on the ground: told, and left out of a diagnosis."""
 
+from dataclasses import replace
+import json
+
 import numpy as np
 import pytest
 
-from quad_ident_ros.data.quality.ground import airborne, standing, stands
+from quad_ident_ros.cli.main import main
+from quad_ident_ros.data.csv import write_csv
+from quad_ident_ros.data.quality.ground import airborne, resting, standing, stands
+from quad_ident_ros.data.quality.timing import gaps
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.errors import InputError
@@ -69,13 +75,102 @@ def test_the_battery_has_been_emptying_since_the_record_began(flight):
     assert airborne(whole, VEHICLE).info['began'] == whole.t[0]
 
 
-def test_of_two_flights_in_one_record_the_longer_is_taken(flight):
-    short = flight.slice(0, len(flight) // 3)
-    first, then = grounded(short), grounded(flight, before=0.0)
-    t = np.concatenate([first.t, first.t[-1] + flight.period() + then.t - then.t[0]])
-    both = FlightRecord(t, {name: np.concatenate([first.columns[name], then.columns[name]])
-                            for name in first.columns}, {})
+def after_another(first, then):
+    """Return the record of one after the other, on one clock."""
+    t = np.concatenate([first.t, first.t[-1] + first.period() + then.t - then.t[0]])
+    return FlightRecord(t, {name: np.concatenate([first.columns[name], then.columns[name]])
+                            for name in first.columns}, {'name': 'both'})
+
+
+def test_of_two_flights_in_one_record_those_of_4_s_are_kept(flight):
+    both = after_another(grounded(flight.slice(0, 500)), grounded(flight, before=0.0))
+    kept = airborne(both, VEHICLE)
+    assert len(kept) == 500 + len(flight) and kept.info['name'] == 'both'
+    assert np.diff(kept.t).max() == pytest.approx(2.0, abs=0.02)
+    [finding] = stands(both, VEHICLE)
+    assert '6.0 s' in finding.message and finding.message.count(' to ') == 2
+    both = after_another(grounded(flight.slice(0, 350)), grounded(flight, before=0.0))
     assert len(airborne(both, VEHICLE)) == len(flight)
+
+
+def test_time_on_the_ground_between_two_parts_is_no_gap_of_the_record(flight):
+    both = after_another(grounded(flight), grounded(flight, before=0.0))
+    kept = airborne(both, VEHICLE)
+    assert gaps(kept, VEHICLE) == []
+    lost = kept.slice(0, len(flight) // 2)
+    rest = kept.slice(len(flight) // 2 + 60)
+    assert len(gaps(FlightRecord(np.append(lost.t, rest.t), {
+        'pz': np.append(lost.columns['pz'], rest.columns['pz'])}, kept.info), VEHICLE)) == 1
+
+
+def lifted(flight, seconds, height=1.5, throw=0.0):
+    """
+    Return a flight after it was carried to its place, with rotors that stand still.
+
+    throw: m/s of the speed upward with which it is let go; it comes to rest where the flight
+    begins.
+    """
+    g, period = VEHICLE.gravity, flight.period()
+    t = np.arange(0.0, seconds, period)
+    speed, fall = height * np.pi / seconds, throw / g
+    held = t < seconds - fall
+    up = 0.5 * speed * np.sin(np.pi * t / (seconds - fall)) * held
+    swing = np.exp(-((t - (seconds - fall)) / 0.15) ** 2) * held       # the arm speeds it up
+    up += throw * swing + np.where(held, 0.0, throw - g * (t - (seconds - fall)))
+    z = np.cumsum(up) * period
+    values = {'vz': up, 'pz': z - z[-1] + flight.columns['pz'][0], 'qw': 1.0 + 0 * t,
+              'vbat': flight.columns['vbat'][0] + 0 * t,
+              'px': flight.columns['px'][0] + 0 * t, 'py': flight.columns['py'][0] + 0 * t}
+    random = np.random.default_rng(6)
+    columns = {name: values.get(name, 0 * t) + (
+        0.0 if name.startswith(('cmd', 'vbat')) else 1e-3 * random.standard_normal(len(t)))
+        for name in flight.columns}
+    return after_another(FlightRecord(t, columns), flight)
+
+
+def test_a_vehicle_that_is_carried_to_its_place_does_not_fly_there(flight):
+    whole = lifted(flight, seconds=6.0)
+    assert np.abs(whole.columns['vz'][:600]).max() > 0.3
+    kept = airborne(whole, VEHICLE)
+    # The flight begins with a hover at the height at which it was held.
+    assert 5.8 < kept.t[0] < 7.5 and kept.t[-1] == whole.t[-1]
+    [finding] = stands(whole, VEHICLE)
+    assert f'kept is where it flies, t = {kept.t[0]:.3f} to' in finding.message
+
+
+def test_a_flight_begins_where_the_vehicle_is_thrown(flight):
+    """A throw is no flight; the fall after it, with rotors that stand still, is one."""
+    whole = lifted(flight, seconds=4.0, throw=5.0)
+    kept = airborne(whole, VEHICLE)
+    assert 4.0 - 5.0 / VEHICLE.gravity <= kept.t[0] + 0.02 <= 4.0
+    assert kept.t[0] < 3.8
+
+
+def test_rotors_that_spin_up_on_the_ground_do_not_fly(flight):
+    whole = grounded(flight, before=3.0)
+    first = round(3.0 / flight.period())
+    ramp = np.clip((whole.t - 1.0) / 2.0, 0.3, 1.0) * hover_of(VEHICLE)
+    spun = {f'cmd{j}': np.where(np.arange(len(whole)) < first, ramp, whole.columns[f'cmd{j}'])
+            for j in range(1, 5)}
+    assert airborne(changed(whole, **spun), VEHICLE).t[0] == pytest.approx(3.0, abs=0.011)
+
+
+def test_what_lies_after_a_crash_is_carried_by_the_ground(flight):
+    """It slides and turns, so that it stands nowhere, and its motors are off."""
+    t = flight.t
+    wild = {'vx': 0.5 * np.sin(3 * t), 'vy': 0.4 * np.cos(4 * t), 'vz': 0 * t,
+            **{f'cmd{j}': 0 * t for j in range(1, 5)}}
+    whole = after_another(flight, changed(flight, **wild))
+    assert airborne(whole, VEHICLE).t[-1] == pytest.approx(flight.t[-1], abs=0.2)
+
+
+@pytest.mark.parametrize('trajectory', ['vertical', 'figure8', 'chirp_z'])
+def test_no_manoeuvre_is_taken_for_being_carried(trajectory):
+    whole = fly_closed_loop(VEHICLE, {'rotor_drag': {'coefficient': 0.2}}, trajectory,
+                            duration=12.0, seed=4, noise=MOCAP_IMU)
+    assert not resting(whole, VEHICLE).any()
+    half = replace(VEHICLE, thrust_coefficient=0.4 * VEHICLE.thrust_coefficient)
+    assert not resting(whole, half).any()       # a vehicle file that is wrong by far
 
 
 def test_a_hover_is_no_standing():
@@ -156,3 +251,33 @@ def test_a_verdict_does_not_change_by_time_on_the_ground(flight):
     assert [one['code'] for one in whole.findings].count('ground') == 2
     row, other = (data.ranking[0].parameters['time_constant'] for data in (cut, whole))
     assert other.value == pytest.approx(row.value, abs=0.1 * row.std)
+
+
+@pytest.mark.slow
+def test_two_flights_with_a_landing_between_them_are_one_that_is_held_out_in_blocks():
+    lag = {'motor_lag': {'time_constant': 0.03}}
+    one, other = (fly_closed_loop(VEHICLE, lag, 'lissajous', duration=12.0, seed=seed,
+                                  noise=MOCAP_IMU) for seed in (1, 2))
+    found = diagnose([after_another(grounded(one), grounded(other, before=0.0))], VEHICLE)
+    assert found.verdict == ('motor_lag',) and found.gap.closed > 0.8
+    assert found.flights[0].startswith('both (every other') and 'between' in found.held_out
+    assert [one['code'] for one in found.findings].count('ground') == 1
+    value = found.ranking[0].parameters['time_constant']
+    assert abs(value.value - 0.03) < 4 * value.std
+
+
+@pytest.mark.slow
+def test_a_fit_leaves_the_ground_out_too(flight, tmp_path, capsys):
+    whole = grounded(flight)
+    height = np.maximum(whole.columns['pz'], flight.columns['pz'].min() - 0.3)     # no jump
+    write_csv(tmp_path / 'f.csv', changed(whole, pz=height))
+    write_csv(tmp_path / 'g.csv', flight)
+    values = []
+    for name in ('f.csv', 'g.csv'):
+        assert main(['fit', str(tmp_path / name), '--vehicle', 'hummingbird', '--free',
+                     'thrust_coefficient', '--json', '-']) == 0
+        data = json.loads(capsys.readouterr().out)
+        values.append(data['parameters']['thrust_coefficient']['value'])
+        assert any('stands on the ground' in line for line in data['findings']) == (
+            name == 'f.csv')
+    assert values[0] == pytest.approx(values[1], rel=1e-3)

@@ -3,6 +3,7 @@
 """The mapping file, and the rotor speeds that outputs stand for."""
 
 from pathlib import Path
+import re
 
 from hypothesis import given
 from hypothesis import strategies as st
@@ -27,7 +28,28 @@ def test_the_mapping_file_of_the_documents_is_one():
         mapping_from(data, 'docs')
 
 
+def test_the_lines_of_the_table_of_the_readme_are_a_mapping():
+    """Each row names topics of its middleware, and what goes with them."""
+    text = (Path(__file__).parents[2] / 'README.md').read_text(encoding='utf-8')
+    table = text.split('| from | lines | besides |\n')[1].split('\n\n')[0].splitlines()[1:]
+    assert len(table) == 4
+    for row in table:
+        lines = re.findall(r'`([a-z_]+): ?(\{.*?\}|`)', row)
+        topics, mapping, last = {}, {}, None
+        for role, entry in lines:
+            entry = entry.replace('[low, high]', '[100, 900]').replace('[...]', '[1, 2, 3, 4]')
+            if role == 'actuators':
+                mapping['actuators'] = yaml.safe_load(entry)
+            else:
+                topics[role] = last = last if entry == '`' else yaml.safe_load(entry)
+        found = mapping_from({'topics': topics, **mapping}, row)
+        assert {'pose', 'rate', 'specific_force', 'commands'} <= set(found.topics)
+
+
 @pytest.mark.parametrize('data, said', [
+    ({'topics': {'rate': {'topic': '/a', 'unit': 'deg'}}}, 'deg/s'),
+    ({'topics': {'rotors': {'topic': '/a', 'unit': 'deg/s'}}}, 'rpm'),
+    ({'topics': {'commands': {'topic': '/a', 'unit': 'rpm'}}}, 'unit'),
     ({'topic': {}}, "did you mean 'topics'"), ({'topics': 3}, 'topics'),
     ({'topics': {'pos': {}}}, "did you mean 'pose'"), ({'topics': {'pose': {}}}, 'topic'),
     ({'topics': {'pose': {'topic': 3}}}, 'expected a name'), ({'world': 'UP'}, 'ENU, NED'),

@@ -4,6 +4,7 @@
 
 import numpy as np
 
+from quad_ident_ros.data.cutting import without
 from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.record import QUATERNION, unit
 
@@ -105,7 +106,7 @@ def quaternions(record, vehicle):
                         f'qw, qx, qy, qz, t = {record.t[int(np.argmax(short))]:.3f} s',
                         f'{int(short.sum())} samples hold no attitude: their quaternion has a '
                         f'length down to {length.min():.3g}, expected 1',
-                        'remove these samples')]
+                        without(record.t, short, 'see what writes the attitude'))]
     off = np.abs(length - 1.0) > OFF
     if not off.any():
         return []
@@ -128,5 +129,5 @@ def possible(record, vehicle):
             found.append(Finding(
                 'impossible', 'error', f'{name}, t = {record.t[first]:.3f} s',
                 f'{values[first]:.3g} {unit(name)} is not of a flight ({int(bad.sum())} such '
-                'samples)', 'remove these samples'))
+                'samples)', without(record.t, bad, f'see what writes {name}')))
     return found

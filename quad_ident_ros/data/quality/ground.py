@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Where a vehicle stands on the ground, whose force no command tells, and where it flies."""
+"""Where a vehicle stands or is carried, whose force no command tells, and where it flies."""
 
 from dataclasses import replace
 
@@ -8,45 +8,67 @@ import numpy as np
 
 from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.record import FlightRecord
+from quad_ident_ros.data.split import part, rejoined, SHORTEST
 from quad_ident_ros.model.vehicle import Vehicle
 
 STILL = 0.2         # m/s: slower stands, or hovers
 IDLE = 0.5          # of the weight, or of the usual thrust if that is less: nothing hovers with it
 LEAST = 0.3         # s: whatever falls for that long with half the thrust is faster than STILL
 CLEAR = 0.05        # m above the height of standing where the ground is left
+CARRIED = 3.0       # m/s: what is faster is in no hand, and its drag may hold it up
+FALLING = 0.5       # of g: with less force on it the vehicle falls, and flies
+USUAL = 0.97        # quantile of what the commands give of the force, unless all of it is carried
 
 
 def stands(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
-    """Find time on the ground."""
+    """Find time on the ground, and in a hand."""
     if vehicle is None:
         return []
-    on_ground = standing(record, vehicle)
-    if not on_ground.any():
+    rests = resting(record, vehicle)
+    if not rests.any():
         return []
-    part = airborne(record, vehicle)
-    if len(part) == len(record):
-        return [Finding('ground', 'error', f't = {record.t[0]:.3f} s',
-                        'the vehicle stands on the ground all the time',
+    first = f't = {record.t[rests][0]:.3f} s'
+    kept = _kept(record, rests)
+    if not kept:
+        return [Finding('ground', 'error', first, 'the vehicle stands on the ground all the time',
                         'give a record of a flight')]
+    spans = ' and '.join(f't = {record.t[begin]:.3f} to {record.t[end]:.3f} s'
+                         for begin, end in kept)
     return [Finding(
-        'ground', 'warning', f't = {record.t[on_ground][0]:.3f} s',
-        f'the vehicle stands on the ground for {on_ground.sum() * record.period():.1f} s, where '
-        f'no command tells the force on it; a diagnosis uses t = {part.t[0]:.3f} to '
-        f'{part.t[-1]:.3f} s, where it flies longest',
-        'nothing needs to be done; another part that flies can be given as a record of its own')]
+        'ground', 'warning', first,
+        f'the vehicle stands on the ground or is carried for {rests.sum() * record.period():.1f} '
+        f's, where no command tells the force on it; kept is where it flies, {spans}',
+        'nothing needs to be done; --from and --to choose another part')]
 
 
 def airborne(record: FlightRecord, vehicle: Vehicle) -> FlightRecord:
-    """Return the longest part of a record off the ground; all of it where there is none."""
-    flies = ~standing(record, vehicle)
-    runs = [run for run in _runs(flies) if run[1] > run[0]]
-    if flies.all() or not runs:
+    """
+    Return the parts of a record in which the vehicle flies, those of SHORTEST and more.
+
+    The longest where none is that long; the record itself where all of it flies, or none.
+    """
+    rests = resting(record, vehicle)
+    kept = _kept(record, rests)
+    if not rests.any() or not kept:
         return record
-    first, last = max(runs, key=lambda run: record.t[run[1]] - record.t[run[0]])
-    part = record.slice(0, last + 1).starting(first)
-    # The battery has been emptying since the record began.
-    began = record.info.get('began', record.t[0])
-    return replace(part, info={**part.info, 'began': began})
+    flies = rejoined([part(record, begin, end + 1) for begin, end in kept])
+    return replace(flies, info={**flies.info, 'name': record.info.get('name', 'flight')})
+
+
+def resting(record: FlightRecord, vehicle: Vehicle) -> np.ndarray:
+    """Return whether the vehicle stands or is carried at each sample, (N,) of bool."""
+    stood = standing(record, vehicle)
+    return stood | carried(record, vehicle, stood)
+
+
+def _kept(record: FlightRecord, rests: np.ndarray) -> list[tuple[int, int]]:
+    """Return the first and last sample of each part that is kept, in order."""
+    runs = [run for run in _runs(~rests) if run[1] > run[0]]
+    lengths = [record.t[last] - record.t[first] + record.period() for first, last in runs]
+    if not runs:
+        return []
+    long = [run for run, length in zip(runs, lengths, strict=True) if length >= SHORTEST]
+    return long or [runs[int(np.argmax(lengths))]]
 
 
 def standing(record: FlightRecord, vehicle: Vehicle) -> np.ndarray:
@@ -75,6 +97,40 @@ def standing(record: FlightRecord, vehicle: Vehicle) -> np.ndarray:
             if begin <= last and end >= first:
                 grounded[min(begin, first):max(end, last) + 1] = True
     return grounded
+
+
+def carried(record: FlightRecord, vehicle: Vehicle, stood: np.ndarray) -> np.ndarray:
+    """
+    Return whether something else than the rotors carries the vehicle at each sample, (N,) bool.
+
+    It does where the vehicle is slow and does not fall, and the commands give less than half of
+    the force that this takes, for LEAST: in a hand, on a string, after a crash. All False where
+    the record has no commands or velocity, or where the commands never give that force.
+    Args: stood (N,) bool: where it stands, whose edges are known better.
+    """
+    thrust, found = _thrust(record, vehicle), np.zeros(len(record), bool)
+    speed, half = _speed(record), max(1, round(LEAST / 2 / record.period()))
+    if speed is None or thrust is None or len(record) <= 2 * half:
+        return found
+    t, velocity = record.t, record.stack('vx', 'vy', 'vz')
+    span = t[2 * half:] - t[:-2 * half]
+    needed = (velocity[2 * half:] - velocity[:-2 * half]) / span[:, None]
+    needed = vehicle.mass * np.linalg.norm(needed + [0.0, 0.0, vehicle.gravity], axis=1)
+    sums = np.concatenate([[0.0], np.cumsum(thrust)])
+    share = (sums[2 * half:-1] - sums[:-2 * half - 1]) / (2 * half) / np.maximum(needed, 1e-9)
+    middle = slice(half, -half)
+    told = ((span < 3 * half * record.period())     # else rows are missing
+            & (needed > FALLING * vehicle.mass * vehicle.gravity) & (speed[middle] < CARRIED))
+    moving = told & (speed[middle] > STILL)
+    if not moving.any():
+        return found
+    low = found.copy()
+    low[middle] = told & (share < IDLE * min(1.0, float(np.quantile(share[moving], USUAL))))
+    for first, last in _runs(low & ~stood):
+        if (last - first) >= half:
+            # What was looked at around each sample is carried, too.
+            found[max(first - half, 0):last + half + 1] = True
+    return found
 
 
 def _speed(record: FlightRecord) -> np.ndarray | None:

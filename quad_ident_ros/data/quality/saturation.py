@@ -4,6 +4,7 @@
 
 import numpy as np
 
+from quad_ident_ros.data.cutting import without
 from quad_ident_ros.data.quality import units
 from quad_ident_ros.data.quality.finding import Finding
 
@@ -36,6 +37,6 @@ def speeds(record, vehicle):
                 f'{names[worst]}, t = {record.t[int(np.argmax(rows))]:.3f} s',
                 f'{100 * share:.2f} % of the samples have a command at or beyond {limit} = '
                 f'{getattr(vehicle, limit):g} rad/s',
-                'leave these samples out of a fit, fly more gently, or correct the limit in the '
-                'vehicle file'))
+                without(record.t, rows, 'fly more gently',
+                        'correct the limit in the vehicle file')))
     return found

@@ -4,6 +4,7 @@
 
 import numpy as np
 
+from quad_ident_ros.data.cutting import without
 from quad_ident_ros.data.quality.finding import Finding
 
 JUMP = 0.2       # of the usual step: from rest a stream sets out slower
@@ -19,7 +20,7 @@ def held(record, vehicle):
         if not record.has(*columns):
             continue
         step = np.linalg.norm(np.diff(record.stack(*columns), axis=0), axis=1)
-        share, runs, longest, first = _held(step)
+        share, runs, longest, first, repeats = _held(step)
         # One run of equal forces, then a jump, may be a step of the thrust without noise.
         if share <= 0.01 and longest < 5 or (columns[0] == 'ax' and runs < 3):
             continue
@@ -27,15 +28,20 @@ def held(record, vehicle):
             'stale', 'warning', f'{name}, t = {record.t[first]:.3f} s',
             f'{100 * share:.1f} % of the samples repeat the last one, up to {longest} in a row, '
             'while the vehicle moves',
-            f'log the {name} at its own rate with its own stamps, or leave these samples out'))
+            without(record.t, repeats, f'log the {name} at its own rate with its own stamps')))
     return found
 
 
 def _held(step):
-    """Return share, number of runs, longest run and begin of the repeats that end in a jump."""
+    """
+    Return share, number of runs, longest run and begin of the repeats that end in a jump.
+
+    And which samples (N,) repeat so, by the N - 1 lengths of the steps.
+    """
+    none = np.zeros(len(step) + 1, bool)
     moving = step[step > 0]
     if not len(moving) or np.median(moving) < ROUNDING:
-        return 0.0, 0, 0, 0
+        return 0.0, 0, 0, 0, none
     still = np.concatenate([[0], (step == 0).astype(int), [0]])
     begins, ends = np.flatnonzero(np.diff(still) == 1), np.flatnonzero(np.diff(still) == -1)
     inside = (begins > 0) & (ends < len(step))
@@ -43,8 +49,13 @@ def _held(step):
     jump = step[ends] >= JUMP * np.median(moving)
     length = (ends - begins)[jump]
     if not len(length):
-        return 0.0, 0, 0, 0
-    return length.sum() / len(step), len(length), int(length.max()), int(begins[jump][0]) + 1
+        return 0.0, 0, 0, 0, none
+    turns = np.zeros(len(step) + 2, int)
+    np.add.at(turns, begins[jump] + 1, 1)
+    np.add.at(turns, ends[jump] + 1, -1)
+    repeats = np.cumsum(turns)[:-1] > 0
+    return (length.sum() / len(step), len(length), int(length.max()), int(begins[jump][0]) + 1,
+            repeats)
 
 
 def marked(record, vehicle):
@@ -59,4 +70,4 @@ def marked(record, vehicle):
                     f't = {record.t[int(np.argmax(stale))]:.3f} s',
                     f'the record marks {100 * share:.1f} % of its samples as stale: bridged '
                     'over values that were lost',
-                    'give these samples no weight, or cut them out')]
+                    without(record.t, stale, 'record again with fewer losses'))]

@@ -4,6 +4,7 @@
 
 import numpy as np
 
+from quad_ident_ros.data.cutting import without
 from quad_ident_ros.data.quality import units
 from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.quality.series import GRAVITY, Grid
@@ -50,5 +51,5 @@ def carried(record, vehicle):
                 f'for {off.sum() * grid.period:.1f} s the commands give {what} the thrust by '
                 f'which {vehicle.name} flies: they stand still, are of something else, or the '
                 'vehicle file is of another vehicle',
-                'cut these samples out, or record the commands that the rotors follow in rad/s'))
+                without(grid.t, bad, 'record the commands that the rotors follow in rad/s')))
     return found

@@ -33,7 +33,8 @@ def slow(record, vehicle):
 def gaps(record, vehicle):
     """Find steps in time of over three median periods."""
     steps, period = np.diff(record.t), record.period()
-    wide = np.flatnonzero(steps > GAP * period)
+    wide = np.flatnonzero((steps > GAP * period)
+                          & ~np.isin(record.t[1:], record.info.get('cuts', ())))
     if not len(wide):
         return []
     longest = wide[np.argmax(steps[wide])]
@@ -44,7 +45,7 @@ def gaps(record, vehicle):
         f't = {record.t[longest]:.3f} s',
         f'{len(wide)} gaps, {missing} samples ({100 * share:.1f} %) are missing; the longest is '
         f'{steps[longest]:.3f} s',
-        'predictions stop at gaps; record with a lossless transport, or cut the flight there')]
+        'predictions stop at gaps; record with a lossless transport')]
 
 
 def duplicates(record, vehicle):

@@ -6,10 +6,16 @@ from pathlib import Path
 
 from quad_ident_ros.data.mapping import Mapping
 from quad_ident_ros.data.readers.base import Content, Reader
+from quad_ident_ros.data.readers.others import is_text
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.model.vehicle import Vehicle
 
-MAGIC = b'ULog\x01\x12\x35'
+MAGIC = b'ULog'     # three more bytes follow; a log that is cut off before them is one, too
+
+
+def tells(path: Path, start: bytes) -> bool:
+    """Return whether a path is a log of PX4, or is named so and may be a damaged one."""
+    return start.startswith(MAGIC) or path.suffix == '.ulg' and not is_text(start)
 
 
 def read(path: str | Path, mapping: Mapping | None = None,
@@ -25,6 +31,5 @@ def contents(path: str | Path) -> list[Content]:
     return found(path)
 
 
-READER = Reader('px4', 'a log of PX4 (ULog)',
-                lambda path, start: start.startswith(MAGIC) or path.suffix == '.ulg', read,
-                contents, package='pyulog', module='pyulog')
+READER = Reader('px4', 'a log of PX4 (ULog)', tells, read, contents, package='pyulog',
+                module='pyulog')

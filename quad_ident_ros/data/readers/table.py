@@ -10,7 +10,7 @@ import zlib
 import numpy as np
 
 from quad_ident_ros.data.columns import record_of, shown
-from quad_ident_ros.data.csv import read_csv, rows_of
+from quad_ident_ros.data.csv import is_packed, read_csv, rows_of
 from quad_ident_ros.data.guess import Guess, guess
 from quad_ident_ros.data.mapping import factor_of, Mapping
 from quad_ident_ros.data.mapping_text import flow
@@ -72,7 +72,7 @@ def is_record(path: Path) -> bool:
 def _first_line(path: Path) -> str:
     """Return the first line of a file; InputError where it is no text."""
     try:
-        with (gzip.open if path.suffix == '.gz' else open)(path, 'rb') as file:
+        with (gzip.open if is_packed(path) else open)(path, 'rb') as file:
             return file.read(_HEAD).replace(b'\r', b'\n').partition(b'\n')[0].decode('utf-8-sig')
     except (OSError, EOFError, zlib.error, UnicodeDecodeError):
         return rows_of(path)[0][0]

@@ -1,0 +1,52 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Whether flights that are looked at together are of one vehicle, by what their logs know."""
+
+from collections.abc import Mapping, Sequence
+
+from quad_ident_ros.data.quality.finding import as_caution, Finding
+from quad_ident_ros.data.record import FlightRecord
+
+_SHOWN = 4      # flights of a vehicle that the message names
+_LETTERS = 40   # of an id
+
+
+def vehicles(records: Sequence[FlightRecord]) -> list[dict]:
+    """
+    Return what to be wary of where the logs of flights are of several vehicles, as data.
+
+    By the info `hardware` of the records: what (board, id, craft) -> text. Two logs are of
+    several vehicles where they differ in what both of them know.
+    """
+    groups: list[tuple[dict[str, str], list[FlightRecord]]] = []
+    for record in records:
+        known = record.info.get('hardware') or {}
+        if not known:
+            continue
+        for about, members in groups:
+            if not _differ(about, known):
+                about.update(known)
+                members.append(record)
+                break
+        else:
+            groups.append((dict(known), [record]))
+    if len(groups) < 2:
+        return []
+    said = '; '.join(f'{_named(members)} of {_shown(about)}' for about, members in groups)
+    return [as_caution(Finding(
+        'vehicles', 'warning', 'logs', f'they are of {len(groups)} vehicles: {said}',
+        'diagnose the flights of one vehicle at a time'), groups[1][1][0])]
+
+
+def _differ(one: Mapping[str, str], other: Mapping[str, str]) -> bool:
+    return any(one[key] != other[key] for key in one.keys() & other.keys())
+
+
+def _named(members: Sequence[FlightRecord]) -> str:
+    names = [str(record.info.get('name', 'flight')) for record in members]
+    more = f' and {len(names) - _SHOWN} more' if len(names) > _SHOWN else ''
+    return ', '.join(names[:_SHOWN]) + more
+
+
+def _shown(about: Mapping[str, str]) -> str:
+    return ' '.join(str(value)[:_LETTERS] for value in about.values())
