@@ -8,6 +8,7 @@ import numpy as np
 
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.effects.registry import EFFECTS, PLACES
+from quad_ident_ros.greybox.flights import inertial
 from quad_ident_ros.greybox.nuisances import Nuisance, nuisances
 from quad_ident_ros.greybox.parameters import SPLIT
 from quad_ident_ros.model.vehicle import Vehicle
@@ -41,7 +42,8 @@ def candidates(flights: list, vehicle: Vehicle, rules: Rules,
     for name, effect in EFFECTS.items():
         if effects is not None and name not in effects:
             continue
-        forms = [form for form in effect.forms if voltage or not form.needs_voltage]
+        forms = [form for form in effect.forms if (voltage or not form.needs_voltage)
+                 and not (inertial(flights) and form.needs_reference)]
         for form in forms:
             place = PLACES[name, form.name]
             columns = tuple(range(SPLIT + place.start, SPLIT + place.stop))

@@ -6,6 +6,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 from quad_ident_ros.data.clocks import clocks_of, on_one_clock
+from quad_ident_ros.data.inertial import is_inertial, reckoned
 from quad_ident_ros.data.quality import cautions, refuse_errors, refuted
 from quad_ident_ros.data.quality.finding import as_caution
 from quad_ident_ros.data.quality.ground import airborne, stands
@@ -73,6 +74,7 @@ def take_in(records: Sequence[FlightRecord], vehicle: Vehicle, hold_out: FlightR
                          'that is held out')
     alone = hold_out is None and len(records) == 1
     every = [*records, *([] if hold_out is None else [hold_out])]
+    every, vehicle = _with_states(every, vehicle)
     every, late, answers = map(list, zip(*on_one_clock(every), strict=True))
     learnt = every if alone else every[:-1]
     voltage = highest_voltage(learnt)
@@ -84,6 +86,26 @@ def take_in(records: Sequence[FlightRecord], vehicle: Vehicle, hold_out: FlightR
     *tracks, held_out = tracks
     return Intake(vehicle, tuple(tracks), held_out, rollouts(tracks, vehicle), tuple(late),
                   tuple(clocks), findings)
+
+
+def _with_states(records: list[FlightRecord], vehicle: Vehicle
+                 ) -> tuple[list[FlightRecord], Vehicle]:
+    """
+    Return records with the states that they need, and the vehicle to hold them against.
+
+    Where they have accelerometer and gyro alone, states are reckoned, and the drag of the vehicle
+    file is left out: what the air does across the thrust is in the specific force.
+    """
+    inertial = [is_inertial(record) for record in records]
+    if not any(inertial):
+        return records, vehicle
+    if not all(inertial):
+        [with_states, without] = (records[inertial.index(kind)].info.get('source', 'a flight')
+                                  for kind in (False, True))
+        raise InputError(f'{without} has neither position nor velocity, and {with_states} has: '
+                         'diagnose flights with and without them apart')
+    return ([reckoned(record, vehicle.gravity) for record in records],
+            replace(vehicle, linear_drag=(0.0, 0.0, 0.0)))
 
 
 def _fit_for_use(record: FlightRecord, vehicle: Vehicle, rules: Rules, wrong: Collection[str],

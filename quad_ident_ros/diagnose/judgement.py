@@ -113,11 +113,12 @@ class Bench:
         fixed[:, shared] -= fixed[:-1, shared].mean(axis=0)
         chosen = tuple(cause for cause in model.chosen if cause not in {*removed, *held})
         noise, scatter = self.selection.noise, self.selection.quadratic.scatter
+        slow = self.selection.slow
         estimate = refitted(self.flights, self.vehicle, z, chosen, noise, fit.nuisances,
-                            fit.starts, scatter=scatter, fixed=fixed[:-1])
+                            fit.starts, scatter=scatter, fixed=fixed[:-1], slow=slow)
         usual = {cause.effect: cause for cause in self.selection.posterior if cause.usual}
         chosen, estimate = within_bounds(chosen, estimate, usual, self.flights, self.vehicle,
-                                         noise, self.rules, scatter, fixed[:-1])
+                                         noise, self.rules, scatter, fixed[:-1], slow)
         return self.model(chosen, estimate, fixed[-1])
 
     def left_out(self, model: Model) -> tuple:
@@ -136,7 +137,8 @@ class Bench:
                              [self.selection.noise[n] for n in kept], nuisances,
                              [fit.starts[n] for n in kept],
                              scatter=self.selection.quadratic.scatter,
-                             fixed=None if fixed is None else fixed[kept])
+                             fixed=None if fixed is None else fixed[kept],
+                             slow=self.selection.slow)
             here = self._nuisances(k, refit.z, model.chosen, None if fixed is None else fixed[k])
             found.append(gaps.ends(self.tracks[k], self.vehicle, refit.z + here, gaps.HEADLINE))
         return (*(found or model.ends[:-1]), model.ends[-1])
@@ -146,7 +148,8 @@ class Bench:
         """Return the nuisances (Z,) of a flight beside a vector that it took no part in."""
         return nuisances_of(self.tracks[flight], self.vehicle, z,
                             tuple(cause.nuisance for cause in chosen if cause.nuisance),
-                            self.noise.deviation, self.flights[0].segment, fixed)
+                            self.noise.deviation, self.flights[0].segment, fixed,
+                            self.selection.slow)
 
 
 @dataclass(frozen=True, eq=False)
