@@ -69,6 +69,11 @@ class Bench:
     noise: Noise
     rules: Rules
 
+    @property
+    def horizon(self) -> float:
+        """Return the time (s) ahead at which effects are judged."""
+        return gaps.horizon_of(self.flights)
+
     def model(self, chosen: tuple, estimate: Estimate, fixed: np.ndarray | None = None) -> Model:
         """
         Return the Model of a set and its Estimate.
@@ -81,12 +86,12 @@ class Bench:
 
     def ends(self, vectors: tuple) -> tuple:
         """Return the Ends of all flights with a vector (Z,) each."""
-        return tuple(gaps.ends(track, self.vehicle, z, gaps.HEADLINE)
+        return tuple(gaps.ends(track, self.vehicle, z, self.horizon)
                      for track, z in zip(self.tracks, vectors, strict=True))
 
     def noise_gaps(self, model: Model) -> list:
         """Return {group: the gap that the noise makes} of each flight."""
-        return [gaps.noise_gap(track, self.vehicle, z, self.noise, gaps.HEADLINE)
+        return [gaps.noise_gap(track, self.vehicle, z, self.noise, self.horizon)
                 for track, z in zip(self.tracks, model.vectors, strict=True)]
 
     def without(self, model: Model, removed: tuple) -> Model:
@@ -140,7 +145,7 @@ class Bench:
                              fixed=None if fixed is None else fixed[kept],
                              slow=self.selection.slow)
             here = self._nuisances(k, refit.z, model.chosen, None if fixed is None else fixed[k])
-            found.append(gaps.ends(self.tracks[k], self.vehicle, refit.z + here, gaps.HEADLINE))
+            found.append(gaps.ends(self.tracks[k], self.vehicle, refit.z + here, self.horizon))
         return (*(found or model.ends[:-1]), model.ends[-1])
 
     def _nuisances(self, flight: int, z: np.ndarray, chosen: tuple,
