@@ -9,7 +9,6 @@ import numpy as np
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.diagnose import advice, measure
 from quad_ident_ros.diagnose.candidates import candidates
-from quad_ident_ros.diagnose.gap import horizon_of
 from quad_ident_ros.diagnose.intake import take_in
 from quad_ident_ros.diagnose.judgement import Bench, judge, pooled
 from quad_ident_ros.diagnose.noise import noise_of
@@ -42,7 +41,7 @@ def diagnose(records: list[FlightRecord], vehicle: Vehicle, *,
         if name not in EFFECTS:
             raise InputError(f'{name!r} is not among the effects: {", ".join(EFFECTS)}')
     intake = take_in(list(records), vehicle, hold_out, rules)
-    vehicle, rules = intake.vehicle, rules.at(horizon_of(intake.flights))
+    vehicle = intake.vehicle
     causes = candidates(intake.flights, vehicle, rules, effects)
     selection = select(intake.flights, vehicle, causes, rules,
                        lambda share: on_progress(0.7 * share))

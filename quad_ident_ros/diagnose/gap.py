@@ -12,7 +12,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from quad_ident_ros.diagnose.rules import HEADLINE
 from quad_ident_ros.greybox.errors import difference, ERRORS, GROUPS, moved
 from quad_ident_ros.greybox.flights import flight_of, inertial, Track
 from quad_ident_ros.greybox.linear import STATE_STEP
@@ -21,6 +20,7 @@ from quad_ident_ros.model.dynamics import predict
 from quad_ident_ros.model.vehicle import Vehicle
 
 HORIZONS = (0.1, 0.5, 1.0)      # s
+HEADLINE = 0.5                  # s
 NEAR = 0.1                      # s, the same for inertial flights: what the air does is not modelled
                                 # there, and soon turns the vehicle elsewhere
 EVERY = 0.1                     # s from one start to the next

@@ -2,9 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Every threshold of a verdict, with its reason; docs/method.md shows where each acts."""
 
-from dataclasses import dataclass, field, replace
-
-HEADLINE = 0.5      # s ahead at which gaps are told, and for which tolerances are stated
+from dataclasses import dataclass, field
 
 
 @dataclass(frozen=True)
@@ -110,16 +108,6 @@ class Rules:
     regime: float = 0.35
     unexplained: float = 0.58
     differs: float = 2.0
-
-    def at(self, horizon: float) -> 'Rules':
-        """Return the Rules for predictions over another horizon, s: a force and a moment that
-        make the gaps of these in 0.5 s make those.
-        """
-        share = horizon / HEADLINE
-        grows = {'position': share ** 2, 'velocity': share, 'attitude': share ** 2, 'rate': share}
-        return replace(self, **{name: {group: grows[group] * value for group, value
-                                       in getattr(self, name).items()}
-                                for name in ('floors', 'smallest')})
 
     def least(self, group: str, noise: float) -> float:
         """Return the gap of a group of outputs below which shares of it mean nothing."""

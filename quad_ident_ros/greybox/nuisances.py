@@ -65,14 +65,16 @@ def nuisances(vehicle: Vehicle, tracks: Sequence[Track]) -> tuple[Nuisance, ...]
     if put_right(tracks):
         apart = max(REST, REST_SHARE * max(track.clock.period for track in tracks if track.clock))
         odds = LIKELY
-    kinds: list[tuple]
-    kinds = [(CLOCK, CLOCK_TITLE, 's', ('actuation_delay.delay',), (apart,), odds)]
+    kinds: list[tuple] = []
+    # Inertial flights have one clock and no attitude, and slow moments count for little there.
     if not inertial(tracks):
+        kinds.append((CLOCK, CLOCK_TITLE, 's', ('actuation_delay.delay',), (apart,), odds))
         kinds += [('rate_bias', 'bias of the rate', 'rad/s', rate, (spread,) * 3, RARE)
                   for spread in (0.01, 0.003)]
         kinds += [('attitude_bias', 'tilt of the attitude', 'rad', tilt, (spread,) * 3, RARE)
                   for spread in (0.005, 0.0015)]
-    kinds.append(('trim_moment', 'moment', 'N m', moment, tuple(trim_wrench(vehicle)[3:]), RARE))
+        kinds.append(('trim_moment', 'moment', 'N m', moment, tuple(trim_wrench(vehicle)[3:]),
+                      RARE))
     # One flight does not tell what is its alone from what is the vehicle's.
     for name, effect in EFFECTS.items() if len(tracks) > 1 else ():
         if inertial(tracks) and effect.forms[0].needs_reference:
