@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The mapping file: which topics and outputs of other people's records mean what."""
 
-from collections.abc import Mapping as Pairs, Sequence
+from collections.abc import Mapping as Pairs
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 import re
 

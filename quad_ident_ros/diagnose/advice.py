@@ -7,13 +7,13 @@ from collections.abc import Sequence
 import numpy as np
 
 from quad_ident_ros.diagnose import fly_next as design
-from quad_ident_ros.diagnose.candidates import SCALES
+from quad_ident_ros.diagnose.candidates import not_told, SCALES
 from quad_ident_ros.diagnose.judgement import Model
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.diagnose.select import Selection
 from quad_ident_ros.diagnose.verdict import Verdict
 from quad_ident_ros.effects.registry import EFFECTS
-from quad_ident_ros.greybox.flights import Flight
+from quad_ident_ros.greybox.flights import Flight, inertial
 from quad_ident_ros.greybox.parameters import limits, NAMES, nominal
 from quad_ident_ros.model.vehicle import Vehicle
 
@@ -29,17 +29,17 @@ def not_shown(selection: Selection, causes: tuple, verdict: Verdict) -> tuple[st
 
 def cannot_show(flights: Sequence[Flight], verdict: Verdict) -> tuple[str, ...]:
     """Return the names of effects that no flights with commands like these would show."""
+    named, untold = {*verdict.sure, *verdict.undetermined}, not_told(flights)
     if not any(flight.levelled for flight in flights):
-        return ()
-    named = {*verdict.sure, *verdict.undetermined}
-    return tuple(name for name in EFFECTS if name not in named
+        return untold
+    return untold + tuple(name for name in EFFECTS if name not in named
                  and any(NAMES[column].partition('.')[0] == name for column in SCALES))
 
 
 def fly_next(selection: Selection, flights: list, vehicle: Vehicle, z: np.ndarray,
              verdict: Verdict, unseen: tuple) -> list | None:
     """Return what to fly next, as data, where the verdict leaves something open, else None."""
-    if verdict.names not in ASKS:
+    if verdict.names not in ASKS or inertial(flights):
         return None
     return design.fly_next(selection, flights, vehicle, z, verdict.certain, verdict.doubts,
                            unseen) or None

@@ -2,12 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """What may be named as a cause, and which columns of the parameter vector that frees."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.effects.registry import EFFECTS, PLACES
+from quad_ident_ros.greybox.flights import Flight, inertial
 from quad_ident_ros.greybox.nuisances import Nuisance, nuisances
 from quad_ident_ros.greybox.parameters import FACTORS, INDEX, SPLIT
 from quad_ident_ros.model.vehicle import Vehicle
@@ -50,7 +52,8 @@ def candidates(flights: list, vehicle: Vehicle, rules: Rules,
     for name, effect in EFFECTS.items():
         if effects is not None and name not in effects:
             continue
-        forms = [form for form in effect.forms if voltage or not form.needs_voltage]
+        forms = [form for form in effect.forms if (voltage or not form.needs_voltage)
+                 and not (inertial(flights) and form.needs_reference)]
         for form in forms:
             place = PLACES[name, form.name]
             columns = tuple(column for column in range(SPLIT + place.start, SPLIT + place.stop)
@@ -67,6 +70,12 @@ def candidates(flights: list, vehicle: Vehicle, rules: Rules,
                                        len(form.parameters) <= len(forms[0].parameters),
                                        _share(form is forms[0], len(forms))))
     return tuple(found)
+
+
+def not_told(flights: Sequence[Flight]) -> tuple[str, ...]:
+    """Return the names of the effects that no form of can be told from flights like these."""
+    return tuple(name for name, effect in EFFECTS.items() if inertial(flights)
+                 and all(form.needs_reference for form in effect.forms))
 
 
 def _share(usual: bool, count: int) -> float:

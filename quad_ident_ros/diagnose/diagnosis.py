@@ -41,6 +41,7 @@ def diagnose(records: list[FlightRecord], vehicle: Vehicle, *,
         if name not in EFFECTS:
             raise InputError(f'{name!r} is not among the effects: {", ".join(EFFECTS)}')
     intake = take_in(list(records), vehicle, hold_out, rules)
+    vehicle = intake.vehicle
     every = candidates(intake.flights, vehicle, rules, effects)
     causes = tuple(cause for cause in every if cause.effect not in intake.refuted)
     ruled_out = tuple(dict.fromkeys(cause.effect for cause in every if cause not in causes))

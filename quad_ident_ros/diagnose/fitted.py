@@ -54,17 +54,17 @@ def effects_in(chosen: tuple) -> tuple:
 def refitted(flights: Sequence[Flight], vehicle: Vehicle, z: np.ndarray, chosen: tuple,
              noise: list[np.ndarray], nuisances: NuisanceValues, starts: list[np.ndarray],
              slopes: Slopes | None = None, scatter: float = 1.0,
-             fixed: np.ndarray | None = None) -> Estimate:
+             fixed: np.ndarray | None = None, slow: np.ndarray | None = None) -> Estimate:
     """
     Return the Estimate of a set, from a vector and the NuisanceValues to start from.
 
-    fixed (F, Z): what is added to each flight's vector, as in NuisanceValues.
+    fixed (F, Z): what is added to each flight's vector, as in NuisanceValues; slow as of estimate.
     """
     free = sorted(column for cause in effects_in(chosen) for column in cause.columns)
     nuisances = replace(NuisanceValues.of([cause.nuisance for cause in chosen if cause.nuisance],
                                           len(flights), nuisances), fixed=fixed)
     return estimate(flights, vehicle, z, free, noise=noise, nuisances=nuisances, starts=starts,
-                    iterations=FIT_STEPS, slopes=slopes, scatter=scatter)
+                    iterations=FIT_STEPS, slopes=slopes, scatter=scatter, slow=slow)
 
 
 def distances_of(chosen: tuple, fit: Estimate, vehicle: Vehicle) -> dict:
@@ -126,7 +126,8 @@ def out_of_bounds(cause: Candidate, fit: Estimate, vehicle: Vehicle, rules: Rule
 
 def within_bounds(chosen: tuple, fit: Estimate, usual: dict, flights: Sequence[Flight],
                   vehicle: Vehicle, noise: list, rules: Rules, scatter: float = 1.0,
-                  fixed: np.ndarray | None = None) -> tuple[tuple, Estimate]:
+                  fixed: np.ndarray | None = None, slow: np.ndarray | None = None
+                  ) -> tuple[tuple, Estimate]:
     """
     Return a set and its Estimate with the usual form for each that wants to leave its bounds.
 
@@ -142,4 +143,4 @@ def within_bounds(chosen: tuple, fit: Estimate, usual: dict, flights: Sequence[F
             z[list(cause.columns)] = nominal(vehicle)[list(cause.columns)]
         chosen = key_of(tuple(swaps.get(cause, cause) for cause in chosen))
         fit = refitted(flights, vehicle, z, chosen, noise, fit.nuisances, fit.starts,
-                       scatter=scatter, fixed=fixed)
+                       scatter=scatter, fixed=fixed, slow=slow)

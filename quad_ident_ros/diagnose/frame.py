@@ -14,16 +14,12 @@ from quad_ident_ros.diagnose.discrepancy import (
     summed,
 )
 from quad_ident_ros.diagnose.rules import Rules
-from quad_ident_ros.effects.registry import RESIDUAL_WRENCH, SLICES
 from quad_ident_ros.greybox.estimate import Estimate, weights_of
-from quad_ident_ros.greybox.linear import errors_along, linear_of, Slopes, slopes_at
+from quad_ident_ros.greybox.flights import inertial
+from quad_ident_ros.greybox.linear import errors_along, linear_of, Slopes, slopes_at, WRENCH
 from quad_ident_ros.greybox.normal import Normal
 from quad_ident_ros.greybox.nuisances import Layout
-from quad_ident_ros.greybox.parameters import SPLIT
 from quad_ident_ros.model.vehicle import Vehicle
-
-WRENCH = tuple(range(SPLIT + SLICES[RESIDUAL_WRENCH.name].start,
-                     SPLIT + SLICES[RESIDUAL_WRENCH.name].stop))
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +64,9 @@ def frame_at(flights: list, vehicle: Vehicle, fit: Estimate, wanted: list, rules
         scale.append(weight.reshape(len(raw), -1))
         basis.append(linear.basis)
         slope.append(linear.slope)
-        number = (flight.course.t[flight.first] / rules.form_time).astype(int)
+        # What the air does is not modelled in inertial flights, and changes with the motion.
+        span = flight.segment if inertial(flights) else rules.form_time
+        number = (flight.course.t[flight.first] / span).astype(int)
         block.append(np.unique(number, return_inverse=True)[1])
     return Frame(wanted, scale, basis, slope, block, slopes)
 

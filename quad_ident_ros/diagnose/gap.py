@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from quad_ident_ros.greybox.errors import difference, ERRORS, GROUPS, moved
-from quad_ident_ros.greybox.flights import flight_of, Track
+from quad_ident_ros.greybox.flights import flight_of, inertial, Track
 from quad_ident_ros.greybox.linear import STATE_STEP
 from quad_ident_ros.greybox.parameters import constants_of, SPLIT
 from quad_ident_ros.model.dynamics import predict
@@ -21,11 +21,18 @@ from quad_ident_ros.model.vehicle import Vehicle
 
 HORIZONS = (0.1, 0.5, 1.0)      # s
 HEADLINE = 0.5                  # s
+NEAR = 0.1                      # s, of inertial flights: what the air does is not modelled there,
+                                # and soon turns the vehicle elsewhere
 EVERY = 0.1                     # s from one start to the next
 NOISE_STARTS = 60               # starts at which the noise is carried along
 BLOCK = 2.0                     # s of the bootstrap's blocks
 DRAWS = 400
 LEAST = 0.01                    # of the noise's gap: what is less above it is none
+
+
+def horizon_of(tracks: Sequence[Track]) -> float:
+    """Return the time (s) ahead at which predictions along Tracks are judged."""
+    return NEAR if inertial(tracks) else HEADLINE
 
 
 @dataclass(frozen=True, eq=False)

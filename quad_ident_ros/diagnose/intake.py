@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from quad_ident_ros.data.clocks import Clock, clocks_of, on_one_clock
+from quad_ident_ros.data.inertial import is_inertial, reckoned
 from quad_ident_ros.data.quality import cautions, refuse_errors, refuted
 from quad_ident_ros.data.quality.finding import as_caution, Finding
 from quad_ident_ros.data.quality.fleet import vehicles
@@ -83,6 +84,7 @@ def take_in(records: Sequence[FlightRecord], vehicle: Vehicle, hold_out: FlightR
                          'that is held out')
     alone = hold_out is None and len(records) == 1
     every = [*records, *([] if hold_out is None else [hold_out])]
+    every, vehicle = _with_states(every, vehicle, findings)
     every, late, answers = map(list, zip(*on_one_clock(every), strict=True))
     learnt = every if alone else every[:-1]
     voltage = highest_voltage(learnt)
@@ -115,6 +117,34 @@ def _of_rotors(records: Sequence[FlightRecord], clocks: Sequence[Clock | None], 
                                     'nothing needs to be done where this is right'), record)
                  for answer, record in zip(told, records, strict=True) if answer is not None]
     return ruled_out
+
+
+def _with_states(records: list[FlightRecord], vehicle: Vehicle, findings: list
+                 ) -> tuple[list[FlightRecord], Vehicle]:
+    """
+    Return records with the states that they need, and the vehicle to hold them against.
+
+    Where they have accelerometer and gyro alone, states are reckoned, and the drag of the vehicle
+    file is left out: what the air does across the thrust is in the specific force. The findings
+    say so.
+    """
+    inertial = [is_inertial(record) for record in records]
+    if not any(inertial):
+        return records, vehicle
+    if not all(inertial):
+        [with_states, without] = (records[inertial.index(kind)].info.get('source', 'a flight')
+                                  for kind in (False, True))
+        raise InputError(f'{without} has neither position nor velocity, and {with_states} has: '
+                         'diagnose flights with and without them apart')
+    findings.append({
+        'flight': 'all flights', 'code': 'inertial', 'severity': 'info',
+        'where': 'accelerometer and gyro alone',
+        'message': 'position, velocity and attitude are integrated from them, which holds for a '
+                   'tenth of a second; the force across the thrust is taken from the record, so '
+                   'drag, wind, tilts and biases of sensors, and heights cannot be told',
+        'remedy': 'log position and velocity, of an estimator or of motion capture'})
+    return ([reckoned(record, vehicle.gravity) for record in records],
+            replace(vehicle, linear_drag=(0.0, 0.0, 0.0)))
 
 
 def _fit_for_use(record: FlightRecord, vehicle: Vehicle, rules: Rules, wrong: Collection[str],

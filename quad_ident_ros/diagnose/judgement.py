@@ -69,6 +69,11 @@ class Bench:
     noise: Noise
     rules: Rules
 
+    @property
+    def horizon(self) -> float:
+        """Return the time (s) ahead at which effects are judged."""
+        return gaps.horizon_of(self.flights)
+
     def model(self, chosen: tuple, estimate: Estimate, fixed: np.ndarray | None = None) -> Model:
         """
         Return the Model of a set and its Estimate.
@@ -81,12 +86,12 @@ class Bench:
 
     def ends(self, vectors: tuple) -> tuple:
         """Return the Ends of all flights with a vector (Z,) each."""
-        return tuple(gaps.ends(track, self.vehicle, z, gaps.HEADLINE)
+        return tuple(gaps.ends(track, self.vehicle, z, self.horizon)
                      for track, z in zip(self.tracks, vectors, strict=True))
 
     def noise_gaps(self, model: Model) -> list:
         """Return {group: the gap that the noise makes} of each flight."""
-        return [gaps.noise_gap(track, self.vehicle, z, self.noise, gaps.HEADLINE)
+        return [gaps.noise_gap(track, self.vehicle, z, self.noise, self.horizon)
                 for track, z in zip(self.tracks, model.vectors, strict=True)]
 
     def without(self, model: Model, removed: tuple) -> Model:
@@ -113,11 +118,12 @@ class Bench:
         fixed[:, shared] -= fixed[:-1, shared].mean(axis=0)
         chosen = tuple(cause for cause in model.chosen if cause not in {*removed, *held})
         noise, scatter = self.selection.noise, self.selection.quadratic.scatter
+        slow = self.selection.slow
         estimate = refitted(self.flights, self.vehicle, z, chosen, noise, fit.nuisances,
-                            fit.starts, scatter=scatter, fixed=fixed[:-1])
+                            fit.starts, scatter=scatter, fixed=fixed[:-1], slow=slow)
         usual = {cause.effect: cause for cause in self.selection.posterior if cause.usual}
         chosen, estimate = within_bounds(chosen, estimate, usual, self.flights, self.vehicle,
-                                         noise, self.rules, scatter, fixed[:-1])
+                                         noise, self.rules, scatter, fixed[:-1], slow)
         return self.model(chosen, estimate, fixed[-1])
 
     def left_out(self, model: Model) -> tuple:
@@ -136,9 +142,10 @@ class Bench:
                              [self.selection.noise[n] for n in kept], nuisances,
                              [fit.starts[n] for n in kept],
                              scatter=self.selection.quadratic.scatter,
-                             fixed=None if fixed is None else fixed[kept])
+                             fixed=None if fixed is None else fixed[kept],
+                             slow=self.selection.slow)
             here = self._nuisances(k, refit.z, model.chosen, None if fixed is None else fixed[k])
-            found.append(gaps.ends(self.tracks[k], self.vehicle, refit.z + here, gaps.HEADLINE))
+            found.append(gaps.ends(self.tracks[k], self.vehicle, refit.z + here, self.horizon))
         return (*(found or model.ends[:-1]), model.ends[-1])
 
     def _nuisances(self, flight: int, z: np.ndarray, chosen: tuple,
@@ -146,7 +153,8 @@ class Bench:
         """Return the nuisances (Z,) of a flight beside a vector that it took no part in."""
         return nuisances_of(self.tracks[flight], self.vehicle, z,
                             tuple(cause.nuisance for cause in chosen if cause.nuisance),
-                            self.noise.deviation, self.flights[0].segment, fixed)
+                            self.noise.deviation, self.flights[0].segment, fixed,
+                            self.selection.slow)
 
 
 @dataclass(frozen=True, eq=False)

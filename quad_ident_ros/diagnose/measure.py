@@ -31,22 +31,22 @@ def open_loop_gap(bench: Bench, judged: Judgement) -> Gap:
     """Return the Gap of full open-loop predictions."""
     track = replace(bench.tracks[-1], guide=None)
     horizons = {horizon: _gap(track, bench, judged, horizon) for horizon in gaps.HORIZONS}
-    head = horizons[gaps.HEADLINE]
-    return Gap(horizon=gaps.HEADLINE, units=UNITS, **head,
+    head = horizons[bench.horizon]
+    return Gap(horizon=bench.horizon, units=UNITS, **head,
                closed=gaps.closed(*(head[stage]['velocity']
                                     for stage in ('before_own', 'after', 'noise'))),
                horizons={str(horizon): values for horizon, values in horizons.items()},
                without={cause.effect: gaps.gap([gaps.ends(
-                   track, bench.vehicle, judged.without[cause].vectors[-1], gaps.HEADLINE)])
+                   track, bench.vehicle, judged.without[cause].vectors[-1], bench.horizon)])
                         for cause in judged.material})
 
 
 def gap_given_attitude(bench: Bench, judged: Judgement) -> GapGivenAttitude:
     """Return the gap of position and velocity, attitude and rate taken from the record."""
-    head = _gap(bench.tracks[-1], bench, judged, gaps.HEADLINE)
+    head = _gap(bench.tracks[-1], bench, judged, bench.horizon)
     parts = {stage: {name: head[stage][name] for name in TRANSLATION}
              for stage in ('before', 'before_own', 'after', 'noise')}
-    return GapGivenAttitude(horizon=gaps.HEADLINE, **parts, closed=gaps.closed(
+    return GapGivenAttitude(horizon=bench.horizon, **parts, closed=gaps.closed(
         *(parts[stage]['velocity'] for stage in ('before_own', 'after', 'noise'))))
 
 
@@ -100,8 +100,8 @@ def unexplained(judged: Judgement, after: tuple[Channel, ...]) -> tuple[Unexplai
 def pictures(bench: Bench, judged: Judgement, before: tuple, after: tuple) -> Pictures:
     """Return what the pictures are drawn from."""
     track, z0 = replace(bench.tracks[-1], guide=None), nominal(bench.vehicle)
-    ends = [gaps.ends(track, bench.vehicle, z, gaps.HEADLINE)
+    ends = [gaps.ends(track, bench.vehicle, z, bench.horizon)
             for z in (z0, judged.model.vectors[-1])]
-    t = ends[0].t + gaps.HEADLINE
+    t = ends[0].t + bench.horizon
     states = np.stack([np.interp(t, track.course.t, column) for column in track.states.T], axis=1)
     return Pictures(t, states, ends[0], ends[1], before, after)

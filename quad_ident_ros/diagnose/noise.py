@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from quad_ident_ros.diagnose.gap import HEADLINE, Noise
+from quad_ident_ros.diagnose.gap import horizon_of, Noise
 from quad_ident_ros.diagnose.intake import Intake
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.diagnose.select import Selection
@@ -32,7 +32,7 @@ def noise_of(selection: Selection, intake: Intake, rules: Rules) -> Noise:
     attitude, position = GROUPS['attitude'], GROUPS['position']
     period = float(np.median([flight.period for flight in intake.flights]))
     steady = max(0.0, float(np.mean(deviation[attitude] ** 2 - white[attitude] ** 2)))
-    mean = float(np.mean(white[attitude] ** 2)) * period / HEADLINE
+    mean = float(np.mean(white[attitude] ** 2)) * period / horizon_of(intake.flights)
     levels = (np.mean(near[attitude]) < rules.filtered_attitude
               and np.mean(near[position]) > rules.tracked_position)
     level, drift = (rules.levelling, rules.drift) if levels else (0.0, 0.0)

@@ -27,18 +27,19 @@ DELAY = 'actuation_delay'
 
 
 def nuisances_of(track: Track, vehicle: Vehicle, z: np.ndarray, kinds: Sequence[Nuisance],
-                 noise: np.ndarray, segment: float, fixed: np.ndarray | None = None
-                 ) -> np.ndarray:
+                 noise: np.ndarray, segment: float, fixed: np.ndarray | None = None,
+                 slow: np.ndarray | None = None) -> np.ndarray:
     """
     Return the nuisances (Z,) of a Track that was not learnt from, beside a vector z.
 
-    fixed (Z,): what is known of it beforehand.
+    fixed (Z,): what is known of it beforehand; slow as of estimate.
     """
     fixed = np.zeros(len(z)) if fixed is None else fixed
     if not kinds:
         return fixed
     found = estimate([flight_of(track, segment)], vehicle, z, [], noise=[noise],
-                     nuisances=replace(NuisanceValues.of(kinds, 1), fixed=fixed[None]))
+                     nuisances=replace(NuisanceValues.of(kinds, 1), fixed=fixed[None]),
+                     slow=slow)
     return found.vectors[0] - z
 
 

@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from quad_ident_ros.diagnose.accelerometer import residual_force
-from quad_ident_ros.effects.registry import RESIDUAL_WRENCH, SLICES
+from quad_ident_ros.effects.registry import SLICES
 from quad_ident_ros.greybox.estimate import settled, weights_of
 from quad_ident_ros.greybox.flights import Flight, flight_of, Track
-from quad_ident_ros.greybox.linear import errors_along, linearise
+from quad_ident_ros.greybox.linear import errors_along, linearise, WRENCH
 from quad_ident_ros.greybox.parameters import SPLIT
 from quad_ident_ros.model.attitude import rotation_matrix
 from quad_ident_ros.model.vehicle import Vehicle
@@ -22,8 +22,7 @@ EVERY = 0.05        # s from one such window to the next: up to 5 Hz are seen
 STRETCH = 25.0      # s without a break that spectra are taken of,
 STRETCHES = 4       # and how many of them, spread over a longer flight
 FEWEST = 8          # windows of a stretch that has a spectrum
-COLUMNS = list(range(SPLIT + SLICES[RESIDUAL_WRENCH.name].start,
-                     SPLIT + SLICES[RESIDUAL_WRENCH.name].stop))
+COLUMNS = list(WRENCH)
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from quad_ident_ros.diagnose.candidates import Candidate, nuisance_candidates
+from quad_ident_ros.diagnose.discrepancy import AXES
 from quad_ident_ros.diagnose.evidence import beam, key_of, Quadratic
 from quad_ident_ros.diagnose.fitted import (
     distances_of,
@@ -23,12 +24,13 @@ from quad_ident_ros.diagnose.frame import Frame, frame_at, normal_at
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.diagnose.standard_errors import standard_errors
 from quad_ident_ros.effects.registry import EFFECTS
+from quad_ident_ros.greybox.errors import GROUPS
 from quad_ident_ros.greybox.estimate import Estimate, estimate
-from quad_ident_ros.greybox.flights import Flight
+from quad_ident_ros.greybox.flights import Flight, inertial
 from quad_ident_ros.greybox.linear import errors_along
 from quad_ident_ros.greybox.noise import quick_noise, whole_noise
 from quad_ident_ros.greybox.normal import scatter_of
-from quad_ident_ros.greybox.nuisances import Layout, NuisanceValues
+from quad_ident_ros.greybox.nuisances import Layout, NuisanceValues, trim_wrench
 from quad_ident_ros.greybox.parameters import limits, nominal, prior_sizes
 from quad_ident_ros.model.vehicle import Vehicle
 
@@ -48,7 +50,8 @@ class Selection:
     best: the simplest Fitted of those with about the most evidence; fitted: it and the others
     that were refitted; posterior: probability of each candidate effect; quadratic, rows: the cost
     around the best, with all candidates free; noise: per flight (12,); frame: the flights around
-    the best; least: the standard_errors (C,) of its columns.
+    the best; least: the standard_errors (C,) of its columns; slow (6,): the force and moment that
+    nothing explains, by which errors that hang together counted less in the fits, or None.
     """
 
     best: Fitted
@@ -59,6 +62,7 @@ class Selection:
     noise: list
     frame: Frame
     least: np.ndarray
+    slow: np.ndarray | None = None
 
     @property
     def errors(self) -> np.ndarray:
@@ -118,31 +122,64 @@ class _Search:
         starts = [flight.states[flight.first] for flight in flights]
         self.noise = [quick_noise(errors_along(flight, vehicle, nominal(vehicle), start))
                       for flight, start in zip(flights, starts, strict=True)]
-        self.tried = {(): estimate(flights, vehicle, nominal(vehicle), [], noise=self.noise,
-                                   iterations=2)}
+        self.slow: np.ndarray | None = None
+        if inertial(flights):
+            # Integrals change little from sample to sample, whatever their errors are.
+            self.slow = trim_wrench(vehicle)
+            self.noise = self.whole_noise(self.nothing(self.noise))
+        self.tried = {(): self.nothing(self.noise)}
         self.best, self.judged, self.ranked = None, {}, []
+
+    def nothing(self, noise: list[np.ndarray]) -> Estimate:
+        """Return the Estimate of the empty set."""
+        return estimate(self.flights, self.vehicle, nominal(self.vehicle), [], noise=noise,
+                        iterations=2, slow=self.slow)
 
     def weigh_anew(self) -> bool:
         """
         Weigh the residuals by all that is left where that is far from the noise they have.
 
-        Return whether it was. The best sets so far are where to go on from.
+        What hangs together in them counts as a slow force and moment. Return whether anything
+        changed. The best sets so far are where to go on from.
         """
         assert self.best is not None
-        noise = [whole_noise(raw, 1.0 - 1.0 / raw.shape[1])
-                 for raw in self.best.estimate.residuals]
+        fit, slow = self.best.estimate, self.slow_wrench()
+        changed = (slow is None) != (self.slow is None) or (
+            slow is not None and self.slow is not None and not np.array_equal(slow, self.slow))
+        if changed and slow is not None:
+            fit = refitted(self.flights, self.vehicle, fit.z, self.best.chosen, self.noise,
+                           fit.nuisances, fit.starts, self.frame.slopes, slow=slow)
+        noise = self.whole_noise(fit)
         ratio = np.median(np.array(noise) / self.noise, axis=0)
-        if max(np.max(ratio), np.max(1.0 / ratio)) <= self.rules.coloured:
+        if max(np.max(ratio), np.max(1.0 / ratio)) <= self.rules.coloured and not changed:
             return False
+        self.slow = slow
         plain = self.simplest([key for key in self.tried if _plain(key)])
         known = [self.best.chosen, *(one.chosen for one in self.order()[:REFITS]), plain.chosen,
                  ()]
         self.noise, self.judged = noise, {}
         self.tried = {key: self.tried[key] for key in dict.fromkeys(known)}
         self.tried = {key: refitted(self.flights, self.vehicle, fit.z, key, noise, fit.nuisances,
-                                    fit.starts, self.frame.slopes)
+                                    fit.starts, self.frame.slopes, slow=slow)
                       for key, fit in self.tried.items()}
         return True
+
+    def whole_noise(self, fit: Estimate) -> list[np.ndarray]:
+        """Return the standard deviations (12,) of all that an Estimate leaves, per flight."""
+        found = [whole_noise(raw, 1.0 - 1.0 / raw.shape[1]) for raw in fit.quiet]
+        if inertial(self.flights):
+            # Along the axes of the force that is taken from the record little seems to be wrong.
+            for part in (GROUPS['position'], GROUPS['velocity'], GROUPS['attitude']):
+                for noise in found:
+                    noise[part] = noise[part].max()
+        return found
+
+    def slow_wrench(self) -> np.ndarray | None:
+        """Return the likeliest size (6,) of force and moment that the best set leaves, or None."""
+        assert self.best is not None
+        force, moment = (float(grid[k]) for grid, k in zip(self.grids, self.best.sizes,
+                                                           strict=True))
+        return np.repeat([force, moment], AXES) if force or moment else None
 
     def look_among(self, causes: tuple[Candidate, ...], on_progress: Callable[[float], None]
                    ) -> None:
@@ -243,12 +280,12 @@ class _Search:
         """Fit a set from a vector, and once more from its best subset where it gets lost."""
         scatter, slopes = self.quadratic.scatter, self.frame.slopes
         fit = refitted(self.flights, self.vehicle, z, chosen, self.noise, nuisances, starts,
-                       slopes, scatter)
+                       slopes, scatter, slow=self.slow)
         subsets = [one for key, one in self.tried.items() if set(key) < set(chosen)]
         near = min(subsets, key=lambda one: one.cost, default=fit)
         if fit.cost > near.cost + LOST * scatter:
             again = refitted(self.flights, self.vehicle, near.z, chosen, self.noise,
-                             near.nuisances, near.starts, slopes, scatter)
+                             near.nuisances, near.starts, slopes, scatter, slow=self.slow)
             fit = min(fit, again, key=lambda one: one.cost)
         self.tried[chosen] = fit
         self.judge(chosen)
@@ -269,7 +306,8 @@ class _Search:
         best = self.simplest(list(self.judged))
         usual = {cause.effect: cause for cause in self.all_causes if cause.usual}
         chosen, fit = within_bounds(best.chosen, best.estimate, usual, self.flights,
-                                    self.vehicle, self.noise, self.rules, self.quadratic.scatter)
+                                    self.vehicle, self.noise, self.rules, self.quadratic.scatter,
+                                    slow=self.slow)
         self.tried[chosen] = fit
         self.judge(chosen)
         self.tried = {key: one for key, one in self.tried.items() if not any(
@@ -293,7 +331,7 @@ class _Search:
                                     self.rules),
                          self.quadratic, self.rows, self.noise, self.frame,
                          standard_errors(self.best, self.frame, self.vehicle, self.grids,
-                                         self.quadratic.scatter, self.rules))
+                                         self.quadratic.scatter, self.rules), self.slow)
 
 
 def posteriors(fitted: Sequence[Fitted], ranked: list, causes: Sequence[Candidate],

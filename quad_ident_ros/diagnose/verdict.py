@@ -80,7 +80,7 @@ def _ranking(bench: Bench, judged: Judgement, causes: tuple, total: dict,
     errors |= dict(zip(best.estimate.columns, bench.selection.errors, strict=True))
     track = bench.tracks[-1]
     nuisance = model.vectors[-1] - model.z
-    before = gaps.gap([gaps.ends(track, bench.vehicle, z0 + nuisance, gaps.HEADLINE)])
+    before = gaps.gap([gaps.ends(track, bench.vehicle, z0 + nuisance, bench.horizon)])
     rows = {}
     for cause in causes:
         weight = judged.weights.get(cause)
@@ -96,7 +96,7 @@ def _ranking(bench: Bench, judged: Judgement, causes: tuple, total: dict,
             alone = z0.copy()
             alone[list(cause.columns)] = z[list(cause.columns)]
             gap_after = gaps.gap([gaps.ends(track, bench.vehicle, alone + nuisance,
-                                            gaps.HEADLINE)])
+                                            bench.horizon)])
         rows[cause.effect] = Ranked(
             cause.effect, total[cause.effect], weight and cause.form, weight and weight.explained,
             weight and weight.contribution, weight and weight.stability,

@@ -74,7 +74,9 @@ class Form:
     are those of the actuators; sensor: 'attitude' or 'rate' or 'block' (both), where they are
     those of a sensor. acts_on: what it changes first, translation (forces), rotation (moments and
     what is measured of the rate) or both; on_rotors: it acts on rotors, so that a vehicle flown
-    from U1..U4 needs some; needs_voltage: it acts only where the voltage is recorded.
+    from U1..U4 needs some; needs_voltage: it acts only where the voltage is recorded;
+    needs_reference: it shows only against a position, a velocity or an attitude, not in
+    accelerometer and gyro alone.
     """
 
     name: str
@@ -90,6 +92,7 @@ class Form:
     sensor: Literal['attitude', 'rate', 'block'] | None = None
     on_rotors: bool = True
     needs_voltage: bool = False
+    needs_reference: bool = False
 
 
 @dataclass(frozen=True)

@@ -26,7 +26,7 @@ FORM = Form(
     source='moment -c (speed / sum of hover speeds) v x z at each rotor; Pounds, Mahony, Corke, '
            'Control Engineering Practice 18, 2010',
     acts_on='rotation',
-    wrench=wrench)
+    wrench=wrench, needs_reference=True)
 EFFECT = Effect(
     name='blade_flapping', title='flapping of the blades',
     forms=(FORM, blade_flapping_drag_centre.FORM),

@@ -31,7 +31,7 @@ FORM = Form(
     source='parasitic drag -c |v| v, half of air density times drag area; e.g. Hoerner, '
            'Fluid-Dynamic Drag, 1965',
     acts_on='translation', on_rotors=False,
-    wrench=wrench)
+    wrench=wrench, needs_reference=True)
 EFFECT = Effect(
     name='body_drag', title='drag of the body',
     forms=(FORM, body_drag_axes.FORM),

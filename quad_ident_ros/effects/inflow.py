@@ -27,7 +27,7 @@ FORM = Form(
     source='thrust - axial (speed / sum of hover speeds) vz + translational (vx^2 + vy^2) / '
            'rotors at each rotor: blade-element and momentum thrust to first order in the inflow, '
            'and translational lift; Mahony, Kumar, Corke 2012; Svacha et al., ICUAS 2017',
-    wrench=wrench)
+    wrench=wrench, needs_reference=True)
 EFFECT = Effect(
     name='inflow', title='inflow and translational lift',
     forms=(FORM, inflow_momentum.FORM),

@@ -54,4 +54,4 @@ FORM = Form(
            'v sqrt(vx^2 + vy^2 + (vz + v)^2) = v at rest^2 = thrust / (2 density pi R^2): blade '
            'elements and momentum, translational lift included; Glauert, ARC R&M 1111, 1926; '
            'Mahony, Kumar, Corke 2012',
-    wrench=wrench)
+    wrench=wrench, needs_reference=True)

@@ -22,7 +22,7 @@ FORM = Form(
                                f'velocity of the air along world {axis}') for axis in 'xyz'),
     source='air velocity = velocity - wind, in everything that depends on it',
     acts_on='translation', on_rotors=False,
-    air=air)
+    air=air, needs_reference=True)
 EFFECT = Effect(
     name='wind', title='steady wind', forms=(FORM,),
     excitation='flight in several directions or headings; it acts through drag, known or found',

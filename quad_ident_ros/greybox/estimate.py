@@ -18,6 +18,8 @@ from quad_ident_ros.greybox.linear import (
     Slopes,
     slopes_at,
     Tangent,
+    whitening_of,
+    WRENCH,
 )
 from quad_ident_ros.greybox.noise import MAD, quick_noise, whole_noise
 from quad_ident_ros.greybox.normal import bounded_step, covariance_of, marginal, Normal, normal_of
@@ -43,7 +45,8 @@ class Estimate:
 
     nuisances: those of the flights; starts: initial states per flight; normal: the last
     Normal, of the columns and of all nuisances, by slopes at the vector `at` (Z,), near z;
-    residuals: recorded minus predicted per flight, less what the clock explains; cost: theirs;
+    residuals: recorded minus predicted per flight, less what the clock explains; quiet: these
+    without what a slow force and moment make; cost: theirs;
     free: whether each column is inside its bounds; converged: whether the last step was small.
     """
 
@@ -56,6 +59,7 @@ class Estimate:
     normal: Normal
     at: np.ndarray
     residuals: list[np.ndarray]
+    quiet: list[np.ndarray]
     cost: float
     free: np.ndarray
     converged: bool
@@ -82,7 +86,8 @@ def weights_of(raw: np.ndarray, noise: np.ndarray, flight: Flight) -> np.ndarray
 def estimate(flights: Sequence[Flight], vehicle: Vehicle, z: np.ndarray, columns: Iterable[int],
              *, noise: list[np.ndarray] | None = None, nuisances: NuisanceValues | None = None,
              starts: list[np.ndarray] | None = None, iterations: int = ITERATIONS,
-             clock: bool = True, slopes: Slopes | None = None, scatter: float = 1.0) -> Estimate:
+             clock: bool = True, slopes: Slopes | None = None, scatter: float = 1.0,
+             slow: np.ndarray | None = None) -> Estimate:
     """
     Return the Estimate of the columns of z that predicts the flights best.
 
@@ -92,7 +97,9 @@ def estimate(flights: Sequence[Flight], vehicle: Vehicle, z: np.ndarray, columns
     `starts` (B, 13) per flight, the initial states, a few of the rollouts first bring z near.
     iterations: how often slopes are made, at most; slopes: Slopes near, by which the first step is
     tried, whereupon as many steps more may go by slopes that are kept; scatter: what differences
-    of the cost are divided by: the more, the sooner a step is small.
+    of the cost are divided by: the more, the sooner a step is small; slow (6,): standard
+    deviation of a force (N) and a moment (N m), body, that nothing explains and that lasts for a
+    rollout, by which errors that hang together count less (generalised least squares).
     """
     columns = list(columns)
     nuisances = nuisances or NuisanceValues.of((), len(flights))
@@ -102,11 +109,11 @@ def estimate(flights: Sequence[Flight], vehicle: Vehicle, z: np.ndarray, columns
         if 2 * sum(len(flight.first) for flight in few) <= sum(len(f.first) for f in flights):
             near = _descend(few, vehicle, z, columns, box, noise, nuisances,
                             settled(few, vehicle, nuisances.vectors(z), noise), iterations, clock,
-                            ROUGH)
+                            ROUGH, slow=slow)
             z, nuisances = near.z, near.nuisances
         starts = settled(flights, vehicle, nuisances.vectors(z), noise)
     return _descend(flights, vehicle, z, columns, box, noise, nuisances, starts, iterations, clock,
-                    DONE, slopes, max(1.0, scatter))
+                    DONE, slopes, max(1.0, scatter), slow)
 
 
 def _fewer(flight: Flight, count: int) -> Flight:
@@ -118,7 +125,8 @@ def _fewer(flight: Flight, count: int) -> Flight:
 def _descend(flights: Sequence[Flight], vehicle: Vehicle, z: np.ndarray, columns: list[int],
              box: np.ndarray, noise: list[np.ndarray] | None, nuisances: NuisanceValues,
              starts: list[np.ndarray], iterations: int, clock: bool, done: float,
-             slopes: Slopes | None = None, scatter: float = 1.0) -> Estimate:
+             slopes: Slopes | None = None, scatter: float = 1.0,
+             slow: np.ndarray | None = None) -> Estimate:
     """Return the Estimate from z by steps of Gauss and Newton that do not raise the cost."""
     layout = Layout(columns, nuisances.columns, len(flights))
     shared, lower, upper, size, precision = _whole(box, nuisances, len(flights))
@@ -128,7 +136,7 @@ def _descend(flights: Sequence[Flight], vehicle: Vehicle, z: np.ndarray, columns
     noise = known or [quick_noise(raw) for raw in raws]
     tangents, at, converged = None, z, False
     if slopes:
-        tangents, at = slopes.of(layout.wanted), slopes.at
+        tangents, at = slopes.of(layout.wanted, slow is not None), slopes.at
     made = 0
     for count in range(2 * iterations):
         fresh = tangents is None
@@ -136,20 +144,23 @@ def _descend(flights: Sequence[Flight], vehicle: Vehicle, z: np.ndarray, columns
             break
         if tangents is None:
             made += 1
-            tangents = slopes_at(flights, vehicle, z, nuisances.vectors(z), starts,
-                                 layout.wanted).tangents
+            tangents = slopes_at(
+                flights, vehicle, z, nuisances.vectors(z), starts,
+                sorted({*layout.wanted, *(WRENCH if slow is not None else ())})).of(
+                    layout.wanted, slow is not None)
             at = z
         scales = [weights_of(raw, sigma, flight) / sigma
                   for raw, sigma, flight in zip(raws, noise, flights, strict=True)]
-        linears = [linear_of(tangent, raw, scale, clock)
+        known_slopes = tangents
+        linears = [linear_of(tangent, raw, scale, clock, slow)
                    for tangent, raw, scale in zip(tangents, raws, scales, strict=True)]
         normal = normal_of(linears, flights, layout, clock)
         now = np.concatenate([z[columns], nuisances.values.ravel()])
         information = normal.information + np.diag(precision)
         gradient = normal.gradient - precision * now
         step, free = bounded_step(information, gradient, now, lower, upper, size)
-        told = _aligned(raws, tangents, scales, clock)
-        before = _cost(told, scales) + precision @ now ** 2
+        told = _aligned(raws, tangents, scales, clock, slow)
+        before = _cost(told, scales, tangents, slow) + precision @ now ** 2
         for share in SHARES if fresh else SHARES[:1]:
             there, new = z.copy(), now + share * step
             there[columns] = new[:shared]
@@ -160,8 +171,8 @@ def _descend(flights: Sequence[Flight], vehicle: Vehicle, z: np.ndarray, columns
                      for linear, start, move in zip(linears, starts, moves, strict=True)]
             residuals = [errors_along(flight, vehicle, vector, start) for flight, vector, start in
                          zip(flights, theirs.vectors(there), moved, strict=True)]
-            aligned = _aligned(residuals, tangents, scales, clock)
-            after = _cost(aligned, scales) + precision @ new ** 2
+            aligned = _aligned(residuals, tangents, scales, clock, slow)
+            after = _cost(aligned, scales, tangents, slow) + precision @ new ** 2
             if after <= before * (1.0 + 1e-9):
                 break
         else:
@@ -190,10 +201,11 @@ def _descend(flights: Sequence[Flight], vehicle: Vehicle, z: np.ndarray, columns
             tangents = None
     covariance = covariance_of(marginal(normal, shared, precision), size[:shared])
     # By the weights of these errors, not of those before the last step, to be held against others.
-    cost = _cost(told, [weights_of(raw, sigma, flight) / sigma
-                        for raw, sigma, flight in zip(raws, noise, flights, strict=True)])
-    return Estimate(z, columns, covariance, noise, nuisances, starts, normal, at, told, cost,
-                    free[:shared], converged)
+    scales = [weights_of(raw, sigma, flight) / sigma
+              for raw, sigma, flight in zip(raws, noise, flights, strict=True)]
+    return Estimate(z, columns, covariance, noise, nuisances, starts, normal, at, told,
+                    _quiet(told, scales, known_slopes, slow),
+                    _cost(told, scales, known_slopes, slow), free[:shared], converged)
 
 
 def _whole(box: np.ndarray, nuisances: NuisanceValues, count: int
@@ -207,21 +219,45 @@ def _whole(box: np.ndarray, nuisances: NuisanceValues, count: int
 
 
 def _aligned(raws: list[np.ndarray], tangents: Iterable[Tangent], scales: Iterable[np.ndarray],
-             clock: bool) -> list[np.ndarray]:
+             clock: bool, slow: np.ndarray | None) -> list[np.ndarray]:
     """Return errors without what an offset of each flight's clock explains."""
     if not clock:
         return raws
     out = []
     for raw, tangent, scale in zip(raws, tangents, scales, strict=True):
-        drift = tangent.drift * scale
-        share = np.sum(drift * raw * scale) / max(np.sum(drift * drift), 1e-300)
+        drift, error = (_white(part, tangent, scale, slow) for part in (tangent.drift, raw))
+        share = np.sum(drift * error) / max(np.sum(drift * drift), 1e-300)
         out.append(raw - share * tangent.drift)
     return out
 
 
-def _cost(raws: Iterable[np.ndarray], scales: Iterable[np.ndarray]) -> float:
-    return sum(float(np.sum((raw * scale) ** 2))
-               for raw, scale in zip(raws, scales, strict=True))
+def _white(error: np.ndarray, tangent: Tangent, scale: np.ndarray, slow: np.ndarray | None
+           ) -> np.ndarray:
+    """Return errors (B, count + 1, 12) over their noise, made white."""
+    error = error * scale
+    white = whitening_of(tangent, scale.reshape(len(error), -1), slow)
+    return error if white is None else white.whitened(error.reshape(len(error), 1, -1))
+
+
+def _cost(raws: Iterable[np.ndarray], scales: Iterable[np.ndarray], tangents: Iterable[Tangent],
+          slow: np.ndarray | None) -> float:
+    """Return the sum of squares of errors over their noise, made white."""
+    return sum(float(np.sum(_white(raw, tangent, scale, slow) ** 2))
+               for raw, scale, tangent in zip(raws, scales, tangents, strict=True))
+
+
+def _quiet(raws: Sequence[np.ndarray], scales: Iterable[np.ndarray], tangents: Iterable[Tangent],
+           slow: np.ndarray | None) -> list[np.ndarray]:
+    """Return errors (B, count + 1, 12) without what a slow force and moment make of them."""
+    if slow is None:
+        return list(raws)
+    found = []
+    for raw, scale, tangent in zip(raws, scales, tangents, strict=True):
+        error = (raw * scale).reshape(len(raw), 1, -1)
+        white = whitening_of(tangent, scale.reshape(len(raw), -1), slow)
+        part = 0.0 if white is None else white.slow_part(error).reshape(raw.shape)
+        found.append(raw - part / np.maximum(scale, 1e-300))
+    return found
 
 
 def settled(flights: Sequence[Flight], vehicle: Vehicle, vectors: Sequence[np.ndarray],

@@ -11,6 +11,7 @@ from scipy.ndimage import uniform_filter1d
 
 from quad_ident_ros.data.clocks import Clock
 from quad_ident_ros.data.frames import continuous
+from quad_ident_ros.data.inertial import RECKONED
 from quad_ident_ros.data.quality import refuse_errors, timing
 from quad_ident_ros.data.quality.glitches import glitches
 from quad_ident_ros.data.record import FlightRecord
@@ -27,6 +28,7 @@ SEGMENT = 0.5       # s of a rollout
 WARM = 0.25         # s of commands before a rollout, from which the speeds of its rotors follow
 GAP = 1.6           # usual periods between two samples that no rollout crosses,
 SHORT_GAP = 0.013   # s, unless it is as short as this
+AIR = 0.5           # s over which the force of the air is about the same
 FORCE = ('ax', 'ay', 'az')
 BRIDGED = 0.08      # s, the longest step in time over lost rows whose commands are interpolated
 
@@ -84,9 +86,13 @@ def track_of(record: FlightRecord, vehicle: Vehicle, reference_voltage: float | 
     force = record.stack(*FORCE) if record.has(*FORCE) else None
     course, states, seen, force = _bridged(course, states, seen, force, period)
     skip = max(1, int(1.0 / (period * RATE) + 0.5))
+    across = (_across(force, period, skip) if record.info.get(RECKONED) and force is not None
+              else None)
     if skip > 1:
         course, states, seen, force = _thinned(course, states, seen, force, skip)
         period *= skip
+    if across is not None:  # the force has given the velocity, and tells nothing beside it
+        course, force = replace(course, across=across[:len(states)]), None
     track = Track(record.info.get('name', 'flight'), course, states, seen, period, clock,
                   force=force, levelled=LEVEL in record.info)
     return track if clock is None else moved(track, clock.late, clock.drift)
@@ -115,6 +121,11 @@ def flight_of(track: Track, segment: float = SEGMENT, every: float | None = None
                          f'{segment:g} s are too short; give a longer flight')
     return Flight(track.name, course, track.states, seen, period, track.clock, first, count,
                   guide=track.guide, force=track.force, levelled=track.levelled)
+
+
+def inertial(tracks: Iterable[Track]) -> bool:
+    """Return whether the states of Tracks are reckoned from accelerometer and gyro alone."""
+    return any(track.course.across is not None for track in tracks)
 
 
 def guided(track: Track) -> Track:
@@ -184,6 +195,17 @@ def _thinned(course: Course, states: np.ndarray, seen: np.ndarray, force: np.nda
     return (Course(course.t[:rows:skip].copy(), course.commands, drop, course.stamps,
                    course.reference_voltage),
             states[:rows:skip], seen[:rows:skip], force)
+
+
+def _across(force: np.ndarray, period: float, skip: int) -> np.ndarray:
+    """
+    Return running means (M, 2) of the force (N, 3) along x and y, at every so manieth sample.
+
+    The air's force changes as slowly as the velocity; what changes faster is the swing of an
+    accelerometer that is off the centre of mass.
+    """
+    size = max(1, round(AIR / period))
+    return uniform_filter1d(force[:, :2], size, axis=0, mode='nearest')[::skip]
 
 
 def _starts(t: np.ndarray, seen: np.ndarray, period: float, count: int, step: int, warm: int

@@ -8,14 +8,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from quad_ident_ros.effects import registry
-from quad_ident_ros.greybox.errors import difference, ERRORS, moved, slopes
-from quad_ident_ros.greybox.flights import Flight
+from quad_ident_ros.greybox.errors import difference, ERRORS, GROUPS, moved, slopes
+from quad_ident_ros.greybox.flights import Flight, inertial
 from quad_ident_ros.greybox.parameters import constants_of, limits, SPLIT
 from quad_ident_ros.model.dynamics import predict
 from quad_ident_ros.model.vehicle import Vehicle
 
 STATE_STEP = np.repeat([1e-4, 1e-4, 1e-5, 1e-4], 3)     # of differences in the initial state
 STEP = 1e-4                                             # of a parameter's usual size
+WRENCH = tuple(range(SPLIT + registry.SLICES[registry.RESIDUAL_WRENCH.name].start,
+                     SPLIT + registry.SLICES[registry.RESIDUAL_WRENCH.name].stop))
 GROUND = [place for (name, _), part in registry.PLACES.items() if name == 'ground_effect'
           for place in range(part.start, part.stop)]
 
@@ -25,10 +27,12 @@ class Tangent:
     """
     What predictions change by, SI: table (B, 12 + C + 1, M), with M = (count + 1) * 12.
 
-    Per initial state, per column, and per second of an offset of the pose in time.
+    Per initial state, per column, and per second of an offset of the pose in time. wrench
+    (B, 6, M): per force and moment of 1, body, that lasts for the rollout; None if not wanted.
     """
 
     table: np.ndarray
+    wrench: np.ndarray | None = None
 
     @property
     def drift(self) -> np.ndarray:
@@ -49,10 +53,12 @@ class Slopes:
     starts: list[np.ndarray]
     tangents: list[Tangent]
 
-    def of(self, columns: Iterable[int]) -> list[Tangent]:
-        """Return the Tangents in some of the columns."""
+    def of(self, columns: Iterable[int], slow: bool = False) -> list[Tangent]:
+        """Return the Tangents in some of the columns; slow: with the wrench, if they have it."""
         kept = [*range(ERRORS), *(ERRORS + self.columns.index(one) for one in columns), -1]
-        return [Tangent(tangent.table[:, kept]) for tangent in self.tangents]
+        wrench = [ERRORS + self.columns.index(one) for one in WRENCH] if slow else []
+        return [Tangent(tangent.table[:, kept], tangent.table[:, wrench] if slow else None)
+                for tangent in self.tangents]
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,8 +92,16 @@ def recorded_along(flight: Flight) -> np.ndarray:
 
 
 def seen_along(flight: Flight) -> np.ndarray:
-    """Return whether each of these errors counts, (B, count + 1, 12)."""
-    return flight.seen[flight.first[:, None] + np.arange(flight.count + 1)]
+    """
+    Return whether each of these errors counts, (B, count + 1, 12).
+
+    Reckoned positions and attitudes are sums of what the velocity and the rate say, too: where
+    each rollout begins they count, and from there on they tell nothing more.
+    """
+    seen = flight.seen[flight.first[:, None] + np.arange(flight.count + 1)]
+    if inertial([flight]):
+        seen[:, 1:, GROUPS['position']] = seen[:, 1:, GROUPS['attitude']] = False
+    return seen
 
 
 def errors_along(flight: Flight, vehicle: Vehicle, z: np.ndarray, starts: np.ndarray
@@ -165,17 +179,68 @@ def tangent_of(flight: Flight, vehicle: Vehicle, z: np.ndarray, starts: np.ndarr
     return Tangent(table)
 
 
-def linear_of(tangent: Tangent, raw: np.ndarray, scale: np.ndarray, clock: bool = True) -> Linear:
+@dataclass(frozen=True, eq=False)
+class Whitening:
+    """
+    What takes a slow force and moment out of errors as far as they are expected.
+
+    Such errors have the covariance 1 + D'D; (1 + D'D)^-1/2 = 1 - D' K D makes them white.
+    directions (B, 6, M), D; kernel (B, 6, 6), K; share (B, 6, 6): of D times the errors, what is
+    taken for the slow part.
+    """
+
+    directions: np.ndarray
+    kernel: np.ndarray
+    share: np.ndarray
+
+    def whitened(self, values: np.ndarray) -> np.ndarray:
+        """Return values (B, K, M) made white."""
+        return values - self._part(values, self.kernel)
+
+    def slow_part(self, values: np.ndarray) -> np.ndarray:
+        """Return what the slow force and moment most likely make of values (B, K, M)."""
+        return self._part(values, self.share)
+
+    def _part(self, values: np.ndarray, kernel: np.ndarray) -> np.ndarray:
+        across = self.directions.transpose(0, 2, 1)
+        return np.asarray((values @ across) @ kernel @ self.directions)
+
+
+def whitening_of(tangent: Tangent, scale: np.ndarray, slow: np.ndarray | None
+                 ) -> Whitening | None:
+    """
+    Return the Whitening of a flight, or None where no slow force or moment is expected.
+
+    Args: scale (B, M) as of linear_of; slow (6,): their standard deviations, N and N m.
+    """
+    if slow is None or tangent.wrench is None:
+        return None
+    directions = tangent.wrench * slow[:, None] * scale[:, None]
+    value, vector = np.linalg.eigh(directions @ directions.transpose(0, 2, 1))
+    value = np.maximum(value, 1e-12)
+
+    def of(share: np.ndarray) -> np.ndarray:
+        return (vector * share[:, None]) @ vector.transpose(0, 2, 1)
+
+    return Whitening(directions, of((1.0 - 1.0 / np.sqrt(1.0 + value)) / value),
+                     of(1.0 / (1.0 + value)))
+
+
+def linear_of(tangent: Tangent, raw: np.ndarray, scale: np.ndarray, clock: bool = True,
+              slow: np.ndarray | None = None) -> Linear:
     """
     Return the Linear of a flight from its Tangent.
 
     Args: raw (B, count + 1, 12) recorded minus predicted; scale, of its shape or (12,), the
-    weight of each sample over its noise; clock as of linearise.
+    weight of each sample over its noise; clock as of linearise; slow as of whitening_of.
     """
     batch = len(raw)
     scale = np.broadcast_to(scale, raw.shape).reshape(batch, -1)
     table = tangent.table[:, :None if clock else -1] * scale[:, None]
     error = raw.reshape(batch, -1) * scale
+    white = whitening_of(tangent, scale, slow)
+    if white is not None:
+        table, error = white.whitened(table), white.whitened(error[:, None])[:, 0]
     starts, slope = table[:, :ERRORS], table[:, ERRORS:]
     # The first sample shows every initial state by itself, so that this has full rank.
     lower = np.linalg.cholesky(starts @ starts.transpose(0, 2, 1))

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from quad_ident_ros.effects.registry import EFFECTS
-from quad_ident_ros.greybox.flights import Track
+from quad_ident_ros.greybox.flights import inertial, Track
 from quad_ident_ros.greybox.parameters import INDEX
 from quad_ident_ros.model.vehicle import Vehicle
 
@@ -61,9 +61,6 @@ def nuisances(vehicle: Vehicle, tracks: Sequence[Track]) -> tuple[Nuisance, ...]
     Those with one name exclude one another: how far flights usually differ depends on who flies.
     Records whose clocks were put right are likely to have a rest of their offset.
     """
-    lever = vehicle.mass * vehicle.gravity * vehicle.arm_length
-    twist = (vehicle.mass * vehicle.gravity * vehicle.torque_coefficient
-             / vehicle.thrust_coefficient)
     rate = tuple(f'gyro_bias.{axis}' for axis in 'xyz')
     tilt = tuple(f'attitude_misalignment.{axis}' for axis in ('roll', 'pitch', 'yaw'))
     moment = tuple(f'external_wrench.moment_{axis}' for axis in 'xyz')
@@ -71,14 +68,16 @@ def nuisances(vehicle: Vehicle, tracks: Sequence[Track]) -> tuple[Nuisance, ...]
     if put_right(tracks):
         apart = max(REST, REST_SHARE * max(track.clock.period for track in tracks if track.clock))
         odds = LIKELY
-    kinds: list[tuple]
-    kinds = [(CLOCK, CLOCK_TITLE, 's', ('actuation_delay.delay',), (apart,), odds)]
-    kinds += [('rate_bias', 'bias of the rate', 'rad/s', rate, (spread,) * 3, RARE)
-              for spread in (0.01, 0.003)]
-    kinds += [('attitude_bias', 'tilt of the attitude', 'rad', tilt, (spread,) * 3, RARE)
-              for spread in (0.005, 0.0015)]
-    kinds.append(('trim_moment', 'moment', 'N m', moment,
-                  (0.02 * lever, 0.02 * lever, 0.05 * twist), RARE))
+    kinds: list[tuple] = []
+    # Inertial flights have one clock and no attitude, and slow moments count for little there.
+    if not inertial(tracks):
+        kinds.append((CLOCK, CLOCK_TITLE, 's', ('actuation_delay.delay',), (apart,), odds))
+        kinds += [('rate_bias', 'bias of the rate', 'rad/s', rate, (spread,) * 3, RARE)
+                  for spread in (0.01, 0.003)]
+        kinds += [('attitude_bias', 'tilt of the attitude', 'rad', tilt, (spread,) * 3, RARE)
+                  for spread in (0.005, 0.0015)]
+        kinds.append(('trim_moment', 'moment', 'N m', moment, tuple(trim_wrench(vehicle)[3:]),
+                      RARE))
     level = any(track.levelled for track in tracks)
     if level:
         kinds.append((LEVEL, LEVEL_TITLE, '1', ('thrust_scale.factor',), (OFF_LEVEL,), LIKELY))
@@ -86,6 +85,8 @@ def nuisances(vehicle: Vehicle, tracks: Sequence[Track]) -> tuple[Nuisance, ...]
     for name, effect in EFFECTS.items() if len(tracks) > 1 else ():
         if level and effect.ratio is not None:
             continue    # the same by another name
+        if inertial(tracks) and effect.forms[0].needs_reference:
+            continue
         differing = [(parameter, spread) for parameter, spread in
                      zip(effect.forms[0].parameters, effect.per_flight, strict=False) if spread]
         if differing:
@@ -94,6 +95,18 @@ def nuisances(vehicle: Vehicle, tracks: Sequence[Track]) -> tuple[Nuisance, ...]
                           tuple(spread for _, spread in differing), RARE, name))
     return tuple(Nuisance(name, title, unit, tuple(INDEX[one] for one in columns), *rest)
                  for name, title, unit, columns, *rest in kinds)
+
+
+def trim_wrench(vehicle: Vehicle) -> np.ndarray:
+    """
+    Return the force (N) and moment (N m), body, (6,), by which vehicles usually are out of trim.
+
+    Some hundredths of what the rotors give: a motor or a propeller differs by as much.
+    """
+    weight = vehicle.mass * vehicle.gravity
+    twist = weight * vehicle.torque_coefficient / vehicle.thrust_coefficient
+    lever = weight * vehicle.arm_length
+    return np.array([0.02 * weight] * 3 + [0.02 * lever, 0.02 * lever, 0.05 * twist])
 
 
 @dataclass(frozen=True, eq=False)

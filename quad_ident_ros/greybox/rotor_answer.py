@@ -56,8 +56,8 @@ def ruled_out_by(answers: Iterable[RotorAnswer | None]) -> tuple[str, ...]:
     """
     Return the effects of the actuators that measured speeds of the flights speak against.
 
-    Those whose time is surely less than a diagnosis resolves, by all flights together, and by
-    none of them surely more.
+    Those whose time may be none and is surely less than a diagnosis resolves, by all flights
+    together, and by none of them surely more.
     """
     some = [answer for answer in answers if answer is not None]
     found = []
@@ -70,7 +70,8 @@ def ruled_out_by(answers: Iterable[RotorAnswer | None]) -> tuple[str, ...]:
         weights = 1.0 / np.maximum(errors, FINEST) ** 2
         mean = float(np.sum(weights * values) / weights.sum())
         error = SURE / float(np.sqrt(weights.sum()))
-        if abs(mean) + error < SMALL and (np.abs(values) - SURE * errors < SMALL).all():
+        if (abs(mean) < error and abs(mean) + error < SMALL
+                and (np.abs(values) - SURE * errors < SMALL).all()):
             found.append(name)
     return tuple(found)
 

@@ -9,7 +9,7 @@ from quad_ident_ros.effects.registry import NULL, SLICES
 from quad_ident_ros.model.actuators import accelerations, actuated
 from quad_ident_ros.model.attitude import rotation_matrix
 from quad_ident_ros.model.dynamics import Course
-from quad_ident_ros.model.rigid_body import derivatives, INPUT, rotor_table, vehicle_vector
+from quad_ident_ros.model.rigid_body import derivatives, rotor_table, vehicle_vector
 from quad_ident_ros.model.sensors import underlying
 from quad_ident_ros.model.vehicle import Vehicle
 
@@ -36,11 +36,9 @@ def _accelerations(vehicle: Vehicle, theta: np.ndarray, course: Course, states: 
     states = np.ascontiguousarray(underlying(theta, states))
     acted = actuated(course.t, course.stamps, course.commands, theta[None])
     (speeds,), (rising,) = acted.speeds, accelerations(course.t, acted, theta[None])
-    inputs = np.zeros((len(course.t), INPUT))
-    inputs[:, 5], inputs[:, 6] = course.volt_drop, course.volt_share
     change = np.empty_like(states)
     derivatives(vehicle_vector(vehicle)[:, None], rotor_table(vehicle), theta, course.t, states,
-                speeds, rising, inputs, change)
+                speeds, rising, course.inputs(), change)
     arm = -theta[SLICES['com_offset']]
     rate, turning = states[:, 10:], change[:, 10:]
     swing = np.cross(turning, arm) + np.cross(rate, np.cross(rate, arm))

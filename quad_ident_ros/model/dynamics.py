@@ -38,7 +38,9 @@ class Course:
     What is given along a flight.
 
     t (N,) s from its start; commands (M, n) rad/s, the rotors', each held to the next; volt_drop
-    (N,) V below reference_voltage, V; stamps (M,) s of the commands, t where none are given.
+    (N,) V below reference_voltage, V; stamps (M,) s of the commands, t where none are given;
+    across (N, 2) m/s^2: the specific force along body x and y from each sample to the next, which
+    the rotors do not make and which is taken from the record, or None where the model gives it.
     """
 
     t: np.ndarray
@@ -46,6 +48,7 @@ class Course:
     volt_drop: np.ndarray
     stamps: np.ndarray = None  # type: ignore[assignment]  # t, see below
     reference_voltage: float = np.inf
+    across: np.ndarray | None = None
 
     def __post_init__(self) -> None:
         if self.stamps is None:
@@ -55,6 +58,16 @@ class Course:
     def volt_share(self) -> np.ndarray:
         """Fall of the voltage as a share of that of reference, (N,)."""
         return self.volt_drop / self.reference_voltage
+
+
+    def inputs(self, rows: np.ndarray | slice = slice(None)) -> np.ndarray:
+        """Return what acts besides the rotors at some samples, (N, INPUT) of rigid_body."""
+        drop = self.volt_drop[rows]
+        found = np.zeros((len(drop), INPUT))
+        found[:, 5], found[:, 6] = drop, self.volt_share[rows]
+        if self.across is not None:
+            found[:, 7:9] = self.across[rows]
+        return found
 
 
 def course_of(record: FlightRecord, vehicle: Vehicle, reference_voltage: float | None = None
@@ -128,9 +141,7 @@ def predict(vehicle: Vehicle, thetas: ArrayLike, course: Course, starts: np.ndar
     steps = max(1, int(np.ceil(np.median(np.diff(course.t)) / LONGEST_STEP - 1e-6)))
     t, first = _finer(course.t, steps), steps * np.asarray(first, np.int64)
     acted = actuated(t, course.stamps, course.commands, thetas)
-    inputs = np.zeros((len(t), INPUT))
-    rows = np.arange(len(t)) // steps
-    inputs[:, 5], inputs[:, 6] = course.volt_drop[rows], course.volt_share[rows]
+    inputs = course.inputs(np.arange(len(t)) // steps)
     sensors = sensors_of(thetas)
     leads, lead_of = (NO_GUIDE if guide is None
                       else _guides(thetas, sensors, guide, course.t, t))

@@ -88,8 +88,9 @@ from quad_ident_ros.model.situation import (
 from quad_ident_ros.model.vehicle import Vehicle
 
 STATE = 13      # position, velocity (world), quaternion (body to world), rate (body)
-# Besides the rotors: force z, moment x, y, z (body), spin sum, fall of the voltage, V and share.
-INPUT = 7
+# Besides the rotors: force z, moment x, y, z (body), spin sum, fall of the voltage, V and share,
+# specific force x, y (body).
+INPUT = 9
 
 
 def vehicle_vector(vehicle: Vehicle, drag_in_world: bool = False) -> np.ndarray:
@@ -227,6 +228,8 @@ def derivative(x: np.ndarray, u: np.ndarray, v: np.ndarray, places: np.ndarray,
             s[FX, i] = -v[8, i] * s[AX, i]
             s[FY, i] = -v[9, i] * s[AY, i]
             s[FZ, i] = -v[10, i] * s[AZ, i]
+        s[FX, i] += s[MASS, i] * u[7, i]
+        s[FY, i] += s[MASS, i] * u[8, i]
         s[FZ, i] += u[0, i]
         wx, wy, wz = s[WX, i], s[WY, i], s[WZ, i]
         s[MX, i] = u[1, i] - v[11, i] * wx * abs(wx)

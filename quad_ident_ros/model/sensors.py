@@ -58,6 +58,14 @@ def turn(vector: ArrayLike) -> np.ndarray:
     return out
 
 
+def turned_on(turns: np.ndarray) -> np.ndarray:
+    """Return the quaternions (N + 1, 4) of a body that turns by each of (N, 4) after another."""
+    out = np.empty((len(turns) + 1, 4))
+    out[0] = 1.0, 0.0, 0.0, 0.0
+    _running_products(np.ascontiguousarray(turns), out)
+    return out
+
+
 def sensors_of(theta: np.ndarray) -> Sensors:
     """Return the Sensors of parameter sets (T, P)."""
     arms, biases = (np.ascontiguousarray(theta[:, part]) for part in (COM, BIAS))
@@ -156,6 +164,21 @@ def _products(a: np.ndarray, b: np.ndarray, out: np.ndarray) -> None:
         out[n, 1] = aw * bx + ax * bw + ay * bz - az * by
         out[n, 2] = aw * by - ax * bz + ay * bw + az * bx
         out[n, 3] = aw * bz + ax * by - ay * bx + az * bw
+
+
+@compiled(fused=True)
+def _running_products(turns: np.ndarray, out: np.ndarray) -> None:
+    """Write the products of the first of out (N + 1, 4) and turns (N, 4), unit quaternions."""
+    for n in range(len(turns)):
+        a, b, c, d = out[n, 0], out[n, 1], out[n, 2], out[n, 3]
+        w, x, y, z = turns[n, 0], turns[n, 1], turns[n, 2], turns[n, 3]
+        t = a * w - b * x - c * y - d * z
+        i = a * x + b * w + c * z - d * y
+        j = a * y - b * z + c * w + d * x
+        k = a * z + b * y - c * x + d * w
+        length = math.sqrt(t * t + i * i + j * j + k * k)
+        out[n + 1, 0], out[n + 1, 1] = t / length, i / length
+        out[n + 1, 2], out[n + 1, 3] = j / length, k / length
 
 
 @compiled(fused=True)

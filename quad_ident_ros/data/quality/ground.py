@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from quad_ident_ros.data.inertial import FORCE, is_inertial
 from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.data.split import part, rejoined, SHORTEST
@@ -17,6 +18,8 @@ LEAST = 0.3         # s: whatever falls for that long with half the thrust is fa
 CLEAR = 0.05        # m above the height of standing where the ground is left
 CARRIED = 3.0       # m/s: what is faster is in no hand, and its drag may hold it up
 FALLING = 0.5       # of g: with less force on it the vehicle falls, and flies
+BESIDE = 0.5        # s before and after that or a blow: of take-off, landing, tumbling
+BLOW = 3.0          # times the strongest thrust: no rotor gives that force
 USUAL = 0.97        # quantile of what the commands give of the force, unless all of it is carried
 
 
@@ -58,7 +61,7 @@ def airborne(record: FlightRecord, vehicle: Vehicle) -> FlightRecord:
 def resting(record: FlightRecord, vehicle: Vehicle) -> np.ndarray:
     """Return whether the vehicle stands or is carried at each sample, (N,) of bool."""
     stood = standing(record, vehicle)
-    return stood | carried(record, vehicle, stood)
+    return stood | carried(record, vehicle, stood) | unflown(record, vehicle)
 
 
 def _kept(record: FlightRecord, rests: np.ndarray) -> list[tuple[int, int]]:
@@ -130,6 +133,28 @@ def carried(record: FlightRecord, vehicle: Vehicle, stood: np.ndarray) -> np.nda
         if (last - first) >= half:
             # What was looked at around each sample is carried, too.
             found[max(first - half, 0):last + half + 1] = True
+    return found
+
+
+def unflown(record: FlightRecord, vehicle: Vehicle) -> np.ndarray:
+    """
+    Return whether the vehicle rests or hits something by its specific force, (N,) of bool.
+
+    Of records without velocity. It rests where it does not fall with too little thrust to hover
+    for LEAST; a blow is a force that no rotor gives. What is beside both counts as well.
+    """
+    thrust, found = _thrust(record, vehicle), np.zeros(len(record), bool)
+    if thrust is None or not is_inertial(record) or not (thrust > 0).any():
+        return found
+    weight = vehicle.mass * vehicle.gravity
+    force = vehicle.mass * np.linalg.norm(record.stack(*FORCE), axis=1)
+    usual = min(float(np.median(thrust[thrust > 0])), weight)
+    blows = force > BLOW * max(float(np.quantile(thrust, USUAL)), weight)
+    idle = (thrust < IDLE * usual) & (force > FALLING * weight)
+    beside = round(BESIDE / record.period())
+    for first, last in [*_runs(blows), *(run for run in _runs(idle) if
+                                         record.t[run[1]] - record.t[run[0]] >= LEAST)]:
+        found[max(first - beside, 0):last + beside + 1] = True
     return found
 
 
