@@ -19,7 +19,7 @@ from quad_ident_ros.data.px4_states import flown, resets
 from quad_ident_ros.data.record import FlightRecord, QUATERNION
 from quad_ident_ros.data.split import part, SHORTEST, split
 from quad_ident_ros.data.streams import HELD, INTERPOLATED, join, SLOW, Stream
-from quad_ident_ros.errors import InputError
+from quad_ident_ros.errors import InputError, Reason, reason_of
 from quad_ident_ros.model.vehicle import Vehicle
 
 TOPICS = ('vehicle_attitude', 'estimator_attitude', 'vehicle_odometry', 'vehicle_local_position',
@@ -176,7 +176,7 @@ class _Content(io.BytesIO):
         return data
 
 
-class _Damaged(Exception):
+class _Damaged(Reason):
     """The parser does not get on."""
 
 
@@ -186,7 +186,7 @@ class _Log(ULog):
     class _MessageAddLogged(ULog._MessageAddLogged):
         def _parse_format(self, formats):
             if _size(self.message_name, formats, 0) > _MOST_BYTES:
-                raise ValueError(f'format {self.message_name} is too large')
+                raise _Damaged(f'its format {self.message_name} is too large')
             super()._parse_format(formats)
 
 
@@ -216,9 +216,8 @@ def parse(path: Path) -> ULog:
         with contextlib.redirect_stdout(io.StringIO()):
             return _Log(content, [*TOPICS, *STATES])
     except Exception as error:  # a damaged log makes the parser raise anything
-        reason = ' '.join(str(error).split())[:200] or type(error).__name__
-        raise InputError(f'{path}: this log cannot be read ({reason}); download it from '
-                         'the vehicle again') from None
+        raise InputError(f'{path}: this log cannot be read ({reason_of(error, path)}); download '
+                         'it from the vehicle again') from None
 
 
 def _instance(path, log, name, number):
