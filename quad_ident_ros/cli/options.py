@@ -8,6 +8,7 @@ from quad_ident_ros.data.load import load_all, reader_of
 from quad_ident_ros.data.mapping import load_mapping
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.experiment import check_noise
+from quad_ident_ros.memory import give_back
 from quad_ident_ros.model.vehicle import load_nominal, load_vehicle, Vehicle
 
 AUTO = 'auto'
@@ -32,7 +33,9 @@ def flights_from(path, mapping=None, vehicle=None):
     """
     if isinstance(vehicle, str):
         vehicle = load_vehicle(vehicle)
-    return load_all(path, load_mapping(mapping) if mapping else None, vehicle)
+    found = load_all(path, load_mapping(mapping) if mapping else None, vehicle)
+    give_back()
+    return found
 
 
 def vehicle_from(option: str, path: str, mapping: str | None = None,

@@ -158,7 +158,7 @@ def _slow(streams: list[Stream]) -> list[str]:
 
 class _Content(io.BytesIO):
     """
-    Bytes that may be read a few times over, and no more.
+    Bytes in which a reader may go back a few times over, and no more.
 
     Where a log is damaged the parser looks for the next message by going back, at times for ever.
     """
@@ -167,13 +167,14 @@ class _Content(io.BytesIO):
         super().__init__(data)
         self._left = 8 * len(data) + 100_000
 
-    def read(self, size=-1):
-        """Return the next bytes; _Damaged where they have been read too often."""
-        data = super().read(size)
-        self._left -= max(len(data), 16)
+    def seek(self, offset, whence=0):
+        """Go to a place and return it; _Damaged after going back too often."""
+        before = self.tell()
+        after = super().seek(offset, whence)
+        self._left -= max(before - after, 16)
         if self._left < 0:
             raise _Damaged('it is damaged beyond what can be skipped')
-        return data
+        return after
 
 
 class _Damaged(Reason):

@@ -47,8 +47,8 @@ class Selection:
 
     best: the simplest Fitted of those with about the most evidence; fitted: it and the others
     that were refitted; posterior: probability of each candidate effect; quadratic, rows: the cost
-    around the best, with all candidates free; noise: per flight (12,); frame: the flights around
-    the best; least: the standard_errors (C,) of its columns.
+    around the best, with all candidates free; noise: per flight (12,); least: the standard_errors
+    (C,) of the columns of the best.
     """
 
     best: Fitted
@@ -57,7 +57,6 @@ class Selection:
     quadratic: Quadratic
     rows: dict
     noise: list
-    frame: Frame
     least: np.ndarray
 
     @property
@@ -171,6 +170,7 @@ class _Search:
         everyone = NuisanceValues.of([one.nuisance for one in self.nuisances if one.nuisance],
                                      len(self.flights), fit.nuisances)
         layout = Layout(self.columns, everyone.columns, len(self.flights))
+        vars(self).pop('frame', None)   # two at once would be most of a diagnosis' memory
         self.frame = frame_at(self.flights, self.vehicle, fit, layout.wanted, self.rules)
         grids = size_grids(self.vehicle, self.noise, self.rules)
         before = [one.chosen for one in self.order()[:KEPT]]
@@ -291,7 +291,7 @@ class _Search:
         return Selection(fitted[0], fitted,
                          posteriors(fitted, self.ranked, self.all_causes, set(self.tried),
                                     self.rules),
-                         self.quadratic, self.rows, self.noise, self.frame,
+                         self.quadratic, self.rows, self.noise,
                          standard_errors(self.best, self.frame, self.vehicle, self.grids,
                                          self.quadratic.scatter, self.rules))
 
