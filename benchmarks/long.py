@@ -89,7 +89,7 @@ def _bytes(path):
 def make(name, folder, seconds):
     """Fly a vehicle and write its record as a file of this name into a folder."""
     sys.path[:0] = [str(ROOT / 'test')]
-    from flightmaker import VEHICLE
+    from flightmaker import changed, VEHICLE
 
     from quad_ident_ros.data.csv import write_csv
     from quad_ident_ros.flight.fly import fly_closed_loop
@@ -97,6 +97,10 @@ def make(name, folder, seconds):
     write_vehicle(Path(folder, 'vehicle.yaml'), VEHICLE)
     record = fly_closed_loop(VEHICLE, TRUTH, COURSE, duration=seconds, rate=RATES[name],
                              noise=SENSORS['mocap_imu'])
+    # A battery of as many flights as this one is long, beside one of four minutes.
+    share = min(1.0, 240.0 / seconds)
+    voltage = record.columns['vbat']
+    record = changed(record, vbat=voltage[0] + share * (voltage - voltage[0]))
     if name == 'table.csv':
         write_csv(Path(folder, name), record)
     elif name == 'bag':

@@ -97,6 +97,10 @@ class BagFile:
                 self._reader = plugins.get('dir' if self.kind == 'folder' else self.kind,
                                            plugins['.mcap'])(self.path)
             self._reader.open()
+            # SQLite keeps anything in any column.
+            if not all(isinstance(text, str) for one in self._reader.connections
+                       for text in (one.topic, one.msgtype)):
+                raise BadType('its list of topics is damaged')
         return self
 
     def __exit__(self, *_):

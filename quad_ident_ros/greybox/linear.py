@@ -16,7 +16,7 @@ from quad_ident_ros.model.vehicle import Vehicle
 
 STATE_STEP = np.repeat([1e-4, 1e-4, 1e-5, 1e-4], 3)     # of differences in the initial state
 STEP = 1e-4                                             # of a parameter's usual size
-AT_ONCE = 1_000_000     # samples of flights times parameter sets that are held at once, 100 MB
+AT_ONCE = 400_000   # samples of a flight times parameter sets that are held at once, 50 MB
 GROUND = [place for (name, _), part in registry.PLACES.items() if name == 'ground_effect'
           for place in range(part.start, part.stop)]
 

@@ -4,6 +4,7 @@
 
 import errno
 import os
+import sqlite3
 import struct
 
 from bag_files import odometry, write1
@@ -88,5 +89,21 @@ def test_folder_that_is_no_bag(tmp_path, name):
     path.mkdir()
     for read in (contents_of, load_all):
         with pytest.raises(InputError, match='rosbag2') as error:
+            read(path)
+        assert str(error.value).count(str(path)) == 1
+
+
+@pytest.mark.parametrize('value', [None, b'\xff\x00'])
+@pytest.mark.parametrize('column', ['name', 'type'])
+def test_list_of_topics_that_is_no_text(tmp_path, column, value):
+    path = _bag(tmp_path, 'db3')
+    with sqlite3.connect(path) as database:
+        database.execute('CREATE TABLE other AS SELECT * FROM topics')
+        database.execute('DROP TABLE topics')
+        database.execute('ALTER TABLE other RENAME TO topics')
+        database.execute(f'UPDATE topics SET {column} = ?', (value,))
+    database.close()
+    for read in (contents_of, load_all):
+        with pytest.raises(InputError, match='list of topics is damaged') as error:
             read(path)
         assert str(error.value).count(str(path)) == 1
