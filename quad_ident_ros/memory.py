@@ -5,6 +5,8 @@
 import ctypes
 import sys
 
+LIBRARY = ctypes.CDLL(None) if sys.platform == 'linux' else None
+
 
 def give_back() -> None:
     """
@@ -13,7 +15,6 @@ def give_back() -> None:
     The C library of Linux keeps what lies below anything in use: after reading a log of 50 MB
     that is 160 MB.
     """
-    if sys.platform == 'linux':
-        trim = getattr(ctypes.CDLL(None), 'malloc_trim', None)
-        if trim is not None:
-            trim(0)
+    trim = getattr(LIBRARY, 'malloc_trim', None)
+    if trim is not None:
+        trim(0)

@@ -30,6 +30,7 @@ from quad_ident_ros.greybox.noise import quick_noise, whole_noise
 from quad_ident_ros.greybox.normal import scatter_of
 from quad_ident_ros.greybox.nuisances import Layout, NuisanceValues
 from quad_ident_ros.greybox.parameters import limits, nominal, prior_sizes
+from quad_ident_ros.memory import give_back
 from quad_ident_ros.model.vehicle import Vehicle
 
 ROUNDS = 6
@@ -171,6 +172,7 @@ class _Search:
                                      len(self.flights), fit.nuisances)
         layout = Layout(self.columns, everyone.columns, len(self.flights))
         vars(self).pop('frame', None)   # two at once would be most of a diagnosis' memory
+        give_back()
         self.frame = frame_at(self.flights, self.vehicle, fit, layout.wanted, self.rules)
         grids = size_grids(self.vehicle, self.noise, self.rules)
         before = [one.chosen for one in self.order()[:KEPT]]
@@ -251,6 +253,7 @@ class _Search:
                              near.nuisances, near.starts, slopes, scatter)
             fit = min(fit, again, key=lambda one: one.cost)
         self.tried[chosen] = fit
+        give_back()
         self.judge(chosen)
 
     def simplest(self, keys: Sequence[tuple]) -> Fitted:
