@@ -19,8 +19,9 @@ from quad_ident_ros.errors import InputError
 SECTIONS = {'p1': 'performance.md', 'p2': 'performance.md', 'p3': 'performance.md',
             'scaling': 'performance.md', 'limit': 'performance.md', 'start': 'performance.md',
             'accuracy': 'accuracy.md', 'rollout': 'performance.md',
-            'diagnosis': 'performance.md', 'graph': 'performance.md'}
-APART = ('accuracy', 'graph')     # only where they are asked for
+            'diagnosis': 'performance.md', 'graph': 'performance.md', 'long': 'performance.md'}
+APART = ('accuracy', 'graph', 'long')   # only where they are asked for
+INSTALLED = ('graph', 'long')   # with the program as it is installed, in .venv; see ../run
 PACKAGES = ('numpy', 'scipy', 'numba', 'pyswarms', 'mealpy', 'nevergrad', 'cma', 'pymoo',
             'sippy-unipi', 'rotorpy', 'mujoco', 'ros-jazzy-rclpy')
 
@@ -37,11 +38,12 @@ def main(arguments=None):
     for name in options.sections:
         if name not in SECTIONS:
             parser.error(f'{name}: no such section, expected one of {", ".join(SECTIONS)}')
-    # The nodes run in .venv, on all cores; see ../run.
+    for name in INSTALLED:
+        if name in options.sections and len(options.sections) > 1:
+            parser.error(f'{name}: name it by itself, it needs no other library')
+    # The nodes run on all cores.
     whole = options.sections == ['graph']
     if not whole:
-        if 'graph' in options.sections:
-            parser.error('graph: name it by itself, it needs ROS 2 and no other library')
         take_one_core()
     screen = Console(stderr=True)
 

@@ -5,8 +5,9 @@ Fuzz the readers: mutated files of every format, each within limits of time and 
 
   PYTHONPATH=. .venv/bin/python test/fuzz_readers.py --inputs 20000    # of each format
 
-Every input is read by a process of its own kind that the system ends where it takes too long. An
-input is refused (one line that names the file), read, or a failure; failures are kept in --keep.
+Every input is read by a process of its own kind that the system ends where it takes too long: what
+is in it, as `info` shows it, and its flights. An input is refused (one line that names the file),
+read, or a failure; failures are kept in --keep. A folder in memory makes it faster (TMPDIR).
 """
 
 import argparse
@@ -43,15 +44,13 @@ from quad_ident_ros.errors import InputError
 SECONDS = 10        # of computing for one input
 WAITING = 300       # s for one input in all: a busy machine is no hang
 MEGABYTES = 1024    # for one input, beyond what the process has when it begins
+AT_ONCE = 10_000    # inputs of one process, which takes seconds to start
 NAMES = {'csv': 'f.csv', 'csv_gz': 'f.csv.gz', 'mcap': 'f.mcap', 'mcap_topics': 'f.mcap',
          'mcap_mapped': 'f.mcap', 'sqlite3': 'f.db3', 'metadata': 'bag', 'ulog': 'f.ulg',
          'crazyflie': 'log00', 'ardupilot': 'f.BIN', 'betaflight': 'f.bbl',
          'px4': 'f.ulg', 'table': 'f.csv', 'table_mapped': 'f.csv', 'parquet': 'f.parquet',
-         'mapping': 'f.yaml', 'ros1': 'f.bag', 'ros1_lz4': 'f.bag', 'px4_bag': 'f.db3',
-         'bag_contents': 'f.bag'}
+         'mapping': 'f.yaml', 'ros1': 'f.bag', 'ros1_lz4': 'f.bag', 'px4_bag': 'f.db3'}
 """File that each kind of input is written to."""
-
-LOGS = ('crazyflie', 'ardupilot', 'betaflight')     # of which the contents are read as well
 
 TOPICS = mapping_from({'topics': {
     'pose': {'topic': '/odom'}, 'velocity': {'topic': '/odom'}, 'rate': {'topic': '/imu'},
@@ -117,10 +116,9 @@ def _bags(folder, record):
     rows = [*odometry(record), *imu(record), *transforms(record, ['a']),
             *esc_status(record, speeds.astype(int)),
             *lists(record, MAV, '/command/motor_speed', 'angular_velocities', speeds)]
-    found = {'ros1': write1(folder / 'plain', rows).read_bytes(),
-             'ros1_lz4': write1(folder / 'lz4', rows, Writer.CompressionFormat.LZ4).read_bytes(),
-             'px4_bag': write_old(folder / 'px4', px4(record, speeds / 2000)).read_bytes()}
-    return found | {'bag_contents': found['ros1']}
+    return {'ros1': write1(folder / 'plain', rows).read_bytes(),
+            'ros1_lz4': write1(folder / 'lz4', rows, Writer.CompressionFormat.LZ4).read_bytes(),
+            'px4_bag': write_old(folder / 'px4', px4(record, speeds / 2000)).read_bytes()}
 
 
 def _parquet(folder, record):
@@ -186,26 +184,15 @@ def mutate(data, chance, others):
     return bytes(data)
 
 
-def read(kind, path):
-    """Read an input as its kind is read."""
+def readings(kind, path):
+    """Yield what reads an input of a kind: its contents, and its flights."""
     if kind == 'mapping':
-        load_mapping(path)
-    elif kind == 'mcap_mapped':
-        load_all(path, TOPICS)
-    elif kind == 'ulog':
-        load_all(path, OUTPUTS, VEHICLE)
-    elif kind in LOGS:
-        contents_of(path)
-        load_all(path, OUTPUTS, VEHICLE)
-    elif kind == 'bag_contents':
-        contents_of(path)
-    elif kind in ('px4', 'table', 'parquet'):
-        contents_of(path)
-        load_all(path, None, VEHICLE)
-    elif kind == 'table_mapped':
-        load_all(path, COLUMNS, VEHICLE)
-    else:
-        load_all(path)
+        yield lambda: load_mapping(path)
+        return
+    mapping = {'mcap_mapped': TOPICS, 'table_mapped': COLUMNS, 'ulog': OUTPUTS,
+               'crazyflie': OUTPUTS, 'ardupilot': OUTPUTS, 'betaflight': OUTPUTS}.get(kind)
+    yield lambda: contents_of(path)
+    yield lambda: load_all(path, mapping, VEHICLE)
 
 
 def work(kind, first, count, seed, keep):
@@ -247,18 +234,25 @@ def attempt(kind, path):
     signal.alarm(WAITING)
     began = time.process_time()
     outcome, text = 'read', ''
-    try:
-        read(kind, path)
-    except InputError as error:
-        text = str(error)
-        whole = len(text.splitlines()) == 1 and str(path) in text and len(text) < 1000
-        outcome = 'refused' if whole else 'no good line'
-    except BaseException:
-        outcome, text = 'traceback', traceback.format_exc()
+    for reading in readings(kind, path):
+        try:
+            reading()
+        except InputError as error:
+            text = str(error)
+            outcome = 'refused' if good(text, path) else 'no good line'
+        except BaseException:
+            outcome, text = 'traceback', traceback.format_exc()
+        if outcome not in ('read', 'refused'):
+            break
     took = time.process_time() - began
     signal.setitimer(signal.ITIMER_PROF, 0)
     signal.alarm(0)
     return outcome, text if outcome != 'read' else '', took, _peak() - before
+
+
+def good(text, path):
+    """Return whether the text of an error is one line that names the file, once."""
+    return len(text.splitlines()) == 1 and text.count(str(path)) == 1 and len(text) < 1000
 
 
 def _status(name):
@@ -289,9 +283,9 @@ def fuzz(kind, count, seed, keep, advance):
     while number < count:
         worker = subprocess.Popen(
             [sys.executable, __file__, '--work', kind, str(number),
-             str(min(count - number, 2000)), '--seed', str(seed), '--keep', keep],
+             str(min(count - number, AT_ONCE)), '--seed', str(seed), '--keep', keep],
             stdout=subprocess.PIPE, text=True)
-        end = number + min(count - number, 2000)
+        end = number + min(count - number, AT_ONCE)
         begun = None
         for line in worker.stdout:
             data = json.loads(line)
@@ -346,10 +340,11 @@ def main():
                     {'account': account, 'failures': failures}, indent=2) + '\n')
     columns = ('inputs', 'refused', 'read', 'traceback', 'no good line', 'hang', 'crash',
                'slowest_s', 'largest_MB')
-    print(f'{"":<12}' + ''.join(f'{name:>13}' for name in columns))
+    print(f'| format | {" | ".join(columns)} |\n| --- |{" --: |" * len(columns)}')
     for kind, row in account.items():
-        print(f'{kind:<12}' + ''.join(f'{row[name]:>13}' if isinstance(row[name], int) else
-                                      f'{row[name]:>13.2f}' for name in columns))
+        cells = (f'{row[name]:,}' if isinstance(row[name], int) else f'{row[name]:.2f}'
+                 for name in columns)
+        print(f'| `{kind}` | {" | ".join(cells)} |')
     for failure in failures[:20]:
         print(f'{failure["kind"]} {failure["number"]}: {failure["text"][-400:]}')
 

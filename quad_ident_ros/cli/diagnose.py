@@ -65,8 +65,9 @@ def run(options):
     vehicle = vehicle_from(options.vehicle, options.flights[0], options.mapping, nominal=True)
     effects = ([name.strip() for name in options.effects.split(',')]
                if options.effects is not None else None)
-    records = [record for path in options.flights
-               for record in flights_from(path, options.mapping, vehicle, selection)]
+    # Read one after the other as they are taken in, and not kept beside what is made of them.
+    records = (record for path in options.flights
+               for record in flights_from(path, options.mapping, vehicle, selection))
     held = (joined(flights_from(options.hold_out, options.mapping, vehicle, selection))[-1]
             if options.hold_out else None)
     with progress_bar() as bar:

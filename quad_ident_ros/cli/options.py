@@ -11,6 +11,7 @@ from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.data.selection import selected, Selection
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.experiment import check_noise
+from quad_ident_ros.memory import give_back
 from quad_ident_ros.model.vehicle import load_nominal, load_vehicle, Vehicle
 
 AUTO = 'auto'
@@ -58,6 +59,7 @@ def flights_from(path: str | Path, mapping: str | None = None,
     if isinstance(vehicle, str):
         vehicle = load_vehicle(vehicle)
     found = load_all(path, load_mapping(mapping) if mapping else None, vehicle)
+    give_back()
     return found if selection is None else selected(path, found, selection)
 
 

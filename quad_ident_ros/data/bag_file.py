@@ -24,7 +24,7 @@ from quad_ident_ros.data.definitions import layouts, START
 from quad_ident_ros.data.limits import most, size_on_disk
 from quad_ident_ros.data.readers.others import is_text
 from quad_ident_ros.data.unpack import BoundedReader1, TooLarge
-from quad_ident_ros.errors import InputError
+from quad_ident_ros.errors import InputError, Reason, reason_of
 
 MAGIC = {b'#ROSBAG V': '.bag', b'\x89MCAP0\r\n': '.mcap', b'SQLite format 3\0': '.db3'}
 """How bags begin, and the ends of their usual names."""
@@ -40,6 +40,10 @@ _LONGEST = 1 << 26      # entries of a list in a message: the bytes of the large
 _UNROLLED = 1024        # texts or messages in an array, each of which costs the reader code
 _NO_FIELD = 'structure_needs_at_least_one_member'
 _IDL = '=' * 80 + '\nIDL: '
+
+
+class BadType(TypesysError, Reason):
+    """The messages of a bag do not fit their types, or these are absurd."""
 
 
 @dataclass(frozen=True)
@@ -96,6 +100,10 @@ class BagFile:
                 self._reader = plugins.get('dir' if self.kind == 'folder' else self.kind,
                                            plugins['.mcap'])(self.path)
             self._reader.open()
+            # SQLite keeps anything in any column.
+            if not all(isinstance(text, str) for one in self._reader.connections
+                       for text in (one.topic, one.msgtype)):
+                raise BadType('its list of topics is damaged')
         return self
 
     def __exit__(self, *_):
@@ -160,9 +168,9 @@ class BagFile:
                 if left < 0:
                     raise TooLarge('its messages unpack to far more than measurements do')
                 if topics is not None and connection.topic not in topics:
-                    raise TypesysError('its index names messages of other topics')
+                    raise BadType('its index names messages of other topics')
                 if not -2 ** 63 <= stamp < 2 ** 63:
-                    raise TypesysError(f'a message is stamped {stamp} ns, which is no time')
+                    raise BadType(f'a message is stamped {stamp} ns, which is no time')
                 yield connection, stamp, data
 
     def _codec(self, connection):
@@ -179,11 +187,11 @@ class BagFile:
         except InputError:
             raise
         except Exception as error:
-            reason = ' '.join(str(error).split())[:200] or type(error).__name__
             how = ('rosbag info FILE, mend it with: rosbag reindex FILE' if self.kind == '.bag'
                    else 'ros2 bag info FOLDER')
-            raise InputError(f'{self.path}: this bag cannot be read ({reason}); check it with: '
-                             f'{how}, or record it again') from error
+            raise InputError(f'{self.path}: this bag cannot be read '
+                             f'({reason_of(error, self.path)}); check it with: {how}, or record '
+                             'it again') from error
 
 
 def read_bag_messages(path, topics=None):
@@ -218,7 +226,7 @@ class _Codec:
             candidates = [(version, version) for version, _ in layouts(self._type)]
         self._ships = not definition.data.strip() and self._type not in _defaults(ros1)
         if not candidates:
-            raise TypesysError(f'topic {connection.topic}: the bag has no definition of '
+            raise BadType(f'topic {connection.topic}: the bag has no definition of '
                                f'{self._type}, and none ships; convert it to MCAP where the '
                                'package is installed: ros2 bag convert')
         self._topic = connection.topic
@@ -245,7 +253,7 @@ class _Codec:
             self._chosen = read
             return message
         if self._ships:
-            raise TypesysError(f'topic {self._topic}: the bag has no definition of {self._type}, '
+            raise BadType(f'topic {self._topic}: the bag has no definition of {self._type}, '
                                'and its messages have the length of none that ships; convert it '
                                'to MCAP where the package is installed: ros2 bag convert')
         raise problem
@@ -282,7 +290,7 @@ def _store(msgtype, source, ros1):
     Return a Typestore with a type and all that it is made of.
 
     Args: source: the definition of a bag, the version of one that ships, or None for ROS' own.
-    Raises TypesysError where a definition is not there, or absurd.
+    Raises BadType where a definition is not there, or absurd.
     """
     if isinstance(source, str):
         types = dict(layouts(msgtype))[source]
@@ -292,7 +300,7 @@ def _store(msgtype, source, ros1):
     while open_types:
         name, depth = open_types.pop()
         if depth > _DEPTH:
-            raise TypesysError(f'the definition of {msgtype} nests too deeply')
+            raise BadType(f'the definition of {msgtype} nests too deeply')
         if name in needed:
             continue
         if name in types:
@@ -302,7 +310,7 @@ def _store(msgtype, source, ros1):
         elif layouts(name):
             needed[name] = layouts(name)[0][1][name]
         else:
-            raise TypesysError(f'the definition of {msgtype} has no definition of {name}')
+            raise BadType(f'the definition of {msgtype} has no definition of {name}')
         open_types += [(inner, depth + 1) for _, field in needed[name][1]
                        if (inner := _inner(field)) is not None]
     _check_lists(msgtype, needed)
@@ -327,7 +335,7 @@ def _check_lists(msgtype, types):
     def least(name, above):
         """Return the bytes that a message of a type has at least, up to a few."""
         if name in above:
-            raise TypesysError(f'the definition of {name} contains itself')
+            raise BadType(f'the definition of {name} contains itself')
         if name not in sizes:
             sizes[name] = sum(bytes_of(what, (*above, name)) for field, what in types[name][1]
                               if field != _NO_FIELD)
@@ -342,12 +350,12 @@ def _check_lists(msgtype, types):
         element, count = what
         one = bytes_of(element, above)
         if not one:
-            raise TypesysError(f'the definition of {msgtype} has a list of empty messages')
+            raise BadType(f'the definition of {msgtype} has a list of empty messages')
         if node == Nodetype.SEQUENCE:
             return 4
         simple = element[0] == Nodetype.BASE and element[1][0] != 'string'
         if count > (_LONGEST if simple else _UNROLLED):
-            raise TypesysError(f'the definition of {msgtype} has an array of {count} entries')
+            raise BadType(f'the definition of {msgtype} has an array of {count} entries')
         return count * one
 
     least(msgtype, ())

@@ -121,11 +121,8 @@ def _log(path, number, count, wanted):
         if problem:
             return f'{which} cannot be read: {problem}'
         parser = Parser(reader)
-    except _TooMuch:
+    except Exception:   # a damaged header makes orangebox raise anything
         return f'{which} cannot be read: its header is damaged; copy it again'
-    except Exception as error:     # a damaged header makes orangebox raise anything
-        reason = ' '.join(str(error).split())[:120] or type(error).__name__
-        return f'{which} cannot be read: its header is damaged ({reason}); copy it again'
     fields = tuple(parser.field_names)
     names = ['time', *(name for name in wanted if name in fields and name != 'time')]
     columns, damaged = _columns(parser, reader, [fields.index(name) for name in names])

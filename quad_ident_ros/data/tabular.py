@@ -99,12 +99,10 @@ def read_parquet(path: Path) -> Table:
                 columns[name.strip()] = values
     except InputError:
         raise
-    except OSError as error:
-        raise InputError(f'{path}: this is no whole Parquet file '
-                         f'({" ".join(str(error).split())[:120]}); write it again') from None
     except Exception as error:  # a damaged file makes the parser raise anything
-        raise InputError(f'{path}: this is no whole Parquet file '
-                         f'({type(error).__name__}); write it again') from None
+        if isinstance(error, OSError) and error.strerror:
+            raise InputError(f'{path}: cannot be read: {error.strerror}') from None
+        raise InputError(f'{path}: this is no whole Parquet file; write it again') from None
     if not columns or found.num_rows < 2:
         raise InputError(f'{path}: there are fewer than 2 rows of numbers; give a table with '
                          'samples')

@@ -19,7 +19,7 @@ from quad_ident_ros.data.px4_states import flown, resets
 from quad_ident_ros.data.record import FlightRecord, QUATERNION
 from quad_ident_ros.data.split import part, SHORTEST, split
 from quad_ident_ros.data.streams import HELD, INTERPOLATED, join, SLOW, Stream
-from quad_ident_ros.errors import InputError
+from quad_ident_ros.errors import InputError, Reason, reason_of
 from quad_ident_ros.model.vehicle import Vehicle
 
 TOPICS = ('vehicle_attitude', 'estimator_attitude', 'vehicle_odometry', 'vehicle_local_position',
@@ -166,7 +166,7 @@ def _slow(streams: list[Stream]) -> list[str]:
 
 class _Content(io.BytesIO):
     """
-    Bytes that may be read a few times over, and no more.
+    Bytes in which a reader may go back a few times over, and no more.
 
     Where a log is damaged the parser looks for the next message by going back, at times for ever.
     """
@@ -175,16 +175,17 @@ class _Content(io.BytesIO):
         super().__init__(data)
         self._left = 8 * len(data) + 100_000
 
-    def read(self, size=-1):
-        """Return the next bytes; _Damaged where they have been read too often."""
-        data = super().read(size)
-        self._left -= max(len(data), 16)
+    def seek(self, offset, whence=0):
+        """Go to a place and return it; _Damaged after going back too often."""
+        before = self.tell()
+        after = super().seek(offset, whence)
+        self._left -= max(before - after, 16)
         if self._left < 0:
             raise _Damaged('it is damaged beyond what can be skipped')
-        return data
+        return after
 
 
-class _Damaged(Exception):
+class _Damaged(Reason):
     """The parser does not get on."""
 
 
@@ -194,7 +195,7 @@ class _Log(ULog):
     class _MessageAddLogged(ULog._MessageAddLogged):
         def _parse_format(self, formats):
             if _size(self.message_name, formats, 0) > _MOST_BYTES:
-                raise ValueError(f'format {self.message_name} is too large')
+                raise _Damaged(f'its format {self.message_name} is too large')
             super()._parse_format(formats)
 
 
@@ -224,9 +225,8 @@ def parse(path: Path) -> ULog:
         with contextlib.redirect_stdout(io.StringIO()):
             return _Log(content, [*TOPICS, *STATES])
     except Exception as error:  # a damaged log makes the parser raise anything
-        reason = ' '.join(str(error).split())[:200] or type(error).__name__
-        raise InputError(f'{path}: this log cannot be read ({reason}); download it from '
-                         'the vehicle again') from None
+        raise InputError(f'{path}: this log cannot be read ({reason_of(error, path)}); download '
+                         'it from the vehicle again') from None
 
 
 def _instance(path, log, name, number):

@@ -11,9 +11,10 @@ from rosbags.rosbag2 import reader, storage_mcap
 from rosbags.rosbag2.errors import ReaderError
 
 from quad_ident_ros.data import limits
+from quad_ident_ros.errors import Reason
 
 
-class TooLarge(ReaderError):
+class TooLarge(ReaderError, Reason):
     """Something unpacks to more than it may."""
 
 
@@ -102,7 +103,7 @@ class BoundedReader1(reader1.Reader):
         super().read_index_data(pos, indexes)
         self._index += self.bio.tell() - before
         if self._index > self._packed:
-            raise reader1.ReaderError('its index names the same messages again and again')
+            raise TooLarge('its index names the same messages again and again')
 
     def _within(self, unpack):
         machine = {reader1.bz2_decompress: bz2.BZ2Decompressor,

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The diagnosis of flights: intake, selection, judgement, measure, advice."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 import numpy as np
 
@@ -22,10 +22,11 @@ from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.greybox.noise import whole_noise
 from quad_ident_ros.greybox.parameters import nominal
+from quad_ident_ros.memory import give_back
 from quad_ident_ros.model.vehicle import Vehicle
 
 
-def diagnose(records: list[FlightRecord], vehicle: Vehicle, *,
+def diagnose(records: Iterable[FlightRecord], vehicle: Vehicle, *,
              hold_out: FlightRecord | None = None, effects: list[str] | None = None,
              rules: Rules = RULES,
              on_progress: Callable[[float], None] = lambda share: None) -> Diagnosis:
@@ -41,6 +42,7 @@ def diagnose(records: list[FlightRecord], vehicle: Vehicle, *,
         if name not in EFFECTS:
             raise InputError(f'{name!r} is not among the effects: {", ".join(EFFECTS)}')
     intake = take_in(list(records), vehicle, hold_out, rules)
+    give_back()
     vehicle = intake.vehicle
     every = candidates(intake.flights, vehicle, rules, effects)
     causes = tuple(cause for cause in every if cause.effect not in intake.refuted)

@@ -24,6 +24,7 @@ HEADLINE = 0.5                  # s
 NEAR = 0.1                      # s, of inertial flights: what the air does is not modelled there,
                                 # and soon turns the vehicle elsewhere
 EVERY = 0.1                     # s from one start to the next
+AT_ONCE = 2048                  # predictions that memory holds along their whole way
 NOISE_STARTS = 60               # starts at which the noise is carried along
 BLOCK = 2.0                     # s of the bootstrap's blocks
 DRAWS = 400
@@ -69,10 +70,11 @@ def ends(track: Track, vehicle: Vehicle, z: np.ndarray, horizon: float) -> Ends:
     """
     flight = flight_of(track, horizon, EVERY)
     first = flight.first[flight.seen[flight.first + flight.count].all(axis=1)]
-    predicted = predict(vehicle, z[SPLIT:], flight.course, flight.states[first], first,
-                        flight.count, constants=constants_of(z[None], vehicle),
-                        guide=flight.guide)
-    return Ends(difference(flight.states[first + flight.count], predicted[:, -1]),
+    predicted = [predict(vehicle, z[SPLIT:], flight.course, flight.states[part], part,
+                         flight.count, constants=constants_of(z[None], vehicle),
+                         guide=flight.guide)[:, -1].copy()
+                 for part in np.split(first, range(AT_ONCE, len(first), AT_ONCE))]
+    return Ends(difference(flight.states[first + flight.count], np.concatenate(predicted)),
                 flight.course.t[first])
 
 

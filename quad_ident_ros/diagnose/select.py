@@ -32,6 +32,7 @@ from quad_ident_ros.greybox.noise import quick_noise, whole_noise
 from quad_ident_ros.greybox.normal import scatter_of
 from quad_ident_ros.greybox.nuisances import Layout, NuisanceValues, trim_wrench
 from quad_ident_ros.greybox.parameters import limits, nominal, prior_sizes
+from quad_ident_ros.memory import give_back
 from quad_ident_ros.model.vehicle import Vehicle
 
 ROUNDS = 6
@@ -49,9 +50,9 @@ class Selection:
 
     best: the simplest Fitted of those with about the most evidence; fitted: it and the others
     that were refitted; posterior: probability of each candidate effect; quadratic, rows: the cost
-    around the best, with all candidates free; noise: per flight (12,); frame: the flights around
-    the best; least: the standard_errors (C,) of its columns; slow (6,): the force and moment that
-    nothing explains, by which errors that hang together counted less in the fits, or None.
+    around the best, with all candidates free; noise: per flight (12,); least: the standard_errors
+    (C,) of the columns of the best; slow (6,): the force and moment that nothing explains, by
+    which errors that hang together counted less in the fits, or None.
     """
 
     best: Fitted
@@ -60,7 +61,6 @@ class Selection:
     quadratic: Quadratic
     rows: dict
     noise: list
-    frame: Frame
     least: np.ndarray
     slow: np.ndarray | None = None
 
@@ -208,6 +208,8 @@ class _Search:
         everyone = NuisanceValues.of([one.nuisance for one in self.nuisances if one.nuisance],
                                      len(self.flights), fit.nuisances)
         layout = Layout(self.columns, everyone.columns, len(self.flights))
+        vars(self).pop('frame', None)   # two at once would be most of a diagnosis' memory
+        give_back()
         self.frame = frame_at(self.flights, self.vehicle, fit, layout.wanted, self.rules)
         grids = size_grids(self.vehicle, self.noise, self.rules)
         before = [one.chosen for one in self.order()[:KEPT]]
@@ -288,6 +290,7 @@ class _Search:
                              near.nuisances, near.starts, slopes, scatter, slow=self.slow)
             fit = min(fit, again, key=lambda one: one.cost)
         self.tried[chosen] = fit
+        give_back()
         self.judge(chosen)
 
     def simplest(self, keys: Sequence[tuple]) -> Fitted:
@@ -329,7 +332,7 @@ class _Search:
         return Selection(fitted[0], fitted,
                          posteriors(fitted, self.ranked, self.all_causes, set(self.tried),
                                     self.rules),
-                         self.quadratic, self.rows, self.noise, self.frame,
+                         self.quadratic, self.rows, self.noise,
                          standard_errors(self.best, self.frame, self.vehicle, self.grids,
                                          self.quadratic.scatter, self.rules), self.slow)
 

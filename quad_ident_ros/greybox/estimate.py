@@ -135,6 +135,7 @@ def _descend(flights: Sequence[Flight], vehicle: Vehicle, z: np.ndarray, columns
             for flight, vector, start in zip(flights, nuisances.vectors(z), starts, strict=True)]
     noise = known or [quick_noise(raw) for raw in raws]
     tangents, at, converged = None, z, False
+    linears: list[Linear] = []
     if slopes:
         tangents, at = slopes.of(layout.wanted, slow is not None), slopes.at
     made = 0
@@ -142,6 +143,7 @@ def _descend(flights: Sequence[Flight], vehicle: Vehicle, z: np.ndarray, columns
         fresh = tangents is None
         if fresh and made == iterations:
             break
+        linears = []    # large: those of the last step go before new ones are made
         if tangents is None:
             made += 1
             tangents = slopes_at(

@@ -194,7 +194,7 @@ def _thinned(course: Course, states: np.ndarray, seen: np.ndarray, force: np.nda
     # A copy: an array with gaps would have the integrator compiled anew.
     return (Course(course.t[:rows:skip].copy(), course.commands, drop, course.stamps,
                    course.reference_voltage),
-            states[:rows:skip], seen[:rows:skip], force)
+            states[:rows:skip].copy(), seen[:rows:skip].copy(), force)
 
 
 def _across(force: np.ndarray, period: float, skip: int) -> np.ndarray:

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Flights linearised in the parameters, with the initial states of all rollouts taken out."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,6 +18,7 @@ STATE_STEP = np.repeat([1e-4, 1e-4, 1e-5, 1e-4], 3)     # of differences in the 
 STEP = 1e-4                                             # of a parameter's usual size
 WRENCH = tuple(range(SPLIT + registry.SLICES[registry.RESIDUAL_WRENCH.name].start,
                      SPLIT + registry.SLICES[registry.RESIDUAL_WRENCH.name].stop))
+AT_ONCE = 400_000   # samples of a flight times parameter sets that are held at once, 50 MB
 GROUND = [place for (name, _), part in registry.PLACES.items() if name == 'ground_effect'
           for place in range(part.start, part.stop)]
 
@@ -155,28 +156,46 @@ def tangent_of(flight: Flight, vehicle: Vehicle, z: np.ndarray, starts: np.ndarr
     # A start elsewhere moves the whole rollout, exactly, unless the ground is felt.
     shifts = 3 if (z[SPLIT:][GROUND] == registry.NULL[GROUND]).all() else 2
     turned = ERRORS - shifts
-    which = np.concatenate([np.zeros(batch * (1 + turned), int),
-                            np.repeat(np.arange(1, len(sets)), batch)])
     moves = np.diag(STATE_STEP)[shifts:]
     all_starts = np.concatenate([
         starts, moved(starts[None], moves[:, None]).reshape(-1, starts.shape[1]),
-        np.tile(starts, (len(columns), 1))])
-    first = np.tile(flight.first, 1 + turned + len(columns))
-    out = predict(vehicle, sets[:, SPLIT:], flight.course, all_starts, first, flight.count, which,
-                  constants=constants_of(sets, vehicle), guide=flight.guide)
-    out = out.reshape(1 + turned + len(columns), batch, flight.count + 1, -1)
-    base = out[0]
+        np.tile(starts, (len(columns), 1))]).reshape(-1, *starts.shape)
+    factors = 1.0 / np.concatenate([STATE_STEP[shifts:], steps])
+    which = np.append(np.zeros(1 + turned, int), np.arange(1, len(sets)))
     table = np.zeros((batch, ERRORS + len(columns) + 1, (flight.count + 1) * ERRORS))
     for axis in range(shifts):
         table[:, axis, axis::ERRORS] = 1.0
-    slopes(out[1:], base, 1.0 / np.concatenate([STATE_STEP[shifts:], steps]),
-           table[:, shifts:-1])
+    base = np.empty(0)
+    for part in _parts(which, len(flight.course.t)):
+        used, mine = np.unique(which[part], return_inverse=True)
+        out = predict(vehicle, sets[used, SPLIT:], flight.course,
+                      all_starts[part].reshape(-1, starts.shape[1]),
+                      np.tile(flight.first, len(mine)), flight.count, np.repeat(mine, batch),
+                      constants=constants_of(sets[used], vehicle), guide=flight.guide)
+        out = out.reshape(len(mine), batch, flight.count + 1, -1)
+        if part.start == 0:
+            base, out = out[0].copy(), out[1:]
+        at = slice(max(part.start - 1, 0), part.stop - 1)
+        slopes(out, base, factors[at], table[:, shifts:-1][:, at])
     drift = table[:, -1].reshape(batch, flight.count + 1, ERRORS)
     t = flight.course.t[flight.first[:, None] + np.arange(flight.count + 1)]
     drift[:, 1:-1] = difference(base[:, 2:], base[:, :-2]) / (t[:, 2:] - t[:, :-2])[..., None]
     drift[:, 0], drift[:, -1] = drift[:, 1], drift[:, -2]
     drift[..., 9:] = 0.0
     return Tangent(table)
+
+
+def _parts(which: np.ndarray, length: int) -> Iterator[slice]:
+    """
+    Yield parts of sets (K,) by their numbers, the first with all of set 0.
+
+    Each set has commands and attitudes of its own along the whole flight, of so many samples.
+    """
+    many, begin = max(1, AT_ONCE // length), 0
+    while begin < len(which):
+        end = max(int((which == 0).sum()), begin + many)
+        yield slice(begin, min(end, len(which)))
+        begin = end
 
 
 @dataclass(frozen=True, eq=False)
@@ -247,7 +266,8 @@ def linear_of(tangent: Tangent, raw: np.ndarray, scale: np.ndarray, clock: bool 
     basis = np.linalg.inv(lower) @ starts
     across = basis.transpose(0, 2, 1)
     free = error - (across @ (basis @ error[..., None]))[..., 0]
-    rest = slope - (slope @ across) @ basis
+    rest = (slope @ across) @ basis
+    np.subtract(slope, rest, out=rest)
     return Linear(free, rest.transpose(0, 2, 1), raw, across, lower.transpose(0, 2, 1), error,
                   slope.transpose(0, 2, 1))
 

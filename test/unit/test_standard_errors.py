@@ -12,6 +12,7 @@ from quad_ident_ros.diagnose.fitted import Fitted, size_grids
 from quad_ident_ros.diagnose.frame import Frame, WRENCH
 from quad_ident_ros.diagnose.rules import RULES
 from quad_ident_ros.diagnose.standard_errors import standard_errors
+from quad_ident_ros.greybox.linear import Slopes, Tangent
 from quad_ident_ros.greybox.nuisances import NuisanceValues
 from quad_ident_ros.greybox.parameters import INDEX, nominal
 from quad_ident_ros.model.vehicle import load_vehicle
@@ -32,10 +33,10 @@ def estimated(form_error, seed):
     rng = np.random.default_rng(seed)
     wanted = sorted({*DRAG.columns, *WRENCH})
     length = SAMPLES * NULLS
-    slope = np.zeros((BLOCKS, length, len(wanted) + 1))
+    table = np.zeros((BLOCKS, NULLS + len(wanted) + 1, length))
     does = np.zeros((SAMPLES, NULLS))
     does[:, 3] = SLOPE
-    slope[..., wanted.index(DRAG.columns[0])] = does.ravel()
+    table[:, NULLS + wanted.index(DRAG.columns[0])] = does.ravel()
     strength = VALUE * (1.0 + form_error * rng.normal(size=BLOCKS))
     errors = strength[:, None] * does.ravel() + rng.normal(size=(BLOCKS, length))
     across = np.tile(does.ravel(), (BLOCKS, 1))
@@ -46,7 +47,7 @@ def estimated(form_error, seed):
     fit = SimpleNamespace(z=z, vectors=[z], columns=list(DRAG.columns), residuals=[residuals],
                           nuisances=NuisanceValues.of((), 1))
     frame = Frame(wanted, [np.ones((BLOCKS, length))], [np.zeros((BLOCKS, length, NULLS))],
-                  [slope], [np.arange(BLOCKS)], None)
+                  [np.arange(BLOCKS)], Slopes(z, wanted, [], [Tangent(table)]))
     grids = size_grids(VEHICLE, [np.ones(NULLS)], RULES)
     return value, standard_errors(Fitted((DRAG,), fit, 0.0, (0, 0)), frame, VEHICLE, grids, 1.0,
                                   RULES)[0]

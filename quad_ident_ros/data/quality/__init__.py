@@ -90,8 +90,8 @@ def refuted(records, vehicle):
     Rotors do not change their places from one flight to the next: where one flight shows that
     order and spins are those of the vehicle file, something else turns the body in the others.
     """
-    told = any(rotors.confirmed(record, vehicle) for record in records)
-    return ('rotor_order', 'rotor_spin') if len(records) > 1 and told else ()
+    told = len(records) > 1 and any(rotors.confirmed(record, vehicle) for record in records)
+    return ('rotor_order', 'rotor_spin') if told else ()
 
 
 def refuse_errors(record, found):

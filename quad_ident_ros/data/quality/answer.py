@@ -15,6 +15,7 @@ from scipy.interpolate import CubicSpline
 
 from quad_ident_ros.data.frames import conjugate, continuous, multiply, rotate
 from quad_ident_ros.data.quality.finding import Finding
+from quad_ident_ros.data.quality.once import once
 from quad_ident_ros.data.quality.series import attitudes_of
 
 REACH = 0.1         # s, the largest lag looked for
@@ -56,6 +57,7 @@ class Answer:
     period: float
 
 
+@once
 def answer_of(record):
     """
     Return the Answer of the commands of a record to its states, or None where there is none.

@@ -11,6 +11,7 @@ from scipy.signal import fftconvolve
 from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.quality.frames import best_reading
 from quad_ident_ros.data.quality.glitches import jumps
+from quad_ident_ros.data.quality.once import once
 from quad_ident_ros.data.quality.series import Grid
 
 WINDOW = 4.0      # s, of one estimate
@@ -47,6 +48,7 @@ class ClockOffset:
     stds: np.ndarray
 
 
+@once
 def clock_offset(record):
     """
     Return the ClockOffset of the attitude against the gyro, or None where it cannot be told.
@@ -76,6 +78,7 @@ def _without_jumps(record):
                    columns={name: values[~off] for name, values in record.columns.items()})
 
 
+@once
 def velocity_offset(record):
     """
     Return the ClockOffset of the position against the velocity, or None where it cannot be told.
@@ -90,6 +93,7 @@ def velocity_offset(record):
                    grid.smooth(grid.signal('vx', 'vy', 'vz')), answers=True)
 
 
+@once
 def command_offset(record):
     """
     Return the ClockOffset of the accelerometer against the commands, or None.

@@ -1,0 +1,35 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What checks ask of a record is worked out once, and forgotten with the record."""
+
+import gc
+import weakref
+
+from flightmaker import changed, flight
+
+from quad_ident_ros.data.quality.once import once
+
+
+def test_a_record_is_looked_at_once():
+    asked = []
+
+    @once
+    def samples(record):
+        asked.append(record)
+        return len(record)
+
+    record = flight(seconds=1.0)
+    assert [samples(record), samples(record)] == [100, 100]
+    assert len(asked) == 1
+    assert samples(flight(seconds=2.0)) == 200
+    assert len(asked) == 2
+
+
+def test_no_record_is_kept():
+    look = once(len)
+    record = changed(flight(seconds=1.0))
+    kept = weakref.ref(record)
+    look(record)
+    del record
+    gc.collect()
+    assert kept() is None
