@@ -3,7 +3,8 @@
 """
 Write the tables and pictures of docs/real_flights.md.
 
-`.venv/bin/python -m docs.real_flights FOLDER`, with the flights of NanoBench in FOLDER.
+`.venv/bin/python -m docs.real_flights FOLDER [SOURCE ...]`: FOLDER has a folder for each of SOURCES;
+without a SOURCE all of them.
 """
 
 from dataclasses import replace
@@ -11,13 +12,14 @@ from pathlib import Path
 import shutil
 import sys
 import tempfile
+import time
 
 import numpy as np
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from benchmarks.tables import DOCUMENTS, keep, markdown, number
-from quad_ident_ros.data.load import load
+from quad_ident_ros.data.load import load, load_all
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.diagnose.result import Diagnosis, Ranked
@@ -34,9 +36,63 @@ MOMENT = 3e-4       # N m about x that is added in software: 2 % of weight times
 PICTURES = ('horizons', 'map')
 
 
-def main(folder: str) -> None:
-    """Diagnose the flights as they are and tampered with, and write what was found."""
-    folder = Path(folder)
+VEHICLES = Path(__file__).parent / 'real_vehicles'
+SINGLE = {'crazyflie_usd': ('log10', 'crazyflie_27g.yaml'),
+          'px4_sitl_iris': ('quadrotor_model.csv.gz', 'iris_gazebo.yaml')}
+"""Sources of one flight: its file and the vehicle file."""
+LOGS = ('sample.ulg', 'sample_px4_events.ulg', 'sample_logging_tagged_and_default_params.ulg')
+SOURCES = ('nanobench', *SINGLE, 'px4_logs')
+
+
+def main(folder: str, *sources: str) -> None:
+    """Diagnose the flights of sources, and write what was found."""
+    for source in sources or SOURCES:
+        if source == 'nanobench':
+            nanobench(Path(folder) / source)
+        elif source in SINGLE:
+            single(source, Path(folder) / source)
+        else:
+            keep(DOCUMENT, source, logs_table(Path(folder) / source))
+
+
+def single(source: str, folder: Path) -> None:
+    """Diagnose the one flight of a source, and write the verdict and its parameters."""
+    name, described = SINGLE[source]
+    vehicle, begin = load_nominal(VEHICLES / described), time.perf_counter()
+    told = diagnose(load_all(folder / name, None, vehicle), vehicle)
+    taken = time.perf_counter() - begin
+    after, before = told.gap.after['velocity'], told.gap.before['velocity']
+    keep(DOCUMENT, source, f'Verdict: {", ".join(told.verdict)}; velocity gap '
+         f'{1e3 * told.gap.horizon:.0f} ms ahead {number(before)} m/s, with the effects named '
+         f'{number(after)} m/s; {taken:.0f} s.\n\n' + effects_rows(told))
+
+
+def effects_rows(told: Diagnosis) -> str:
+    """Return the effects that are probable, with their parameters."""
+    return markdown(('effect', 'form', 'probability', 'contribution', 'parameters'), [
+        (f'`{row.effect}`', row.form or '', f'{row.probability:.2f}', contribution_of(row),
+         ', '.join(f'{name} {number(one.value)} ± {one.std:.1g}'
+                   + (f' {one.unit}' if one.unit != '1' else '')
+                   for name, one in row.parameters.items()))
+        for row in told.ranking if row.parameters and row.probability >= WORTH])
+
+
+def logs_table(folder: Path) -> str:
+    """Return what each PX4 log holds, and what is said of it without a vehicle file."""
+    rows = []
+    for name in LOGS:
+        try:
+            found = load_all(folder / name)
+            said = '; '.join(f'{one.t[-1] - one.t[0]:.1f} s at {1.0 / one.period():.0f} Hz'
+                             for one in found)
+        except InputError as error:
+            said = str(error).partition(': ')[2]
+        rows.append((f'`{name}`', said))
+    return markdown(('log', 'flights in it'), rows)
+
+
+def nanobench(folder: Path) -> None:
+    """Diagnose the flights of NanoBench as they are and tampered with."""
     vehicle = load_nominal(folder / 'vehicle.yaml')
     flights = {name: load(folder / f'{name}.csv.gz') for name in (*TRAINING, *HELD_OUT)}
     cases = {**{f'as flown, held out: {name}': (same, name) for name in HELD_OUT},
@@ -216,6 +272,6 @@ def _moment(found: Diagnosis) -> float:
 
 
 if __name__ == '__main__':
-    if len(sys.argv) != 2:
-        sys.exit('usage: python -m docs.real_flights FOLDER')
-    main(sys.argv[1])
+    if len(sys.argv) < 2 or not set(sys.argv[2:]) <= set(SOURCES):
+        sys.exit(f'usage: python -m docs.real_flights FOLDER [{" | ".join(SOURCES)}] ...')
+    main(*sys.argv[1:])

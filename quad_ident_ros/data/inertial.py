@@ -21,11 +21,23 @@ from quad_ident_ros.model.sensors import turn, turned_on
 POSITION, VELOCITY = ('px', 'py', 'pz'), ('vx', 'vy', 'vz')
 RATE, FORCE = ('wx', 'wy', 'wz'), ('ax', 'ay', 'az')
 RECKONED = 'reckoned'
+SUMMED = 'summed'
+"""Info of a record: groups of its states that are integrals of the others."""
 
 
 def is_inertial(record: FlightRecord) -> bool:
     """Return whether a record has rates and specific force, but neither position nor velocity."""
     return record.has(*RATE, *FORCE) and not any(map(record.has, (*POSITION, *VELOCITY)))
+
+
+def with_position(record: FlightRecord) -> FlightRecord:
+    """Return a record whose position, if it has none, is the integral of its velocity from 0."""
+    if any(map(record.has, POSITION)) or not record.has(*VELOCITY):
+        return record
+    position = _integral(record.stack(*VELOCITY), np.diff(record.t)[:, None])
+    return replace(record, columns={**record.columns, **dict(zip(POSITION, position.T,
+                                                                 strict=True))},
+                   info={**record.info, SUMMED: ('position',)})
 
 
 def reckoned(record: FlightRecord, gravity: float) -> FlightRecord:
@@ -49,7 +61,8 @@ def reckoned(record: FlightRecord, gravity: float) -> FlightRecord:
     for names, values in ((POSITION, _integral(velocity, dt)), (VELOCITY, velocity),
                           (QUATERNION, quaternion)):
         columns |= dict(zip(names, values.T, strict=True))
-    return replace(record, columns=columns, info={**record.info, RECKONED: True})
+    return replace(record, columns=columns, info={
+        **record.info, RECKONED: True, SUMMED: ('position', 'attitude')})
 
 
 def _level(rotation: np.ndarray, force: np.ndarray) -> np.ndarray:

@@ -53,7 +53,8 @@ def candidates(flights: list, vehicle: Vehicle, rules: Rules,
         if effects is not None and name not in effects:
             continue
         forms = [form for form in effect.forms if (voltage or not form.needs_voltage)
-                 and not (inertial(flights) and form.needs_reference)]
+                 and not (inertial(flights) and form.needs_reference)
+                 and not (_without_height(flights) and form.needs_height)]
         for form in forms:
             place = PLACES[name, form.name]
             columns = tuple(column for column in range(SPLIT + place.start, SPLIT + place.stop)
@@ -74,8 +75,14 @@ def candidates(flights: list, vehicle: Vehicle, rules: Rules,
 
 def not_told(flights: Sequence[Flight]) -> tuple[str, ...]:
     """Return the names of the effects that no form of can be told from flights like these."""
-    return tuple(name for name, effect in EFFECTS.items() if inertial(flights)
-                 and all(form.needs_reference for form in effect.forms))
+    return tuple(name for name, effect in EFFECTS.items()
+                 if inertial(flights) and all(form.needs_reference for form in effect.forms)
+                 or _without_height(flights) and all(form.needs_height for form in effect.forms))
+
+
+def _without_height(flights: Sequence[Flight]) -> bool:
+    """Return whether the height over ground is not known."""
+    return any('position' in flight.summed for flight in flights)
 
 
 def _share(usual: bool, count: int) -> float:

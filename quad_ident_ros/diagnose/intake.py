@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from quad_ident_ros.data.clocks import Clock, clocks_of, on_one_clock
-from quad_ident_ros.data.inertial import is_inertial, reckoned
+from quad_ident_ros.data.inertial import is_inertial, reckoned, with_position
 from quad_ident_ros.data.quality import cautions, refuse_errors, refuted
 from quad_ident_ros.data.quality.finding import as_caution, Finding
 from quad_ident_ros.data.quality.fleet import vehicles
@@ -130,7 +130,7 @@ def _with_states(records: list[FlightRecord], vehicle: Vehicle, findings: list
     """
     inertial = [is_inertial(record) for record in records]
     if not any(inertial):
-        return records, vehicle
+        return [with_position(record) for record in records], vehicle
     if not all(inertial):
         [with_states, without] = (records[inertial.index(kind)].info.get('source', 'a flight')
                                   for kind in (False, True))

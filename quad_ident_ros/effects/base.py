@@ -76,7 +76,7 @@ class Form:
     what is measured of the rate) or both; on_rotors: it acts on rotors, so that a vehicle flown
     from U1..U4 needs some; needs_voltage: it acts only where the voltage is recorded;
     needs_reference: it shows only against a position, a velocity or an attitude, not in
-    accelerometer and gyro alone.
+    accelerometer and gyro alone; needs_height: it shows only where the height was measured.
     """
 
     name: str
@@ -93,6 +93,7 @@ class Form:
     on_rotors: bool = True
     needs_voltage: bool = False
     needs_reference: bool = False
+    needs_height: bool = False
 
 
 @dataclass(frozen=True)

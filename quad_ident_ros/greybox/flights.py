@@ -11,7 +11,7 @@ from scipy.ndimage import uniform_filter1d
 
 from quad_ident_ros.data.clocks import Clock
 from quad_ident_ros.data.frames import continuous
-from quad_ident_ros.data.inertial import RECKONED
+from quad_ident_ros.data.inertial import RECKONED, SUMMED
 from quad_ident_ros.data.quality import refuse_errors, timing
 from quad_ident_ros.data.quality.glitches import glitches
 from quad_ident_ros.data.record import FlightRecord
@@ -44,7 +44,8 @@ class Track:
     guide (N, 13): the states with attitudes that are off replaced, see dynamics.predict, or None
     where the motion of the centre of mass is to follow from the predicted attitude; force (N, 3)
     m/s^2, body: what an accelerometer measured, or None without one; levelled: whether the scale
-    of its commands is that by which thrust carries the weight.
+    of its commands is that by which thrust carries the weight; summed: groups of the states that
+    are integrals of the others.
     """
 
     name: str
@@ -56,6 +57,7 @@ class Track:
     guide: np.ndarray | None = field(default=None, kw_only=True)
     force: np.ndarray | None = field(default=None, kw_only=True)
     levelled: bool = field(default=False, kw_only=True)
+    summed: tuple[str, ...] = field(default=(), kw_only=True)
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,7 +96,8 @@ def track_of(record: FlightRecord, vehicle: Vehicle, reference_voltage: float | 
     if across is not None:  # the force has given the velocity, and tells nothing beside it
         course, force = replace(course, across=across[:len(states)]), None
     track = Track(record.info.get('name', 'flight'), course, states, seen, period, clock,
-                  force=force, levelled=LEVEL in record.info)
+                  force=force, levelled=LEVEL in record.info,
+                  summed=tuple(record.info.get(SUMMED, ())))
     return track if clock is None else moved(track, clock.late, clock.drift)
 
 
@@ -120,7 +123,8 @@ def flight_of(track: Track, segment: float = SEGMENT, every: float | None = None
         raise InputError(f'{track.name}: {course.t[-1]:.3g} s without a gap-free stretch of '
                          f'{segment:g} s are too short; give a longer flight')
     return Flight(track.name, course, track.states, seen, period, track.clock, first, count,
-                  guide=track.guide, force=track.force, levelled=track.levelled)
+                  guide=track.guide, force=track.force, levelled=track.levelled,
+                  summed=track.summed)
 
 
 def inertial(tracks: Iterable[Track]) -> bool:

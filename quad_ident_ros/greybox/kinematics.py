@@ -45,6 +45,8 @@ def measurement_noise(flights: Sequence[Flight], vectors: Sequence[np.ndarray],
     found = np.array(near, float)
     drifts = [_drifts(flight, z) for flight, z in zip(flights, vectors, strict=True)]
     for k, (pose, rate) in enumerate(PAIRS):
+        if any(pose in flight.summed for flight in flights):
+            continue    # it is the integral, noise and all
         lags, spread = _spreads(flights, [drift[k] for drift in drifts], GROUPS[pose])
         if not len(lags):
             continue

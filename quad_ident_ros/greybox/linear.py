@@ -9,7 +9,7 @@ import numpy as np
 
 from quad_ident_ros.effects import registry
 from quad_ident_ros.greybox.errors import difference, ERRORS, GROUPS, moved, slopes
-from quad_ident_ros.greybox.flights import Flight, inertial
+from quad_ident_ros.greybox.flights import Flight
 from quad_ident_ros.greybox.parameters import constants_of, limits, SPLIT
 from quad_ident_ros.model.dynamics import predict
 from quad_ident_ros.model.vehicle import Vehicle
@@ -96,12 +96,12 @@ def seen_along(flight: Flight) -> np.ndarray:
     """
     Return whether each of these errors counts, (B, count + 1, 12).
 
-    Reckoned positions and attitudes are sums of what the velocity and the rate say, too: where
-    each rollout begins they count, and from there on they tell nothing more.
+    Positions and attitudes that are sums of velocity and rate tell nothing beside these, but where
+    each rollout begins.
     """
     seen = flight.seen[flight.first[:, None] + np.arange(flight.count + 1)]
-    if inertial([flight]):
-        seen[:, 1:, GROUPS['position']] = seen[:, 1:, GROUPS['attitude']] = False
+    for name in flight.summed:
+        seen[:, 1:, GROUPS[name]] = False
     return seen
 
 
