@@ -3,8 +3,8 @@
 """
 Write the tables and pictures of docs/real_flights.md.
 
-`.venv/bin/python -m docs.real_flights FOLDER [SOURCE ...]`: FOLDER has a folder for each of SOURCES;
-without a SOURCE all of them.
+`.venv/bin/python -m docs.real_flights FOLDER [SOURCE ...]`: FOLDER has a folder for each source;
+without a SOURCE all of SOURCES are taken.
 """
 
 from dataclasses import replace
