@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from quad_ident_ros.diagnose.candidates import Candidate, nuisance_candidates
-from quad_ident_ros.diagnose.discrepancy import AXES
+from quad_ident_ros.diagnose.discrepancy import AXES, log_likelihood, scales
 from quad_ident_ros.diagnose.evidence import beam, key_of, Quadratic
 from quad_ident_ros.diagnose.fitted import (
     distances_of,
@@ -20,7 +20,7 @@ from quad_ident_ros.diagnose.fitted import (
     size_grids,
     within_bounds,
 )
-from quad_ident_ros.diagnose.frame import Frame, frame_at, normal_at
+from quad_ident_ros.diagnose.frame import blocks_at, Frame, frame_at, normal_at
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.diagnose.standard_errors import standard_errors
 from quad_ident_ros.effects.registry import EFFECTS
@@ -144,9 +144,11 @@ class _Search:
         """
         assert self.best is not None
         fit, slow = self.best.estimate, self.slow_wrench()
+        # Sizes are known to a step of the grid that they are on, a factor of 3.
         changed = (slow is None) != (self.slow is None) or (
-            slow is not None and self.slow is not None and not np.array_equal(slow, self.slow))
-        if changed and slow is not None:
+            slow is not None and self.slow is not None
+            and not np.allclose(slow, self.slow, rtol=0.5, atol=0.0))
+        if changed:
             fit = refitted(self.flights, self.vehicle, fit.z, self.best.chosen, self.noise,
                            fit.nuisances, fit.starts, self.frame.slopes, slow=slow)
         noise = self.whole_noise(fit)
@@ -175,11 +177,23 @@ class _Search:
         return found
 
     def slow_wrench(self) -> np.ndarray | None:
-        """Return the likeliest size (6,) of force and moment that the best set leaves, or None."""
+        """
+        Return the likeliest size (6,) of force and moment that the best set of effects leaves.
+
+        None where the flights are not inertial: the air is modelled there. None also where they
+        are hardly likelier than none: two numbers that are chosen.
+        """
         assert self.best is not None
+        if not inertial(self.flights):
+            return None
+        fit, chosen = self.best.estimate, self.best.chosen
         force, moment = (float(grid[k]) for grid, k in zip(self.grids, self.best.sizes,
                                                            strict=True))
-        return np.repeat([force, moment], AXES) if force or moment else None
+        blocks = blocks_at(self.frame, fit, distances_of(chosen, fit, self.vehicle))
+        gain, none = (log_likelihood(blocks, scales(*sizes, self.rules.form_error,
+                                                    blocks.gram.shape[1]), self.quadratic.scatter)
+                      for sizes in ((force, moment), (0.0, 0.0)))
+        return np.repeat([force, moment], AXES) if gain - none > self.rules.alike else None
 
     def look_among(self, causes: tuple[Candidate, ...], on_progress: Callable[[float], None]
                    ) -> None:
@@ -236,7 +250,9 @@ class _Search:
         null = nominal(self.vehicle)[self.columns]
         spreads = np.tile(everyone.spreads, len(self.flights))
         beyond = np.full(len(spreads), np.inf)
-        scatter = float(np.median(scatter_of(normal)[:len(self.columns)]))
+        # Without candidates there is nothing whose gradient could scatter.
+        scatter = (float(np.median(scatter_of(normal)[:len(self.columns)])) if self.columns
+                   else 1.0)
         return Quadratic(normal.information, normal.gradient, normal.cost,
                          np.append(fit.z[self.columns] - null, everyone.values),
                          np.append(wide, spreads),

@@ -35,7 +35,7 @@ def test_the_errors_are_weighed_by_what_remains_of_them(flown):
     intake = take_in(flights, vehicle, None, RULES)
     selection = select(intake.flights, vehicle, candidates(intake.flights, vehicle, RULES), RULES)
     remains = [whole_noise(raw, 1.0 - 1.0 / raw.shape[1])
-               for raw in selection.best.estimate.residuals]
+               for raw in selection.best.estimate.quiet]
     ratio = np.median(np.array(remains) / selection.noise, axis=0)
     assert (ratio < RULES.coloured).all() and (ratio > 1.0 / RULES.coloured).all()
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from quad_ident_ros.data.inertial import is_inertial, reckoned
+from quad_ident_ros.data.inertial import is_inertial, reckoned, with_position
 from quad_ident_ros.data.load import load_all
 from quad_ident_ros.data.quality.ground import airborne, resting
 from quad_ident_ros.data.record import FlightRecord
@@ -119,6 +119,27 @@ def test_what_motors_do_is_told_without_a_pose(effects):
     assert not UNTOLD & {*told.verdict}
     assert set(told.not_shown) >= UNTOLD
     assert any(finding['code'] == 'inertial' for finding in told.findings)
+
+
+def test_a_position_that_is_missing_is_the_integral_of_the_velocity():
+    record = flown(duration=5.0)
+    made = with_position(FlightRecord(record.t, {
+        name: values for name, values in record.columns.items() if name[0] != 'p'}))
+    moved = record.stack('px', 'py', 'pz') - record.stack('px', 'py', 'pz')[0]
+    np.testing.assert_allclose(made.stack('px', 'py', 'pz'), moved, atol=1e-3)
+    assert with_position(record) is record
+
+
+@pytest.mark.slow
+def test_a_drag_is_told_without_a_position():
+    flights = [flown({'rotor_drag': {'coefficient': 0.4}}, path, seed, 20.0, noise=MOCAP_IMU)
+               for seed, path in enumerate(('figure8', 'lissajous', 'low_passes'))]
+    told = diagnose([FlightRecord(one.t, {name: values for name, values in one.columns.items()
+                                          if name[0] != 'p'}, one.info) for one in flights], IRIS)
+    assert told.verdict == ('rotor_drag',)
+    value = told.ranking[0].parameters['coefficient']
+    assert abs(value.value - 0.4) < 4.0 * value.std
+    assert 'ground_effect' in told.not_shown
 
 
 @pytest.mark.slow

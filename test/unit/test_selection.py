@@ -33,7 +33,7 @@ def fitted(chosen, value, error, evidence):
 
 
 def errors(*sets, least=0.0):
-    return Selection(sets[0], sets, {}, None, {}, [], None, np.array([least])).errors
+    return Selection(sets[0], sets, {}, None, {}, [], np.array([least])).errors
 
 
 NARROW = fitted((EFFECT, own(0.003)), 1.0, 0.1, 0.0)
@@ -54,7 +54,7 @@ def test_a_form_at_its_bound_gives_way_to_the_best_of_all_sets_that_were_fitted(
     evidence = {(odd,): 100.0, (usual,): 0.0, (other,): 90.0}
     search = object.__new__(_Search)
     search.all_causes, search.rules, search.ranked = (usual, odd, other), RULES, []
-    search.flights = search.vehicle = search.noise = None
+    search.flights = search.vehicle = search.noise = search.slow = None
     search.quadratic = SimpleNamespace(scatter=1.0)
     search.tried = {key: SimpleNamespace(cost=-value) for key, value in evidence.items()}
     search.judged = {}
@@ -66,7 +66,7 @@ def test_a_form_at_its_bound_gives_way_to_the_best_of_all_sets_that_were_fitted(
     search.judge = judge
     judge((odd,))
     monkeypatch.setattr(selecting, 'within_bounds',
-                        lambda *_: ((usual,), search.tried[(usual,)]))
+                        lambda *_, slow=None: ((usual,), search.tried[(usual,)]))
     monkeypatch.setattr(selecting, 'out_of_bounds', lambda cause, *_: cause is odd)
     search.settle()
     assert search.best.chosen == (other,)
