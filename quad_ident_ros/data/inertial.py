@@ -3,7 +3,7 @@
 """
 States reckoned from accelerometer and gyro alone, for records without position and velocity.
 
-Over the half second of a prediction the errors of such dead reckoning are small, and gravity,
+Over the tenth of a second of a prediction the errors of such dead reckoning are small, and gravity,
 which enters both the reckoned and the predicted motion, cancels. Over a flight they grow without
 bounds: where the vehicle is, how fast it flies through the air and which way is up is not known.
 Source: strapdown equations, Titterton and Weston, Strapdown Inertial Navigation Technology, 2004.
@@ -20,6 +20,8 @@ from quad_ident_ros.model.sensors import turn, turned_on
 
 POSITION, VELOCITY = ('px', 'py', 'pz'), ('vx', 'vy', 'vz')
 RATE, FORCE = ('wx', 'wy', 'wz'), ('ax', 'ay', 'az')
+GAP = 0.15      # s; the slowest records that bear a diagnosis have shorter steps
+
 RECKONED = 'reckoned'
 SUMMED = 'summed'
 """Info of a record: groups of its states that are integrals of the others."""
@@ -27,14 +29,15 @@ SUMMED = 'summed'
 
 def is_inertial(record: FlightRecord) -> bool:
     """Return whether a record has rates and specific force, but neither position nor velocity."""
-    return record.has(*RATE, *FORCE) and not any(map(record.has, (*POSITION, *VELOCITY)))
+    return (record.has(*RATE, *FORCE) and not record.has(*POSITION)
+            and not record.has(*VELOCITY))
 
 
 def with_position(record: FlightRecord) -> FlightRecord:
     """Return a record whose position, if it has none, is the integral of its velocity from 0."""
-    if any(map(record.has, POSITION)) or not record.has(*VELOCITY):
+    if record.has(*POSITION) or not record.has(*VELOCITY):
         return record
-    position = _integral(record.stack(*VELOCITY), np.diff(record.t)[:, None])
+    position = _integral(record.stack(*VELOCITY), _steps(record))
     return replace(record, columns={**record.columns, **dict(zip(POSITION, position.T,
                                                                  strict=True))},
                    info={**record.info, SUMMED: ('position',)})
@@ -49,8 +52,8 @@ def reckoned(record: FlightRecord, gravity: float) -> FlightRecord:
     that of a filter which levels itself does not turn as the gyro does.
     Args: gravity m/s^2.
     """
-    t, rate, force = record.t, record.stack(*RATE), record.stack(*FORCE)
-    dt = np.diff(t)[:, None]
+    rate, force = record.stack(*RATE), record.stack(*FORCE)
+    dt = _steps(record)
     quaternion = turned_on(turn(0.5 * (rate[1:] + rate[:-1]) * dt))
     rotation = _level(rotation_matrix(quaternion), force)
     world = np.einsum('nij,nj->ni', rotation, force) - [0.0, 0.0, gravity]
@@ -63,6 +66,12 @@ def reckoned(record: FlightRecord, gravity: float) -> FlightRecord:
         columns |= dict(zip(names, values.T, strict=True))
     return replace(record, columns=columns, info={
         **record.info, RECKONED: True, SUMMED: ('position', 'attitude')})
+
+
+def _steps(record: FlightRecord) -> np.ndarray:
+    """Return the steps in time (N - 1, 1), s; over a gap nothing is integrated."""
+    steps = np.diff(record.t)
+    return np.where(steps > GAP, 0.0, steps)[:, None]
 
 
 def _level(rotation: np.ndarray, force: np.ndarray) -> np.ndarray:

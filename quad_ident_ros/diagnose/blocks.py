@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from quad_ident_ros.greybox.flights import Track
+from quad_ident_ros.greybox.flights import inertial, Track
 
 BLOCK = 3.0     # s: room for a few rollouts, and the errors of a formula hang together for one
 
@@ -39,6 +39,8 @@ def _motion(track: Track, block: np.ndarray, count: int) -> np.ndarray:
                          np.linalg.norm(track.course.commands, axis=1))
     signals = np.column_stack([track.states[:, 3:6], track.states[:, 10:13],
                                commands - commands.mean()]) ** 2
+    if inertial([track]):   # reckoned velocities drift
+        signals = signals[:, 3:]
     sums = np.stack([np.bincount(block, column, minlength=count) for column in signals.T], axis=1)
     return sums / np.maximum(sums.sum(axis=0), 1e-300)
 

@@ -47,6 +47,11 @@ def diagnose(records: Iterable[FlightRecord], vehicle: Vehicle, *,
     every = candidates(intake.flights, vehicle, rules, effects)
     causes = tuple(cause for cause in every if cause.effect not in intake.refuted)
     ruled_out = tuple(dict.fromkeys(cause.effect for cause in every if cause not in causes))
+    if not causes:
+        raise InputError(f'these flights tell nothing of {", ".join(effects or EFFECTS)}: '
+                         + (f'{", ".join(ruled_out)} is ruled out by measured rotor speeds'
+                            if ruled_out else 'what they lack is in docs/diagnosis.md')
+                         + '; name other effects')
     selection = select(intake.flights, vehicle, causes, rules,
                        lambda share: on_progress(0.7 * share))
     prompt = late_controller(selection, intake.flights)

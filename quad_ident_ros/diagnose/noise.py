@@ -33,8 +33,10 @@ def noise_of(selection: Selection, intake: Intake, rules: Rules) -> Noise:
     period = float(np.median([flight.period for flight in intake.flights]))
     steady = max(0.0, float(np.mean(deviation[attitude] ** 2 - white[attitude] ** 2)))
     mean = float(np.mean(white[attitude] ** 2)) * period / horizon_of(intake.flights)
-    levels = (np.mean(near[attitude]) < rules.filtered_attitude
-              and np.mean(near[position]) > rules.tracked_position)
+    # A position that is the integral of the velocity has no noise to go by.
+    summed = {name for flight in intake.flights for name in flight.summed}
+    levels = ('attitude' not in summed and np.mean(near[attitude]) < rules.filtered_attitude
+              and ('position' in summed or np.mean(near[position]) > rules.tracked_position))
     level, drift = (rules.levelling, rules.drift) if levels else (0.0, 0.0)
     walk = rate_walk([(raw[..., GROUPS['rate']], flight.period) for raw, flight in
                       zip(best.residuals, intake.flights, strict=True)], rules.shown)

@@ -10,7 +10,7 @@ import numpy as np
 from quad_ident_ros.diagnose.accelerometer import residual_force
 from quad_ident_ros.effects.registry import SLICES
 from quad_ident_ros.greybox.estimate import settled, weights_of
-from quad_ident_ros.greybox.flights import Flight, flight_of, Track
+from quad_ident_ros.greybox.flights import Flight, flight_of, inertial, Track
 from quad_ident_ros.greybox.linear import errors_along, linearise, WRENCH
 from quad_ident_ros.greybox.parameters import SPLIT
 from quad_ident_ros.model.attitude import rotation_matrix
@@ -21,6 +21,7 @@ WINDOW = 0.2        # s over which force and moment are taken as constant,
 EVERY = 0.05        # s from one such window to the next: up to 5 Hz are seen
 STRETCH = 25.0      # s without a break that spectra are taken of,
 STRETCHES = 4       # and how many of them, spread over a longer flight
+AIR = ('horizontal air speed', 'air speed forward', 'air speed to the left', 'climb speed')
 FEWEST = 8          # windows of a stretch that has a spectrum
 COLUMNS = list(WRENCH)
 
@@ -173,7 +174,7 @@ def _features(flight: Flight, middle: np.ndarray, vehicle: Vehicle, z: np.ndarra
     given = np.searchsorted(course.stamps, course.t[middle], side='right') - 1
     speeds = course.commands[np.maximum(given, 0)]
     thrust = vehicle.thrust_coefficient * np.sum(speeds ** 2, axis=1)
-    return {
+    features = {
         'horizontal air speed': ('m/s', np.hypot(air[:, 0], air[:, 1])),
         'air speed forward': ('m/s', air[:, 0]),
         'air speed to the left': ('m/s', air[:, 1]),
@@ -187,3 +188,5 @@ def _features(flight: Flight, middle: np.ndarray, vehicle: Vehicle, z: np.ndarra
         'fall of the voltage': ('V', flight.course.volt_drop[middle]),
         'time of flight': ('s', flight.course.t[middle]),
     }
+    unknown = ([*AIR, 'height'] if inertial([flight]) else ['height'] if flight.summed else [])
+    return {name: feature for name, feature in features.items() if name not in unknown}

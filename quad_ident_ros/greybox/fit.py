@@ -10,8 +10,10 @@ import numpy as np
 
 from quad_ident_ros import __version__
 from quad_ident_ros.data.clocks import clocks_of, on_one_clock
+from quad_ident_ros.data.inertial import is_inertial, with_position
 from quad_ident_ros.data.record import FlightRecord, refuse_twice
 from quad_ident_ros.effects.registry import mapping
+from quad_ident_ros.errors import InputError
 from quad_ident_ros.greybox.errors import GROUPS, UNITS
 from quad_ident_ros.greybox.estimate import Estimate, estimate
 from quad_ident_ros.greybox.flights import Flight, highest_voltage, track_of
@@ -77,6 +79,12 @@ def fit(records: Sequence[FlightRecord], vehicle: Vehicle, names: Iterable[str],
     """
     free = columns_of_names(names, vehicle)
     refuse_twice(records)
+    for record in records:
+        if is_inertial(record):
+            raise InputError(f'{record.info.get("source") or record.info.get("name", "a flight")}: '
+                             'it has neither position nor velocity, which a fit needs; diagnose '
+                             'takes flights of accelerometer, gyro and commands alone')
+    records = [with_position(record) for record in records]
     voltage = highest_voltage(records)
     start, sizes = as_described(vehicle), limits(vehicle)[2]
     records, _, answers = zip(*on_one_clock(records), strict=True)

@@ -17,6 +17,7 @@ from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import MOCAP_IMU
+from quad_ident_ros.greybox.fit import fit
 from quad_ident_ros.model.attitude import rotation_matrix
 from quad_ident_ros.model.vehicle import load_vehicle, vehicle_from_mapping
 
@@ -91,6 +92,32 @@ def test_ground_time_and_blows_are_left_out():
     for name in columns:
         columns[name][falls] = 0.0
     assert not resting(FlightRecord(record.t, columns, record.info), IRIS).any()
+
+
+def test_vibration_is_no_blow():
+    record = bare(flown(duration=6.0))
+    shaken = {name: values + (6.0 * np.random.default_rng(1).standard_normal(len(values))
+                              if name[0] == 'a' else 0.0)
+              for name, values in record.columns.items()}
+    t = record.t / 5.0      # as fast as a log of 1 kHz
+    assert not resting(FlightRecord(t, shaken, record.info), IRIS).any()
+
+
+def test_what_needs_a_reference_says_so():
+    lone = [bare(flown(seed=seed, duration=6.0)) for seed in range(2)]
+    with pytest.raises(InputError, match='tell nothing of wind.*name other effects'):
+        diagnose(lone, IRIS, effects=['wind'])
+    with pytest.raises(InputError, match='neither position nor velocity.*diagnose'):
+        fit(lone[:1], IRIS, ['mass'])
+
+
+def test_nothing_is_reckoned_over_a_gap():
+    record = bare(flown(duration=6.0))
+    late = np.where(record.t > 3.0, record.t + 60.0, record.t)
+    made = [reckoned(one, G) for one in (record, FlightRecord(late, record.columns))]
+    jump = np.flatnonzero(np.diff(late) > 1.0)[0]
+    before, after = (made[1].stack('qw', 'qx', 'qy', 'qz')[k] for k in (jump, jump + 1))
+    np.testing.assert_allclose(before, after, atol=1e-9)
 
 
 def test_flights_with_and_without_a_pose_do_not_mix():

@@ -5,6 +5,7 @@
 from dataclasses import replace
 
 import numpy as np
+from scipy.ndimage import uniform_filter1d
 
 from quad_ident_ros.data.inertial import FORCE, is_inertial
 from quad_ident_ros.data.quality.finding import Finding
@@ -19,6 +20,7 @@ CLEAR = 0.05        # m above the height of standing where the ground is left
 CARRIED = 3.0       # m/s: what is faster is in no hand, and its drag may hold it up
 FALLING = 0.5       # of g: with less force on it the vehicle falls, and flies
 BESIDE = 0.5        # s before and after that or a blow: of take-off, landing, tumbling
+HIT = 0.01          # s over which a force is averaged: blows last longer than a vibration does
 BLOW = 3.0          # times the strongest thrust: no rotor gives that force
 USUAL = 0.97        # quantile of what the commands give of the force, unless all of it is carried
 
@@ -147,7 +149,9 @@ def unflown(record: FlightRecord, vehicle: Vehicle) -> np.ndarray:
     if thrust is None or not is_inertial(record) or not (thrust > 0).any():
         return found
     weight = vehicle.mass * vehicle.gravity
-    force = vehicle.mass * np.linalg.norm(record.stack(*FORCE), axis=1)
+    size = max(1, round(HIT / record.period()))
+    force = vehicle.mass * np.linalg.norm(uniform_filter1d(
+        record.stack(*FORCE), size, axis=0, mode='nearest'), axis=1)
     usual = min(float(np.median(thrust[thrust > 0])), weight)
     blows = force > BLOW * max(float(np.quantile(thrust, USUAL)), weight)
     idle = (thrust < IDLE * usual) & (force > FALLING * weight)
