@@ -3,9 +3,10 @@
 """
 States reckoned from accelerometer and gyro alone, for records without position and velocity.
 
-Over the tenth of a second of a prediction the errors of such dead reckoning are small, and gravity,
-which enters both the reckoned and the predicted motion, cancels. Over a flight they grow without
-bounds: where the vehicle is, how fast it flies through the air and which way is up is not known.
+Over the tenth of a second of a prediction the errors of such dead reckoning are small, and
+gravity, which enters both the reckoned and the predicted motion, cancels. Over a flight they grow
+without bounds: where the vehicle is, how fast it flies through the air and which way is up is not
+known.
 Source: strapdown equations, Titterton and Weston, Strapdown Inertial Navigation Technology, 2004.
 """
 

@@ -81,9 +81,9 @@ def fit(records: Sequence[FlightRecord], vehicle: Vehicle, names: Iterable[str],
     refuse_twice(records)
     for record in records:
         if is_inertial(record):
-            raise InputError(f'{record.info.get("source") or record.info.get("name", "a flight")}: '
-                             'it has neither position nor velocity, which a fit needs; diagnose '
-                             'takes flights of accelerometer, gyro and commands alone')
+            name = record.info.get('source') or record.info.get('name', 'a flight')
+            raise InputError(f'{name}: it has neither position nor velocity, which a fit needs; '
+                             'diagnose takes flights of accelerometer, gyro and commands alone')
     records = [with_position(record) for record in records]
     voltage = highest_voltage(records)
     start, sizes = as_described(vehicle), limits(vehicle)[2]
