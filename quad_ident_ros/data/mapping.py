@@ -180,8 +180,11 @@ def rotor_speeds(where, outputs, actuators, vehicle):
     chosen = chosen_outputs(where, outputs, actuators, vehicle)
     if actuators.kind in TO_SPEED:
         return chosen * TO_SPEED[actuators.kind]
-    return motors.rotor_speeds(motors_of(where, actuators, vehicle), chosen,
-                               _thrust_coefficient(vehicle))
+    found = motors_of(where, actuators, vehicle)
+    if not found.whole:
+        raise InputError(f'{where}: actuators: the rotor speed at the maximum is not known; give '
+                         f'speeds: [low, high] in rad/s, or {vehicle.name} a speed_max (rad/s)')
+    return motors.rotor_speeds(found, chosen, _thrust_coefficient(vehicle))
 
 
 def chosen_outputs(where, outputs, actuators, vehicle):

@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The mapping file, and the rotor speeds that outputs stand for."""
 
+from dataclasses import replace
+import math
 from pathlib import Path
 import re
 
@@ -12,9 +14,10 @@ import pytest
 from records import FAST
 import yaml
 
-from quad_ident_ros.data.mapping import mapping_from, rotor_speeds
+from quad_ident_ros.data.mapping import Actuators, mapping_from, rotor_speeds
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.motors import motors_from
+from quad_ident_ros.model.vehicle import load_vehicle
 
 
 def test_the_mapping_file_of_the_documents_is_one():
@@ -81,6 +84,13 @@ def test_outputs_become_speeds():
     np.testing.assert_allclose(rotor_speeds('x', [[0.25, 1.0]], thrust, None), [[500, 1000]])
     rpm = mapping_from({'actuators': {'kind': 'rpm'}}, 'm').actuators
     np.testing.assert_allclose(rotor_speeds('x', [[60.0]], rpm, None), [[2 * np.pi]])
+
+
+def test_speeds_that_no_file_has_are_asked_for():
+    vehicle = replace(load_vehicle('iris'), motors=None, speed_max=math.inf)
+    with pytest.raises(InputError, match='give speeds: .low, high.*speed_max') as caught:
+        rotor_speeds('x', [[0.5] * 4], Actuators((1, 2, 3, 4), 'normalised'), vehicle)
+    assert len(str(caught.value).splitlines()) == 1
 
 
 @given(st.recursive(st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=8),
