@@ -16,6 +16,7 @@ from quad_ident_ros.errors import InputError
 from quad_ident_ros.model import motors
 from quad_ident_ros.model.attitude import quaternion_from_euler
 from quad_ident_ros.model.motors import KINDS, Motors, TO_SPEED
+from quad_ident_ros.model.vehicle import Vehicle
 
 ROLES = ('pose', 'position', 'attitude', 'velocity', 'rate', 'specific_force', 'commands',
          'rotors', 'battery')
@@ -50,15 +51,16 @@ class Actuators:
     How actuator outputs become rotor speeds.
 
     order: for each rotor of the vehicle file the number of its output, from 1; empty: as they
-    come. kind: one of KINDS. minimum, maximum: outputs at the lowest and at the full speed.
-    speeds: these two in rad/s, or None for those of the vehicle. curve: linear, the speed is
-    linear in the output; thrust, its square is.
+    come. kind: one of KINDS. minimum, maximum: outputs at the lowest and at the full speed; None
+    for those of the vehicle's motors of this kind, or else of the kind. speeds: these two in
+    rad/s, or None for those of the vehicle. curve: linear, the speed is linear in the output;
+    thrust, its square is.
     """
 
     order: tuple = ()
     kind: str = 'speed'
-    minimum: float = 0.0
-    maximum: float = 1.0
+    minimum: float = None
+    maximum: float = None
     speeds: tuple = None
     curve: str = 'linear'
 
@@ -180,8 +182,11 @@ def rotor_speeds(where, outputs, actuators, vehicle):
     chosen = chosen_outputs(where, outputs, actuators, vehicle)
     if actuators.kind in TO_SPEED:
         return chosen * TO_SPEED[actuators.kind]
-    return motors.rotor_speeds(motors_of(where, actuators, vehicle), chosen,
-                               _thrust_coefficient(vehicle))
+    found = motors_of(where, actuators, vehicle)
+    if not found.whole:
+        raise InputError(f'{where}: actuators: the rotor speed at the maximum is not known; give '
+                         f'speeds: [low, high] in rad/s, or {vehicle.name} a speed_max (rad/s)')
+    return motors.rotor_speeds(found, chosen, _thrust_coefficient(vehicle))
 
 
 def chosen_outputs(where, outputs, actuators, vehicle):
@@ -203,11 +208,12 @@ def motors_of(where, actuators, vehicle):
     Return the model.motors.Motors that Actuators stand for.
 
     Without speeds of their own the map is that of the vehicle's motors, or goes from its lowest
-    to its highest speed; where neither is known their gain is not. InputError without a vehicle.
+    to its highest speed; where neither is known their gain is not. Raises InputError without a
+    vehicle, and where its map is of another kind of output and nothing says how that goes in.
     """
     if actuators.kind in TO_SPEED:
         return Motors(actuators.kind)
-    limits = {'kind': actuators.kind, 'minimum': actuators.minimum, 'maximum': actuators.maximum}
+    limits = {'kind': actuators.kind, **_limits(where, actuators, vehicle)}
     speeds = actuators.speeds
     if speeds is None and vehicle is None:
         raise InputError(f'{where}: actuators: the rotor speeds at minimum and maximum are not '
@@ -223,6 +229,25 @@ def motors_of(where, actuators, vehicle):
         return Motors(**limits, gives='speed', offset=low, gain=high - low)
     k = _thrust_coefficient(vehicle)
     return Motors(**limits, gives='thrust', offset=k * low ** 2, gain=k * (high ** 2 - low ** 2))
+
+
+def _limits(where: str, actuators: Actuators, vehicle: Vehicle | None) -> dict[str, float]:
+    """Return the outputs at the lowest and at the full speed, by name; InputError."""
+    said = {key: getattr(actuators, key) for key in ('minimum', 'maximum')}
+    told = None if vehicle is None else vehicle.motors
+    usual = dict(zip(said, KINDS[actuators.kind], strict=True))
+    if told is not None and told.kind == actuators.kind:
+        usual = {key: getattr(told, key) for key in said}
+    elif (told is not None and told.gives and actuators.speeds is None
+          and None in said.values()):
+        raise InputError(f'{where}: actuators: kind: {actuators.kind}, and the map of the motors '
+                         f'of {vehicle.name} is of {told.kind}; give minimum and maximum, the '
+                         'outputs at its ends, or speeds: [low, high] in rad/s')
+    limits = {key: usual[key] if value is None else value for key, value in said.items()}
+    if limits['maximum'] <= limits['minimum']:
+        raise InputError(f'{where}: actuators: maximum: {limits["maximum"]:g} is not above the '
+                         f'minimum, {limits["minimum"]:g}')
+    return limits
 
 
 def _thrust_coefficient(vehicle):
@@ -285,15 +310,14 @@ def _actuators(where, data):
     schema.check_keys(where, data, ('order', 'kind', 'minimum', 'maximum', 'speeds', 'curve'),
                       ('kind',))
     kind = schema.choice(f'{where}: kind', data['kind'], tuple(KINDS))
-    low, high = KINDS[kind] or (0.0, 1.0)
     if KINDS[kind] is None:
         for key in ('minimum', 'maximum', 'speeds', 'curve'):
             if key in data:
                 raise InputError(f'{where}: {key}: outputs of kind {kind} are rotor speeds '
                                  'already; leave it out')
-    minimum = schema.number(f'{where}: minimum', data.get('minimum', low))
-    maximum = schema.number(f'{where}: maximum', data.get('maximum', high))
-    if maximum <= minimum:
+    minimum, maximum = (schema.number(f'{where}: {key}', data[key]) if key in data else None
+                        for key in ('minimum', 'maximum'))
+    if minimum is not None and maximum is not None and maximum <= minimum:
         raise InputError(f'{where}: maximum: {maximum:g} is not above the minimum, {minimum:g}')
     order = data.get('order', [])
     if not isinstance(order, list) or len(order) > 64 or ('order' in data and not order):

@@ -120,7 +120,10 @@ def _signals(record: FlightRecord, vehicle: Vehicle | None,
     """Return the signals (N, n) of the rotors, nan where a motor is off; InputError."""
     where, names = _where(record), record.numbered('output')
     values = record.stack(*names)
-    values = np.where(values == MOTORS_OFF, np.nan, values)
+    if not np.isfinite(values).any():
+        raise InputError(f'{where}: {names[0]}..{len(names)} hold no finite number; log the '
+                         'outputs to the motors, or leave these columns out')
+    values = np.where(np.isfinite(values) & (values != MOTORS_OFF), values, np.nan)
     if actuators is not None:
         return chosen_outputs(where, values, actuators, vehicle)
     assert vehicle is not None

@@ -40,7 +40,8 @@ def commands(path: str | Path, topic: str, outputs: Samples, measured: Samples |
     Return (columns of commands, columns rotor1..N of measured speeds); what was done is noted.
 
     Commands are cmd1..N by the log's parameters, or output1..N in the order of the rotors for a
-    mapping or the motors of the vehicle file, or where the log does not know their map.
+    mapping or the motors of the vehicle file, or where the log does not know their map. Where
+    nothing has the speed at full signal, output1..N are shares of it, 0 to 1.
     Args: outputs (stamps (n,) ns, values (n, m)); measured the same in rad/s in the order of the
     motors, or None; actuators of the mapping or None; vehicle, motors (px4_airframe.Motors) or
     None; parameters of the log; simulated: whether it is of PX4's simulator.
@@ -70,9 +71,15 @@ def commands(path: str | Path, topic: str, outputs: Samples, measured: Samples |
                 notes.append(UNORDERED.format(topic=topic))
         return _named('output', np.where(np.isfinite(values), values, MOTORS_OFF)), speeds
     made, said = _map(signal, stamps, measured, parameters)
+    told = made.speeds is not None or np.isfinite(vehicle.speed_max)
+    ends = '' if made.speeds is not None else (
+        '; speeds at its ends from the vehicle file' if told else
+        '; neither the log nor the vehicle file has the speed at full signal')
     notes.append(f'commands: {topic} ({what}), motors {_listed(order)} of the log by their '
-                 f'direction ({motors.source}); {said}')
+                 f'direction ({motors.source}); {said}{ends}')
     share = _relative(signal, topic, made, parameters)
+    if not told:
+        return _named('output', _share_of_speed(share[:, [k - 1 for k in order]], made)), speeds
     return _named('cmd', rotor_speeds(where, share, replace(made, order=order), vehicle)), speeds
 
 
@@ -133,11 +140,9 @@ def _map(signal: np.ndarray, stamps: np.ndarray, measured: Samples | None,
     factor = thrust_factor(parameters)
     if factor:
         return Actuators((), 'normalised', 0.0, 1.0, None, 'thrust'), (
-            f'thrust is {factor:g} x^2 + {1 - factor:.3g} x of the signal x (THR_MDL_FAC); '
-            'speeds at its ends from the vehicle file')
+            f'thrust is {factor:g} x^2 + {1 - factor:.3g} x of the signal x (THR_MDL_FAC)')
     return Actuators((), 'normalised', 0.0, 1.0, None, 'linear'), (
-        'rotor speed linear in the signal (THR_MDL_FAC is not set); speeds at its ends from the '
-        'vehicle file')
+        'rotor speed linear in the signal (THR_MDL_FAC is not set)')
 
 
 def _relative(signal: np.ndarray, topic: str, made: Actuators,
@@ -147,6 +152,14 @@ def _relative(signal: np.ndarray, topic: str, made: Actuators,
     if made.curve != 'thrust' or made.speeds is not None or topic == 'actuator_motors':
         return signal   # actuator_motors is a share of thrust, before THR_MDL_FAC is applied
     return np.where(signal > 0, factor * signal ** 2 + (1 - factor) * signal, signal)
+
+
+def _share_of_speed(share: np.ndarray, made: Actuators) -> np.ndarray:
+    """Return shares (n, motors) of the full speed, of those that the Actuators are of."""
+    share = np.where(share >= 0.0, np.minimum(share, 1.0), MOTORS_OFF)
+    if made.curve == 'thrust':      # thrust goes with the square of the speed
+        share = np.where(share > 0.0, np.sqrt(np.maximum(share, 0.0)), share)
+    return share
 
 
 def _within(values: np.ndarray, low: float, high: float) -> bool:

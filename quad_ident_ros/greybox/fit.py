@@ -12,6 +12,7 @@ from quad_ident_ros import __version__
 from quad_ident_ros.data.clocks import clocks_of, on_one_clock
 from quad_ident_ros.data.inertial import is_inertial, with_position
 from quad_ident_ros.data.record import FlightRecord, refuse_twice
+from quad_ident_ros.data.thrust_level import LEVEL, on_one_level
 from quad_ident_ros.effects.registry import mapping
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.greybox.errors import GROUPS, UNITS
@@ -22,13 +23,16 @@ from quad_ident_ros.greybox.identifiable import correlated, Freedom, freedoms
 from quad_ident_ros.greybox.near import near_flights
 from quad_ident_ros.greybox.noise import quick_noise
 from quad_ident_ros.greybox.normal import covariance_of, Normal, scatter_of
-from quad_ident_ros.greybox.parameters import as_described, INDEX, limits, SPLIT
+from quad_ident_ros.greybox.parameters import as_described, FACTORS, INDEX, limits, SPLIT
 from quad_ident_ros.model.vehicle import Vehicle
 
 SCHEMA = 'quad_ident/fit/1'
 STRONG = 0.9    # correlation from which on two parameters are named
 READ, FITTED = 0.05, 0.6    # shares of the work: a second fit may hold what is undetermined
 COLOURED = 1.5  # noise over what changes from sample to sample, from which on it is said
+
+OF_LEVEL = ('mass', 'thrust_coefficient', 'mass_offset.mass', *FACTORS['thrust_coefficient'])
+"""Names of what scales thrust over mass."""
 
 
 @dataclass(frozen=True)
@@ -75,16 +79,18 @@ def fit(records: Sequence[FlightRecord], vehicle: Vehicle, names: Iterable[str],
 
     Args: names of vehicle constants, effects or parameters of effects (see free.py); on_progress
     is called with the share that is done. What the flights leave undetermined is held at the
-    vehicle file's value, and said. Raises InputError.
+    vehicle file's value, and said. Raises InputError, also for what scales thrust over mass where
+    commands were scaled by the weight (thrust_level): it would come out as the file has it.
     """
     free = columns_of_names(names, vehicle)
     refuse_twice(records)
+    _refuse_level(records, free)
     for record in records:
         if is_inertial(record):
             name = record.info.get('source') or record.info.get('name', 'a flight')
             raise InputError(f'{name}: it has neither position nor velocity, which a fit needs; '
                              'diagnose takes flights of accelerometer, gyro and commands alone')
-    records = [with_position(record) for record in records]
+    records = on_one_level([with_position(record) for record in records])
     voltage = highest_voltage(records)
     start, sizes = as_described(vehicle), limits(vehicle)[2]
     records, _, answers = zip(*on_one_clock(records), strict=True)
@@ -126,6 +132,19 @@ def fit(records: Sequence[FlightRecord], vehicle: Vehicle, names: Iterable[str],
                 *_findings(found, parameters, pairs, flights))
     return Fit(vehicle, tuple(flight.name for flight in flights), parameters,
                replace(found, covariance=covariance), order, pairs, findings)
+
+
+def _refuse_level(records: Iterable[FlightRecord], free: Iterable[str]) -> None:
+    """Raise InputError where the weight told the scale of commands that is to be estimated."""
+    scales = [name for name in free if name in OF_LEVEL]
+    for record in records:
+        if scales and LEVEL in record.info:
+            where = record.info.get('source') or record.info.get('name', 'the flight record')
+            raise InputError(
+                f'{where}: the rotor speed at full signal is not known, and commands were scaled '
+                f'by the weight of the vehicle file, so that no flight tells '
+                f'{", ".join(scales)}; leave that out of --free, or give the vehicle file '
+                'speed_max (rad/s) or motors: with a gain')
 
 
 def _apart(names: Sequence[str]) -> list[str]:

@@ -10,10 +10,10 @@ from scipy.optimize import minimize
 
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.effects.registry import NULL
-from quad_ident_ros.greybox.flights import RATE
+from quad_ident_ros.greybox.flights import BRIDGED, GAP, RATE
 from quad_ident_ros.model.actuators import actuated, DELAY, LAG
 
-MOST = 20_000           # samples, from the middle of a flight: more tell nothing new
+MOST = 20_000           # samples, from the middle of a stretch: more tell nothing new
 LEAST_RATE = 40.0       # Hz of measured speeds; slower ones do not show lags
 BLOCK = 2.0             # s over which errors may hang together
 FOLLOWS = 0.5           # of the spread of the speeds that commands explain, at least
@@ -80,13 +80,13 @@ def rotor_answer(record: FlightRecord) -> RotorAnswer | None:
     """
     Return the RotorAnswer of a record, None where its measured speeds do not tell.
 
-    Where they are missing, slow, a copy of the commands, or of something else than these.
+    Where they are missing, slow, a copy of the commands, or of something else than these. Of a
+    record with gaps it is the longest stretch without one: lags do not reach across them.
     """
     names, measured = record.numbered('cmd'), record.numbered('rotor')
     if not names or len(names) != len(measured):
         return None
-    begin = max(0, (len(record) - MOST) // 2)
-    part = slice(begin, begin + MOST)
+    part = _part(record.t)
     t = record.t[part] - record.t[part][0]
     commands = np.ascontiguousarray(record.stack(*names)[part])
     speeds = record.stack(*measured)[part]
@@ -128,6 +128,17 @@ def rotor_answer(record: FlightRecord) -> RotorAnswer | None:
     per_volt = (float(values[1]), float(others[1])) if beside else None
     return RotorAnswer((delay, float(errors[0])), (lag, float(errors[1])),
                        (float(values[0]), float(others[0])), per_volt, explained)
+
+
+def _part(t: np.ndarray) -> slice:
+    """Return the samples, MOST at the most, in the middle of the longest stretch without a gap."""
+    steps = np.diff(t)
+    gaps = np.flatnonzero(steps > max(GAP * float(np.median(steps)), BRIDGED))
+    edges = np.concatenate([[0], gaps + 1, [len(t)]])
+    longest = int(np.argmax(np.diff(edges)))
+    begin, end = int(edges[longest]), int(edges[longest + 1])
+    begin += max(0, (end - begin - MOST) // 2)
+    return slice(begin, min(end, begin + MOST))
 
 
 def _apart(speeds: np.ndarray, columns: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:

@@ -78,10 +78,11 @@ def rotor_speeds(motors: Motors, signals: ArrayLike, thrust_coefficient: float,
     Return the rotor speeds (N, n), rad/s, of signals (N, n).
 
     Those of a thrust are sqrt(thrust / thrust_coefficient). A signal that is off, below its
-    minimum or nan, is a rotor that stands; so is one whose map gives less than 0.
+    minimum or not finite, is a rotor that stands; so is one whose map gives less than 0.
     Args: motors, whole; thrust_coefficient N/(rad/s)^2; voltage (N,) V, for a map that needs it.
     """
     signals = np.asarray(signals, float)
+    signals = np.where(np.isfinite(signals), signals, np.nan)
     if motors.kind in TO_SPEED:
         return np.nan_to_num(signals) * TO_SPEED[motors.kind]
     value = _curve(motors, shares(signals, motors.minimum, motors.maximum))

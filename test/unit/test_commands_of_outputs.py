@@ -13,6 +13,8 @@ from usd_files import crazyflie_events, usdlog
 
 from quad_ident_ros.data.csv import write_csv
 from quad_ident_ros.data.load import load
+from quad_ident_ros.data.mapping import Actuators
+from quad_ident_ros.data.outputs import commanded
 from quad_ident_ros.data.quality import cautions, findings
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.data.signal_kind import kinds_of
@@ -108,6 +110,21 @@ def test_motors_that_are_not_those_of_the_record_are_refused(tmp_path):
     refused(with_outputs(tmp_path, np.round(65535 * SHARES)), 'pwm from 1000 to 2000',
             'duty16 by their size', vehicle=vehicle)
     refused(with_outputs(tmp_path, SHARES), 'normalised by their size', vehicle=vehicle)
+
+
+def test_outputs_that_are_not_finite_are_motors_that_are_off():
+    off = np.where(np.arange(len(FLIGHT)) % 2, np.inf, np.nan)
+    record = FlightRecord(FLIGHT.t, {f'output{k}': column for k, column in
+                                     enumerate(SHARES.T, 1)} | {'output2': off})
+    [read] = commanded([record], VEHICLE)
+    expected = SPEEDS.copy()
+    expected[:, 1] = 0.0
+    np.testing.assert_allclose(read.stack(*CMD), expected, rtol=1e-9)
+    nothing = replace(record, columns=dict.fromkeys(OUTPUTS, off))
+    for actuators in (None, Actuators((1, 2, 3, 4), 'normalised')):
+        with pytest.raises(InputError, match='output1..4 hold no finite number') as caught:
+            commanded([nothing], VEHICLE, actuators)
+        assert len(str(caught.value).splitlines()) == 1
 
 
 def test_more_or_fewer_outputs_than_rotors_are_refused(tmp_path):

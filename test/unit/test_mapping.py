@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The mapping file, and the rotor speeds that outputs stand for."""
 
+from dataclasses import replace
+import math
 from pathlib import Path
 import re
 
@@ -12,9 +14,10 @@ import pytest
 from records import FAST
 import yaml
 
-from quad_ident_ros.data.mapping import mapping_from, rotor_speeds
+from quad_ident_ros.data.mapping import Actuators, mapping_from, rotor_speeds
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.motors import motors_from
+from quad_ident_ros.model.vehicle import load_vehicle
 
 
 def test_the_mapping_file_of_the_documents_is_one():
@@ -58,7 +61,7 @@ def test_the_lines_of_the_table_of_the_readme_are_a_mapping():
     ({'topics': {'rate': {'topic': '/tf', 'child': 'x'}}}, 'child'),
     ({'topics': {'rate': {'topic': '/a', 'frame': 'world'}}}, 'frame'),
     ({'actuators': {}}, 'kind'), ({'actuators': {'kind': 'duty'}}, 'pwm'),
-    ({'actuators': {'kind': 'pwm', 'minimum': 2000}}, 'maximum'),
+    ({'actuators': {'kind': 'pwm', 'minimum': 2000, 'maximum': 2000}}, 'maximum'),
     ({'actuators': {'kind': 'pwm', 'order': [1, 1]}}, 'twice'),
     ({'actuators': {'kind': 'pwm', 'order': [0]}}, 'at least 1'),
     ({'actuators': {'kind': 'pwm', 'order': []}}, 'order'),
@@ -81,6 +84,41 @@ def test_outputs_become_speeds():
     np.testing.assert_allclose(rotor_speeds('x', [[0.25, 1.0]], thrust, None), [[500, 1000]])
     rpm = mapping_from({'actuators': {'kind': 'rpm'}}, 'm').actuators
     np.testing.assert_allclose(rotor_speeds('x', [[60.0]], rpm, None), [[2 * np.pi]])
+
+
+def test_speeds_that_no_file_has_are_asked_for():
+    vehicle = replace(load_vehicle('iris'), motors=None, speed_max=math.inf)
+    with pytest.raises(InputError, match='give speeds: .low, high.*speed_max') as caught:
+        rotor_speeds('x', [[0.5] * 4], Actuators((1, 2, 3, 4), 'normalised'), vehicle)
+    assert len(str(caught.value).splitlines()) == 1
+
+
+def test_limits_that_a_mapping_does_not_give_are_those_of_the_motors_of_the_vehicle():
+    motors = motors_from('v', {'kind': 'pwm', 'minimum': 1100, 'maximum': 1940,
+                               'speed': {'offset': 100, 'gain': 900}})
+    vehicle = replace(load_vehicle('iris'), motors=motors)
+    outputs = [[1100, 1520, 1940, 2000]]
+
+    def speeds(**entries):
+        actuators = mapping_from({'actuators': {'kind': 'pwm', **entries}}, 'm').actuators
+        return rotor_speeds('x', outputs, actuators, vehicle)
+
+    np.testing.assert_allclose(speeds(order=[4, 3, 2, 1]), [[1000, 1000, 550, 100]])
+    np.testing.assert_allclose(speeds(maximum=2360), [[100, 400, 700, 100 + 900 * 900 / 1260]])
+    np.testing.assert_allclose(speeds(speeds=[0, 840]), [[0, 420, 840, 840]])
+    with pytest.raises(InputError, match='maximum: 1000 is not above the minimum, 1100'):
+        speeds(maximum=1000)
+
+
+def test_a_map_of_another_kind_is_not_taken_for_that_of_the_outputs():
+    motors = motors_from('v', {'kind': 'normalised', 'speed': {'offset': 100, 'gain': 900}})
+    vehicle = replace(load_vehicle('iris'), motors=motors)
+    with pytest.raises(InputError, match='is of normalised; give minimum and max') as caught:
+        rotor_speeds('x', [[1500] * 4], Actuators(kind='pwm'), vehicle)
+    assert len(str(caught.value).splitlines()) == 1
+    for said in ({'minimum': 1000, 'maximum': 2000}, {'speeds': (100, 1000)}):
+        speeds = rotor_speeds('x', [[1500] * 4], Actuators(kind='pwm', **said), vehicle)
+        np.testing.assert_allclose(speeds, [[550] * 4])
 
 
 @given(st.recursive(st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=8),

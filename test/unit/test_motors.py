@@ -153,3 +153,9 @@ def test_priors_of_the_thrust_are_as_wide_as_the_map_says():
 
 def test_motors_of_a_vehicle_can_be_hashed():
     assert hash(Motors('pwm', uncertainty={'gain': 1.0})) == hash(Motors('pwm'))
+
+
+@pytest.mark.parametrize('data', [{'kind': 'rpm'}, {'kind': 'percent', 'speed': [0, 900]}])
+def test_a_signal_that_is_not_finite_is_a_rotor_that_stands(data):
+    speeds = rotor_speeds(made(data), [[50.0, np.inf, -np.inf, np.nan]], K)
+    assert speeds[0, 0] > 0 and (speeds[0, 1:] == 0).all()

@@ -3,6 +3,7 @@
 """What a PX4 log says beside its samples: motors, kind of vehicle, flights, resets."""
 
 from dataclasses import replace
+import math
 from pathlib import Path
 import random
 
@@ -29,6 +30,7 @@ import yaml
 from quad_ident_ros.cli.main import main
 from quad_ident_ros.data.load import contents_of, load, load_all
 from quad_ident_ros.data.mapping import mapping_from
+from quad_ident_ros.data.thrust_level import LEVEL
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.motors import motors_from
 from quad_ident_ros.model.vehicle import load_vehicle, Rotor
@@ -53,6 +55,26 @@ def test_thr_mdl_fac_is_the_thrust_curve(tmp_path):
     read = load(path, vehicle=VEHICLE)
     np.testing.assert_allclose(read.stack(*CMD), SMALL.stack(*CMD), atol=1e-2)
     assert 'THR_MDL_FAC' in notes(read)
+
+
+@pytest.mark.parametrize(('curve', 'factor', 'pwm'), [
+    ('linear', 0.0, False), ('thrust', 0.4, False), ('thrust', 0.4, True)])
+def test_without_a_speed_at_full_signal_the_weight_tells_the_level(tmp_path, curve, factor, pwm):
+    """The log knows the form of the map, by which speeds are right but for the weight's noise."""
+    record = flight(seconds=4.0, noise=0.0)
+    full, speed = 1700.0, record.stack(*CMD)
+    signal = np.empty_like(speed)
+    signal[:, np.array(ORDER) - 1] = (speed / full) ** (1 if curve == 'linear' else 2)
+    samples = {'motors': signal}
+    if pwm:     # as PX4 undoes THR_MDL_FAC
+        half = (1 - factor) / (2 * factor)
+        samples = {'outputs': 1000 + 1000 * (np.sqrt(half ** 2 + signal / factor) - half)}
+    named = parameters(THR_MDL_FAC=factor, PWM_MAIN_MIN=1000, PWM_MAIN_MAX=2000)
+    vehicle = replace(VEHICLE, speed_min=0.0, speed_max=math.inf)
+    read = load(log(tmp_path, log_of(record, named=named, **samples)), vehicle=vehicle)
+    assert read.info[LEVEL] == pytest.approx(full, rel=5e-3)
+    np.testing.assert_allclose(read.stack(*CMD), speed, rtol=5e-3)
+    assert 'neither the log nor the vehicle file' in notes(read) and 'the weight' in notes(read)
 
 
 def test_pwm_is_undone_with_its_limits_and_curve(tmp_path):

@@ -51,6 +51,26 @@ def test_a_map_that_is_off_and_a_sag_of_speed_are_told_beside():
     assert 'with a lag of 30' in answer.said() and '% per volt' in answer.said()
 
 
+def test_a_gap_between_parts_of_a_recording_takes_no_part():
+    """Parts of 8 and 10 s that lie 52 s apart: the second alone is what is told of both."""
+    record = measured(0.0, 0.03, per_volt=0.04)
+    first, second = record.t - record.t[0] < 8.0, record.t - record.t[0] >= 10.0
+    t = np.concatenate([record.t[first], record.t[second] + 50.0])
+    parts = FlightRecord(t, {name: np.concatenate([values[first], values[second]])
+                             for name, values in record.columns.items()})
+    alone = FlightRecord(record.t[second], {name: values[second] for name, values in
+                                            record.columns.items()})
+    answer, expected = rotor_answer(parts), rotor_answer(alone)
+    assert answer.lag[0] == pytest.approx(0.03, abs=1e-3)
+    for name in ('delay', 'lag', 'gain', 'per_volt'):
+        np.testing.assert_allclose(getattr(answer, name), getattr(expected, name), atol=1e-6)
+    # Rows that are lost here and there are no gap.
+    lost = np.arange(len(record)) % 50 != 7
+    few = rotor_answer(FlightRecord(record.t[lost], {name: values[lost] for name, values in
+                                                     record.columns.items()}))
+    assert few.lag[0] == pytest.approx(0.03, abs=1e-3)
+
+
 def test_what_is_no_measurement_tells_nothing():
     record = measured(0.0, 0.03)
     assert rotor_answer(measured(noise=0.0)) is None        # a copy of the commands

@@ -16,6 +16,7 @@ from quad_ident_ros.data.thrust_level import LEVEL, on_one_level
 from quad_ident_ros.diagnose.candidates import candidates, nuisance_candidates
 from quad_ident_ros.diagnose.rules import RULES
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.greybox.fit import fit
 from quad_ident_ros.greybox.flights import flight_of, track_of
 from quad_ident_ros.greybox.parameters import NAMES
 from quad_ident_ros.model.motors import motors_from
@@ -93,3 +94,22 @@ def test_what_scales_thrust_over_mass_is_not_among_the_candidates():
         kinds = [one.label for one in nuisance_candidates(VEHICLE, flights)]
         assert ('thrust_level' in kinds) == (not known)
         assert ('thrust_scale_by_flight' in kinds) == known
+
+
+@pytest.mark.parametrize('name', ['mass', 'thrust_coefficient', 'mass_offset', 'thrust_scale',
+                                  'thrust_scale.factor'])
+def test_a_fit_does_not_give_back_the_weight_that_scaled_the_commands(name):
+    [read] = commanded([told(SPEEDS / FULL)], UNLIMITED)
+    with pytest.raises(InputError, match='tells .*leave that out of --free') as caught:
+        fit([FLIGHT, read], UNLIMITED, ['inertia', name])
+    assert len(str(caught.value).splitlines()) == 1
+
+
+def test_a_fit_takes_flights_of_the_same_motors_on_one_scale():
+    """Accelerometers off by as much up and down: the mean scale is right, and the inertia."""
+    records = [commanded([told(SPEEDS / FULL, az=FLIGHT.columns['az'] * off ** 2)], UNLIMITED)[0]
+               for off in (0.9, 1.1)]
+    records[1] = replace(records[1], t=records[1].t + 100.0)
+    assert np.ptp([record.info[LEVEL] for record in records]) > 0.15 * FULL
+    [inertia] = fit(records, UNLIMITED, ['inertia_x']).parameters
+    assert inertia.value == pytest.approx(VEHICLE.inertia[0], rel=5e-3)
