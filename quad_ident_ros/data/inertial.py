@@ -23,7 +23,6 @@ POSITION, VELOCITY = ('px', 'py', 'pz'), ('vx', 'vy', 'vz')
 RATE, FORCE = ('wx', 'wy', 'wz'), ('ax', 'ay', 'az')
 GAP = 0.15      # s; the slowest records that bear a diagnosis have shorter steps
 
-RECKONED = 'reckoned'
 SUMMED = 'summed'
 """Info of a record: groups of its states that are integrals of the others."""
 
@@ -65,8 +64,7 @@ def reckoned(record: FlightRecord, gravity: float) -> FlightRecord:
     for names, values in ((POSITION, _integral(velocity, dt)), (VELOCITY, velocity),
                           (QUATERNION, quaternion)):
         columns |= dict(zip(names, values.T, strict=True))
-    return replace(record, columns=columns, info={
-        **record.info, RECKONED: True, SUMMED: ('position', 'attitude')})
+    return replace(record, columns=columns, info={**record.info, SUMMED: ('position', 'attitude')})
 
 
 def _steps(record: FlightRecord) -> np.ndarray:

@@ -11,7 +11,7 @@ from quad_ident_ros.data.mapping import Actuators, chosen_outputs, motors_of
 from quad_ident_ros.data.motor_order import order_of, rotors_of
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.data.signal_kind import described, kinds_of
-from quad_ident_ros.data.thrust_level import full_speed, LEVEL, levelled
+from quad_ident_ros.data.thrust_level import FULL_SPEED, full_speed, levelled
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.motors import (
     completed,
@@ -79,7 +79,7 @@ def _with_commands(records: list[FlightRecord], vehicle: Vehicle | None,
     if not motors.whole:
         assert vehicle is not None
         motors, by = levelled(where, records, signals, motors, vehicle)
-        info = {LEVEL: full_speed(motors, thrust)}
+        info = {FULL_SPEED: full_speed(motors, thrust)}
         said += (f'{_said(motors)}; the gain is that by which thrust carries the weight of '
                  f'{vehicle.name} ({by})')
     done = []

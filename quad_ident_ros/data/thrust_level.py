@@ -16,7 +16,7 @@ from quad_ident_ros.model.vehicle import Vehicle
 WINDOW = 0.5    # s of a mean: longer than lags of motors, of which many fit into a flight
 FLYING = 0.4    # of what strong thrusts of the flight are: less is a landing, or the ground
 
-LEVEL = 'full_speed'
+FULL_SPEED = 'full_speed'
 """Info of a record: speed in rad/s at full signal, where the weight tells it."""
 
 
@@ -63,19 +63,19 @@ def on_one_level(records: Sequence[FlightRecord]) -> list[FlightRecord]:
 
     The same motors have the same map in all flights: it is the mean by their lengths.
     """
-    told = [record for record in records if LEVEL in record.info]
-    if len({record.info[LEVEL] for record in told}) < 2:
+    told = [record for record in records if FULL_SPEED in record.info]
+    if len({record.info[FULL_SPEED] for record in told}) < 2:
         return list(records)
     weights = [record.t[-1] - record.t[0] for record in told]
-    common = float(np.average([record.info[LEVEL] for record in told], weights=weights))
-    return [_scaled(record, common) if LEVEL in record.info else record for record in records]
+    common = float(np.average([record.info[FULL_SPEED] for record in told], weights=weights))
+    return [_scaled(record, common) if FULL_SPEED in record.info else record for record in records]
 
 
 def _scaled(record: FlightRecord, speed: float) -> FlightRecord:
-    factor = speed / record.info[LEVEL]
+    factor = speed / record.info[FULL_SPEED]
     columns = {**record.columns, **{name: factor * record.columns[name]
                                     for name in record.numbered('cmd')}}
-    return FlightRecord(record.t, columns, {**record.info, LEVEL: speed})
+    return FlightRecord(record.t, columns, {**record.info, FULL_SPEED: speed})
 
 
 def _lift(record: FlightRecord, gravity: float) -> tuple[np.ndarray, str]:

@@ -32,8 +32,8 @@ def cannot_show(flights: Sequence[Flight], verdict: Verdict) -> tuple[str, ...]:
     named, untold = {*verdict.sure, *verdict.undetermined}, not_told(flights)
     if not any(flight.levelled for flight in flights):
         return untold
-    return untold + tuple(name for name in EFFECTS if name not in named
-                 and any(NAMES[column].partition('.')[0] == name for column in SCALES))
+    scales = {NAMES[column].partition('.')[0] for column in SCALES}
+    return (*untold, *(name for name in EFFECTS if name in scales - named))
 
 
 def fly_next(selection: Selection, flights: list, vehicle: Vehicle, z: np.ndarray,

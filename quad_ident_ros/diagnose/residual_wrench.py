@@ -23,7 +23,6 @@ STRETCH = 25.0      # s without a break that spectra are taken of,
 STRETCHES = 4       # and how many of them, spread over a longer flight
 AIR = ('horizontal air speed', 'air speed forward', 'air speed to the left', 'climb speed')
 FEWEST = 8          # windows of a stretch that has a spectrum
-COLUMNS = list(WRENCH)
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,7 +52,7 @@ def residual_wrench(track: Track, vehicle: Vehicle, z: np.ndarray, noise: np.nda
     flight = replace(flight, first=first)
     [starts] = settled([flight], vehicle, [z], [noise])
     weight = weights_of(errors_along(flight, vehicle, z, starts), noise, flight)
-    linear = linearise(flight, vehicle, z, starts, COLUMNS, noise, False, weight)
+    linear = linearise(flight, vehicle, z, starts, list(WRENCH), noise, False, weight)
     information = np.einsum('bmc,bmd->bcd', linear.slope, linear.slope)
     inverse = np.linalg.inv(information)
     values = np.einsum('bcd,bmd,bm->bc', inverse, linear.slope, linear.error)

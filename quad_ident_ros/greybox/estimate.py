@@ -18,6 +18,7 @@ from quad_ident_ros.greybox.linear import (
     Slopes,
     slopes_at,
     Tangent,
+    Whitening,
     whitening_of,
     WRENCH,
 )
@@ -153,16 +154,17 @@ def _descend(flights: Sequence[Flight], vehicle: Vehicle, z: np.ndarray, columns
             at = z
         scales = [weights_of(raw, sigma, flight) / sigma
                   for raw, sigma, flight in zip(raws, noise, flights, strict=True)]
-        known_slopes = tangents
-        linears = [linear_of(tangent, raw, scale, clock, slow)
-                   for tangent, raw, scale in zip(tangents, raws, scales, strict=True)]
+        wrenches = [tangent.wrench for tangent in tangents]
+        whites = _whitenings(wrenches, scales, slow)
+        linears = [linear_of(tangent, raw, scale, clock, white) for tangent, raw, scale, white
+                   in zip(tangents, raws, scales, whites, strict=True)]
         normal = normal_of(linears, flights, layout, clock)
         now = np.concatenate([z[columns], nuisances.values.ravel()])
         information = normal.information + np.diag(precision)
         gradient = normal.gradient - precision * now
         step, free = bounded_step(information, gradient, now, lower, upper, size)
-        told = _aligned(raws, tangents, scales, clock, slow)
-        before = _cost(told, scales, tangents, slow) + precision @ now ** 2
+        told = _aligned(raws, tangents, scales, clock, whites)
+        before = _cost(told, scales, whites) + precision @ now ** 2
         for share in SHARES if fresh else SHARES[:1]:
             there, new = z.copy(), now + share * step
             there[columns] = new[:shared]
@@ -173,8 +175,8 @@ def _descend(flights: Sequence[Flight], vehicle: Vehicle, z: np.ndarray, columns
                      for linear, start, move in zip(linears, starts, moves, strict=True)]
             residuals = [errors_along(flight, vehicle, vector, start) for flight, vector, start in
                          zip(flights, theirs.vectors(there), moved, strict=True)]
-            aligned = _aligned(residuals, tangents, scales, clock, slow)
-            after = _cost(aligned, scales, tangents, slow) + precision @ new ** 2
+            aligned = _aligned(residuals, tangents, scales, clock, whites)
+            after = _cost(aligned, scales, whites) + precision @ new ** 2
             if after <= before * (1.0 + 1e-9):
                 break
         else:
@@ -205,9 +207,10 @@ def _descend(flights: Sequence[Flight], vehicle: Vehicle, z: np.ndarray, columns
     # By the weights of these errors, not of those before the last step, to be held against others.
     scales = [weights_of(raw, sigma, flight) / sigma
               for raw, sigma, flight in zip(raws, noise, flights, strict=True)]
+    whites = _whitenings(wrenches, scales, slow)
     return Estimate(z, columns, covariance, noise, nuisances, starts, normal, at, told,
-                    _quiet(told, scales, known_slopes, slow),
-                    _cost(told, scales, known_slopes, slow), free[:shared], converged)
+                    _quiet(told, scales, whites), _cost(told, scales, whites), free[:shared],
+                    converged)
 
 
 def _whole(box: np.ndarray, nuisances: NuisanceValues, count: int
@@ -220,45 +223,48 @@ def _whole(box: np.ndarray, nuisances: NuisanceValues, count: int
             np.append(np.zeros(len(size)), spreads ** -2.0))
 
 
+def _whitenings(wrenches: Iterable[np.ndarray | None], scales: Iterable[np.ndarray],
+                slow: np.ndarray | None) -> list[Whitening | None]:
+    """Return the Whitening of each flight, None where no slow force or moment is expected."""
+    return [None if slow is None or wrench is None else whitening_of(wrench, scale, slow)
+            for wrench, scale in zip(wrenches, scales, strict=True)]
+
+
 def _aligned(raws: list[np.ndarray], tangents: Iterable[Tangent], scales: Iterable[np.ndarray],
-             clock: bool, slow: np.ndarray | None) -> list[np.ndarray]:
+             clock: bool, whites: Iterable[Whitening | None]) -> list[np.ndarray]:
     """Return errors without what an offset of each flight's clock explains."""
     if not clock:
         return raws
     out = []
-    for raw, tangent, scale in zip(raws, tangents, scales, strict=True):
-        drift, error = (_white(part, tangent, scale, slow) for part in (tangent.drift, raw))
+    for raw, tangent, scale, white in zip(raws, tangents, scales, whites, strict=True):
+        drift, error = (_weighed(part, scale, white) for part in (tangent.drift, raw))
         share = np.sum(drift * error) / max(np.sum(drift * drift), 1e-300)
         out.append(raw - share * tangent.drift)
     return out
 
 
-def _white(error: np.ndarray, tangent: Tangent, scale: np.ndarray, slow: np.ndarray | None
-           ) -> np.ndarray:
+def _weighed(error: np.ndarray, scale: np.ndarray, white: Whitening | None) -> np.ndarray:
     """Return errors (B, count + 1, 12) over their noise, made white."""
     error = error * scale
-    white = whitening_of(tangent, scale.reshape(len(error), -1), slow)
     return error if white is None else white.whitened(error.reshape(len(error), 1, -1))
 
 
-def _cost(raws: Iterable[np.ndarray], scales: Iterable[np.ndarray], tangents: Iterable[Tangent],
-          slow: np.ndarray | None) -> float:
+def _cost(raws: Iterable[np.ndarray], scales: Iterable[np.ndarray],
+          whites: Iterable[Whitening | None]) -> float:
     """Return the sum of squares of errors over their noise, made white."""
-    return sum(float(np.sum(_white(raw, tangent, scale, slow) ** 2))
-               for raw, scale, tangent in zip(raws, scales, tangents, strict=True))
+    return sum(float(np.sum(_weighed(raw, scale, white) ** 2))
+               for raw, scale, white in zip(raws, scales, whites, strict=True))
 
 
-def _quiet(raws: Sequence[np.ndarray], scales: Iterable[np.ndarray], tangents: Iterable[Tangent],
-           slow: np.ndarray | None) -> list[np.ndarray]:
+def _quiet(raws: Iterable[np.ndarray], scales: Iterable[np.ndarray],
+           whites: Iterable[Whitening | None]) -> list[np.ndarray]:
     """Return errors (B, count + 1, 12) without what a slow force and moment make of them."""
-    if slow is None:
-        return list(raws)
     found = []
-    for raw, scale, tangent in zip(raws, scales, tangents, strict=True):
-        error = (raw * scale).reshape(len(raw), 1, -1)
-        white = whitening_of(tangent, scale.reshape(len(raw), -1), slow)
-        part = 0.0 if white is None else white.slow_part(error).reshape(raw.shape)
-        found.append(raw - part / np.maximum(scale, 1e-300))
+    for raw, scale, white in zip(raws, scales, whites, strict=True):
+        if white is not None:
+            slow = white.slow_part((raw * scale).reshape(len(raw), 1, -1)).reshape(raw.shape)
+            raw = raw - slow / np.maximum(scale, 1e-300)
+        found.append(raw)
     return found
 
 

@@ -12,7 +12,7 @@ from quad_ident_ros import __version__
 from quad_ident_ros.data.clocks import clocks_of, on_one_clock
 from quad_ident_ros.data.inertial import is_inertial, with_position
 from quad_ident_ros.data.record import FlightRecord, refuse_twice
-from quad_ident_ros.data.thrust_level import LEVEL, on_one_level
+from quad_ident_ros.data.thrust_level import FULL_SPEED, on_one_level
 from quad_ident_ros.effects.registry import mapping
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.greybox.errors import GROUPS, UNITS
@@ -138,7 +138,7 @@ def _refuse_level(records: Iterable[FlightRecord], free: Iterable[str]) -> None:
     """Raise InputError where the weight told the scale of commands that is to be estimated."""
     scales = [name for name in free if name in OF_LEVEL]
     for record in records:
-        if scales and LEVEL in record.info:
+        if scales and FULL_SPEED in record.info:
             where = record.info.get('source') or record.info.get('name', 'the flight record')
             raise InputError(
                 f'{where}: the rotor speed at full signal is not known, and commands were scaled '

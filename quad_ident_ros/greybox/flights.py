@@ -11,11 +11,11 @@ from scipy.ndimage import uniform_filter1d
 
 from quad_ident_ros.data.clocks import Clock
 from quad_ident_ros.data.frames import continuous
-from quad_ident_ros.data.inertial import RECKONED, SUMMED
+from quad_ident_ros.data.inertial import FORCE, SUMMED
 from quad_ident_ros.data.quality import refuse_errors, timing
 from quad_ident_ros.data.quality.glitches import glitches
 from quad_ident_ros.data.record import FlightRecord
-from quad_ident_ros.data.thrust_level import LEVEL
+from quad_ident_ros.data.thrust_level import FULL_SPEED
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.greybox.errors import ERRORS, GROUPS
 from quad_ident_ros.model.dynamics import Course, course_of, states_of
@@ -29,7 +29,6 @@ WARM = 0.25         # s of commands before a rollout, from which the speeds of i
 GAP = 1.6           # usual periods between two samples that no rollout crosses,
 SHORT_GAP = 0.013   # s, unless it is as short as this
 AIR = 0.5           # s over which the force of the air is about the same
-FORCE = ('ax', 'ay', 'az')
 BRIDGED = 0.08      # s, the longest step in time over lost rows whose commands are interpolated
 
 
@@ -88,16 +87,15 @@ def track_of(record: FlightRecord, vehicle: Vehicle, reference_voltage: float | 
     force = record.stack(*FORCE) if record.has(*FORCE) else None
     course, states, seen, force = _bridged(course, states, seen, force, period)
     skip = max(1, int(1.0 / (period * RATE) + 0.5))
-    across = (_across(force, period, skip) if record.info.get(RECKONED) and force is not None
-              else None)
+    summed = tuple(record.info.get(SUMMED, ()))
+    across = _across(force, period, skip) if force is not None and 'attitude' in summed else None
     if skip > 1:
         course, states, seen, force = _thinned(course, states, seen, force, skip)
         period *= skip
     if across is not None:  # the force has given the velocity, and tells nothing beside it
         course, force = replace(course, across=across[:len(states)]), None
     track = Track(record.info.get('name', 'flight'), course, states, seen, period, clock,
-                  force=force, levelled=LEVEL in record.info,
-                  summed=tuple(record.info.get(SUMMED, ())))
+                  force=force, levelled=FULL_SPEED in record.info, summed=summed)
     return track if clock is None else moved(track, clock.late, clock.drift)
 
 
@@ -129,7 +127,7 @@ def flight_of(track: Track, segment: float = SEGMENT, every: float | None = None
 
 def inertial(tracks: Iterable[Track]) -> bool:
     """Return whether the states of Tracks are reckoned from accelerometer and gyro alone."""
-    return any(track.course.across is not None for track in tracks)
+    return any('attitude' in track.summed for track in tracks)
 
 
 def guided(track: Track) -> Track:

@@ -225,16 +225,14 @@ class Whitening:
         return np.asarray((values @ across) @ kernel @ self.directions)
 
 
-def whitening_of(tangent: Tangent, scale: np.ndarray, slow: np.ndarray | None
-                 ) -> Whitening | None:
+def whitening_of(wrench: np.ndarray, scale: np.ndarray, slow: np.ndarray) -> Whitening:
     """
-    Return the Whitening of a flight, or None where no slow force or moment is expected.
+    Return the Whitening of a flight.
 
-    Args: scale (B, M) as of linear_of; slow (6,): their standard deviations, N and N m.
+    Args: wrench (B, 6, M) of its Tangent; scale (B, count + 1, 12) as of linear_of; slow (6,):
+    standard deviations of a force and a moment that last for a rollout, N and N m.
     """
-    if slow is None or tangent.wrench is None:
-        return None
-    directions = tangent.wrench * slow[:, None] * scale[:, None]
+    directions = wrench * slow[:, None] * scale.reshape(len(scale), 1, -1)
     value, vector = np.linalg.eigh(directions @ directions.transpose(0, 2, 1))
     value = np.maximum(value, 1e-12)
 
@@ -246,18 +244,18 @@ def whitening_of(tangent: Tangent, scale: np.ndarray, slow: np.ndarray | None
 
 
 def linear_of(tangent: Tangent, raw: np.ndarray, scale: np.ndarray, clock: bool = True,
-              slow: np.ndarray | None = None) -> Linear:
+              white: Whitening | None = None) -> Linear:
     """
     Return the Linear of a flight from its Tangent.
 
     Args: raw (B, count + 1, 12) recorded minus predicted; scale, of its shape or (12,), the
-    weight of each sample over its noise; clock as of linearise; slow as of whitening_of.
+    weight of each sample over its noise; clock as of linearise; white: that of the
+    flight, or None where no slow force or moment is expected.
     """
     batch = len(raw)
     scale = np.broadcast_to(scale, raw.shape).reshape(batch, -1)
     table = tangent.table[:, :None if clock else -1] * scale[:, None]
     error = raw.reshape(batch, -1) * scale
-    white = whitening_of(tangent, scale, slow)
     if white is not None:
         table, error = white.whitened(table), white.whitened(error[:, None])[:, 0]
     starts, slope = table[:, :ERRORS], table[:, ERRORS:]

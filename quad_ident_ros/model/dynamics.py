@@ -59,7 +59,6 @@ class Course:
         """Fall of the voltage as a share of that of reference, (N,)."""
         return self.volt_drop / self.reference_voltage
 
-
     def inputs(self, rows: np.ndarray | slice = slice(None)) -> np.ndarray:
         """Return what acts besides the rotors at some samples, (N, INPUT) of rigid_body."""
         drop = self.volt_drop[rows]

@@ -76,15 +76,20 @@ def fly(graph, count=60):
     return out
 
 
-def test_streams_of_other_rates_are_joined_at_the_stamps_of_the_pose(graph, mapping, tmp_path):
-    recorder = graph.start(Recorder, {'mapping': mapping, 'output': str(tmp_path / 'out')})
+def flown(graph, recorder):
+    """Return the record of a flight of which 50 rows are there, and its stamps, s."""
     records = graph.listen(Float64MultiArray, 'record', latched(16))
     fly(graph)
     graph.spin_until(lambda: recorder.counts.joined >= 50, '50 rows')
     assert graph.trigger('recorder/flush').success
     graph.spin_until(lambda: records, 'the record')
     [record] = records.records()
-    t = record.t + record.info['start_ns'] * 1e-9
+    return record, record.t + record.info['start_ns'] * 1e-9
+
+
+def test_streams_of_other_rates_are_joined_at_the_stamps_of_the_pose(graph, mapping, tmp_path):
+    recorder = graph.start(Recorder, {'mapping': mapping, 'output': str(tmp_path / 'out')})
+    record, t = flown(graph, recorder)
     np.testing.assert_allclose(np.diff(t), 0.01, atol=1e-9)
     np.testing.assert_allclose(record.columns['px'], 2 * t, rtol=1e-12)
     np.testing.assert_allclose(record.columns['vy'], t, rtol=1e-9)
@@ -102,13 +107,7 @@ def test_a_unit_holds_live_as_in_a_bag(graph, tmp_path):
     path = tmp_path / 'm.yaml'
     path.write_text(MAPPING.replace('twist.angular}', 'twist.angular, unit: deg/s}'))
     recorder = graph.start(Recorder, {'mapping': str(path)})
-    records = graph.listen(Float64MultiArray, 'record', latched(16))
-    fly(graph)
-    graph.spin_until(lambda: recorder.counts.joined >= 50, '50 rows')
-    assert graph.trigger('recorder/flush').success
-    graph.spin_until(lambda: records, 'the record')
-    [record] = records.records()
-    t = record.t + record.info['start_ns'] * 1e-9
+    record, t = flown(graph, recorder)
     np.testing.assert_allclose(record.columns['wz'], np.radians(t), rtol=1e-9)
 
 

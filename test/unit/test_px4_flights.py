@@ -30,7 +30,7 @@ import yaml
 from quad_ident_ros.cli.main import main
 from quad_ident_ros.data.load import contents_of, load, load_all
 from quad_ident_ros.data.mapping import mapping_from
-from quad_ident_ros.data.thrust_level import LEVEL
+from quad_ident_ros.data.thrust_level import FULL_SPEED
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.motors import motors_from
 from quad_ident_ros.model.vehicle import load_vehicle, Rotor
@@ -72,7 +72,7 @@ def test_without_a_speed_at_full_signal_the_weight_tells_the_level(tmp_path, cur
     named = parameters(THR_MDL_FAC=factor, PWM_MAIN_MIN=1000, PWM_MAIN_MAX=2000)
     vehicle = replace(VEHICLE, speed_min=0.0, speed_max=math.inf)
     read = load(log(tmp_path, log_of(record, named=named, **samples)), vehicle=vehicle)
-    assert read.info[LEVEL] == pytest.approx(full, rel=5e-3)
+    assert read.info[FULL_SPEED] == pytest.approx(full, rel=5e-3)
     np.testing.assert_allclose(read.stack(*CMD), speed, rtol=5e-3)
     assert 'neither the log nor the vehicle file' in notes(read) and 'the weight' in notes(read)
 

@@ -12,7 +12,7 @@ import pytest
 from quad_ident_ros.data.outputs import commanded
 from quad_ident_ros.data.quality import findings
 from quad_ident_ros.data.record import FlightRecord
-from quad_ident_ros.data.thrust_level import LEVEL, on_one_level
+from quad_ident_ros.data.thrust_level import FULL_SPEED, on_one_level
 from quad_ident_ros.diagnose.candidates import candidates, nuisance_candidates
 from quad_ident_ros.diagnose.rules import RULES
 from quad_ident_ros.errors import InputError
@@ -43,7 +43,7 @@ def told(outputs, leave_out=(), **columns):
 def test_the_speed_at_full_signal_is_that_by_which_thrust_carries_the_weight(leave_out, by,
                                                                              error):
     [read] = commanded([told(np.round(65535 * SPEEDS / FULL), leave_out)], UNLIMITED)
-    assert read.info[LEVEL] == pytest.approx(FULL, rel=error)
+    assert read.info[FULL_SPEED] == pytest.approx(FULL, rel=error)
     np.testing.assert_allclose(read.stack(*CMD), SPEEDS, rtol=1.1 * error)
     assert by in read.info['notes'][-1]
     assert [one.severity for one in findings(read, UNLIMITED) if one.code == 'thrust_level'] == [
@@ -65,7 +65,7 @@ def test_ground_time_and_an_emptying_battery_do_not_move_the_level():
     columns = {name: np.where(ground, 9.81 if name == 'az' else 0.0, FLIGHT.columns[name])
                for name in FORCE}
     [read] = commanded([told(outputs, FORCE, **columns)], UNLIMITED)
-    assert read.info[LEVEL] == pytest.approx(FULL, rel=5e-3)
+    assert read.info[FULL_SPEED] == pytest.approx(FULL, rel=5e-3)
 
 
 def test_motors_that_never_carry_are_refused_with_the_way_out():
@@ -78,7 +78,7 @@ def test_flights_of_the_same_motors_get_one_scale():
     one, other = (commanded([told(SPEEDS / full)], UNLIMITED)[0] for full in (1600.0, 1700.0))
     same = on_one_level([one, FLIGHT, other])
     assert same[1] is FLIGHT
-    assert same[0].info[LEVEL] == same[2].info[LEVEL] == pytest.approx(1650, rel=1e-3)
+    assert same[0].info[FULL_SPEED] == same[2].info[FULL_SPEED] == pytest.approx(1650, rel=1e-3)
     np.testing.assert_allclose(same[0].columns['cmd1'], SPEEDS[:, 0] * 1650 / 1600, rtol=1e-3)
 
 
@@ -110,6 +110,6 @@ def test_a_fit_takes_flights_of_the_same_motors_on_one_scale():
     records = [commanded([told(SPEEDS / FULL, az=FLIGHT.columns['az'] * off ** 2)], UNLIMITED)[0]
                for off in (0.9, 1.1)]
     records[1] = replace(records[1], t=records[1].t + 100.0)
-    assert np.ptp([record.info[LEVEL] for record in records]) > 0.15 * FULL
+    assert np.ptp([record.info[FULL_SPEED] for record in records]) > 0.15 * FULL
     [inertia] = fit(records, UNLIMITED, ['inertia_x']).parameters
     assert inertia.value == pytest.approx(VEHICLE.inertia[0], rel=5e-3)

@@ -7,7 +7,7 @@ import numpy as np
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.greybox.estimate import estimate
 from quad_ident_ros.greybox.flights import flight_of, track_of
-from quad_ident_ros.greybox.linear import Tangent, whitening_of
+from quad_ident_ros.greybox.linear import whitening_of
 from quad_ident_ros.greybox.parameters import INDEX, nominal
 from quad_ident_ros.model.vehicle import load_vehicle
 
@@ -19,7 +19,7 @@ def test_whitened_errors_have_unit_covariance():
     batch, length = 4, 24
     wrench, scale = rng.standard_normal((batch, 6, length)), rng.uniform(0.5, 2.0, (batch, length))
     slow = rng.uniform(0.1, 3.0, 6)
-    white = whitening_of(Tangent(np.zeros((batch, 1, length)), wrench), scale, slow)
+    white = whitening_of(wrench, scale, slow)
     directions = wrench * slow[:, None] * scale[:, None]
     covariance = np.eye(length) + directions.transpose(0, 2, 1) @ directions
     made = white.whitened(np.broadcast_to(np.eye(length), covariance.shape))

@@ -8,7 +8,7 @@ from quad_ident_ros.data.cutting import without
 from quad_ident_ros.data.quality import units
 from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.quality.series import GRAVITY, Grid
-from quad_ident_ros.data.thrust_level import LEVEL
+from quad_ident_ros.data.thrust_level import FULL_SPEED
 
 APART = 10.0      # times too much or too little: no vehicle file is that wrong,
 LONGEST = 1.0     # s in all, in which motors may still follow
@@ -18,11 +18,11 @@ FLYING = 0.5      # of the weight, from which on a thrust is needed
 
 def level(record, vehicle):
     """Find commands whose scale is that by which thrust carries the weight."""
-    if LEVEL not in record.info:
+    if FULL_SPEED not in record.info:
         return []
     return [Finding(
         'thrust_level', 'warning', 'commands',
-        f'the rotor speed at full signal is not known; it is set to {record.info[LEVEL]:.4g} '
+        f'the rotor speed at full signal is not known; it is set to {record.info[FULL_SPEED]:.4g} '
         'rad/s, so that thrust carries the weight on average: a constant factor of thrust, and a '
         'mass that is off, cannot be told and are not named; inertia and drag are told in '
         'proportion to the mass',
