@@ -14,14 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize
 
-from quad_ident_ros.diagnose.rules import RULES
 from withheld.score import column_of, findings_of, named_in, reliability, TITLES
 
 Array = NDArray[np.float64]
 
 # Of a row of the ranking, as the library takes them (diagnose/probability.py), in its order.
 FEATURES: dict[str, Callable[[float], float]] = {
-    'contribution': lambda value: float(np.log10(np.clip(value, RULES.faintest, 1.0))),
+    'contribution': lambda value: float(np.sqrt(np.clip(value, 0.0, 1.0))),
     'explained': float, 'companions': float}
 # Effects that act alike: where one is there, it is no error of a probability to name the other.
 ALIKE = ({'thrust_scale', 'mass_offset'}, {'actuation_delay', 'motor_lag'})

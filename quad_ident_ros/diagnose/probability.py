@@ -56,8 +56,13 @@ def probabilities(posterior: dict, weights: dict, rules: Rules) -> dict[str, flo
 
 
 def presence(weight: Weight, rules: Rules) -> float:
-    """Return the probability that an effect of the best set is present."""
+    """
+    Return the probability that an effect of the best set is present.
+
+    The root of its contribution is as its size: a gap grows with the square of what is small
+    beside the rest of it.
+    """
     base, share, form, beside = rules.calibration
-    value = (base + share * np.log10(np.clip(weight.contribution, rules.faintest, 1.0))
+    value = (base + share * np.sqrt(np.clip(weight.contribution, 0.0, 1.0))
              + form * weight.explained + beside * weight.companions)
     return float(1.0 / (1.0 + np.exp(-value)))

@@ -41,10 +41,9 @@ class Rules:
         one another by 10 to 30 % over the range in which they are used.
       form_time: s over which that error stays the same: that of a turn or a stop of a flight.
     Probability:
-      calibration: constant, and weights of log10 of the contribution, of the share explained and
-        of the companions in the log odds of being present; faintest: where the first ends, for
-        less says no more; fitted to the flights of development of the withheld check:
-        docs/method.md has the command.
+      calibration: constant, and weights of the root of the contribution, of the share explained
+        and of the companions in the log odds of being present, fitted to the flights of
+        development of the withheld check: docs/method.md has the command.
       companion: contribution and stability (standard errors) from which on another effect clearly
         contributes.
     Naming:
@@ -92,8 +91,7 @@ class Rules:
     present: float = 0.5
     doubt: float = 0.12
     instead: float = 2.0
-    calibration: tuple[float, float, float, float] = (-1.5, 1.0, 4.4, 0.5)
-    faintest: float = 1e-3
+    calibration: tuple[float, float, float, float] = (-3.2, 4.1, 2.6, 0.46)
     companion: tuple[float, float] = (0.1, 3.0)
     tied: float = 0.9
     hidden: float = 1.0

@@ -107,7 +107,7 @@ def rotor_answer(record: FlightRecord) -> RotorAnswer | None:
     near = min(starts, key=left)
     best = minimize(left, near, method='Nelder-Mead', options={
         'initial_simplex': near + np.array([[0.0, 0.0], [0.005, 0.0], [0.0, 0.005]]),
-        'xatol': 1e-5, 'fatol': 0.0, 'maxiter': 120}).x
+        'xatol': FINEST, 'fatol': np.inf, 'maxiter': 120}).x
     delay, lag = float(best[0]), max(float(best[1]), 0.0)
     there = [acted(delay, lag), *beside]
     rest, values = _apart(speeds, there)

@@ -177,6 +177,18 @@ def test_nothing_is_named_where_only_the_air_is_unknown():
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize('factor', [1.3, 0.8])
+def test_inertia_is_told_to_a_fifth_beside_a_drag(factor):
+    flights = [bare(flown({'rotor_drag': {'coefficient': 0.4},
+                           'inertia_mismatch': dict.fromkeys(('factor_x', 'factor_y'), factor)},
+                          path, seed, 20.0, noise=MOCAP_IMU)) for seed, path in enumerate(PATHS)]
+    told = diagnose(flights, IRIS)
+    row = next(row for row in told.ranking if row.effect == 'inertia_mismatch')
+    for axis in 'xy':   # too small, not too large: the controller answers the noise of the gyro
+        assert 0.8 * factor < row.parameters[f'factor_{axis}'].value < 1.05 * factor
+
+
+@pytest.mark.slow
 @pytest.mark.skipif(REAL is None, reason=f'the real flights are not there: {PLACE}')
 def test_a_real_crazyflie():
     spot = 0.028

@@ -22,7 +22,7 @@ def of(contribution, explained, companions=0, stability=5.0):
 @pytest.mark.parametrize(('contribution', 'explained', 'companions'),
                          [(1.0, 0.0, 0), (0.1, 1.0, 3), (0.01, 0.4, 1)])
 def test_it_is_the_logistic_function_of_a_weighted_sum(contribution, explained, companions):
-    value = -1.0 + 1.5 * np.log10(contribution) + 2.0 * explained + 0.3 * companions
+    value = -1.0 + 1.5 * np.sqrt(contribution) + 2.0 * explained + 0.3 * companions
     assert presence(of(contribution, explained, companions), RULE) == pytest.approx(
         1.0 / (1.0 + np.exp(-value)))
 

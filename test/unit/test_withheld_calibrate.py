@@ -69,7 +69,7 @@ def test_rows_are_those_of_the_best_set_with_the_librarys_limits():
     found['ranking'].append({'effect': 'body_drag', 'contribution': None})
     rows = calibrate.rows_of([(label('wind'), found)])
     assert rows.names == ('contribution', 'explained', 'companions')
-    assert rows.x == pytest.approx(np.tile([np.log10(0.5), 0.9, 2.0], (2, 1)))
+    assert rows.x == pytest.approx(np.tile([np.sqrt(0.5), 0.9, 2.0], (2, 1)))
     assert rows.present.tolist() == [1.0, 0.0] and rows.groups == ('ours', 'ours')
 
 
