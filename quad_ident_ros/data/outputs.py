@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from quad_ident_ros.data.mapping import Actuators, chosen_outputs, motors_of
+from quad_ident_ros.data.mapping import Actuators, actuators_from, chosen_outputs, motors_of
 from quad_ident_ros.data.motor_order import order_of, rotors_of
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.data.signal_kind import described, kinds_of
@@ -24,6 +24,8 @@ from quad_ident_ros.model.motors import (
 from quad_ident_ros.model.vehicle import Vehicle
 
 UNITS = {'speed': 'rad/s', 'thrust': 'N'}
+ACTUATORS = 'actuators'
+"""Info of a live record: what its outputs are, as the section of a mapping says it."""
 BEYOND, MANY = 0.05, 0.01   # of the range and of the samples: more is another kind of signal
 
 
@@ -37,9 +39,13 @@ def commanded(records: Sequence[FlightRecord], vehicle: Vehicle | None,
     the speed at full signal, it is that by which thrust carries the weight: see thrust_level.
     Motors that a reader knows the places of, and their measured speeds, come into the order of
     the vehicle.
-    Args: records; vehicle Vehicle or None; actuators Actuators or None; with neither outputs stay.
+    Args: records; vehicle Vehicle or None; actuators Actuators, or None for those that the first
+    record says it has. Without a vehicle and actuators outputs stay.
     Raises InputError, with the lines to write, where the outputs leave a doubt.
     """
+    said = records[0].info.get(ACTUATORS) if records else None
+    if vehicle is not None and actuators is None and said is not None:
+        actuators = actuators_from(f'{_where(records[0])}: {ACTUATORS}', said)
     if vehicle is None and actuators is None:
         return list(records)
     found = [_in_order(record, vehicle, actuators) for record in records]

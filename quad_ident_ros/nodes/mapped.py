@@ -4,8 +4,9 @@
 
 from importlib import import_module
 
-from quad_ident_ros.data.foreign import TopicPart
-from quad_ident_ros.data.mapping import mapping_from, ROLES
+from quad_ident_ros.data.foreign import BODY_VELOCITY, TopicPart
+from quad_ident_ros.data.mapping import actuators_to_mapping, mapping_from, ROLES
+from quad_ident_ros.data.outputs import ACTUATORS
 from quad_ident_ros.data.stream_joiner import between_of
 from quad_ident_ros.errors import InputError
 
@@ -24,6 +25,8 @@ class MappedTopics:
     """
     What the topics of a mapping hold.
 
+    info: what records of them are to say of themselves: what the outputs to the motors are, which
+    become speeds where their vehicle is known (data.outputs).
     Args: mapping Mapping; where: what names it, for messages. InputError where it names no topics.
     """
 
@@ -31,6 +34,8 @@ class MappedTopics:
         if not mapping.topics:
             raise InputError(f'{where}: the mapping names no topics; add topics: to it')
         self._mapping = mapping
+        told = mapping.actuators
+        self.info = {} if told is None else {ACTUATORS: actuators_to_mapping(told)}
         self._parts = {role: TopicPart(f'topic {mapping.topics[role].topic}', role,
                                        mapping.topics[role])
                        for role in ROLES if role in mapping.topics}
@@ -44,9 +49,14 @@ class MappedTopics:
         Args: kind its type, package/msg/Name; received_ns its time of receipt, where it has no
         stamp. Raises InputError where it does not hold what the mapping says.
         """
-        return [(role, stamp, values) for role, part in self._parts.items()
-                if part.source.topic == topic
-                for stamp, values in part.samples(received_ns, message, kind, self._mapping)]
+        found = [(role, stamp, values) for role, part in self._parts.items()
+                 if part.source.topic == topic
+                 for stamp, values in part.samples(received_ns, message, kind, self._mapping)]
+        if not (self._parts.keys() & {'pose', 'attitude'}) and any(
+                BODY_VELOCITY[0] in values for _, _, values in found):
+            raise InputError(f'topic {topic}: a velocity in body axes needs an attitude; map a '
+                             'pose, or say frame: world')
+        return found
 
 
 def message_class(kind):

@@ -282,7 +282,8 @@ class Recorder(Node):
         self.counts.missing = self._buffer.missing
         for record in records:
             self._records += 1
-            info = {**record.info, 'problems': self.counts.problems()}
+            info = {**record.info, 'problems': self.counts.problems(),
+                    **(self._mapped.info if self._mapped else {})}
             self._record_publisher.publish(record_message(
                 type(record)(record.t, record.columns, info)))
             text = (f'record {self._records}: {len(record)} samples'
