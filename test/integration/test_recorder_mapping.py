@@ -5,6 +5,7 @@
 import json
 
 from geometry_msgs.msg import PoseStamped, TwistStamped
+from graph import Vehicle
 import numpy as np
 import pytest
 from rclpy.qos import QoSProfile, ReliabilityPolicy
@@ -101,6 +102,42 @@ def test_streams_of_other_rates_are_joined_at_the_stamps_of_the_pose(graph, mapp
     again = load(tmp_path / 'out' / 'recording_1' / 'bag', load_mapping(mapping))
     np.testing.assert_allclose(again.columns['wz'], again.t + again.info['start_ns'] * 1e-9,
                                rtol=1e-9)
+
+
+def test_rows_farther_from_a_sample_than_the_gap_are_dropped(graph, mapping):
+    """Velocities come each 25 ms: within 30 ms there are two around each pose, within 20 none."""
+    recorder = graph.start(Recorder, {'mapping': mapping, 'gap': 0.02})
+    fly(graph)
+    graph.spin_until(lambda: recorder.counts.received['pose'] >= 60
+                     and recorder.counts.dropped >= 40, 'rows to be dropped')
+    assert recorder.counts.joined == 0
+    graph.stop(recorder)
+    recorder = graph.start(Recorder, {'mapping': mapping, 'gap': 0.03})
+    record, _ = flown(graph, recorder)
+    assert len(record) >= 50
+
+
+def test_our_topics_at_other_rates_are_joined_at_the_stamps_of_the_pose(graph):
+    """Without a mapping: the pose each 10 ms, the twist each 4, inputs each 25, never together."""
+    recorder = graph.start(Recorder, {'topics': ['pose', 'twist', 'input']})
+    records = graph.listen(Float64MultiArray, 'record', latched(16))
+    vehicle = Vehicle(graph, ('pose', 'twist', 'input'))
+    for t in range(3000):
+        for name, period, offset in (('pose', 10, 0), ('twist', 4, 1), ('input', 25, 3)):
+            if t % period == offset:
+                vehicle.send(START + t * MS, 1e-9 * (START + t * MS), [name])
+        if t % 50 == 0:
+            graph.spin_for(0.01)
+    graph.spin_until(lambda: recorder.counts.joined >= 280, '280 rows')
+    assert graph.trigger('recorder/flush').success
+    graph.spin_until(lambda: records, 'the record')
+    [record] = records.records()
+    t = record.t + record.info['start_ns'] * 1e-9
+    np.testing.assert_allclose(np.diff(t), 0.01, atol=1e-9)
+    np.testing.assert_allclose(record.columns['vx'], 7 * t, rtol=1e-9)
+    age = t - record.columns['u1'] / 9
+    assert age.min() > -1e-9 and age.max() < 0.025 + 1e-9
+    assert record.info['dropped'] == 0
 
 
 def test_a_unit_holds_live_as_in_a_bag(graph, tmp_path):
