@@ -4,6 +4,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -26,6 +27,8 @@ from quad_ident_ros.model.vehicle import Vehicle
 UNITS = {'speed': 'rad/s', 'thrust': 'N'}
 ACTUATORS = 'actuators'
 """Info of a live record: what its outputs are, as the section of a mapping says it."""
+BY_MOTORS = 'by_motors'
+"""Info of a record: its commands are as uncertain as the vehicle file says that its motors are."""
 BEYOND, MANY = 0.05, 0.01   # of the range and of the samples: more is another kind of signal
 
 
@@ -79,13 +82,14 @@ def _with_commands(records: list[FlightRecord], vehicle: Vehicle | None,
         note = (f'the motors stand: outputs stay as output1..{signals[0].shape[1]}, of which the '
                 'values do not tell the kind')
         return [_noted(record, note) for record in records]
-    motors, said, info = made.motors, made.said, {}
+    motors, said = made.motors, made.said
+    info: dict[str, Any] = {BY_MOTORS: True} if made.motors.uncertainty else {}
     _refuse_voltage(records, motors)
     thrust = 1.0 if vehicle is None else vehicle.thrust_coefficient
     if not motors.whole:
         assert vehicle is not None
         motors, by = levelled(where, records, signals, motors, vehicle)
-        info = {FULL_SPEED: full_speed(motors, thrust)}
+        info[FULL_SPEED] = full_speed(motors, thrust)
         said += (f'{_said(motors)}; the gain is that by which thrust carries the weight of '
                  f'{vehicle.name} ({by})')
     done = []

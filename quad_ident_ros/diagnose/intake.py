@@ -9,6 +9,7 @@ import numpy as np
 
 from quad_ident_ros.data.clocks import Clock, clocks_of, on_one_clock
 from quad_ident_ros.data.inertial import is_inertial, reckoned, with_position
+from quad_ident_ros.data.outputs import BY_MOTORS
 from quad_ident_ros.data.quality import cautions, refuse_errors, refuted
 from quad_ident_ros.data.quality.finding import as_caution, Finding
 from quad_ident_ros.data.quality.fleet import vehicles
@@ -74,6 +75,8 @@ def take_in(records: Sequence[FlightRecord], vehicle: Vehicle, hold_out: FlightR
     held = [] if hold_out is None else [hold_out]
     every = on_one_level([with_commands(record, vehicle) for record in (*records, *held)])
     records, hold_out = (every, None) if hold_out is None else (every[:-1], every[-1])
+    if not all(record.info.get(BY_MOTORS) for record in every):
+        vehicle = replace(vehicle, motors=None)     # its uncertainty is none of these commands'
     wrong = refuted([*records, *([] if hold_out is None else [hold_out])], vehicle)
     findings = vehicles([*records, *([] if hold_out is None else [hold_out])])
     records = [_fit_for_use(record, vehicle, rules, wrong, findings) for record in records]
