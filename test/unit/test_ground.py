@@ -233,9 +233,9 @@ def test_a_part_that_begins_in_flight_does_not_begin_at_rest(flight):
     assert 'starts_at_rest' not in info and info['start_ns'] == 5 + round(STAND * 1e9)
 
 
-def test_records_without_height_velocity_or_commands_are_left_as_they_are(flight):
+def test_records_without_velocity_or_commands_are_left_as_they_are(flight):
     whole = grounded(flight)
-    for gone in ('pz', 'vx', 'cmd'):
+    for gone in ('vx', 'cmd'):
         columns = {name: values for name, values in whole.columns.items()
                    if not name.startswith(gone)}
         assert not standing(FlightRecord(whole.t, columns, {}), VEHICLE).any()
@@ -281,3 +281,75 @@ def test_a_fit_leaves_the_ground_out_too(flight, tmp_path, capsys):
         assert any('stands on the ground' in line for line in data['findings']) == (
             name == 'f.csv')
     assert values[0] == pytest.approx(values[1], rel=1e-3)
+
+
+def standing_first(flight, spin_up=0.0, idle=0.3, lag=0.0):
+    """
+    Return a flight of VEHICLE after 3 s and a spin-up on the ground, with accelerometer and gyro.
+
+    idle: speed of the rotors in hover speeds; lag: s for which the ground holds the vehicle after
+    its commands are those of the flight.
+    """
+    period = flight.period()
+    t = period * np.arange(round((3.0 + spin_up + lag) / period))
+    speed = hover_of(VEHICLE) * np.where(
+        t < 3.0, idle, idle + (1.0 - idle) * np.minimum((t - 3.0) / max(spin_up, 1e-9), 1.0))
+    random = np.random.default_rng(8)
+    columns = {name: np.zeros(len(t)) for name in flight.columns}
+    columns |= {'qw': 1.0 + 0 * t, 'az': VEHICLE.gravity + 0 * t,
+                'vbat': flight.columns['vbat'][0] + 0 * t,
+                'pz': flight.columns['pz'][0] + 0 * t}
+    for names, sigma in ((('wx', 'wy', 'wz'), 0.02), (('ax', 'ay', 'az'), 0.1),
+                         (('vx', 'vy', 'vz'), 0.01)):
+        for name in names:
+            columns[name] = columns[name] + sigma * random.standard_normal(len(t))
+    for j in range(1, 5):
+        columns[f'cmd{j}'] = speed
+    return after_another(FlightRecord(t, columns), flight)
+
+
+WITHOUT = {'velocity': ('px', 'py', 'pz'),
+           'velocity alone': ('px', 'py', 'pz', 'wx', 'wy', 'wz', 'ax', 'ay', 'az'),
+           'accelerometer and gyro': ('p', 'v', 'q', 'phi', 'theta', 'psi')}
+
+
+def without(record, groups):
+    return FlightRecord(record.t, {name: values for name, values in record.columns.items()
+                                   if not (name == 'vbat' or name.startswith(groups))},
+                        dict(record.info))
+
+
+@pytest.fixture(scope='module')
+def brisk():
+    return fly_closed_loop(VEHICLE, {}, 'lissajous', duration=8.0, rate=200.0, seed=3,
+                           noise=MOCAP_IMU)
+
+
+@pytest.mark.parametrize('known', WITHOUT)
+@pytest.mark.parametrize('spin_up', [0.0, 1.0])
+@pytest.mark.parametrize('idle', [0.0, 0.3])
+def test_standing_before_a_flight_is_cut_and_nothing_of_it_without_position(brisk, known, spin_up,
+                                                                           idle):
+    whole = without(standing_first(brisk, spin_up, idle), WITHOUT[known])
+    assert not resting(without(brisk, WITHOUT[known]), VEHICLE).any()
+    kept = airborne(whole, VEHICLE)
+    # The last tenth of the thrust is reached in the last twentieth of the spin-up,
+    # and what moves less than the noise of the sensors stands, as far as they know.
+    assert 3.0 + 0.9 * spin_up - 0.011 < kept.t[0] < 3.0 + spin_up + 0.15
+    assert kept.t[-1] == whole.t[-1]
+    [finding] = stands(whole, VEHICLE)
+    assert f'kept is where it flies, t = {kept.t[0]:.3f} to' in finding.message
+
+
+@pytest.mark.parametrize('known', ['velocity', 'accelerometer and gyro'])
+def test_what_the_ground_holds_while_motors_lag_does_not_fly(brisk, known):
+    whole = without(standing_first(brisk, lag=0.2), WITHOUT[known])
+    assert 3.15 < airborne(whole, VEHICLE).t[0] < 3.35
+
+
+def test_a_stand_that_is_longer_than_the_flight_is_no_flight(brisk):
+    whole = without(standing_first(brisk), WITHOUT['accelerometer and gyro'])
+    stand = whole.slice(0, 600)
+    for _ in range(6):      # 21 s for 8 s of flight
+        whole = after_another(stand, whole)
+    assert airborne(whole, VEHICLE).t[0] == pytest.approx(21.0, abs=0.2)
