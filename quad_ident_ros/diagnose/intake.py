@@ -14,6 +14,7 @@ from quad_ident_ros.data.quality import cautions, refuse_errors, refuted
 from quad_ident_ros.data.quality.finding import as_caution, Finding
 from quad_ident_ros.data.quality.fleet import vehicles
 from quad_ident_ros.data.quality.ground import airborne, stands
+from quad_ident_ros.data.quality.gyro import bias
 from quad_ident_ros.data.record import FlightRecord, refuse_twice, same_flight
 from quad_ident_ros.data.split import joined, spans
 from quad_ident_ros.data.thrust_level import on_one_level
@@ -144,7 +145,8 @@ def _with_states(records: list[FlightRecord], vehicle: Vehicle, findings: list
         'where': 'accelerometer and gyro alone',
         'message': 'position, velocity and attitude are integrated from them, which holds for a '
                    'tenth of a second; the force across the thrust is taken from the record, so '
-                   'drag, wind, tilts and biases of sensors, and heights cannot be told',
+                   'drag, wind, tilts and biases of sensors, and heights cannot be told, but for '
+                   'the bias of the gyro where the vehicle stands',
         'remedy': 'log position and velocity, of an estimator or of motion capture'})
     return ([reckoned(record, vehicle.gravity) for record in records],
             replace(vehicle, linear_drag=(0.0, 0.0, 0.0)))
@@ -155,7 +157,7 @@ def _fit_for_use(record: FlightRecord, vehicle: Vehicle, rules: Rules, wrong: Co
     """Return a record off the ground, its cautions added to the findings; wrong: as refuted."""
     if 'whole' in record.info:
         findings.append(as_caution(_cut(record), record))
-    ground = stands(record, vehicle)
+    ground = [*stands(record, vehicle), *bias(record, vehicle)]
     refuse_errors(record, ground)
     findings += [as_caution(finding, record) for finding in ground]
     whole, record = record, airborne(record, vehicle)

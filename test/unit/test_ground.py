@@ -7,6 +7,7 @@ import json
 
 import numpy as np
 import pytest
+from standing import after_another, brisk, hover_of, standing_first, VEHICLE, WITHOUT, without
 
 from quad_ident_ros.cli.main import main
 from quad_ident_ros.data.csv import write_csv
@@ -17,15 +18,8 @@ from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import MOCAP_IMU
-from quad_ident_ros.model.vehicle import load_vehicle
 
-VEHICLE = load_vehicle('hummingbird')
 STAND = 2.0     # s
-
-
-def hover_of(vehicle):
-    return np.sqrt(vehicle.mass * vehicle.gravity
-                   / (len(vehicle.rotors) * vehicle.thrust_coefficient))
 
 
 def grounded(flight, before=STAND, after=STAND, idle=0.3):
@@ -73,13 +67,6 @@ def test_ground_on_both_sides_is_cut_off_and_told(flight):
 def test_the_battery_has_been_emptying_since_the_record_began(flight):
     whole = grounded(flight)
     assert airborne(whole, VEHICLE).info['began'] == whole.t[0]
-
-
-def after_another(first, then):
-    """Return the record of one after the other, on one clock."""
-    t = np.concatenate([first.t, first.t[-1] + first.period() + then.t - then.t[0]])
-    return FlightRecord(t, {name: np.concatenate([first.columns[name], then.columns[name]])
-                            for name in first.columns}, {'name': 'both'})
 
 
 def test_of_two_flights_in_one_record_those_of_4_s_are_kept(flight):
@@ -283,55 +270,12 @@ def test_a_fit_leaves_the_ground_out_too(flight, tmp_path, capsys):
     assert values[0] == pytest.approx(values[1], rel=1e-3)
 
 
-def standing_first(flight, spin_up=0.0, idle=0.3, lag=0.0):
-    """
-    Return a flight of VEHICLE after 3 s and a spin-up on the ground, with accelerometer and gyro.
-
-    idle: speed of the rotors in hover speeds; lag: s for which the ground holds the vehicle after
-    its commands are those of the flight.
-    """
-    period = flight.period()
-    t = period * np.arange(round((3.0 + spin_up + lag) / period))
-    speed = hover_of(VEHICLE) * np.where(
-        t < 3.0, idle, idle + (1.0 - idle) * np.minimum((t - 3.0) / max(spin_up, 1e-9), 1.0))
-    random = np.random.default_rng(8)
-    columns = {name: np.zeros(len(t)) for name in flight.columns}
-    columns |= {'qw': 1.0 + 0 * t, 'az': VEHICLE.gravity + 0 * t,
-                'vbat': flight.columns['vbat'][0] + 0 * t,
-                'pz': flight.columns['pz'][0] + 0 * t}
-    for names, sigma in ((('wx', 'wy', 'wz'), 0.02), (('ax', 'ay', 'az'), 0.1),
-                         (('vx', 'vy', 'vz'), 0.01)):
-        for name in names:
-            columns[name] = columns[name] + sigma * random.standard_normal(len(t))
-    for j in range(1, 5):
-        columns[f'cmd{j}'] = speed
-    return after_another(FlightRecord(t, columns), flight)
-
-
-WITHOUT = {'velocity': ('px', 'py', 'pz'),
-           'velocity alone': ('px', 'py', 'pz', 'wx', 'wy', 'wz', 'ax', 'ay', 'az'),
-           'accelerometer and gyro': ('p', 'v', 'q', 'phi', 'theta', 'psi')}
-
-
-def without(record, groups):
-    return FlightRecord(record.t, {name: values for name, values in record.columns.items()
-                                   if not (name == 'vbat' or name.startswith(groups))},
-                        dict(record.info))
-
-
-@pytest.fixture(scope='module')
-def brisk():
-    return fly_closed_loop(VEHICLE, {}, 'lissajous', duration=8.0, rate=200.0, seed=3,
-                           noise=MOCAP_IMU)
-
-
 @pytest.mark.parametrize('known', WITHOUT)
 @pytest.mark.parametrize('spin_up', [0.0, 1.0])
 @pytest.mark.parametrize('idle', [0.0, 0.3])
-def test_standing_before_a_flight_is_cut_and_nothing_of_it_without_position(brisk, known, spin_up,
-                                                                           idle):
-    whole = without(standing_first(brisk, spin_up, idle), WITHOUT[known])
-    assert not resting(without(brisk, WITHOUT[known]), VEHICLE).any()
+def test_standing_before_a_flight_is_cut_and_nothing_of_it_without_position(known, spin_up, idle):
+    whole = without(standing_first(brisk(), spin_up, idle), WITHOUT[known])
+    assert not resting(without(brisk(), WITHOUT[known]), VEHICLE).any()
     kept = airborne(whole, VEHICLE)
     # The last tenth of the thrust is reached in the last twentieth of the spin-up,
     # and what moves less than the noise of the sensors stands, as far as they know.
@@ -342,13 +286,13 @@ def test_standing_before_a_flight_is_cut_and_nothing_of_it_without_position(bris
 
 
 @pytest.mark.parametrize('known', ['velocity', 'accelerometer and gyro'])
-def test_what_the_ground_holds_while_motors_lag_does_not_fly(brisk, known):
-    whole = without(standing_first(brisk, lag=0.2), WITHOUT[known])
+def test_what_the_ground_holds_while_motors_lag_does_not_fly(known):
+    whole = without(standing_first(brisk(), lag=0.2), WITHOUT[known])
     assert 3.15 < airborne(whole, VEHICLE).t[0] < 3.35
 
 
-def test_a_stand_that_is_longer_than_the_flight_is_no_flight(brisk):
-    whole = without(standing_first(brisk), WITHOUT['accelerometer and gyro'])
+def test_a_stand_that_is_longer_than_the_flight_is_no_flight():
+    whole = without(standing_first(brisk()), WITHOUT['accelerometer and gyro'])
     stand = whole.slice(0, 600)
     for _ in range(6):      # 21 s for 8 s of flight
         whole = after_another(stand, whole)
