@@ -3,6 +3,7 @@
 """Where a vehicle stands or is carried, whose force no command tells, and where it flies."""
 
 from dataclasses import replace
+import math
 
 import numpy as np
 from scipy.ndimage import uniform_filter1d
@@ -19,7 +20,9 @@ LEAST = 0.3         # s: whatever falls for that long with half the thrust is fa
 CLEAR = 0.05        # m above the height of standing where the ground is left
 CARRIED = 3.0       # m/s: what is faster is in no hand, and its drag may hold it up
 FALLING = 0.5       # of g: with less force on it the vehicle falls, and flies
-LIFT = 0.9          # of the usual thrust: with less nothing that rests leaves the ground
+LIFT = 0.8          # of the usual thrust, of which a full battery gives a tenth more and the
+                    # ground a tenth: with less nothing that rests leaves it
+AGAIN = 0.1         # s of too little thrust to hover within BESIDE of a rest: a start that failed
 BESIDE = 0.5        # s before and after a rest or a blow: of take-off, landing, tumbling
 STEADY = 0.05       # s over which sensors are averaged where motion begins: many turns of rotors
 BEGUN = 5.0         # standard deviations of them at rest by which motion shows, and at least
@@ -173,10 +176,14 @@ def unflown(record: FlightRecord, vehicle: Vehicle) -> np.ndarray:
     beside = round(BESIDE / record.period())
     for first, last in _runs(blows):
         found[max(first - beside, 0):last + beside + 1] = True
+    until = -math.inf
     for first, last in _runs((thrust < IDLE * usual) & held):
-        if record.t[last] - record.t[first] >= LEAST:
+        least = AGAIN if record.t[first] - until <= BESIDE else LEAST
+        if record.t[last] - record.t[first] >= least:
             end = _around((thrust < LIFT * usual) & held, first, last)[1]
-            found[max(first - beside, 0):_moves_from(record, first, last, end)] = True
+            moves = _moves_from(record, first, last, end)
+            found[max(first - beside, 0):moves] = True
+            until = record.t[min(moves, len(record) - 1)]
     return found
 
 
