@@ -15,6 +15,11 @@ KNOWN = {'odometry': ('pose', 'velocity', 'rate'), 'imu': ('rate', 'specific_for
 """Topics that need no mapping file, and what they are read for: a later one takes its role."""
 
 
+APART = 60.0        # s by which stamps of one clock are never late, however fast they are played
+RECEIVED = ('the stamps of the topics are of several clocks; times of receipt are used for all of '
+            'them')
+
+
 def known_mapping(names):
     """Return the Mapping of some of the KNOWN topics."""
     topics = {role: {'topic': name} for name in KNOWN if name in names for role in KNOWN[name]}
@@ -25,8 +30,8 @@ class MappedTopics:
     """
     What the topics of a mapping hold.
 
-    info: what records of them are to say of themselves: what the outputs to the motors are, which
-    become speeds where their vehicle is known (data.outputs).
+    Stamps are those in the messages, or the times of receipt where there are none, and for all
+    topics where the clocks of some are APART, as data.foreign has it for bags.
     Args: mapping Mapping; where: what names it, for messages. InputError where it names no topics.
     """
 
@@ -34,20 +39,31 @@ class MappedTopics:
         if not mapping.topics:
             raise InputError(f'{where}: the mapping names no topics; add topics: to it')
         self._mapping = mapping
-        told = mapping.actuators
-        self.info = {} if told is None else {ACTUATORS: actuators_to_mapping(told)}
+        self._late = {}     # s from the stamp to the receipt, by topic
+        self.by_receipt = False
         self._parts = {role: TopicPart(f'topic {mapping.topics[role].topic}', role,
                                        mapping.topics[role])
                        for role in ROLES if role in mapping.topics}
         self.streams = {role: between_of(role) for role in self._parts}
         self.topics = tuple(dict.fromkeys(part.source.topic for part in self._parts.values()))
 
+    @property
+    def info(self):
+        """
+        What records of the topics are to say of themselves.
+
+        It has what the outputs to the motors are: they become speeds where their vehicle is known.
+        """
+        told = self._mapping.actuators
+        return {**({} if told is None else {ACTUATORS: actuators_to_mapping(told)}),
+                **({'notes': [RECEIVED]} if self.by_receipt else {})}
+
     def samples(self, topic, kind, received_ns, message):
         """
         Return [(role, stamp in ns, columns -> numbers)] in a message of a topic.
 
-        Args: kind its type, package/msg/Name; received_ns its time of receipt, where it has no
-        stamp. Raises InputError where it does not hold what the mapping says.
+        Args: kind its type, package/msg/Name; received_ns its time of receipt.
+        Raises InputError where it does not hold what the mapping says.
         """
         found = [(role, stamp, values) for role, part in self._parts.items()
                  if part.source.topic == topic
@@ -56,7 +72,12 @@ class MappedTopics:
                 BODY_VELOCITY[0] in values for _, _, values in found):
             raise InputError(f'topic {topic}: a velocity in body axes needs an attitude; map a '
                              'pose, or say frame: world')
-        return found
+        if found and not self.by_receipt:
+            self._late[topic] = (received_ns - found[0][1]) * 1e-9
+            self.by_receipt = len(self._late) == len(self.topics) and (
+                max(self._late.values()) - min(self._late.values()) > APART)
+        return [(role, received_ns if self.by_receipt else stamp, values)
+                for role, stamp, values in found]
 
 
 def message_class(kind):

@@ -30,7 +30,13 @@ from quad_ident_ros.data.topics import (
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.nodes import process
 from quad_ident_ros.nodes.losses import Losses
-from quad_ident_ros.nodes.mapped import KNOWN, known_mapping, MappedTopics, message_class
+from quad_ident_ros.nodes.mapped import (
+    KNOWN,
+    known_mapping,
+    MappedTopics,
+    message_class,
+    RECEIVED,
+)
 from quad_ident_ros.nodes.messages import diagnostics_message, ERROR, OK, record_message, WARN
 from quad_ident_ros.nodes.parameters import help_text, NodeParameters, ParameterSpec
 from quad_ident_ros.nodes.qos import BEST_EFFORT, latched, LOSSLESS
@@ -231,8 +237,10 @@ class Recorder(Node):
             self.get_logger().warning('the clock of the messages went back: a new record begins')
 
     def _between(self):
-        """Return how rows come about where the stamps of our topics do not meet, or ''."""
-        if self._mapped is not None or not self._joiner.interpolates:
+        """Return how rows come about where the stamps are not what they should be, or ''."""
+        if self._mapped is not None:
+            return RECEIVED if self._mapped.by_receipt else ''
+        if not self._joiner.interpolates:
             return ''
         return ('the stamps of the topics are seldom equal: joined by interpolation at those of '
                 f'{self._joiner.base}, within {self._config["gap"]:g} s (parameter gap)')
@@ -240,6 +248,7 @@ class Recorder(Node):
     def _on_mapped(self, name, kind, raw):
         self._last_message = self._steady.now().nanoseconds
         self._write(name, raw)
+        by_receipt = self._mapped.by_receipt
         try:
             samples = self._mapped.samples(name, self._types[name],
                                            self.get_clock().now().nanoseconds,
@@ -248,6 +257,8 @@ class Recorder(Node):
             self._trouble = self._unreadable = str(error)
             self.get_logger().error(self._unreadable, throttle_duration_sec=10.0)
             return
+        if self._mapped.by_receipt and not by_receipt:
+            self.get_logger().warning(self._between())
         restarts = self.counts.restarts
         for role, stamp, values in samples:
             rows = self._joiner.add(role, stamp, values)

@@ -3,6 +3,7 @@
 """Node recorder on topics of any type, that a mapping names, at rates of their own."""
 
 import json
+import time
 
 from geometry_msgs.msg import PoseStamped, TwistStamped
 from graph import Vehicle
@@ -146,6 +147,29 @@ def test_a_unit_holds_live_as_in_a_bag(graph, tmp_path):
     recorder = graph.start(Recorder, {'mapping': str(path)})
     record, t = flown(graph, recorder)
     np.testing.assert_allclose(record.columns['wz'], np.radians(t), rtol=1e-9)
+
+
+def test_topics_of_several_clocks_are_joined_by_their_receipt(graph, tmp_path):
+    """A pose stamped by a simulation, and commands that have no stamp at all."""
+    (tmp_path / 'm.yaml').write_text('topics:\n  pose: {topic: /p}\n  commands: {topic: /c}\n')
+    recorder = graph.start(Recorder, {'mapping': str(tmp_path / 'm.yaml')})
+    records = graph.listen(Float64MultiArray, 'record', latched(16))
+    poses = graph.probe.create_publisher(PoseStamped, '/p', 1000)
+    commands = graph.probe.create_publisher(Float64MultiArray, '/c', 1000)
+    for publisher in (poses, commands):
+        graph.await_listeners(publisher)
+    for k in range(100):
+        poses.publish(pose(START + k * 10 * MS))
+        commands.publish(Float64MultiArray(data=[1.0 * k, 0.0, 0.0, 0.0]))
+        graph.spin_for(0.01)
+    graph.spin_until(lambda: recorder.counts.joined >= 80, '80 rows')
+    graph.trigger('recorder/flush')
+    graph.spin_until(lambda: records, 'the record')
+    [record] = records.records()
+    assert 'several clocks' in record.info['notes'][0]
+    assert abs(record.info['start_ns'] * 1e-9 - time.time()) < 60.0
+    sample = (record.columns['px'] - 2.0) / 0.02
+    assert np.abs(sample - record.columns['cmd1'])[5:].max() <= 2.0
 
 
 def test_what_is_not_there_is_said(graph, mapping):
