@@ -138,9 +138,6 @@ class TopicPart:
         found = []
         for stamp, values in self._read(message, kind):
             columns = self._columns(np.array([values]), mapping)
-            if 'output1' in columns and mapping.actuators is not None:
-                speeds = rotor_speeds(self._where, [values], mapping.actuators, None)
-                columns = {f'cmd{k}': column for k, column in enumerate(speeds.T, 1)}
             found.append((stamp or received,
                           {name: float(column[0]) for name, column in columns.items()}))
         self._one_child()

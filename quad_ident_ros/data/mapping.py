@@ -138,10 +138,50 @@ def mapping_from(data, where):
         schema.choice(f'{where}: body', data.get('body', 'FLU'), BODIES),
         {str(topic): schema.integer(f'{where}: instances: {schema.shown(topic)}', number, 0)
          for topic, number in instances.items()},
-        _actuators(f'{where}: actuators', data['actuators']) if 'actuators' in data else None,
+        actuators_from(f'{where}: actuators', data['actuators']) if 'actuators' in data else None,
         _columns(f'{where}: columns', data.get('columns', {})),
         schema.choice(f'{where}: quaternion', data.get('quaternion', 'wxyz'), ('wxyz', 'xyzw')),
         schema.choice(f'{where}: separator', data.get('separator', ''), ('', ',', ';', '\t', ' ')))
+
+
+def actuators_from(where, data):
+    """Return the Actuators that the section `actuators` of a mapping says; raises InputError."""
+    schema.check_keys(where, data, ('order', 'kind', 'minimum', 'maximum', 'speeds', 'curve'),
+                      ('kind',))
+    kind = schema.choice(f'{where}: kind', data['kind'], tuple(KINDS))
+    if KINDS[kind] is None:
+        for key in ('minimum', 'maximum', 'speeds', 'curve'):
+            if key in data:
+                raise InputError(f'{where}: {key}: outputs of kind {kind} are rotor speeds '
+                                 'already; leave it out')
+    minimum, maximum = (schema.number(f'{where}: {key}', data[key]) if key in data else None
+                        for key in ('minimum', 'maximum'))
+    if minimum is not None and maximum is not None and maximum <= minimum:
+        raise InputError(f'{where}: maximum: {maximum:g} is not above the minimum, {minimum:g}')
+    order = data.get('order', [])
+    if not isinstance(order, list) or len(order) > 64 or ('order' in data and not order):
+        raise InputError(f'{where}: order: expected a list such as [1, 3, 2, 4], got '
+                         f'{schema.shown(order)}')
+    order = tuple(schema.integer(f'{where}: order[{k}]', number, 1)
+                  for k, number in enumerate(order))
+    if len(set(order)) != len(order):
+        raise InputError(f'{where}: order: {list(order)} names an output twice')
+    speeds = None
+    if 'speeds' in data:
+        speeds = schema.numbers(f'{where}: speeds', data['speeds'], 2, minimum=0.0)
+        if speeds[1] <= speeds[0]:
+            raise InputError(f'{where}: speeds: expected [low, high], got {list(speeds)}')
+    curve = schema.choice(f'{where}: curve', data.get('curve', 'linear'), CURVES)
+    return Actuators(order, kind, minimum, maximum, speeds, curve)
+
+
+def actuators_to_mapping(actuators):
+    """Return the section `actuators` of a mapping that says Actuators."""
+    said = {'kind': actuators.kind, 'order': list(actuators.order), 'minimum': actuators.minimum,
+            'maximum': actuators.maximum, 'speeds': actuators.speeds and list(actuators.speeds)}
+    if actuators.kind not in TO_SPEED:
+        said['curve'] = actuators.curve
+    return {key: value for key, value in said.items() if value not in (None, [])}
 
 
 def factor_of(name: str, said: str) -> float:
@@ -304,33 +344,3 @@ def _column(where: str, name: str, entry: object) -> Column:
                              tuple(UNITS.get(unit_of(name), {})) or ('1',))
     frame = schema.choice(f'{where}: frame', entry.get('frame', 'world'), ('world', 'body'))
     return Column(tuple(one.strip() for one in names), said, frame)
-
-
-def _actuators(where, data):
-    schema.check_keys(where, data, ('order', 'kind', 'minimum', 'maximum', 'speeds', 'curve'),
-                      ('kind',))
-    kind = schema.choice(f'{where}: kind', data['kind'], tuple(KINDS))
-    if KINDS[kind] is None:
-        for key in ('minimum', 'maximum', 'speeds', 'curve'):
-            if key in data:
-                raise InputError(f'{where}: {key}: outputs of kind {kind} are rotor speeds '
-                                 'already; leave it out')
-    minimum, maximum = (schema.number(f'{where}: {key}', data[key]) if key in data else None
-                        for key in ('minimum', 'maximum'))
-    if minimum is not None and maximum is not None and maximum <= minimum:
-        raise InputError(f'{where}: maximum: {maximum:g} is not above the minimum, {minimum:g}')
-    order = data.get('order', [])
-    if not isinstance(order, list) or len(order) > 64 or ('order' in data and not order):
-        raise InputError(f'{where}: order: expected a list such as [1, 3, 2, 4], got '
-                         f'{schema.shown(order)}')
-    order = tuple(schema.integer(f'{where}: order[{k}]', number, 1)
-                  for k, number in enumerate(order))
-    if len(set(order)) != len(order):
-        raise InputError(f'{where}: order: {list(order)} names an output twice')
-    speeds = None
-    if 'speeds' in data:
-        speeds = schema.numbers(f'{where}: speeds', data['speeds'], 2, minimum=0.0)
-        if speeds[1] <= speeds[0]:
-            raise InputError(f'{where}: speeds: expected [low, high], got {list(speeds)}')
-    curve = schema.choice(f'{where}: curve', data.get('curve', 'linear'), CURVES)
-    return Actuators(order, kind, minimum, maximum, speeds, curve)

@@ -4,10 +4,11 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
-from quad_ident_ros.data.mapping import Actuators, chosen_outputs, motors_of
+from quad_ident_ros.data.mapping import Actuators, actuators_from, chosen_outputs, motors_of
 from quad_ident_ros.data.motor_order import order_of, rotors_of
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.data.signal_kind import described, kinds_of
@@ -24,6 +25,10 @@ from quad_ident_ros.model.motors import (
 from quad_ident_ros.model.vehicle import Vehicle
 
 UNITS = {'speed': 'rad/s', 'thrust': 'N'}
+ACTUATORS = 'actuators'
+"""Info of a live record: what its outputs are, as the section of a mapping says it."""
+BY_MOTORS = 'by_motors'
+"""Info of a record: its commands are as uncertain as the vehicle file says that its motors are."""
 BEYOND, MANY = 0.05, 0.01   # of the range and of the samples: more is another kind of signal
 
 
@@ -37,9 +42,13 @@ def commanded(records: Sequence[FlightRecord], vehicle: Vehicle | None,
     the speed at full signal, it is that by which thrust carries the weight: see thrust_level.
     Motors that a reader knows the places of, and their measured speeds, come into the order of
     the vehicle.
-    Args: records; vehicle Vehicle or None; actuators Actuators or None; with neither outputs stay.
+    Args: records; vehicle Vehicle or None; actuators Actuators, or None for those that the first
+    record says it has. Without a vehicle and actuators outputs stay.
     Raises InputError, with the lines to write, where the outputs leave a doubt.
     """
+    said = records[0].info.get(ACTUATORS) if records else None
+    if vehicle is not None and actuators is None and said is not None:
+        actuators = actuators_from(f'{_where(records[0])}: {ACTUATORS}', said)
     if vehicle is None and actuators is None:
         return list(records)
     found = [_in_order(record, vehicle, actuators) for record in records]
@@ -73,13 +82,14 @@ def _with_commands(records: list[FlightRecord], vehicle: Vehicle | None,
         note = (f'the motors stand: outputs stay as output1..{signals[0].shape[1]}, of which the '
                 'values do not tell the kind')
         return [_noted(record, note) for record in records]
-    motors, said, info = made.motors, made.said, {}
+    motors, said = made.motors, made.said
+    info: dict[str, Any] = {BY_MOTORS: True} if made.motors.uncertainty else {}
     _refuse_voltage(records, motors)
     thrust = 1.0 if vehicle is None else vehicle.thrust_coefficient
     if not motors.whole:
         assert vehicle is not None
         motors, by = levelled(where, records, signals, motors, vehicle)
-        info = {FULL_SPEED: full_speed(motors, thrust)}
+        info[FULL_SPEED] = full_speed(motors, thrust)
         said += (f'{_said(motors)}; the gain is that by which thrust carries the weight of '
                  f'{vehicle.name} ({by})')
     done = []

@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Live streams of different rates, joined into rows at the stamps of the first."""
+"""Live streams of different rates, joined into rows at the stamps of one of them."""
 
 from bisect import bisect_left, bisect_right
 from collections import deque
@@ -10,28 +10,30 @@ import numpy as np
 
 from quad_ident_ros.data.frames import continuous
 from quad_ident_ros.data.joiner import Counts, RESTART_NS
-from quad_ident_ros.data.record import QUATERNION
+from quad_ident_ros.data.record import EULER, QUATERNION
 from quad_ident_ros.data.streams import HELD, INTERPOLATED, slerp, SLOW
+
+TURN = 2.0 * math.pi
 
 
 class StreamJoiner:
     """
-    Joins messages of several streams into rows at the stamps of the first stream.
+    Joins messages of several streams into rows at the stamps of one, the base.
 
     Between its samples a stream is interpolated, attitudes along the shortest turn, or it holds
     (commands, a battery), as data.streams.join has it for bags. A row waits until each stream has
     gone on beyond its stamp, and is dropped where the samples around it are further apart than the
     gap. Streams may run ahead of one another by any time, up to `most` waiting rows.
-    Args: streams: name -> INTERPOLATED, HELD or SLOW, of which the first gives the stamps;
-    gap: s; most.
+    Args: streams: name -> INTERPOLATED, HELD or SLOW; gap: s; base: the name of a stream, by
+    default the first; most.
     """
 
-    def __init__(self, streams, gap, most=20000):
+    def __init__(self, streams, gap, base=None, most=20000):
         self.topics = tuple(streams)
         self.counts = Counts(received=dict.fromkeys(streams, 0))
         self.columns = {}
         self._between = dict(streams)
-        self._base = self.topics[0]
+        self._base = base or self.topics[0]
         self._gap = int(gap * 1e9)
         self._most = most
         self._samples = {name: _Samples() for name in streams}
@@ -162,7 +164,8 @@ def _between(columns, before, after, stamp):
     span = (after[0] - before[0]) * 1e-9
     x = (stamp - before[0]) * 1e-9
     share = x / span
-    values = [one + share * (other - one) for one, other in zip(before[1], after[1], strict=True)]
+    values = [one + share * (math.remainder(other - one, TURN) if name in EULER else other - one)
+              for name, one, other in zip(columns, before[1], after[1], strict=True)]
     if QUATERNION[0] in columns:
         at = columns.index(QUATERNION[0])
         q = continuous(np.array([before[1][at:at + 4], after[1][at:at + 4]]))

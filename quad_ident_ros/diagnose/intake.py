@@ -9,10 +9,12 @@ import numpy as np
 
 from quad_ident_ros.data.clocks import Clock, clocks_of, on_one_clock
 from quad_ident_ros.data.inertial import is_inertial, reckoned, with_position
+from quad_ident_ros.data.outputs import BY_MOTORS
 from quad_ident_ros.data.quality import cautions, refuse_errors, refuted
 from quad_ident_ros.data.quality.finding import as_caution, Finding
 from quad_ident_ros.data.quality.fleet import vehicles
 from quad_ident_ros.data.quality.ground import airborne, stands
+from quad_ident_ros.data.quality.gyro import bias
 from quad_ident_ros.data.record import FlightRecord, refuse_twice, same_flight
 from quad_ident_ros.data.split import joined, spans
 from quad_ident_ros.data.thrust_level import on_one_level
@@ -74,6 +76,8 @@ def take_in(records: Sequence[FlightRecord], vehicle: Vehicle, hold_out: FlightR
     held = [] if hold_out is None else [hold_out]
     every = on_one_level([with_commands(record, vehicle) for record in (*records, *held)])
     records, hold_out = (every, None) if hold_out is None else (every[:-1], every[-1])
+    if not all(record.info.get(BY_MOTORS) for record in every):
+        vehicle = replace(vehicle, motors=None)     # its uncertainty is none of these commands'
     wrong = refuted([*records, *([] if hold_out is None else [hold_out])], vehicle)
     findings = vehicles([*records, *([] if hold_out is None else [hold_out])])
     records = [_fit_for_use(record, vehicle, rules, wrong, findings) for record in records]
@@ -141,7 +145,8 @@ def _with_states(records: list[FlightRecord], vehicle: Vehicle, findings: list
         'where': 'accelerometer and gyro alone',
         'message': 'position, velocity and attitude are integrated from them, which holds for a '
                    'tenth of a second; the force across the thrust is taken from the record, so '
-                   'drag, wind, tilts and biases of sensors, and heights cannot be told',
+                   'drag, wind, tilts and biases of sensors, and heights cannot be told, but for '
+                   'the bias of the gyro where the vehicle stands',
         'remedy': 'log position and velocity, of an estimator or of motion capture'})
     return ([reckoned(record, vehicle.gravity) for record in records],
             replace(vehicle, linear_drag=(0.0, 0.0, 0.0)))
@@ -152,7 +157,7 @@ def _fit_for_use(record: FlightRecord, vehicle: Vehicle, rules: Rules, wrong: Co
     """Return a record off the ground, its cautions added to the findings; wrong: as refuted."""
     if 'whole' in record.info:
         findings.append(as_caution(_cut(record), record))
-    ground = stands(record, vehicle)
+    ground = [*stands(record, vehicle), *bias(record, vehicle)]
     refuse_errors(record, ground)
     findings += [as_caution(finding, record) for finding in ground]
     whole, record = record, airborne(record, vehicle)

@@ -8,6 +8,7 @@ import sys
 
 from std_msgs.msg import Float64MultiArray, String
 
+from quad_ident_ros.data.outputs import commanded
 from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.diagnose.intake import refuse_short
 from quad_ident_ros.diagnose.residual_wrench import CHANNELS
@@ -51,7 +52,8 @@ HELP = f"""diagnoser: says which effects a vehicle has beside its nominal descri
   ros2 service call /diagnoser/diagnose std_srvs/srv/Trigger
 
 Subscribes: record (std_msgs/Float64MultiArray, latched) of the recorder, which joins pose, twist
-and input; of records without rotor speed commands, those that give the input are taken.
+and input; of records without rotor speed commands, those that give the input are taken. Outputs
+to the motors (PWM, normalised, ...) become speeds by the recorder's mapping and the vehicle.
 Of several flights the last one is held out, of a single one every other block of 3 s.
 Publishes (latched, but progress and diagnostics):
   diagnosis      std_msgs/String             JSON: verdict, effects with probability, where, gap,
@@ -95,9 +97,10 @@ class Diagnoser(RecordWorker):
         records = self._taken()
 
         def run():
-            flights = [record.last(values['window']) if values['window'] else record
-                       for record in records]
-            found = diagnose(flights, load_nominal(values['vehicle']),
+            vehicle = load_nominal(values['vehicle'])
+            flights = commanded([record.last(values['window']) if values['window'] else record
+                                 for record in records], vehicle)
+            found = diagnose(flights, vehicle,
                              effects=values['effects'] or None,
                              rules=rules_from(values['tolerance'], 'parameter tolerance'),
                              on_progress=self._job.tell)

@@ -4,14 +4,20 @@
 
 from importlib import import_module
 
-from quad_ident_ros.data.foreign import TopicPart
-from quad_ident_ros.data.mapping import mapping_from, ROLES
+from quad_ident_ros.data.foreign import BODY_VELOCITY, TopicPart
+from quad_ident_ros.data.mapping import actuators_to_mapping, mapping_from, ROLES
+from quad_ident_ros.data.outputs import ACTUATORS
 from quad_ident_ros.data.stream_joiner import between_of
 from quad_ident_ros.errors import InputError
 
 KNOWN = {'odometry': ('pose', 'velocity', 'rate'), 'imu': ('rate', 'specific_force'),
          'actuators': ('commands',)}
 """Topics that need no mapping file, and what they are read for: a later one takes its role."""
+
+
+APART = 60.0        # s by which stamps of one clock are never late, however fast they are played
+RECEIVED = ('the stamps of the topics are of several clocks; times of receipt are used for all of '
+            'them')
 
 
 def known_mapping(names):
@@ -24,6 +30,8 @@ class MappedTopics:
     """
     What the topics of a mapping hold.
 
+    Stamps are those in the messages, or the times of receipt where there are none, and for all
+    topics where the clocks of some are APART, as data.foreign has it for bags.
     Args: mapping Mapping; where: what names it, for messages. InputError where it names no topics.
     """
 
@@ -31,22 +39,45 @@ class MappedTopics:
         if not mapping.topics:
             raise InputError(f'{where}: the mapping names no topics; add topics: to it')
         self._mapping = mapping
+        self._late = {}     # s from the stamp to the receipt, by topic
+        self.by_receipt = False
         self._parts = {role: TopicPart(f'topic {mapping.topics[role].topic}', role,
                                        mapping.topics[role])
                        for role in ROLES if role in mapping.topics}
         self.streams = {role: between_of(role) for role in self._parts}
         self.topics = tuple(dict.fromkeys(part.source.topic for part in self._parts.values()))
 
+    @property
+    def info(self):
+        """
+        What records of the topics are to say of themselves.
+
+        It has what the outputs to the motors are: they become speeds where their vehicle is known.
+        """
+        told = self._mapping.actuators
+        return {**({} if told is None else {ACTUATORS: actuators_to_mapping(told)}),
+                **({'notes': [RECEIVED]} if self.by_receipt else {})}
+
     def samples(self, topic, kind, received_ns, message):
         """
         Return [(role, stamp in ns, columns -> numbers)] in a message of a topic.
 
-        Args: kind its type, package/msg/Name; received_ns its time of receipt, where it has no
-        stamp. Raises InputError where it does not hold what the mapping says.
+        Args: kind its type, package/msg/Name; received_ns its time of receipt.
+        Raises InputError where it does not hold what the mapping says.
         """
-        return [(role, stamp, values) for role, part in self._parts.items()
-                if part.source.topic == topic
-                for stamp, values in part.samples(received_ns, message, kind, self._mapping)]
+        found = [(role, stamp, values) for role, part in self._parts.items()
+                 if part.source.topic == topic
+                 for stamp, values in part.samples(received_ns, message, kind, self._mapping)]
+        if not (self._parts.keys() & {'pose', 'attitude'}) and any(
+                BODY_VELOCITY[0] in values for _, _, values in found):
+            raise InputError(f'topic {topic}: a velocity in body axes needs an attitude; map a '
+                             'pose, or say frame: world')
+        if found and not self.by_receipt:
+            self._late[topic] = (received_ns - found[0][1]) * 1e-9
+            self.by_receipt = len(self._late) == len(self.topics) and (
+                max(self._late.values()) - min(self._late.values()) > APART)
+        return [(role, received_ns if self.by_receipt else stamp, values)
+                for role, stamp, values in found]
 
 
 def message_class(kind):

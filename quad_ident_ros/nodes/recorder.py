@@ -15,7 +15,7 @@ from std_msgs.msg import Float64MultiArray, String, UInt64
 from std_srvs.srv import Trigger
 
 from quad_ident_ros.data.buffer import Limits, RecordBuffer
-from quad_ident_ros.data.joiner import Joiner
+from quad_ident_ros.data.flight_joiner import FlightJoiner
 from quad_ident_ros.data.mapping import load_mapping
 from quad_ident_ros.data.recording import Recording
 from quad_ident_ros.data.stream_joiner import StreamJoiner
@@ -30,7 +30,13 @@ from quad_ident_ros.data.topics import (
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.nodes import process
 from quad_ident_ros.nodes.losses import Losses
-from quad_ident_ros.nodes.mapped import KNOWN, known_mapping, MappedTopics, message_class
+from quad_ident_ros.nodes.mapped import (
+    KNOWN,
+    known_mapping,
+    MappedTopics,
+    message_class,
+    RECEIVED,
+)
 from quad_ident_ros.nodes.messages import diagnostics_message, ERROR, OK, record_message, WARN
 from quad_ident_ros.nodes.parameters import help_text, NodeParameters, ParameterSpec
 from quad_ident_ros.nodes.qos import BEST_EFFORT, latched, LOSSLESS
@@ -52,8 +58,8 @@ SPECS = (
                   'for bags (docs/records.md); empty: the topics of the parameter topics.',
                   fixed=True),
     ParameterSpec('gap', 0.1, 'Seconds between two samples of a topic of other rate or stamps '
-                  'beyond which rows between them are dropped (mapping, odometry, imu, '
-                  'actuators).', limits=(0.001, 10.0), fixed=True),
+                  'beyond which rows between them are dropped, where stamps are not equal.',
+                  limits=(0.001, 10.0), fixed=True),
     ParameterSpec('window_samples', 60000, 'Samples after which a window is complete.',
                   limits=(2, 10_000_000), fixed=True),
     ParameterSpec('window_seconds', 600.0, 'Seconds after which a window is complete.',
@@ -76,7 +82,8 @@ HELP = f"""recorder: joins the topics of a flight into records, keeps and publis
 Subscribes (as the publisher offers, reliable first): attitude, altitude, pose, twist, input (types
 as the simulator publishes them), run (std_msgs/String, announces runs; not needed). Or odometry
 (nav_msgs/Odometry), imu (sensor_msgs/Imu) and actuators (actuator_msgs/Actuators), or any topics
-that a mapping names, which are joined at the stamps of the pose, or else of the first state.
+that a mapping names, which are joined at the stamps of the pose, or else of the first state. So
+are the first five where their stamps are seldom equal.
 Publishes:
   record        std_msgs/Float64MultiArray (latched, 16 deep)  samples x columns, see the labels
   ~/statistics  std_msgs/String (latched)                      JSON: received, joined, dropped,
@@ -100,7 +107,7 @@ class Recorder(Node):
         self._mapped = _mapped(parameters)
         if self._mapped is None:
             self._topics = tuple(parameters['topics'])
-            self._joiner = Joiner(self._topics)
+            self._joiner = FlightJoiner(self._topics, parameters['gap'])
             columns = raw_columns(self._topics)
         else:
             self._topics = tuple(self._mapped.streams)
@@ -221,14 +228,27 @@ class Recorder(Node):
         message = deserialize_message(raw, kind)
         self._write(topic.name, raw)
         restarts = self.counts.restarts
+        interpolated = self._joiner.interpolates
         rows = self._joiner.add(topic.name, stamp_ns(message), topic.values(message))
+        if self._joiner.interpolates and not interpolated:
+            self.get_logger().warning(self._between())
         self._keep(rows)
         if self.counts.restarts != restarts:
             self.get_logger().warning('the clock of the messages went back: a new record begins')
 
+    def _between(self):
+        """Return how rows come about where the stamps are not what they should be, or ''."""
+        if self._mapped is not None:
+            return RECEIVED if self._mapped.by_receipt else ''
+        if not self._joiner.interpolates:
+            return ''
+        return ('the stamps of the topics are seldom equal: joined by interpolation at those of '
+                f'{self._joiner.base}, within {self._config["gap"]:g} s (parameter gap)')
+
     def _on_mapped(self, name, kind, raw):
         self._last_message = self._steady.now().nanoseconds
         self._write(name, raw)
+        by_receipt = self._mapped.by_receipt
         try:
             samples = self._mapped.samples(name, self._types[name],
                                            self.get_clock().now().nanoseconds,
@@ -237,6 +257,8 @@ class Recorder(Node):
             self._trouble = self._unreadable = str(error)
             self.get_logger().error(self._unreadable, throttle_duration_sec=10.0)
             return
+        if self._mapped.by_receipt and not by_receipt:
+            self.get_logger().warning(self._between())
         restarts = self.counts.restarts
         for role, stamp, values in samples:
             rows = self._joiner.add(role, stamp, values)
@@ -282,7 +304,8 @@ class Recorder(Node):
         self.counts.missing = self._buffer.missing
         for record in records:
             self._records += 1
-            info = {**record.info, 'problems': self.counts.problems()}
+            info = {**record.info, 'problems': self.counts.problems(),
+                    **(self._mapped.info if self._mapped else {})}
             self._record_publisher.publish(record_message(
                 type(record)(record.t, record.columns, info)))
             text = (f'record {self._records}: {len(record)} samples'
@@ -368,7 +391,8 @@ class Recorder(Node):
             self._trouble = None
             return
         silent = [name for name in self._topics if not news[name]]
-        apart = ('the stamps of the topics are never equal' if self._mapped is None else
+        equal = self._mapped is None and not self._joiner.interpolates
+        apart = ('the stamps of the topics are never equal' if equal else
                  f'the samples of the topics are never within {self._config["gap"]:g} s of one '
                  'another (parameter gap)')
         way_out = ('the parameter topics leaves topics out' if self._mapped is None
@@ -387,6 +411,8 @@ class Recorder(Node):
         self._statistics.publish(String(data=json.dumps(data)))
         problems = self.counts.problems()
         level, text = OK, f'{self.counts.joined} samples joined'
+        if self._between():
+            text += f'; {self._between()}'
         if problems:
             level = WARN
             text += ', ' + ', '.join(f'{count} {name}' for name, count in problems.items())

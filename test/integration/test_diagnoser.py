@@ -16,6 +16,8 @@ import yaml
 
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.experiment import fly, load_experiment
+from quad_ident_ros.model.mixing import with_commands
+from quad_ident_ros.model.motors import motors_from, MOTORS_OFF
 from quad_ident_ros.model.vehicle import load_vehicle, write_vehicle
 from quad_ident_ros.nodes.diagnoser import Diagnoser
 from quad_ident_ros.nodes.messages import record_message
@@ -82,6 +84,27 @@ class Bench:
                     and part in status.message]
 
         return self.graph.spin_until(found, f'{part!r} in the diagnostics', PATIENCE)[-1]
+
+
+def test_outputs_of_motors_are_taken_by_the_motors_of_the_vehicle_file(graph, tmp_path, draggy):
+    """As those of a file are: here normalised signals to more motors than there are."""
+    vehicle = load_vehicle(NOMINAL)
+    speeds = {'kind': 'normalised', 'speed': {'offset': 50, 'gain': 1100}}
+    write_vehicle(tmp_path / 'v.yaml', replace(vehicle, motors=motors_from('v', speeds)))
+    bench = Bench(graph, {'vehicle': str(tmp_path / 'v.yaml')})
+    records = []
+    for record in draggy:
+        columns = {name: values for name, values in with_commands(record, vehicle).columns.items()
+                   if name not in ('u1', 'u2', 'u3', 'u4')}
+        columns |= {f'output{k}': (columns.pop(f'cmd{k}') - 50) / 1100 for k in range(1, 5)}
+        columns['output5'] = np.full(len(record), MOTORS_OFF)
+        records.append(FlightRecord(record.t, columns, {
+            **record.info, 'actuators': {'kind': 'normalised', 'curve': 'linear'}}))
+    bench.feed(records)
+    data = bench.await_diagnosis()
+    assert data['verdict'] == ['rotor_drag']
+    first = data['ranking'][0]['parameters']['coefficient']
+    assert abs(first['value'] - 0.25) < 4 * first['std']
 
 
 def test_it_finds_the_effect_of_the_simulated_vehicle(graph, tmp_path, experiment):

@@ -3,8 +3,10 @@
 """Node recorder on topics of any type, that a mapping names, at rates of their own."""
 
 import json
+import time
 
 from geometry_msgs.msg import PoseStamped, TwistStamped
+from graph import Vehicle
 import numpy as np
 import pytest
 from rclpy.qos import QoSProfile, ReliabilityPolicy
@@ -103,12 +105,71 @@ def test_streams_of_other_rates_are_joined_at_the_stamps_of_the_pose(graph, mapp
                                rtol=1e-9)
 
 
+def test_rows_farther_from_a_sample_than_the_gap_are_dropped(graph, mapping):
+    """Velocities come each 25 ms: within 30 ms there are two around each pose, within 20 none."""
+    recorder = graph.start(Recorder, {'mapping': mapping, 'gap': 0.02})
+    fly(graph)
+    graph.spin_until(lambda: recorder.counts.received['pose'] >= 60
+                     and recorder.counts.dropped >= 40, 'rows to be dropped')
+    assert recorder.counts.joined == 0
+    graph.stop(recorder)
+    recorder = graph.start(Recorder, {'mapping': mapping, 'gap': 0.03})
+    record, _ = flown(graph, recorder)
+    assert len(record) >= 50
+
+
+def test_our_topics_at_other_rates_are_joined_at_the_stamps_of_the_pose(graph):
+    """Without a mapping: the pose each 10 ms, the twist each 4, inputs each 25, never together."""
+    recorder = graph.start(Recorder, {'topics': ['pose', 'twist', 'input']})
+    records = graph.listen(Float64MultiArray, 'record', latched(16))
+    vehicle = Vehicle(graph, ('pose', 'twist', 'input'))
+    for t in range(3000):
+        for name, period, offset in (('pose', 10, 0), ('twist', 4, 1), ('input', 25, 3)):
+            if t % period == offset:
+                vehicle.send(START + t * MS, 1e-9 * (START + t * MS), [name])
+        if t % 50 == 0:
+            graph.spin_for(0.01)
+    graph.spin_until(lambda: recorder.counts.joined >= 280, '280 rows')
+    assert graph.trigger('recorder/flush').success
+    graph.spin_until(lambda: records, 'the record')
+    [record] = records.records()
+    t = record.t + record.info['start_ns'] * 1e-9
+    np.testing.assert_allclose(np.diff(t), 0.01, atol=1e-9)
+    np.testing.assert_allclose(record.columns['vx'], 7 * t, rtol=1e-9)
+    age = t - record.columns['u1'] / 9
+    assert age.min() > -1e-9 and age.max() < 0.025 + 1e-9
+    assert record.info['dropped'] == 0
+
+
 def test_a_unit_holds_live_as_in_a_bag(graph, tmp_path):
     path = tmp_path / 'm.yaml'
     path.write_text(MAPPING.replace('twist.angular}', 'twist.angular, unit: deg/s}'))
     recorder = graph.start(Recorder, {'mapping': str(path)})
     record, t = flown(graph, recorder)
     np.testing.assert_allclose(record.columns['wz'], np.radians(t), rtol=1e-9)
+
+
+def test_topics_of_several_clocks_are_joined_by_their_receipt(graph, tmp_path):
+    """A pose stamped by a simulation, and commands that have no stamp at all."""
+    (tmp_path / 'm.yaml').write_text('topics:\n  pose: {topic: /p}\n  commands: {topic: /c}\n')
+    recorder = graph.start(Recorder, {'mapping': str(tmp_path / 'm.yaml')})
+    records = graph.listen(Float64MultiArray, 'record', latched(16))
+    poses = graph.probe.create_publisher(PoseStamped, '/p', 1000)
+    commands = graph.probe.create_publisher(Float64MultiArray, '/c', 1000)
+    for publisher in (poses, commands):
+        graph.await_listeners(publisher)
+    for k in range(100):
+        poses.publish(pose(START + k * 10 * MS))
+        commands.publish(Float64MultiArray(data=[1.0 * k, 0.0, 0.0, 0.0]))
+        graph.spin_for(0.01)
+    graph.spin_until(lambda: recorder.counts.joined >= 80, '80 rows')
+    graph.trigger('recorder/flush')
+    graph.spin_until(lambda: records, 'the record')
+    [record] = records.records()
+    assert 'several clocks' in record.info['notes'][0]
+    assert abs(record.info['start_ns'] * 1e-9 - time.time()) < 60.0
+    sample = (record.columns['px'] - 2.0) / 0.02
+    assert np.abs(sample - record.columns['cmd1'])[5:].max() <= 2.0
 
 
 def test_what_is_not_there_is_said(graph, mapping):

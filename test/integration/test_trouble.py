@@ -45,7 +45,7 @@ def test_a_topic_that_is_silent_is_named(graph):
     assert 'nothing comes on twist' in response.message
 
 
-def test_stamps_that_never_meet_are_told(graph):
+def test_stamps_that_never_meet_are_told_and_joined_between(graph):
     graph.start(Recorder, {'topics': ['attitude', 'input']})
     vehicle = Vehicle(graph, ('attitude', 'input'))
     stamps = iter(range(10 ** 9, 10 ** 12, 10 ** 7))
@@ -55,7 +55,8 @@ def test_stamps_that_never_meet_are_told(graph):
         vehicle.send(stamp, topics=['attitude'])
         vehicle.send(stamp + 3_000_000, topics=['input'])
 
-    _fly_until_it_is_said(graph, vehicle, send, 'stamps of the topics are never equal')
+    _fly_until_it_is_said(graph, vehicle, send, 'joined by interpolation at those of attitude')
+    assert graph.trigger('recorder/flush').success
 
 
 @pytest.mark.parametrize('end', ['~/stop', 'the node ends'])

@@ -18,7 +18,10 @@ from quad_ident_ros.data.outputs import commanded
 from quad_ident_ros.data.quality import cautions, findings
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.data.signal_kind import kinds_of
+from quad_ident_ros.diagnose.intake import take_in
+from quad_ident_ros.diagnose.rules import RULES
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.greybox.parameters import INDEX, prior_sizes
 from quad_ident_ros.model.motors import KINDS, Motors, motors_from
 
 FLIGHT = flight(seconds=4.0, noise=0.0)
@@ -175,3 +178,22 @@ def test_kinds_without_a_vehicle_are_by_size_alone():
     for values, kind in kinds.items():
         assert kinds_of(np.array(values)) == (kind,)
     assert kinds_of(np.zeros(3)) == () and kinds_of(np.array([np.nan, -1.0])) == ()
+
+
+def test_how_well_the_motors_are_known_says_nothing_of_commands_in_rad_s():
+    """Nor where a mapping has the speeds: the map of the vehicle file had no part in them."""
+    vehicle = replace(VEHICLE, motors=motors_from('v', {
+        'kind': 'normalised', 'speed': {'offset': 100, 'gain': {'value': 1600, 'std': 16}}}))
+    signals = {f'output{k}': column for k, column in enumerate(SHARES.T, 1)}
+    bare = FlightRecord(FLIGHT.t, {name: values for name, values in FLIGHT.columns.items()
+                                   if name not in CMD} | signals)
+    speeds = Actuators(kind='normalised', speeds=(100.0, 1700.0))
+    usual = prior_sizes(VEHICLE, RULES.prior_width)
+    scale = INDEX['thrust_scale.factor']
+    for records, std in (([FLIGHT], usual[scale]),
+                         (commanded([bare], vehicle, speeds), usual[scale]),
+                         (commanded([bare], vehicle), 2 * 16 / 1600)):
+        np.testing.assert_allclose(records[0].stack(*CMD), SPEEDS, rtol=1e-9)
+        taken = take_in(records, vehicle, None, RULES)
+        assert prior_sizes(taken.vehicle, RULES.prior_width)[scale] == pytest.approx(std, rel=0.1)
+    assert usual[scale] > 0.1

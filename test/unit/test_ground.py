@@ -7,6 +7,7 @@ import json
 
 import numpy as np
 import pytest
+from standing import after_another, brisk, hover_of, standing_first, VEHICLE, WITHOUT, without
 
 from quad_ident_ros.cli.main import main
 from quad_ident_ros.data.csv import write_csv
@@ -17,15 +18,8 @@ from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import MOCAP_IMU
-from quad_ident_ros.model.vehicle import load_vehicle
 
-VEHICLE = load_vehicle('hummingbird')
 STAND = 2.0     # s
-
-
-def hover_of(vehicle):
-    return np.sqrt(vehicle.mass * vehicle.gravity
-                   / (len(vehicle.rotors) * vehicle.thrust_coefficient))
 
 
 def grounded(flight, before=STAND, after=STAND, idle=0.3):
@@ -73,13 +67,6 @@ def test_ground_on_both_sides_is_cut_off_and_told(flight):
 def test_the_battery_has_been_emptying_since_the_record_began(flight):
     whole = grounded(flight)
     assert airborne(whole, VEHICLE).info['began'] == whole.t[0]
-
-
-def after_another(first, then):
-    """Return the record of one after the other, on one clock."""
-    t = np.concatenate([first.t, first.t[-1] + first.period() + then.t - then.t[0]])
-    return FlightRecord(t, {name: np.concatenate([first.columns[name], then.columns[name]])
-                            for name in first.columns}, {'name': 'both'})
 
 
 def test_of_two_flights_in_one_record_those_of_4_s_are_kept(flight):
@@ -233,9 +220,9 @@ def test_a_part_that_begins_in_flight_does_not_begin_at_rest(flight):
     assert 'starts_at_rest' not in info and info['start_ns'] == 5 + round(STAND * 1e9)
 
 
-def test_records_without_height_velocity_or_commands_are_left_as_they_are(flight):
+def test_records_without_velocity_or_commands_are_left_as_they_are(flight):
     whole = grounded(flight)
-    for gone in ('pz', 'vx', 'cmd'):
+    for gone in ('vx', 'cmd'):
         columns = {name: values for name, values in whole.columns.items()
                    if not name.startswith(gone)}
         assert not standing(FlightRecord(whole.t, columns, {}), VEHICLE).any()
@@ -281,3 +268,43 @@ def test_a_fit_leaves_the_ground_out_too(flight, tmp_path, capsys):
         assert any('stands on the ground' in line for line in data['findings']) == (
             name == 'f.csv')
     assert values[0] == pytest.approx(values[1], rel=1e-3)
+
+
+@pytest.mark.parametrize('known', WITHOUT)
+@pytest.mark.parametrize('spin_up', [0.0, 1.0])
+@pytest.mark.parametrize('idle', [0.0, 0.3])
+def test_standing_before_a_flight_is_cut_and_nothing_of_it_without_position(known, spin_up, idle):
+    whole = without(standing_first(brisk(), spin_up, idle), WITHOUT[known])
+    assert not resting(without(brisk(), WITHOUT[known]), VEHICLE).any()
+    kept = airborne(whole, VEHICLE)
+    # The last fifth of the thrust is reached in the last eighth of the spin-up,
+    # and what moves less than the noise of the sensors stands, as far as they know.
+    assert 3.0 + 0.85 * spin_up - 0.011 < kept.t[0] < 3.0 + spin_up + 0.15
+    assert kept.t[-1] == whole.t[-1]
+    [finding] = stands(whole, VEHICLE)
+    assert f'kept is where it flies, t = {kept.t[0]:.3f} to' in finding.message
+
+
+@pytest.mark.parametrize('known', ['velocity', 'accelerometer and gyro'])
+def test_what_the_ground_holds_while_motors_lag_does_not_fly(known):
+    whole = without(standing_first(brisk(), lag=0.2), WITHOUT[known])
+    assert 3.15 < airborne(whole, VEHICLE).t[0] < 3.35
+
+
+def test_a_stand_that_is_longer_than_the_flight_is_no_flight():
+    whole = without(standing_first(brisk()), WITHOUT['accelerometer and gyro'])
+    stand = whole.slice(0, 600)
+    for _ in range(6):      # 21 s for 8 s of flight
+        whole = after_another(stand, whole)
+    assert airborne(whole, VEHICLE).t[0] == pytest.approx(21.0, abs=0.2)
+
+
+def test_a_start_that_fails_is_no_flight():
+    """It turns on the ground a little, and its motors stop for less than a rest takes."""
+    stand = without(standing_first(brisk(), lag=0.2), WITHOUT['accelerometer and gyro']).slice(
+        0, 640)
+    turned = stand.columns['wz'] + 0.2 * (stand.t > 3.1)
+    failed = changed(stand, wz=turned)
+    again = without(standing_first(brisk(), idle=0.0), WITHOUT['accelerometer and gyro'])
+    whole = after_another(failed, again.slice(600 - 40))
+    assert airborne(whole, VEHICLE).t[0] == pytest.approx(3.4, abs=0.2)

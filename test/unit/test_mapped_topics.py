@@ -4,13 +4,18 @@
 
 from array import array
 from importlib.util import find_spec
+import json
 
 from bag_files import ACTUATORS, header, IMU, Make, ODOMETRY, store
+from flightmaker import VEHICLE
 import numpy as np
 import pytest
 
 from quad_ident_ros.data.mapping import mapping_from
+from quad_ident_ros.data.outputs import commanded
+from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.model.motors import MOTORS_OFF
 from quad_ident_ros.nodes.mapped import known_mapping, MappedTopics, message_class
 
 NS = 5_000_000_000
@@ -54,13 +59,23 @@ def test_actuators_are_commands_in_rad_s(message):
 
 
 @pytest.mark.parametrize('message', [actuators, from_bag])
-def test_normalised_actuators_become_speeds_by_the_mapping_file(message):
+def test_normalised_actuators_become_speeds_by_the_mapping_file_and_the_vehicle(message):
+    """The recorder keeps them as they are, with what the mapping says of them."""
     mapping = mapping_from({
         'topics': {'commands': {'topic': '/motors', 'field': 'normalized'}},
-        'actuators': {'kind': 'normalised', 'speeds': [100, 900], 'order': [2, 1]}}, 'm')
-    [(_, _, values)] = MappedTopics(mapping, 'm').samples('/motors', ACTUATORS, 7,
-                                                          message(normalized=[0.25, 0.5]))
-    assert values == {'cmd1': 500.0, 'cmd2': 300.0}
+        'actuators': {'kind': 'normalised', 'speeds': [100, 900],
+                      'order': [2, 1, 4, 3]}}, 'm')
+    topics = MappedTopics(mapping, 'm')
+    signals = [0.25, 0.5, 1.0, 0.0, float('nan')]     # as many as messages have, motors or not
+    [(_, _, values)] = topics.samples('/motors', ACTUATORS, 7, message(normalized=signals))
+    assert values == dict(zip((f'output{k}' for k in range(1, 6)), [*signals[:4], MOTORS_OFF],
+                              strict=True))
+    live = FlightRecord(np.arange(2.0), {name: np.full(2, value) for name, value in
+                                         values.items()}, json.loads(json.dumps(topics.info)))
+    [record] = commanded([live], VEHICLE)
+    np.testing.assert_allclose(record.stack('cmd1', 'cmd2', 'cmd3', 'cmd4')[0],
+                               [500.0, 300.0, 100.0, 900.0])
+    assert commanded([live], None) == [live]
 
 
 @pytest.mark.parametrize('message', [actuators, from_bag])
@@ -113,5 +128,8 @@ def test_the_twist_of_an_odometry_is_in_the_body():
                 topics.samples('odometry', ODOMETRY, 7, message)}['velocity']
 
     assert velocity() == {'body_vx': 3.0, 'body_vy': 0.0, 'body_vz': 0.0}
+    alone = MappedTopics(mapping_from({'topics': {'velocity': {'topic': '/o'}}}, 'm'), 'm')
+    with pytest.raises(InputError, match='velocity in body axes needs an attitude'):
+        alone.samples('/o', ODOMETRY, 7, message)
     message.child_frame_id = 'map'
     assert velocity() == {'vx': 3.0, 'vy': 0.0, 'vz': 0.0}

@@ -18,6 +18,7 @@ from quad_ident_ros.data.quality import (
     frames,
     glitches,
     ground,
+    gyro,
     rotors,
     saturation,
     stale,
@@ -42,7 +43,7 @@ CHECKS = (columns.known, columns.incomplete, columns.frozen, columns.dead, colum
           frames.velocity_in_body, frames.signs, rotors.hover, rotors.size, rotors.count,
           rotors.order_and_spin, thrust.carried,
           thrust.level, clock.attitude, clock.velocity, clock.commands,
-          ground.stands, answer.commands, saturation.speeds, excitation.axes)
+          ground.stands, gyro.bias, answer.commands, saturation.speeds, excitation.axes)
 
 __all__ = ['cautions', 'CHECKS', 'clock_offset', 'ClockOffset', 'command_offset', 'Finding',
            'findings', 'refuse_errors', 'refuse_unfit', 'refuted', 'SEVERITIES', 'velocity_offset']

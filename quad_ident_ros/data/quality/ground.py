@@ -3,11 +3,12 @@
 """Where a vehicle stands or is carried, whose force no command tells, and where it flies."""
 
 from dataclasses import replace
+import math
 
 import numpy as np
 from scipy.ndimage import uniform_filter1d
 
-from quad_ident_ros.data.inertial import FORCE, is_inertial
+from quad_ident_ros.data.inertial import FORCE, is_inertial, RATE
 from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.data.split import part, rejoined, SHORTEST
@@ -19,10 +20,18 @@ LEAST = 0.3         # s: whatever falls for that long with half the thrust is fa
 CLEAR = 0.05        # m above the height of standing where the ground is left
 CARRIED = 3.0       # m/s: what is faster is in no hand, and its drag may hold it up
 FALLING = 0.5       # of g: with less force on it the vehicle falls, and flies
-BESIDE = 0.5        # s before and after that or a blow: of take-off, landing, tumbling
+LIFT = 0.8          # of the usual thrust, of which a full battery gives a tenth more and the
+                    # ground a tenth: with less nothing that rests leaves it
+AGAIN = 0.1         # s of too little thrust to hover within BESIDE of a rest: a start that failed
+BESIDE = 0.5        # s before and after a rest or a blow: of take-off, landing, tumbling
+STEADY = 0.05       # s over which sensors are averaged where motion begins: many turns of rotors
+BEGUN = 5.0         # standard deviations of them at rest by which motion shows, and at least
+MOTION = 0.02, 0.1  # rad/s and m/s^2, which no take-off stays below for long
 HIT = 0.01          # s over which a force is averaged: blows last longer than a vibration does
 BLOW = 3.0          # times the strongest thrust: no rotor gives that force
 USUAL = 0.97        # quantile of what the commands give of the force, unless all of it is carried
+STRONG = 0.99       # quantile of the thrust, and
+FLYING = 0.25       # share of it that no idling rotors give: their speed is a third and less
 
 
 def stands(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
@@ -81,21 +90,28 @@ def standing(record: FlightRecord, vehicle: Vehicle) -> np.ndarray:
     Return whether the vehicle stands on the ground at each sample, (N,) of bool.
 
     It does where it keeps still for LEAST with too little thrust to hover, and around that for
-    as long as it stays at that height. All False where the record has no commands, height or
-    velocity.
+    as long as it stays at that height; without a height for as long as it keeps still with too
+    little thrust to leave the ground, and until it moves. All False where the record has no
+    commands or velocity.
     """
     speed = _speed(record)
     thrust = _thrust(record, vehicle)
     grounded = np.zeros(len(record), bool)
-    if speed is None or thrust is None or not record.has('pz'):
+    if speed is None or thrust is None:
         return grounded
     moving = speed > STILL
     hover = vehicle.mass * vehicle.gravity
     usual = min(float(np.median(thrust[moving])), hover) if moving.any() else hover
-    height, period = record.columns['pz'], record.period()
+    height = record.columns['pz'] if record.has('pz') else None
+    period = record.period()
+    low = ~moving & (thrust < LIFT * usual)
     for first, last in _runs(~moving & (thrust < IDLE * usual)):
         # In samples, too: a gap in the record is no time on the ground.
         if min(record.t[last] - record.t[first], (last - first) * period) < LEAST:
+            continue
+        if height is None:
+            begin, end = _around(low, first, last)
+            grounded[begin:_moves_from(record, first, last, end)] = True
             continue
         near = np.abs(height - np.median(height[first:last + 1])) < CLEAR
         for begin, end in _runs(near):
@@ -143,7 +159,8 @@ def unflown(record: FlightRecord, vehicle: Vehicle) -> np.ndarray:
     Return whether the vehicle rests or hits something by its specific force, (N,) of bool.
 
     Of records without velocity. It rests where it does not fall with too little thrust to hover
-    for LEAST; a blow is a force that no rotor gives. What is beside both counts as well.
+    for LEAST, and from there until it has the thrust to leave the ground and moves; a blow is a
+    force that no rotor gives. What is beside a blow and before a rest counts as well.
     """
     thrust, found = _thrust(record, vehicle), np.zeros(len(record), bool)
     if thrust is None or not is_inertial(record) or not (thrust > 0).any():
@@ -152,14 +169,49 @@ def unflown(record: FlightRecord, vehicle: Vehicle) -> np.ndarray:
     size = max(1, round(HIT / record.period()))
     force = vehicle.mass * np.linalg.norm(uniform_filter1d(
         record.stack(*FORCE), size, axis=0, mode='nearest'), axis=1)
-    usual = min(float(np.median(thrust[thrust > 0])), weight)
+    flying = thrust > FLYING * float(np.quantile(thrust, STRONG))
+    usual = min(float(np.median(thrust[flying])), weight)
     blows = force > BLOW * max(float(np.quantile(thrust, USUAL)), weight)
-    idle = (thrust < IDLE * usual) & (force > FALLING * weight)
+    held = force > FALLING * weight
     beside = round(BESIDE / record.period())
-    for first, last in [*_runs(blows), *(run for run in _runs(idle) if
-                                         record.t[run[1]] - record.t[run[0]] >= LEAST)]:
+    for first, last in _runs(blows):
         found[max(first - beside, 0):last + beside + 1] = True
+    until = -math.inf
+    for first, last in _runs((thrust < IDLE * usual) & held):
+        least = AGAIN if record.t[first] - until <= BESIDE else LEAST
+        if record.t[last] - record.t[first] >= least:
+            end = _around((thrust < LIFT * usual) & held, first, last)[1]
+            moves = _moves_from(record, first, last, end)
+            found[max(first - beside, 0):moves] = True
+            until = record.t[min(moves, len(record) - 1)]
     return found
+
+
+def _around(mask: np.ndarray, first: int, last: int) -> tuple[int, int]:
+    """Return the first and last place of the run of True in a mask (N,) that has these places."""
+    before, after = np.flatnonzero(~mask[:first]), np.flatnonzero(~mask[last:])
+    return (int(before[-1]) + 1 if len(before) else 0,
+            last + int(after[0]) - 1 if len(after) else len(mask) - 1)
+
+
+def _moves_from(record: FlightRecord, first: int, last: int, end: int) -> int:
+    """
+    Return the sample after `end`, within BESIDE, from which on the vehicle moves.
+
+    By gyro and accelerometer, as against its rest from first to last: motors lag behind their
+    commands, and the ground holds it for that long. Without them it moves at once.
+    """
+    if not record.has(*RATE, *FORCE):
+        return end + 1
+    most = min(end + 1 + round(BESIDE / record.period()), len(record))
+    size = max(1, round(STEADY / record.period()))
+    least = np.repeat(MOTION, 3)
+    sensors = uniform_filter1d(record.stack(*RATE, *FORCE)[first:most + size], size, axis=0,
+                               mode='nearest')
+    rest = sensors[:last + 1 - first]
+    bound = np.maximum(BEGUN * rest.std(axis=0), least)
+    moves = (np.abs(sensors - rest.mean(axis=0)) > bound).any(axis=1)[end + 1 - first:most - first]
+    return end + 1 + int(np.argmax(moves)) if moves.any() else most
 
 
 def _speed(record: FlightRecord) -> np.ndarray | None:
