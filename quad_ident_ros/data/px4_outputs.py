@@ -42,9 +42,10 @@ def _changing(fields: Fields) -> set[int]:
     """Return the channels, from 0, whose values change."""
     found, k = set(), 0
     while f'output[{k}]' in fields:
-        values = np.asarray(fields[f'output[{k}]'], float)
-        values = values[np.isfinite(values)]
-        if len(values) and np.ptp(values) > 0:
-            found.add(k)
+        with np.errstate(all='ignore'):     # nan of a kind that signals, and values without end
+            values = np.asarray(fields[f'output[{k}]'], float)
+            values = values[np.isfinite(values)]
+            if len(values) and np.ptp(values) > 0:
+                found.add(k)
         k += 1
     return found
