@@ -49,6 +49,14 @@ TIME = re.compile(r'(^|_)(t|time|timestamp|time_?stamp|stamp|ts|zeit|elapsed|clo
 MOTOR = re.compile(r'(^|_)(cmd|motor_cmd|m|mot|motor|motors|motor_m|pwm|esc|u|output|outputs|'
                    r'control|actuator|throttle|thrust|duty|rc_?out|servo)(?:_(?:data|control|'
                    r'output|velocities|angular_velocities))?_?(\d{1,2})$')
+CORNERS = {'front_right': r'(fr|front_?right)', 'rear_right': r'(rr|br|(rear|back)_?right)',
+           'rear_left': r'(rl|bl|(rear|back)_?left)', 'front_left': r'(fl|front_?left)'}
+CORNER = r'(^|_)(m|mot|motor|pwm|esc|rotor|cmd|motor_cmd|output|u|thrust)s?_?{}$'
+"""Of commands that are named by where their motors are."""
+
+CRAZYFLIE = re.compile(r'motor_m[1-4]')
+"""Log variables of a Crazyflie's motors."""
+
 FORCES = re.compile(r'(^|_)thrust_?\d')
 """Of commands that may be forces, unless they are shares of full thrust."""
 

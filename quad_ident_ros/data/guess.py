@@ -15,6 +15,9 @@ from quad_ident_ros.data.column_names import (
     AXES,
     BARE,
     BATTERY,
+    CORNER,
+    CORNERS,
+    CRAZYFLIE,
     FORCES,
     MOTOR,
     NOT,
@@ -28,12 +31,14 @@ from quad_ident_ros.data.column_names import (
 )
 from quad_ident_ros.data.columns import FORCE, from_euler, POSITION, RATE, VELOCITY
 from quad_ident_ros.data.mapping import ATTITUDE, Column, factor_of, Mapping
+from quad_ident_ros.data.motor_order import about_motors, quad
 from quad_ident_ros.data.record import EULER, QUATERNION
 from quad_ident_ros.data.signal_kind import kinds_of, TITLES
 from quad_ident_ros.data.tabular import Table
 
 RATES = 5.0, 5000.0     # Hz, of logs
 G = 9.80665
+AROUND = (1, -1), (-1, -1), (-1, 1), (1, 1)     # forward, left: front right to front left
 OVER = 0.1              # s over which turns are compared, so that noise of samples counts little
 SLOWEST = 20.0          # rad/s or rpm: no rotor that flies turns more slowly
 
@@ -44,7 +49,8 @@ class Guess:
     What the columns of a table are taken for.
 
     mapping: as a mapping file would say it; said: what was taken for what; doubts: what names and
-    values do not tell; roles: what there is, of data.mapping.ROLES.
+    values do not tell; roles: what there is, of data.mapping.ROLES; motors: where they are, as
+    data.motor_order.about_motors has it.
     """
 
     mapping: Mapping = None
@@ -52,6 +58,7 @@ class Guess:
     doubts: list = field(default_factory=list)
     roles: list = field(default_factory=list)
     candidates: dict = field(default_factory=dict)
+    motors: dict = field(default_factory=dict)
 
 
 def guess(table: Table, given: Mapping | None = None) -> Guess:
@@ -459,7 +466,7 @@ class _Making:
             if np.nanmin(values) >= 0 and np.nanmedian(values) > SLOWEST:
                 self.take([f'rotor{k}' for k in range(1, len(measured) + 1)], measured, unit,
                           role='rotors', said=f'measured rotor speeds in {unit}')
-        names = self._numbered(MOTOR)
+        names = self._numbered(MOTOR) or self._corners()
         if not names:
             return
         values = self.logged(names)
@@ -471,9 +478,19 @@ class _Making:
             self.take([f'cmd{k}' for k in range(1, len(names) + 1)], names, unit,
                       role='commands', said=f'rotor speed commands in {unit}')
             return
+        if CRAZYFLIE.fullmatch(self.names[names[0]]) and list(kinds) == ['duty16']:
+            self.guess.motors = about_motors(quad(*AROUND), 'the order of the Crazyflie', 'duty16')
         what = ' or '.join(TITLES[kind] for kind in kinds)
         self.take([f'output{k}' for k in range(1, len(names) + 1)], names, role='commands',
                   said='outputs, ' + (f'{what} by their size' if what else 'of an unknown kind'))
+
+    def _corners(self) -> list[str] | None:
+        """Return the columns of four motors by their places, from front right to front left."""
+        found = [self.one(CORNER.format(pattern)) for pattern in CORNERS.values()]
+        if None in found or len(set(found)) < 4:
+            return None
+        self.guess.motors = about_motors(quad(*AROUND), 'the names of the columns')
+        return found
 
     def battery(self) -> None:
         name = self.one(BATTERY.pattern)

@@ -2,7 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tables as certain programs write them, held against the flight that is in them."""
 
-from flightmaker import changed, flight, world_velocity_in_body
+from dataclasses import replace
+
+from flightmaker import changed, flight, VEHICLE, world_velocity_in_body
 import numpy as np
 import pytest
 from records import refused
@@ -222,3 +224,35 @@ def test_a_flight_on_the_ground_keeps_its_four_motors(tmp_path):
     found = {'time': T, **columns('gyro_', 'xyz', RATE), **named(
         ('m1', 'm2', 'm3', 'm4'), record.stack(*CMD))}
     assert load(table(tmp_path, found)).has('output1', 'output4')
+
+
+@pytest.mark.parametrize('names', [
+    ('mot_FL', 'mot_FR', 'mot_BL', 'mot_BR'),
+    ('motor_front_left', 'motor_front_right', 'motor_rear_left', 'motor_rear_right')])
+def test_motors_named_by_their_corners_are_put_into_order(tmp_path, names):
+    """VEHICLE has its rotors front right, rear right, rear left, front left."""
+    speeds = FLIGHT.stack(*CMD)
+    found = {'time': T, **columns('gyro_', 'xyz', RATE), **named(names, (
+        speeds[:, [3, 0, 2, 1]] - 100) / 1600)}
+    read = load(table(tmp_path, found), vehicle=VEHICLE)
+    np.testing.assert_allclose(read.stack(*CMD), speeds, atol=1e-6)
+
+
+def test_the_motors_of_a_crazyflie_are_put_into_order(tmp_path):
+    turned = replace(VEHICLE, rotors=VEHICLE.rotors[::-1])
+    duty = np.round(65535 * (FLIGHT.stack(*CMD) - 100) / 1600)
+    found = {'time': T, **columns('gyro.', 'xyz', RATE), **named(
+        ('motor.m1', 'motor.m2', 'motor.m3', 'motor.m4'), duty)}
+    read = load(table(tmp_path, found), vehicle=turned)
+    np.testing.assert_allclose(read.stack(*CMD), FLIGHT.stack(*CMD)[:, ::-1], atol=0.1)
+
+
+def test_text_of_windows_is_read(tmp_path):
+    found = {'Zeit [s]': T, **columns('gyro_', ['x [°/s]', 'y [°/s]', 'z [°/s]'], RATE)}
+    found = {name: np.degrees(values) if '°' in name else values
+             for name, values in found.items()}
+    path = table(tmp_path, found, separator=';', comma=True)
+    path.write_bytes(path.read_text('utf-8').encode('cp1252'))
+    same(load(path), RATE)
+    path.write_bytes(b'\x00\x01' + path.read_bytes())
+    refused(path)

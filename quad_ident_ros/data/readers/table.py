@@ -49,16 +49,18 @@ def records_from(path: Path, table: Table, mapping: Mapping | None) -> list[Flig
     if mapping.topics or mapping.instances:
         raise InputError(f'{path}: topics and instances are for bags and logs; a mapping of a '
                          'table has columns: which column of the file is what')
-    notes = []
+    notes, about = [], {}
     if not mapping.columns:
         found = guess(table, mapping)
         if found.doubts:
             raise InputError(_doubtful(path, table, found))
         mapping = found.mapping
+        about = {'motors': found.motors} if found.motors else {}
         notes = [f'cells between {table.how}' if table.how != 'Parquet' else 'Parquet',
                  *found.said]
     parts = _recordings(path, table, mapping)
     records = [record_of(path, part, mapping, notes) for part in parts]
+    records = [replace(record, info={**record.info, **about}) for record in records]
     if len(records) == 1:
         return records
     return [replace(record, info={
