@@ -316,8 +316,10 @@ def _positions(path: Path, topic: str, found: dict) -> tuple[list[Stream], np.nd
     place = _values(path, topic, found, _indexed('position', 3) if new else ('x', 'y', 'z'))
     speed = _values(path, topic, found, _indexed('velocity', 3) if new else ('vx', 'vy', 'vz'))
     known = estimated(found, place, speed)
-    place = np.where(known[:, None], place, np.nan)
-    speed = np.where(known[:, None], speed, np.nan)
+    if not known.any():
+        return [], known
+    found = {name: np.asarray(values)[known] for name, values in found.items()}
+    place, speed = place[known], speed[known]
     in_body = np.zeros(len(speed), bool)
     if topic == 'vehicle_odometry' and 'velocity_frame' in found:
         in_body = np.asarray(found['velocity_frame']) == 3
