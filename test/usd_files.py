@@ -55,3 +55,19 @@ def crazyflie_events(record, motors, start=3.0):
          np.stack([columns['vbat'][slow], 0 * t[slow]], axis=-1)),
         (8, 'landed', (), t[-1:], np.zeros((1, 0))),
     ]
+
+
+def packed(quaternion):
+    """Return attitudes (n, 4), scalar first, as the numbers (n,) that a Crazyflie logs."""
+    found = []
+    for w, x, y, z in quaternion:
+        values = [x, y, z, w]
+        largest = max(range(4), key=lambda k: abs(values[k]))
+        turned = values[largest] < 0
+        bits = f'{largest:02b}'
+        for k, value in enumerate(values):
+            if k != largest:
+                size = int(511 * abs(value) * 2 ** 0.5 + 0.5)
+                bits += f'{int((value < 0) != turned)}{size:09b}'
+        found.append(int(bits, 2))
+    return found

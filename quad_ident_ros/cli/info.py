@@ -91,7 +91,8 @@ def run(options):
 def show_streams(inside: dict) -> None:
     """Print the streams of a file."""
     screen = console()
-    screen.print(f'{inside["file"]}: {inside["kind"]}, {len(inside["streams"])} streams',
+    count = len(inside['streams'])
+    screen.print(f'{inside["file"]}: {inside["kind"]}, {count} stream{"s" * (count != 1)}',
                  markup=False, highlight=False, soft_wrap=True)
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1), header_style='bold')
     for name in ('stream', 'type'):

@@ -8,7 +8,7 @@ import re
 import numpy as np
 
 from quad_ident_ros.data.mapping import ROLES, Source
-from quad_ident_ros.data.message_roles import is_tf, NoSuch, reading_of, ROLES_OF, roles_of
+from quad_ident_ros.data.message_roles import could_be, is_tf, NoSuch, reading_of, ROLES_OF
 from quad_ident_ros.data.topics import not_unit, OTHER_SHAPE
 from quad_ident_ros.errors import InputError
 
@@ -139,7 +139,7 @@ def _notes(found, topics):
                      + ', '.join(topic.name for topic in found['battery'][0][:_LISTED]))
     if not found['commands'][0]:
         unknown = [topic for topic in topics if topic not in taken
-                   and 'commands' in roles_of(topic.type)]
+                   and set(could_be(topic.name, topic.type, ('[]',))[0]) & {'commands', 'rotors'}]
         notes.append('no topic is known to be the commands of the rotors; name it in a mapping '
                      'file (--mapping)'
                      + (f', such as: {_listed(unknown)}' if unknown else ''))

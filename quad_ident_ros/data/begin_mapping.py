@@ -5,8 +5,11 @@
 from collections.abc import Sequence
 from pathlib import Path
 
+from quad_ident_ros.data.bag_file import BagFile
+from quad_ident_ros.data.bag_guess import guessed
 from quad_ident_ros.data.guess import guess
 from quad_ident_ros.data.load import reader_of
+from quad_ident_ros.data.mapping import Mapping
 from quad_ident_ros.data.mapping_text import names_text, table_text, topics_text
 from quad_ident_ros.data.readers.base import Content
 from quad_ident_ros.data.tabular import read_parquet, read_text
@@ -28,7 +31,7 @@ def begin_mapping(out: str | Path, path: str | Path, streams: Sequence[Content])
         raise InputError(f'{out}: a mapping is written to a .yaml file; name one')
     name = reader_of(path).name
     if name in BAGS:
-        text = topics_text(path, streams)
+        text = topics_text(path, streams, _as_read(path))
     elif name in TABLES:
         table = TABLES[name](path)
         found = guess(table)
@@ -43,3 +46,14 @@ def begin_mapping(out: str | Path, path: str | Path, streams: Sequence[Content])
                          'another') from None
     except OSError as error:
         raise InputError(f'{out}: cannot be written: {error.strerror}') from None
+
+
+def _as_read(path: Path) -> dict[str, str] | None:
+    """Return {role: topic} as a bag is read without a mapping, None where that is in doubt."""
+    inside = path / 'bag' if (path / 'bag' / 'metadata.yaml').exists() else path
+    try:
+        with BagFile(inside) as bag:
+            mapping, _ = guessed(path, bag, Mapping())
+    except InputError:
+        return None
+    return {role: source.topic for role, source in mapping.topics.items()}

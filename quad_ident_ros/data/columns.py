@@ -138,7 +138,8 @@ def _attitude(path: Path, table: Table, mapping: Mapping) -> tuple[list[str], np
         if missing:
             raise InputError(f'{path}: columns: {", ".join(missing)} of the quaternion not named')
         names = [chosen[name].names[0] for name in QUATERNION]
-        q = np.hstack([_values(table, chosen[name]) for name in QUATERNION])
+        q = np.hstack([_values(table, chosen[name]) * factor_of(name, chosen[name].unit)
+                       for name in QUATERNION])
     elif any(name in chosen for name in EULER):
         missing = [name for name in EULER if name not in chosen]
         if missing:

@@ -48,12 +48,36 @@ def _turned(values):
     return frames.rotate(unit_quaternions(values[:, 3:]), values[:, :3])
 
 
+def _unpacked(values):
+    """
+    Return the quaternions (N, 4), scalar first, that are packed into one number each.
+
+    The two highest bits name the largest of x, y, z, w, which is above zero; each of the others
+    has ten bits, a sign and its share of sqrt(1/2). Source: Bitcraze's firmware, quatcompress.h.
+    """
+    packed = np.asarray(values)[:, 0]
+    known = np.isfinite(packed) & (packed >= 0) & (packed < 2 ** 32)
+    packed = np.where(known, packed, 0).astype(np.uint64)
+    largest = (packed >> np.uint64(30)).astype(int)
+    xyzw = np.zeros((len(packed), 4))
+    for k in (3, 2, 1, 0):
+        other = largest != k
+        size = (packed & np.uint64(511)) / 511 * np.sqrt(0.5)
+        sign = np.where(packed & np.uint64(512), -1.0, 1.0)
+        xyzw[other, k] = (sign * size)[other]
+        packed = np.where(other, packed >> np.uint64(10), packed)
+    rest = 1.0 - np.sum(xyzw ** 2, axis=1)
+    xyzw[np.arange(len(packed)), largest] = np.sqrt(np.maximum(rest, 0.0))
+    return np.where(known[:, None], unit_quaternions(xyzw[:, [3, 0, 1, 2]]), np.nan)
+
+
 _Q = ('q0', 'q1', 'q2', 'q3')
 SOURCES = (
     ('pose', POSITION, INTERPOLATED, (
         (_of('stateEstimate', 'x', 'y', 'z'), _scaled(1.0)),
         (_of('kalman', 'stateX', 'stateY', 'stateZ'), _scaled(1.0)),
-        (_of('stateEstimateZ', 'x', 'y', 'z'), _scaled(1e-3)))),
+        (_of('stateEstimateZ', 'x', 'y', 'z'), _scaled(1e-3)),
+        (_of('locSrv', 'x', 'y', 'z'), _scaled(1.0)))),
     ('velocity', VELOCITY, INTERPOLATED, (
         (_of('stateEstimate', 'vx', 'vy', 'vz'), _scaled(1.0)),
         (_of('kalman', 'statePX', 'statePY', 'statePZ', *_Q), _turned),
@@ -61,9 +85,14 @@ SOURCES = (
     ('pose', QUATERNION, INTERPOLATED, (
         (_of('stateEstimate', 'qw', 'qx', 'qy', 'qz'), unit_quaternions),
         (_of('kalman', *_Q), unit_quaternions),
+        (_of('stateEstimateZ', 'quat'), _unpacked),
         (_of('stateEstimate', 'roll', 'pitch', 'yaw'), _euler),
-        (_of('stabilizer', 'roll', 'pitch', 'yaw'), _euler))),
-    ('rate', RATE, INTERPOLATED, ((_of('gyro', *'xyz'), _scaled(np.pi / 180.0)),)),
+        (_of('stabilizer', 'roll', 'pitch', 'yaw'), _euler),
+        (_of('locSrv', 'qw', 'qx', 'qy', 'qz'), unit_quaternions))),
+    ('rate', RATE, INTERPOLATED, (
+        (_of('gyro', *'xyz'), _scaled(np.pi / 180.0)),
+        (_of('stateEstimateZ', 'rateRoll', 'ratePitch', 'rateYaw'),
+         _scaled(np.array([1e-3, -1e-3, 1e-3]))))),
     ('specific_force', FORCE, INTERPOLATED, ((_of('acc', *'xyz'), _scaled(G)),)),
     ('rotors', ROTORS, INTERPOLATED, ((_of('rpm', 'm1', 'm2', 'm3', 'm4'),
                                        _scaled(np.pi / 30.0)),)),

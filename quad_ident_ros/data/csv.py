@@ -8,6 +8,7 @@ import gzip
 import io
 import os
 from pathlib import Path
+import re
 import zlib
 
 import numpy as np
@@ -17,6 +18,9 @@ from quad_ident_ros.data.record import find_fault, FlightRecord, unit
 from quad_ident_ros.errors import InputError
 
 _PENDING_BYTES = 1 << 16
+_CONTROL = re.compile(rb'[\x00-\x08\x0e-\x1a\x1c-\x1f\x7f\x81\x8d\x8f\x90\x9d]')
+"""Bytes that no text in the code page of Windows (cp1252) has."""
+
 _LINE_BYTES = 60   # that a line takes in memory besides its text
 
 
@@ -136,8 +140,11 @@ def rows_of(path):
     try:
         text = data.decode('utf-8-sig')
     except UnicodeDecodeError as error:
-        line = error.object[:error.start].count(b'\n') + 1
-        raise _error(path, line, None, 'this is not text', 'give a CSV file in UTF-8') from None
+        line = data[:error.start].count(b'\n') + 1
+        if _CONTROL.search(data) or not re.search(rb'[A-Za-z]', data.splitlines()[line - 1]):
+            raise _error(path, line, None, 'this is not text',
+                         'give a CSV file in UTF-8') from None
+        text = data.decode('cp1252', 'replace')     # as Windows writes degrees and umlauts
     if '\r' in text:
         text = text.replace('\r\n', '\n').replace('\r', '\n')
     if not text.strip():

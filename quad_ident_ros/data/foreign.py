@@ -4,6 +4,7 @@
 
 from array import array
 import math
+import re
 
 import numpy as np
 
@@ -22,6 +23,7 @@ from quad_ident_ros.data.message_roles import (
     stamp_of,
 )
 from quad_ident_ros.data.record import FlightRecord, QUATERNION
+from quad_ident_ros.data.signal_kind import kinds_of
 from quad_ident_ros.data.streams import HELD, INTERPOLATED, join, SLOW, Stream
 from quad_ident_ros.data.topics import not_unit, OTHER_SHAPE
 from quad_ident_ros.errors import InputError
@@ -29,6 +31,7 @@ from quad_ident_ros.model.motors import MOTORS_OFF, TO_SPEED
 
 BODY_VELOCITY = ('body_vx', 'body_vy', 'body_vz')
 ONE_CLOCK = 1.0     # s between a stamp and its receipt that vary so much are of several clocks
+_DOWN = re.compile(r'(^|[_/])ned($|[_/])')
 _NAMED = 12         # frames that a message lists
 _DEFAULT_FIELD = {'commands': 'data', 'rotors': 'data', 'battery': 'voltage'}
 _SPEEDS = {'rad/s': 'speed', 'rpm': 'rpm'}      # kinds of outputs by the unit of measured speeds
@@ -97,6 +100,7 @@ class TopicPart:
         self._type = None
         self._reading = None
         self._frame = ''
+        self._frame_id = ''
         self._width = 0
         self._numbers = array('d')
         self._stamps = array('q')
@@ -175,6 +179,8 @@ class TopicPart:
         return found
 
     def _one(self, message, kind):
+        if not self._numbers:
+            self._frame_id = str(getattr(getattr(message, 'header', None), 'frame_id', ''))[:40]
         values = tuple(map(float, in_record_unit(self.role, self._values(message, kind),
                                                  self.source.unit)))
         self._width = self._width or len(values)
@@ -182,6 +188,14 @@ class TopicPart:
             raise NoSuch(f'{len(values)} values where the first has {self._width}')
         stamp = stamp_of(message, kind)
         return stamp if 0 < stamp < 2 ** 63 else 0, values
+
+    def _refuse_down(self, mapping):
+        """Refuse a pose whose frame_id says NED, unless the mapping says so, too."""
+        if (self.role in ('pose', 'position', 'attitude') and mapping.world == 'ENU'
+                and not is_px4(self._type) and _DOWN.search(self._frame_id.lower())):
+            raise InputError(f'{self._where}: its frame_id {self._frame_id} says NED; write '
+                             'world: NED and body: FRD into a mapping (--mapping), or record it '
+                             'in ENU')
 
     def _values(self, message, kind):
         path = self.source.field
@@ -210,14 +224,23 @@ class TopicPart:
             raise InputError(f'{self._where}: there is no such topic in this bag, or nothing on '
                              f'it{child}; see what there is with: quad_ident info')
         self._one_child()
+        self._refuse_down(mapping)
         table = np.frombuffer(self._numbers, float).reshape(-1, self._width)
         stamps = self._stamps if self._stamped else self.received
         columns = self._columns(table, mapping)
+        if self._is_unnamed(mapping, table):
+            columns = {name.replace('cmd', 'output'): values for name, values in columns.items()}
         outputs = 'output1' in columns
         while outputs and len(columns) > 1 and not (list(columns.values())[-1] > 0).any():
             columns.popitem()   # outputs without a motor come last
         return Stream(f'topic {self.source.topic}', np.array(stamps, np.int64), columns,
                       {'commands': HELD, 'battery': SLOW}.get(self.role, INTERPOLATED))
+
+    def _is_unnamed(self, mapping, table):
+        """Whether commands of a type that says no kind are by their size no rotor speeds."""
+        return (self.role == 'commands' and mapping.actuators is None
+                and not (self._reading.kind if self._reading else '')
+                and kinds_of(table) not in ((), ('speed',)))
 
     def _one_child(self):
         """Refuse transforms of which the vehicle's is not known."""

@@ -10,48 +10,37 @@ import warnings
 import numpy as np
 
 from quad_ident_ros.data import frames
+from quad_ident_ros.data.column_names import (
+    ANGLE,
+    AXES,
+    BARE,
+    BATTERY,
+    CORNER,
+    CORNERS,
+    CRAZYFLIE,
+    FORCES,
+    MOTOR,
+    NOT,
+    PITCH_DOWN,
+    plain,
+    SPEED,
+    TIME,
+    TURNED,
+    TURNING,
+    UNITS,
+)
 from quad_ident_ros.data.columns import FORCE, from_euler, POSITION, RATE, VELOCITY
 from quad_ident_ros.data.mapping import ATTITUDE, Column, factor_of, Mapping
+from quad_ident_ros.data.motor_order import about_motors, quad
 from quad_ident_ros.data.record import EULER, QUATERNION
 from quad_ident_ros.data.signal_kind import kinds_of, TITLES
 from quad_ident_ros.data.tabular import Table
 
 RATES = 5.0, 5000.0     # Hz, of logs
 G = 9.80665
-
-_UNIT = re.compile(r'[\[(]\s*([^\])]*)\s*[\])]\s*$')
-_ENDING = re.compile(r'_(ns|us|usec|ms|msec|s|sec|secs|seconds|mm|cm|m|deg|rad|dps|radps|rpm|g|'
-                     r'mv|v)$')
-_UNITS = {'usec': 'us', 'µs': 'us', 'msec': 'ms', 'sec': 's', 'secs': 's', 'seconds': 's',
-          'dps': 'deg/s', '°/s': 'deg/s', 'degps': 'deg/s', 'radps': 'rad/s', '°': 'deg',
-          'degrees': 'deg', 'radians': 'rad', 'm/s2': 'm/s^2', 'm/s²': 'm/s^2', 'm/s/s': 'm/s^2',
-          'meters': 'm', 'volt': 'V', 'v': 'V', 'mv': 'mV', "g's": 'g'}
-_NOT = re.compile(r'(^|_)(sp|setpoint|des|desired|ref|reference|target|goal|cov|covariance|var|'
-                  r'std|err|error|raw|bias|offset|mag)(_|$)')
-"""Of names that are not what was measured."""
-
-_AXES = {
-    POSITION: r'(^|_)(p|pos|position|translation|loc|location|mocap|vicon|state_estimate|drone|'
-              r'uav|quad|robot|rigid_body|ground_truth|gt|odom|pose)_?{}$',
-    VELOCITY: r'(^|_)(v|vel|velocity|speed|linear_velocity|twist_linear|linear)_?{}$',
-    FORCE: r'(^|_)(a|acc|accel|accelerometer|accelerations?|linear_acceleration|specific_force)'
-           r'(_b|_body|_m_s2)?_?{}$',
-    RATE: r'(^|_)(w|gyro|gyroscope|gyro_rad|omega|om|rate|rates|body_?rates?|ang_vel|angvel|'
-          r'angular_velocity|angular_rate|twist_angular|angular)(_b|_body)?_?{}$',
-    QUATERNION: r'(^|_)(q|quat|quaternion|orientation|rotation|att_q|attitude_q)_?{}$',
-}
-_BARE = {POSITION: ('x', 'y', 'z'), RATE: ('p', 'q', 'r')}
-_ANGLE = {'phi': r'(^|_)(roll|phi)$', 'theta': r'(^|_)(pitch|theta)$',
-          'psi': r'(^|_)(yaw|psi|heading)$'}
-_TURNING = ('roll', 'pitch', 'yaw')
-_TIME = re.compile(r'(^|_)(t|time|timestamp|time_?stamp|stamp|elapsed|clock|rosbagtimestamp)$')
-_MOTOR = re.compile(r'(^|_)(cmd|motor_cmd|m|mot|motor|motors|motor_m|pwm|esc|u|output|outputs|'
-                    r'control|actuator|throttle|duty|rc_?out|servo)(?:_(?:data|control|output|'
-                    r'velocities|angular_velocities))?_?(\d{1,2})$')
-_SPEED = re.compile(r'(^|_)(rotor|rotor_speed|motor_rpm|rpm|erpm|motor_speed|esc_rpm|propeller|'
-                    r'omega_m|rotor_vel|rotor_velocities)_?(\d{1,2})$')
-_BATTERY = re.compile(r'(^|_)(vbat|vbatt|v_bat|bat_v|battery|battery_voltage|voltage|vbatlatest|'
-                      r'battery_v|bat_volt|supply_voltage)$')
+AROUND = (1, -1), (-1, -1), (-1, 1), (1, 1)     # forward, left: front right to front left
+OVER = 0.1              # s over which turns are compared, so that noise of samples counts little
+SLOWEST = 20.0          # rad/s or rpm: no rotor that flies turns more slowly
 
 
 @dataclass
@@ -60,7 +49,8 @@ class Guess:
     What the columns of a table are taken for.
 
     mapping: as a mapping file would say it; said: what was taken for what; doubts: what names and
-    values do not tell; roles: what there is, of data.mapping.ROLES.
+    values do not tell; roles: what there is, of data.mapping.ROLES; motors: where they are, as
+    data.motor_order.about_motors has it.
     """
 
     mapping: Mapping = None
@@ -68,6 +58,7 @@ class Guess:
     doubts: list = field(default_factory=list)
     roles: list = field(default_factory=list)
     candidates: dict = field(default_factory=dict)
+    motors: dict = field(default_factory=dict)
 
 
 def guess(table: Table, given: Mapping | None = None) -> Guess:
@@ -89,25 +80,11 @@ def guess(table: Table, given: Mapping | None = None) -> Guess:
             step()
     made.guess.mapping = Mapping({}, made.world, made.body, {}, given.actuators, made.columns,
                                  made.order, given.separator)
+    made.guess.doubts += table.doubts
     if not made.guess.roles:
         made.guess.doubts.append('no column is a position, velocity, attitude, rate or specific '
                                  'force by its name')
     return made.guess
-
-
-def plain(name: str) -> tuple[str, str]:
-    """Return a name in small letters with _ between its parts, and the unit that it says."""
-    said = ''
-    match = _UNIT.search(name)
-    # q[0] is an entry of an array, gyro.x [deg/s] has a unit.
-    if match and not match.group(1).isdigit():
-        name, said = name[:match.start()], match.group(1).strip().lower()
-    name = re.sub(r'([a-z0-9])([A-Z])', r'\1_\2', name.strip())
-    name = re.sub(r'[^a-z0-9]+', '_', name.lower()).strip('_')
-    match = _ENDING.search(name)
-    if not said and match and len(name) > len(match.group()):
-        name, said = name[:match.start()], match.group(1)
-    return name, _UNITS.get(said, said)
 
 
 class _Making:
@@ -123,19 +100,36 @@ class _Making:
             self.names[name], self.units[name] = plain(name)
             said = table.units.get(name, '').lower()
             if said:
-                self.units[name] = _UNITS.get(said, said)
-        self.free = [name for name in table.columns if not _NOT.search(self.names[name])
+                self.units[name] = UNITS.get(said, said)
+        self.free = [name for name in table.columns if not NOT.search(self.names[name])
                      and np.isfinite(table.columns[name]).sum() >= 2]
         self.t = None
 
     # --- what each step shares
 
     def values(self, names: Sequence[str]) -> np.ndarray:
+        """Return columns, (N, k), interpolated where rows of other streams lie in between."""
+        return np.stack([_filled(self.table.columns[name]) for name in names], axis=-1)
+
+    def logged(self, names: Sequence[str]) -> np.ndarray:
+        """Return columns as they are, (N, k)."""
         return np.stack([self.table.columns[name] for name in names], axis=-1)
 
     def scaled(self, group: Sequence[str]) -> np.ndarray:
-        return np.stack([self.table.columns[self.columns[name].names[0]]
+        """Return the columns of a group that was taken, (N, k), in its unit."""
+        return np.stack([self.values(self.columns[name].names)[:, 0]
                          * factor_of(name, self.columns[name].unit) for name in group], axis=-1)
+
+    def turning(self, attitude: np.ndarray, gyro: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the rates (n, 3) of attitudes and of the gyro, over the same steps in time."""
+        width = max(1, round(OVER / max(float(np.nanmedian(self.dt())), 1e-6)))
+        if len(attitude) < 4 * width:
+            width = 1
+        sums = np.vstack([np.zeros(3), np.cumsum(0.5 * (gyro[1:] + gyro[:-1])
+                                                 * self.dt()[:, None], axis=0)])
+        span = (self.t[width:] - self.t[:-width])[:, None]
+        return _turned(attitude[:-width], attitude[width:]) / span, (
+            sums[width:] - sums[:-width]) / span
 
     def take(self, names: Sequence[str], columns: Sequence[str], unit: str = '',
              frame: str = 'world', role: str = '', said: str = '') -> None:
@@ -162,8 +156,9 @@ class _Making:
         found = {}
         for name in self.free:
             for axis in entries:
-                match = re.search(_AXES[group].format(axis), self.names[name])
-                if match and not (group == FORCE and 'ang' in self.names[name]):
+                match = re.search(AXES[group].format(axis), self.names[name])
+                if match and not (group in (FORCE, VELOCITY) and TURNED.search(
+                        self.names[name])):
                     prefix = self.names[name][:match.start(2)]
                     found.setdefault((prefix, match.group(2)), {}).setdefault(axis, name)
         whole = sorted((axes for axes in found.values() if len(axes) == len(entries)),
@@ -176,16 +171,15 @@ class _Making:
                 self.guess.doubts.append(f'{group[0]}: {_together(names[0])} or '
                                          f'{_together(names[1])}')
             return names[0]
-        bare = _BARE.get(group)
-        if bare and len(entries) == 3:
-            names = {self.names[name]: name for name in self.free}
-            if all(letter in names for letter in bare):
-                return [names[letter] for letter in bare]
+        by_name = {self.names[name]: name for name in self.free}
+        for bare in BARE.get(group, ()) if len(entries) == 3 else ():
+            if all(letter in by_name for letter in bare):
+                return [by_name[letter] for letter in bare]
         return None
 
     def _same(self, group: Sequence[str], one: list[str], other: list[str]) -> bool:
         """Return whether the first of two trios is the plain one, or both tell the same."""
-        whole = re.compile(_AXES[group].format('[wxyz0-4]'))
+        whole = re.compile(AXES[group].format('[wxyz0-4]'))
         if whole.fullmatch(self.names[one[-1]]) and not whole.fullmatch(self.names[other[-1]]):
             return True
         return _alike(self.values(one), self.values(other)) > 0.98
@@ -196,10 +190,14 @@ class _Making:
     # --- steps
 
     def time(self) -> None:
-        found = [name for name in self.free if _TIME.search(self.names[name])]
+        found = [name for name in self.free if TIME.search(self.names[name])]
         rising = [name for name in found if _rises(self.table.columns[name])]
+        first = next(iter(self.table.columns))
+        if not found and _is_clock(self.table.columns[first]):
+            rising = [first]        # in whatever language
         if not rising:
-            self.guess.doubts.append('t: no column of a time that rises')
+            self.guess.doubts.append(
+                f't: no column of a time that rises{_but(found)}; add one in s to the file')
             self.guess.candidates['t'] = found
             return
         name = min(rising, key=lambda name: len(self.names[name]))
@@ -219,7 +217,7 @@ class _Making:
         self.found = {group: self.trio(group, 'xyz')
                       for group in (POSITION, VELOCITY, RATE, FORCE)}
         if self.found[RATE] is None:
-            turning = [self.one(rf'(^|_){axis}_?(rate|speed|vel)$') for axis in _TURNING]
+            turning = [self.one(rf'(^|_){axis}_?(rate|speed|vel)$') for axis in TURNING]
             if None not in turning:
                 self.found[RATE] = turning
 
@@ -263,8 +261,7 @@ class _Making:
             return level[0]
         if self.found[RATE] and self.t is not None:
             gyro = self.values(self.found[RATE])
-            alike = {name: _alike(_turning(one, self.t), 0.5 * (gyro[1:] + gyro[:-1]))
-                     for name, one in readings.items()}
+            alike = {name: _alike(*self.turning(one, gyro)) for name, one in readings.items()}
             best = max(alike, key=alike.get)
             if alike[best] > 0.7 and alike[best] > min(alike.values()) + 0.3:
                 return best
@@ -273,14 +270,32 @@ class _Making:
     def angles(self) -> None:
         if self.attitude is not None:
             return
-        names = [self.one(pattern) for pattern in _ANGLE.values()]
+        names = [self.one(pattern) for pattern in ANGLE.values()]
         if None in names:
             return
         values = self.values(names)
         units = {self.units[name] for name in names}
         unit = 'deg' if 'deg' in units else 'rad' if 'rad' in units else angle_unit(values)
-        self.take(EULER, names, unit, role='pose', said=f'roll, pitch, yaw in {unit}')
-        self.attitude = from_euler(*(values.T * factor_of('phi', unit)))
+        down = self._pitch_down(names, values * factor_of('phi', unit))
+        self.take(EULER, names, unit, role='pose', said=f'roll, pitch, yaw in {unit}'
+                  + (', pitch with the other sign' if down else ''))
+        signs = np.array([1.0, 1.0, 1.0])
+        if down:
+            self.columns['theta'] = replace(self.columns['theta'], unit=f'-{unit}')
+            signs[1] = -1.0
+        self.attitude = from_euler(*(values * factor_of('phi', unit) * signs).T)
+
+    def _pitch_down(self, names: Sequence[str], angles: np.ndarray) -> bool:
+        """Return whether the pitch of angles (N, 3) rad has the other sign, by gyro or name."""
+        named = bool(PITCH_DOWN.search(self.names[names[1]]))
+        if not self.found[RATE] or self.t is None:
+            return named
+        gyro = self.values(self.found[RATE])
+        alike = [_alike(*self.turning(from_euler(*(angles * [1.0, sign, 1.0]).T), gyro))
+                 for sign in (1.0, -1.0)]
+        if max(alike) < 0.7 or abs(alike[1] - alike[0]) < 0.2:
+            return named
+        return alike[1] > alike[0]
 
     def rates(self) -> None:
         names = self.found[RATE]
@@ -288,9 +303,16 @@ class _Making:
             return
         values, unit = self.values(names), self._unit(names, ('rad/s', 'deg/s'))
         if not unit and self.attitude is not None and self.t is not None:
-            ratio = _ratio(0.5 * (values[1:] + values[:-1]), _turning(self.attitude, self.t))
-            unit = ('' if ratio is None else 'rad/s' if 0.3 < ratio < 4 else
-                    'deg/s' if 15 < ratio < 230 else '')
+            turned, measured = self.turning(self.attitude, values)
+            ratio = _ratio(measured, turned)
+            if ratio is not None:
+                unit = 'rad/s' if 0.3 < ratio < 4 else 'deg/s' if 15 < ratio < 230 else 'none'
+        if unit == 'none':
+            self.guess.doubts.append(f'wx: {_together(names)} are {ratio:.3g} times the rates of '
+                                     'the attitude, which is no unit')
+            unit = 'rad/s'
+        if not unit and self._is_weight(values):
+            return
         if not unit:
             # What turns by over 35 rad/s is past its gyro; below 12 deg/s nothing manoeuvres.
             fast = float(np.nanquantile(np.abs(values), 0.99))
@@ -299,6 +321,12 @@ class _Making:
             self.guess.doubts.append(f'wx: the unit of {_together(names)} (rad/s, deg/s)')
             unit = 'rad/s'
         self.take(RATE, names, unit, role='rate', said=f'body rate in {unit}')
+
+    def _is_weight(self, values: np.ndarray) -> bool:
+        """Return whether values (N, 3) have one length, as gravity in body axes has."""
+        length = np.linalg.norm(values, axis=1)
+        usual = float(np.nanmedian(length))
+        return usual > 0.5 and float(np.nanstd(length)) < 0.01 * usual
 
     def positions(self) -> None:
         names = self.found[POSITION]
@@ -311,7 +339,32 @@ class _Making:
             speed = speed[np.isfinite(speed) & (speed > 0)]
             # Multirotors do under 60 m/s.
             unit = 'mm' if len(speed) and np.quantile(speed, 0.9) > 100 else 'm'
+            unit = self._by_velocity(names) or unit
         self.take(POSITION, names, unit or 'm', role='pose', said=f'position in {unit or "m"}')
+
+    def _by_velocity(self, names: Sequence[str]) -> str:
+        """Return the unit of positions of which the velocity is the change, '' if not told."""
+        given = self.found[VELOCITY]
+        if given is None:
+            return ''
+        said = self._unit(given, ('m/s', 'mm/s', 'cm/s')) or 'm/s'
+        place, speed = self.values(names), self.values(given) * factor_of('vx', said)
+        # Over half a second, where noise of single samples counts for little.
+        width = max(1, round(0.5 / max(float(np.nanmedian(self.dt())), 1e-6)))
+        if len(place) < 4 * width:
+            return ''
+        moved = place[width:] - place[:-width]
+        sums = np.vstack([np.zeros(3), np.cumsum(np.nan_to_num(
+            0.5 * (speed[1:] + speed[:-1]) * self.dt()[:, None]), axis=0)])
+        ratio = _ratio(moved, sums[width:] - sums[:-width])
+        if ratio is None:
+            return ''       # a velocity in body axes of a vehicle that turns, or sparse samples
+        for unit, factor in (('m', 1.0), ('cm', 100.0), ('mm', 1000.0)):
+            if factor / 2 < ratio < 2 * factor:
+                return unit
+        self.guess.doubts.append(f'px: {_together(names)} change {ratio:.3g} times as fast as '
+                                 f'{_together(given)} says, which is no unit')
+        return 'm'
 
     def forces(self) -> None:
         names = self.found[FORCE]
@@ -405,30 +458,42 @@ class _Making:
         return off if np.isfinite(off).all() else None
 
     def motors(self) -> None:
-        measured = self._numbered(_SPEED)
+        measured = self._numbered(SPEED)
         if measured:
-            values = self.values(measured)
+            values = self.logged(measured)
             unit = self._unit(measured, ('rad/s', 'rpm')) or (
                 'rpm' if any('rpm' in self.names[name] for name in measured) else 'rad/s')
-            if np.nanmin(values) >= 0:
+            if np.nanmin(values) >= 0 and np.nanmedian(values) > SLOWEST:
                 self.take([f'rotor{k}' for k in range(1, len(measured) + 1)], measured, unit,
                           role='rotors', said=f'measured rotor speeds in {unit}')
-        names = self._numbered(_MOTOR)
+        names = self._numbered(MOTOR) or self._corners()
         if not names:
             return
-        values = self.values(names)
+        values = self.logged(names)
         kinds = kinds_of(values)
+        if FORCES.search(self.names[names[0]]) and list(kinds) != ['normalised']:
+            return
         unit = self._unit(names, ('rad/s', 'rpm'))
         if unit:
             self.take([f'cmd{k}' for k in range(1, len(names) + 1)], names, unit,
                       role='commands', said=f'rotor speed commands in {unit}')
             return
+        if CRAZYFLIE.fullmatch(self.names[names[0]]) and list(kinds) == ['duty16']:
+            self.guess.motors = about_motors(quad(*AROUND), 'the order of the Crazyflie', 'duty16')
         what = ' or '.join(TITLES[kind] for kind in kinds)
         self.take([f'output{k}' for k in range(1, len(names) + 1)], names, role='commands',
                   said='outputs, ' + (f'{what} by their size' if what else 'of an unknown kind'))
 
+    def _corners(self) -> list[str] | None:
+        """Return the columns of four motors by their places, from front right to front left."""
+        found = [self.one(CORNER.format(pattern)) for pattern in CORNERS.values()]
+        if None in found or len(set(found)) < 4:
+            return None
+        self.guess.motors = about_motors(quad(*AROUND), 'the names of the columns')
+        return found
+
     def battery(self) -> None:
-        name = self.one(_BATTERY.pattern)
+        name = self.one(BATTERY.pattern)
         if name is None:
             return
         usual = float(np.nanmedian(self.table.columns[name]))
@@ -455,7 +520,8 @@ class _Making:
             first = min(group)
             count = next(k for k in range(len(group) + 1) if first + k not in group)
             names = [group[first + k] for k in range(count)]
-            while len(names) > 3 and not np.nanstd(self.table.columns[names[-1]]) > 0:
+            moving = [np.nanstd(self.table.columns[name]) > 0 for name in names]
+            while len(names) > 3 and any(moving) and not moving[len(names) - 1]:
                 names.pop()     # channels that nothing is on
             if first in (0, 1) and 3 <= len(names) <= 12:
                 whole.append((len(prefix), names))
@@ -494,6 +560,20 @@ def _rises(values: np.ndarray) -> bool:
     return len(steps) > 0 and (steps >= 0).mean() > 0.9 and finite[-1] > finite[0]
 
 
+def _is_clock(values: np.ndarray) -> bool:
+    """Return whether values rise in steps of one size as a time does, and are no counts."""
+    steps = np.diff(values[np.isfinite(values)])
+    if len(steps) < 10 or (steps <= 0).any() or (steps == 1).all():
+        return False
+    usual = float(np.median(steps))
+    return bool(np.mean(np.abs(steps - usual) < 0.5 * usual) > 0.9) and bool(time_unit(values))
+
+
+def _but(found: Sequence[str]) -> str:
+    """Return which columns have the name of a time, and do not rise."""
+    return f' ({_together(found)} does not)' if found else ''
+
+
 def _together(names: Sequence[str]) -> str:
     names = [name[:30] for name in names]
     return f'{names[0]} to {names[-1]}' if len(names) > 4 else ', '.join(names)
@@ -515,12 +595,20 @@ def _up(q: np.ndarray) -> float:
     return float(np.nanmedian(1 - 2 * (q[:, 1] ** 2 + q[:, 2] ** 2)))
 
 
-def _turning(q: np.ndarray, t: np.ndarray) -> np.ndarray:
-    """Return the body rate (N - 1, 3) rad/s between attitudes."""
-    turn = frames.multiply(frames.conjugate(q[:-1]), q[1:])
+def _turned(q: np.ndarray, later: np.ndarray) -> np.ndarray:
+    """Return the turns (N, 3) rad in the body from attitudes to later ones."""
+    turn = frames.multiply(frames.conjugate(q), later)
     turn = turn * np.where(turn[:, :1] < 0, -1.0, 1.0)
-    with np.errstate(all='ignore'):
-        return 2.0 * turn[:, 1:] / np.diff(t)[:, None]
+    return 2.0 * turn[:, 1:]
+
+
+def _filled(values: np.ndarray) -> np.ndarray:
+    """Return values (N,) without gaps, those before the first and after the last left out."""
+    known = np.isfinite(values)
+    if known.all() or known.sum() < 2:
+        return values
+    rows = np.arange(len(values))
+    return np.interp(rows, rows[known], values[known], left=np.nan, right=np.nan)
 
 
 def _alike(one: np.ndarray, other: np.ndarray) -> float:

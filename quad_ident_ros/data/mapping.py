@@ -87,7 +87,8 @@ class Column:
     """
     Columns of a table to read for one of the flight record: names, four of them for q.
 
-    unit: one of UNITS, '' for that of the flight record; frame: of a velocity, world or body.
+    unit: one of UNITS, with a minus before it for the other sign, '' for that of the flight
+    record; frame: of a velocity, world or body.
     """
 
     names: tuple
@@ -185,9 +186,13 @@ def actuators_to_mapping(actuators):
 
 
 def factor_of(name: str, said: str) -> float:
-    """Return what values in a unit of UNITS are multiplied by for a column of the record."""
+    """
+    Return what values in a unit of UNITS are multiplied by for a column of the record.
+
+    A unit with a minus before it is that of values with the other sign.
+    """
     known = UNITS.get(unit_of(name), {})
-    return known.get(said, 1.0)
+    return known.get(said.removeprefix('-'), 1.0) * (-1.0 if said.startswith('-') else 1.0)
 
 
 def in_record_unit(role: str, values: Sequence[float], said: str) -> Sequence[float]:
@@ -340,7 +345,8 @@ def _column(where: str, name: str, entry: object) -> Column:
                          f'{schema.shown(entry["column"])}')
     said = ''
     if 'unit' in entry:
-        said = schema.choice(f'{where}: unit', entry['unit'],
-                             tuple(UNITS.get(unit_of(name), {})) or ('1',))
+        units = tuple(UNITS.get(unit_of(name), {})) or ('1',)
+        turned = tuple(f'-{one}' for one in units) if name != 't' else ()
+        said = schema.choice(f'{where}: unit', str(entry['unit']), (*units, *turned))
     frame = schema.choice(f'{where}: frame', entry.get('frame', 'world'), ('world', 'body'))
     return Column(tuple(one.strip() for one in names), said, frame)

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import json
 
 from quad_ident_ros.data.mapping import ATTITUDE, Mapping, ROLES, unit_of
+from quad_ident_ros.data.message_roles import could_be
 from quad_ident_ros.data.readers.base import Content
 from quad_ident_ros.model.motors import KINDS
 
@@ -32,18 +33,26 @@ def flow(mapping: Mapping) -> str:
     return 'columns: {' + ', '.join(f'{name}: {text}' for name, text in entries.items()) + '}'
 
 
-def topics_text(source: object, found: Sequence[Content]) -> str:
+def topics_text(source: object, found: Sequence[Content],
+                chosen: Pairs[str, str] | None = None) -> str:
     """
     Return a mapping file to begin with for a bag: a role with one candidate is filled in.
 
-    Args: source: what the file is of; found: the Content of its topics.
+    Args: source: what the file is of; found: the Content of its topics; chosen: role -> topic, as
+    they are read without a mapping, or None where that is in doubt.
     """
-    roles = {role: [content.name for content in found if role in content.roles] for role in ROLES}
+    roles = {role: [content for content in found if role in content.roles] for role in ROLES}
+    one = {role: topics[0].name for role, topics in roles.items() if len(topics) == 1
+           and not (roles['pose'] and role in ('position', 'attitude'))}    # a pose has both
+    chosen = one | dict(chosen or {})
     lines = []
     for role, topics in roles.items():
-        more = ', field: data' if role in ('commands', 'rotors') else ''
-        sign = '' if len(topics) == 1 else '# '
-        lines += [f'  {sign}{role}: {{topic: {_quoted(topic)}{more}}}' for topic in topics]
+        for one in topics:
+            field = could_be(one.name, one.type, one.fields)[1] if role in _OUTPUTS else ''
+            more = f', field: {_quoted(field)}' if field else ''
+            more += ', unit: rpm' if role == 'rotors' and 'rpm' in field else ''
+            sign = '' if chosen.get(role) == one.name else '# '
+            lines.append(f'  {sign}{role}: {{topic: {_quoted(one.name)}{more}}}')
         if not topics:
             lines.append(f'  # {role}: no topic has a type that is known for this')
     head = 'topics:' if any(not line.startswith('  #') for line in lines) else '# topics:'
@@ -80,6 +89,7 @@ def table_text(source: object, mapping: Mapping, doubts: Sequence[str], columns:
     return _text(source, [*lines, head, *entries, *(_ACTUATORS if outputs else [])])
 
 
+_OUTPUTS = 'commands', 'rotors'
 _ACTUATORS = ['# actuators:                     # how outputs become rotor speeds',
               '#   kind: pwm                    # ' + ', '.join(KINDS),
               '#   order: [1, 2, 3, 4]          # the output of each rotor of the vehicle file',

@@ -10,6 +10,7 @@ rclpy. Types are named package/msg/Name.
 from collections.abc import Callable
 from dataclasses import dataclass
 import math
+import re
 
 import numpy as np
 
@@ -191,11 +192,35 @@ _LISTS = frozenset(f'std_msgs/msg/{name}MultiArray' for name in (
     'Float32', 'Float64', 'Int16', 'Int32', 'Int64', 'UInt16', 'UInt32', 'UInt64'))
 
 
+_OF_MOTORS = re.compile(r'motor|rotor|(^|[^a-z])esc|pwm|rpm|actuator|throttle|propeller')
+_ASKED_OF = re.compile(r'state$|status$|info|config|param|temperature|current')
+
+
 def roles_of(msgtype):
     """Return the roles that a message type could be read for, as mapping.ROLES names them."""
     if msgtype in _LISTS:
         return ('commands', 'rotors')
     return tuple(ROLES_OF.get(msgtype, ()))
+
+
+def could_be(topic, msgtype, fields):
+    """
+    Return the roles that a topic could be read for, and the field of its messages for outputs.
+
+    Types that are not known are told to be of motors by the name of the topic or type.
+    Args: topic, msgtype; fields: paths of the fields of its messages, of lists with [] behind.
+    """
+    roles = roles_of(msgtype)
+    if roles:
+        return roles, 'data' if msgtype in _LISTS else ''
+    lists = [field.removesuffix('[]') for field in fields
+             if field.endswith('[]') and '.' not in field]
+    name = f'{topic} {msgtype}'.lower()
+    if not lists or not _OF_MOTORS.search(name) or _ASKED_OF.search(name):
+        return (), ''
+    field = next((field for field in lists if _OF_MOTORS.search(field.lower())), lists[0])
+    return (('rotors',) if re.search(r'rpm|speed|vel', f'{name} {field}'.lower()) else
+            ('commands',)), field
 
 
 def is_tf(msgtype):

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the parameters of a PX4 log say of the vehicle: kind, rotors, map of the motors."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 import math
 from typing import TypeAlias
@@ -15,6 +15,10 @@ Parameters: TypeAlias = Mapping[str, int | float]
 
 MOST_ROTORS = 12        # that the parameters of PX4 have places for
 FIRST_MOTOR = 101       # the output function of motor 1
+BANKS = 'PWM_MAIN', 'PWM_AUX', 'UAVCAN_EC', 'SIM_GZ_EC'
+"""Beginnings of the parameters of outputs that motors are on; each bank is logged by itself."""
+DSHOT = 1, 1999         # outputs of PX4's DSHOT driver at the least and at full throttle
+DSHOT_TIMER = -2        # of a bank's TIM; from this on down the timer speaks DSHOT
 
 MULTIROTORS = {0: 'generic', 2: 'quadrotor', 13: 'hexarotor', 14: 'octorotor',
                29: 'dodecarotor', 35: 'decarotor'}
@@ -92,35 +96,59 @@ def motors_of(parameters: Parameters) -> Motors | None:
                   f'{"+" if layout is QUAD_PLUS else "x"}')
 
 
-def signal_limits(parameters: Parameters, count: int,
-                  simulated: bool) -> tuple[np.ndarray, np.ndarray]:
+def bank_of(parameters: Parameters, count: int, names: Sequence[str] = BANKS) -> str:
+    """Return the first of the banks of outputs whose functions name motors 1..count, or ''."""
+    return next((name for name in names if _functions(parameters, name, count)), '')
+
+
+def signal_limits(parameters: Parameters, count: int, simulated: bool,
+                  bank: str = '') -> tuple[np.ndarray, np.ndarray, str]:
     """
-    Return (lowest, highest) PWM of outputs 1..count, (count,) us each.
+    Return (lowest, highest) value of outputs 1..count, (count,) each, and their kind: PWM, DSHOT.
 
     Those of each channel where they are set, else those of all channels. PX4's simulator has
-    1000 to 2000 whatever the parameters say.
+    1000 to 2000 us whatever the parameters say.
     """
+    bank = bank or BANKS[0]
+    if not simulated and is_dshot(parameters, bank):
+        share = _number(parameters, 'DSHOT_MIN', 0.0)
+        low = min(max(round(share * DSHOT[1]), DSHOT[0]), DSHOT[1] - 1)
+        return np.full(count, float(low)), np.full(count, float(DSHOT[1])), 'DSHOT'
     limits = []
     for ending, usual in (('MIN', 1000.0), ('MAX', 2000.0)):
         shared = next((value for value in (_number(parameters, f'{name}_{ending}') for name in
-                                           ('PWM_MAIN', 'PWM')) if 800 <= value <= 2200), usual)
-        each = [_number(parameters, f'PWM_MAIN_{ending}{k}') for k in range(1, count + 1)]
+                                           (bank, 'PWM')) if 800 <= value <= 2200), usual)
+        each = [_number(parameters, f'{bank}_{ending}{k}') for k in range(1, count + 1)]
         limits.append(np.array([usual if simulated else value if 800 <= value <= 2200 else shared
                                 for value in each]))
     low, high = limits
-    return (low, high) if (high > low).all() else (np.full(count, 1000.0), np.full(count, 2000.0))
+    if not (high > low).all():
+        low, high = np.full(count, 1000.0), np.full(count, 2000.0)
+    return low, high, 'PWM'
 
 
-def channels_of(parameters: Parameters, count: int) -> list[int]:
-    """Return the 0-based channel of motors 1.., (count,), by the functions of the outputs."""
+def is_dshot(parameters: Parameters, bank: str) -> bool:
+    """Return whether motors of a bank are driven by DSHOT: its timers, or the old DSHOT_CONFIG."""
+    # A timer of DSHOT drives motors only; those beside it, for servos, stay at PWM.
+    return _number(parameters, 'DSHOT_CONFIG', 0) > 0 or any(
+        _number(parameters, f'{bank}_TIM{k}', 0) <= DSHOT_TIMER for k in range(8))
+
+
+def channels_of(parameters: Parameters, count: int, bank: str = '') -> list[int]:
+    """Return the 0-based channel of motors 1.., (count,), by the functions of a bank's outputs."""
+    return _functions(parameters, bank or BANKS[0], count) or list(range(count))
+
+
+def _functions(parameters: Parameters, bank: str, count: int) -> list[int]:
+    """Return the 0-based channels of motors 1..count of a bank, empty where not all have one."""
     channels = {}
     for k in range(16):
-        function = _number(parameters, f'PWM_MAIN_FUNC{k + 1}')
+        function = _number(parameters, f'{bank}_FUNC{k + 1}')
         if FIRST_MOTOR <= function < FIRST_MOTOR + MOST_ROTORS:
             channels[int(function) - FIRST_MOTOR] = k
-    if all(motor in channels for motor in range(count)):
-        return [channels[motor] for motor in range(count)]
-    return list(range(count))
+    if any(motor not in channels for motor in range(count)):
+        return []
+    return [channels[motor] for motor in range(count)]
 
 
 def thrust_factor(parameters: Parameters) -> float:

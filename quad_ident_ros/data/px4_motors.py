@@ -26,7 +26,8 @@ from quad_ident_ros.model.vehicle import Vehicle
 Samples: TypeAlias = tuple[np.ndarray, np.ndarray]
 Columns: TypeAlias = dict[str, np.ndarray]
 
-PWM = 800.0, 2200.0     # us, between which every output of kind pwm lies; off is 0 or nan
+RANGES = {'PWM': (800.0, 2200.0), 'DSHOT': (1.0, 1999.0)}
+"""Kind of outputs -> between which values all of them lie; off is 0 or nan."""
 
 UNORDERED = ('{topic}: the log does not say which motor lies where (CA_ROTOR*, MAV_TYPE): outputs '
              'are taken in the order of the rotors; if they are in another one, give a mapping '
@@ -35,7 +36,8 @@ UNORDERED = ('{topic}: the log does not say which motor lies where (CA_ROTOR*, M
 
 def commands(path: str | Path, topic: str, outputs: Samples, measured: Samples | None,
              actuators: Actuators | None, vehicle: Vehicle | None, motors: Motors | None,
-             parameters: Parameters, simulated: bool, notes: list[str]) -> tuple[Columns, Columns]:
+             parameters: Parameters, simulated: bool, notes: list[str],
+             bank: str = '') -> tuple[Columns, Columns]:
     """
     Return (columns of commands, columns rotor1..N of measured speeds); what was done is noted.
 
@@ -44,7 +46,8 @@ def commands(path: str | Path, topic: str, outputs: Samples, measured: Samples |
     nothing has the speed at full signal, output1..N are shares of it, 0 to 1.
     Args: outputs (stamps (n,) ns, values (n, m)); measured the same in rad/s in the order of the
     motors, or None; actuators of the mapping or None; vehicle, motors (px4_airframe.Motors) or
-    None; parameters of the log; simulated: whether it is of PX4's simulator.
+    None; parameters of the log; simulated: whether it is of PX4's simulator; bank: of
+    px4_airframe.BANKS, whose outputs they are, '' where the log does not say.
     Raises InputError where the vehicle's rotors do not match those of the log.
     """
     stamps, values = outputs
@@ -57,14 +60,15 @@ def commands(path: str | Path, topic: str, outputs: Samples, measured: Samples |
         chosen = measured[1] if order is None else measured[1][:, [k - 1 for k in order]]
         speeds = {f'rotor{k}': column for k, column in enumerate(chosen.T, 1)}
     signal, what = (None, '') if vehicle is None else _signal(topic, values, motors, parameters,
-                                                              simulated)
+                                                              simulated, bank)
     if actuators is not None or vehicle is None or vehicle.motors is not None or signal is None:
         shares = vehicle is not None and vehicle.motors is not None and actuators is None and (
             vehicle.motors.kind == 'normalised')
         if order is not None and shares and signal is not None:
             values = signal[:, [k - 1 for k in order]]
         elif order is not None:
-            values = values[:, _channels(where, topic, parameters, order, values.shape[1])]
+            values = values[:, _channels(where, topic, parameters, order, values.shape[1],
+                                         bank)]
         elif actuators is None:
             values = values[:, np.isfinite(values).any(axis=0)]
             if vehicle is not None:
@@ -84,11 +88,11 @@ def commands(path: str | Path, topic: str, outputs: Samples, measured: Samples |
 
 
 def _channels(where: str, topic: str, parameters: Parameters, order: Sequence[int],
-              count: int) -> list[int]:
+              count: int, bank: str) -> list[int]:
     """Return the column of the outputs of each rotor, whose motors are in this order."""
     channels = list(range(len(order)))
     if topic == 'actuator_outputs':
-        channels = channels_of(parameters, len(order))
+        channels = channels_of(parameters, len(order), bank)
     chosen = [channels[motor - 1] for motor in order]
     if max(chosen) >= count:
         raise InputError(f'{where}: there is no output {max(chosen) + 1} of a motor, there are '
@@ -97,7 +101,7 @@ def _channels(where: str, topic: str, parameters: Parameters, order: Sequence[in
 
 
 def _signal(topic: str, values: np.ndarray, motors: Motors | None, parameters: Parameters,
-            simulated: bool) -> tuple[np.ndarray | None, str]:
+            simulated: bool, bank: str) -> tuple[np.ndarray | None, str]:
     """Return the signal (n, motors) of 0 to 1, below 0 for off, and what it was; None, why."""
     if motors is None:
         return None, ''
@@ -106,20 +110,20 @@ def _signal(topic: str, values: np.ndarray, motors: Motors | None, parameters: P
         if values.shape[1] < count or not _within(values[:, :count], -1e-3, 1.001):
             return None, f'its values are not the shares of full thrust of {count} motors'
         return values[:, :count], 'normalised, 0 to 1'
-    channels = channels_of(parameters, count)
+    channels = channels_of(parameters, count, bank)
     if max(channels) >= values.shape[1]:
         return None, f'there are no outputs for {count} motors'
     chosen = values[:, channels]
     if _within(chosen, -1e-3, 1.001):
         return chosen, 'normalised, 0 to 1'
     chosen = np.where(chosen > 0, chosen, np.nan)
-    if not _within(chosen, *PWM):
-        return None, 'its values are neither shares of 0 to 1 nor PWM'
-    low, high = signal_limits(parameters, max(channels) + 1, simulated)
+    low, high, kind = signal_limits(parameters, max(channels) + 1, simulated, bank)
+    if not _within(chosen, *RANGES[kind]):
+        return None, f'its values are neither shares of 0 to 1 nor {kind}'
     low, high = low[channels], high[channels]
-    span = (f'{low[0]:g} to {high[0]:g} us' if np.ptp(low) == np.ptp(high) == 0 else
-            f'{low.min():g} to {high.max():g} us, limits of each channel')
-    return (chosen - low) / (high - low), f'PWM, {span}'
+    span, unit = f'{low.min():g} to {high.max():g}', ' us' if kind == 'PWM' else ''
+    each = '' if np.ptp(low) == np.ptp(high) == 0 else ', limits of each channel'
+    return (chosen - low) / (high - low), f'{kind}, {span}{unit}{each}'
 
 
 def _map(signal: np.ndarray, stamps: np.ndarray, measured: Samples | None,

@@ -10,10 +10,14 @@ import numpy as np
 
 from quad_ident_ros.data.quality import clock_offset, command_offset, findings, velocity_offset
 from quad_ident_ros.data.quality.excitation import excitation
+from quad_ident_ros.data.quality.ground import airborne
 from quad_ident_ros.data.quality.series import GAP
 from quad_ident_ros.data.readers.base import Content
 from quad_ident_ros.data.record import FlightRecord, unit
 from quad_ident_ros.errors import InputError
+
+OF_GROUND = 'thrust', 'saturation', 'rotor_order', 'rotor_spin'
+"""Codes of Findings by which motors that stand look like faults."""
 
 UNITS = {'roll': 'rad/s', 'pitch': 'rad/s', 'yaw': 'rad/s', 'vertical': 'm/s^2',
          'horizontal': 'm/s'}
@@ -45,8 +49,17 @@ def summarise(record, vehicle=None):
                        for name, value in excitation(record).items()},
         'clock': dict(zip(('attitude_against_gyro', 'position_against_velocity',
                            'accelerometer_against_commands'), map(_clock, clocks), strict=True)),
-        'findings': [asdict(finding) for finding in findings(record, vehicle)],
+        'findings': [asdict(finding) for finding in _findings(record, vehicle)],
     }
+
+
+def _findings(record, vehicle):
+    """Return the Findings on a record, but for faults that lie where diagnose and fit cut it."""
+    found = findings(record, vehicle)
+    if not any(one.code == 'ground' and one.severity == 'warning' for one in found):
+        return found
+    left = {one.code for one in findings(airborne(record, vehicle), vehicle)}
+    return [one for one in found if one.code not in OF_GROUND or one.code in left]
 
 
 def contents(path: str | Path, title: str, streams: Sequence[Content]) -> dict:

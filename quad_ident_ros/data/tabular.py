@@ -3,9 +3,11 @@
 """Tables of other people: text with any separator, decimal commas, units in a line; Parquet."""
 
 from collections import Counter
+from collections.abc import Sequence
 import csv
 from dataclasses import dataclass
 from pathlib import Path
+import re
 from typing import Any
 
 import numpy as np
@@ -15,9 +17,15 @@ from quad_ident_ros.data.limits import most
 from quad_ident_ros.errors import InputError
 
 SEPARATORS = (',', ';', '\t')
+BLANKS = ' '    # any number of them
+MOTIVE = ('world: Motive has y up unless it is told otherwise: export with Z up and name the '
+          'columns in a mapping, or turn them in it, such as py: {column: "Position Z", unit: -m}')
 _HEAD = 20      # lines in which the first numbers come
 _MOST_COLUMNS = 4096
 _FEW = 0.1      # of the cells of a column: with more text it is one of text
+_DATE = re.compile(r'[12]\d{3}-\d\d-\d\d[T ]\d\d:\d\d:\d\d(\.\d+)?(Z|[+-]00:?00)?$')
+"""A time of day in UTC, or without a zone, as ISO 8601 writes it."""
+
 _MISSING = frozenset(('none', 'null', 'n/a', 'na', '-', '--'))
 
 
@@ -27,13 +35,15 @@ class Table:
     The numbers of a table.
 
     columns: name -> (N,) float, nan for an empty cell; units: name -> unit, where a line says
-    them; notes: what was left out; how: what separates the cells, for messages.
+    them; notes: what was left out; how: what separates the cells, for messages; doubts: what the
+    program that wrote the table leaves open.
     """
 
     columns: dict
     units: dict
     notes: tuple = ()
     how: str = ''
+    doubts: tuple = ()
 
 
 def read_text(path: Path, separator: str = '') -> Table:
@@ -49,6 +59,8 @@ def read_text(path: Path, separator: str = '') -> Table:
     comma = separator != ',' and any(',' in row for row in rows[1:_HEAD])
     head, first = _head(path, rows, separator, comma)
     names, units = _names(path, rows, places[head], head, first, separator)
+    names = _under_headings(names, rows[first:first + _HEAD], separator)
+    _refuse_doubled(path, places[head], names)
     columns = _fast(rows[first:], names, separator, comma)
     notes = ['the last line has no line end and was left out'] if truncated else []
     if columns is None:
@@ -57,8 +69,10 @@ def read_text(path: Path, separator: str = '') -> Table:
     if not columns or len(next(iter(columns.values()))) < 2:
         raise InputError(f'{path}: there are fewer than 2 lines of numbers; give a table with a '
                          'header and samples')
-    how = {',': 'commas', ';': 'semicolons', '\t': 'tabs'}.get(separator, repr(separator))
-    return Table(columns, units, tuple(notes), f'{how}{", decimal commas" if comma else ""}')
+    how = {',': 'commas', ';': 'semicolons', '\t': 'tabs', BLANKS: 'blanks'}.get(
+        separator, repr(separator))
+    return Table(columns, units, tuple(notes), f'{how}{", decimal commas" if comma else ""}',
+                 (MOTIVE,) if rows[0].startswith('Format Version') else ())
 
 
 def told_separator(rows: list[str]) -> str:
@@ -71,6 +85,11 @@ def told_separator(rows: list[str]) -> str:
         share = count * lines if rows and rows[0].count(separator) else 0
         if share > most_of:
             best, most_of = separator, share
+    if not most_of and len(rows) > 2:       # as the tables of trajectories are
+        cells = Counter(len(row.split()) for row in rows[1:_HEAD])
+        count, lines = cells.most_common(1)[0]
+        if count > 1 and lines > 0.9 * len(rows[1:_HEAD]):
+            return BLANKS
     return best
 
 
@@ -125,6 +144,8 @@ def _numbers(pyarrow: Any, column: Any) -> np.ndarray | None:
 
 
 def _cells(row: str, separator: str) -> list[str]:
+    if separator == BLANKS:
+        return row.split()
     try:
         return [cell.strip() for cell in next(csv.reader([row], delimiter=separator), [])]
     except csv.Error:
@@ -147,10 +168,9 @@ def _number(cell: str, comma: bool) -> float | None:
 def _head(path: Path, rows: list[str], separator: str, comma: bool) -> tuple[int, int]:
     """Return the places of the line of names and of the first line of numbers."""
     for k, row in enumerate(rows[:_HEAD]):
-        cells = _cells(row, separator)
-        values = [_number(cell, comma) for cell in cells]
-        numbers = sum(value is not None and not np.isnan(value) for value in values)
-        if len(cells) > 1 and numbers >= max(2, 0.5 * sum(map(bool, cells))):
+        # A line of numbers among names, as of markers, is none of samples.
+        if _is_numbers(row, separator, comma) and (k + 1 == len(rows) or _is_numbers(
+                rows[k + 1], separator, comma)):
             if k == 0:
                 raise InputError(f'{path}, line 1: there are numbers where the names of the '
                                  'columns belong; begin with a line of names')
@@ -159,6 +179,15 @@ def _head(path: Path, rows: list[str], separator: str, comma: bool) -> tuple[int
             return k - 1, k
     raise InputError(f'{path}: there is no line of numbers among the first {_HEAD}; give a table '
                      'with a header and samples')
+
+
+def _is_numbers(row: str, separator: str, comma: bool) -> bool:
+    """Return whether half or more of the cells of a line are numbers."""
+    cells = _cells(row, separator)
+    values = [_number(cell, comma) for cell in cells]
+    numbers = sum(value is not None and not np.isnan(value) for value in values)
+    dates = sum(bool(_DATE.match(cell)) for cell in cells)
+    return len(cells) > 1 and numbers + dates >= max(2, 0.5 * sum(map(bool, cells)))
 
 
 _UNITS = frozenset('s sec ms us ns m mm cm m/s mm/s cm/s rad deg rad/s deg/s dps rpm g mg m/s2 '
@@ -183,9 +212,6 @@ def _names(path: Path, rows: list[str], line: int, head: int, first: int,
         if len(above) == len(names):
             names = [f'{one} {name}'.strip() for one, name in zip(above, names, strict=True)]
             doubled = [name for name, count in Counter(names).items() if count > 1 and name]
-    if doubled:
-        raise InputError(f'{path}, line {line}, column {doubled[0][:40]!r}: the header names '
-                         'it twice; rename or remove one')
     bad = [name for name in names if not name.isprintable()]
     if bad:
         raise InputError(f'{path}, line {line}, column {bad[0][:40]!r}: this is no column '
@@ -198,6 +224,34 @@ def _names(path: Path, rows: list[str], line: int, head: int, first: int,
     return names, units
 
 
+def _under_headings(names: list[str], rows: list[str], separator: str) -> list[str]:
+    """
+    Return names, which where some repeat have the heading before them that has no cells.
+
+    Bags that were written out as a table have such: position,x,y,z,orientation,x,y,z,w.
+    """
+    if max(Counter(names).values()) < 2:
+        return names
+    cells = [_cells(row, separator) for row in rows]
+    empty = [all(k >= len(line) or not line[k] for line in cells) for k in range(len(names))]
+    found, heading = [], ''
+    for name, none in zip(names, empty, strict=True):
+        if none and name:
+            heading = name
+            found.append(name)
+        else:
+            found.append(f'{heading} {name}' if name and heading else name)
+    return found
+
+
+def _refuse_doubled(path: Path, line: int, names: list[str]) -> None:
+    """Raise InputError where the header names a column twice."""
+    doubled = [name for name, count in Counter(names).items() if count > 1 and name]
+    if doubled:
+        raise InputError(f'{path}, line {line}, column {doubled[0][:40]!r}: the header names '
+                         'it twice; rename or remove one')
+
+
 def _fast(rows: list[str], names: list[str], separator: str,
           comma: bool) -> dict[str, np.ndarray] | None:
     """Return the columns of a table of nothing but numbers; None for another."""
@@ -206,12 +260,21 @@ def _fast(rows: list[str], names: list[str], separator: str,
             return None
         rows = [row.replace(',', '.') for row in rows]
     try:
-        table = np.loadtxt(rows, delimiter=separator, comments=None, ndmin=2)
+        table = np.loadtxt(rows, delimiter=None if separator == BLANKS else separator,
+                           comments=None, ndmin=2)
     except ValueError:
         return None
     if table.shape[1] != len(names):
         return None
     return {name: column for name, column in zip(names, table.T.copy(), strict=True) if name}
+
+
+def _seconds(cells: Sequence[str]) -> np.ndarray:
+    """Return the seconds since 1970 (N,) of times of day, nan for an empty cell."""
+    plain = [re.sub(r'(Z|[+-]00:?00)$', '', cell) or 'NaT' for cell in cells]
+    stamps = np.array(plain, 'datetime64[ns]')
+    seconds = stamps.astype(np.int64) * 1e-9
+    return np.where(np.isnat(stamps), np.nan, seconds)
 
 
 def _thorough(path: Path, rows: list[str], places: list[int], names: list[str], separator: str,
@@ -231,7 +294,9 @@ def _thorough(path: Path, rows: list[str], places: list[int], names: list[str], 
         values = [_number(cell, comma) for cell in column]
         if not name:
             continue
-        if None in values:
+        if None in values and all(_DATE.match(cell) for cell in column if cell):
+            columns[name] = _seconds(column)
+        elif None in values:
             wrong = [k for k, value in enumerate(values) if value is None]
             if len(wrong) < _FEW * len(values):
                 k = wrong[0]

@@ -15,6 +15,8 @@ from quad_ident_ros.data.foreign import BODY_VELOCITY, velocity_in_world
 from quad_ident_ros.data.mapping import Actuators, KINDS, Mapping
 from quad_ident_ros.data.px4_airframe import FIRST_MOTOR, Motors, motors_of, other_kind
 from quad_ident_ros.data.px4_motors import commands
+from quad_ident_ros.data.px4_outputs import motor_outputs
+from quad_ident_ros.data.px4_position import estimated
 from quad_ident_ros.data.px4_states import flown, resets
 from quad_ident_ros.data.record import FlightRecord, QUATERNION
 from quad_ident_ros.data.split import part, SHORTEST, split
@@ -66,9 +68,10 @@ def read_ulog(path: str | Path, mapping: Mapping | None = None,
                          'wings, servos or wheels no multirotor has; give the log of a multirotor')
     notes = [*(['parts of the log are damaged and left out'] if log.file_corruption else []),
              *([f'{len(log.dropouts)} dropouts while logging'] if log.dropouts else [])]
-    streams = [_attitude(path, data), *_position(path, data), _rate(path, data),
+    streams = [_attitude(path, data), *_position(path, data, notes), _rate(path, data),
                _specific_force(path, data), _battery(path, data)]
-    streams += _outputs(path, log, data, mapping.actuators, vehicle, notes)
+    streams += _outputs(path, log, data, mapping.actuators, vehicle, notes,
+                        mapping.instances.get('actuator_outputs'))
     streams = [stream for stream in streams if stream is not None]
     notes += _slow(streams)
     start, t, columns, joined = join(path, streams)
@@ -93,7 +96,7 @@ def _flights(path: Path, record: FlightRecord, data: dict) -> list[FlightRecord]
               if data[name] is not None and len(data[name]['timestamp'])}
     spans, looked_at = flown(states)
     parts = [record] if spans is None else _in_the_air(path, record, spans, looked_at)
-    found, small = resets(_used(states))
+    found, small = resets(_used(states, record))
     parts = [_passing_over(piece, [(stamp - start) * 1e-9 for stamp in small]) for piece in parts]
     times = [((before - start) * 1e-9, (after - start) * 1e-9, what)
              for before, after, what in found]
@@ -109,8 +112,11 @@ def _passing_over(record: FlightRecord, times: list[float]) -> FlightRecord:
     return replace(record, info={**record.info, 'notes': [*record.info['notes'], note]})
 
 
-def _used(states: dict) -> dict:
+def _used(states: dict, record: FlightRecord) -> dict:
     """Return the topics whose resets show in the record."""
+    if not record.has('px'):
+        states = {name: state for name, state in states.items()
+                  if name != 'vehicle_local_position'}
     if 'vehicle_local_position' in states or 'vehicle_attitude' in states:
         return {name: state for name, state in states.items() if name != 'vehicle_odometry'}
     return states
@@ -285,31 +291,47 @@ def _attitude(path, data):
     return _stream(path, topic, data[topic], QUATERNION, frames.attitude(q, 'NED', 'FRD'))
 
 
-def _position(path, data):
-    """Return the streams of position and velocity."""
+def _position(path: Path, data: dict, notes: list[str]) -> list[Stream]:
+    """Return the streams of position and velocity of the first topic that has estimates."""
+    without = []
     for topic in ('vehicle_local_position', 'vehicle_odometry', 'estimator_local_position'):
-        if data[topic] is not None:
-            break
-    else:
-        return []
-    if topic != 'vehicle_odometry':
-        values = _values(path, topic, data[topic], ('x', 'y', 'z', 'vx', 'vy', 'vz'))
-        both = [frames.world_vector(values[:, part], 'NED') for part in (slice(3), slice(3, 6))]
-        return [_stream(path, topic, data[topic], ('px', 'py', 'pz', 'vx', 'vy', 'vz'),
-                        np.hstack(both))]
-    found = data[topic]
+        if data[topic] is None:
+            continue
+        streams, known = _positions(path, topic, data[topic])
+        if known.any():
+            if not known.all():
+                notes.append(f'topic {topic}: {np.sum(~known)} of {len(known)} samples are no '
+                             'valid estimates and are left out')
+            return streams
+        without.append(topic)
+    if without:
+        notes.append(f'no position and velocity: {", ".join(without)} had no valid estimate, as '
+                     'without GPS, camera or motion capture')
+    return []
+
+
+def _positions(path: Path, topic: str, found: dict) -> tuple[list[Stream], np.ndarray]:
+    """Return the streams of position and velocity of a topic, and which samples are estimates."""
     new = 'position[0]' in found
     place = _values(path, topic, found, _indexed('position', 3) if new else ('x', 'y', 'z'))
     speed = _values(path, topic, found, _indexed('velocity', 3) if new else ('vx', 'vy', 'vz'))
-    in_body = np.asarray(found.get('velocity_frame', np.zeros(len(speed)))) == 3
-    streams = [_stream(path, topic, found, ('px', 'py', 'pz'), frames.world_vector(place, 'NED'))]
+    known = estimated(found, place, speed)
+    if not known.any():
+        return [], known
+    found = {name: np.asarray(values)[known] for name, values in found.items()}
+    place, speed = place[known], speed[known]
+    in_body = np.zeros(len(speed), bool)
+    if topic == 'vehicle_odometry' and 'velocity_frame' in found:
+        in_body = np.asarray(found['velocity_frame']) == 3
+    place = frames.world_vector(place, 'NED')
+    if not in_body.any():
+        return [_stream(path, topic, found, ('px', 'py', 'pz', 'vx', 'vy', 'vz'),
+                        np.hstack([place, frames.world_vector(speed, 'NED')]))], known
+    streams = [_stream(path, topic, found, ('px', 'py', 'pz'), place)]
     if in_body.all():
         streams.append(_stream(path, topic, found, BODY_VELOCITY,
                                frames.body_vector(speed, 'FRD')))
-    elif not in_body.any():
-        streams.append(_stream(path, topic, found, ('vx', 'vy', 'vz'),
-                               frames.world_vector(speed, 'NED')))
-    return streams
+    return streams, known
 
 
 def _rate(path, data):
@@ -347,8 +369,12 @@ def _battery(path, data):
 
 
 def _outputs(path: Path, log: ULog, data: dict, actuators: Actuators | None,
-             vehicle: Vehicle | None, notes: list[str]) -> list[Stream]:
-    """Return the streams of commands and of measured rotor speeds; what was done is noted."""
+             vehicle: Vehicle | None, notes: list[str], instance: int | None) -> list[Stream]:
+    """
+    Return the streams of commands and of measured rotor speeds; what was done is noted.
+
+    Args: instance: of actuator_outputs, as a mapping names it, or None.
+    """
     if actuators is not None:
         choices = ('actuator_outputs', 'actuator_motors')
         choices = choices[1:] if actuators.kind == 'normalised' else choices
@@ -364,18 +390,34 @@ def _outputs(path: Path, log: ULog, data: dict, actuators: Actuators | None,
                              f'{", ".join(KINDS)}')
         return []
     field = {'actuator_outputs': 'output', 'actuator_motors': 'control'}[topic]
-    count = sum(name.startswith(f'{field}[') for name in data[topic])
-    values = _values(path, topic, data[topic], _indexed(field, max(count, 1)))
-    stamps = _stamps(path, topic, data[topic])
-    motors = motors_of(log.initial_parameters)
+    motors, bank, found = motors_of(log.initial_parameters), '', data[topic]
+    if topic == 'actuator_outputs':
+        found, bank = _of_motors(log, found, instance, motors, notes)
+    count = sum(name.startswith(f'{field}[') for name in found)
+    values = _values(path, topic, found, _indexed(field, max(count, 1)))
+    stamps = _stamps(path, topic, found)
     speeds = _measured(path, data['esc_status'], motors)
     simulated = 'SITL' in str(log.msg_info_dict.get('ver_hw', ''))
     columns, measured = commands(path, topic, (stamps, values), speeds, actuators, vehicle, motors,
-                                 log.initial_parameters, simulated, notes)
+                                 log.initial_parameters, simulated, notes, bank)
     streams = [Stream(f'topic {topic}', stamps, columns, HELD)]
     if measured:
         streams.append(Stream('topic esc_status', speeds[0], measured, INTERPOLATED))
     return streams
+
+
+def _of_motors(log: ULog, found: dict, instance: int | None, motors: Motors | None,
+               notes: list[str]) -> tuple[dict, str]:
+    """Return the fields of the actuator_outputs that motors are on, and their bank."""
+    every = {data.multi_id: data.data for data in log.data_list if data.name == 'actuator_outputs'}
+    asked = every if instance is None else {instance: found}
+    number, bank = motor_outputs(asked, log.initial_parameters,
+                                 len(motors.rotors) if motors else None)
+    if len(asked) > 1:
+        notes.append(f'of {len(asked)} instances of actuator_outputs that of the motors is taken: '
+                     f'{number}{f" ({bank}_FUNC*)" if bank else ""}; a mapping may name another: '
+                     'instances: {actuator_outputs: NUMBER}')
+    return asked[number], bank
 
 
 def _measured(path: Path, data: dict | None, motors: Motors | None

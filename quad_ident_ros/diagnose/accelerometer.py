@@ -35,7 +35,10 @@ def residual_force(flight: Flight, vehicle: Vehicle, z: np.ndarray
     body = np.einsum('bji,bj->bi', rotation_matrix(now[:, 6:10]), model)
     measured = 0.5 * (flight.force[steps.first] + flight.force[steps.first + 1])
     apart = (measured - body).reshape(*rows.shape, 3)
-    third = np.abs(np.diff(flight.force[rows], 3, axis=1)).reshape(-1, 3)
+    # Of slow records a window has fewer samples than a third difference needs.
+    wide = flight.first[:, None] + np.arange(max(flight.count, 4))
+    wide = np.minimum(wide, len(flight.force) - 1)
+    third = np.abs(np.diff(flight.force[wide], 3, axis=1)).reshape(-1, 3)
     noise = MAD * np.median(third, axis=0) / np.sqrt(20.0 * flight.count)
     mass = vehicle.mass + z[INDEX['mass_offset.mass']]
     return mass * apart.mean(axis=1), np.broadcast_to(mass * noise, (len(rows), 3))

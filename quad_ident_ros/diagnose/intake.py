@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from quad_ident_ros.data.clocks import Clock, clocks_of, on_one_clock
+from quad_ident_ros.data.differentiated import with_motion
 from quad_ident_ros.data.inertial import is_inertial, reckoned, with_position
 from quad_ident_ros.data.outputs import BY_MOTORS
 from quad_ident_ros.data.quality import cautions, refuse_errors, refuted
@@ -74,7 +75,8 @@ def take_in(records: Sequence[FlightRecord], vehicle: Vehicle, hold_out: FlightR
         records = [record for record in records if not same_flight(record, hold_out)]
     refuse_twice(records)
     held = [] if hold_out is None else [hold_out]
-    every = on_one_level([with_commands(record, vehicle) for record in (*records, *held)])
+    every = on_one_level([with_commands(with_motion(record), vehicle)
+                          for record in (*records, *held)])
     records, hold_out = (every, None) if hold_out is None else (every[:-1], every[-1])
     if not all(record.info.get(BY_MOTORS) for record in every):
         vehicle = replace(vehicle, motors=None)     # its uncertainty is none of these commands'

@@ -10,6 +10,7 @@ import numpy as np
 
 from quad_ident_ros import __version__
 from quad_ident_ros.data.clocks import clocks_of, on_one_clock
+from quad_ident_ros.data.differentiated import with_motion
 from quad_ident_ros.data.inertial import is_inertial, with_position
 from quad_ident_ros.data.record import FlightRecord, refuse_twice
 from quad_ident_ros.data.thrust_level import FULL_SPEED, on_one_level
@@ -85,6 +86,7 @@ def fit(records: Sequence[FlightRecord], vehicle: Vehicle, names: Iterable[str],
     free = columns_of_names(names, vehicle)
     refuse_twice(records)
     _refuse_level(records, free)
+    records = [with_motion(record) for record in records]
     for record in records:
         if is_inertial(record):
             name = record.info.get('source') or record.info.get('name', 'a flight')

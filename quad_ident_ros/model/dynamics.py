@@ -78,10 +78,14 @@ def course_of(record: FlightRecord, vehicle: Vehicle, reference_voltage: float |
     vbat, the voltage is taken not to fall. Raises InputError without the commands of all rotors.
     """
     names = [f'cmd{j}' for j in range(1, len(vehicle.rotors) + 1)]
-    instead = 'or u1, u2, u3, u4, the thrust and moments'
+    given = ', '.join(names)
+    instead = f'give {given}, or u1, u2, u3, u4, the thrust and moments'
     if record.has('output1'):
-        instead = ('which outputs become by motors of the vehicle file, or by a mapping with '
-                   'actuators (kind, order, speeds), see docs/records.md')
+        instead = (f'give {given}, which outputs become by motors of the vehicle file, or by a '
+                   'mapping with actuators (kind, order, speeds), see docs/records.md')
+    elif record.info.get('notes'):      # of others, whose names were guessed
+        instead = ('name the commands of the motors in a mapping (--mapping), which begins with: '
+                   'quad_ident info FILE --write-mapping map.yaml')
     _refuse_without(record, names, instead)
     commands = record.stack(*names)
     drop, reference = np.zeros(len(record)), np.inf
@@ -96,8 +100,8 @@ def _refuse_without(record: FlightRecord, names: Sequence[str], instead: str) ->
     missing = [name for name in names if not record.has(name)]
     if missing:
         name = record.info.get('source') or record.info.get('name', 'flight')
-        raise InputError(f'{name} has no column {", ".join(missing)}; give {", ".join(names)}, '
-                         f'{instead}; it has: {", ".join(["t", *record.columns])}')
+        raise InputError(f'{name} has no column {", ".join(missing)}; {instead}; it has: '
+                         f'{", ".join(["t", *record.columns])}')
 
 
 def states_of(record: FlightRecord) -> np.ndarray:
@@ -107,7 +111,7 @@ def states_of(record: FlightRecord) -> np.ndarray:
     Where the record has phi, theta, psi instead of the quaternion, that is made from them.
     """
     if record.has(*STATES[6:10]) or not record.has('phi', 'theta', 'psi'):
-        _refuse_without(record, STATES[6:10], 'or phi, theta, psi')
+        _refuse_without(record, STATES[6:10], 'give qw, qx, qy, qz, or phi, theta, psi')
         states = record.stack(*STATES)
     else:
         attitude = quaternion_from_euler(record.stack('phi', 'theta', 'psi'))

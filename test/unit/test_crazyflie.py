@@ -11,7 +11,7 @@ from fuzz_readers import mutate
 import numpy as np
 import pytest
 from records import CMD, refused, SMALL
-from usd_files import crazyflie_events, usdlog
+from usd_files import crazyflie_events, packed, usdlog
 
 from quad_ident_ros.cli.main import main
 from quad_ident_ros.data.load import contents_of, load
@@ -85,6 +85,35 @@ def test_the_kalman_filters_velocity_is_turned_into_the_world(tmp_path):
     read = load(file(tmp_path, usdlog(_state(names, values))))
     for columns in (('px', 'py', 'pz'), ('vx', 'vy', 'vz'), ('qw', 'qx', 'qy', 'qz')):
         np.testing.assert_allclose(read.stack(*columns), SMALL.stack(*columns), atol=1e-6)
+
+
+def test_the_packed_state_is_read(tmp_path):
+    """The largest entry of the quaternion is any of the four; the pitch rate has another sign."""
+    q = SMALL.stack('qw', 'qx', 'qy', 'qz')
+    turns = np.eye(4)[np.arange(len(q)) % 4]
+    from quad_ident_ros.data.frames import multiply
+    q = multiply(turns, q)
+    rates = 1e3 * SMALL.stack('wx', 'wy', 'wz') * [1, -1, 1]
+    names = ('quat(I)', 'rateRoll(h)', 'ratePitch(h)', 'rateYaw(h)', 'x(h)', 'y(h)', 'z(h)')
+    rows = np.column_stack([packed(q), np.clip(rates, -32000, 32000),
+                            1e3 * SMALL.stack('px', 'py', 'pz')])
+    read = load(file(tmp_path, usdlog([(5, 'z', tuple(f'stateEstimateZ.{name}' for name in names),
+                                        1.0 + SMALL.t, rows)])))
+    dot = np.sum(read.stack('qw', 'qx', 'qy', 'qz') * q, axis=1)
+    assert np.degrees(2 * np.arccos(np.minimum(np.abs(dot), 1.0))).max() < 0.3
+    np.testing.assert_allclose(read.stack('wx', 'wy', 'wz'), SMALL.stack('wx', 'wy', 'wz'),
+                               atol=1e-3)
+    np.testing.assert_allclose(read.stack('px', 'py', 'pz'), SMALL.stack('px', 'py', 'pz'),
+                               atol=1e-3)
+
+
+def test_the_pose_of_motion_capture_does_where_no_estimate_is_logged(tmp_path):
+    names = ('x', 'y', 'z', 'qw', 'qx', 'qy', 'qz')
+    columns = ('px', 'py', 'pz', 'qw', 'qx', 'qy', 'qz')
+    read = load(file(tmp_path, usdlog(_state([f'locSrv.{name}' for name in names],
+                                             SMALL.stack(*columns)))))
+    np.testing.assert_allclose(read.stack(*columns[:3]), SMALL.stack(*columns[:3]), atol=1e-6)
+    assert read.has(*columns)
 
 
 def test_contents_tell_what_an_event_could_be_read_for(tmp_path):

@@ -4,13 +4,13 @@
 
 import json
 
-from flightmaker import flight, px4_samples, ulog
+from flightmaker import changed, flight, px4_samples, ulog, VEHICLE
 from hypothesis import given
 from hypothesis import strategies as st
 import numpy as np
 from px4_files import controls, log_of, status
 import pytest
-from records import FAST, log
+from records import CMD, FAST, log
 from table_files import named, others, Q, table
 import yaml
 
@@ -21,6 +21,7 @@ from quad_ident_ros.data.load import load, load_all
 from quad_ident_ros.data.mapping import Column, load_mapping, mapping_from
 from quad_ident_ros.data.mapping_text import names_text, table_text, topics_text
 from quad_ident_ros.data.readers.base import Content
+from quad_ident_ros.data.summary import summarise
 
 SHORT = flight(seconds=6.0, noise=0.3)
 
@@ -121,6 +122,8 @@ def test_topics_with_one_candidate_are_filled_in():
         'velocity': '/odom', 'rate': '/imu'}
     assert '# pose: {topic: /odom}' in text and '# pose: {topic: "/mocap pose"}' in text
     assert mapping_from(yaml.safe_load(topics_text('bag', [])), 'm').topics == {}
+    chosen = mapping_from(yaml.safe_load(topics_text('bag', found, {'pose': '/odom'})), 'm')
+    assert chosen.topics['pose'].topic == '/odom'
     assert mapping_from(yaml.safe_load(names_text('log', 4)), 'm').topics == {}
 
 
@@ -143,3 +146,15 @@ def test_mappings_are_written_to_yaml_alone(tmp_path, capsys):
                  str(tmp_path / 'm.txt')]) == 2
     assert '.yaml' in capsys.readouterr().err
     assert main(['info', str(tmp_path / 'f.csv'), '--write-mapping', str(tmp_path / 'f.csv')]) == 2
+
+
+def test_time_in_a_hand_is_no_error_where_it_is_left_out():
+    """A diagnosis cuts it, and so a pipeline need not stop."""
+    record = flight(seconds=12.0)
+    held = {name: np.where(record.t < 4.0, 0.0, record.columns[name]) for name in CMD}
+    told = {one['code']: one['severity'] for one in
+            summarise(changed(record, **held), VEHICLE)['findings']}
+    assert told.pop('ground') == 'warning' and 'error' not in told.values()
+    everywhere = {name: 0.01 * record.columns[name] for name in CMD}
+    told = {one['code'] for one in summarise(changed(record, **everywhere), VEHICLE)['findings']}
+    assert 'thrust' in told

@@ -119,3 +119,13 @@ def test_the_regime_is_the_part_that_has_most_of_it():
     text, share = regime(found, 'Fz', RULES.regime)
     assert text == f'height under {np.quantile(height, 0.25):.3g} m' and share > 0.9
     assert regime(found, 'Mx', RULES.regime)[0] in ('everywhere', 'nowhere above the noise')
+
+
+def test_the_force_is_told_at_ten_samples_a_second():
+    """Logs of autopilots have no more by default; a window has two samples then."""
+    record = fly_closed_loop(VEHICLE, {}, 'lissajous', duration=20.0)
+    tenth = replace(record, t=record.t[::10], columns={
+        name: values[::10] for name, values in record.columns.items()})
+    track = track_of(tenth, VEHICLE)
+    found = residual_wrench(track, VEHICLE, nominal(VEHICLE), NOISE)
+    assert np.isfinite(found.values).all() and np.isfinite(found.errors).all()

@@ -14,7 +14,8 @@ from table_files import FORCE, named, PLACE, Q, RATE, SPEED, table
 from table_files import others as named_otherwise
 
 from quad_ident_ros.cli.main import main
-from quad_ident_ros.data.guess import plain, time_unit
+from quad_ident_ros.data.column_names import plain
+from quad_ident_ros.data.guess import time_unit
 from quad_ident_ros.data.load import contents_of, load, load_all
 from quad_ident_ros.data.mapping import mapping_from
 from quad_ident_ros.errors import InputError
@@ -146,7 +147,8 @@ def test_streams_with_empty_cells_are_joined(tmp_path):
 def test_what_is_in_doubt_is_asked_with_the_lines_to_write(tmp_path):
     path = table(tmp_path, {'time': FLIGHT.t, 'foo': FLIGHT.t, 'bar': FLIGHT.t})
     refused(path, 'foo, bar', 'columns: {t: time}', '--write-mapping')
-    path = table(tmp_path, {'frame': FLIGHT.t, 'x': FLIGHT.t, 'y': FLIGHT.t, 'z': FLIGHT.t})
+    path = table(tmp_path, {'frame': np.arange(len(FLIGHT)),
+                            **dict.fromkeys(('x', 'y', 'z'), FLIGHT.t)})
     refused(path, 'no column of a time')
 
 

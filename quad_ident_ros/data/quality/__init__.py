@@ -35,15 +35,19 @@ from quad_ident_ros.data.quality.clock import (
 from quad_ident_ros.data.quality.finding import as_caution, Finding, SEVERITIES
 from quad_ident_ros.errors import InputError
 
-CHECKS = (columns.known, columns.incomplete, columns.frozen, columns.dead, columns.quaternions,
-          columns.possible, columns.negative, timing.slow, timing.gaps, timing.duplicates,
-          timing.truncated, timing.reader_notes, stale.held, stale.marked, glitches.attitude,
+CHECKS = (columns.known, columns.incomplete, columns.differentiated, columns.frozen,
+          columns.dead, columns.quaternions, columns.possible, columns.negative, timing.slow,
+          timing.gaps, timing.duplicates, timing.truncated, timing.reader_notes, stale.held,
+          stale.marked, glitches.attitude,
           units.rates_in_degrees, units.euler_in_degrees, units.force_in_g,
           units.position_in_millimetres, units.speeds_in_rpm, frames.quaternion, frames.world,
           frames.velocity_in_body, frames.signs, rotors.hover, rotors.size, rotors.count,
           rotors.order_and_spin, thrust.carried,
           thrust.level, clock.attitude, clock.velocity, clock.commands,
           ground.stands, gyro.bias, answer.commands, saturation.speeds, excitation.axes)
+
+TOLD = 'commands', 'differentiated'
+"""Codes of Findings that a diagnosis tells whatever their severity."""
 
 __all__ = ['cautions', 'CHECKS', 'clock_offset', 'ClockOffset', 'command_offset', 'Finding',
            'findings', 'refuse_errors', 'refuse_unfit', 'refuted', 'SEVERITIES', 'velocity_offset']
@@ -72,7 +76,8 @@ def cautions(record, vehicle, doubtful=()):
     """
     Return what to be wary of in a record that bears a verdict, as data.
 
-    These are the Findings of warning, and what its outputs to the motors were taken for.
+    These are the Findings of warning, what its outputs to the motors were taken for, and which
+    states are derivatives of others.
 
     Args: doubtful: codes of errors that other flights of the vehicle speak against: see refuted.
     Raises InputError for a fault that no verdict survives.
@@ -81,7 +86,7 @@ def cautions(record, vehicle, doubtful=()):
              for finding in findings(record, vehicle)]
     refuse_errors(record, found)
     return [as_caution(finding, record) for finding in found
-            if finding.severity == 'warning' or finding.code == 'commands']
+            if finding.severity == 'warning' or finding.code in TOLD]
 
 
 def refuted(records, vehicle):

@@ -5,6 +5,7 @@
 import numpy as np
 
 from quad_ident_ros.data.cutting import without
+from quad_ident_ros.data.differentiated import DIFFERENTIATED, HALF, missing_motion
 from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.record import QUATERNION, unit
 
@@ -40,6 +41,15 @@ def incomplete(record, vehicle):
                 f'{", ".join(missing)} {"is" if len(missing) == 1 else "are"} missing beside '
                 'them, so that they are not used', 'record all of them'))
     return found
+
+
+def differentiated(record, vehicle):
+    """Find velocity and rate that were not recorded, and are taken from position and attitude."""
+    pairs = {'velocity': ('vx, vy, vz', 'the position'), 'rate': ('wx, wy, wz', 'the attitude')}
+    return [Finding('differentiated', 'info', pairs[group][0],
+                    f'not recorded; diagnose and fit take the {group} from {pairs[group][1]}, by '
+                    f'cubics over {2 * HALF:g} s', f'record the {group}, where there is one')
+            for group in record.info.get(DIFFERENTIATED, missing_motion(record))]
 
 
 def frozen(record, vehicle):

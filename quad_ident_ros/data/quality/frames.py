@@ -12,6 +12,10 @@ from quad_ident_ros.data.record import QUATERNION
 SURE, BETTER = 0.7, 0.3   # correlation that an explanation needs, and its lead
 STILL = 1e-6              # rad/s rms: an attitude that does not turn, but for rounding
 TURNED = 0.003            # share of its power by which a velocity in body axes is off at least
+STRANGE = 0.5             # correlation under which position and velocity do not go together
+SLOW = 0.3                # m/s rms under which noise may hide that they do
+TURN = ('turn the world into ENU (x east, y north, z up) and the body into FLU, or say '
+        'world: NED, body: FRD in a mapping')
 
 
 def _reorder(q):
@@ -71,7 +75,8 @@ def quaternion(record, vehicle):
         return [Finding(
             code.get(name, 'quaternion_order_and_inverse'), 'error', 'qw, qx, qy, qz',
             f'the attitude turns as the gyro says only where the columns are read as {name}',
-            'write the quaternion body to world with the scalar first')]
+            'write the quaternion body to world with the scalar first, or name its columns in a '
+            'mapping in their order (q: [...], quaternion: xyzw; unit: "-1" turns a sign)')]
     rate = grid.rate_of(attitude)[grid.good]
     gyro = grid.smooth(grid.signal('wx', 'wy', 'wz'))[grid.good]
     other = correlation(body_vector(rate, 'FRD'), gyro)[0]
@@ -81,7 +86,8 @@ def quaternion(record, vehicle):
                         'FRD', 'turn y and z of the one in FRD')]
     return [Finding('frame_sign', 'error', f'w{axis}',
                     f'the attitude turns the other way about {axis} than the gyro says',
-                    f'turn the sign of w{axis}, or the attitude to FLU')
+                    f'turn the sign of w{axis}, or the attitude to FLU; in a mapping of a table '
+                    'unit: -rad/s or -deg turns that of a column')
             for axis in _opposed(rate, gyro)]
 
 
@@ -111,7 +117,7 @@ def world(record, vehicle):
         return [Finding('frame_ned' if ned else 'frame_frd', 'error',
                         'position, velocity, attitude, rate, specific force',
                         f'the specific force points down in flight: {what}',
-                        'turn the world into ENU (x east, y north, z up) and the body into FLU')]
+                        TURN)]
     return _motion(grid, attitude)
 
 
@@ -178,8 +184,27 @@ def velocity_in_body(record, vehicle):
     velocity = grid.signal('vx', 'vy', 'vz')
     missed = 1.0 - explained(moved, grid.smooth(velocity)[grid.good])
     turned = 1.0 - explained(moved, grid.smooth(rotate(attitude, velocity))[grid.good])
+    back = 1.0 - explained(moved, grid.smooth(rotate(conjugate(attitude), velocity))[grid.good])
+    if missed >= TURNED and back <= 0.1 and back <= 0.25 * min(missed, turned):
+        return [Finding('velocity_in_world', 'error', 'vx, vy, vz',
+                        'the position changes as the velocity says only where that is turned '
+                        'back by the attitude: it was taken for one in body axes and is of the '
+                        'world', 'say frame: world of the velocity in a mapping')]
     if missed < TURNED or turned > 0.1 or turned > 0.25 * missed:
-        return []
+        return _strangers(moved, grid.smooth(velocity)[grid.good])
     return [Finding('velocity_in_body', 'error', 'vx, vy, vz',
                     'the position changes as the velocity says only where that is turned by the '
-                    'attitude: it is in body axes', 'turn the velocity into the world')]
+                    'attitude: it is in body axes',
+                    'turn the velocity into the world, or say frame: body of it in a mapping')]
+
+
+def _strangers(moved, velocity):
+    """Find a position and a velocity (N, 3) that do not belong together."""
+    alike = correlation(moved, velocity)[0]
+    fast = min(np.sqrt(np.mean(np.sum(values ** 2, axis=1))) for values in (moved, velocity))
+    if alike > STRANGE or fast < SLOW:
+        return []
+    return [Finding('velocity_other', 'warning', 'vx, vy, vz',
+                    f'the position changes otherwise than the velocity says (correlation '
+                    f'{alike:.2f}): they are of different frames, clocks or vehicles',
+                    'say frame: world or body of the velocity in a mapping, or leave it out')]

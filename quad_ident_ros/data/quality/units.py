@@ -13,6 +13,9 @@ DEGREE = np.pi / 180
 RPM = 2 * np.pi / 60
 SURE = 0.7      # correlation from which on a slope is taken seriously
 NEAR = 1.35     # a slope is a unit's where it is within this factor
+CERTAIN = 0.9   # correlation from which on a slope that is no unit's is an error
+OFF = 2.0       # no gyro and no estimate is off by that factor
+MOVED = 1e-3    # rad/s or m/s rms: less is rounding
 
 
 def _is(slope, unit):
@@ -39,10 +42,22 @@ def rates_in_degrees(record, vehicle):
     sure, slope = correlation(rates[1], rates[0])
     # The sign is a matter of frames, not of units.
     if abs(sure) < SURE or not _is(abs(slope), 1 / DEGREE):
-        return []
+        return _other_size(rates[1], rates[0], 'wx, wy, wz', 'the rates',
+                           'those of the attitude')
     return [Finding('rate_in_degrees', 'error', 'wx, wy, wz',
                     f'the rates are {abs(slope):.1f} times those of the attitude: they are in '
-                    'deg/s', 'multiply wx, wy and wz by pi/180')]
+                    'deg/s', 'multiply wx, wy and wz by pi/180, or say unit: deg/s in a mapping')]
+
+
+def _other_size(one, other, where, these, those):
+    """Find signals (N, 3) that go with others, by a factor that is of no unit."""
+    sure, slope = correlation(one, other)
+    moved = min(np.sqrt(np.mean(values ** 2)) for values in (one, other))
+    if abs(sure) < CERTAIN or moved < MOVED or 1 / OFF < abs(slope) < OFF:
+        return []
+    return [Finding('scale', 'error', where,
+                    f'{these} are {abs(slope):.3g} times {those}, which is no unit',
+                    'see by what they are scaled where they are written')]
 
 
 def euler_in_degrees(record, vehicle):
@@ -63,7 +78,8 @@ def euler_in_degrees(record, vehicle):
         return []
     return [Finding('euler_in_degrees', 'error', 'phi, theta, psi',
                     f'the angles turn {abs(slope):.1f} times as fast as the body: they are in '
-                    'degrees', 'multiply phi, theta and psi by pi/180')]
+                    'degrees', 'multiply phi, theta and psi by pi/180, or say unit: deg in a '
+                    'mapping')]
 
 
 def force_in_g(record, vehicle):
@@ -75,7 +91,8 @@ def force_in_g(record, vehicle):
         return []
     return [Finding('force_in_g', 'error', 'ax, ay, az',
                     f'the specific force is {size:.2f} m/s^2 in the middle, in flight it is '
-                    f'about {GRAVITY}: it is in g', 'multiply ax, ay and az by 9.80665')]
+                    f'about {GRAVITY}: it is in g',
+                    'multiply ax, ay and az by 9.80665, or say unit: g in a mapping')]
 
 
 def position_in_millimetres(record, vehicle):
@@ -83,10 +100,12 @@ def position_in_millimetres(record, vehicle):
     grid = Grid.of(record)
     if grid is None or not record.has('vx', 'vy', 'vz'):
         return []
-    velocity, remedy = grid.smooth(grid.signal('vx', 'vy', 'vz')), []
+    velocity, remedy, other = grid.smooth(grid.signal('vx', 'vy', 'vz')), [], []
     if record.has('px', 'py', 'pz'):
         moved = grid.derivative(grid.signal('px', 'py', 'pz'))
         sure, slope = correlation(moved[grid.good], velocity[grid.good])
+        other = _other_size(moved[grid.good], velocity[grid.good], 'px, py, pz',
+                            'the changes of the position', 'the velocity')
         if sure > SURE and _is(slope, 1000.0):
             remedy = ['px', 'py', 'pz']
         elif sure > SURE and _is(slope, 0.001):
@@ -99,11 +118,11 @@ def position_in_millimetres(record, vehicle):
         if abs(sure) > SURE and _is(abs(slope), 1000.0):
             remedy = ['px', 'py', 'pz', 'vx', 'vy', 'vz']
     if not remedy:
-        return []
+        return other
     names = ', '.join(remedy)
     return [Finding('millimetres', 'error', names,
                     f'{names} change {"1000 times as fast as the other columns say"}: they are '
-                    'in mm', f'divide {names} by 1000')]
+                    'in mm', f'divide {names} by 1000, or say unit: mm or mm/s in a mapping')]
 
 
 def speeds_in_rpm(record, vehicle):
@@ -120,5 +139,6 @@ def speeds_in_rpm(record, vehicle):
             found.append(Finding(
                 f'{prefix}_in_rpm', 'error', f'{names[0]} to {names[-1]}',
                 f'the speeds are {usual:.0f} in the middle where {hover:.0f} rad/s carry '
-                f'{vehicle.name}: they are in rpm', f'multiply {prefix}* by 2 pi/60'))
+                f'{vehicle.name}: they are in rpm',
+                f'multiply {prefix}* by 2 pi/60, or say unit: rpm in a mapping'))
     return found

@@ -5,7 +5,7 @@
 from pathlib import Path
 
 from quad_ident_ros.data.bag_file import BagFile
-from quad_ident_ros.data.message_roles import roles_of
+from quad_ident_ros.data.message_roles import could_be
 from quad_ident_ros.data.readers.base import content_of
 
 
@@ -20,6 +20,8 @@ def topics_of(path):
     with BagFile(path) as bag:
         stamps = bag.stamps()
         origin = min((int(times.min()) for times in stamps.values()), default=0)
+        fields = {topic: bag.fields(topic) for topic in bag.topics}
         return [content_of(topic.name, topic.type, stamps.get((topic.name, topic.type), ()),
-                           origin, bag.fields(topic), roles_of(topic.type))
+                           origin, fields[topic],
+                           could_be(topic.name, topic.type, fields[topic])[0])
                 for topic in bag.topics]

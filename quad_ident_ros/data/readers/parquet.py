@@ -6,7 +6,7 @@ from pathlib import Path
 
 from quad_ident_ros.data.mapping import Mapping
 from quad_ident_ros.data.readers.base import Content, Reader
-from quad_ident_ros.data.readers.table import contents_of_table, record_from
+from quad_ident_ros.data.readers.table import contents_of_table, records_from
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.data.tabular import read_parquet
 from quad_ident_ros.model.vehicle import Vehicle
@@ -14,9 +14,9 @@ from quad_ident_ros.model.vehicle import Vehicle
 
 def read(path: str | Path, mapping: Mapping | None = None,
          vehicle: Vehicle | None = None) -> list[FlightRecord]:
-    """Return the flight record of a Parquet file."""
+    """Return the flight records of a Parquet file."""
     path = Path(path)
-    return [record_from(path, read_parquet(path), mapping)]
+    return records_from(path, read_parquet(path), mapping)
 
 
 def contents(path: str | Path) -> list[Content]:

@@ -12,10 +12,10 @@ import numpy as np
 from quad_ident_ros.data.columns import record_of, shown
 from quad_ident_ros.data.csv import is_packed, read_csv, rows_of
 from quad_ident_ros.data.guess import Guess, guess
-from quad_ident_ros.data.mapping import factor_of, Mapping
+from quad_ident_ros.data.mapping import ATTITUDE, factor_of, Mapping
 from quad_ident_ros.data.mapping_text import flow
 from quad_ident_ros.data.readers.base import Content, content_of, Reader
-from quad_ident_ros.data.record import FlightRecord, unit
+from quad_ident_ros.data.record import EULER, FlightRecord, QUATERNION, unit
 from quad_ident_ros.data.tabular import read_text, Table
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.vehicle import Vehicle
@@ -24,34 +24,74 @@ ROLES = {'px': 'pose', 'vx': 'velocity', 'wx': 'rate', 'ax': 'specific_force', '
          'rotor1': 'rotors', 'vbat': 'battery'}
 
 STATES = {'pose', 'velocity', 'rate', 'specific_force'}
+FALL = 1.0          # s by which a time falls where another recording begins; less is disorder
+MOST_FALLS = 100
 _HEAD = 1 << 16     # bytes that the first line has its end in
 
 
 def read(path: Path, mapping: Mapping | None = None,
          vehicle: Vehicle | None = None) -> list[FlightRecord]:
-    """Return the flight record of a CSV file: in our format, by a mapping, or by guess."""
+    """Return the flight records of a CSV file: in our format, by a mapping, or by guess."""
     path = Path(path)
     if mapping in (None, Mapping()) and is_record(path):
         return [read_csv(path)]
     table = read_text(path, mapping.separator if mapping else '')
-    return [record_from(path, table, mapping)]
+    return records_from(path, table, mapping)
 
 
-def record_from(path: Path, table: Table, mapping: Mapping | None) -> FlightRecord:
-    """Return the flight record of a Table, by the columns of a mapping or by guess."""
+def records_from(path: Path, table: Table, mapping: Mapping | None) -> list[FlightRecord]:
+    """
+    Return the flight records of a Table, by the columns of a mapping or by guess.
+
+    One for each recording in it, where the time begins anew.
+    """
     mapping = mapping or Mapping()
     if mapping.topics or mapping.instances:
         raise InputError(f'{path}: topics and instances are for bags and logs; a mapping of a '
                          'table has columns: which column of the file is what')
-    notes = []
+    notes, about = [], {}
     if not mapping.columns:
         found = guess(table, mapping)
         if found.doubts:
             raise InputError(_doubtful(path, table, found))
         mapping = found.mapping
+        about = {'motors': found.motors} if found.motors else {}
         notes = [f'cells between {table.how}' if table.how != 'Parquet' else 'Parquet',
                  *found.said]
-    return record_of(path, table, mapping, notes)
+    parts = _recordings(path, table, mapping)
+    records = [record_of(path, part, mapping, notes) for part in parts]
+    records = [replace(record, info={**record.info, **about}) for record in records]
+    if len(records) == 1:
+        return records
+    return [replace(record, info={
+        **record.info, 'name': f'{record.info["name"]}_{k}', 'source': f'{path}, recording {k}',
+        'notes': [*record.info['notes'], f'the time begins anew in the table: this is recording '
+                                         f'{k} of {len(records)}']})
+        for k, record in enumerate(records, 1)]
+
+
+def _recordings(path: Path, table: Table, mapping: Mapping) -> list[Table]:
+    """Return the parts of a Table between falls of the time, each with all that is mapped."""
+    time = mapping.columns.get('t')
+    if time is None or any(name not in table.columns for column in mapping.columns.values()
+                           for name in column.names):
+        return [table]      # as the reading of the columns says
+    t = table.columns[time.names[0]] * factor_of('t', time.unit)
+    known = np.flatnonzero(np.isfinite(t))
+    falls = known[1:][np.diff(t[known]) < -FALL]
+    if not len(falls):
+        return [table]
+    if len(falls) > MOST_FALLS:
+        raise InputError(f'{path}, column {time.names[0][:40]!r}: the time falls {len(falls)} '
+                         'times; name another column in a mapping, or write the table again')
+    edges = [0, *falls.tolist(), len(t)]
+    parts = [replace(table, columns={name: values[begin:end] for name, values in
+                                     table.columns.items()})
+             for begin, end in zip(edges[:-1], edges[1:], strict=True)]
+    mapped = [name for column in mapping.columns.values() for name in column.names]
+    whole = all(np.isfinite(part.columns[name]).sum() > 1 for part in parts for name in mapped)
+    # Else they are streams one after the other, which are joined by their stamps.
+    return parts if whole else [table]
 
 
 def is_record(path: Path) -> bool:
@@ -59,14 +99,27 @@ def is_record(path: Path) -> bool:
     names = [name.strip().strip('"') for name in _first_line(path).split(',')]
     if 't' not in names:
         return False
-    if any(unit(name) is not None and name not in ('t', 'vbat') for name in names):
+    ours = {_group(name) for name in names if unit(name) is not None} - {''}
+    if all(unit(name) is not None for name in names):
         return True
-    # t and names of others: theirs if they tell a flight, and else columns that are kept.
+    # Names of others beside t, or ours: theirs if they tell more of a flight than ours do.
     try:
         found = guess(read_text(path))
     except InputError:
         return True
-    return bool(found.doubts) or not set(found.roles) & STATES
+    theirs = {_group(name) for name in found.mapping.columns} - {''}
+    if theirs <= ours or found.doubts and not (theirs - ours) & {'pose', 'attitude'}:
+        return True
+    return not ours and not set(found.roles) & STATES
+
+
+def _group(name: str) -> str:
+    """Return the role of a column of the flight record, '' for one that needs no reading."""
+    if name == ATTITUDE or name in (*QUATERNION, *EULER):
+        return 'attitude'
+    if name.rstrip('0123456789') in ('cmd', 'u', 'output'):
+        return 'commands'
+    return next((role for column, role in ROLES.items() if column[:-1] == name[:-1]), '')
 
 
 def _first_line(path: Path) -> str:

@@ -1,0 +1,81 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What the names of the columns of other people's tables mean."""
+
+import re
+
+from quad_ident_ros.data.columns import FORCE, POSITION, RATE, VELOCITY
+from quad_ident_ros.data.record import QUATERNION
+
+UNIT = re.compile(r'[\[(]\s*([^\])]*)\s*[\])]\s*$')
+ENDING = re.compile(r'_(ns|us|usec|ms|msec|s|sec|secs|seconds|mm|cm|m|deg|rad|dps|radps|rpm|g|'
+                    r'mv|v)$')
+UNITS = {'usec': 'us', 'µs': 'us', 'msec': 'ms', 'sec': 's', 'secs': 's', 'seconds': 's',
+         'dps': 'deg/s', '°/s': 'deg/s', 'degps': 'deg/s', 'radps': 'rad/s', '°': 'deg',
+         'degrees': 'deg', 'radians': 'rad', 'm/s2': 'm/s^2', 'm/s²': 'm/s^2', 'm/s/s': 'm/s^2',
+         'rad s^-1': 'rad/s', 'm s^-1': 'm/s', 'm s^-2': 'm/s^2', 'meters': 'm', 'volt': 'V',
+         'v': 'V', 'mv': 'mV', "g's": 'g'}
+NOT = re.compile(r'(^|_)(sp|setpoint|des|desired|ref|reference|target|goal|cov|covariance|var|'
+                 r'std|err|error|raw|bias|offset|mag)(_|$)|^b_[awg]_')
+"""Of names that are not what was measured; b_w and b_a are biases."""
+
+_IN = r'(?:_[wbiesgrmv]{{1,2}}){{0,2}}'
+"""Frames behind a letter, as in p_RS_R_x: world, body, imu, earth, sensor, ..."""
+
+AXES = {
+    POSITION: rf'(^|_)(p{_IN}|pos|position|translation|loc|location|mocap|vicon|state_estimate|'
+              r'drone|uav|quad|robot|rigid_body|ground_truth|gt|odom|pose)_?{}$',
+    VELOCITY: rf'(^|_)(v{_IN}|vel|velocity|speed|linear_velocity|twist_linear|linear)_?{{}}$',
+    FORCE: rf'(^|_)(a{_IN}|acc|accel|accelerometer|accelerations?|linear_acceleration|'
+           r'specific_force)(_b|_body|_m_s2)?_?{}$',
+    RATE: rf'(^|_)(w{_IN}|gyro|gyr|gyroscope|gyro_rad|omega|om|rate|rates|body_?rates?|ang_vel|'
+          r'angvel|angular_velocity|angular_rate|twist_angular|angular)(_b|_body)?_?{}$',
+    QUATERNION: rf'(^|_)(q{_IN}|quat|quaternion|orientation|rotation|att_q|attitude_q)_?{{}}$',
+}
+TURNED = re.compile(r'(^|_)(ang|angular|gyro|rot)')
+"""Of names that are of a rotation, which a velocity or a force is not."""
+
+BARE = {POSITION: (('x', 'y', 'z'), ('tx', 'ty', 'tz')),
+        VELOCITY: (('xdot', 'ydot', 'zdot'), ('x_dot', 'y_dot', 'z_dot')),
+        RATE: (('p', 'q', 'r'), ('gx', 'gy', 'gz'), ('g_x', 'g_y', 'g_z'))}
+ANGLE = {'phi': r'(^|_)(roll|phi)$', 'theta': r'(^|_)(pitch|theta)$',
+         'psi': r'(^|_)(yaw|psi|heading)$'}
+TURNING = ('roll', 'pitch', 'yaw')
+PITCH_DOWN = re.compile(r'(stabilizer|state_estimate)_pitch')
+"""Log variables of a Crazyflie, whose pitch has the other sign (Bitcraze, coordinate system)."""
+
+TIME = re.compile(r'(^|_)(t|time|timestamp|time_?stamp|stamp|ts|zeit|elapsed|clock|'
+                  r'rosbagtimestamp)$')
+MOTOR = re.compile(r'(^|_)(cmd|motor_cmd|m|mot|motor|motors|motor_m|pwm|esc|u|output|outputs|'
+                   r'control|actuator|throttle|thrust|duty|rc_?out|servo)(?:_(?:data|control|'
+                   r'output|velocities|angular_velocities))?_?(\d{1,2})$')
+CORNERS = {'front_right': r'(fr|front_?right)', 'rear_right': r'(rr|br|(rear|back)_?right)',
+           'rear_left': r'(rl|bl|(rear|back)_?left)', 'front_left': r'(fl|front_?left)'}
+CORNER = r'(^|_)(m|mot|motor|pwm|esc|rotor|cmd|motor_cmd|output|u|thrust)s?_?{}$'
+"""Of commands that are named by where their motors are."""
+
+CRAZYFLIE = re.compile(r'motor_m[1-4]')
+"""Log variables of a Crazyflie's motors."""
+
+FORCES = re.compile(r'(^|_)thrust_?\d')
+"""Of commands that may be forces, unless they are shares of full thrust."""
+
+SPEED = re.compile(r'(^|_)(r|rotor|rotor_speed|motor_rpm|rpm|erpm|motor_speed|esc_rpm|propeller|'
+                   r'omega_m|rotor_vel|rotor_velocities)_?(\d{1,2})$')
+BATTERY = re.compile(r'(^|_)(vbat|vbatt|v_bat|bat_v|battery|battery_voltage|voltage|vbatlatest|'
+                     r'battery_v|bat_volt|supply_voltage)$')
+
+
+def plain(name: str) -> tuple[str, str]:
+    """Return a name in small letters with _ between its parts, and the unit that it says."""
+    said = ''
+    match = UNIT.search(name)
+    # q[0] is an entry of an array, gyro.x [deg/s] has a unit.
+    if match and not match.group(1).isdigit():
+        name, said = name[:match.start()], match.group(1).strip().lower()
+    name = re.sub(r'([a-z0-9])([A-Z])', r'\1_\2', name.strip())
+    name = re.sub(r'[^a-z0-9]+', '_', name.lower()).strip('_')
+    match = ENDING.search(name)
+    if not said and match and len(name) > len(match.group()):
+        name, said = name[:match.start()], match.group(1)
+    return name, UNITS.get(said, said)

@@ -1,0 +1,93 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Velocity and body rate of records that have only position and attitude, as of motion capture.
+
+The slope, at each sample, of the cubic of least squares through the samples around it
+(Savitzky and Golay, Analytical Chemistry 36, 1964), also where these are not evenly spaced.
+"""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from quad_ident_ros.data.record import EULER, FlightRecord, QUATERNION
+from quad_ident_ros.model.attitude import quaternion_from_euler
+
+POSITION, VELOCITY = ('px', 'py', 'pz'), ('vx', 'vy', 'vz')
+RATE = ('wx', 'wy', 'wz')
+
+HALF = 0.05     # s to either side: 1 mm at 100 Hz makes 1 cm/s, and what lasts 0.2 s is kept
+FEWEST = 2      # samples to either side, which a cubic needs
+DEGREE = 3      # a parabola takes 15 % of a rate that changes at 4 Hz for noise, a cubic 1 %
+WIDE = 3.0      # periods from which on a step is a gap, across which nothing is differentiated
+_ROWS = 20_000  # that are worked on at once
+
+DIFFERENTIATED = 'differentiated'
+"""Info of a record: groups of its states that are derivatives of the others."""
+
+
+def missing_motion(record: FlightRecord) -> tuple[str, ...]:
+    """Return which of velocity and rate a record has not, but could get from its pose."""
+    found = []
+    if record.has(*POSITION) and not record.has(*VELOCITY):
+        found.append('velocity')
+    if (record.has(*QUATERNION) or record.has(*EULER)) and not record.has(*RATE):
+        found.append('rate')
+    return tuple(found)
+
+
+def with_motion(record: FlightRecord) -> FlightRecord:
+    """Return a record with the velocity and rate of its pose where it has none of them."""
+    missing = missing_motion(record)
+    if not missing or len(record) < 2 * FEWEST + 1:
+        return record
+    columns = dict(record.columns)
+    if 'velocity' in missing:
+        place = record.stack(*POSITION)
+        columns |= dict(zip(VELOCITY, _slopes(record.t, lambda at, around: place[around]
+                                              - place[at][:, None]).T, strict=True))
+    if 'rate' in missing:
+        q = (record.stack(*QUATERNION) if record.has(*QUATERNION) else
+             quaternion_from_euler(record.stack(*EULER)))
+        if np.linalg.norm(q, axis=1).min() < 0.5:
+            return record       # no attitude, as the quality of the record says
+        turns = Rotation.from_quat(np.roll(q, -1, axis=1))
+
+        def turned(at: np.ndarray, around: np.ndarray) -> np.ndarray:
+            vectors = turns[np.repeat(at, around.shape[1])].inv() * turns[around.ravel()]
+            return np.asarray(vectors.as_rotvec()).reshape(*around.shape, 3)
+        columns |= dict(zip(RATE, _slopes(record.t, turned).T, strict=True))
+    return replace(record, columns=columns, info={**record.info, DIFFERENTIATED: missing})
+
+
+def _slopes(t: np.ndarray, moved: Callable[[np.ndarray, np.ndarray], np.ndarray]) -> np.ndarray:
+    """
+    Return the slopes (N, 3) at times t (N,) s.
+
+    Args: moved(at (n,), around (n, k)): how far samples are from one, (n, k, 3).
+    """
+    steps = np.diff(t)
+    period = float(np.median(steps))
+    half = max(FEWEST, round(HALF / period))
+    edges = np.concatenate([[0], np.flatnonzero(steps > WIDE * period) + 1, [len(t)]])
+    sizes = np.diff(edges)
+    first, last = np.repeat(edges[:-1], sizes), np.repeat(edges[1:] - 1, sizes)   # of each run
+    # At its ends a run has as many samples as in between, to one side.
+    middle = np.clip(np.arange(len(t)), np.minimum(first + half, last),
+                     np.maximum(last - half, first))
+    offsets = np.arange(-half, half + 1)
+    found = np.empty((len(t), 3))
+    for begin in range(0, len(t), _ROWS):
+        at = np.arange(begin, min(begin + _ROWS, len(t)))
+        around = middle[at][:, None] + offsets
+        use = (around >= first[at][:, None]) & (around <= last[at][:, None])
+        around = np.where(use, around, at[:, None])
+        x = (t[around] - t[at][:, None]) / (half * period)
+        bases = np.stack([x ** power for power in range(DEGREE + 1)], axis=-1) * use[..., None]
+        # In a run of few samples the smallest of the slopes that fit is taken.
+        found[at] = np.einsum('nik,nkj->nij', np.linalg.pinv(np.swapaxes(bases, 1, 2) @ bases),
+                              np.einsum('nki,nkj->nij', bases, moved(at, around)))[:, 1]
+    return found / (half * period)
