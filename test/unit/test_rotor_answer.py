@@ -10,7 +10,12 @@ import numpy as np
 import pytest
 
 from quad_ident_ros.data.record import FlightRecord
+from quad_ident_ros.diagnose.diagnosis import diagnose
+from quad_ident_ros.flight.fly import fly_closed_loop
+from quad_ident_ros.flight.measure import MOCAP_IMU
 from quad_ident_ros.greybox.rotor_answer import rotor_answer, RotorAnswer, ruled_out_by
+from quad_ident_ros.model.mixing import with_commands
+from quad_ident_ros.model.vehicle import load_vehicle
 
 FLIGHT = flight(seconds=20.0, noise=0.0)
 CMD = ('cmd1', 'cmd2', 'cmd3', 'cmd4')
@@ -93,3 +98,31 @@ def test_effects_are_ruled_out_by_all_flights_together():
     for nothing in ([], [None], [vague], [sure, against]):
         assert ruled_out_by(nothing) == ()
     assert ruled_out_by([sure, vague, None]) == ('actuation_delay',)
+
+
+def test_measured_speeds_take_the_place_of_commands_that_are_missing():
+    vehicle, t = load_vehicle('iris'), np.linspace(0.0, 1.0, 101)
+    speeds = {f'rotor{j}': 500.0 + 100.0 * t * j for j in range(1, 5)}
+    made = with_commands(FlightRecord(t, speeds), vehicle)
+    for j in range(1, 5):   # on a line the mean over a step is that in its middle
+        middle = 500.0 + 100.0 * (t[:-1] + 0.005) * j
+        np.testing.assert_allclose(made.columns[f'cmd{j}'][:-1], middle)
+    assert not made.has('rotor1')
+    beside = FlightRecord(t, speeds | {f'cmd{j}': 0.0 * t for j in range(1, 5)})
+    assert with_commands(beside, vehicle) is beside
+
+
+@pytest.mark.slow
+def test_a_lag_before_speeds_that_were_measured_plays_no_part():
+    vehicle = load_vehicle('iris')
+    truth = {'rotor_drag': {'coefficient': 0.4}, 'motor_lag': {'time_constant': 0.05}}
+    flights = [fly_closed_loop(vehicle, truth, path, duration=20.0, rate=200.0, seed=seed,
+                               noise=MOCAP_IMU)
+               for seed, path in enumerate(('figure8', 'lissajous', 'low_passes'))]
+    told = diagnose([FlightRecord(one.t, {name: values for name, values in one.columns.items()
+                                          if not name.startswith('cmd')}, one.info)
+                     for one in flights], vehicle)
+    assert told.verdict == ('rotor_drag',)
+    value = told.ranking[0].parameters['coefficient']
+    assert abs(value.value - 0.4) < 4.0 * value.std
+    assert any(finding['code'] == 'rotor_speeds' for finding in told.findings)
