@@ -115,7 +115,7 @@ def _whole(data: bytes, topics: Collection[str]) -> ULog | None:
                 return None
             begins[number] = at
     numbers, first = np.unique(messages.numbers, return_index=True)
-    if not messages.whole or not all(
+    if not messages.whole or not len(numbers) or not all(
             begins.get(number, len(data)) < messages.data[k]
             for number, k in zip(numbers.tolist(), first.tolist(), strict=True)):
         return None
