@@ -11,14 +11,14 @@ from quad_ident_ros.effects import registry
 from quad_ident_ros.greybox.errors import difference, ERRORS, GROUPS, moved, slopes
 from quad_ident_ros.greybox.flights import Flight
 from quad_ident_ros.greybox.parameters import constants_of, limits, SPLIT
-from quad_ident_ros.model.dynamics import predict
+from quad_ident_ros.model.dynamics import predict, rows_needed
 from quad_ident_ros.model.vehicle import Vehicle
 
 STATE_STEP = np.repeat([1e-4, 1e-4, 1e-5, 1e-4], 3)     # of differences in the initial state
 STEP = 1e-4                                             # of a parameter's usual size
 WRENCH = tuple(range(SPLIT + registry.SLICES[registry.RESIDUAL_WRENCH.name].start,
                      SPLIT + registry.SLICES[registry.RESIDUAL_WRENCH.name].stop))
-AT_ONCE = 400_000   # samples of a flight times parameter sets that are held at once, 50 MB
+AT_ONCE = 200_000   # samples, of the flight and of rollouts, that are held at once, 40 MB
 GROUND = [place for (name, _), part in registry.PLACES.items() if name == 'ground_effect'
           for place in range(part.start, part.stop)]
 
@@ -166,7 +166,8 @@ def tangent_of(flight: Flight, vehicle: Vehicle, z: np.ndarray, starts: np.ndarr
     for axis in range(shifts):
         table[:, axis, axis::ERRORS] = 1.0
     base = np.empty(0)
-    for part in _parts(which, len(flight.course.t)):
+    rows = rows_needed(len(flight.course.t), flight.first, flight.count)
+    for part in _parts(which, len(rows) + batch * (flight.count + 1)):
         used, mine = np.unique(which[part], return_inverse=True)
         out = predict(vehicle, sets[used, SPLIT:], flight.course,
                       all_starts[part].reshape(-1, starts.shape[1]),
@@ -189,7 +190,7 @@ def _parts(which: np.ndarray, length: int) -> Iterator[slice]:
     """
     Yield parts of sets (K,) by their numbers, the first with all of set 0.
 
-    Each set has commands and attitudes of its own along the whole flight, of so many samples.
+    Each set has so many samples: commands and attitudes along the flight, and its rollouts.
     """
     many, begin = max(1, AT_ONCE // length), 0
     while begin < len(which):
