@@ -30,15 +30,26 @@ class Tangent:
 
     Per initial state, per column, and per second of an offset of the pose in time. wrench
     (B, 6, M): per force and moment of 1, body, that lasts for the rollout; None if not wanted.
+    kept: the rows of the table that count, the last one of which is its last; None for all.
     """
 
     table: np.ndarray
     wrench: np.ndarray | None = None
+    kept: list[int] | None = None
 
     @property
     def drift(self) -> np.ndarray:
         """Return the change per second of an offset of the pose in time, (B, count + 1, 12)."""
         return self.table[:, -1].reshape(len(self.table), -1, ERRORS)
+
+    def weighed(self, scale: np.ndarray, clock: bool) -> np.ndarray:
+        """Return the rows that count times scale (B, M), without the last one if not clock."""
+        end = None if clock else -1
+        if self.kept is None:
+            return self.table[:, :end] * scale[:, None]
+        table = self.table[:, self.kept[:end]]
+        table *= scale[:, None]
+        return table
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,7 +69,7 @@ class Slopes:
         """Return the Tangents in some of the columns; slow: with the wrench, if they have it."""
         kept = [*range(ERRORS), *(ERRORS + self.columns.index(one) for one in columns), -1]
         wrench = [ERRORS + self.columns.index(one) for one in WRENCH] if slow else []
-        return [Tangent(tangent.table[:, kept], tangent.table[:, wrench] if slow else None)
+        return [Tangent(tangent.table, tangent.table[:, wrench] if slow else None, kept)
                 for tangent in self.tangents]
 
 
@@ -255,7 +266,7 @@ def linear_of(tangent: Tangent, raw: np.ndarray, scale: np.ndarray, clock: bool 
     """
     batch = len(raw)
     scale = np.broadcast_to(scale, raw.shape).reshape(batch, -1)
-    table = tangent.table[:, :None if clock else -1] * scale[:, None]
+    table = tangent.weighed(scale, clock)
     error = raw.reshape(batch, -1) * scale
     if white is not None:
         table, error = white.whitened(table), white.whitened(error[:, None])[:, 0]
