@@ -20,6 +20,7 @@ LOCAL = 0.1       # s, how far a window may be from the whole
 SURE = 0.6        # correlation that an estimate needs
 SHAPE = 0.5       # correlation of the slopes, whose noise is larger
 FINEST = 1e-5     # s, the least standard error: one stream may be made of the other
+THERE = 1e-9      # s, of a step from which on the next one changes nothing
 MEMORY = 0.4      # s, over which errors may depend on one another
 ANSWER = 1.0      # s, within which the motion may answer to errors of the attitude
 SEVERAL = 5.0     # standard errors from which on an offset or a drift of the states is one: the
@@ -188,6 +189,8 @@ def _refined(t, spline, late, slopes, start, period):
         offset += float(np.clip(step, -LOCAL / 4, LOCAL / 4)) if np.isfinite(step) else np.inf
         if not abs(offset - start) < LOCAL:
             return None
+        if abs(step) < THERE:
+            break
     if _alike(model, target) < SURE:
         return None
     # A ramp or noise has no shape that an offset would move: both must have the same.
