@@ -14,7 +14,7 @@ from quad_ident_ros.model.attitude import quaternion_from_euler
 GRAVITY = 9.81
 WIDTH = 0.2       # s, full width of the smoothing window
 GAP = 3.0         # median periods from which on a step in time is a gap
-MOST = 200_000    # samples that the checks look at: of more, one of so many, over the whole record
+MOST = 100_000    # samples that the checks look at: of more, one of so many, over the whole record
 COARSEST = 0.1 * WIDTH  # s between them, however long a record is: smoothing needs a few
 
 
