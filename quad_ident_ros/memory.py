@@ -6,6 +6,7 @@ import ctypes
 import sys
 
 LIBRARY = ctypes.CDLL(None) if sys.platform == 'linux' else None
+THRESHOLD, LARGE = -3, 8 * 2 ** 20      # M_MMAP_THRESHOLD of malloc.h, and bytes of an array
 
 
 def give_back() -> None:
@@ -18,3 +19,15 @@ def give_back() -> None:
     trim = getattr(LIBRARY, 'malloc_trim', None)
     if trim is not None:
         trim(0)
+
+
+def hand_back_large() -> None:
+    """
+    Let large arrays go back to the system as soon as they are freed, where its C library can.
+
+    That of Linux does so with what is larger than any array that was freed before: after one of
+    30 MB it keeps all smaller ones, with gaps between them that fit none of the next.
+    """
+    option = getattr(LIBRARY, 'mallopt', None)
+    if option is not None:
+        option(THRESHOLD, LARGE)

@@ -22,6 +22,7 @@ from quad_ident_ros.cli import (
 )
 from quad_ident_ros.cli.outputs import check_outputs
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.memory import hand_back_large
 
 COMMANDS = (demo, simulate, fly, identify, fit, diagnose, info, convert, paper, withheld, node,
             warm_up)
@@ -66,6 +67,7 @@ def main(args=None):
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, 'reconfigure'):
             stream.reconfigure(errors='replace')
+    hand_back_large()
     try:
         check_outputs(options)
         return options.run(options) or 0

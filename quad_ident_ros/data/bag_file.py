@@ -131,10 +131,11 @@ class BagFile:
 
     def stamps(self):
         """Return {(name, type): times of receipt in ns, (N,)} of the topics with messages."""
-        found = {}
+        each, found = {}, {}
         for connection, stamp, _ in self._raw(None):
-            key = connection.topic, normalize_msgtype(connection.msgtype)
-            found.setdefault(key, array('q')).append(stamp)
+            each.setdefault((connection.topic, connection.msgtype), array('q')).append(stamp)
+        for (topic, kind), stamps in each.items():
+            found.setdefault((topic, normalize_msgtype(kind)), array('q')).extend(stamps)
         return {key: np.array(stamps, np.int64) for key, stamps in found.items()}
 
     def messages(self, topics=None):

@@ -10,7 +10,8 @@ import numpy as np
 from quad_ident_ros import resources
 from quad_ident_ros.data.mapping import Mapping
 from quad_ident_ros.data.px4_airframe import Motors, motors_of
-from quad_ident_ros.data.ulog import parse, read_ulog
+from quad_ident_ros.data.ulog import read_ulog
+from quad_ident_ros.data.ulog_parse import parse
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.vehicle import Vehicle, vehicle_from_mapping
 

@@ -2,9 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Flight records from the logs of PX4 (ULog)."""
 
-import contextlib
 from dataclasses import replace
-import io
 from pathlib import Path
 
 import numpy as np
@@ -21,7 +19,8 @@ from quad_ident_ros.data.px4_states import flown, resets
 from quad_ident_ros.data.record import FlightRecord, QUATERNION
 from quad_ident_ros.data.split import part, SHORTEST, split
 from quad_ident_ros.data.streams import HELD, INTERPOLATED, join, SLOW, Stream
-from quad_ident_ros.errors import InputError, Reason, reason_of
+from quad_ident_ros.data.ulog_parse import parse
+from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.vehicle import Vehicle
 
 TOPICS = ('vehicle_attitude', 'estimator_attitude', 'vehicle_odometry', 'vehicle_local_position',
@@ -34,7 +33,6 @@ COARSE = 0.025      # s between samples; lags and delays of motors are of this s
 PROFILE = ('set SDLOG_PROFILE to 25 (default set, system identification and high rate) and log '
            'again')
 
-_MOST_BYTES = 0xffff   # of one message, whose length is 16 bits
 _LATEST = 2 ** 63 // 1000 - 1   # us, of a stamp that fits into ns
 
 
@@ -55,7 +53,7 @@ def read_ulog(path: str | Path, mapping: Mapping | None = None,
     if mapping.topics or mapping.columns or mapping.world != 'ENU' or mapping.body != 'FLU':
         raise InputError(f'{path}: the topics and frames of a PX4 log are known; of a mapping '
                          'only instances and actuators hold for it')
-    log = parse(path)
+    log = parse(path, (*TOPICS, *STATES))
     for topic in mapping.instances:
         if topic not in TOPICS:
             raise InputError(f'{path}: instances: {topic!r} is not read; name one of '
@@ -168,71 +166,6 @@ def _slow(streams: list[Stream]) -> list[str]:
         return []
     return [f'{", ".join(slow)}: below {1 / COARSE:.0f} Hz lags and delays cannot be told; '
             f'{PROFILE}']
-
-
-class _Content(io.BytesIO):
-    """
-    Bytes in which a reader may go back a few times over, and no more.
-
-    Where a log is damaged the parser looks for the next message by going back, at times for ever.
-    """
-
-    def __init__(self, data):
-        super().__init__(data)
-        self._left = 8 * len(data) + 100_000
-
-    def seek(self, offset, whence=0):
-        """Go to a place and return it; _Damaged after going back too often."""
-        before = self.tell()
-        after = super().seek(offset, whence)
-        self._left -= max(before - after, 16)
-        if self._left < 0:
-            raise _Damaged('it is damaged beyond what can be skipped')
-        return after
-
-
-class _Damaged(Reason):
-    """The parser does not get on."""
-
-
-class _Log(ULog):
-    """A ULog that does not expand formats too large for any message."""
-
-    class _MessageAddLogged(ULog._MessageAddLogged):
-        def _parse_format(self, formats):
-            if _size(self.message_name, formats, 0) > _MOST_BYTES:
-                raise _Damaged(f'its format {self.message_name} is too large')
-            super()._parse_format(formats)
-
-
-def _size(name, formats, depth):
-    """Return the bytes of a message of a format, of many more where it nests without end."""
-    if depth > 8:
-        return _MOST_BYTES + 1
-    total = 0
-    for kind, count, _ in formats[name].fields:
-        one = (ULog.get_field_size(kind) if kind in ULog._UNPACK_TYPES
-               else _size(kind, formats, depth + 1))
-        total += one * max(count, 1)
-        if total > _MOST_BYTES:
-            break
-    return total
-
-
-def parse(path: Path) -> ULog:
-    """Return the ULog of a path with TOPICS and STATES; raises InputError."""
-    try:
-        with open(path, 'rb') as file:
-            content = _Content(file.read())
-    except OSError as error:
-        raise InputError(f'{path}: cannot be read: {error.strerror}') from None
-    try:
-        # It prints what it finds damaged; that is kept in file_corruption.
-        with contextlib.redirect_stdout(io.StringIO()):
-            return _Log(content, [*TOPICS, *STATES])
-    except Exception as error:  # a damaged log makes the parser raise anything
-        raise InputError(f'{path}: this log cannot be read ({reason_of(error, path)}); download '
-                         'it from the vehicle again') from None
 
 
 def _instance(path, log, name, number):

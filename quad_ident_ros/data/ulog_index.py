@@ -2,14 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """What is in a ULog, by one pass over the heads of its messages."""
 
-from array import array
 from pathlib import Path
 import re
-import struct
 
 import numpy as np
 
 from quad_ident_ros.data.readers.base import Content, content_of
+from quad_ident_ros.data.ulog_walk import FORMAT, Messages, rows_of, START, SUBSCRIPTION, walk
 from quad_ident_ros.errors import InputError
 
 ROLES = {
@@ -20,13 +19,9 @@ ROLES = {
     'actuator_motors': ('commands',), 'actuator_outputs': ('commands',),
     'esc_status': ('rotors',), 'battery_status': ('battery',)}
 
-_HEADER = struct.Struct('<HB')
-_DATA = struct.Struct('<HQ')
-_START = 16             # bytes before the first message
 _MOST_STREAMS = 4096
 _LATEST = 2 ** 63 // 1000 - 1   # us, of a stamp that fits into ns
 _BEFORE = 60 * 10 ** 9   # ns that a message may be older than the log
-_KINDS = frozenset(b'BFIMPQALRCSODT')
 _FIELD = re.compile(r'([A-Za-z0-9_]+(?:\[\d+\])?) ([A-Za-z0-9_]+)')
 
 
@@ -42,15 +37,16 @@ def contents(path: str | Path) -> list[Content]:
             data = file.read()
     except OSError as error:
         raise InputError(f'{path}: cannot be read: {error.strerror}') from None
-    if len(data) < _START or not data.startswith(b'ULog\x01\x12\x35'):
+    if len(data) < START or not data.startswith(b'ULog\x01\x12\x35'):
         raise InputError(f'{path}: this is no whole log of PX4; download it from the vehicle '
                          'again')
     origin = int.from_bytes(data[8:16], 'little')
-    formats, streams, stamps = _walk(data)
+    messages = walk(data)
+    formats, streams = _declared(data, messages)
     origin_ns = min(origin, _LATEST) * 1000
     found = []
     for number, (instance, name) in streams.items():
-        times = np.array(stamps[number], np.uint64)
+        times = _stamps(data, messages, number)
         times = times[times <= _LATEST].astype(np.int64) * 1000
         if not len(times):
             continue
@@ -63,30 +59,24 @@ def contents(path: str | Path) -> list[Content]:
     return sorted(found, key=lambda content: (not content.roles, content.name))
 
 
-def _walk(data: bytes) -> tuple[dict, dict, dict]:
-    """Return formats, streams (id -> instance, name) and stamps (id -> us) of a log's bytes."""
-    formats, streams, stamps = {}, {}, {}
-    at, end = _START, len(data)
-    while at + 3 <= end:
-        size, kind = _HEADER.unpack_from(data, at)
-        at += 3
-        if kind not in _KINDS or at + size > end:
-            break
-        if kind == 0x44:     # D
-            if size >= 10:
-                number, stamp = _DATA.unpack_from(data, at)
-                if number in stamps:
-                    stamps[number].append(stamp)
-        elif kind == 0x46 and len(formats) < _MOST_STREAMS:    # F
+def _declared(data: bytes, messages: Messages) -> tuple[dict, dict]:
+    """Return formats (name -> fields) and streams (number -> instance, name) of a log's bytes."""
+    formats, streams = {}, {}
+    for kind, at, size in messages.others:
+        if kind == FORMAT and len(formats) < _MOST_STREAMS:
             name, _, fields = data[at:at + size].decode('ascii', 'replace').partition(':')
             formats[name] = tuple(f'{field}{kind[kind.index("["):] if "[" in kind else ""}'
                                   for kind, field in _FIELD.findall(fields)
                                   if not field.startswith('_padding'))
-        elif kind == 0x41 and size > 3 and len(streams) < _MOST_STREAMS:   # A
+        elif kind == SUBSCRIPTION and size > 3 and len(streams) < _MOST_STREAMS:
             instance, number = data[at], int.from_bytes(data[at + 1:at + 3], 'little')
             name = data[at + 3:at + size].decode('ascii', 'replace')
             if name.isprintable():
                 streams[number] = instance, name
-                stamps.setdefault(number, array('Q'))
-        at += size
-    return formats, streams, stamps
+    return formats, streams
+
+
+def _stamps(data: bytes, messages: Messages, number: int) -> np.ndarray:
+    """Return the stamps of a stream, us, uint64."""
+    begins = messages.data[(messages.numbers == number) & (messages.sizes >= 10)]
+    return rows_of(data, begins + 2, 8).view('<u8')[:, 0]

@@ -22,6 +22,7 @@ EVERY = 0.05        # s from one such window to the next: up to 5 Hz are seen
 STRETCH = 25.0      # s without a break that spectra are taken of,
 STRETCHES = 4       # and how many of them, spread over a longer flight
 AIR = ('horizontal air speed', 'air speed forward', 'air speed to the left', 'climb speed')
+AT_ONCE = 500       # windows whose slopes are held at once, 40 MB
 FEWEST = 8          # windows of a stretch that has a spectrum
 
 
@@ -50,13 +51,19 @@ def residual_wrench(track: Track, vehicle: Vehicle, z: np.ndarray, noise: np.nda
         flight.seen[flight.first + flight.count].all(axis=1)])
     first, stretch = _stretches(flight)
     flight = replace(flight, first=first)
-    [starts] = settled([flight], vehicle, [z], [noise])
-    weight = weights_of(errors_along(flight, vehicle, z, starts), noise, flight)
-    linear = linearise(flight, vehicle, z, starts, list(WRENCH), noise, False, weight)
-    information = np.einsum('bmc,bmd->bcd', linear.slope, linear.slope)
-    inverse = np.linalg.inv(information)
-    values = np.einsum('bcd,bmd,bm->bc', inverse, linear.slope, linear.error)
-    errors = np.sqrt(np.einsum('bcc->bc', inverse))
+    windows = [replace(flight, first=part) for part in
+               np.split(first, range(AT_ONCE, len(first), AT_ONCE))]
+    starts = settled(windows, vehicle, [z] * len(windows), [noise] * len(windows))
+    weight = weights_of(np.concatenate([
+        errors_along(part, vehicle, z, start) for part, start in
+        zip(windows, starts, strict=True)]), noise, flight)
+    values, errors = np.empty((len(first), 6)), np.empty((len(first), 6))
+    for number, (part, start) in enumerate(zip(windows, starts, strict=True)):
+        here = slice(number * AT_ONCE, (number + 1) * AT_ONCE)
+        linear = linearise(part, vehicle, z, start, list(WRENCH), noise, False, weight[here])
+        inverse = np.linalg.inv(np.einsum('bmc,bmd->bcd', linear.slope, linear.slope))
+        values[here] = np.einsum('bcd,bmd,bm->bc', inverse, linear.slope, linear.error)
+        errors[here] = np.sqrt(np.einsum('bcc->bc', inverse))
     felt = residual_force(flight, vehicle, z)
     if felt is not None:
         values[:, :3], errors[:, :3] = _combined(values[:, :3], errors[:, :3], *felt)

@@ -193,7 +193,7 @@ def _thinned(course: Course, states: np.ndarray, seen: np.ndarray, force: np.nda
     """Return every so many samples, means of the voltage and of the force, and all commands."""
     rows = len(course.t) // skip * skip
     if force is not None:   # about each sample that stays
-        force = uniform_filter1d(force, skip, axis=0, mode='nearest')[:rows:skip]
+        force = uniform_filter1d(force, skip, axis=0, mode='nearest')[:rows:skip].copy()
     drop = course.volt_drop[:rows].reshape(-1, skip).mean(axis=1)
     # A copy: an array with gaps would have the integrator compiled anew.
     return (Course(course.t[:rows:skip].copy(), course.commands, drop, course.stamps,

@@ -11,14 +11,14 @@ from quad_ident_ros.effects import registry
 from quad_ident_ros.greybox.errors import difference, ERRORS, GROUPS, moved, slopes
 from quad_ident_ros.greybox.flights import Flight
 from quad_ident_ros.greybox.parameters import constants_of, limits, SPLIT
-from quad_ident_ros.model.dynamics import predict
+from quad_ident_ros.model.dynamics import predict, rows_needed
 from quad_ident_ros.model.vehicle import Vehicle
 
 STATE_STEP = np.repeat([1e-4, 1e-4, 1e-5, 1e-4], 3)     # of differences in the initial state
 STEP = 1e-4                                             # of a parameter's usual size
 WRENCH = tuple(range(SPLIT + registry.SLICES[registry.RESIDUAL_WRENCH.name].start,
                      SPLIT + registry.SLICES[registry.RESIDUAL_WRENCH.name].stop))
-AT_ONCE = 400_000   # samples of a flight times parameter sets that are held at once, 50 MB
+AT_ONCE = 200_000   # samples, of the flight and of rollouts, that are held at once, 40 MB
 GROUND = [place for (name, _), part in registry.PLACES.items() if name == 'ground_effect'
           for place in range(part.start, part.stop)]
 
@@ -30,15 +30,26 @@ class Tangent:
 
     Per initial state, per column, and per second of an offset of the pose in time. wrench
     (B, 6, M): per force and moment of 1, body, that lasts for the rollout; None if not wanted.
+    kept: the rows of the table that count, the last one of which is its last; None for all.
     """
 
     table: np.ndarray
     wrench: np.ndarray | None = None
+    kept: list[int] | None = None
 
     @property
     def drift(self) -> np.ndarray:
         """Return the change per second of an offset of the pose in time, (B, count + 1, 12)."""
         return self.table[:, -1].reshape(len(self.table), -1, ERRORS)
+
+    def weighed(self, scale: np.ndarray, clock: bool) -> np.ndarray:
+        """Return the rows that count times scale (B, M), without the last one if not clock."""
+        end = None if clock else -1
+        if self.kept is None:
+            return self.table[:, :end] * scale[:, None]
+        table = self.table[:, self.kept[:end]]
+        table *= scale[:, None]
+        return table
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,7 +69,7 @@ class Slopes:
         """Return the Tangents in some of the columns; slow: with the wrench, if they have it."""
         kept = [*range(ERRORS), *(ERRORS + self.columns.index(one) for one in columns), -1]
         wrench = [ERRORS + self.columns.index(one) for one in WRENCH] if slow else []
-        return [Tangent(tangent.table[:, kept], tangent.table[:, wrench] if slow else None)
+        return [Tangent(tangent.table, tangent.table[:, wrench] if slow else None, kept)
                 for tangent in self.tangents]
 
 
@@ -166,7 +177,8 @@ def tangent_of(flight: Flight, vehicle: Vehicle, z: np.ndarray, starts: np.ndarr
     for axis in range(shifts):
         table[:, axis, axis::ERRORS] = 1.0
     base = np.empty(0)
-    for part in _parts(which, len(flight.course.t)):
+    rows = rows_needed(len(flight.course.t), flight.first, flight.count)
+    for part in _parts(which, len(rows) + batch * (flight.count + 1)):
         used, mine = np.unique(which[part], return_inverse=True)
         out = predict(vehicle, sets[used, SPLIT:], flight.course,
                       all_starts[part].reshape(-1, starts.shape[1]),
@@ -189,7 +201,7 @@ def _parts(which: np.ndarray, length: int) -> Iterator[slice]:
     """
     Yield parts of sets (K,) by their numbers, the first with all of set 0.
 
-    Each set has commands and attitudes of its own along the whole flight, of so many samples.
+    Each set has so many samples: commands and attitudes along the flight, and its rollouts.
     """
     many, begin = max(1, AT_ONCE // length), 0
     while begin < len(which):
@@ -254,7 +266,7 @@ def linear_of(tangent: Tangent, raw: np.ndarray, scale: np.ndarray, clock: bool 
     """
     batch = len(raw)
     scale = np.broadcast_to(scale, raw.shape).reshape(batch, -1)
-    table = tangent.table[:, :None if clock else -1] * scale[:, None]
+    table = tangent.weighed(scale, clock)
     error = raw.reshape(batch, -1) * scale
     if white is not None:
         table, error = white.whitened(table), white.whitened(error[:, None])[:, 0]

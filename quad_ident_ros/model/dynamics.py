@@ -3,7 +3,7 @@
 """The vehicle model with effects, as functions of flights: rollouts and what they record."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -30,6 +30,7 @@ from quad_ident_ros.model.vehicle import Vehicle
 
 STATES = ('px', 'py', 'pz', 'vx', 'vy', 'vz', 'qw', 'qx', 'qy', 'qz', 'wx', 'wy', 'wz')
 LONGEST_STEP = 0.01     # s, of the integration: errors of about 1e-6 of what happens in it
+LONG = 20_000           # samples of a flight, 160 s at 125 Hz: of shorter ones all fit into memory
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,6 +139,12 @@ def predict(vehicle: Vehicle, thetas: ArrayLike, course: Course, starts: np.ndar
     whose attitude and rate are given to the motion of the centre of mass, so that errors of the
     predicted rotation do not enter it; by default it follows from the predicted ones.
     """
+    # What rotors did before, and between, is followed from command to command as it is in a step.
+    rows = rows_needed(len(course.t), first, count)
+    if len(rows) < len(course.t):
+        first, guide = np.searchsorted(rows, first), None if guide is None else guide[rows]
+        course = replace(course, t=course.t[rows], volt_drop=course.volt_drop[rows],
+                         across=None if course.across is None else course.across[rows])
     thetas = np.atleast_2d(np.asarray(thetas, float))
     which = np.zeros(len(starts), np.int64) if which is None else np.asarray(which, np.int64)
     # Records that are slower than that are rolled out along a finer grid.
@@ -160,6 +167,24 @@ def predict(vehicle: Vehicle, thetas: ArrayLike, course: Course, starts: np.ndar
         out = out[:, ::steps].copy()
     change(*sensors, which, leads, lead_of, first, steps, out, True)
     return out
+
+
+def rows_needed(length: int, first: ArrayLike, count: int) -> np.ndarray:
+    """
+    Return the samples of a flight of so many that rollouts need, rising, from the first one on.
+
+    All of a flight that is not LONG, or most of whose samples are needed. Args: first (B,), count:
+    as of predict.
+    """
+    needed = np.zeros(length + 1, np.int64)
+    if length > LONG:
+        first = np.unique(np.asarray(first, np.int64))
+        needed[first] += 1
+        needed[first + count + 1] -= 1
+        needed = np.cumsum(needed)
+        needed[0] = 1
+    rows = np.flatnonzero(needed)
+    return rows if 0 < 2 * len(rows) < length else np.arange(length)
 
 
 def _guides(thetas: np.ndarray, sensors: Sensors, guide: np.ndarray, t: np.ndarray,

@@ -20,6 +20,7 @@ LOCAL = 0.1       # s, how far a window may be from the whole
 SURE = 0.6        # correlation that an estimate needs
 SHAPE = 0.5       # correlation of the slopes, whose noise is larger
 FINEST = 1e-5     # s, the least standard error: one stream may be made of the other
+THERE = 1e-9      # s, of a step from which on the next one changes nothing
 MEMORY = 0.4      # s, over which errors may depend on one another
 ANSWER = 1.0      # s, within which the motion may answer to errors of the attitude
 SEVERAL = 5.0     # standard errors from which on an offset or a drift of the states is one: the
@@ -62,7 +63,7 @@ def clock_offset(record):
     grid = Grid.of(_without_jumps(record))
     if grid is None or not record.has('wx', 'wy', 'wz'):
         return None
-    _, attitude = best_reading(grid)
+    _, attitude = best_reading(grid.record)
     if attitude is None:
         return None
     return _offset(grid, grid.rate_of(attitude), grid.smooth(grid.signal('wx', 'wy', 'wz')),
@@ -123,12 +124,13 @@ def _offset(grid, late, early, answers=False):
     whole = _whole_shift(late, early, grid.good, reach)
     if whole is None:
         return None
-    spline = CubicSpline(grid.t, early)
+    spline, slopes = CubicSpline(grid.t, early), np.gradient(late, grid.period, axis=0)
     width = round(WINDOW / grid.period)
     count = max(1, int(grid.good.sum() // width))
     found = []
     for part in np.array_split(np.flatnonzero(grid.good), count):
-        estimate = _refined(grid, spline, late, part, whole * grid.period)
+        estimate = _refined(grid.t[part], spline, late[part], slopes[part],
+                            whole * grid.period, grid.period)
         if estimate is not None:
             found.append((grid.t[part].mean(), *estimate))
     if not found:
@@ -166,10 +168,13 @@ def _whole_shift(late, early, good, reach):
     return best - reach if alike[best] > SURE else None
 
 
-def _refined(grid, spline, late, part, start):
-    """Return the offset and its standard error in a window (indices), or None."""
-    t, target = grid.t[part], _centred(late[part])
-    offset = start
+def _refined(t, spline, late, slopes, start, period):
+    """
+    Return the offset and its standard error in a window, or None.
+
+    Args: t (N,) s; spline of the early signal; late (N, k) and its slopes; start, period s.
+    """
+    target, offset = _centred(late), start
     for _ in range(8):
         model, slope = _centred(spline(t - offset)), _centred(-spline(t - offset, 1))
         power = np.sum(model ** 2)
@@ -184,15 +189,17 @@ def _refined(grid, spline, late, part, start):
         offset += float(np.clip(step, -LOCAL / 4, LOCAL / 4)) if np.isfinite(step) else np.inf
         if not abs(offset - start) < LOCAL:
             return None
+        if abs(step) < THERE:
+            break
     if _alike(model, target) < SURE:
         return None
     # A ramp or noise has no shape that an offset would move: both must have the same.
-    other = _centred(np.gradient(late, grid.period, axis=0)[part])
+    other = _centred(slopes)
     other -= model * np.sum(other * model) / power
     if _alike(-gain * slope, other) < SHAPE:
         return None
     score = np.sum(slope * rest, axis=1)
-    std = np.sqrt(_long_run(score, round(MEMORY / grid.period))) / curvature
+    std = np.sqrt(_long_run(score, round(MEMORY / period))) / curvature
     return offset, max(std, FINEST)
 
 

@@ -6,6 +6,7 @@ import numpy as np
 
 from quad_ident_ros.data.frames import body_vector, conjugate, rotate, world_vector
 from quad_ident_ros.data.quality.finding import Finding
+from quad_ident_ros.data.quality.once import once
 from quad_ident_ros.data.quality.series import correlation, explained, Grid
 from quad_ident_ros.data.record import QUATERNION
 
@@ -51,9 +52,15 @@ def _still(grid, attitude):
     return np.sqrt(np.mean(grid.rate_of(attitude)[grid.good] ** 2)) < STILL
 
 
-def best_reading(grid):
-    """Return (name, attitude) of the reading to go by: as it is, unless another is far better."""
-    found = readings(grid)
+@once
+def best_reading(record):
+    """
+    Return (name, attitude on the Grid) of the reading of a record to go by, or twice None.
+
+    As it is, unless another is far better.
+    """
+    grid = Grid.of(record)
+    found = {} if grid is None else readings(grid)
     if not found:
         return None, None
     best = max(found, key=lambda name: found[name][1])
@@ -67,7 +74,7 @@ def quaternion(record, vehicle):
     grid = Grid.of(record)
     if grid is None or not record.has(*QUATERNION, 'wx', 'wy', 'wz'):
         return []
-    name, attitude = best_reading(grid)
+    name, attitude = best_reading(record)
     if attitude is None or _still(grid, attitude):
         return []
     if name != 'as it is':
@@ -102,7 +109,7 @@ def world(record, vehicle):
     grid = Grid.of(record)
     if grid is None:
         return []
-    _, attitude = best_reading(grid)
+    _, attitude = best_reading(record)
     if attitude is None:
         return _height(record)
     if not record.has('ax', 'ay', 'az'):
@@ -177,7 +184,7 @@ def velocity_in_body(record, vehicle):
     grid = Grid.of(record)
     if grid is None or not record.has('px', 'py', 'pz', 'vx', 'vy', 'vz'):
         return []
-    _, attitude = best_reading(grid)
+    _, attitude = best_reading(record)
     if attitude is None:
         return []
     moved = grid.derivative(grid.signal('px', 'py', 'pz'))[grid.good]

@@ -25,7 +25,7 @@ def attitude(record, vehicle):
     if (grid is None or not record.has(*QUATERNION, 'wx', 'wy', 'wz')
             or record.period() > LONGEST / 5):
         return []
-    name, q = best_reading(grid)
+    name, q = best_reading(record)
     if q is None or name != 'as it is':
         return []
     gyro = grid.smooth(grid.signal('wx', 'wy', 'wz'))[grid.good]

@@ -14,7 +14,8 @@ from quad_ident_ros.model.attitude import quaternion_from_euler
 GRAVITY = 9.81
 WIDTH = 0.2       # s, full width of the smoothing window
 GAP = 3.0         # median periods from which on a step in time is a gap
-MOST = 200_000    # samples that the checks look at
+MOST = 100_000    # samples that the checks look at: of more, one of so many, over the whole record
+COARSEST = 0.1 * WIDTH  # s between them, however long a record is: smoothing needs a few
 
 
 def attitudes_of(record):
@@ -44,12 +45,18 @@ class Grid:
 
     @classmethod
     def of(cls, record):
-        """Return the grid of a record at its median period; None for a record under 1 s."""
+        """
+        Return the grid of a record at its median period, or at some of these where it is long.
+
+        None for a record under 1 s.
+        """
         period = record.period()
         span = record.t[-1] - record.t[0]
         if span < 1.0 or len(record) < 50 or period > 0.1:
             return None
-        count = min(int(span / period) + 1, MOST)
+        period *= max(1, min(-(-len(record) // MOST), int(COARSEST / period)))
+        # One bad stamp makes a span without end.
+        count = min(int(span / period) + 1, max(MOST, len(record)))
         t = record.t[0] + period * np.arange(count)
         t = t[t <= record.t[-1]]
         after = np.clip(np.searchsorted(record.t, t), 1, len(record) - 1)

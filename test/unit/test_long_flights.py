@@ -1,0 +1,65 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Rollouts of a long flight: what they need of it is enough, and memory comes back."""
+
+import ctypes
+
+from flightmaker import flight, VEHICLE
+import numpy as np
+import pytest
+
+from quad_ident_ros.effects import registry
+from quad_ident_ros.memory import hand_back_large, LIBRARY
+from quad_ident_ros.model import dynamics
+from quad_ident_ros.model.dynamics import course_of, predict, rows_needed, states_of
+
+
+@pytest.mark.parametrize('effects', [
+    {}, {('motor_lag', 'time_constant'): 0.08}, {('motor_lag', 'rise'): 0.05},
+    {('actuation_delay', 'delay'): 0.013, ('motor_lag', 'time_constant'): 0.03},
+    {('motor_lag', 'slew'): 1e-4}], ids=str)
+@pytest.mark.parametrize('guided', [False, True])
+@pytest.mark.parametrize('rate', [100.0, 40.0])
+def test_a_part_of_a_flight_is_predicted_as_in_the_whole(monkeypatch, effects, guided, rate):
+    record = flight(seconds=30.0, rate=rate)
+    course, states = course_of(record, VEHICLE), states_of(record)
+    thetas = np.array([registry.NULL, registry.NULL], float)
+    for place, value in effects.items():
+        thetas[1, registry.PLACE[place]] = value
+    first = np.array([900, 420, 700, 424]) * int(rate) // 100
+    which = np.array([0, 1, 1, 1])
+    guide = states if guided else None
+
+    def predicted():
+        return predict(VEHICLE, thetas, course, states[first], first, 20, which, guide=guide)
+
+    whole = predicted()
+    monkeypatch.setattr(dynamics, 'LONG', 100)
+    assert len(rows_needed(len(course.t), first, 20)) < 100
+    assert predicted() == pytest.approx(whole, rel=1e-9, abs=1e-9)
+
+
+def test_rollouts_over_most_of_a_flight_need_all_of_it(monkeypatch):
+    monkeypatch.setattr(dynamics, 'LONG', 100)
+    assert len(rows_needed(1000, np.arange(100, 900, 50), 49)) == 1000
+    assert rows_needed(1000, [500, 300, 500], 2).tolist() == [0, 300, 301, 302, 500, 501, 502]
+
+
+@pytest.mark.skipif(not hasattr(LIBRARY, 'mallinfo2'), reason='the C library counts no memory')
+def test_large_arrays_go_back_to_the_system():
+    """Beside one of 30 MB that was freed before, an array of 16 MB is still mapped apart."""
+    class Info(ctypes.Structure):
+        _fields_ = [(name, ctypes.c_size_t) for name in (
+            'arena', 'ordblks', 'smblks', 'hblks', 'hblkhd', 'usmblks', 'fsmblks', 'uordblks',
+            'fordblks', 'keepcost')]
+
+    def mapped():
+        count = LIBRARY.mallinfo2
+        count.restype = Info
+        return count().hblkhd
+
+    hand_back_large()
+    before = mapped()
+    np.ones(30 * 2 ** 17)
+    kept = np.ones(16 * 2 ** 17)
+    assert mapped() - before >= kept.nbytes
