@@ -29,6 +29,7 @@ TOPICS = ('vehicle_attitude', 'estimator_attitude', 'vehicle_odometry', 'vehicle
           'battery_status')
 STATES = ('vehicle_status', 'actuator_armed', 'vehicle_land_detected')
 
+DENSER = 2.0        # times the samples for which a raw measurement is taken, not a corrected one
 COARSE = 0.025      # s between samples; lags and delays of motors are of this size
 PROFILE = ('set SDLOG_PROFILE to 25 (default set, system identification and high rate) and log '
            'again')
@@ -268,11 +269,12 @@ def _positions(path: Path, topic: str, found: dict) -> tuple[list[Stream], np.nd
 
 
 def _rate(path, data):
-    for topic, field in (('vehicle_angular_velocity', 'xyz'), ('sensor_combined', 'gyro_rad')):
-        if data[topic] is not None:
-            values = _values(path, topic, data[topic], _indexed(field, 3))
-            return _stream(path, topic, data[topic], ('wx', 'wy', 'wz'),
-                           frames.body_vector(values, 'FRD'))
+    topic, field = _densest(data, {'vehicle_angular_velocity': 'xyz',
+                                   'sensor_combined': 'gyro_rad'})
+    if data[topic] is not None:
+        values = _values(path, topic, data[topic], _indexed(field, 3))
+        return _stream(path, topic, data[topic], ('wx', 'wy', 'wz'),
+                       frames.body_vector(values, 'FRD'))
     topic = 'vehicle_odometry'
     if data[topic] is not None and 'angular_velocity[0]' in data[topic]:
         values = _values(path, topic, data[topic], _indexed('angular_velocity', 3))
@@ -282,13 +284,26 @@ def _rate(path, data):
 
 
 def _specific_force(path, data):
-    for topic, field in (('vehicle_acceleration', 'xyz'),
-                         ('sensor_combined', 'accelerometer_m_s2')):
-        if data[topic] is not None:
-            values = _values(path, topic, data[topic], _indexed(field, 3))
-            return _stream(path, topic, data[topic], ('ax', 'ay', 'az'),
-                           frames.body_vector(values, 'FRD'))
-    return None
+    topic, field = _densest(data, {'vehicle_acceleration': 'xyz',
+                                   'sensor_combined': 'accelerometer_m_s2'})
+    if data[topic] is None:
+        return None
+    values = _values(path, topic, data[topic], _indexed(field, 3))
+    return _stream(path, topic, data[topic], ('ax', 'ay', 'az'),
+                   frames.body_vector(values, 'FRD'))
+
+
+def _densest(data: dict, fields: dict[str, str]) -> tuple[str, str]:
+    """
+    Return the first topic of fields {topic: field}, or a later one that was logged far more often.
+
+    The corrected measurement comes before the raw one, but default profiles log it at 10 to 50 Hz.
+    """
+    counts = {topic: 0 if data[topic] is None else len(data[topic].get('timestamp', ()))
+              for topic in fields}
+    most = max(counts.values())
+    return next((topic, fields[topic]) for topic, count in counts.items()
+                if DENSER * count >= most)
 
 
 def _battery(path, data):

@@ -111,3 +111,19 @@ def test_samples_before_the_first_fix_are_left_out(tmp_path):
     assert read.has('px') and len(read) == len(SMALL) - fix
     assert any(f'{fix} of {len(SMALL)} samples are no valid' in note
                for note in read.info['notes'])
+
+
+@pytest.mark.parametrize(('every', 'taken'), [(1, 0.0), (20, 1.0)])
+def test_the_raw_gyro_is_taken_where_the_corrected_one_is_scarce(tmp_path, every, taken):
+    """Default profiles log the corrected rate seldom; here it is nought, to tell it apart."""
+    samples, seen = [], 0
+    for topic, instance, stamp, values in px4_samples(SMALL):
+        if topic == 'vehicle_angular_velocity':
+            seen += 1
+            if (seen - 1) % every:
+                continue
+            values = [0.0, 0.0, 0.0]
+        samples.append((topic, instance, stamp, values))
+    read = load(log(tmp_path, ulog(samples)))
+    names = ('wx', 'wy', 'wz')
+    np.testing.assert_allclose(read.stack(*names), taken * SMALL.stack(*names), atol=1e-4)
