@@ -85,6 +85,24 @@ def gap(all_ends: Sequence[Ends]) -> dict[str, float]:
             for name, part in GROUPS.items()}
 
 
+def surely(one: Ends, errors: float) -> dict[str, float]:
+    """
+    Return {group: gap} of a flight that is there but for so many standard errors.
+
+    Standard errors of the mean square are those of blocks of BLOCK s, in which errors may hang
+    together (Kuensch, Annals of Statistics 17, 1989).
+    """
+    block = np.unique((one.t // BLOCK).astype(int), return_inverse=True)[1]
+    counts = np.bincount(block)
+    found = {}
+    for name, part in GROUPS.items():
+        sums = np.bincount(block, np.sum(one.errors[:, part] ** 2, axis=1))
+        mean = sums.sum() / counts.sum()
+        spread = np.sum((sums - mean * counts) ** 2) * len(sums) / max(len(sums) - 1, 1)
+        found[name] = float(np.sqrt(max(mean - errors * np.sqrt(spread) / counts.sum(), 0.0)))
+    return found
+
+
 def noise_gap(track: Track, vehicle: Vehicle, z: np.ndarray, noise: Noise, horizon: float
               ) -> dict[str, float]:
     """

@@ -56,13 +56,15 @@ def flight_checks(bench: Bench, judged: Judgement) -> tuple[FlightCheck, ...]:
     """
     Return how well the others predict each flight, and whether it differs from them.
 
-    It differs where a gap remains that matters and is twice that of the other flights.
+    It differs where a gap remains that matters and is twice that of the other flights, but for
+    what chance makes of it.
     """
     found, before = ([gaps.gap([one]) for one in ends]
                      for ends in (judged.left_out, judged.before))
     named, rows = bool(judged.material), []
     for k, (track, gap, noise) in enumerate(zip(bench.tracks, found, judged.noise, strict=True)):
-        remains = unexplained(gap, before[k], noise, named, bench.rules)
+        sure = gaps.surely(judged.left_out[k], bench.rules.shown)
+        remains = unexplained(sure, before[k], noise, named, bench.rules)
         others = {name: np.median([beyond(one[name], other[name]) for j, (one, other) in enumerate(
             zip(found, judged.noise, strict=True)) if j != k]) for name in remains}
         differs = any(value > bench.rules.differs * others[name]
