@@ -8,13 +8,14 @@ import numpy as np
 
 from quad_ident_ros.diagnose import fly_next as design
 from quad_ident_ros.diagnose.candidates import not_told, SCALES
-from quad_ident_ros.diagnose.judgement import Model
+from quad_ident_ros.diagnose.fitted import columns_at_bounds
+from quad_ident_ros.diagnose.judgement import Judgement
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.diagnose.select import Selection
 from quad_ident_ros.diagnose.verdict import Verdict
 from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.greybox.flights import Flight, inertial
-from quad_ident_ros.greybox.parameters import limits, NAMES, nominal
+from quad_ident_ros.greybox.parameters import NAMES
 from quad_ident_ros.model.vehicle import Vehicle
 
 ASKS = (('none',), ('undetermined',))   # verdicts that ask for another flight
@@ -45,22 +46,22 @@ def fly_next(selection: Selection, flights: list, vehicle: Vehicle, z: np.ndarra
                            unseen) or None
 
 
-def at_bounds(model: Model, vehicle: Vehicle, rules: Rules) -> tuple[dict, ...]:
-    """Return what to be wary of where parameters of a Model end at bounds, as data of findings."""
-    null, (lower, upper, size) = nominal(vehicle), limits(vehicle)
-    rows = []
-    for cause in model.effects:
-        names = [f'{NAMES[column].split(".")[1]} {model.z[column]:.3g}' for column in cause.columns
-                 if model.z[column] != null[column]
-                 and min(model.z[column] - lower[column], upper[column] - model.z[column])
-                 < rules.at_bound * size[column]]
+def at_bounds(judged: Judgement, vehicle: Vehicle, rules: Rules) -> tuple[dict, ...]:
+    """Return what to be wary of where parameters of a model end at bounds, as data of findings."""
+    rows, z = [], judged.model.z
+    for cause in judged.model.effects:
+        names = [f'{NAMES[column].split(".")[1]} {z[column]:.3g}'
+                 for column in columns_at_bounds(cause, z, vehicle, rules)]
+        so = ('; it stands for that in the model and is not named'
+              if cause in judged.stand_ins else '')
         if names:
             rows.append({
                 'flight': 'all flights', 'code': 'at_bound', 'severity': 'warning',
                 'where': cause.effect,
                 'message': f'{", ".join(names)} is the bound of what vehicles have, and the '
                            'flights ask for more: something else may do the work of this effect, '
-                           'such as commands that are logged more slowly than they are given',
+                           'such as commands that are logged more slowly than they are given'
+                           f'{so}',
                 'remedy': 'log commands at the rate of the controller, and measure the constant'})
     return tuple(rows)
 

@@ -89,6 +89,6 @@ def diagnose(records: Iterable[FlightRecord], vehicle: Vehicle, *,
             [z - model.z for z in model.vectors], intake.late, intake.clocks, prompt),
         flights=intake.names[:-1], held_out=intake.names[-1],
         flight_checks=verdict.flight_checks,
-        findings=(*intake.findings, *advice.at_bounds(model, vehicle, rules)), z=model.z,
+        findings=(*intake.findings, *advice.at_bounds(judged, vehicle, rules)), z=model.z,
         pictures=measure.pictures(bench, judged, before, after))
 

@@ -118,10 +118,16 @@ def out_of_bounds(cause: Candidate, fit: Estimate, vehicle: Vehicle, rules: Rule
 
     It does the work of something else then. The bound of no effect is none in this sense.
     """
+    return not cause.usual and bool(columns_at_bounds(cause, fit.z, vehicle, rules))
+
+
+def columns_at_bounds(cause: Candidate, z: np.ndarray, vehicle: Vehicle, rules: Rules
+                      ) -> list[int]:
+    """Return the columns of an effect that are at a bound in z (Z,), but for that of no effect."""
     null, (lower, upper, size) = nominal(vehicle), limits(vehicle)
-    columns = [column for column in cause.columns if fit.z[column] != null[column]]
-    room = np.minimum(fit.z - lower, upper - fit.z)[columns]
-    return not cause.usual and bool((room < rules.at_bound * size[columns]).any())
+    room = np.minimum(z - lower, upper - z)
+    return [column for column in cause.columns
+            if z[column] != null[column] and room[column] < rules.at_bound * size[column]]
 
 
 def within_bounds(chosen: tuple, fit: Estimate, usual: dict, flights: Sequence[Flight],

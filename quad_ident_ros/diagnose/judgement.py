@@ -9,7 +9,12 @@ import numpy as np
 
 from quad_ident_ros.diagnose import gap as gaps
 from quad_ident_ros.diagnose.candidates import Candidate
-from quad_ident_ros.diagnose.fitted import effects_in, refitted, within_bounds
+from quad_ident_ros.diagnose.fitted import (
+    columns_at_bounds,
+    effects_in,
+    refitted,
+    within_bounds,
+)
 from quad_ident_ros.diagnose.gap import Noise
 from quad_ident_ros.diagnose.nuisances import nuisances_of
 from quad_ident_ros.diagnose.probability import presence, probabilities, Weight, with_companions
@@ -162,8 +167,9 @@ class Judgement:
     """
     What was judged of a Selection.
 
-    model: all effects that are there; material: those of them that matter; weights {candidate:
-    Weight} and probability {effect: of being present}; without {candidate: Model without it};
+    model: all effects that are there; material: those of them that matter; stand_ins: those that
+    would, but have most of their parameters at bounds; weights {candidate: Weight} and
+    probability {effect: of being present}; without {candidate: Model without it};
     before: the Ends of the nominal vehicle with the nuisances of each flight; left_out: those of
     each flight by the model fitted to the others; noise: {group: gap} of each flight;
     unexplained: {group: gap beyond tolerance and error of form}.
@@ -171,6 +177,7 @@ class Judgement:
 
     model: Model
     material: tuple
+    stand_ins: tuple
     weights: dict
     probability: dict
     without: dict
@@ -219,14 +226,18 @@ def judge(bench: Bench) -> Judgement:
                if there.get(cause.effect) is cause}
     present = probabilities(bench.selection.posterior, weights, rules)
     absent = tuple(cause for cause in there.values() if present[cause.effect] < rules.present)
-    material = tuple(cause for cause in model.effects if cause not in absent)
+    # What needs values that no vehicle has does the work of something else, which it stands for.
+    stand_ins = tuple(cause for cause in model.effects if cause not in absent and 2 * len(
+        columns_at_bounds(cause, model.z, bench.vehicle, rules)) > len(cause.columns))
+    present |= {cause.effect: rules.prior_odds for cause in stand_ins}
+    material = tuple(cause for cause in model.effects if cause not in {*absent, *stand_ins})
     if set(model.effects) <= set(full.effects):
         final = full if not absent else bench.without(full, absent)
     else:
         improbable = tuple(cause for cause in model.effects if cause in absent)
         final = bench.without(model, improbable) if improbable else model
-    return Judgement(final, material, weights, present, without, ends, bench.left_out(final),
-                     noises,
+    return Judgement(final, material, stand_ins, weights, present, without, ends,
+                     bench.left_out(final), noises,
                      unexplained(final.gap, before, noise, bool(material), rules))
 
 

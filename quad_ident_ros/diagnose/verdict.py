@@ -41,9 +41,11 @@ def verdict_of(bench: Bench, judged: Judgement, causes: tuple,
     total = judged.probability
     named = sorted(judged.material, key=lambda cause: -judged.weights[cause].contribution)
     minor = tuple(Minor(cause.effect, total[cause.effect], judged.weights[cause].contribution)
-                  for cause in judged.model.effects if cause not in judged.material)
+                  for cause in judged.model.effects
+                  if cause not in {*judged.material, *judged.stand_ins})
     # A flight that differs vetoes `none`; effects are what the others show, and it is named.
-    unknown = bool(judged.unexplained) or not named and any(one.differs for one in checks)
+    unknown = (bool(judged.unexplained or judged.stand_ins)
+               or not named and any(one.differs for one in checks))
     doubts = {} if unknown else doubts_of(bench.selection, tuple(named), rules)
     certain = tuple(cause for cause in named if cause not in doubts)
     sure = tuple(dict.fromkeys(cause.effect for cause in certain))

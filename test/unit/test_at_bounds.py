@@ -2,13 +2,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """A parameter that ends at its bound is told, for it may do the work of something else."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import pytest
 
 from quad_ident_ros.diagnose.advice import at_bounds
 from quad_ident_ros.diagnose.candidates import Candidate
+from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.diagnose.rules import RULES
+from quad_ident_ros.flight.fly import fly_closed_loop
+from quad_ident_ros.flight.measure import MOCAP_IMU
 from quad_ident_ros.greybox.parameters import INDEX, limits, nominal
 from quad_ident_ros.model.vehicle import load_vehicle
 
@@ -21,7 +25,8 @@ def told(**values):
     z = nominal(VEHICLE)
     for name, value in values.items():
         z[INDEX[f'inertia_mismatch.{name}']] = value
-    return at_bounds(SimpleNamespace(effects=(INERTIA,), z=z), VEHICLE, RULES)
+    model = SimpleNamespace(effects=(INERTIA,), z=z)
+    return at_bounds(SimpleNamespace(model=model, stand_ins=()), VEHICLE, RULES)
 
 
 def test_a_parameter_at_its_bound_is_named_with_its_value():
@@ -35,3 +40,18 @@ def test_a_parameter_at_its_bound_is_named_with_its_value():
 @pytest.mark.parametrize('values', [{}, {'factor_x': 1.3}])
 def test_parameters_inside_their_bounds_or_without_an_effect_are_not(values):
     assert told(**values) == ()
+
+
+@pytest.mark.slow
+def test_an_effect_that_needs_values_no_vehicle_has_is_not_named():
+    """Ten times the inertia is nothing that a vehicle file gets wrong."""
+    flights = [fly_closed_loop(VEHICLE, {}, path, duration=15.0, rate=100.0, seed=seed,
+                               noise=MOCAP_IMU)
+               for seed, path in enumerate(('figure8', 'lissajous', 'low_passes'))]
+    ixx, iyy, izz = VEHICLE.inertia
+    told = diagnose(flights, replace(VEHICLE, inertia=(ixx / 10.0, iyy / 10.0, izz)))
+    row = next(row for row in told.ranking if row.effect == 'inertia_mismatch')
+    assert 'inertia_mismatch' not in told.verdict and 'unknown' in told.verdict
+    assert row.probability == RULES.prior_odds
+    assert any(finding['code'] == 'at_bound' and 'not named' in finding['message']
+               for finding in told.findings)
