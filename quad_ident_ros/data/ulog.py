@@ -15,9 +15,10 @@ from quad_ident_ros.data.px4_airframe import FIRST_MOTOR, Motors, motors_of, oth
 from quad_ident_ros.data.px4_motors import commands
 from quad_ident_ros.data.px4_outputs import motor_outputs
 from quad_ident_ros.data.px4_position import estimated
-from quad_ident_ros.data.px4_states import flown, resets
+from quad_ident_ros.data.px4_resets import split_at_resets
+from quad_ident_ros.data.px4_states import flown
 from quad_ident_ros.data.record import FlightRecord, QUATERNION
-from quad_ident_ros.data.split import part, SHORTEST, split
+from quad_ident_ros.data.split import part, SHORTEST
 from quad_ident_ros.data.streams import HELD, INTERPOLATED, join, SLOW, Stream
 from quad_ident_ros.data.ulog_parse import parse
 from quad_ident_ros.errors import InputError
@@ -77,7 +78,9 @@ def read_ulog(path: str | Path, mapping: Mapping | None = None,
     record = FlightRecord(t, velocity_in_world(path, columns), {
         'name': path.stem, 'source': str(path), 'start_ns': start, 'notes': [*notes, *joined],
         'hardware': _hardware(log)})
-    return _flights(path, record, data)
+    taken = {stream.source.removeprefix('topic ') for stream in streams
+             if {'px', 'body_vx', 'qw'} & stream.columns.keys()}
+    return _flights(path, record, data, taken)
 
 
 def _hardware(log: object) -> dict[str, str]:
@@ -87,38 +90,15 @@ def _hardware(log: object) -> dict[str, str]:
             if about.get(key)}
 
 
-def _flights(path: Path, record: FlightRecord, data: dict) -> list[FlightRecord]:
-    """Return the parts of a record in the air and between resets."""
-    start = record.info['start_ns']
-    states = {name: (_stamps(path, name, data[name]), data[name]) for name in
-              (*STATES, 'vehicle_local_position', 'vehicle_attitude', 'vehicle_odometry')
+def _flights(path: Path, record: FlightRecord, data: dict, taken: set[str]
+             ) -> list[FlightRecord]:
+    """Return the parts of a record in the air and between resets of the topics that it is from."""
+    states = {name: (_stamps(path, name, data[name]), data[name]) for name in (*STATES, *taken)
               if data[name] is not None and len(data[name]['timestamp'])}
     spans, looked_at = flown(states)
     parts = [record] if spans is None else _in_the_air(path, record, spans, looked_at)
-    found, small = resets(_used(states, record))
-    parts = [_passing_over(piece, [(stamp - start) * 1e-9 for stamp in small]) for piece in parts]
-    times = [((before - start) * 1e-9, (after - start) * 1e-9, what)
-             for before, after, what in found]
-    return [piece for one in parts for piece in split(one, times)]
-
-
-def _passing_over(record: FlightRecord, times: list[float]) -> FlightRecord:
-    """Return a record with a note of the small resets (s) in it."""
-    count = sum(record.t[0] < time < record.t[-1] for time in times)
-    if not count:
-        return record
-    note = f'{count} resets of the estimator, each by less than its noise, are passed over'
-    return replace(record, info={**record.info, 'notes': [*record.info['notes'], note]})
-
-
-def _used(states: dict, record: FlightRecord) -> dict:
-    """Return the topics whose resets show in the record."""
-    if not record.has('px'):
-        states = {name: state for name, state in states.items()
-                  if name != 'vehicle_local_position'}
-    if 'vehicle_local_position' in states or 'vehicle_attitude' in states:
-        return {name: state for name, state in states.items() if name != 'vehicle_odometry'}
-    return states
+    return split_at_resets(parts, record.info['start_ns'],
+                           {name: found for name, found in states.items() if name in taken})
 
 
 def _in_the_air(path: Path, record: FlightRecord, spans: list[tuple[int | None, int | None]],

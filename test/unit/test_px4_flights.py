@@ -6,6 +6,7 @@ from dataclasses import replace
 import math
 from pathlib import Path
 import random
+import struct
 
 from flightmaker import flight, frd, ned, ned_attitude, px4_samples, ulog, VEHICLE
 import numpy as np
@@ -236,6 +237,42 @@ def test_the_record_is_split_where_the_estimator_was_reset(tmp_path):
     assert other.t[-1] == pytest.approx(19.99)
     assert 'position was reset by 0.5 m at t = 5.99' in notes(one)
     assert '1 parts shorter than 4 s' in notes(one) and 'by less than its noise' in notes(other)
+
+
+def counted(record, topic, rows, fields, counts):
+    """Return a log with samples of a topic: rows (N, k) of floats and their counter, uint8."""
+    stamps = np.round(record.t * 1e6).astype(int) + FIRST
+    samples = [one for one in px4_samples(record) if one[0] != 'vehicle_local_position']
+    samples += [(topic, 0, int(stamp), np.asarray(row, '<f4').tobytes() + bytes([int(count)]))
+                for stamp, row, count in zip(stamps, rows, counts, strict=True)]
+    return ulog(sorted(samples, key=lambda one: one[2]),
+                {**FORMATS, topic: ('uint64_t timestamp', 'uint64_t timestamp_sample', *fields)})
+
+
+@pytest.mark.parametrize('topic', ['vehicle_odometry', 'estimator_local_position'])
+def test_resets_count_of_the_topic_that_the_position_is_from(tmp_path, topic):
+    """A step of 0.8 m, less than a jump that shows in the data; the attitude has its topic."""
+    record = flight(seconds=20.0, noise=0.0)
+    late = record.t >= 9.0
+    place, speed = ned(record.stack('px', 'py', 'pz')), ned(record.stack('vx', 'vy', 'vz'))
+    place[late, 0] += 0.8
+    q = ned_attitude(record.stack('qw', 'qx', 'qy', 'qz'))
+    odometry = 'float[3] position', 'float[4] q', 'float[3] velocity', 'uint8_t reset_counter'
+    rows, fields = (([place, q, speed], odometry) if topic == 'vehicle_odometry' else
+                    ([place, speed, np.where(np.diff(late, prepend=False), 0.8, 0.0)[:, None],
+                      0 * late[:, None]], POSITION[2:]))
+    one, other = load_all(log(tmp_path, counted(record, topic, np.hstack(rows), fields, late)))
+    assert one.t[-1] == pytest.approx(8.99) and other.t[0] == pytest.approx(9.0)
+    assert ('odometry was reset' if 'odometry' in topic else 'reset by 0.8 m') in notes(one)
+
+
+def test_a_stamp_that_is_there_twice_hides_no_reset(tmp_path):
+    record = flight(seconds=20.0, noise=0.0)
+    data = reset_log(record, [9.0], [0.8])
+    twice = FIRST + 2_010_000
+    data = data.replace(struct.pack('<QQ', twice, twice),
+                        struct.pack('<QQ', twice, twice - 10_000))
+    assert len(load_all(log(tmp_path, data))) == 2
 
 
 def test_contents_are_what_is_logged(tmp_path):

@@ -15,8 +15,8 @@ def tells(path, start):
 
 
 def read(path, mapping=None, vehicle=None):
-    """Return the flight record in a bag."""
-    return [read_mapped_bag(path, mapping or Mapping())]
+    """Return the flight records in a bag."""
+    return read_mapped_bag(path, mapping or Mapping())
 
 
 READER = Reader('rosbag1', 'a bag of ROS 1', tells, read, topics_of, suffixes=('.bag',))

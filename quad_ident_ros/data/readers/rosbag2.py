@@ -19,7 +19,7 @@ def read(path, mapping=None, vehicle=None):
     """Return the flight records in a bag."""
     if mapping is None and is_recorded(path):
         return read_bag(path)
-    return [read_mapped_bag(path, mapping or Mapping())]
+    return read_mapped_bag(path, mapping or Mapping())
 
 
 READER = Reader('rosbag2', 'a bag of ROS 2', tells, read, topics_of,
