@@ -150,7 +150,10 @@ def _show_record(screen, say, summary):
     time = summary['time']
     say(f'{summary["source"] or summary["name"]}: {time["samples"]} samples, '
         f'{time["duration_s"]:.3f} s from t = {time["start_s"]:.3f} s, '
-        f'{time["rate_hz"]:.1f} Hz, {time["gaps"]} gaps')
+        f'{time["rate_hz"]:.1f} Hz, {time["gaps"]} gap{"" if time["gaps"] == 1 else "s"}')
+    if summary['modes']:
+        say('flight modes: ' + ', '.join(f'{one["mode"]} {one["from_s"]:.2f} to {one["to_s"]:.2f} '
+                                         's' for one in summary['modes']))
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1), header_style='bold')
     for name in ('column', 'unit'):
         table.add_column(name, no_wrap=True)

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from quad_ident_ros.data.modes import mode_spans
 from quad_ident_ros.data.quality import clock_offset, command_offset, findings, velocity_offset
 from quad_ident_ros.data.quality.excitation import excitation
 from quad_ident_ros.data.quality.ground import airborne
@@ -43,6 +44,8 @@ def summarise(record, vehicle=None):
                  'period_s': {'shortest': float(steps.min()), 'median': record.period(),
                               'longest': float(steps.max())},
                  'gaps': int((steps > GAP * record.period()).sum())},
+        'modes': [{'mode': name, 'from_s': first, 'to_s': last}
+                  for name, first, last in mode_spans(record)],
         'columns': {name: _column(name, values, record.t)
                     for name, values in record.columns.items()},
         'excitation': {name: {'value': value, 'unit': UNITS[name]}

@@ -11,6 +11,7 @@ from pyulog import ULog
 from quad_ident_ros.data import frames
 from quad_ident_ros.data.foreign import BODY_VELOCITY, velocity_in_world
 from quad_ident_ros.data.mapping import Actuators, KINDS, Mapping
+from quad_ident_ros.data.modes import modes_from, PX4
 from quad_ident_ros.data.px4_airframe import FIRST_MOTOR, Motors, motors_of, other_kind
 from quad_ident_ros.data.px4_motors import commands
 from quad_ident_ros.data.px4_outputs import motor_outputs
@@ -77,10 +78,18 @@ def read_ulog(path: str | Path, mapping: Mapping | None = None,
     start, t, columns, joined = join(path, streams)
     record = FlightRecord(t, velocity_in_world(path, columns), {
         'name': path.stem, 'source': str(path), 'start_ns': start, 'notes': [*notes, *joined],
-        'hardware': _hardware(log)})
+        'hardware': _hardware(log), 'modes': _modes(path, data['vehicle_status'], start)})
     taken = {stream.source.removeprefix('topic ') for stream in streams
              if {'px', 'body_vx', 'qw'} & stream.columns.keys()}
     return _flights(path, record, data, taken)
+
+
+def _modes(path: Path, status: dict | None, start_ns: int) -> list[tuple[float, str]]:
+    """Return the changes of the flight mode, as modes_from has them."""
+    if status is None or 'nav_state' not in status:
+        return []
+    stamps = _stamps(path, 'vehicle_status', status)
+    return modes_from(stamps, status['nav_state'], PX4, start_ns)
 
 
 def _hardware(log: object) -> dict[str, str]:

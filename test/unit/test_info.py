@@ -4,11 +4,12 @@
 
 import json
 
+from dataflash_files import copter, dataflash, TYPES
 from flightmaker import changed, flight, px4_samples, ulog, VEHICLE
 from hypothesis import given
 from hypothesis import strategies as st
 import numpy as np
-from px4_files import controls, log_of, status
+from px4_files import controls, FORMATS, log_of, status
 import pytest
 from records import CMD, FAST, log
 from table_files import named, others, Q, table
@@ -43,6 +44,31 @@ def test_streams_of_a_log_are_shown_beside_the_flight(tmp_path, capsys):
     assert main(['info', str(path)]) == 0
     shown = capsys.readouterr().out
     assert 'vehicle_local_position' in shown and 'excitation' in shown
+
+
+def test_the_modes_of_a_px4_log_are_shown_with_their_spans(tmp_path, capsys):
+    """By nav_state, which is logged on and on; only of the time that is flown."""
+    formats = {**FORMATS, 'vehicle_status': (*FORMATS['vehicle_status'], 'uint8_t nav_state')}
+    states = [(0.0, 2, 2), (1.0, 2, 2), (2.5, 2, 14), (3.0, 2, 14), (5.0, 1, 200)]
+    extra = [('vehicle_status', 0, 5_000_000 + round(t * 1e6), bytes([armed, 1, 0, mode]))
+             for t, armed, mode in states]
+    path = log(tmp_path, log_of(SHORT, extra, formats))
+    _, data = info(capsys, path)
+    assert data['modes'] == [{'mode': 'position', 'from_s': 0.0, 'to_s': 2.5},
+                             {'mode': 'offboard', 'from_s': 2.5, 'to_s': pytest.approx(4.99)}]
+    main(['info', str(path), '--from', '3'])
+    assert 'flight modes: offboard 3.00 to 4.99 s' in capsys.readouterr().out
+
+
+def test_the_modes_of_ardupilot_are_shown_with_their_spans(tmp_path, capsys):
+    pytest.importorskip('pymavlink')
+    messages = copter(SHORT, np.full((len(SHORT), 4), 1500.0), start=2.0)
+    messages += [('MODE', (1_000_000, 5, 5)), ('MODE', (4_000_000, 16, 16))]
+    path = tmp_path / 'a.BIN'
+    path.write_bytes(dataflash(messages, {**TYPES, 'MODE': (80, 'QBB', 'TimeUS,Mode,ModeNum')}))
+    _, data = info(capsys, path)
+    assert [(one['mode'], one['from_s']) for one in data['modes']] == [('loiter', 0.0),
+                                                                        ('poshold', 2.0)]
 
 
 def test_what_is_no_flight_record_shows_what_is_in_it(tmp_path, capsys):
