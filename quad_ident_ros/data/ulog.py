@@ -63,10 +63,7 @@ def read_ulog(path: str | Path, mapping: Mapping | None = None,
                              f'{", ".join(TOPICS)}')
     data = {name: _instance(path, log, name, mapping.instances.get(name))
             for name in (*TOPICS, *STATES)}
-    other = other_kind(log.initial_parameters, data['vehicle_status'])
-    if other:
-        raise InputError(f'{path}: this is the log of {other} (MAV_TYPE, vehicle_status), whose '
-                         'wings, servos or wheels no multirotor has; give the log of a multirotor')
+    refuse_others(path, log, data['vehicle_status'])
     notes = [*(['parts of the log are damaged and left out'] if log.file_corruption else []),
              *([f'{len(log.dropouts)} dropouts while logging'] if log.dropouts else [])]
     streams = [_attitude(path, data), *_position(path, data, notes), _rate(path, data),
@@ -82,6 +79,14 @@ def read_ulog(path: str | Path, mapping: Mapping | None = None,
     taken = {stream.source.removeprefix('topic ') for stream in streams
              if {'px', 'body_vx', 'qw'} & stream.columns.keys()}
     return _flights(path, record, data, taken)
+
+
+def refuse_others(path: Path, log: ULog, status: dict | None) -> None:
+    """Raise InputError for the log of a vehicle that is no multirotor; status: vehicle_status."""
+    other = other_kind(log.initial_parameters, status)
+    if other:
+        raise InputError(f'{path}: this is the log of {other} (MAV_TYPE, vehicle_status), which '
+                         'is no multirotor; give the log of a multirotor')
 
 
 def _modes(path: Path, status: dict | None, start_ns: int) -> list[tuple[float, str]]:

@@ -310,6 +310,29 @@ def test_auto_writes_a_vehicle_file_and_asks_for_the_rest(tmp_path, capsys):
     assert np.std(thrust / force) / np.mean(thrust / force) < 0.05
 
 
+@pytest.mark.parametrize('named, first', [({'MAV_TYPE': 1}, None), ({}, status(FIRST, kind=2))])
+def test_auto_tells_what_is_no_multirotor(tmp_path, capsys, named, first):
+    """A fixed wing has no CA_ROTOR, either: that is not what is wrong."""
+    path = log(tmp_path, log_of(SMALL, [first] if first else [], named=named))
+    assert main(['convert', str(path), str(tmp_path / 'o.csv'), '--vehicle', 'auto']) == 2
+    assert 'fixed wing' in capsys.readouterr().err
+
+
+def test_info_shows_a_log_whose_vehicle_file_is_empty(tmp_path, capsys):
+    record = flight(seconds=6.0, noise=0.0)
+    path = log(tmp_path, log_of(record, motors=controls(record)))
+    for said in ('written with what the log knows', 'still empty'):
+        assert main(['info', str(path), '--vehicle', 'auto']) == 0
+        shown = capsys.readouterr().out
+        assert said in shown and 'vehicle_attitude' in shown and 'excitation' in shown
+
+
+def test_fit_takes_the_vehicle_file_beside_a_log(tmp_path, capsys):
+    path = log(tmp_path, log_of(SMALL, motors=controls(SMALL)))
+    assert main(['fit', str(path), '--vehicle', 'auto', '--free', 'inertia']) == 2
+    assert str(tmp_path / 'log_vehicle.yaml') in capsys.readouterr().err
+
+
 def test_auto_is_for_logs_of_px4(tmp_path, capsys):
     (tmp_path / 'f.csv').write_text('t,pz\n0,1\n1,2\n')
     assert main(['convert', str(tmp_path / 'f.csv'), str(tmp_path / 'o.csv'), '--vehicle',
