@@ -22,8 +22,9 @@ from quad_ident_ros.data.streams import INTERPOLATED, join, SLOW, Stream
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.attitude import quaternion_from_euler
 
-ROLES = {'XKQ': ('pose',), 'NKQ': ('pose',), 'ATT': ('pose',), 'XKF1': ('pose', 'velocity'),
-         'NKF1': ('pose', 'velocity'), 'POS': ('pose',), 'GPS': ('pose', 'velocity'),
+ROLES = {'XKQ': ('attitude',), 'NKQ': ('attitude',), 'ATT': ('attitude',),
+         'XKF1': ('position', 'velocity'), 'NKF1': ('position', 'velocity'),
+         'POS': ('position',), 'GPS': ('position', 'velocity'),
          'IMU': ('rate', 'specific_force'), 'RATE': ('rate',), 'RCOU': ('commands',),
          'ESC': ('rotors',), 'BAT': ('battery',), 'CURR': ('battery',)}
 """Types of messages that are read, and for what."""

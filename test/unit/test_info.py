@@ -38,7 +38,8 @@ def test_streams_of_a_log_are_shown_beside_the_flight(tmp_path, capsys):
     code, data = info(capsys, path)
     streams = {stream['name']: stream for stream in data['streams']}
     assert code == 0 and 'PX4' in data['kind'] and data['time']['samples'] == len(SHORT)
-    assert streams['vehicle_attitude']['roles'] == ['pose']
+    assert streams['vehicle_attitude']['roles'] == ['attitude']
+    assert streams['vehicle_local_position']['roles'] == ['position', 'velocity']
     assert streams['vehicle_attitude']['rate_hz'] == pytest.approx(100)
     assert streams['vehicle_attitude']['duration_s'] == pytest.approx(5.99)
     assert main(['info', str(path)]) == 0

@@ -279,7 +279,7 @@ def test_contents_are_what_is_logged(tmp_path):
     path = log(tmp_path, log_of(SMALL, [status(FIRST)], motors=controls(SMALL)))
     title, found = contents_of(path)
     topics = {content.name: content for content in found}
-    assert 'PX4' in title and topics['vehicle_attitude'].roles == ('pose',)
+    assert 'PX4' in title and topics['vehicle_attitude'].roles == ('attitude',)
     assert topics['actuator_motors'].samples == len(SMALL)
     assert topics['vehicle_attitude'].rate == pytest.approx(100)
     assert topics['vehicle_attitude'].duration == pytest.approx(0.99)
