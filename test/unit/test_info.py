@@ -13,6 +13,7 @@ from px4_files import controls, FORMATS, log_of, status
 import pytest
 from records import CMD, FAST, log
 from table_files import named, others, Q, table
+from usd_files import crazyflie_events, usdlog
 import yaml
 
 from quad_ident_ros.cli.info import FAULTY
@@ -139,6 +140,25 @@ def test_a_mapping_to_begin_with_of_a_log_is_one(tmp_path, capsys):
     assert 'actuators' in out.read_text()
 
 
+def test_the_mapping_of_a_log_names_its_kind_outputs_and_instances(tmp_path, capsys):
+    """A Crazyflie's duty; an ArduPilot hexarotor's PWM, and its two IMUs."""
+    pytest.importorskip('pymavlink')
+    shares = (SHORT.stack(*CMD) - 100) / 1600
+    (tmp_path / 'log16').write_bytes(usdlog(crazyflie_events(SHORT, 65535 * shares)))
+    six = changed(SHORT, cmd5=SHORT.columns['cmd1'], cmd6=SHORT.columns['cmd2'])
+    messages = copter(six, 1000 + 1000 * shares[:, [0, 1, 2, 3, 0, 1]], (1, 2, 3, 4, 5, 6))
+    (tmp_path / 'a.BIN').write_bytes(dataflash(messages))
+    for name, kind, order, more in (
+            ('log16', 'duty16', '[1, 2, 3, 4]', 'actuators'),
+            ('a.BIN', 'pwm', '[1, 2, 3, 4, 5, 6]', '#   IMU: there are 0, 1')):
+        out = tmp_path / f'{name}.yaml'
+        info(capsys, tmp_path / name, '--write-mapping', out)
+        text = out.read_text()
+        assert f'kind: {kind} ' in text and f'order: {order} ' in text and more in text
+        marked = [line.removeprefix('# ') for line in text.splitlines() if 'are 0' not in line][1:]
+        assert mapping_from(yaml.safe_load('\n'.join(marked)), 'm').actuators.kind == kind
+
+
 def test_topics_with_one_candidate_are_filled_in():
     found = [Content('/odom', 'Odometry', 9, 0, 1, 10, (), ('pose', 'velocity')),
              Content('/mocap pose', 'PoseStamped', 9, 0, 1, 10, (), ('pose',)),
@@ -151,7 +171,7 @@ def test_topics_with_one_candidate_are_filled_in():
     assert mapping_from(yaml.safe_load(topics_text('bag', [])), 'm').topics == {}
     chosen = mapping_from(yaml.safe_load(topics_text('bag', found, {'pose': '/odom'})), 'm')
     assert chosen.topics['pose'].topic == '/odom'
-    assert mapping_from(yaml.safe_load(names_text('log', 4)), 'm').topics == {}
+    assert mapping_from(yaml.safe_load(names_text('log', [], '', {})), 'm').topics == {}
 
 
 @FAST
