@@ -205,3 +205,17 @@ def test_time_in_a_hand_is_no_error_where_it_is_left_out():
     everywhere = {name: 0.01 * record.columns[name] for name in CMD}
     told = {one['code'] for one in summarise(changed(record, **everywhere), VEHICLE)['findings']}
     assert 'thrust' in told
+
+
+def test_the_share_of_saturation_is_that_of_what_flies():
+    """Motors that idle on the ground are at their limit, but not by how the vehicle is flown."""
+    record = flight(seconds=12.0)
+    fast = (record.t > 8.0) & (record.t < 8.2)
+    given = {name: np.where(record.t < 4.0, VEHICLE.speed_min,
+                            np.where(fast, VEHICLE.speed_max, record.columns[name]))
+             for name in CMD}
+    told = [one for one in summarise(changed(record, **given), VEHICLE)['findings']
+            if one['code'] == 'saturation']
+    assert [one['message'].split(' %')[0] for one in told if 'speed_min' in one['message']] == []
+    [share] = [float(one['message'].split(' %')[0]) for one in told]
+    assert share == pytest.approx(100 * 0.2 / 8.0, rel=0.15)
