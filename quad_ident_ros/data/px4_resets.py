@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from quad_ident_ros.data.counted import counted
 from quad_ident_ros.data.px4_states import RESET_FIELDS, resets, Topics
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.data.split import split
@@ -65,6 +66,6 @@ def _passing_over(record: FlightRecord, times: list[float]) -> FlightRecord:
     count = sum(bool(record.t[0] < time < record.t[-1]) for time in times)
     if not count:
         return record
-    note = (f'{count} reset{"" if count == 1 else "s"} of the estimator, by less than its noise, '
+    note = (f'{counted(count, "reset")} of the estimator, by less than its noise, '
             f'{"is" if count == 1 else "are"} passed over')
     return replace(record, info={**record.info, 'notes': [*record.info['notes'], note]})

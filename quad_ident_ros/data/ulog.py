@@ -9,6 +9,7 @@ import numpy as np
 from pyulog import ULog
 
 from quad_ident_ros.data import frames
+from quad_ident_ros.data.counted import counted
 from quad_ident_ros.data.foreign import BODY_VELOCITY, velocity_in_world
 from quad_ident_ros.data.mapping import Actuators, KINDS, Mapping
 from quad_ident_ros.data.modes import modes_from, PX4
@@ -65,7 +66,7 @@ def read_ulog(path: str | Path, mapping: Mapping | None = None,
             for name in (*TOPICS, *STATES)}
     refuse_others(path, log, data['vehicle_status'])
     notes = [*(['parts of the log are damaged and left out'] if log.file_corruption else []),
-             *([f'{len(log.dropouts)} dropouts while logging'] if log.dropouts else [])]
+             *([f'{counted(len(log.dropouts), "dropout")} while logging'] if log.dropouts else [])]
     streams = [_attitude(path, data), *_position(path, data, notes), _rate(path, data),
                _specific_force(path, data), _battery(path, data)]
     streams += _outputs(path, log, data, mapping.actuators, vehicle, notes,
@@ -140,7 +141,8 @@ def _in_the_air(path: Path, record: FlightRecord, spans: list[tuple[int | None, 
         note = (f'kept: t = {piece.t[0]:.2f} to {piece.t[-1]:.2f} s of {record.t[-1]:.2f} s, '
                 f'{looked_at}')
         if len(parts) > len(kept):
-            note += f'; {len(parts) - len(kept)} flights shorter than {SHORTEST:g} s left out'
+            short = counted(len(parts) - len(kept), 'flight')
+            note += f'; left out: {short} shorter than {SHORTEST:g} s'
         info = {**piece.info, 'notes': [*piece.info['notes'], note]}
         if len(kept) > 1:
             info |= {'name': f'{info["name"]}_{number}', 'source': f'{path}, flight {number}'}

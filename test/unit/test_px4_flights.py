@@ -199,7 +199,7 @@ def test_flights_between_landings_are_told_apart(tmp_path):
     path = log(tmp_path, log_of(record, extra))
     one, other = load_all(path)
     assert (one.t[0], other.t[0]) == (pytest.approx(1.0), pytest.approx(10.0))
-    assert '1 flights shorter than 4 s' in notes(one)
+    assert '1 flight shorter than 4 s' in notes(one)
     assert one.info['name'] != other.info['name'] and str(path) in one.info['source']
 
 
@@ -236,7 +236,7 @@ def test_the_record_is_split_where_the_estimator_was_reset(tmp_path):
     assert one.t[-1] == pytest.approx(5.99) and other.t[0] == pytest.approx(7.0)
     assert other.t[-1] == pytest.approx(19.99)
     assert 'position was reset by 0.5 m at t = 5.99' in notes(one)
-    assert '1 parts shorter than 4 s' in notes(one) and 'by less than its noise' in notes(other)
+    assert '1 part shorter than 4 s' in notes(one) and 'by less than its noise' in notes(other)
 
 
 def counted(record, topic, rows, fields, counts):
