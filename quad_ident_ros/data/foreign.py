@@ -134,12 +134,16 @@ class TopicPart:
 
     def add(self, received, message):
         """Take a message and its time of receipt, ns; InputError where it does not hold this."""
-        for stamp, values in self._read(message, message.__msgtype__):
+        parts = self._read(message, message.__msgtype__)
+        if self._type in TOPIC_OF and self.role in STATES:
+            self.counters = self.counters or Counters(self._type)
+            try:
+                self.counters.add(message)
+            except OTHER_SHAPE:
+                raise self._defined_otherwise() from None
+        for stamp, values in parts:
             self._stamps.append(stamp)
             self.received.append(received)
-            if self._type in TOPIC_OF and self.role in STATES:
-                self.counters = self.counters or Counters(self._type)
-                self.counters.add(message)
             self._numbers.extend(values)
 
     def samples(self, received, message, kind, mapping):
@@ -165,8 +169,11 @@ class TopicPart:
         except NoSuch as error:
             raise InputError(f'{self._here()}: {error}') from None
         except OTHER_SHAPE:
-            raise InputError(f'{self._here()}: the bag defines {self._type} otherwise than '
-                             'ROS 2 does; record it again') from None
+            raise self._defined_otherwise() from None
+
+    def _defined_otherwise(self):
+        return InputError(f'{self._here()}: the bag defines {self._type} otherwise than ROS 2 '
+                          'does; record it again')
 
     def _here(self):
         return f'{self._where}, message {self._messages}'

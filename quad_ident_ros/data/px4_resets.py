@@ -52,7 +52,10 @@ class Counters:
         for name in self._names:
             field, _, place = name.partition('[')
             value = getattr(message, field, np.nan)
-            self._numbers.append(value[int(place[:-1])] if place and np.ndim(value) else value)
+            if place:
+                k = int(place[:-1])
+                value = value[k] if np.ndim(value) and len(value) > k else np.nan
+            self._numbers.append(value)
 
     def fields(self) -> dict[str, np.ndarray]:
         """Return the fields that all messages have, name -> (n,)."""

@@ -3,6 +3,7 @@
 """Bags of others without a mapping, and with types that only their definitions tell."""
 
 import sqlite3
+from types import SimpleNamespace
 
 from bag_files import (
     ACTUATORS,
@@ -30,8 +31,10 @@ import pytest
 from records import CMD, refused, SMALL
 from rosbags.rosbag1 import Writer as Writer1
 
+from quad_ident_ros.data.foreign import TopicPart
 from quad_ident_ros.data.load import load, load_all
-from quad_ident_ros.data.mapping import mapping_from
+from quad_ident_ros.data.mapping import mapping_from, Source
+from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.attitude import euler_from_quaternion
 
 SPEEDS = SMALL.stack(*CMD)
@@ -111,6 +114,19 @@ def test_the_resets_that_px4_counts_split_a_bag(tmp_path, odometry):
     one, other = load_all(write_old(tmp_path / 'f.db3', messages))
     assert one.t[-1] == pytest.approx(5.99) and other.t[0] == pytest.approx(6.0)
     assert ('odometry was reset' if odometry else 'reset by 0.8 m') in one.info['notes'][-1]
+
+
+def test_a_counter_that_is_no_number_is_said():
+    """As in a bag whose definition of the type is another one."""
+    part = TopicPart('bag, topic /attitude', 'attitude', Source('/attitude'))
+    for counter in ('two', [1, 2]):
+        message = SimpleNamespace(__msgtype__=PX4 + 'VehicleAttitude', timestamp=1,
+                                  q=(1.0, 0.0, 0.0, 0.0), quat_reset_counter=counter)
+        with pytest.raises(InputError, match='defines'):
+            part.add(0, message)
+    message.quat_reset_counter, message.delta_q_reset = 2, (1.0,)
+    part.add(0, message)
+    assert part.counters.fields()['quat_reset_counter'][-1] == 2
 
 
 def test_a_definition_of_another_length_is_said(tmp_path):
