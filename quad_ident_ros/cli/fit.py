@@ -7,7 +7,7 @@ from dataclasses import replace
 import textwrap
 
 from quad_ident_ros.cli.identify import progress_bar
-from quad_ident_ros.cli.options import add_selection, flights_from, selection_of
+from quad_ident_ros.cli.options import add_selection, flights_from, selection_of, vehicle_from
 from quad_ident_ros.data.quality import refuse_errors, refuse_unfit
 from quad_ident_ros.data.quality.ground import airborne, stands
 from quad_ident_ros.data.split import joined
@@ -15,7 +15,7 @@ from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.greybox.cautions import cautions
 from quad_ident_ros.greybox.free import columns_of_names, UNITS
 from quad_ident_ros.model.mixing import with_commands
-from quad_ident_ros.model.vehicle import load_vehicle, write_vehicle
+from quad_ident_ros.model.vehicle import write_vehicle
 from quad_ident_ros.report.data import write_json
 from quad_ident_ros.report.table import console
 
@@ -42,7 +42,7 @@ def add(commands):
     parser.add_argument('--mapping', metavar='FILE', help='which topics and outputs of other '
                         "people's records mean what (YAML)")
     parser.add_argument('--vehicle', required=True, help='vehicle name or file: the start, and '
-                        'what holds for all that is not freed')
+                        'what holds for all that is not freed; auto: the file beside a PX4 log')
     parser.add_argument('--free', required=True, metavar='NAME,...', help='what to estimate')
     parser.add_argument('--out-vehicle', metavar='FILE',
                         help='write the vehicle file with what was found')
@@ -55,7 +55,7 @@ def run(options):
     """Read the flights, fit, show the result and write the files asked for."""
     from quad_ident_ros.greybox.fit import as_data, fit, fitted_vehicle
     names = [name.strip() for name in options.free.split(',') if name.strip()]
-    vehicle = load_vehicle(options.vehicle)
+    vehicle = vehicle_from(options.vehicle, options.flights[0], options.mapping)
     selection = selection_of(options)
     free = columns_of_names(names, vehicle)   # before the flights are read: a name that is wrong
     with progress_bar() as bar:
@@ -65,7 +65,7 @@ def run(options):
             bar.update(task, description=f'reading {path}',
                        completed=number / len(options.flights))
             records += [with_commands(record, vehicle) for record in
-                        flights_from(path, options.mapping, options.vehicle, selection)]
+                        flights_from(path, options.mapping, vehicle, selection)]
         bar.update(task, description='looking for faults')
         quality = []
         for number, record in enumerate(records := joined(records)):

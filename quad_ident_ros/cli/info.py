@@ -8,13 +8,20 @@ from rich import box
 from rich.table import Table
 
 from quad_ident_ros.cli.identify import progress_bar
-from quad_ident_ros.cli.options import add_selection, flights_from, selection_of, vehicle_from
+from quad_ident_ros.cli.options import (
+    add_selection,
+    AUTO,
+    flights_from,
+    selection_of,
+    vehicle_from,
+)
 from quad_ident_ros.data.begin_mapping import begin_mapping
 from quad_ident_ros.data.load import contents_of
 from quad_ident_ros.data.mapping import load_mapping
 from quad_ident_ros.data.selection import selected
 from quad_ident_ros.data.summary import contents, segments, summarise, unread
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.model.vehicle import Vehicle
 from quad_ident_ros.report.data import write_json
 from quad_ident_ros.report.table import console
 
@@ -55,7 +62,7 @@ def add(commands):
 
 def run(options):
     """Read a file, show what is in it, and return the exit code."""
-    vehicle = options.vehicle and vehicle_from(options.vehicle, options.flight, options.mapping)
+    vehicle, without = _vehicle(options)
     selection = selection_of(options)
     if options.mapping:
         load_mapping(options.mapping)   # what is wrong with it is no fault of the flight
@@ -71,6 +78,7 @@ def run(options):
         else:
             found = [summarise(record, vehicle) for record in
                      selected(options.flight, records, selection)]
+            found = [{**one, 'findings': [*without, *one['findings']]} for one in found]
     inside = {**contents(options.flight, title, streams), 'segments': segments(records)}
     if options.json != '-':
         show_streams(inside)
@@ -86,6 +94,19 @@ def run(options):
     errors = any(finding['severity'] == 'error' for summary in found
                  for finding in summary['findings'])
     return FAULTY if errors else 0
+
+
+def _vehicle(options: argparse.Namespace) -> tuple[Vehicle | None, list[dict]]:
+    """Return the Vehicle, and findings: why there is none where a log does not fill its file."""
+    if not options.vehicle:
+        return None, []
+    try:
+        return vehicle_from(options.vehicle, options.flight, options.mapping), []
+    except InputError as error:
+        if options.vehicle != AUTO:
+            raise
+        return None, [{'code': 'vehicle', 'severity': 'warning', 'where': '--vehicle auto',
+                       'message': str(error), 'remedy': ''}]
 
 
 def show_streams(inside: dict) -> None:
@@ -150,7 +171,10 @@ def _show_record(screen, say, summary):
     time = summary['time']
     say(f'{summary["source"] or summary["name"]}: {time["samples"]} samples, '
         f'{time["duration_s"]:.3f} s from t = {time["start_s"]:.3f} s, '
-        f'{time["rate_hz"]:.1f} Hz, {time["gaps"]} gaps')
+        f'{time["rate_hz"]:.1f} Hz, {time["gaps"]} gap{"" if time["gaps"] == 1 else "s"}')
+    if summary['modes']:
+        say('flight modes: ' + ', '.join(f'{one["mode"]} {one["from_s"]:.2f} to {one["to_s"]:.2f} '
+                                         's' for one in summary['modes']))
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1), header_style='bold')
     for name in ('column', 'unit'):
         table.add_column(name, no_wrap=True)

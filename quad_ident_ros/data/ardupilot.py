@@ -14,6 +14,7 @@ import numpy as np
 from quad_ident_ros.data import frames
 from quad_ident_ros.data.autopilot import known_names, outputs_stream, unit_quaternions
 from quad_ident_ros.data.dataflash import read_messages
+from quad_ident_ros.data.modes import modes_from
 from quad_ident_ros.data.motor_order import about_motors, quad
 from quad_ident_ros.data.readers.base import content_of
 from quad_ident_ros.data.record import FlightRecord, QUATERNION
@@ -21,13 +22,14 @@ from quad_ident_ros.data.streams import INTERPOLATED, join, SLOW, Stream
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.attitude import quaternion_from_euler
 
-ROLES = {'XKQ': ('pose',), 'NKQ': ('pose',), 'ATT': ('pose',), 'XKF1': ('pose', 'velocity'),
-         'NKF1': ('pose', 'velocity'), 'POS': ('pose',), 'GPS': ('pose', 'velocity'),
+ROLES = {'XKQ': ('attitude',), 'NKQ': ('attitude',), 'ATT': ('attitude',),
+         'XKF1': ('position', 'velocity'), 'NKF1': ('position', 'velocity'),
+         'POS': ('position',), 'GPS': ('position', 'velocity'),
          'IMU': ('rate', 'specific_force'), 'RATE': ('rate',), 'RCOU': ('commands',),
          'ESC': ('rotors',), 'BAT': ('battery',), 'CURR': ('battery',)}
 """Types of messages that are read, and for what."""
 
-_ABOUT = ('PARM', 'MSG', 'VER', 'TIME')
+_ABOUT = ('PARM', 'MSG', 'VER', 'TIME', 'MODE')
 _INSTANCES = ('C', 'I', 'Instance', 'Inst')     # fields that tell EKF cores, sensors, ... apart
 _BUILDS = {1: 'Rover', 3: 'ArduPlane', 4: 'AntennaTracker', 7: 'ArduSub', 12: 'Blimp'}
 _OTHERS = {'ArduPlane': 'ArduPlane', 'ArduRover': 'Rover', 'APM:Rover': 'Rover', 'Rover': 'Rover',
@@ -86,7 +88,21 @@ def read_ardupilot(path, mapping=None):
     return FlightRecord(t, columns, {'name': path.stem, 'source': str(path), 'start_ns': start,
                                      'notes': [*notes, *left_out],
                                      'motors': _about_motors(parameters, channels),
-                                     'hardware': _hardware(found)})
+                                     'hardware': _hardware(found),
+                                     'modes': _modes(found.get('MODE'), start)})
+
+
+def _modes(messages, start_ns):
+    """Return the changes of the flight mode of a copter, as modes_from has them."""
+    from pymavlink.mavutil import mode_mapping_acm
+    numbers = [] if messages is None else [
+        name for name in ('ModeNum', 'Mode') if name in messages.fields
+        and messages.rows[name].dtype.kind in 'iu']
+    if not numbers or not _timed(messages):
+        return []
+    names = {number: name.lower().replace('_', ' ') for number, name in mode_mapping_acm.items()}
+    stamps = messages.rows['TimeUS'].astype(np.int64) * 1000
+    return modes_from(stamps, messages.rows[numbers[0]], names, start_ns)
 
 
 def contents(path):

@@ -55,19 +55,20 @@ class Topic:
     count: int
 
 
-def kind_of(path, start=None):
-    """Return '.bag', '.mcap' or '.db3' by how a file begins, 'folder', or '' for no bag."""
-    path = Path(path)
-    if path.is_dir():
+def told_kind(path, start):
+    """Return '.bag', '.mcap' or '.db3' by the first bytes of a file, 'folder', or ''."""
+    if Path(path).is_dir():
         return 'folder'
-    if start is None:
-        with suppress(OSError), open(path, 'rb') as file:
-            start = file.read(16)
-    told = next((suffix for magic, suffix in MAGIC.items() if (start or b'').startswith(magic)),
-                None)
-    if told:
-        return told
-    return path.suffix if path.suffix in MAGIC.values() and not is_text(start or b'') else ''
+    return next((suffix for magic, suffix in MAGIC.items() if start.startswith(magic)), '')
+
+
+def kind_of(path):
+    """Return told_kind of a path, and of a damaged file the end of its name where that is one."""
+    path, start = Path(path), b''
+    with suppress(OSError), open(path, 'rb') as file:
+        start = file.read(16)
+    named = path.suffix in MAGIC.values() and not is_text(start)
+    return told_kind(path, start) or (path.suffix if named else '')
 
 
 class BagFile:

@@ -4,6 +4,9 @@
 
 from collections.abc import Sequence
 from pathlib import Path
+import re
+
+import numpy as np
 
 from quad_ident_ros.data.bag_file import BagFile
 from quad_ident_ros.data.bag_guess import guessed
@@ -12,9 +15,11 @@ from quad_ident_ros.data.load import reader_of
 from quad_ident_ros.data.mapping import Mapping
 from quad_ident_ros.data.mapping_text import names_text, table_text, topics_text
 from quad_ident_ros.data.readers.base import Content
+from quad_ident_ros.data.signal_kind import kinds_of
 from quad_ident_ros.data.tabular import read_parquet, read_text
 from quad_ident_ros.errors import InputError
 
+_NUMBERED = re.compile(r'(\w+)(?: (\d+)|\[(\d+)\])?')     # of PX4, of ArduPilot
 BAGS = ('rosbag1', 'rosbag2')
 TABLES = {'csv': read_text, 'parquet': read_parquet}
 
@@ -37,7 +42,7 @@ def begin_mapping(out: str | Path, path: str | Path, streams: Sequence[Content])
         found = guess(table)
         text = table_text(path, found.mapping, found.doubts, list(table.columns))
     else:
-        text = names_text(path, 4)
+        text = names_text(path, *_outputs(path), _instances(streams))
     try:
         with open(out, 'x', encoding='utf-8') as file:
             file.write(text)
@@ -46,6 +51,30 @@ def begin_mapping(out: str | Path, path: str | Path, streams: Sequence[Content])
                          'another') from None
     except OSError as error:
         raise InputError(f'{out}: cannot be written: {error.strerror}') from None
+
+
+def _outputs(path: Path) -> tuple[list[int], str]:
+    """Return the numbers of the outputs of a log that change, and their kind, '' in doubt."""
+    try:
+        record = max(reader_of(path).read(path, None, None), key=len)
+    except (InputError, ModuleNotFoundError):
+        return [], ''
+    names = record.numbered('output')
+    values = {k: record.columns[name] for k, name in enumerate(names, 1)}
+    alive = [k for k, column in values.items() if np.nanmax(column) > max(0, np.nanmin(column))]
+    kinds = kinds_of(record.stack(*(names[k - 1] for k in alive))) if alive else ()
+    kind = record.info.get('motors', {}).get('kind') or (kinds[0] if len(kinds) == 1 else '')
+    return alive, kind
+
+
+def _instances(streams: Sequence[Content]) -> dict[str, list[int]]:
+    """Return the numbers of the instances of what can be read and is there several times."""
+    found: dict[str, list[int]] = {}
+    for one in streams:
+        match = _NUMBERED.fullmatch(one.name)
+        if match and one.roles:
+            found.setdefault(match[1], []).append(int(match[2] or match[3] or 0))
+    return {name: sorted(numbers) for name, numbers in found.items() if len(numbers) > 1}
 
 
 def _as_read(path: Path) -> dict[str, str] | None:

@@ -30,7 +30,7 @@ def _three(name):
 GYRO, ACCELEROMETER, ATTITUDE = _three('gyroADC'), _three('accSmooth'), _three('imuQuaternion')
 MOTORS = tuple(f'motor[{k}]' for k in range(8))
 SPEEDS = tuple(f'eRPM[{k}]' for k in range(8))
-ROLES = {'gyroADC[0]': 'rate', 'accSmooth[0]': 'specific_force', 'imuQuaternion[0]': 'pose',
+ROLES = {'gyroADC[0]': 'rate', 'accSmooth[0]': 'specific_force', 'imuQuaternion[0]': 'attitude',
          'motor[0]': 'commands', 'eRPM[0]': 'rotors', 'vbatLatest': 'battery'}
 ORDER = "motors are in Betaflight's order: 1 rear right, 2 front right, 3 rear left, 4 front left"
 

@@ -73,7 +73,7 @@ def _unpacked(values):
 
 _Q = ('q0', 'q1', 'q2', 'q3')
 SOURCES = (
-    ('pose', POSITION, INTERPOLATED, (
+    ('position', POSITION, INTERPOLATED, (
         (_of('stateEstimate', 'x', 'y', 'z'), _scaled(1.0)),
         (_of('kalman', 'stateX', 'stateY', 'stateZ'), _scaled(1.0)),
         (_of('stateEstimateZ', 'x', 'y', 'z'), _scaled(1e-3)),
@@ -82,7 +82,7 @@ SOURCES = (
         (_of('stateEstimate', 'vx', 'vy', 'vz'), _scaled(1.0)),
         (_of('kalman', 'statePX', 'statePY', 'statePZ', *_Q), _turned),
         (_of('stateEstimateZ', 'vx', 'vy', 'vz'), _scaled(1e-3)))),
-    ('pose', QUATERNION, INTERPOLATED, (
+    ('attitude', QUATERNION, INTERPOLATED, (
         (_of('stateEstimate', 'qw', 'qx', 'qy', 'qz'), unit_quaternions),
         (_of('kalman', *_Q), unit_quaternions),
         (_of('stateEstimateZ', 'quat'), _unpacked),
@@ -154,9 +154,17 @@ def contents(path):
     origin = min(int(event.stamps.min()) for event in events if len(event.stamps))
     return [content_of(event.name, 'event', event.stamps, origin,
                        [f'{name} ({letter})' for name, letter in event.types.items()],
-                       list(dict.fromkeys(role for role, _, _, choices in SOURCES
-                                          if next(_there([event], choices), None))))
+                       _roles(event))
             for event in events]
+
+
+def _roles(event):
+    """Return the roles that an event has the variables for; position and attitude are a pose."""
+    roles = list(dict.fromkeys(role for role, _, _, choices in SOURCES
+                               if next(_there([event], choices), None)))
+    if 'position' in roles and 'attitude' in roles:
+        return ['pose', *(role for role in roles if role not in ('position', 'attitude'))]
+    return roles
 
 
 def _there(events, choices):

@@ -13,6 +13,7 @@ import zlib
 
 import numpy as np
 
+from quad_ident_ros.data.counted import counted
 from quad_ident_ros.data.limits import most
 from quad_ident_ros.data.record import find_fault, FlightRecord, unit
 from quad_ident_ros.errors import InputError
@@ -41,7 +42,8 @@ def read_csv(path):
     count = len(columns['t'])
     if count < 2:
         dropped = ', its last line has no line end and was dropped' if truncated else ''
-        raise InputError(f'{path}: {count} samples are no flight{dropped}; give at least 2')
+        raise InputError(f'{path}: {counted(count, "sample")} make no flight{dropped}; '
+                         'give at least 2')
     t = columns.pop('t')
     fault = find_fault(t, columns)
     if fault is not None:

@@ -22,6 +22,7 @@ from quad_ident_ros.data.message_roles import (
     shaped,
     stamp_of,
 )
+from quad_ident_ros.data.px4_resets import Counters, split_at_resets, TOPIC_OF
 from quad_ident_ros.data.record import FlightRecord, QUATERNION
 from quad_ident_ros.data.signal_kind import kinds_of
 from quad_ident_ros.data.streams import HELD, INTERPOLATED, join, SLOW, Stream
@@ -30,6 +31,7 @@ from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.motors import MOTORS_OFF, TO_SPEED
 
 BODY_VELOCITY = ('body_vx', 'body_vy', 'body_vz')
+STATES = 'pose', 'position', 'attitude', 'velocity'     # that an estimator resets
 ONE_CLOCK = 1.0     # s between a stamp and its receipt that vary so much are of several clocks
 _DOWN = re.compile(r'(^|[_/])ned($|[_/])')
 _NAMED = 12         # frames that a message lists
@@ -41,11 +43,12 @@ _COLUMNS = {'position': ('px', 'py', 'pz'), 'velocity': ('vx', 'vy', 'vz'),
 
 def read_mapped_bag(path, mapping):
     """
-    Return the FlightRecord in a bag of ROS 1 or ROS 2 whose topics a mapping names.
+    Return the FlightRecords in a bag of ROS 1 or ROS 2 whose topics a mapping names.
 
-    A mapping without topics is filled by the types of the topics, where these leave no doubt.
-    Stamps are those in the messages where all of a topic have one, else the times of receipt; all
-    are the times of receipt where the stamps are of several clocks.
+    There is one, or several between the resets that px4_msgs count. A mapping without topics
+    is filled by the types of the topics, where these leave no doubt. Stamps are those in the
+    messages where all of a topic have one, else the times of receipt; all are the times of
+    receipt where the stamps are of several clocks.
     Args: path of a bag; mapping Mapping.
     Raises InputError that names file, topic and message.
     """
@@ -69,8 +72,11 @@ def read_mapped_bag(path, mapping):
         notes = [*notes, 'the stamps of the topics are of several clocks; times of receipt are '
                  'used for all of them']
     start, t, columns, left_out = join(path, streams)
-    return FlightRecord(t, velocity_in_world(path, columns),
-                        {'source': str(path), 'start_ns': start, 'notes': [*notes, *left_out]})
+    record = FlightRecord(t, velocity_in_world(path, columns),
+                          {'source': str(path), 'start_ns': start, 'notes': [*notes, *left_out]})
+    return split_at_resets([record], start, {
+        part.counters.topic: (stream.stamps, part.counters.fields())
+        for part, stream in zip(parts, streams, strict=True) if part.counters})
 
 
 def velocity_in_world(path, columns):
@@ -105,6 +111,7 @@ class TopicPart:
         self._numbers = array('d')
         self._stamps = array('q')
         self.received = array('q')
+        self.counters = None    # of resets, where its type has them
         self._messages = 0
         self._children = {}
 
@@ -127,7 +134,14 @@ class TopicPart:
 
     def add(self, received, message):
         """Take a message and its time of receipt, ns; InputError where it does not hold this."""
-        for stamp, values in self._read(message, message.__msgtype__):
+        parts = self._read(message, message.__msgtype__)
+        if self._type in TOPIC_OF and self.role in STATES:
+            self.counters = self.counters or Counters(self._type)
+            try:
+                self.counters.add(message)
+            except OTHER_SHAPE:
+                raise self._defined_otherwise() from None
+        for stamp, values in parts:
             self._stamps.append(stamp)
             self.received.append(received)
             self._numbers.extend(values)
@@ -155,8 +169,11 @@ class TopicPart:
         except NoSuch as error:
             raise InputError(f'{self._here()}: {error}') from None
         except OTHER_SHAPE:
-            raise InputError(f'{self._here()}: the bag defines {self._type} otherwise than '
-                             'ROS 2 does; record it again') from None
+            raise self._defined_otherwise() from None
+
+    def _defined_otherwise(self):
+        return InputError(f'{self._here()}: the bag defines {self._type} otherwise than ROS 2 '
+                          'does; record it again')
 
     def _here(self):
         return f'{self._where}, message {self._messages}'

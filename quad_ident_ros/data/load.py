@@ -6,6 +6,7 @@ from pathlib import Path
 
 from quad_ident_ros.data.outputs import commanded
 from quad_ident_ros.data.readers.others import (
+    is_text,
     refuse_no_file,
     refuse_others,
     refuse_unknown,
@@ -67,6 +68,8 @@ def reader_of(path):
         raise InputError(f'{path}: cannot be read: {error.strerror}') from None
     refuse_others(path, start)
     told = next((reader for reader in READERS if reader.tells(path, start)), None)
+    if told is None and not is_text(start):     # the name of a damaged file tells what it was
+        told = next((reader for reader in READERS if path.suffix in reader.suffixes), None)
     if told is None:
         refuse_unknown(path, start, ', '.join(reader.title for reader in READERS))
     return told or READERS[-1]

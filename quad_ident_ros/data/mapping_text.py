@@ -60,11 +60,25 @@ def topics_text(source: object, found: Sequence[Content],
                           'body: FLU                      # or FRD', head, *lines, *_ACTUATORS])
 
 
-def names_text(source: object, count: int) -> str:
-    """Return a mapping file to begin with for a log whose names are known; count of outputs."""
-    order = ', '.join(map(str, range(1, max(count, 1) + 1)))
-    return _text(source, ['instances: {}                  # of a topic that is there twice',
-                          *(line.replace('[1, 2, 3, 4]', f'[{order}]') for line in _ACTUATORS)])
+def names_text(source: object, outputs: Sequence[int], kind: str,
+               instances: Pairs[str, Sequence[int]]) -> str:
+    """
+    Return a mapping file to begin with for a log whose names are known.
+
+    Nothing is filled in, as the log says by itself what it has. Args: source; outputs: numbers of
+    those that motors are on; kind of them (KINDS), or ''; instances: the numbers of what is there
+    several times.
+    """
+    order = ', '.join(map(str, outputs)) or '1, 2, 3, 4'
+    listed = ['instances: {}                  # such as {NAME: NUMBER}: which of several is '
+              'read']
+    listed += [f'#   {name}: there are {", ".join(map(str, numbers))}'
+               for name, numbers in instances.items()]
+    told = {'kind: pwm'.ljust(29): f'kind: {kind}'.ljust(29), '[1, 2, 3, 4]': f'[{order}]'}
+    lines = _ACTUATORS
+    for usual, here in told.items():
+        lines = [line.replace(usual, here) for line in lines]
+    return _text(source, [*listed, *lines])
 
 
 def table_text(source: object, mapping: Mapping, doubts: Sequence[str], columns: Pairs) -> str:

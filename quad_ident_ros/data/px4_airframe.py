@@ -20,8 +20,6 @@ BANKS = 'PWM_MAIN', 'PWM_AUX', 'UAVCAN_EC', 'SIM_GZ_EC'
 DSHOT = 1, 1999         # outputs of PX4's DSHOT driver at the least and at full throttle
 DSHOT_TIMER = -2        # of a bank's TIM; from this on down the timer speaks DSHOT
 
-MULTIROTORS = {0: 'generic', 2: 'quadrotor', 13: 'hexarotor', 14: 'octorotor',
-               29: 'dodecarotor', 35: 'decarotor'}
 OTHERS = {1: 'a fixed wing', 3: 'a coaxial helicopter', 4: 'a helicopter', 7: 'an airship',
           8: 'a balloon', 10: 'a rover', 11: 'a boat', 12: 'a submarine', 15: 'a tricopter',
           **{kind: 'a VTOL' for kind in range(19, 26)}}

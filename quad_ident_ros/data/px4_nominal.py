@@ -10,12 +10,13 @@ import numpy as np
 from quad_ident_ros import resources
 from quad_ident_ros.data.mapping import Mapping
 from quad_ident_ros.data.px4_airframe import Motors, motors_of
-from quad_ident_ros.data.ulog import read_ulog
+from quad_ident_ros.data.ulog import read_ulog, refuse_others
 from quad_ident_ros.data.ulog_parse import parse
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.vehicle import Vehicle, vehicle_from_mapping
 
 FULL = 1000.0       # rad/s at full signal where no rpm is logged; only thrust over mass counts
+STATUS = 'vehicle_status'
 USUAL_RATIO = 0.05  # m, the KM that PX4 has where nobody set one
 
 _HEAD = """\
@@ -43,7 +44,9 @@ def vehicle_of_log(path: Path, mapping: Mapping | None = None) -> Vehicle:
     """
     path = Path(path)
     file = path.with_name(f'{path.stem}_vehicle.yaml')
-    motors = motors_of(parse(path).initial_parameters)
+    log = parse(path, (STATUS,))
+    refuse_others(path, log, next((one.data for one in log.data_list if one.name == STATUS), None))
+    motors = motors_of(log.initial_parameters)
     if motors is None:
         raise InputError(f'{path}: the parameters of the log do not say where its motors are '
                          '(CA_ROTOR_COUNT, CA_ROTOR*_PX, MAV_TYPE); give a vehicle file')

@@ -13,16 +13,24 @@ ARMED = 2           # arming_state of vehicle_status
 SMALL = {'position': (0.1, 'm'), 'velocity': (0.1, 'm/s'), 'attitude': (np.radians(2.0), 'rad')}
 """Resets by less are no more than the noise of the estimates, and many flights have them."""
 
+_OF_POSITION = (
+    ('xy_reset_counter', 'position', ('delta_xy[0]', 'delta_xy[1]'), 'the position'),
+    ('z_reset_counter', 'position', ('delta_z',), 'the height'),
+    ('vxy_reset_counter', 'velocity', ('delta_vxy[0]', 'delta_vxy[1]'), 'the velocity'),
+    ('vz_reset_counter', 'velocity', ('delta_vz',), 'the vertical velocity'),
+    ('heading_reset_counter', 'attitude', ('delta_heading',), 'the heading'))
+_OF_ATTITUDE = (('quat_reset_counter', 'attitude', (), 'the attitude'),)
 _COUNTERS = {
-    'vehicle_local_position': (
-        ('xy_reset_counter', 'position', ('delta_xy[0]', 'delta_xy[1]'), 'the position'),
-        ('z_reset_counter', 'position', ('delta_z',), 'the height'),
-        ('vxy_reset_counter', 'velocity', ('delta_vxy[0]', 'delta_vxy[1]'), 'the velocity'),
-        ('vz_reset_counter', 'velocity', ('delta_vz',), 'the vertical velocity'),
-        ('heading_reset_counter', 'attitude', ('delta_heading',), 'the heading')),
-    'vehicle_attitude': (('quat_reset_counter', 'attitude', (), 'the attitude'),),
+    'vehicle_local_position': _OF_POSITION, 'estimator_local_position': _OF_POSITION,
+    'vehicle_attitude': _OF_ATTITUDE, 'estimator_attitude': _OF_ATTITUDE,
     'vehicle_odometry': (('reset_counter', '', (), 'the odometry'),),
 }
+_TURNS = tuple(f'delta_q_reset[{i}]' for i in range(4))
+RESET_FIELDS = {topic: tuple(name for counter, kind, deltas, _ in counters for name in
+                             (counter, *(_TURNS if kind == 'attitude' and not deltas else deltas)))
+                for topic, counters in _COUNTERS.items()}
+"""Topic -> the fields in it that tell of resets, as far as it has them."""
+
 TWICE = 0.3         # s within which two topics tell of one reset
 
 
@@ -85,8 +93,12 @@ def resets(data: Topics) -> tuple[list[tuple[int, int, str]], list[int]]:
         if topic not in data:
             continue
         stamps, fields = data[topic]
+        order = np.argsort(stamps, kind='stable')   # as streams are put in order
+        stamps = stamps[order]
+        fields = {name: np.asarray(fields[name])[order] for name in RESET_FIELDS[topic]
+                  if name in fields}
         for name, kind, deltas, what in counters:
-            if name not in fields or (stamps[1:] <= stamps[:-1]).any():
+            if name not in fields:
                 continue
             for k in np.flatnonzero(np.diff(np.asarray(fields[name]).astype(np.int64))) + 1:
                 size = _size(fields, kind, deltas, k)
@@ -107,7 +119,7 @@ def _said(size: float, kind: str) -> str:
 def _size(fields: Mapping[str, np.ndarray], kind: str, deltas: Sequence[str],
           k: int) -> float | None:
     """Return the size of a reset in m, m/s or rad, or None where it is not logged."""
-    names = deltas or [f'delta_q_reset[{i}]' for i in range(4)]
+    names = deltas or _TURNS
     if not kind or any(name not in fields for name in names):
         return None
     values = np.array([float(fields[name][k]) for name in names])

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from quad_ident_ros.data.counted import counted
 from quad_ident_ros.data.cutting import without
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.attitude import euler_from_quaternion, unwrap_euler
@@ -95,7 +96,8 @@ class FlightRecord:
         object.__setattr__(self, 'info', dict(self.info))
         t = self._checked('t', self.t, None)
         if len(t) < 2:
-            raise InputError(f'{self._label()} has {len(t)} samples; at least 2 are needed')
+            raise InputError(f'{self._label()} has {counted(len(t), "sample")}; at least 2 are '
+                             'needed')
         columns = {name: self._checked(name, values, len(t))
                    for name, values in self.columns.items()}
         fault = find_fault(t, columns)

@@ -8,6 +8,7 @@ from typing import TypeAlias
 
 import numpy as np
 
+from quad_ident_ros.data.counted import counted
 from quad_ident_ros.data.frames import conjugate, continuous, multiply, rotate
 from quad_ident_ros.data.record import FlightRecord, QUATERNION
 
@@ -153,7 +154,7 @@ def _noted(record: FlightRecord, kept: list[tuple[int, int]], count: int, resets
         note = (f'part {number} of {len(kept)}, t = {piece.t[0]:.2f} to {piece.t[-1]:.2f} s, '
                 f'split where the estimator was reset: {shown}{more}')
         if dropped:
-            note += f'; {dropped} parts shorter than {shortest:g} s are left out'
+            note += f'; left out: {counted(dropped, "part")} shorter than {shortest:g} s'
         info = {**piece.info, 'notes': [*piece.info.get('notes', ()), note]}
         if len(kept) > 1:
             info |= {'name': f'{name}_{number}'} if name else {}

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from quad_ident_ros.data.counted import counted
 from quad_ident_ros.data.frames import continuous
 from quad_ident_ros.data.record import QUATERNION
 from quad_ident_ros.errors import InputError
@@ -77,12 +78,12 @@ def _in_order(where, stream, notes):
     problems = {'without a finite value': len(stamps) - len(index),
                 'out of order': int((np.diff(stamps[finite]) < 0).sum()),
                 'with the stamp of another': len(index) - int(np.sum(new))}
-    notes += [f'{stream.source}: {count} samples {what}'
+    notes += [f'{stream.source}: {counted(count, "sample")} {what}'
               for what, count in problems.items() if count]
     index = index[new]
     if len(index) < 2:
-        raise InputError(f'{where}, {stream.source}: {len(index)} samples with a stamp and finite '
-                         'values; at least 2 are needed')
+        raise InputError(f'{where}, {stream.source}: {counted(len(index), "sample")} with a '
+                         'stamp and finite values; at least 2 are needed')
     return Stream(stream.source, stamps[index],
                   {name: np.asarray(values, float)[index]
                    for name, values in stream.columns.items()}, stream.between)

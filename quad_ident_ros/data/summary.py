@@ -8,7 +8,14 @@ from pathlib import Path
 
 import numpy as np
 
-from quad_ident_ros.data.quality import clock_offset, command_offset, findings, velocity_offset
+from quad_ident_ros.data.modes import mode_spans
+from quad_ident_ros.data.quality import (
+    clock_offset,
+    command_offset,
+    findings,
+    gravest_first,
+    velocity_offset,
+)
 from quad_ident_ros.data.quality.excitation import excitation
 from quad_ident_ros.data.quality.ground import airborne
 from quad_ident_ros.data.quality.series import GAP
@@ -43,6 +50,8 @@ def summarise(record, vehicle=None):
                  'period_s': {'shortest': float(steps.min()), 'median': record.period(),
                               'longest': float(steps.max())},
                  'gaps': int((steps > GAP * record.period()).sum())},
+        'modes': [{'mode': name, 'from_s': first, 'to_s': last}
+                  for name, first, last in mode_spans(record)],
         'columns': {name: _column(name, values, record.t)
                     for name, values in record.columns.items()},
         'excitation': {name: {'value': value, 'unit': UNITS[name]}
@@ -54,12 +63,13 @@ def summarise(record, vehicle=None):
 
 
 def _findings(record, vehicle):
-    """Return the Findings on a record, but for faults that lie where diagnose and fit cut it."""
+    """Return the Findings on a record, those of OF_GROUND on what diagnose and fit keep of it."""
     found = findings(record, vehicle)
     if not any(one.code == 'ground' and one.severity == 'warning' for one in found):
         return found
-    left = {one.code for one in findings(airborne(record, vehicle), vehicle)}
-    return [one for one in found if one.code not in OF_GROUND or one.code in left]
+    flown = findings(airborne(record, vehicle), vehicle)
+    return gravest_first([*(one for one in found if one.code not in OF_GROUND),
+                          *(one for one in flown if one.code in OF_GROUND)])
 
 
 def contents(path: str | Path, title: str, streams: Sequence[Content]) -> dict:

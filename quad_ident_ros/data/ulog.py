@@ -9,15 +9,18 @@ import numpy as np
 from pyulog import ULog
 
 from quad_ident_ros.data import frames
+from quad_ident_ros.data.counted import counted
 from quad_ident_ros.data.foreign import BODY_VELOCITY, velocity_in_world
 from quad_ident_ros.data.mapping import Actuators, KINDS, Mapping
+from quad_ident_ros.data.modes import modes_from, PX4
 from quad_ident_ros.data.px4_airframe import FIRST_MOTOR, Motors, motors_of, other_kind
 from quad_ident_ros.data.px4_motors import commands
 from quad_ident_ros.data.px4_outputs import motor_outputs
 from quad_ident_ros.data.px4_position import estimated
-from quad_ident_ros.data.px4_states import flown, resets
+from quad_ident_ros.data.px4_resets import split_at_resets
+from quad_ident_ros.data.px4_states import flown
 from quad_ident_ros.data.record import FlightRecord, QUATERNION
-from quad_ident_ros.data.split import part, SHORTEST, split
+from quad_ident_ros.data.split import part, SHORTEST
 from quad_ident_ros.data.streams import HELD, INTERPOLATED, join, SLOW, Stream
 from quad_ident_ros.data.ulog_parse import parse
 from quad_ident_ros.errors import InputError
@@ -61,12 +64,9 @@ def read_ulog(path: str | Path, mapping: Mapping | None = None,
                              f'{", ".join(TOPICS)}')
     data = {name: _instance(path, log, name, mapping.instances.get(name))
             for name in (*TOPICS, *STATES)}
-    other = other_kind(log.initial_parameters, data['vehicle_status'])
-    if other:
-        raise InputError(f'{path}: this is the log of {other} (MAV_TYPE, vehicle_status), whose '
-                         'wings, servos or wheels no multirotor has; give the log of a multirotor')
+    refuse_others(path, log, data['vehicle_status'])
     notes = [*(['parts of the log are damaged and left out'] if log.file_corruption else []),
-             *([f'{len(log.dropouts)} dropouts while logging'] if log.dropouts else [])]
+             *([f'{counted(len(log.dropouts), "dropout")} while logging'] if log.dropouts else [])]
     streams = [_attitude(path, data), *_position(path, data, notes), _rate(path, data),
                _specific_force(path, data), _battery(path, data)]
     streams += _outputs(path, log, data, mapping.actuators, vehicle, notes,
@@ -76,8 +76,26 @@ def read_ulog(path: str | Path, mapping: Mapping | None = None,
     start, t, columns, joined = join(path, streams)
     record = FlightRecord(t, velocity_in_world(path, columns), {
         'name': path.stem, 'source': str(path), 'start_ns': start, 'notes': [*notes, *joined],
-        'hardware': _hardware(log)})
-    return _flights(path, record, data)
+        'hardware': _hardware(log), 'modes': _modes(path, data['vehicle_status'], start)})
+    taken = {stream.source.removeprefix('topic ') for stream in streams
+             if {'px', 'body_vx', 'qw'} & stream.columns.keys()}
+    return _flights(path, record, data, taken)
+
+
+def refuse_others(path: Path, log: ULog, status: dict | None) -> None:
+    """Raise InputError for the log of a vehicle that is no multirotor; status: vehicle_status."""
+    other = other_kind(log.initial_parameters, status)
+    if other:
+        raise InputError(f'{path}: this is the log of {other} (MAV_TYPE, vehicle_status), which '
+                         'is no multirotor; give the log of a multirotor')
+
+
+def _modes(path: Path, status: dict | None, start_ns: int) -> list[tuple[float, str]]:
+    """Return the changes of the flight mode, as modes_from has them."""
+    if status is None or 'nav_state' not in status:
+        return []
+    stamps = _stamps(path, 'vehicle_status', status)
+    return modes_from(stamps, status['nav_state'], PX4, start_ns)
 
 
 def _hardware(log: object) -> dict[str, str]:
@@ -87,38 +105,15 @@ def _hardware(log: object) -> dict[str, str]:
             if about.get(key)}
 
 
-def _flights(path: Path, record: FlightRecord, data: dict) -> list[FlightRecord]:
-    """Return the parts of a record in the air and between resets."""
-    start = record.info['start_ns']
-    states = {name: (_stamps(path, name, data[name]), data[name]) for name in
-              (*STATES, 'vehicle_local_position', 'vehicle_attitude', 'vehicle_odometry')
+def _flights(path: Path, record: FlightRecord, data: dict, taken: set[str]
+             ) -> list[FlightRecord]:
+    """Return the parts of a record in the air and between resets of the topics that it is from."""
+    states = {name: (_stamps(path, name, data[name]), data[name]) for name in (*STATES, *taken)
               if data[name] is not None and len(data[name]['timestamp'])}
     spans, looked_at = flown(states)
     parts = [record] if spans is None else _in_the_air(path, record, spans, looked_at)
-    found, small = resets(_used(states, record))
-    parts = [_passing_over(piece, [(stamp - start) * 1e-9 for stamp in small]) for piece in parts]
-    times = [((before - start) * 1e-9, (after - start) * 1e-9, what)
-             for before, after, what in found]
-    return [piece for one in parts for piece in split(one, times)]
-
-
-def _passing_over(record: FlightRecord, times: list[float]) -> FlightRecord:
-    """Return a record with a note of the small resets (s) in it."""
-    count = sum(record.t[0] < time < record.t[-1] for time in times)
-    if not count:
-        return record
-    note = f'{count} resets of the estimator, each by less than its noise, are passed over'
-    return replace(record, info={**record.info, 'notes': [*record.info['notes'], note]})
-
-
-def _used(states: dict, record: FlightRecord) -> dict:
-    """Return the topics whose resets show in the record."""
-    if not record.has('px'):
-        states = {name: state for name, state in states.items()
-                  if name != 'vehicle_local_position'}
-    if 'vehicle_local_position' in states or 'vehicle_attitude' in states:
-        return {name: state for name, state in states.items() if name != 'vehicle_odometry'}
-    return states
+    return split_at_resets(parts, record.info['start_ns'],
+                           {name: found for name, found in states.items() if name in taken})
 
 
 def _in_the_air(path: Path, record: FlightRecord, spans: list[tuple[int | None, int | None]],
@@ -146,7 +141,8 @@ def _in_the_air(path: Path, record: FlightRecord, spans: list[tuple[int | None, 
         note = (f'kept: t = {piece.t[0]:.2f} to {piece.t[-1]:.2f} s of {record.t[-1]:.2f} s, '
                 f'{looked_at}')
         if len(parts) > len(kept):
-            note += f'; {len(parts) - len(kept)} flights shorter than {SHORTEST:g} s left out'
+            short = counted(len(parts) - len(kept), 'flight')
+            note += f'; left out: {short} shorter than {SHORTEST:g} s'
         info = {**piece.info, 'notes': [*piece.info['notes'], note]}
         if len(kept) > 1:
             info |= {'name': f'{info["name"]}_{number}', 'source': f'{path}, flight {number}'}

@@ -12,8 +12,9 @@ from quad_ident_ros.data.ulog_walk import FORMAT, Messages, rows_of, START, SUBS
 from quad_ident_ros.errors import InputError
 
 ROLES = {
-    'vehicle_attitude': ('pose',), 'estimator_attitude': ('pose',),
-    'vehicle_local_position': ('pose', 'velocity'), 'estimator_local_position': ('velocity',),
+    'vehicle_attitude': ('attitude',), 'estimator_attitude': ('attitude',),
+    'vehicle_local_position': ('position', 'velocity'),
+    'estimator_local_position': ('position', 'velocity'),
     'vehicle_odometry': ('pose', 'velocity', 'rate'), 'vehicle_angular_velocity': ('rate',),
     'sensor_combined': ('rate', 'specific_force'), 'vehicle_acceleration': ('specific_force',),
     'actuator_motors': ('commands',), 'actuator_outputs': ('commands',),

@@ -325,7 +325,7 @@ def test_complex_poles_are_not_published_as_real_ones(bench):
 def test_a_window_without_samples_is_an_error(bench, hover):
     bench = bench({'window': 0.001})
     bench.feed(hover)
-    bench.await_status(DiagnosticStatus.ERROR, '1 samples')
+    bench.await_status(DiagnosticStatus.ERROR, '1 sample')
 
 
 def test_data_without_excitation_are_an_error(bench):

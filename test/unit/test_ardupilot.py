@@ -136,7 +136,8 @@ def test_contents_tell_what_a_message_could_be_read_for(tmp_path):
     assert imu.samples == len(SMALL) and imu.rate == pytest.approx(100)
     assert imu.roles == ('rate', 'specific_force') and 'GyrX' in imu.fields
     assert by_name['RCOU'].roles == ('commands',) and by_name['MSG'].roles == ()
-    assert by_name['XKF1[0]'].roles == ('pose', 'velocity')
+    assert by_name['XKF1[0]'].roles == ('position', 'velocity')
+    assert by_name['XKQ[0]'].roles == ('attitude',)
 
 
 def test_values_are_those_that_pymavlink_reads(tmp_path):

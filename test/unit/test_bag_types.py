@@ -3,6 +3,7 @@
 """Bags of others without a mapping, and with types that only their definitions tell."""
 
 import sqlite3
+from types import SimpleNamespace
 
 from bag_files import (
     ACTUATORS,
@@ -24,14 +25,16 @@ from bag_files import (
     write_old,
     xyz,
 )
-from flightmaker import changed, VEHICLE
+from flightmaker import changed, flight, VEHICLE
 import numpy as np
 import pytest
 from records import CMD, refused, SMALL
 from rosbags.rosbag1 import Writer as Writer1
 
-from quad_ident_ros.data.load import load
-from quad_ident_ros.data.mapping import mapping_from
+from quad_ident_ros.data.foreign import TopicPart
+from quad_ident_ros.data.load import load, load_all
+from quad_ident_ros.data.mapping import mapping_from, Source
+from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.attitude import euler_from_quaternion
 
 SPEEDS = SMALL.stack(*CMD)
@@ -92,6 +95,38 @@ def test_px4_without_odometry_is_read_from_position_and_attitude(tmp_path):
     messages = [one for one in px4(SMALL, SHARES) if 'odometry' not in one[0]]
     read = load(write_old(tmp_path / 'f.db3', messages))
     agrees(read, PLACE, SPEED, ATTITUDE, RATE, FORCE, within=1e-5)
+
+
+@pytest.mark.parametrize('odometry', [True, False])
+def test_the_resets_that_px4_counts_split_a_bag(tmp_path, odometry):
+    """A step of 0.8 m, less than a jump that shows in the data."""
+    record = flight(seconds=12.0, noise=0.0)
+    messages = [one for one in px4(record, np.full((len(record), 4), 0.5))
+                if odometry or 'odometry' not in one[0]]
+    for topic, _, ns, fields in messages:
+        late = ns >= 10 ** 12 + 6 * 10 ** 9
+        if topic.endswith('vehicle_odometry') and late:
+            fields['reset_counter'] = 1
+            fields['position'][0] += 0.8
+        elif topic.endswith('local_position') and late:
+            fields.update(xy_reset_counter=1, x=fields['x'] + 0.8,
+                          delta_xy=np.array([0.8, 0.0], np.float32))
+    one, other = load_all(write_old(tmp_path / 'f.db3', messages))
+    assert one.t[-1] == pytest.approx(5.99) and other.t[0] == pytest.approx(6.0)
+    assert ('odometry was reset' if odometry else 'reset by 0.8 m') in one.info['notes'][-1]
+
+
+def test_a_counter_that_is_no_number_is_said():
+    """As in a bag whose definition of the type is another one."""
+    part = TopicPart('bag, topic /attitude', 'attitude', Source('/attitude'))
+    for counter in ('two', [1, 2]):
+        message = SimpleNamespace(__msgtype__=PX4 + 'VehicleAttitude', timestamp=1,
+                                  q=(1.0, 0.0, 0.0, 0.0), quat_reset_counter=counter)
+        with pytest.raises(InputError, match='defines'):
+            part.add(0, message)
+    message.quat_reset_counter, message.delta_q_reset = 2, (1.0,)
+    part.add(0, message)
+    assert part.counters.fields()['quat_reset_counter'][-1] == 2
 
 
 def test_a_definition_of_another_length_is_said(tmp_path):

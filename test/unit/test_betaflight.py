@@ -82,7 +82,7 @@ def test_several_logs_are_several_flights(tmp_path):
     assert title == 'a blackbox log of Betaflight' and [s.name for s in streams] == [
         'log 1', 'log 2']
     assert streams[0].rate == pytest.approx(100) and 'gyroADC[0]' in streams[0].fields
-    assert set(streams[0].roles) == {'rate', 'specific_force', 'pose', 'commands', 'rotors',
+    assert set(streams[0].roles) == {'rate', 'specific_force', 'attitude', 'commands', 'rotors',
                                      'battery'}
 
 

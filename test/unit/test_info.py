@@ -4,14 +4,16 @@
 
 import json
 
+from dataflash_files import copter, dataflash, TYPES
 from flightmaker import changed, flight, px4_samples, ulog, VEHICLE
 from hypothesis import given
 from hypothesis import strategies as st
 import numpy as np
-from px4_files import controls, log_of, status
+from px4_files import controls, FORMATS, log_of, status
 import pytest
 from records import CMD, FAST, log
 from table_files import named, others, Q, table
+from usd_files import crazyflie_events, usdlog
 import yaml
 
 from quad_ident_ros.cli.info import FAULTY
@@ -37,12 +39,38 @@ def test_streams_of_a_log_are_shown_beside_the_flight(tmp_path, capsys):
     code, data = info(capsys, path)
     streams = {stream['name']: stream for stream in data['streams']}
     assert code == 0 and 'PX4' in data['kind'] and data['time']['samples'] == len(SHORT)
-    assert streams['vehicle_attitude']['roles'] == ['pose']
+    assert streams['vehicle_attitude']['roles'] == ['attitude']
+    assert streams['vehicle_local_position']['roles'] == ['position', 'velocity']
     assert streams['vehicle_attitude']['rate_hz'] == pytest.approx(100)
     assert streams['vehicle_attitude']['duration_s'] == pytest.approx(5.99)
     assert main(['info', str(path)]) == 0
     shown = capsys.readouterr().out
     assert 'vehicle_local_position' in shown and 'excitation' in shown
+
+
+def test_the_modes_of_a_px4_log_are_shown_with_their_spans(tmp_path, capsys):
+    """By nav_state, which is logged on and on; only of the time that is flown."""
+    formats = {**FORMATS, 'vehicle_status': (*FORMATS['vehicle_status'], 'uint8_t nav_state')}
+    states = [(0.0, 2, 2), (1.0, 2, 2), (2.5, 2, 14), (3.0, 2, 14), (5.0, 1, 200)]
+    extra = [('vehicle_status', 0, 5_000_000 + round(t * 1e6), bytes([armed, 1, 0, mode]))
+             for t, armed, mode in states]
+    path = log(tmp_path, log_of(SHORT, extra, formats))
+    _, data = info(capsys, path)
+    assert data['modes'] == [{'mode': 'position', 'from_s': 0.0, 'to_s': 2.5},
+                             {'mode': 'offboard', 'from_s': 2.5, 'to_s': pytest.approx(4.99)}]
+    main(['info', str(path), '--from', '3'])
+    assert 'flight modes: offboard 3.00 to 4.99 s' in capsys.readouterr().out
+
+
+def test_the_modes_of_ardupilot_are_shown_with_their_spans(tmp_path, capsys):
+    pytest.importorskip('pymavlink')
+    messages = copter(SHORT, np.full((len(SHORT), 4), 1500.0), start=2.0)
+    messages += [('MODE', (1_000_000, 5, 5)), ('MODE', (4_000_000, 16, 16))]
+    path = tmp_path / 'a.BIN'
+    path.write_bytes(dataflash(messages, {**TYPES, 'MODE': (80, 'QBB', 'TimeUS,Mode,ModeNum')}))
+    _, data = info(capsys, path)
+    assert [(one['mode'], one['from_s']) for one in data['modes']] == [('loiter', 0.0),
+                                                                        ('poshold', 2.0)]
 
 
 def test_what_is_no_flight_record_shows_what_is_in_it(tmp_path, capsys):
@@ -112,6 +140,25 @@ def test_a_mapping_to_begin_with_of_a_log_is_one(tmp_path, capsys):
     assert 'actuators' in out.read_text()
 
 
+def test_the_mapping_of_a_log_names_its_kind_outputs_and_instances(tmp_path, capsys):
+    """A Crazyflie's duty; an ArduPilot hexarotor's PWM, and its two IMUs."""
+    pytest.importorskip('pymavlink')
+    shares = (SHORT.stack(*CMD) - 100) / 1600
+    (tmp_path / 'log16').write_bytes(usdlog(crazyflie_events(SHORT, 65535 * shares)))
+    six = changed(SHORT, cmd5=SHORT.columns['cmd1'], cmd6=SHORT.columns['cmd2'])
+    messages = copter(six, 1000 + 1000 * shares[:, [0, 1, 2, 3, 0, 1]], (1, 2, 3, 4, 5, 6))
+    (tmp_path / 'a.BIN').write_bytes(dataflash(messages))
+    for name, kind, order, more in (
+            ('log16', 'duty16', '[1, 2, 3, 4]', 'actuators'),
+            ('a.BIN', 'pwm', '[1, 2, 3, 4, 5, 6]', '#   IMU: there are 0, 1')):
+        out = tmp_path / f'{name}.yaml'
+        info(capsys, tmp_path / name, '--write-mapping', out)
+        text = out.read_text()
+        assert f'kind: {kind} ' in text and f'order: {order} ' in text and more in text
+        marked = [line.removeprefix('# ') for line in text.splitlines() if 'are 0' not in line][1:]
+        assert mapping_from(yaml.safe_load('\n'.join(marked)), 'm').actuators.kind == kind
+
+
 def test_topics_with_one_candidate_are_filled_in():
     found = [Content('/odom', 'Odometry', 9, 0, 1, 10, (), ('pose', 'velocity')),
              Content('/mocap pose', 'PoseStamped', 9, 0, 1, 10, (), ('pose',)),
@@ -124,7 +171,7 @@ def test_topics_with_one_candidate_are_filled_in():
     assert mapping_from(yaml.safe_load(topics_text('bag', [])), 'm').topics == {}
     chosen = mapping_from(yaml.safe_load(topics_text('bag', found, {'pose': '/odom'})), 'm')
     assert chosen.topics['pose'].topic == '/odom'
-    assert mapping_from(yaml.safe_load(names_text('log', 4)), 'm').topics == {}
+    assert mapping_from(yaml.safe_load(names_text('log', [], '', {})), 'm').topics == {}
 
 
 @FAST
@@ -158,3 +205,17 @@ def test_time_in_a_hand_is_no_error_where_it_is_left_out():
     everywhere = {name: 0.01 * record.columns[name] for name in CMD}
     told = {one['code'] for one in summarise(changed(record, **everywhere), VEHICLE)['findings']}
     assert 'thrust' in told
+
+
+def test_the_share_of_saturation_is_that_of_what_flies():
+    """Motors that idle on the ground are at their limit, but not by how the vehicle is flown."""
+    record = flight(seconds=12.0)
+    fast = (record.t > 8.0) & (record.t < 8.2)
+    given = {name: np.where(record.t < 4.0, VEHICLE.speed_min,
+                            np.where(fast, VEHICLE.speed_max, record.columns[name]))
+             for name in CMD}
+    told = [one for one in summarise(changed(record, **given), VEHICLE)['findings']
+            if one['code'] == 'saturation']
+    assert [one['message'].split(' %')[0] for one in told if 'speed_min' in one['message']] == []
+    [share] = [float(one['message'].split(' %')[0]) for one in told]
+    assert share == pytest.approx(100 * 0.2 / 8.0, rel=0.15)

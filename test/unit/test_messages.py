@@ -73,7 +73,7 @@ def test_the_parts_of_the_helper_fit():
     ({'dimensions': 0, 'data': ()}, 'samples x columns x 1'),
     ({'data': (0.0, 1.0)}, 'samples x columns x 1'),
     ({'sizes': (0, 2, 1), 'data': ()}, '0 samples'),
-    ({'sizes': (1, 2, 1), 'data': (0.0, 1.0)}, '1 samples'),
+    ({'sizes': (1, 2, 1), 'data': (0.0, 1.0)}, '1 sample'),
     ({'label': 't,pz,px'}, '2 columns but 3 names'),
     ({'label': 'a,b'}, 'no column t'),
     ({'label': 't,'}, 'no column name'),

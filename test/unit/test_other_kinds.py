@@ -11,14 +11,17 @@ import struct
 import tarfile
 import zipfile
 
+from dataflash_files import dataflash
 from flightmaker import flight, VEHICLE
 from hypothesis import given
 from hypothesis import strategies as st
 import numpy as np
 import pytest
 from records import FAST, refused, same
+from usd_files import usdlog
 import yaml
 
+from quad_ident_ros.data.blackbox import MAGIC
 from quad_ident_ros.data.csv import read_csv, write_csv
 from quad_ident_ros.data.load import contents_of, load, load_all, reader_of
 from quad_ident_ros.data.readers.others import is_text
@@ -53,6 +56,13 @@ KINDS = {
     'png': (b'\x89PNG\r\n\x1a\n' + bytes(40), 'a picture (PNG)', 'give the log'),
     'jpeg': (b'\xff\xd8\xff\xe0' + bytes(40), 'a picture (JPEG)', 'give the log'),
     'gif': (b'GIF89a' + bytes(40), 'a picture (GIF)', 'give the log'),
+    'bmp': (b'BM\x36\x10\0\0' + bytes(4) + b'\x36\0\0\0\x28' + bytes(40), 'a picture (BMP)',
+            'give the log'),
+    'tiff': (b'II*\0\x08\0\0\0' + bytes(40), 'a picture (TIFF)', 'give the log'),
+    'tiff of a Mac': (b'MM\0*\0\0\0\x08' + bytes(40), 'a picture (TIFF)', 'give the log'),
+    'webp': (b'RIFF\x24\0\0\0WEBPVP8 ' + bytes(40), 'a picture (WebP)', 'give the log'),
+    'heic': (b'\0\0\0\x18ftypheic' + bytes(40), 'a picture (HEIF)', 'give the log'),
+    'avi': (b'RIFF\x24\0\0\0AVI LIST' + bytes(40), 'a video', 'give the log'),
     'video': (b'\0\0\0\x18ftypmp42', 'a video', 'give the log'),
     'pdf': (b'%PDF-1.4\n', 'a PDF', 'give the log'),
     'zip': (zipped(), 'a ZIP archive', 'unpack it'),
@@ -151,6 +161,24 @@ def test_tables_are_told_by_their_content_too(tmp_path):
     (tmp_path / 'packed').write_bytes(gzip.compress((tmp_path / 'f.csv').read_bytes()))
     same(load(tmp_path / 'packed'), SHORT)
     same(read_csv(tmp_path / 'packed'), SHORT)
+
+
+@pytest.mark.parametrize('suffix', ['.ulg', '.bag', '.mcap', '.db3', '.csv', ''])
+def test_logs_are_told_by_their_content_whatever_their_name(suffix, tmp_path):
+    contents = {'ardupilot': dataflash([]), 'px4': b'ULog\x01\x12\x35\x01' + bytes(20),
+                'crazyflie': usdlog([(0, 'fixed', ('gyro.x(f)',), (0.0,), ((0.0,),))]),
+                'rosbag1': b'#ROSBAG V2.0\n\0\1', 'rosbag2': b'\x89MCAP0\r\n\0\1',
+                'betaflight': MAGIC + bytes(20), 'parquet': b'PAR1' + bytes(20)}
+    for kind, content in contents.items():
+        path = tmp_path / f'{kind}{suffix}'
+        path.write_bytes(content)
+        assert reader_of(path).name == kind
+
+
+def test_a_damaged_file_is_told_by_its_name(tmp_path):
+    for name, kind in (('a.ulg', 'px4'), ('a.bag', 'rosbag1'), ('a.db3', 'rosbag2')):
+        (tmp_path / name).write_bytes(bytes(range(1, 250)))
+        assert reader_of(tmp_path / name).name == kind
 
 
 def test_lines_above_a_header_do_not_make_it_another_kind(tmp_path):

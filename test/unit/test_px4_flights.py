@@ -6,6 +6,7 @@ from dataclasses import replace
 import math
 from pathlib import Path
 import random
+import struct
 
 from flightmaker import flight, frd, ned, ned_attitude, px4_samples, ulog, VEHICLE
 import numpy as np
@@ -198,7 +199,7 @@ def test_flights_between_landings_are_told_apart(tmp_path):
     path = log(tmp_path, log_of(record, extra))
     one, other = load_all(path)
     assert (one.t[0], other.t[0]) == (pytest.approx(1.0), pytest.approx(10.0))
-    assert '1 flights shorter than 4 s' in notes(one)
+    assert '1 flight shorter than 4 s' in notes(one)
     assert one.info['name'] != other.info['name'] and str(path) in one.info['source']
 
 
@@ -235,14 +236,50 @@ def test_the_record_is_split_where_the_estimator_was_reset(tmp_path):
     assert one.t[-1] == pytest.approx(5.99) and other.t[0] == pytest.approx(7.0)
     assert other.t[-1] == pytest.approx(19.99)
     assert 'position was reset by 0.5 m at t = 5.99' in notes(one)
-    assert '1 parts shorter than 4 s' in notes(one) and 'by less than its noise' in notes(other)
+    assert '1 part shorter than 4 s' in notes(one) and 'by less than its noise' in notes(other)
+
+
+def counted(record, topic, rows, fields, counts):
+    """Return a log with samples of a topic: rows (N, k) of floats and their counter, uint8."""
+    stamps = np.round(record.t * 1e6).astype(int) + FIRST
+    samples = [one for one in px4_samples(record) if one[0] != 'vehicle_local_position']
+    samples += [(topic, 0, int(stamp), np.asarray(row, '<f4').tobytes() + bytes([int(count)]))
+                for stamp, row, count in zip(stamps, rows, counts, strict=True)]
+    return ulog(sorted(samples, key=lambda one: one[2]),
+                {**FORMATS, topic: ('uint64_t timestamp', 'uint64_t timestamp_sample', *fields)})
+
+
+@pytest.mark.parametrize('topic', ['vehicle_odometry', 'estimator_local_position'])
+def test_resets_count_of_the_topic_that_the_position_is_from(tmp_path, topic):
+    """A step of 0.8 m, less than a jump that shows in the data; the attitude has its topic."""
+    record = flight(seconds=20.0, noise=0.0)
+    late = record.t >= 9.0
+    place, speed = ned(record.stack('px', 'py', 'pz')), ned(record.stack('vx', 'vy', 'vz'))
+    place[late, 0] += 0.8
+    q = ned_attitude(record.stack('qw', 'qx', 'qy', 'qz'))
+    odometry = 'float[3] position', 'float[4] q', 'float[3] velocity', 'uint8_t reset_counter'
+    rows, fields = (([place, q, speed], odometry) if topic == 'vehicle_odometry' else
+                    ([place, speed, np.where(np.diff(late, prepend=False), 0.8, 0.0)[:, None],
+                      0 * late[:, None]], POSITION[2:]))
+    one, other = load_all(log(tmp_path, counted(record, topic, np.hstack(rows), fields, late)))
+    assert one.t[-1] == pytest.approx(8.99) and other.t[0] == pytest.approx(9.0)
+    assert ('odometry was reset' if 'odometry' in topic else 'reset by 0.8 m') in notes(one)
+
+
+def test_a_stamp_that_is_there_twice_hides_no_reset(tmp_path):
+    record = flight(seconds=20.0, noise=0.0)
+    data = reset_log(record, [9.0], [0.8])
+    twice = FIRST + 2_010_000
+    data = data.replace(struct.pack('<QQ', twice, twice),
+                        struct.pack('<QQ', twice, twice - 10_000))
+    assert len(load_all(log(tmp_path, data))) == 2
 
 
 def test_contents_are_what_is_logged(tmp_path):
     path = log(tmp_path, log_of(SMALL, [status(FIRST)], motors=controls(SMALL)))
     title, found = contents_of(path)
     topics = {content.name: content for content in found}
-    assert 'PX4' in title and topics['vehicle_attitude'].roles == ('pose',)
+    assert 'PX4' in title and topics['vehicle_attitude'].roles == ('attitude',)
     assert topics['actuator_motors'].samples == len(SMALL)
     assert topics['vehicle_attitude'].rate == pytest.approx(100)
     assert topics['vehicle_attitude'].duration == pytest.approx(0.99)
@@ -271,6 +308,29 @@ def test_auto_writes_a_vehicle_file_and_asks_for_the_rest(tmp_path, capsys):
     thrust = np.sum(load(tmp_path / 'o.csv').stack(*CMD) ** 2, axis=1)
     force = load(tmp_path / 'o.csv').columns['az']
     assert np.std(thrust / force) / np.mean(thrust / force) < 0.05
+
+
+@pytest.mark.parametrize('named, first', [({'MAV_TYPE': 1}, None), ({}, status(FIRST, kind=2))])
+def test_auto_tells_what_is_no_multirotor(tmp_path, capsys, named, first):
+    """A fixed wing has no CA_ROTOR, either: that is not what is wrong."""
+    path = log(tmp_path, log_of(SMALL, [first] if first else [], named=named))
+    assert main(['convert', str(path), str(tmp_path / 'o.csv'), '--vehicle', 'auto']) == 2
+    assert 'fixed wing' in capsys.readouterr().err
+
+
+def test_info_shows_a_log_whose_vehicle_file_is_empty(tmp_path, capsys):
+    record = flight(seconds=6.0, noise=0.0)
+    path = log(tmp_path, log_of(record, motors=controls(record)))
+    for said in ('written with what the log knows', 'still empty'):
+        assert main(['info', str(path), '--vehicle', 'auto']) == 0
+        shown = capsys.readouterr().out
+        assert said in shown and 'vehicle_attitude' in shown and 'excitation' in shown
+
+
+def test_fit_takes_the_vehicle_file_beside_a_log(tmp_path, capsys):
+    path = log(tmp_path, log_of(SMALL, motors=controls(SMALL)))
+    assert main(['fit', str(path), '--vehicle', 'auto', '--free', 'inertia']) == 2
+    assert str(tmp_path / 'log_vehicle.yaml') in capsys.readouterr().err
 
 
 def test_auto_is_for_logs_of_px4(tmp_path, capsys):

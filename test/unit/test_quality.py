@@ -118,6 +118,15 @@ def test_gaps_are_counted():
     assert '2 gaps, 43 samples' in finding.message and '0.410 s' in finding.message
 
 
+def test_one_gap_is_said_in_the_singular():
+    record = flight(seconds=4.0)
+    keep = np.ones(len(record), bool)
+    keep[200:210] = False
+    cut = FlightRecord(record.t[keep], {n: v[keep] for n, v in record.columns.items()})
+    [finding] = [one for one in findings(cut) if one.code == 'gap']
+    assert finding.message.startswith('1 gap, 10 samples')
+
+
 def test_duplicated_samples_are_found():
     record = flight()
     index = np.insert(np.arange(len(record)), [500, 800], [499, 799])
@@ -173,6 +182,7 @@ def test_what_a_reader_left_out_is_passed_on():
     noted = FlightRecord(flight().t, flight().columns, {'notes': ['topic /imu: 3 samples']})
     [finding] = findings(noted)
     assert finding.code == 'reader' and finding.message == 'topic /imu: 3 samples'
+    assert not finding.remedy     # the note says what to do, where there is anything
 
 
 # --- units

@@ -54,6 +54,18 @@ def test_a_record_without_a_stream_bears_no_verdict(fault):
     assert cautions(record, VEHICLE) == []
 
 
+def test_a_voltage_that_drops_out_is_a_warning():
+    """The median of it is that of the battery."""
+    record = flight()
+    for lost in (-1.0, 0.0):
+        voltage = np.where((record.t > 15.0) & (record.t < 18.4), lost, 16.0)
+        [found] = [one for one in findings(changed(record, vbat=voltage), VEHICLE)
+                   if one.code == 'no_voltage']
+        assert found.severity == 'warning' and '17.0 %' in found.message
+        assert 't = 15.010 s' in found.where
+        assert '--to 15' in found.remedy
+
+
 def test_commands_that_never_change_are_a_warning():
     record = flight()
     usual = {name: np.full(len(record), VEHICLE.hover_speed) for name in CMD}

@@ -70,7 +70,7 @@ def test_records_can_be_copied_and_sent_to_other_processes():
     ([0, 2, 1, 3], ['sample 2', "'t'"]),
     ([0, np.nan, 1, 2], ['sample 1', "'t'", 'nan']),
     ([0, 1, 2, np.inf], ['sample 3', "'t'", 'inf']),
-    ([0], ['1 samples']),
+    ([0], ['1 sample']),
     ([], ['0 samples']),
     ([[0, 1]], ["'t'", 'shape']),
     (['a', 'b'], ["'t'", 'no numbers']),

@@ -40,7 +40,7 @@ def test_pieces_are_cut_between_last_and_first_sample():
 def test_short_pieces_are_left_out_and_told():
     [piece] = split(WHOLE, [(2.0, 2.01, 'a'), (18.0, 18.01, 'b')])
     assert piece.t[0] == pytest.approx(2.01) and piece.t[-1] == pytest.approx(18.0)
-    assert '2 parts shorter than 4 s are left out' in piece.info['notes'][0]
+    assert 'left out: 2 parts shorter than 4 s' in piece.info['notes'][0]
     assert piece.info['name'] == 'made'
     [longest] = split(WHOLE.slice(0, 600), [(2.0, 2.01, 'a'), (3.0, 3.01, 'b')])
     assert longest.t[0] == pytest.approx(3.01)   # of none that is long enough

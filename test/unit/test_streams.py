@@ -42,8 +42,8 @@ def test_samples_that_cannot_be_are_left_out_and_counted():
     np.testing.assert_allclose(at, [0.0, 0.1, 0.2, 0.3])
     np.testing.assert_allclose(columns['a'], [0, 1, 2, 3])
     assert [note.split(': ')[1] for note in notes] == [
-        '1 samples without a finite value', '1 samples out of order',
-        '1 samples with the stamp of another']
+        '1 sample without a finite value', '1 sample out of order',
+        '1 sample with the stamp of another']
 
 
 def test_streams_that_share_no_time_are_refused():

@@ -50,7 +50,8 @@ TOLD = 'commands', 'differentiated'
 """Codes of Findings that a diagnosis tells whatever their severity."""
 
 __all__ = ['cautions', 'CHECKS', 'clock_offset', 'ClockOffset', 'command_offset', 'Finding',
-           'findings', 'refuse_errors', 'refuse_unfit', 'refuted', 'SEVERITIES', 'velocity_offset']
+           'findings', 'gravest_first', 'refuse_errors', 'refuse_unfit', 'refuted', 'SEVERITIES',
+           'velocity_offset']
 
 
 def findings(record, vehicle=None):
@@ -62,6 +63,11 @@ def findings(record, vehicle=None):
     """
     with np.errstate(all='ignore'):   # values so large that nothing can be said of them
         found = [finding for check in CHECKS for finding in check(record, vehicle)]
+    return gravest_first(found)
+
+
+def gravest_first(found):
+    """Return Findings by their severity."""
     return tuple(sorted(found, key=lambda finding: -SEVERITIES.index(finding.severity)))
 
 

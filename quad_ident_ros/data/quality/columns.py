@@ -88,7 +88,7 @@ def _changes(record, names):
 
 
 def negative(record, vehicle):
-    """Find speeds of rotors and voltages below zero, and voltages that are zero throughout."""
+    """Find speeds of rotors below zero, and voltages that are not above."""
     found = []
     for name, values in record.columns.items():
         if unit(name) != 'rad/s' or not name.startswith(('cmd', 'rotor')):
@@ -99,10 +99,23 @@ def negative(record, vehicle):
                 'negative', 'error', f'{name}, t = {record.t[first]:.3f} s',
                 f'a rotor speed of {values[first]:.4g} rad/s is below zero; the vehicle file says '
                 'which way a rotor turns', 'write speeds without a sign'))
-    if record.has('vbat') and not np.nanmedian(record.columns['vbat']) > 0.0:
-        found.append(Finding('no_voltage', 'error', 'vbat', 'the voltage is not above zero',
-                             'leave the column out where no voltage was measured'))
-    return found
+    return found + (_no_voltage(record) if record.has('vbat') else [])
+
+
+def _no_voltage(record):
+    """Find voltages that are not above zero: of a sensor that is missing, or that drops out."""
+    voltage = record.columns['vbat']
+    if not np.nanmedian(voltage) > 0.0:
+        return [Finding('no_voltage', 'error', 'vbat', 'the voltage is not above zero',
+                        'leave the column out where no voltage was measured')]
+    bad = voltage <= 0.0
+    if not bad.any():
+        return []
+    first = int(np.argmax(bad))
+    return [Finding('no_voltage', 'warning', f'vbat, t = {record.t[first]:.3f} s',
+                    f'the voltage is {voltage[first]:.3g} V there, which no battery has '
+                    f'({100 * bad.mean():.1f} % of the samples are not above zero)',
+                    without(record.t, bad, 'leave the column vbat out'))]
 
 
 def quaternions(record, vehicle):

@@ -4,6 +4,7 @@
 
 import numpy as np
 
+from quad_ident_ros.data.counted import counted
 from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.quality.series import GAP
 from quad_ident_ros.data.record import CUT
@@ -43,7 +44,8 @@ def gaps(record, vehicle):
     return [Finding(
         'gap', 'warning' if steps[longest] > 0.25 or share > 0.02 else 'info',
         f't = {record.t[longest]:.3f} s',
-        f'{len(wide)} gaps, {missing} samples ({100 * share:.1f} %) are missing; the longest is '
+        f'{counted(len(wide), "gap")}, {counted(missing, "sample")} ({100 * share:.1f} %) '
+        f'{"is" if missing == 1 else "are"} missing; the longest is '
         f'{steps[longest]:.3f} s',
         'predictions stop at gaps; record with a lossless transport')]
 
@@ -61,7 +63,8 @@ def duplicates(record, vehicle):
         return []
     first = int(np.argmax(same)) + 1
     return [Finding('duplicate', 'warning', f't = {record.t[first]:.3f} s',
-                    f'{int(same.sum())} samples repeat the one before in every column',
+                    f'{counted(int(same.sum()), "sample")} with the values of the one before in '
+                    'every column',
                     'keep one sample of each; a recorder that polls writes them')]
 
 
@@ -82,6 +85,7 @@ def truncated(record, vehicle):
 def reader_notes(record, vehicle):
     """Pass on what the reader took for what, and what it left out."""
     commands = record.info.get('commands', ())
-    return [Finding('commands' if note in commands else 'reader', 'info', 'file', note,
-                    'nothing needs to be done where this is right')
+    return [Finding('commands', 'info', 'file', note,
+                    'nothing needs to be done where this is right') if note in commands else
+            Finding('reader', 'info', 'file', note, '')     # which says what to do, if anything
             for note in record.info.get('notes', ()) if isinstance(note, str)]

@@ -39,9 +39,10 @@ class Reader:
     A kind of file.
 
     name: in messages and data; title: as in `this is TITLE`; tells(path, first bytes): whether a
-    path is of this kind; read(path, mapping, vehicle): its flight records, at least one;
-    contents(path): the Content of all its streams; package: of PyPI that it needs beyond the
-    program's own, imported as `module`, and installed by the extra of this name.
+    path is of this kind by its content; suffixes: of files whose content tells no kind, which are
+    then taken for damaged ones of this kind; read(path, mapping, vehicle): its flight records, at
+    least one; contents(path): the Content of all its streams; package: of PyPI that it needs
+    beyond the program's own, imported as `module`, and installed by the extra of this name.
     Both raise InputError in one line.
     """
 
@@ -53,6 +54,7 @@ class Reader:
     package: str = ''
     module: str = ''
     extra: str = ''
+    suffixes: tuple[str, ...] = ()
 
 
 def content_of(name: str, kind: str, stamps_ns: np.ndarray, origin_ns: int,

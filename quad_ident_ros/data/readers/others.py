@@ -21,7 +21,8 @@ _GPS = 'it has no rates and no commands; give the log that it was made from'
 
 _MAGIC = (
     (b'\x89PNG', 'a picture (PNG)', _GIVE), (b'\xff\xd8\xff', 'a picture (JPEG)', _GIVE),
-    (b'GIF8', 'a picture (GIF)', _GIVE), (b'%PDF', 'a PDF document', _GIVE),
+    (b'GIF8', 'a picture (GIF)', _GIVE), (b'II*\0', 'a picture (TIFF)', _GIVE),
+    (b'MM\0*', 'a picture (TIFF)', _GIVE), (b'%PDF', 'a PDF document', _GIVE),
     (b'PK\x03\x04', 'a ZIP archive or a spreadsheet', _UNPACK + ', or save the sheet as CSV'),
     (b'PK\x05\x06', 'an empty ZIP archive', _GIVE), (b"7z\xbc\xaf'\x1c", 'a 7z archive', _UNPACK),
     (b'Rar!', 'a RAR archive', _UNPACK), (b'BZh', 'a file packed by bzip2', _UNPACK),
@@ -38,6 +39,10 @@ _MAGIC = (
     (b'\xff\xfe', 'text in UTF-16', 'save it as UTF-8'),
     (b'\xfe\xff', 'text in UTF-16', 'save it as UTF-8'),
 )
+
+_PICTURES = (b'heic', b'heix', b'hevc', b'hevx', b'mif1', b'msf1', b'avif')
+"""Brands of files that are built as videos are, and hold a picture: HEIF and AVIF."""
+_RIFF = {b'WEBP': 'a picture (WebP)', b'AVI ': 'a video', b'WAVE': 'a sound'}
 
 _MODES: tuple[tuple[Callable[[int], bool], str], ...] = (
     (stat.S_ISFIFO, 'a pipe, which can be read only once; save it to a file and give that'),
@@ -101,7 +106,12 @@ def _told(start: bytes) -> tuple[str, str] | None:
     if start[257:262] == b'ustar':
         return 'a tar archive', _UNPACK
     if start[4:8] == b'ftyp':
-        return 'a video', _GIVE
+        return 'a picture (HEIF)' if start[8:12] in _PICTURES else 'a video', _GIVE
+    if start.startswith(b'RIFF') and start[8:12] in _RIFF:
+        return _RIFF[start[8:12]], _GIVE
+    # Two letters may begin anything; behind the size of a bitmap are four reserved zeros.
+    if start.startswith(b'BM') and start[6:10] == bytes(4):
+        return 'a picture (BMP)', _GIVE
     if start.startswith(GZIP):
         return _packed(start)
     if start and not start.strip(b'\0'):

@@ -6,7 +6,6 @@ from pathlib import Path
 
 from quad_ident_ros.data.mapping import Mapping
 from quad_ident_ros.data.readers.base import Content, Reader
-from quad_ident_ros.data.readers.others import is_text
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.model.vehicle import Vehicle
 
@@ -14,8 +13,8 @@ MAGIC = b'ULog'     # three more bytes follow; a log that is cut off before them
 
 
 def tells(path: Path, start: bytes) -> bool:
-    """Return whether a path is a log of PX4, or is named so and may be a damaged one."""
-    return start.startswith(MAGIC) or path.suffix == '.ulg' and not is_text(start)
+    """Return whether a path is a log of PX4."""
+    return start.startswith(MAGIC)
 
 
 def read(path: str | Path, mapping: Mapping | None = None,
@@ -32,4 +31,4 @@ def contents(path: str | Path) -> list[Content]:
 
 
 READER = Reader('px4', 'a log of PX4 (ULog)', tells, read, contents, package='pyulog',
-                module='pyulog')
+                module='pyulog', suffixes=('.ulg',))

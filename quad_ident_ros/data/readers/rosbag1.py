@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Bags of ROS 1, by a mapping or by the types of their topics."""
 
-from quad_ident_ros.data.bag_file import kind_of
+from quad_ident_ros.data.bag_file import told_kind
 from quad_ident_ros.data.foreign import read_mapped_bag
 from quad_ident_ros.data.mapping import Mapping
 from quad_ident_ros.data.readers.bags import topics_of
@@ -11,12 +11,12 @@ from quad_ident_ros.data.readers.base import Reader
 
 def tells(path, start):
     """Return whether a path is a bag of ROS 1."""
-    return kind_of(path, start) == '.bag'
+    return told_kind(path, start) == '.bag'
 
 
 def read(path, mapping=None, vehicle=None):
-    """Return the flight record in a bag."""
-    return [read_mapped_bag(path, mapping or Mapping())]
+    """Return the flight records in a bag."""
+    return read_mapped_bag(path, mapping or Mapping())
 
 
-READER = Reader('rosbag1', 'a bag of ROS 1', tells, read, topics_of)
+READER = Reader('rosbag1', 'a bag of ROS 1', tells, read, topics_of, suffixes=('.bag',))
