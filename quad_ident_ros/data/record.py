@@ -71,6 +71,14 @@ CUT = ('the last line of the file has no line end and was left out: a recording 
        'there may have cut its last number')
 """What the info `truncated` of a record means."""
 
+NOTED = 'commands', 'logging'
+"""
+Info of a record: those of its notes that a diagnosis tells, too.
+
+commands: what the outputs to the motors were taken for; logging: what was logged too seldom or
+without valid estimates.
+"""
+
 # What holds for a record only from its first sample on.
 FIRST_SAMPLE_INFO = ('starts_at_rest', 'initial')
 

@@ -67,15 +67,19 @@ def read_ulog(path: str | Path, mapping: Mapping | None = None,
                          'wings, servos or wheels no multirotor has; give the log of a multirotor')
     notes = [*(['parts of the log are damaged and left out'] if log.file_corruption else []),
              *([f'{len(log.dropouts)} dropouts while logging'] if log.dropouts else [])]
-    streams = [_attitude(path, data), *_position(path, data, notes), _rate(path, data),
+    commands: list[str] = []
+    logging: list[str] = []
+    streams = [_attitude(path, data), *_position(path, data, logging), _rate(path, data),
                _specific_force(path, data), _battery(path, data)]
-    streams += _outputs(path, log, data, mapping.actuators, vehicle, notes,
+    streams += _outputs(path, log, data, mapping.actuators, vehicle, commands,
                         mapping.instances.get('actuator_outputs'))
     streams = [stream for stream in streams if stream is not None]
-    notes += _slow(streams)
+    logging += _slow(streams)
+    notes += [*commands, *logging]
     start, t, columns, joined = join(path, streams)
     record = FlightRecord(t, velocity_in_world(path, columns), {
         'name': path.stem, 'source': str(path), 'start_ns': start, 'notes': [*notes, *joined],
+        'commands': commands, 'logging': logging,
         'hardware': _hardware(log)})
     return _flights(path, record, data)
 

@@ -181,9 +181,11 @@ def _fit_for_use(record: FlightRecord, vehicle: Vehicle, rules: Rules, wrong: Co
 
 
 def _cut(record: FlightRecord) -> Finding:
-    """Return the Finding that says which parts of a recording are used."""
+    """Return the Finding that says which parts of a recording are used, and what split it."""
     used = ' and '.join(f't = {begin:.2f} to {end:.2f} s' for begin, end in spans(record))
-    return Finding('kept', 'info', used, 'this part of the recording is used',
+    resets = record.info.get('resets')
+    why = f'; it was split where the estimator was reset: {resets}' if resets else ''
+    return Finding('kept', 'info', used, f'this part of the recording is used{why}',
                    'nothing needs to be done; --segment, --from and --to choose another part')
 
 

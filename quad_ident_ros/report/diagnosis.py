@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """A diagnosis as a table that a person reads in ten seconds."""
 
+from collections import Counter
+import re
 from typing import TextIO
 
 from rich import box
@@ -13,6 +15,8 @@ from quad_ident_ros.diagnose.rules import RULES
 
 WIDTH = 118     # columns that the widest row needs
 WORTH = 0.02        # probability or share from which on a row is shown
+
+NUMBER = re.compile(r'[-+]?\d+(\.\d+)?(e[-+]?\d+)?')
 
 WHERE = ('channel', 'share', 'rms', 'noise alone', 'where most of it is', 'Hz')
 """What where_row says of a channel."""
@@ -201,13 +205,18 @@ def caution_lines(found: Diagnosis) -> list[str]:
     """
     Return what to be wary of, a line for each kind of it.
 
-    A held-out flight that the effects found lead away from, and what was found in the records.
+    A held-out flight that the effects found lead away from, and what was found in the records:
+    what is said of several flights in the same words, whatever the numbers, is one line.
     """
     farther = [f'be wary of {found.held_out} (held out): it is farther from the model with the '
                'effects named than without: it was flown otherwise, or by another vehicle']
     alike: dict = {}
+    said: Counter = Counter()
     for one in found.findings:
-        alike.setdefault((one['code'], one['where'].partition(', t =')[0]), []).append(one)
+        words = (one['code'], one['where'].partition(', t =')[0],
+                 NUMBER.sub('#', one['message']))
+        said[one['flight'], words] += 1
+        alike.setdefault((words, said[one['flight'], words]), []).append(one)
     lines = [f'{"" if first.get("severity") == "info" else "be wary of "}{first["flight"]}'
              + (f' ({", ".join(one["flight"] for one in others)} alike)' if others else '')
              + f': {first["where"]}: {first["message"]}' for first, *others in alike.values()]

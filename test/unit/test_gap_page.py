@@ -21,7 +21,7 @@ from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import MOCAP_IMU
 from quad_ident_ros.model.vehicle import load_vehicle
 from quad_ident_ros.report import gap_page
-from quad_ident_ros.report.diagnosis import show
+from quad_ident_ros.report.diagnosis import caution_lines, show
 from quad_ident_ros.report.gap_pictures import _by_third, save_map, save_probabilities
 from quad_ident_ros.report.received import diagnosis_from
 
@@ -139,6 +139,23 @@ def test_what_remains_open_is_said_in_the_terminal(terminal):
     lines = [line.strip() for line in text.splitlines()]
     assert [said for said in SAID if said not in lines] == []
     assert 'monday differs' not in text
+
+
+def finding(flight, message):
+    """Return a finding on the commands of a flight."""
+    return {'flight': flight, 'code': 'commands', 'severity': 'info', 'where': 'file',
+            'message': message}
+
+
+def test_each_finding_on_a_flight_is_told_and_equal_ones_of_several_flights_once(found):
+    said = [finding(name, message) for name, gain in (('one', 2), ('two', 2.5))
+            for message in ('rotors are motors 2, 1, 4, 3', f'taken for duty, speed {gain} x',
+                            'gain 3', 'gain 4')]
+    said.append(finding('two', 'taken for PWM'))
+    assert caution_lines(replace(found, findings=said)) == [
+        'one (two alike): file: rotors are motors 2, 1, 4, 3',
+        'one (two alike): file: taken for duty, speed 2 x', 'one (two alike): file: gain 3',
+        'one (two alike): file: gain 4', 'two: file: taken for PWM']
 
 
 def test_what_remains_open_is_said_on_the_page(page):

@@ -30,6 +30,8 @@ import yaml
 from quad_ident_ros.cli.main import main
 from quad_ident_ros.data.load import contents_of, load, load_all
 from quad_ident_ros.data.mapping import mapping_from
+from quad_ident_ros.data.quality import cautions
+from quad_ident_ros.data.split import joined, part
 from quad_ident_ros.data.thrust_level import FULL_SPEED
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.motors import motors_from
@@ -238,6 +240,16 @@ def test_the_record_is_split_where_the_estimator_was_reset(tmp_path):
     assert '1 parts shorter than 4 s' in notes(one) and 'by less than its noise' in notes(other)
 
 
+def test_a_diagnosis_tells_of_commands_profile_estimates_and_resets(tmp_path):
+    record = flight(seconds=20.0, noise=0.0)
+    parts = load_all(log(tmp_path, reset_log(record, [6.0], [2.0])), None, VEHICLE)
+    assert 'reset by 2 m at t = 5.99 s' in joined(parts)[0].info['resets']
+    slow = load(log(tmp_path, log_of(record, motors=controls(record), every=10)), vehicle=VEHICLE)
+    for read in (slow, *joined([part(slow, 0, 50), part(slow, 60, len(slow))])):
+        told = {one['code']: one['message'] for one in cautions(read, VEHICLE)}
+        assert 'CA_ROTOR' in told['commands'] and 'SDLOG_PROFILE' in told['logging']
+
+
 def test_contents_are_what_is_logged(tmp_path):
     path = log(tmp_path, log_of(SMALL, [status(FIRST)], motors=controls(SMALL)))
     title, found = contents_of(path)
@@ -271,6 +283,18 @@ def test_auto_writes_a_vehicle_file_and_asks_for_the_rest(tmp_path, capsys):
     thrust = np.sum(load(tmp_path / 'o.csv').stack(*CMD) ** 2, axis=1)
     force = load(tmp_path / 'o.csv').columns['az']
     assert np.std(thrust / force) / np.mean(thrust / force) < 0.05
+
+
+def test_a_diagnosis_without_a_vehicle_says_what_the_log_could_fill_in(tmp_path, capsys):
+    path = log(tmp_path, log_of(SMALL, motors=controls(SMALL)))
+    assert main(['diagnose', str(path)]) == 2
+    said = capsys.readouterr().err
+    assert said.count('\n') == 1 and '--vehicle auto' in said and 'mass and inertia' in said
+    assert str(tmp_path / 'log_vehicle.yaml') in said
+    (tmp_path / 'f.csv').write_text('t,pz\n0,1\n1,2\n')
+    assert main(['diagnose', str(tmp_path / 'f.csv')]) == 2
+    said = capsys.readouterr().err
+    assert '--vehicle FILE' in said and 'auto' not in said
 
 
 def test_auto_is_for_logs_of_px4(tmp_path, capsys):

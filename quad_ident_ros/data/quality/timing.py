@@ -6,7 +6,7 @@ import numpy as np
 
 from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.quality.series import GAP
-from quad_ident_ros.data.record import CUT
+from quad_ident_ros.data.record import CUT, NOTED
 
 COARSE = 0.025    # s between samples from which on commands change unseen between them
 SLOWEST = 0.15    # s between samples: of a rollout of 0.5 s hardly more than its end is then seen
@@ -81,7 +81,7 @@ def truncated(record, vehicle):
 
 def reader_notes(record, vehicle):
     """Pass on what the reader took for what, and what it left out."""
-    commands = record.info.get('commands', ())
-    return [Finding('commands' if note in commands else 'reader', 'info', 'file', note,
+    codes = {note: code for code in NOTED for note in record.info.get(code, ())}
+    return [Finding(codes.get(note, 'reader'), 'info', 'file', note,
                     'nothing needs to be done where this is right')
             for note in record.info.get('notes', ()) if isinstance(note, str)]
