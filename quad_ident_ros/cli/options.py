@@ -63,6 +63,18 @@ def flights_from(path: str | Path, mapping: str | None = None,
     return found if selection is None else selected(path, found, selection)
 
 
+def asking_for_vehicle(path: str) -> str:
+    """Return what to say where --vehicle is missing: what the file at a path knows of it."""
+    if reader_of(Path(path)).name == 'px4':
+        file = Path(path).with_name(f'{Path(path).stem}_vehicle.yaml')
+        return (f'{path}: --vehicle is missing: give --vehicle auto, which writes {file} with the '
+                'rotors, their spins and speeds, and thrust over mass by this log, and asks for '
+                'mass and inertia, which no log has; or give --vehicle FILE')
+    return (f'{path}: --vehicle is missing: give --vehicle FILE with the mass, inertia, rotors '
+            'and thrust coefficient of the nominal vehicle, as those in config/vehicles; only logs of '
+            'PX4 know a part of it')
+
+
 def vehicle_from(option: str, path: str, mapping: str | None = None,
                  nominal: bool = False) -> Vehicle:
     """
