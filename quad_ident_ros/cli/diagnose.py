@@ -12,6 +12,7 @@ from quad_ident_ros.cli.options import (
     asking_for_vehicle,
     flights_from,
     selection_of,
+    thrust_by_log,
     vehicle_from,
 )
 from quad_ident_ros.data.split import joined
@@ -72,12 +73,14 @@ def run(options):
     if options.vehicle is None:
         raise InputError(asking_for_vehicle(options.flights[0]))
     vehicle = vehicle_from(options.vehicle, options.flights[0], options.mapping, nominal=True)
+    by_log = thrust_by_log(options.vehicle, options.flights[0])
     effects = ([name.strip() for name in options.effects.split(',')]
                if options.effects is not None else None)
     # Read one after the other as they are taken in, and not kept beside what is made of them.
     records = (record for path in options.flights
-               for record in flights_from(path, options.mapping, vehicle, selection))
-    held = (joined(flights_from(options.hold_out, options.mapping, vehicle, selection))[-1]
+               for record in flights_from(path, options.mapping, vehicle, selection,
+                                          by_log))
+    held = (joined(flights_from(options.hold_out, options.mapping, vehicle, selection, by_log))[-1]
             if options.hold_out else None)
     with progress_bar() as bar:
         task = bar.add_task('comparing sets of effects', total=1.0)

@@ -8,7 +8,13 @@ from rich import box
 from rich.table import Table
 
 from quad_ident_ros.cli.identify import progress_bar
-from quad_ident_ros.cli.options import add_selection, flights_from, selection_of, vehicle_from
+from quad_ident_ros.cli.options import (
+    add_selection,
+    flights_from,
+    selection_of,
+    thrust_by_log,
+    vehicle_from,
+)
 from quad_ident_ros.data.begin_mapping import begin_mapping
 from quad_ident_ros.data.load import contents_of
 from quad_ident_ros.data.mapping import load_mapping
@@ -56,6 +62,7 @@ def add(commands):
 def run(options):
     """Read a file, show what is in it, and return the exit code."""
     vehicle = options.vehicle and vehicle_from(options.vehicle, options.flight, options.mapping)
+    by_log = thrust_by_log(options.vehicle, options.flight)
     selection = selection_of(options)
     if options.mapping:
         load_mapping(options.mapping)   # what is wrong with it is no fault of the flight
@@ -65,7 +72,7 @@ def run(options):
         if options.write_mapping:
             begin_mapping(options.write_mapping, options.flight, streams)
         try:
-            records = flights_from(options.flight, options.mapping, vehicle)
+            records = flights_from(options.flight, options.mapping, vehicle, by_log=by_log)
         except InputError as error:
             records, found = [], [unread(options.flight, error)]
         else:

@@ -10,11 +10,20 @@ from rich import box
 from rich.console import Console
 from rich.table import Table
 
-from quad_ident_ros.diagnose.result import Channel, Diagnosis, Ranked, Unexplained
+from quad_ident_ros.diagnose.result import (
+    Channel,
+    Diagnosis,
+    Gap,
+    GapGivenAttitude,
+    Ranked,
+    Unexplained,
+)
 from quad_ident_ros.diagnose.rules import RULES
 
 WIDTH = 118     # columns that the widest row needs
 WORTH = 0.02        # probability or share from which on a row is shown
+
+NOTHING_TO_CLOSE = "the velocity gap is not above the noise's, so that there is nothing to close"
 
 NUMBER = re.compile(r'[-+]?\d+(\.\d+)?(e[-+]?\d+)?')
 
@@ -77,8 +86,21 @@ def size_line(found: Diagnosis) -> str:
     if gap.without:
         said += f', by {after:.3g} m/s with the effects named'
     said += f'; noise alone makes {noise:.3g} m/s.'
+    if gap.without and not above_noise(gap):
+        return f'{said} {NOTHING_TO_CLOSE[0].upper()}{NOTHING_TO_CLOSE[1:]}.'
     return said if not gap.without else (
         f'{said} {100 * gap.closed:.0f} % of the gap above the noise is closed.')
+
+
+def above_noise(gap: Gap | GapGivenAttitude) -> bool:
+    """Whether the nominal vehicle, nuisances taken out, is farther off than the noise is."""
+    return gap.before_own['velocity'] > gap.noise['velocity']
+
+
+def closed_of(gap: Gap | GapGivenAttitude) -> str:
+    """Return how much of a velocity gap is closed, in words."""
+    return (f'{100 * gap.closed:.0f} % of the velocity gap above the noise is closed'
+            if above_noise(gap) else NOTHING_TO_CLOSE)
 
 
 def shown_channels(found: Diagnosis) -> list[Channel]:
@@ -145,9 +167,12 @@ def one_finding_lines(found: Diagnosis) -> list[str]:
 
 def far_line(found: Diagnosis) -> str:
     """Return how much of the velocity gap is closed, open loop and given the attitude."""
-    return (f'how far, on {found.held_out} (held out), {found.gap.horizon:g} s ahead: of the '
-            f'velocity gap above the noise {100 * found.gap.closed:.0f} % is closed, given the '
-            f'recorded attitude {100 * found.gap_given_attitude.closed:.0f} %')
+    gap, given = found.gap, found.gap_given_attitude
+    said = f'how far, on {found.held_out} (held out), {gap.horizon:g} s ahead: '
+    if above_noise(gap) and above_noise(given):
+        return (f'{said}of the velocity gap above the noise {100 * gap.closed:.0f} % is closed, '
+                f'given the recorded attitude {100 * given.closed:.0f} %')
+    return f'{said}{closed_of(gap)}; given the recorded attitude, {closed_of(given)}'
 
 
 def far_rows(found: Diagnosis) -> list[list[str]]:

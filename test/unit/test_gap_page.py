@@ -107,6 +107,17 @@ def test_an_effect_has_its_form_and_what_is_lost_without_it(terminal, found):
     assert f'{found.gap.without["rotor_drag"]["velocity"]:.3g}' in line
 
 
+def test_where_the_gap_is_within_the_noise_there_is_nothing_to_close(terminal, found):
+    within = found.gap.before | {'velocity': 0.5 * found.gap.noise['velocity']}
+    gap = replace(found.gap, before=within, before_own=within, after=within, closed=1.0)
+    _, size, *rest = terminal(gap=gap).splitlines()
+    [far] = [line for line in rest if line.startswith('how far, on ')]
+    assert all('nothing to close' in line and '100 %' not in line.partition(';')[0] for line in
+               (size.replace(';', ','), far))
+    assert f'attitude, {100 * found.gap_given_attitude.closed:.0f} % of the velocity gap' in far
+    assert 'nothing to close' not in terminal()
+
+
 OPEN = {
     'verdict': ('rotor_drag', 'unknown'),
     'minor': (Minor('motor_lag', 0.98, 0.012), Minor('inflow', 0.9, 0.3)),

@@ -3,6 +3,7 @@
 """What a PX4 log says beside its samples: motors, kind of vehicle, flights, resets."""
 
 from dataclasses import replace
+import json
 import math
 from pathlib import Path
 import random
@@ -34,6 +35,7 @@ from quad_ident_ros.data.quality import cautions
 from quad_ident_ros.data.split import joined, part
 from quad_ident_ros.data.thrust_level import FULL_SPEED
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.greybox.flights import track_of
 from quad_ident_ros.model.motors import motors_from
 from quad_ident_ros.model.vehicle import load_vehicle, Rotor
 
@@ -295,6 +297,35 @@ def test_a_diagnosis_without_a_vehicle_says_what_the_log_could_fill_in(tmp_path,
     assert main(['diagnose', str(tmp_path / 'f.csv')]) == 2
     said = capsys.readouterr().err
     assert '--vehicle FILE' in said and 'auto' not in said
+
+
+def test_auto_tells_no_thrust_that_the_log_itself_set(tmp_path, capsys, monkeypatch):
+    """The weight then told the thrust coefficient: a factor on it comes out as 1."""
+    record = flight(seconds=6.0, noise=0.0)
+    path = log(tmp_path, log_of(record, motors=controls(record, 'thrust'),
+                                named=parameters(THR_MDL_FAC=1.0)))
+    info = ['info', str(path), '--vehicle', 'auto', '--json', '-']
+    assert main(info) == 2
+    file = tmp_path / 'log_vehicle.yaml'
+    text = file.read_text().replace('mass: ', 'mass: 0.5 ').replace(
+        '[null, null, null]', '[0.003, 0.003, 0.005]')
+    capsys.readouterr()
+    given = []
+
+    def taken(records, *_, **__):
+        given.extend(records)
+        raise InputError('enough')
+
+    monkeypatch.setattr('quad_ident_ros.cli.diagnose.diagnose', taken)
+    for known in (False, True):
+        file.write_text(text.replace('thrust_coefficient: ', 'thrust_coefficient: 1.0e-5 ')
+                        if known else text)
+        assert main(info) != 2, capsys.readouterr().err
+        told = [one['message'] for one in json.loads(capsys.readouterr().out)['findings']
+                if one['code'] == 'thrust_level']
+        assert ['thrust coefficient is not known' in one for one in told] == [True] * (not known)
+        assert main(['diagnose', str(path), '--vehicle', 'auto']) == 2
+        assert track_of(given[-1], VEHICLE).levelled is not known
 
 
 def test_auto_is_for_logs_of_px4(tmp_path, capsys):
