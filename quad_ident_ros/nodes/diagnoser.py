@@ -54,7 +54,7 @@ HELP = f"""diagnoser: says which effects a vehicle has beside its nominal descri
 Subscribes: record (std_msgs/Float64MultiArray, latched) of the recorder, which joins pose, twist
 and input; of records without rotor speed commands, those that give the input are taken. Outputs
 to the motors (PWM, normalised, ...) become speeds by the recorder's mapping and the vehicle.
-Of several flights the last one is held out, of a single one every other block of 3 s.
+Of several flights the last one is held out, of a single one half of its blocks of 3 s.
 Publishes (latched, but progress and diagnostics):
   diagnosis      std_msgs/String             JSON: verdict, effects with probability, where, gap,
                                              what to fly next

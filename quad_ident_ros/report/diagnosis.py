@@ -11,6 +11,7 @@ from rich.console import Console
 from rich.table import Table
 
 from quad_ident_ros.diagnose.result import (
+    BLOCKS,
     Channel,
     Diagnosis,
     Gap,
@@ -197,10 +198,12 @@ def open_lines(found: Diagnosis) -> list[str]:
     lines = [f'unexplained: {row.channel}, {row.depends_on}, {row.rms:.2g} {row.unit} rms, '
              + (f'{band_of(row)} Hz' if row.band[1] > 0.0 else 'constant')
              for row in found.unknown]
+    single = any(one['code'] == BLOCKS for one in found.findings)
+    others = 'half of this flight' if single else 'flights'
     for one in found.flight_checks:
         if one.differs:
             times = ', '.join(f'{name} {value:.3g}' for name, value in one.gap_over_noise.items())
-            lines.append(f'{one.flight} differs from the other flights; gap over that of the '
+            lines.append(f'{one.flight} differs from the other {others}; gap over that of the '
                          f'noise: {times}')
     if found.not_shown:
         lines.append(f'would not show at their usual size: {", ".join(found.not_shown)}')
