@@ -10,6 +10,7 @@ import numpy as np
 
 from quad_ident_ros.data.quality import clock_offset, command_offset, findings, velocity_offset
 from quad_ident_ros.data.quality.excitation import excitation
+from quad_ident_ros.data.quality.finding import SEVERITIES
 from quad_ident_ros.data.quality.ground import airborne
 from quad_ident_ros.data.quality.series import GAP
 from quad_ident_ros.data.readers.base import Content
@@ -54,12 +55,13 @@ def summarise(record, vehicle=None):
 
 
 def _findings(record, vehicle):
-    """Return the Findings on a record, but for faults that lie where diagnose and fit cut it."""
+    """Return the Findings on a record, those OF_GROUND of the part that diagnose and fit keep."""
     found = findings(record, vehicle)
     if not any(one.code == 'ground' and one.severity == 'warning' for one in found):
         return found
-    left = {one.code for one in findings(airborne(record, vehicle), vehicle)}
-    return [one for one in found if one.code not in OF_GROUND or one.code in left]
+    flown = [one for one in findings(airborne(record, vehicle), vehicle) if one.code in OF_GROUND]
+    return sorted([*(one for one in found if one.code not in OF_GROUND), *flown],
+                  key=lambda one: -SEVERITIES.index(one.severity))
 
 
 def contents(path: str | Path, title: str, streams: Sequence[Content]) -> dict:

@@ -20,6 +20,7 @@ from quad_ident_ros.data.csv import write_csv
 from quad_ident_ros.data.load import load, load_all
 from quad_ident_ros.data.mapping import Column, load_mapping, mapping_from
 from quad_ident_ros.data.mapping_text import names_text, table_text, topics_text
+from quad_ident_ros.data.quality.ground import airborne
 from quad_ident_ros.data.readers.base import Content
 from quad_ident_ros.data.summary import summarise
 
@@ -158,3 +159,16 @@ def test_time_in_a_hand_is_no_error_where_it_is_left_out():
     everywhere = {name: 0.01 * record.columns[name] for name in CMD}
     told = {one['code'] for one in summarise(changed(record, **everywhere), VEHICLE)['findings']}
     assert 'thrust' in told
+
+
+def test_saturation_is_that_of_the_part_in_the_air():
+    """It is told of what a diagnosis keeps: rotors that stand are at speed_min."""
+    record = flight(seconds=12.0)
+    high = (record.t > 8.0) & (record.t < 8.3)
+    held = {name: np.where(record.t < 4.0, 0.0, np.where(high, VEHICLE.speed_max,
+                                                         record.columns[name])) for name in CMD}
+    [told] = [one for one in summarise(changed(record, **held), VEHICLE)['findings']
+              if one['code'] == 'saturation']
+    kept = airborne(changed(record, **held), VEHICLE)
+    share = np.mean((kept.t > 8.0) & (kept.t < 8.3))
+    assert told['message'].startswith(f'{100 * share:.2f} % ') and 'speed_max' in told['message']
