@@ -100,21 +100,23 @@ def nanobench(folder: Path) -> None:
              f'commands stamped {1e3 * EARLIER:.0f} ms earlier': (earlier, HELD_OUT[0]),
              'rotors 1 and 2 swapped': (swapped, HELD_OUT[0]),
              f'a moment of {1e3 * MOMENT:.1f} mN m about x added': (pushed, HELD_OUT[0])}
-    found = {}
+    found, taken = {}, {}
     with Progress(TextColumn('{task.description}'), BarColumn(), TimeElapsedColumn(),
                   console=Console(stderr=True)) as bar:
         task = bar.add_task('Diagnosing', total=len(cases))
         for label, (change, held) in cases.items():
             bar.update(task, description=label)
             records = [change(flights[name], vehicle) for name in (*TRAINING, held)]
+            begin = time.perf_counter()
             found[label] = attempt(records, vehicle)
+            taken[label] = time.perf_counter() - begin
             if label == list(cases)[0]:
                 save(found[label])
             bar.advance(task)
     usual = found[list(cases)[0]]
     keep(DOCUMENT, 'gap', gap_table([one for label, one in found.items()
                                      if label.startswith('as flown')]))
-    keep(DOCUMENT, 'effects', effects_table(usual))
+    keep(DOCUMENT, 'effects', effects_table(usual, taken[list(cases)[0]]))
     keep(DOCUMENT, 'nuisances', nuisances_table(usual))
     keep(DOCUMENT, 'tampered', tampered_table(found))
 
@@ -189,8 +191,12 @@ def gap_table(found: list[Diagnosis]) -> str:
                      'smaller by'), rows)
 
 
-def effects_table(found: Diagnosis) -> str:
-    """Return the effects with their parameters, and what each is worth on the held-out flight."""
+def effects_table(found: Diagnosis, taken: float) -> str:
+    """
+    Return the effects with their parameters, and what each is worth on the held-out flight.
+
+    Args: found; taken: s, how long the diagnosis took.
+    """
     rows = []
     for row in found.ranking:
         if not row.parameters and row.probability < WORTH:
@@ -202,7 +208,7 @@ def effects_table(found: Diagnosis) -> str:
                      f'{row.probability:.2f}', contribution_of(row) or '–', values,
                      number(without['velocity']) if without else '–'))
     return (f'Verdict: {", ".join(found.verdict)}; velocity gap with all that is named: '
-            f'{number(found.gap.after["velocity"])} m/s.\n\n'
+            f'{number(found.gap.after["velocity"])} m/s; {taken:.0f} s.\n\n'
             + markdown(('effect', 'form', 'named', 'probability', 'contribution', 'parameters',
                         'velocity gap without it, m/s'), rows))
 

@@ -11,6 +11,7 @@ from quad_ident_ros.errors import InputError
 from quad_ident_ros.identify.result import as_data
 from quad_ident_ros.model.vehicle import load_nominal
 from quad_ident_ros.report.data import write_json
+from quad_ident_ros.report.diagnosis import closed_of
 from quad_ident_ros.report.diagnosis import show as show_diagnosis
 from quad_ident_ros.report.picture import save_responses
 from quad_ident_ros.report.received import diagnosis_from
@@ -91,7 +92,8 @@ def _reveal(options, outcome):
     """Show the diagnosis, and only then the truth."""
     found = outcome.diagnosis
     if options.json != '-':
-        show_diagnosis(diagnosis_from(found, load_nominal(outcome.nominal)), sys.stdout)
+        typed = diagnosis_from(found, load_nominal(outcome.nominal))
+        show_diagnosis(typed, sys.stdout)
         units = {(effect.name, one.name): '' if one.unit == '1' else f' {one.unit}'
                  for effect in EFFECTS.values() for one in effect.parameters}
         truth = '; '.join(f'{name} ' + ', '.join(
@@ -102,8 +104,7 @@ def _reveal(options, outcome):
         hidden = all(gap['before'][name] < HIDDEN * gap['noise'][name] for name in gap['noise'])
         said = ('found' if outcome.found else 'not found: what it does is within the noise'
                 if hidden else 'not what was found')
-        print(f'          {said}; {100 * gap["closed"]:.0f} % of the velocity gap above the '
-              f'noise is closed; the same again: --seed {options.seed}')
+        print(f'          {said}; {closed_of(typed.gap)}; the same again: --seed {options.seed}')
         _say_where(options, outcome)
         print(f'pictures: ./run diagnose {outcome.recording}/flight_*.csv '
               f'--vehicle {outcome.nominal} --report diagnosis.html')

@@ -7,11 +7,19 @@ from dataclasses import replace
 import sys
 
 from quad_ident_ros.cli.identify import progress_bar
-from quad_ident_ros.cli.options import add_selection, flights_from, selection_of, vehicle_from
+from quad_ident_ros.cli.options import (
+    add_selection,
+    asking_for_vehicle,
+    flights_from,
+    selection_of,
+    thrust_by_log,
+    vehicle_from,
+)
 from quad_ident_ros.data.split import joined
 from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.diagnose.rules import RULES
 from quad_ident_ros.effects.registry import EFFECTS
+from quad_ident_ros.errors import InputError
 from quad_ident_ros.greybox.errors import UNITS
 from quad_ident_ros.model.vehicle import write_vehicle
 from quad_ident_ros.report.data import write_json
@@ -36,8 +44,8 @@ def add(commands):
     parser.add_argument('flights', nargs='+', metavar='FLIGHT',
                         help='a table (CSV, Parquet), a bag (ROS 1 or 2), or a log of PX4, '
                              'ArduPilot, Crazyflie or Betaflight')
-    parser.add_argument('--vehicle', required=True, help='vehicle name or file: the nominal '
-                        'one; auto: the file beside a PX4 log, written from its parameters')
+    parser.add_argument('--vehicle', help='vehicle name or file: the nominal one, which '
+                        'is needed; auto: the file beside a PX4 log, written from its parameters')
     parser.add_argument('--hold-out', metavar='FLIGHT',
                         help='the flight on which the gap is told (default: the last one named)')
     parser.add_argument('--mapping', metavar='FILE', help='which topics and outputs of other '
@@ -62,13 +70,17 @@ def run(options):
     rules = RULES if options.tolerance is None else rules_from(options.tolerance.split(','),
                                                                '--tolerance')
     selection = selection_of(options)
+    if options.vehicle is None:
+        raise InputError(asking_for_vehicle(options.flights[0]))
     vehicle = vehicle_from(options.vehicle, options.flights[0], options.mapping, nominal=True)
+    by_log = thrust_by_log(options.vehicle, options.flights[0])
     effects = ([name.strip() for name in options.effects.split(',')]
                if options.effects is not None else None)
     # Read one after the other as they are taken in, and not kept beside what is made of them.
     records = (record for path in options.flights
-               for record in flights_from(path, options.mapping, vehicle, selection))
-    held = (joined(flights_from(options.hold_out, options.mapping, vehicle, selection))[-1]
+               for record in flights_from(path, options.mapping, vehicle, selection,
+                                          by_log))
+    held = (joined(flights_from(options.hold_out, options.mapping, vehicle, selection, by_log))[-1]
             if options.hold_out else None)
     with progress_bar() as bar:
         task = bar.add_task('comparing sets of effects', total=1.0)

@@ -13,6 +13,7 @@ from quad_ident_ros.cli.options import (
     AUTO,
     flights_from,
     selection_of,
+    thrust_by_log,
     vehicle_from,
 )
 from quad_ident_ros.data.begin_mapping import begin_mapping
@@ -63,6 +64,7 @@ def add(commands):
 def run(options):
     """Read a file, show what is in it, and return the exit code."""
     vehicle, without = _vehicle(options)
+    by_log = vehicle is not None and thrust_by_log(options.vehicle, options.flight)
     selection = selection_of(options)
     if options.mapping:
         load_mapping(options.mapping)   # what is wrong with it is no fault of the flight
@@ -72,7 +74,7 @@ def run(options):
         if options.write_mapping:
             begin_mapping(options.write_mapping, options.flight, streams)
         try:
-            records = flights_from(options.flight, options.mapping, vehicle)
+            records = flights_from(options.flight, options.mapping, vehicle, by_log=by_log)
         except InputError as error:
             records, found = [], [unread(options.flight, error)]
         else:

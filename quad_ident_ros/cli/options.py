@@ -9,6 +9,7 @@ from quad_ident_ros.data.load import load_all, reader_of
 from quad_ident_ros.data.mapping import load_mapping
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.data.selection import selected, Selection
+from quad_ident_ros.data.thrust_level import carried_by_log
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.experiment import check_noise
 from quad_ident_ros.memory import give_back
@@ -50,17 +51,41 @@ def selection_of(options: argparse.Namespace) -> Selection:
 
 def flights_from(path: str | Path, mapping: str | None = None,
                  vehicle: Vehicle | str | None = None,
-                 selection: Selection | None = None) -> list[FlightRecord]:
+                 selection: Selection | None = None, by_log: bool = False) -> list[FlightRecord]:
     """
     Return the flight records that a path stands for, or what a Selection keeps of them.
 
-    Args: mapping: file of --mapping, or None; vehicle: Vehicle, or name or file, or None.
+    Args: mapping: file of --mapping, or None; vehicle: Vehicle, or name or file, or None;
+    by_log: see thrust_by_log.
     """
     if isinstance(vehicle, str):
         vehicle = load_vehicle(vehicle)
     found = load_all(path, load_mapping(mapping) if mapping else None, vehicle)
     give_back()
+    if by_log and vehicle is not None:
+        found = [carried_by_log(record, vehicle) for record in found]
     return found if selection is None else selected(path, found, selection)
+
+
+def asking_for_vehicle(path: str) -> str:
+    """Return what to say where --vehicle is missing: what the file at a path knows of it."""
+    if reader_of(Path(path)).name == 'px4':
+        from quad_ident_ros.data.px4_nominal import file_beside
+        return (f'{path}: --vehicle is missing: give --vehicle auto, which writes '
+                f'{file_beside(path)} with the rotors, their spins and speeds, and thrust over '
+                'mass by this log, and asks for mass and inertia, which no log has; or give '
+                '--vehicle FILE')
+    return (f'{path}: --vehicle is missing: give --vehicle FILE with the mass, inertia, rotors '
+            'and thrust coefficient of the nominal vehicle, as those in config/vehicles; only '
+            'logs of PX4 know a part of it')
+
+
+def thrust_by_log(option: str | None, path: str) -> bool:
+    """Whether the thrust coefficient of --vehicle is that by which the log carries the weight."""
+    if option != AUTO:
+        return False
+    from quad_ident_ros.data.px4_nominal import has_thrust
+    return not has_thrust(path)
 
 
 def vehicle_from(option: str, path: str, mapping: str | None = None,

@@ -14,8 +14,9 @@ import zlib
 import numpy as np
 
 from quad_ident_ros.data.counted import counted
+from quad_ident_ros.data.cutting import deletion
 from quad_ident_ros.data.limits import most
-from quad_ident_ros.data.record import find_fault, FlightRecord, unit
+from quad_ident_ros.data.record import faulty, find_fault, FlightRecord, unit
 from quad_ident_ros.errors import InputError
 
 _PENDING_BYTES = 1 << 16
@@ -47,7 +48,10 @@ def read_csv(path):
     t = columns.pop('t')
     fault = find_fault(t, columns)
     if fault is not None:
-        raise _error(path, lines[fault.sample], fault.column, fault.problem, fault.remedy)
+        wrong = np.flatnonzero(faulty(t, columns))
+        ways = [deletion([lines[k] for k in wrong], count), fault.remedy]
+        raise _error(path, lines[fault.sample], fault.column, fault.problem,
+                     ', or '.join(filter(None, ways)))
     info = {'name': path.name.removesuffix('.gz').removesuffix('.csv'), 'source': str(path)}
     return FlightRecord(t, columns, info | ({'truncated': True} if truncated else {}))
 
@@ -226,30 +230,45 @@ def _parse_any(path, rows, names):
         if None not in numbers:
             columns[name] = np.array(numbers, dtype=float)
         elif unit(name) is not None:
-            k = numbers.index(None)
+            wrong = [k for k, number in enumerate(numbers) if number is None]
+            k, delete = wrong[0], deletion([lines[k] for k in wrong], len(lines))
             raise _error(path, lines[k], name, f'{column[k][:40]!r} is no number',
-                         'write a decimal number or remove the line')
+                         'write a decimal number' + (f', or {delete}' if delete else ''))
     columns.pop('', None)
     return lines, columns
 
 
 def _cells(path, rows, names):
     """Return the line number and the cells of each sample."""
-    lines, cells = [], []
+    lines, cells, wrong = [], [], []
     reader = csv.reader(rows, strict=True)
     try:
         for row in reader:
             if reader.line_num == 1 or (len(row) < 2 and not ''.join(row).strip()):
                 continue
             if len(row) != len(names):
-                raise _error(path, reader.line_num, None,
-                             f'{len(row)} cells where the header has {len(names)}',
-                             'complete the line or remove it')
+                wrong.append((reader.line_num, len(row)))
+                continue
             lines.append(reader.line_num)
             cells.append(row)
     except csv.Error as error:
         raise _error(path, reader.line_num, None, f'no CSV ({error})', 'mend the line') from None
+    refuse_uneven(path, wrong, len(names), len(lines))
     return lines, cells
+
+
+def refuse_uneven(path, wrong, width, right):
+    """
+    Raise InputError where lines of a table have other numbers of cells than its header.
+
+    Args: path; wrong: (line, cells) of each; width: cells of the header; right: how many lines
+    have as many.
+    """
+    if wrong:
+        line, cells = wrong[0]
+        delete = deletion([number for number, _ in wrong], right + len(wrong))
+        raise _error(path, line, None, f'{cells} cells where the header has {width}',
+                     'complete the line' + (f', or {delete}' if delete else ''))
 
 
 def _number(cell, may_be_empty):

@@ -2,11 +2,29 @@
 # SPDX-License-Identifier: Apache-2.0
 """What to type to leave samples of a flight out."""
 
+from collections.abc import Sequence
 import math
 
 import numpy as np
 
 SHORTEST = 4.0      # s: with less there is no diagnosis, so that a cut is no way out
+
+MOST_RUNS = 8       # of lines, that a message names
+
+
+def deletion(lines: Sequence[int], count: int) -> str:
+    """
+    Return the advice to delete lines of a text file; '' where those are too many.
+
+    Args: lines: numbers from 1, rising, at least one; count: lines of samples in the file.
+    """
+    numbers = np.asarray(lines)
+    runs = np.split(numbers, np.flatnonzero(np.diff(numbers) > 1) + 1)
+    if 2 * len(numbers) > count or len(runs) > MOST_RUNS:
+        return ''
+    named = [f'{run[0]}' if len(run) == 1 else f'{run[0]} to {run[-1]}' for run in runs]
+    shown = ' and '.join(filter(None, [', '.join(named[:-1]), named[-1]]))
+    return f'delete line{"s" * (len(numbers) > 1)} {shown}'
 
 
 def without(t: np.ndarray, bad: np.ndarray, *others: str) -> str:

@@ -162,7 +162,7 @@ def _map_of(where: str, about: dict, values: np.ndarray, vehicle: Vehicle | None
     if told is None:
         kind, how = about.get('kind', ''), 'as the log has them'
         if not kind:
-            kinds = kinds_of(values, vehicle.hover_speed)
+            kinds = _kinds_of(values, vehicle)
             if len(kinds) != 1:
                 if not np.nanmax(np.ptp(np.nan_to_num(values), axis=0), initial=0.0) > 0:
                     return None
@@ -175,6 +175,11 @@ def _map_of(where: str, about: dict, values: np.ndarray, vehicle: Vehicle | None
     motors = completed(told, vehicle.thrust_coefficient, vehicle.speed_min, vehicle.speed_max)
     said = f'commands: outputs taken for {described(told.kind)}, {how}; '
     return _Map(motors, said + (_said(motors) if motors.whole else ''))
+
+
+def _kinds_of(values: np.ndarray, vehicle: Vehicle) -> tuple[str, ...]:
+    """Return the kinds that signals may be for a vehicle, the likeliest first."""
+    return kinds_of(values, vehicle.hover_speed, (vehicle.speed_min, vehicle.speed_max))
 
 
 def _of_kind(kind: str) -> Motors:
@@ -229,14 +234,14 @@ def _refuse_range(where: str, values: np.ndarray, vehicle: Vehicle) -> None:
 
 
 def _perhaps(values: np.ndarray, vehicle: Vehicle) -> str:
-    kinds = kinds_of(values, vehicle.hover_speed)
+    kinds = _kinds_of(values, vehicle)
     return f' (kind: {" or ".join(kinds)} by their size)' if kinds else ''
 
 
 def _likely(values: np.ndarray, vehicle: Vehicle) -> str:
     if vehicle.motors is not None:
         return vehicle.motors.kind
-    return next(iter(kinds_of(values, vehicle.hover_speed)), 'pwm')
+    return next(iter(_kinds_of(values, vehicle)), 'pwm')
 
 
 def _refuse_voltage(records: Sequence[FlightRecord], motors: Motors) -> None:

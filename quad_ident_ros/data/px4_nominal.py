@@ -43,7 +43,7 @@ def vehicle_of_log(path: Path, mapping: Mapping | None = None) -> Vehicle:
     Raises InputError that asks for what no log knows.
     """
     path = Path(path)
-    file = path.with_name(f'{path.stem}_vehicle.yaml')
+    file = file_beside(path)
     log = parse(path, (STATUS,))
     refuse_others(path, log, next((one.data for one in log.data_list if one.name == STATUS), None))
     motors = motors_of(log.initial_parameters)
@@ -80,6 +80,17 @@ def vehicle_of_log(path: Path, mapping: Mapping | None = None) -> Vehicle:
     if data.get('torque_coefficient', 0) is None and isinstance(thrust, int | float):
         data['torque_coefficient'] = ratio * thrust
     return vehicle_from_mapping(data, str(file))
+
+
+def file_beside(path: str | Path) -> Path:
+    """Return the path of the vehicle file beside a PX4 log."""
+    path = Path(path)
+    return path.with_name(f'{path.stem}_vehicle.yaml')
+
+
+def has_thrust(path: str | Path) -> bool:
+    """Whether the vehicle file beside a PX4 log has a thrust coefficient without the log."""
+    return resources.read_yaml(file_beside(path)).get('thrust_coefficient', 0) is not None
 
 
 def _thrust(path: Path, motors: Motors,

@@ -59,18 +59,37 @@ def find_fault(t, columns):
         if unit(name) is not None and not np.isfinite(values).all():
             k = int(np.argmin(np.isfinite(values)))
             return Fault(name, k, f'{values[k]} is no finite number',
-                         'remove the sample or fill in its value')
+                         'fill in the value, or leave the sample out')
     stuck = t[1:] <= t[:-1]
     if stuck.any():
         k = int(np.argmax(stuck)) + 1
         return Fault('t', k, f'{t[k]} s does not come after {t[k - 1]} s',
-                     'sort the samples by time and keep one of each')
+                     'put the samples into the order of time, one of each')
     return None
+
+
+def faulty(t: np.ndarray, columns: Mapping) -> np.ndarray:
+    """Return whether a sample (N,) has to go so that find_fault finds nothing; its arguments."""
+    wrong = ~np.isfinite(t)
+    for name, values in columns.items():
+        if unit(name) is not None:
+            wrong |= ~np.isfinite(values)
+    latest = np.maximum.accumulate(np.where(wrong, -np.inf, t))
+    wrong[1:] |= t[1:] <= latest[:-1]
+    return wrong
 
 
 CUT = ('the last line of the file has no line end and was left out: a recording that was cut off '
        'there may have cut its last number')
 """What the info `truncated` of a record means."""
+
+NOTED = 'commands', 'logging'
+"""
+Info of a record: those of its notes that a diagnosis tells, too.
+
+commands: what the outputs to the motors were taken for; logging: what was logged too seldom or
+without valid estimates.
+"""
 
 # What holds for a record only from its first sample on.
 FIRST_SAMPLE_INFO = ('starts_at_rest', 'initial')

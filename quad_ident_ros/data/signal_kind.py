@@ -10,18 +10,21 @@ PWM = 800.0, 2200.0     # us, between which pulses to motors lie
 LEAST = 0.1             # of full throttle, which a flight exceeds for a tenth of the time
 LEAST_DUTY = 10000.0    # a sixth of 65535: less lifts nothing
 NEAR_HOVER = 0.75, 1.33  # of the hover speed: thrust coefficients are off by less than half
+APART = 1.15            # times in speed, a third in thrust: vehicle files may err by less
 FASTEST = {'speed': 4000.0, 'rpm': 60000.0}     # rad/s and rpm of rotors that fly anything
 
 TITLES = {'speed': 'rad/s', 'rpm': 'rpm', 'pwm': 'PWM', 'normalised': 'normalised',
           'percent': 'per cent', 'duty16': 'duty', 'dshot': 'DSHOT'}
 
 
-def kinds_of(values: np.ndarray, hover: float | None = None) -> tuple[str, ...]:
+def kinds_of(values: np.ndarray, hover: float | None = None,
+             ends: tuple[float, float] = (0.0, np.inf)) -> tuple[str, ...]:
     """
     Return the kinds (of KINDS) that values may be, the likeliest first.
 
     Values of 0 and less are motors that are off.
-    Args: values, any shape; hover: rad/s, the hover speed of the vehicle, or None.
+    Args: values, any shape; hover: rad/s, the hover speed of the vehicle, or None; ends: its
+    lowest and highest speed, rad/s, by which PWM and DSHOT of the same size are told apart.
     """
     on = values[np.isfinite(values) & (values > 0)]
     if not len(on):
@@ -36,8 +39,10 @@ def kinds_of(values: np.ndarray, hover: float | None = None) -> tuple[str, ...]:
     strong = float(np.quantile(on, 0.9))
     if PWM[0] <= low and high <= PWM[1] and strong > _at(LEAST, 'pwm'):
         found.append('pwm')
-    elif whole and 48 <= low and high <= 2047 and strong > _at(LEAST, 'dshot'):
+    if whole and 48 <= low and high <= 2047 and strong > _at(LEAST, 'dshot'):
         found.append('dshot')
+    if len(found) == 2:
+        found = _nearer(found, usual, hover, ends)
     if whole and LEAST_DUTY < high <= 65535:
         found.append('duty16')
     if hover is not None:
@@ -46,6 +51,27 @@ def kinds_of(values: np.ndarray, hover: float | None = None) -> tuple[str, ...]:
     elif not found:     # what it would be without a vehicle to hold it against
         found += [kind for kind in TO_SPEED if 100.0 < high < FASTEST[kind]][:1]
     return tuple(found)
+
+
+def _nearer(kinds: list[str], usual: float, hover: float | None,
+            ends: tuple[float, float]) -> list[str]:
+    """
+    Return of kinds of the same size those by which the usual signal turns the rotors as in hover.
+
+    That is one alone where it is nearer by APART, and all where they are alike or no highest speed
+    is known; without a vehicle the first.
+    """
+    if hover is None:
+        return kinds[:1]
+    if not np.isfinite(ends[1]):
+        return kinds
+    off = {}
+    for kind in kinds:
+        low, high = KINDS[kind] or (0.0, 1.0)
+        speed = ends[0] + (usual - low) / (high - low) * (ends[1] - ends[0])
+        off[kind] = abs(np.log(speed / hover)) if speed > 0.0 else np.inf
+    least = min(off.values())
+    return [kind for kind in kinds if off[kind] <= least + np.log(APART)]
 
 
 def _at(share: float, kind: str) -> float:

@@ -10,7 +10,7 @@ import numpy as np
 
 from quad_ident_ros.data.counted import counted
 from quad_ident_ros.data.frames import conjugate, continuous, multiply, rotate
-from quad_ident_ros.data.record import FlightRecord, QUATERNION
+from quad_ident_ros.data.record import FlightRecord, NOTED, QUATERNION
 
 Reset: TypeAlias = tuple[float, float, str]
 
@@ -103,15 +103,24 @@ def rejoined(pieces: Sequence[FlightRecord]) -> FlightRecord:
         if len(piece) - first >= 2:
             kept.append(piece.slice(first))
     columns = [column for column in kept[0].columns if all(one.has(column) for one in kept)]
-    notes = list(dict.fromkeys(note for piece in kept for note in piece.info.get('notes', ())))
+    notes = _of_all(kept, 'notes')
+    said = {code: _of_all(kept, code) for code in NOTED if any(code in one.info for one in kept)}
+    resets = list(dict.fromkeys(one.info['resets'] for one in kept if 'resets' in one.info))
+    said |= {'resets': '; '.join(resets)} if resets else {}
     cuts = sorted({*(float(piece.t[0]) for piece in kept[1:]),
                    *(cut for piece in kept for cut in piece.info.get('cuts', ()))})
     spans = ', '.join(f't = {piece.t[0]:.2f} to {piece.t[-1]:.2f} s' for piece in kept)
     return FlightRecord(
         np.concatenate([piece.t for piece in kept]),
         {column: np.concatenate([piece.columns[column] for piece in kept]) for column in columns},
-        {**kept[0].info, 'name': f'{name} ({len(kept)} parts)', 'source': source, 'cuts': cuts,
+        {**kept[0].info, **said, 'name': f'{name} ({len(kept)} parts)', 'source': source,
+         'cuts': cuts,
          'notes': [*notes, f'{len(kept)} parts of one recording are one flight: {spans}']})
+
+
+def _of_all(records: Sequence[FlightRecord], key: str) -> list[str]:
+    """Return the notes that the info of records has under a key, each once."""
+    return list(dict.fromkeys(note for one in records for note in one.info.get(key, ())))
 
 
 def jumps(record: FlightRecord) -> list[Reset]:
@@ -155,7 +164,8 @@ def _noted(record: FlightRecord, kept: list[tuple[int, int]], count: int, resets
                 f'split where the estimator was reset: {shown}{more}')
         if dropped:
             note += f'; left out: {counted(dropped, "part")} shorter than {shortest:g} s'
-        info = {**piece.info, 'notes': [*piece.info.get('notes', ()), note]}
+        info = {**piece.info, 'notes': [*piece.info.get('notes', ()), note],
+                'resets': f'{shown}{more}'}
         if len(kept) > 1:
             info |= {'name': f'{name}_{number}'} if name else {}
             info |= {'source': f'{source}, part {number}'} if source else {}

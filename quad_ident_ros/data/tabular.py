@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from quad_ident_ros.data.csv import rows_of
+from quad_ident_ros.data.csv import refuse_uneven, rows_of
 from quad_ident_ros.data.limits import most
 from quad_ident_ros.errors import InputError
 
@@ -280,15 +280,16 @@ def _seconds(cells: Sequence[str]) -> np.ndarray:
 def _thorough(path: Path, rows: list[str], places: list[int], names: list[str], separator: str,
               comma: bool) -> tuple[dict[str, np.ndarray], list[str]]:
     """Return the columns without text of any table, and notes of what is left out."""
-    cells = []
+    cells, wrong = [], []
     for k, row in zip(places, rows, strict=True):
         line = _cells(row, separator)
         if len(line) == len(names) + 1 and not line[-1]:
             line.pop()      # a separator at the end
         if len(line) != len(names):
-            raise InputError(f'{path}, line {k}: {len(line)} cells where the header has '
-                             f'{len(names)}; complete the line or remove it')
-        cells.append(line)
+            wrong.append((k, len(line)))
+        else:
+            cells.append(line)
+    refuse_uneven(path, wrong, len(names), len(cells))
     columns, text = {}, []
     for name, column in zip(names, zip(*cells, strict=True), strict=True):
         values = [_number(cell, comma) for cell in column]

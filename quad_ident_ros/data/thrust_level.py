@@ -18,6 +18,15 @@ FLYING = 0.4    # of what strong thrusts of the flight are: less is a landing, o
 
 FULL_SPEED = 'full_speed'
 """Info of a record: speed in rad/s at full signal, where the weight tells it."""
+BY_LOG = 'thrust_by_log'
+"""Info of a record: the weight told the thrust coefficient, beside this speed."""
+
+
+def carried_by_log(record: FlightRecord, vehicle: Vehicle) -> FlightRecord:
+    """Return a record for a Vehicle whose thrust coefficient is that by which a log flies."""
+    if FULL_SPEED in record.info:
+        return record
+    return replace(record, info={**record.info, FULL_SPEED: vehicle.speed_max, BY_LOG: True})
 
 
 def levelled(where: str, records: Sequence[FlightRecord], signals: Sequence[np.ndarray],

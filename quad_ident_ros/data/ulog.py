@@ -67,15 +67,19 @@ def read_ulog(path: str | Path, mapping: Mapping | None = None,
     refuse_others(path, log, data['vehicle_status'])
     notes = [*(['parts of the log are damaged and left out'] if log.file_corruption else []),
              *([f'{counted(len(log.dropouts), "dropout")} while logging'] if log.dropouts else [])]
-    streams = [_attitude(path, data), *_position(path, data, notes), _rate(path, data),
+    commands: list[str] = []
+    logging: list[str] = []
+    streams = [_attitude(path, data), *_position(path, data, logging), _rate(path, data),
                _specific_force(path, data), _battery(path, data)]
-    streams += _outputs(path, log, data, mapping.actuators, vehicle, notes,
+    streams += _outputs(path, log, data, mapping.actuators, vehicle, commands,
                         mapping.instances.get('actuator_outputs'))
     streams = [stream for stream in streams if stream is not None]
-    notes += _slow(streams)
+    logging += _slow(streams)
+    notes += [*commands, *logging]
     start, t, columns, joined = join(path, streams)
     record = FlightRecord(t, velocity_in_world(path, columns), {
         'name': path.stem, 'source': str(path), 'start_ns': start, 'notes': [*notes, *joined],
+        'commands': commands, 'logging': logging,
         'hardware': _hardware(log), 'modes': _modes(path, data['vehicle_status'], start)})
     taken = {stream.source.removeprefix('topic ') for stream in streams
              if {'px', 'body_vx', 'qw'} & stream.columns.keys()}

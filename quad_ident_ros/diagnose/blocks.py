@@ -26,11 +26,18 @@ def interleaved(track: Track) -> tuple[Track, Track]:
     block = np.searchsorted(edges[1:-1], t, side='right')
     held = np.isin(block, _held_out(_motion(track, block, 2 * pairs)))
     length = (t[-1] - t[0]) / (2 * pairs)
-    named = {False: f'{track.name} (every other {length:.2g} s)',
-             True: f'{track.name} (the {length:.2g} s between)'}
+    named = {False: f'{track.name} (half of its blocks of {length:.2g} s)',
+             True: f'{track.name} (the other half of its blocks of {length:.2g} s)'}
     learnt, rest = (replace(track, name=named[part], seen=track.seen & (held == part)[:, None])
                     for part in (False, True))
     return learnt, rest
+
+
+def spans_seen(track: Track) -> list[tuple[float, float]]:
+    """Return the first and last time (s) of each stretch that belongs to a part of a Track."""
+    t, rows = track.course.t, np.flatnonzero(track.seen.any(axis=1))
+    apart = np.flatnonzero((np.diff(rows) > 1) | (np.diff(t[rows]) > BLOCK)) + 1
+    return [(float(t[part[0]]), float(t[part[-1]])) for part in np.split(rows, apart)]
 
 
 def _motion(track: Track, block: np.ndarray, count: int) -> np.ndarray:

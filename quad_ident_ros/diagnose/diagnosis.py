@@ -34,7 +34,7 @@ def diagnose(records: Iterable[FlightRecord], vehicle: Vehicle, *,
     Return the Diagnosis of flight records against a nominal vehicle.
 
     Args: hold_out: a record that takes no part in the fit or the choice, by default the last one
-    (every other block of a single one); effects: names that may be named, by default all; rules:
+    (half of the blocks of a single one); effects: names that may be named, by default all; rules:
     thresholds of the verdict; on_progress is called with the share done.
     Raises InputError where the records cannot bear a verdict.
     """

@@ -137,16 +137,18 @@ def within_bounds(chosen: tuple, fit: Estimate, usual: dict, flights: Sequence[F
     """
     Return a set and its Estimate with the usual form for each that wants to leave its bounds.
 
-    usual {effect: candidate of its usual form}; the others as of refitted.
+    An effect whose usual form these flights cannot tell is left out instead.
+    Args: usual {effect: candidate of its usual form}; the others as of refitted.
     """
     while True:
-        swaps = {cause: usual[cause.effect] for cause in effects_in(chosen)
+        swaps = {cause: usual.get(cause.effect) for cause in effects_in(chosen)
                  if out_of_bounds(cause, fit, vehicle, rules)}
         if not swaps:
             return chosen, fit
         z = fit.z.copy()
         for cause in swaps:
             z[list(cause.columns)] = nominal(vehicle)[list(cause.columns)]
-        chosen = key_of(tuple(swaps.get(cause, cause) for cause in chosen))
+        chosen = key_of(tuple(kept for cause in chosen
+                              if (kept := swaps.get(cause, cause)) is not None))
         fit = refitted(flights, vehicle, z, chosen, noise, fit.nuisances, fit.starts,
                        scatter=scatter, fixed=fixed, slow=slow)

@@ -19,7 +19,8 @@ from quad_ident_ros.data.quality.gyro import bias
 from quad_ident_ros.data.record import FlightRecord, refuse_twice, same_flight
 from quad_ident_ros.data.split import joined, spans
 from quad_ident_ros.data.thrust_level import on_one_level
-from quad_ident_ros.diagnose.blocks import interleaved
+from quad_ident_ros.diagnose.blocks import interleaved, spans_seen
+from quad_ident_ros.diagnose.result import BLOCKS
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.errors import InputError
@@ -29,6 +30,8 @@ from quad_ident_ros.greybox.parameters import nominal
 from quad_ident_ros.greybox.rotor_answer import rotor_answer, ruled_out_by
 from quad_ident_ros.model.mixing import BY_SPEEDS, with_commands
 from quad_ident_ros.model.vehicle import Vehicle
+
+MOST_SHOWN = 8      # blocks that a line names; as data there are all
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,6 +104,7 @@ def take_in(records: Sequence[FlightRecord], vehicle: Vehicle, hold_out: FlightR
               for record, clock in zip(every, clocks, strict=True)]
     if alone:
         tracks, late, clocks = list(interleaved(tracks[0])), 2 * late, 2 * clocks
+        findings.append(_halves(tracks[1], every[0]))
     *tracks, held_out = tracks
     return Intake(vehicle, tuple(tracks), held_out, rollouts(tracks, vehicle), tuple(late),
                   tuple(clocks), findings, ruled_out)
@@ -168,12 +172,12 @@ def _with_states(records: list[FlightRecord], vehicle: Vehicle, findings: list
 def _fit_for_use(record: FlightRecord, vehicle: Vehicle, rules: Rules, wrong: Collection[str],
                  findings: list) -> FlightRecord:
     """Return a record off the ground, its cautions added to the findings; wrong: as refuted."""
-    if 'whole' in record.info:
-        findings.append(as_caution(_cut(record), record))
     ground = [*stands(record, vehicle), *bias(record, vehicle)]
     refuse_errors(record, ground)
     findings += [as_caution(finding, record) for finding in ground]
     whole, record = record, airborne(record, vehicle)
+    if 'whole' in whole.info:
+        findings.append(as_caution(_cut(record), record))
     refuse_short(record, rules, ' off the ground' if len(record) < len(whole) else '')
     findings += [one for one in cautions(record, vehicle, wrong)
                  if one['code'] not in {finding.code for finding in ground}]
@@ -181,10 +185,24 @@ def _fit_for_use(record: FlightRecord, vehicle: Vehicle, rules: Rules, wrong: Co
 
 
 def _cut(record: FlightRecord) -> Finding:
-    """Return the Finding that says which parts of a recording are used."""
+    """Return the Finding that says which parts of a recording are used, and what split it."""
     used = ' and '.join(f't = {begin:.2f} to {end:.2f} s' for begin, end in spans(record))
-    return Finding('kept', 'info', used, 'this part of the recording is used',
+    resets = record.info.get('resets')
+    why = f'; it was split where the estimator was reset: {resets}' if resets else ''
+    return Finding('kept', 'info', used, f'this part of the recording is used{why}',
                    'nothing needs to be done; --segment, --from and --to choose another part')
+
+
+def _halves(held_out: Track, record: FlightRecord) -> dict:
+    """Return the finding that says which blocks of a single flight are held out, as data."""
+    spans = spans_seen(held_out)
+    shown = ', '.join(f'{begin:.2f} to {end:.2f}' for begin, end in spans[:MOST_SHOWN])
+    more = f' s and {len(spans) - MOST_SHOWN} more' if len(spans) > MOST_SHOWN else ' s'
+    finding = Finding(BLOCKS, 'info', f't = {shown}{more}',
+                      'held out: of each two blocks that follow one another the one by which both '
+                      'halves of the flight move alike',
+                      'nothing needs to be done; --hold-out FLIGHT holds out another flight')
+    return {**as_caution(finding, record), 'spans': [list(span) for span in spans]}
 
 
 def rollouts(tracks: Sequence[Track], vehicle: Vehicle) -> list[Flight]:

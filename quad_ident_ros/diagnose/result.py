@@ -14,6 +14,8 @@ from quad_ident_ros.greybox.parameters import SPLIT
 from quad_ident_ros.model.vehicle import Vehicle
 
 SCHEMA = 'quad_ident/diagnosis/2'
+BLOCKS = 'blocks'
+"""Code of the finding that only a single flight has: which blocks of it are held out."""
 
 
 @dataclass(frozen=True)

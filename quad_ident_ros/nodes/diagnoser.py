@@ -22,7 +22,7 @@ from quad_ident_ros.nodes.messages import ERROR, OK, table_message, WARN
 from quad_ident_ros.nodes.parameters import help_text, ParameterSpec
 from quad_ident_ros.nodes.qos import latched
 from quad_ident_ros.nodes.record_worker import RecordWorker, Words
-from quad_ident_ros.report.diagnosis import verdict_line
+from quad_ident_ros.report.diagnosis import closed_of, verdict_line
 from quad_ident_ros.tolerances import EXAMPLE, rules_from
 from quad_ident_ros.warm_up import warm_up_diagnosis
 
@@ -54,7 +54,7 @@ HELP = f"""diagnoser: says which effects a vehicle has beside its nominal descri
 Subscribes: record (std_msgs/Float64MultiArray, latched) of the recorder, which joins pose, twist
 and input; of records without rotor speed commands, those that give the input are taken. Outputs
 to the motors (PWM, normalised, ...) become speeds by the recorder's mapping and the vehicle.
-Of several flights the last one is held out, of a single one every other block of 3 s.
+Of several flights the last one is held out, of a single one half of its blocks of 3 s.
 Publishes (latched, but progress and diagnostics):
   diagnosis      std_msgs/String             JSON: verdict, effects with probability, where, gap,
                                              what to fly next
@@ -132,8 +132,7 @@ class Diagnoser(RecordWorker):
             'verdict': ','.join(verdict), 'closed': gap.closed,
             'dropped_samples': data['dropped_samples'],
             **{f'probability/{row.effect}': row.probability for row in found.ranking}})
-        self.get_logger().info(f'{text}; {100 * gap.closed:.0f} % of the velocity gap above '
-                               'the noise is closed')
+        self.get_logger().info(f'{text}; {closed_of(gap)}')
 
 
 def _validate(values):

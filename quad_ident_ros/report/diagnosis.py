@@ -2,17 +2,31 @@
 # SPDX-License-Identifier: Apache-2.0
 """A diagnosis as a table that a person reads in ten seconds."""
 
+from collections import Counter
+import re
 from typing import TextIO
 
 from rich import box
 from rich.console import Console
 from rich.table import Table
 
-from quad_ident_ros.diagnose.result import Channel, Diagnosis, Ranked, Unexplained
+from quad_ident_ros.diagnose.result import (
+    BLOCKS,
+    Channel,
+    Diagnosis,
+    Gap,
+    GapGivenAttitude,
+    Ranked,
+    Unexplained,
+)
 from quad_ident_ros.diagnose.rules import RULES
 
 WIDTH = 118     # columns that the widest row needs
 WORTH = 0.02        # probability or share from which on a row is shown
+
+NOTHING_TO_CLOSE = "the velocity gap is not above the noise's, so that there is nothing to close"
+
+NUMBER = re.compile(r'[-+]?\d+(\.\d+)?(e[-+]?\d+)?')
 
 WHERE = ('channel', 'share', 'rms', 'noise alone', 'where most of it is', 'Hz')
 """What where_row says of a channel."""
@@ -73,8 +87,21 @@ def size_line(found: Diagnosis) -> str:
     if gap.without:
         said += f', by {after:.3g} m/s with the effects named'
     said += f'; noise alone makes {noise:.3g} m/s.'
+    if gap.without and not above_noise(gap):
+        return f'{said} {NOTHING_TO_CLOSE[0].upper()}{NOTHING_TO_CLOSE[1:]}.'
     return said if not gap.without else (
         f'{said} {100 * gap.closed:.0f} % of the gap above the noise is closed.')
+
+
+def above_noise(gap: Gap | GapGivenAttitude) -> bool:
+    """Whether the nominal vehicle, nuisances taken out, is farther off than the noise is."""
+    return gap.before_own['velocity'] > gap.noise['velocity']
+
+
+def closed_of(gap: Gap | GapGivenAttitude) -> str:
+    """Return how much of a velocity gap is closed, in words."""
+    return (f'{100 * gap.closed:.0f} % of the velocity gap above the noise is closed'
+            if above_noise(gap) else NOTHING_TO_CLOSE)
 
 
 def shown_channels(found: Diagnosis) -> list[Channel]:
@@ -141,9 +168,12 @@ def one_finding_lines(found: Diagnosis) -> list[str]:
 
 def far_line(found: Diagnosis) -> str:
     """Return how much of the velocity gap is closed, open loop and given the attitude."""
-    return (f'how far, on {found.held_out} (held out), {found.gap.horizon:g} s ahead: of the '
-            f'velocity gap above the noise {100 * found.gap.closed:.0f} % is closed, given the '
-            f'recorded attitude {100 * found.gap_given_attitude.closed:.0f} %')
+    gap, given = found.gap, found.gap_given_attitude
+    said = f'how far, on {found.held_out} (held out), {gap.horizon:g} s ahead: '
+    if above_noise(gap) and above_noise(given):
+        return (f'{said}of the velocity gap above the noise {100 * gap.closed:.0f} % is closed, '
+                f'given the recorded attitude {100 * given.closed:.0f} %')
+    return f'{said}{closed_of(gap)}; given the recorded attitude, {closed_of(given)}'
 
 
 def far_rows(found: Diagnosis) -> list[list[str]]:
@@ -168,10 +198,12 @@ def open_lines(found: Diagnosis) -> list[str]:
     lines = [f'unexplained: {row.channel}, {row.depends_on}, {row.rms:.2g} {row.unit} rms, '
              + (f'{band_of(row)} Hz' if row.band[1] > 0.0 else 'constant')
              for row in found.unknown]
+    single = any(one['code'] == BLOCKS for one in found.findings)
+    others = 'half of this flight' if single else 'flights'
     for one in found.flight_checks:
         if one.differs:
             times = ', '.join(f'{name} {value:.3g}' for name, value in one.gap_over_noise.items())
-            lines.append(f'{one.flight} differs from the other flights; gap over that of the '
+            lines.append(f'{one.flight} differs from the other {others}; gap over that of the '
                          f'noise: {times}')
     if found.not_shown:
         lines.append(f'would not show at their usual size: {", ".join(found.not_shown)}')
@@ -201,13 +233,18 @@ def caution_lines(found: Diagnosis) -> list[str]:
     """
     Return what to be wary of, a line for each kind of it.
 
-    A held-out flight that the effects found lead away from, and what was found in the records.
+    A held-out flight that the effects found lead away from, and what was found in the records:
+    what is said of several flights in the same words, whatever the numbers, is one line.
     """
     farther = [f'be wary of {found.held_out} (held out): it is farther from the model with the '
                'effects named than without: it was flown otherwise, or by another vehicle']
     alike: dict = {}
+    said: Counter = Counter()
     for one in found.findings:
-        alike.setdefault((one['code'], one['where'].partition(', t =')[0]), []).append(one)
+        words = (one['code'], one['where'].partition(', t =')[0],
+                 NUMBER.sub('#', one['message']))
+        said[one['flight'], words] += 1
+        alike.setdefault((words, said[one['flight'], words]), []).append(one)
     lines = [f'{"" if first.get("severity") == "info" else "be wary of "}{first["flight"]}'
              + (f' ({", ".join(one["flight"] for one in others)} alike)' if others else '')
              + f': {first["where"]}: {first["message"]}' for first, *others in alike.values()]

@@ -165,7 +165,7 @@ def test_it_answers_while_it_diagnoses_and_can_be_cancelled(graph, draggy):
 
 
 def test_each_window_is_diagnosed_in_continuous_mode(graph, draggy):
-    """A window of a single flight, of which every other block is held out."""
+    """A window of a single flight, of which half of the blocks are held out."""
     bench = Bench(graph, {'mode': 'continuous', 'window': 8.0, 'effects': ['rotor_drag', 'wind']})
     bench.feed(draggy[:1])
     first = bench.await_diagnosis()

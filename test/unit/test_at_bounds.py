@@ -7,6 +7,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from quad_ident_ros.diagnose import fitted
 from quad_ident_ros.diagnose.advice import at_bounds
 from quad_ident_ros.diagnose.candidates import Candidate
 from quad_ident_ros.diagnose.diagnosis import diagnose
@@ -55,3 +56,16 @@ def test_an_effect_that_needs_values_no_vehicle_has_is_not_named():
     assert row.probability == RULES.prior_odds
     assert any(finding['code'] == 'at_bound' and 'not named' in finding['message']
                for finding in told.findings)
+
+
+def test_a_form_at_its_bound_is_left_out_where_its_usual_one_cannot_be_told(monkeypatch):
+    """Where the weight told the level of thrust, thrust_scale has its offset alone."""
+    offset = INDEX['thrust_scale.offset']
+    curve = Candidate('thrust_scale', 'thrust_scale offset', (offset,), 'offset', usual=False)
+    z = nominal(VEHICLE)
+    z[offset] = limits(VEHICLE)[1, offset]
+    fit = SimpleNamespace(z=z, nuisances=None, starts=None)
+    monkeypatch.setattr(fitted, 'refitted', lambda flights, vehicle, z, *_, **__:
+                        SimpleNamespace(z=z, nuisances=None, starts=None))
+    chosen, again = fitted.within_bounds((curve, INERTIA), fit, {}, [], VEHICLE, [], RULES)
+    assert chosen == (INERTIA,) and again.z[offset] == nominal(VEHICLE)[offset]

@@ -8,15 +8,16 @@ from flightmaker import changed
 import numpy as np
 import pytest
 
-from quad_ident_ros.diagnose.blocks import interleaved
+from quad_ident_ros.diagnose.blocks import interleaved, spans_seen
 from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.diagnose.gap import ends
+from quad_ident_ros.diagnose.result import FlightCheck
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import SENSORS
 from quad_ident_ros.greybox.flights import flight_of, track_of
 from quad_ident_ros.greybox.parameters import nominal
 from quad_ident_ros.model.vehicle import load_vehicle
-from quad_ident_ros.report.diagnosis import caution_lines, size_line
+from quad_ident_ros.report.diagnosis import caution_lines, open_lines, size_line
 
 VEHICLE = load_vehicle('hummingbird')
 DRAG = {'rotor_drag': {'coefficient': 0.2}}
@@ -51,7 +52,14 @@ def test_time_between_the_parts_of_a_flight_makes_no_blocks(half_hovered):
     later = replace(half_hovered, t=half_hovered.t + 300.0 * (half_hovered.t > 20.0))
     learnt, held_out = interleaved(track_of(later, VEHICLE))
     as_one, _ = interleaved(track_of(half_hovered, VEHICLE))
-    assert learnt.name == as_one.name and 'every other 3 s' in learnt.name
+    assert learnt.name == as_one.name and 'half of its blocks of 3 s' in learnt.name
+    spans = spans_seen(held_out)
+    assert all(end - begin < 6.5 for begin, end in spans)
+    assert any(end < 20.0 for _, end in spans) and any(begin > 300.0 for begin, _ in spans)
+    for part in (learnt, held_out):
+        inside = np.any([(part.course.t >= begin) & (part.course.t <= end)
+                         for begin, end in spans], axis=0)
+        assert (inside == part.seen.any(axis=1)).mean() == (part is held_out)
     for rows in (learnt.course.t < 20.0, learnt.course.t > 300.0):
         share = held_out.seen[rows, 0].sum() / rows.sum()
         assert 0.3 < share < 0.7
@@ -70,7 +78,10 @@ def test_a_flight_that_hovers_in_the_end_shows_its_drag(half_hovered):
     assert found.verdict == ('rotor_drag',)
     assert found.gap.closed > 0.8
     data = found.as_data()
-    assert 'every other 3 s' in data['flights'][0] and 'the 3 s between' in data['held_out']
+    assert 'half of its blocks of 3 s' in data['flights'][0] and 'other' in data['held_out']
+    assert 'blocks' in [one['code'] for one in data['findings']]
+    lines = open_lines(replace(found, flight_checks=(FlightCheck('f', {'velocity': 3.0}, True),)))
+    assert any('differs from the other half of this flight' in line for line in lines)
     assert f'On {found.held_out}, which took no part' in size_line(found)
     used = {'code': 'kept', 'severity': 'info', 'flight': 'f', 'where': 't = 1 to 9 s',
             'message': 'this part of the recording is used', 'remedy': ''}

@@ -28,6 +28,8 @@ FLIGHT = flight(seconds=4.0, noise=0.0)
 CMD, OUTPUTS = ('cmd1', 'cmd2', 'cmd3', 'cmd4'), ('output1', 'output2', 'output3', 'output4')
 SPEEDS = FLIGHT.stack(*CMD)
 SHARES = (SPEEDS - 100) / 1600      # of VEHICLE's speeds, 100 to 1700 rad/s
+FAST = replace(VEHICLE, thrust_coefficient=VEHICLE.thrust_coefficient / 9, speed_min=300.0,
+               speed_max=5100.0)    # hovers at the same share, far from the size of PWM in rad/s
 TURNED = replace(VEHICLE, rotors=(*VEHICLE.rotors[1:], VEHICLE.rotors[0]))
 
 
@@ -60,6 +62,25 @@ def test_the_kind_is_told_by_the_values_and_said(tmp_path, kind):
     assert len(said) == 1 and f'{low:g} to {high:g}, by their size' in said[0]
     assert 'speed in rad/s: 100 + 1600 x' in said[0]
     assert [one['code'] for one in cautions(read, VEHICLE)] == ['commands']
+
+
+@pytest.mark.parametrize('kind', ['pwm', 'dshot'])
+def test_pwm_and_dshot_of_the_same_size_are_told_by_hover_or_refused(tmp_path, kind):
+    low, high = KINDS[kind]
+    shares = np.maximum(SHARES, 0.4)
+    path = with_outputs(tmp_path, np.round(low + shares * (high - low)))
+    [said] = load(path, vehicle=FAST).info['commands']
+    assert f'{low:g} to {high:g}, by their size' in said
+    unknown = replace(FAST, speed_min=0.0, speed_max=np.inf)
+    refused(path, 'could be PWM, 1000 to 2000 or DSHOT, 48 to 2047', vehicle=unknown)
+    read = load(path, vehicle=replace(unknown, motors=Motors(kind, low, high)))
+    assert read.has(*CMD)
+
+
+def test_pwm_and_dshot_that_hover_alike_are_refused(tmp_path):
+    heavy = replace(FAST, thrust_coefficient=0.4 * FAST.thrust_coefficient)
+    values = np.round(1900 + 50 * np.sin(FLIGHT.t)[:, None] * np.ones(4))
+    refused(with_outputs(tmp_path, values), 'PWM, 1000 to 2000 or DSHOT', vehicle=heavy)
 
 
 @pytest.mark.parametrize('factor', [1.0, 30 / np.pi])

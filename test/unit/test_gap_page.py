@@ -21,7 +21,7 @@ from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import MOCAP_IMU
 from quad_ident_ros.model.vehicle import load_vehicle
 from quad_ident_ros.report import gap_page
-from quad_ident_ros.report.diagnosis import show
+from quad_ident_ros.report.diagnosis import caution_lines, show
 from quad_ident_ros.report.gap_pictures import _by_third, save_map, save_probabilities
 from quad_ident_ros.report.received import diagnosis_from
 
@@ -107,6 +107,17 @@ def test_an_effect_has_its_form_and_what_is_lost_without_it(terminal, found):
     assert f'{found.gap.without["rotor_drag"]["velocity"]:.3g}' in line
 
 
+def test_where_the_gap_is_within_the_noise_there_is_nothing_to_close(terminal, found):
+    within = found.gap.before | {'velocity': 0.5 * found.gap.noise['velocity']}
+    gap = replace(found.gap, before=within, before_own=within, after=within, closed=1.0)
+    _, size, *rest = terminal(gap=gap).splitlines()
+    [far] = [line for line in rest if line.startswith('how far, on ')]
+    assert all('nothing to close' in line and '100 %' not in line.partition(';')[0] for line in
+               (size.replace(';', ','), far))
+    assert f'attitude, {100 * found.gap_given_attitude.closed:.0f} % of the velocity gap' in far
+    assert 'nothing to close' not in terminal()
+
+
 OPEN = {
     'verdict': ('rotor_drag', 'unknown'),
     'minor': (Minor('motor_lag', 0.98, 0.012), Minor('inflow', 0.9, 0.3)),
@@ -139,6 +150,23 @@ def test_what_remains_open_is_said_in_the_terminal(terminal):
     lines = [line.strip() for line in text.splitlines()]
     assert [said for said in SAID if said not in lines] == []
     assert 'monday differs' not in text
+
+
+def finding(flight, message):
+    """Return a finding on the commands of a flight."""
+    return {'flight': flight, 'code': 'commands', 'severity': 'info', 'where': 'file',
+            'message': message}
+
+
+def test_each_finding_on_a_flight_is_told_and_equal_ones_of_several_flights_once(found):
+    said = [finding(name, message) for name, gain in (('one', 2), ('two', 2.5))
+            for message in ('rotors are motors 2, 1, 4, 3', f'taken for duty, speed {gain} x',
+                            'gain 3', 'gain 4')]
+    said.append(finding('two', 'taken for PWM'))
+    assert caution_lines(replace(found, findings=said)) == [
+        'one (two alike): file: rotors are motors 2, 1, 4, 3',
+        'one (two alike): file: taken for duty, speed 2 x', 'one (two alike): file: gain 3',
+        'one (two alike): file: gain 4', 'two: file: taken for PWM']
 
 
 def test_what_remains_open_is_said_on_the_page(page):

@@ -247,7 +247,7 @@ def test_two_flights_with_a_landing_between_them_are_one_that_is_held_out_in_blo
                                   noise=MOCAP_IMU) for seed in (1, 2))
     found = diagnose([after_another(grounded(one), grounded(other, before=0.0))], VEHICLE)
     assert found.verdict == ('motor_lag',) and found.gap.closed > 0.8
-    assert found.flights[0].startswith('both (every other') and 'between' in found.held_out
+    assert found.flights[0].startswith('both (half of') and 'other half' in found.held_out
     assert [one['code'] for one in found.findings].count('ground') == 1
     value = found.ranking[0].parameters['time_constant']
     assert abs(value.value - 0.03) < 4 * value.std

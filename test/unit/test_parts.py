@@ -221,6 +221,9 @@ def test_a_diagnosis_says_which_part_is_used():
     [finding] = [one for one in intake.findings if one['code'] == 'kept']
     assert finding['severity'] == 'info' and finding['flight'] == 'f (2 parts)'
     assert finding['where'] == 't = 1.00 to 6.00 s and t = 6.10 to 14.00 s'
-    assert 'every other' in intake.names[0] and 'between' in intake.names[1]
+    assert 'half of' in intake.names[0] and 'the other half of' in intake.names[1]
+    [blocks] = [one for one in intake.findings if one['code'] == 'blocks']
+    for begin, end in blocks['spans']:
+        assert f'{begin:.2f} to {end:.2f}' in blocks['where'] and 1.0 <= begin < end <= 14.0
     assert not [one for one in take_in([whole], hummingbird, None, RULES).findings
                 if one['code'] == 'kept']

@@ -3,6 +3,7 @@
 """What a PX4 log says beside its samples: motors, kind of vehicle, flights, resets."""
 
 from dataclasses import replace
+import json
 import math
 from pathlib import Path
 import random
@@ -31,8 +32,11 @@ import yaml
 from quad_ident_ros.cli.main import main
 from quad_ident_ros.data.load import contents_of, load, load_all
 from quad_ident_ros.data.mapping import mapping_from
+from quad_ident_ros.data.quality import cautions
+from quad_ident_ros.data.split import joined, part
 from quad_ident_ros.data.thrust_level import FULL_SPEED
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.greybox.flights import track_of
 from quad_ident_ros.model.motors import motors_from
 from quad_ident_ros.model.vehicle import load_vehicle, Rotor
 
@@ -275,6 +279,16 @@ def test_a_stamp_that_is_there_twice_hides_no_reset(tmp_path):
     assert len(load_all(log(tmp_path, data))) == 2
 
 
+def test_a_diagnosis_tells_of_commands_profile_estimates_and_resets(tmp_path):
+    record = flight(seconds=20.0, noise=0.0)
+    parts = load_all(log(tmp_path, reset_log(record, [6.0], [2.0])), None, VEHICLE)
+    assert 'reset by 2 m at t = 5.99 s' in joined(parts)[0].info['resets']
+    slow = load(log(tmp_path, log_of(record, motors=controls(record), every=10)), vehicle=VEHICLE)
+    for read in (slow, *joined([part(slow, 0, 50), part(slow, 60, len(slow))])):
+        told = {one['code']: one['message'] for one in cautions(read, VEHICLE)}
+        assert 'CA_ROTOR' in told['commands'] and 'SDLOG_PROFILE' in told['logging']
+
+
 def test_contents_are_what_is_logged(tmp_path):
     path = log(tmp_path, log_of(SMALL, [status(FIRST)], motors=controls(SMALL)))
     title, found = contents_of(path)
@@ -331,6 +345,47 @@ def test_fit_takes_the_vehicle_file_beside_a_log(tmp_path, capsys):
     path = log(tmp_path, log_of(SMALL, motors=controls(SMALL)))
     assert main(['fit', str(path), '--vehicle', 'auto', '--free', 'inertia']) == 2
     assert str(tmp_path / 'log_vehicle.yaml') in capsys.readouterr().err
+
+
+def test_a_diagnosis_without_a_vehicle_says_what_the_log_could_fill_in(tmp_path, capsys):
+    path = log(tmp_path, log_of(SMALL, motors=controls(SMALL)))
+    assert main(['diagnose', str(path)]) == 2
+    said = capsys.readouterr().err
+    assert said.count('\n') == 1 and '--vehicle auto' in said and 'mass and inertia' in said
+    assert str(tmp_path / 'log_vehicle.yaml') in said
+    (tmp_path / 'f.csv').write_text('t,pz\n0,1\n1,2\n')
+    assert main(['diagnose', str(tmp_path / 'f.csv')]) == 2
+    said = capsys.readouterr().err
+    assert '--vehicle FILE' in said and 'auto' not in said
+
+
+def test_auto_tells_no_thrust_that_the_log_itself_set(tmp_path, capsys, monkeypatch):
+    """The weight then told the thrust coefficient: a factor on it comes out as 1."""
+    record = flight(seconds=6.0, noise=0.0)
+    path = log(tmp_path, log_of(record, motors=controls(record, 'thrust'),
+                                named=parameters(THR_MDL_FAC=1.0)))
+    info = ['info', str(path), '--vehicle', 'auto', '--json', '-']
+    assert main(info) == 0
+    file = tmp_path / 'log_vehicle.yaml'
+    text = file.read_text().replace('mass: ', 'mass: 0.5 ').replace(
+        '[null, null, null]', '[0.003, 0.003, 0.005]')
+    capsys.readouterr()
+    given = []
+
+    def taken(records, *_, **__):
+        given.extend(records)
+        raise InputError('enough')
+
+    monkeypatch.setattr('quad_ident_ros.cli.diagnose.diagnose', taken)
+    for known in (False, True):
+        file.write_text(text.replace('thrust_coefficient: ', 'thrust_coefficient: 1.0e-5 ')
+                        if known else text)
+        assert main(info) != 2, capsys.readouterr().err
+        told = [one['message'] for one in json.loads(capsys.readouterr().out)['findings']
+                if one['code'] == 'thrust_level']
+        assert ['thrust coefficient is not known' in one for one in told] == [True] * (not known)
+        assert main(['diagnose', str(path), '--vehicle', 'auto']) == 2
+        assert track_of(given[-1], VEHICLE).levelled is not known
 
 
 def test_auto_is_for_logs_of_px4(tmp_path, capsys):

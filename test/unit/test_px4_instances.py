@@ -94,7 +94,7 @@ def test_a_position_that_is_no_estimate_is_left_out(tmp_path, xy, valid):
     flags = len(SMALL) * [(valid, True, valid, True)]
     read = load(log(tmp_path, invalid(xy, flags)), vehicle=VEHICLE)
     assert not read.has('px') and not read.has('vx') and read.has('qw', 'wx', 'ax', 'cmd1')
-    assert any('no valid estimate' in note for note in read.info['notes'])
+    assert any('no valid estimate' in note for note in read.info['logging'])
 
 
 def test_samples_before_the_first_fix_are_left_out(tmp_path):

@@ -46,7 +46,7 @@ CHECKS = (columns.known, columns.incomplete, columns.differentiated, columns.fro
           thrust.level, clock.attitude, clock.velocity, clock.commands,
           ground.stands, gyro.bias, answer.commands, saturation.speeds, excitation.axes)
 
-TOLD = 'commands', 'differentiated'
+TOLD = 'commands', 'logging', 'differentiated'
 """Codes of Findings that a diagnosis tells whatever their severity."""
 
 __all__ = ['cautions', 'CHECKS', 'clock_offset', 'ClockOffset', 'command_offset', 'Finding',
@@ -82,8 +82,8 @@ def cautions(record, vehicle, doubtful=()):
     """
     Return what to be wary of in a record that bears a verdict, as data.
 
-    These are the Findings of warning, what its outputs to the motors were taken for, and which
-    states are derivatives of others.
+    These are the Findings of warning, what its outputs to the motors were taken for, what its log
+    was too slow for or has no estimates of, and which states are derivatives of others.
 
     Args: doubtful: codes of errors that other flights of the vehicle speak against: see refuted.
     Raises InputError for a fault that no verdict survives.

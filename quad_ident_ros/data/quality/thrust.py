@@ -8,7 +8,7 @@ from quad_ident_ros.data.cutting import without
 from quad_ident_ros.data.quality import units
 from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.quality.series import GRAVITY, Grid
-from quad_ident_ros.data.thrust_level import FULL_SPEED
+from quad_ident_ros.data.thrust_level import BY_LOG, FULL_SPEED
 
 APART = 10.0      # times too much or too little: no vehicle file is that wrong,
 LONGEST = 1.0     # s in all, in which motors may still follow
@@ -20,13 +20,18 @@ def level(record, vehicle):
     """Find commands whose scale is that by which thrust carries the weight."""
     if FULL_SPEED not in record.info:
         return []
+    what, remedy = ((
+        'the thrust coefficient is not known; it is set by the log',
+        'give the vehicle file a thrust_coefficient that was measured')
+        if record.info.get(BY_LOG) else (
+        'the rotor speed at full signal is not known; it is set to '
+        f'{record.info[FULL_SPEED]:.4g} rad/s',
+        'give the vehicle file motors: with a gain, or speed_max'))
     return [Finding(
         'thrust_level', 'warning', 'commands',
-        f'the rotor speed at full signal is not known; it is set to {record.info[FULL_SPEED]:.4g} '
-        'rad/s, so that thrust carries the weight on average: a constant factor of thrust, and a '
-        'mass that is off, cannot be told and are not named; inertia and drag are told in '
-        'proportion to the mass',
-        'give the vehicle file motors: with a gain, or speed_max')]
+        f'{what}, so that thrust carries the weight on average: a constant factor of thrust, and '
+        'a mass that is off, cannot be told and are not named; inertia and drag are told in '
+        'proportion to the mass', remedy)]
 
 
 def carried(record, vehicle):

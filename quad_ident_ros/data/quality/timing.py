@@ -7,7 +7,7 @@ import numpy as np
 from quad_ident_ros.data.counted import counted
 from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.quality.series import GAP
-from quad_ident_ros.data.record import CUT
+from quad_ident_ros.data.record import CUT, NOTED
 
 COARSE = 0.025    # s between samples from which on commands change unseen between them
 SLOWEST = 0.15    # s between samples: of a rollout of 0.5 s hardly more than its end is then seen
@@ -84,8 +84,9 @@ def truncated(record, vehicle):
 
 def reader_notes(record, vehicle):
     """Pass on what the reader took for what, and what it left out."""
-    commands = record.info.get('commands', ())
-    return [Finding('commands', 'info', 'file', note,
-                    'nothing needs to be done where this is right') if note in commands else
-            Finding('reader', 'info', 'file', note, '')     # which says what to do, if anything
+    codes = {note: code for code in NOTED for note in record.info.get(code, ())}
+    # What a note on anything but commands asks for, if anything, it says itself.
+    return [Finding(codes.get(note, 'reader'), 'info', 'file', note,
+                    'nothing needs to be done where this is right'
+                    if codes.get(note) == 'commands' else '')
             for note in record.info.get('notes', ()) if isinstance(note, str)]
