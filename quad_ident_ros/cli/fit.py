@@ -7,7 +7,13 @@ from dataclasses import replace
 import textwrap
 
 from quad_ident_ros.cli.identify import progress_bar
-from quad_ident_ros.cli.options import add_selection, flights_from, selection_of, vehicle_from
+from quad_ident_ros.cli.options import (
+    add_selection,
+    flights_from,
+    selection_of,
+    thrust_by_log,
+    vehicle_from,
+)
 from quad_ident_ros.data.quality import refuse_errors, refuse_unfit
 from quad_ident_ros.data.quality.ground import airborne, stands
 from quad_ident_ros.data.split import joined
@@ -56,6 +62,7 @@ def run(options):
     from quad_ident_ros.greybox.fit import as_data, fit, fitted_vehicle
     names = [name.strip() for name in options.free.split(',') if name.strip()]
     vehicle = vehicle_from(options.vehicle, options.flights[0], options.mapping)
+    by_log = thrust_by_log(options.vehicle, options.flights[0])
     selection = selection_of(options)
     free = columns_of_names(names, vehicle)   # before the flights are read: a name that is wrong
     with progress_bar() as bar:
@@ -65,7 +72,7 @@ def run(options):
             bar.update(task, description=f'reading {path}',
                        completed=number / len(options.flights))
             records += [with_commands(record, vehicle) for record in
-                        flights_from(path, options.mapping, vehicle, selection)]
+                        flights_from(path, options.mapping, vehicle, selection, by_log)]
         bar.update(task, description='looking for faults')
         quality = []
         for number, record in enumerate(records := joined(records)):

@@ -73,13 +73,22 @@ def vehicle_of_log(path: Path, mapping: Mapping | None = None) -> Vehicle:
     if empty:
         raise InputError(f'{file}: {", ".join(empty)}: still empty; fill in {missing} and run '
                          'this again')
-    mass = data['mass'].get('value') if isinstance(data['mass'], dict) else data['mass']
-    if data.get('thrust_coefficient', 0) is None and isinstance(mass, int | float):
+    mass = _constant(data['mass'])
+    if data.get('thrust_coefficient', 0) is None and mass is not None:
         data['thrust_coefficient'] = coefficient * mass
-    thrust = data.get('thrust_coefficient')
-    if data.get('torque_coefficient', 0) is None and isinstance(thrust, int | float):
+    thrust = _constant(data.get('thrust_coefficient'))
+    if data.get('torque_coefficient', 0) is None and thrust is not None:
         data['torque_coefficient'] = ratio * thrust
     return vehicle_from_mapping(data, str(file))
+
+
+def _constant(value: object) -> float | None:
+    """Return a number of a vehicle file, with a standard deviation or without, None for others."""
+    value = value.get('value') if isinstance(value, dict) else value
+    try:
+        return float(value)  # type: ignore[arg-type]   # YAML takes 1e-5 for text
+    except (TypeError, ValueError):
+        return None
 
 
 def file_beside(path: str | Path) -> Path:

@@ -378,7 +378,7 @@ def test_auto_tells_no_thrust_that_the_log_itself_set(tmp_path, capsys, monkeypa
 
     monkeypatch.setattr('quad_ident_ros.cli.diagnose.diagnose', taken)
     for known in (False, True):
-        file.write_text(text.replace('thrust_coefficient: ', 'thrust_coefficient: 1.0e-5 ')
+        file.write_text(text.replace('thrust_coefficient: ', 'thrust_coefficient: 1e-5 ')
                         if known else text)
         assert main(info) != 2, capsys.readouterr().err
         told = [one['message'] for one in json.loads(capsys.readouterr().out)['findings']
