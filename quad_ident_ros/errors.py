@@ -26,7 +26,7 @@ def reason_of(error: Exception, path: str | Path) -> str:
     The line that this goes into names it.
     """
     if isinstance(error, Reason):
-        return str(error)
+        return ' '.join(str(error).split())     # it may quote a name of a damaged file
     if isinstance(error, MemoryError):
         return 'it is damaged and claims more than fits into memory'
     if isinstance(error, OSError) and error.strerror:

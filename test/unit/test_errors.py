@@ -18,6 +18,7 @@ from quad_ident_ros.errors import InputError, Reason, reason_of
 
 
 @pytest.mark.parametrize(('error', 'reason'), [
+    (Reason('no definition of geo\n 3'), 'no definition of geo 3'),
     (Reason('a chunk: too large'), 'a chunk: too large'),
     (struct.error('unpack requires a buffer of 8 bytes'), 'it is damaged'),
     (KeyError('version'), 'it is damaged'),
