@@ -90,7 +90,7 @@ def surely(one: Ends, errors: float) -> dict[str, float]:
     Return {group: gap} of a flight that is there but for so many standard errors.
 
     Standard errors of the mean square are those of blocks of BLOCK s, in which errors may hang
-    together (Kuensch, Annals of Statistics 17, 1989).
+    together (Künsch, Annals of Statistics 17, 1989).
     """
     block = np.unique((one.t // BLOCK).astype(int), return_inverse=True)[1]
     counts = np.bincount(block)

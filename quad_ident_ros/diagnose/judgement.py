@@ -227,8 +227,9 @@ def judge(bench: Bench) -> Judgement:
     present = probabilities(bench.selection.posterior, weights, rules)
     absent = tuple(cause for cause in there.values() if present[cause.effect] < rules.present)
     # What needs values that no vehicle has does the work of something else, which it stands for.
-    stand_ins = tuple(cause for cause in model.effects if cause not in absent and 2 * len(
-        columns_at_bounds(cause, model.z, bench.vehicle, rules)) > len(cause.columns))
+    stand_ins = tuple(cause for cause in model.effects if cause not in absent and len(
+        columns_at_bounds(cause, model.z, bench.vehicle, rules))
+        > rules.stand_in * len(cause.columns))
     present |= {cause.effect: rules.prior_odds for cause in stand_ins}
     material = tuple(cause for cause in model.effects if cause not in {*absent, *stand_ins})
     if set(model.effects) <= set(full.effects):

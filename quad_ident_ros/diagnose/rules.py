@@ -52,6 +52,8 @@ class Rules:
         sure. instead: how many times likelier a rival must be without an effect than with it.
       material: share of the closable gap that an effect must close to be in the verdict: less is
         below what a change of the weather or of a battery does.
+      stand_in: share of its parameters beyond which, at bounds, an effect does the work of
+        something else: one at a bound may be one that the flights do not tell.
       tied: correlation of two effects' parameters from which on they are taken out together, too.
     Advice:
       hidden, shown: standard errors from no effect below which an effect of usual size is not
@@ -93,6 +95,7 @@ class Rules:
     instead: float = 2.0
     calibration: tuple[float, float, float, float] = (-3.2, 4.1, 2.6, 0.46)
     companion: tuple[float, float] = (0.1, 3.0)
+    stand_in: float = 0.5
     tied: float = 0.9
     hidden: float = 1.0
     shown: float = 3.0
