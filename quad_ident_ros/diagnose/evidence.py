@@ -23,31 +23,33 @@ class Quadratic:
     The cost around a point as a quadratic in the distance of the parameters from no effect.
 
     Columns: the shared ones, then each flight's own. information (C, C), gradient (C,), cost at
-    the point; now (C,) the distance at the point; wide (C,), of the prior about no effect; lower
-    and upper (C,) bounds of the distance; scatter: what a difference of the cost has to be divided
-    by.
+    the point; now (C,) the distance at the point; prior (C, C), its precision about no effect;
+    lower and upper (C,) bounds of the distance; scatter: what a difference of the cost has to be
+    divided by.
     """
 
     information: np.ndarray
     gradient: np.ndarray
     cost: float
     now: np.ndarray
-    wide: np.ndarray
+    prior: np.ndarray
     lower: np.ndarray
     upper: np.ndarray
     scatter: float
 
 
-def occam(information: np.ndarray, wide: np.ndarray, scatter: float,
+def occam(information: np.ndarray, prior: np.ndarray, scatter: float,
           causes: Sequence[Candidate], rules: Rules) -> float:
-    """Return the log-evidence that free columns and causes cost."""
-    return float(_volume(information, wide, scatter)) + _odds(causes, rules)
+    """Return the log-evidence that free columns of a prior (C, C) and causes cost."""
+    return float(_volume(information, prior, scatter)) + _odds(causes, rules)
 
 
-def _volume(information: np.ndarray, wide: np.ndarray, scatter: float) -> np.ndarray:
+def _volume(information: np.ndarray, prior: np.ndarray, scatter: float) -> np.ndarray:
     """Return the log-evidence that free columns cost, of a stack (..., C, C)."""
-    scaled = information * (wide[..., :, None] * wide[..., None, :]) / scatter
-    return -0.5 * np.linalg.slogdet(np.eye(wide.shape[-1]) + scaled)[1]
+    wide = np.diagonal(prior, axis1=-2, axis2=-1) ** -0.5
+    size = wide[..., :, None] * wide[..., None, :]
+    return 0.5 * (np.linalg.slogdet(prior * size)[1]
+                  - np.linalg.slogdet((prior + information / scatter) * size)[1])
 
 
 def _odds(causes: Sequence[Candidate], rules: Rules) -> float:
@@ -87,11 +89,13 @@ def linear_evidence(quadratic: Quadratic, sets: Sequence[tuple], rows: dict, rul
     change = found - quadratic.now
     cost = (quadratic.cost - 2.0 * change @ quadratic.gradient
             + np.sum(change @ quadratic.information * change, axis=1))
-    distance = np.where(free, found / quadratic.wide, 0.0)
-    value = -0.5 * cost / quadratic.scatter - 0.5 * np.sum(distance ** 2, axis=1)
+    distance = np.where(free, found, 0.0)
+    value = -0.5 * (cost / quadratic.scatter
+                    + np.sum(distance @ quadratic.prior * distance, axis=1))
     for which, places in _by_size(free, np.arange(len(sets))):
-        blocks = quadratic.information[places[:, :, None], places[:, None, :]]
-        value[which] += _volume(blocks, quadratic.wide[places], quadratic.scatter)
+        blocks = places[:, :, None], places[:, None, :]
+        value[which] += _volume(quadratic.information[blocks], quadratic.prior[blocks],
+                                quadratic.scatter)
     acts = {cause: np.any(found[:, places], axis=1) for cause, places in rows.items()}
     value += [_odds(chosen, rules) if all(acts[cause][k] for cause in chosen) else -np.inf
               for k, chosen in enumerate(sets)]
@@ -112,10 +116,10 @@ def _solved(quadratic: Quadratic, found: np.ndarray, places: np.ndarray) -> np.n
     np.put_along_axis(change, places, 0.0, axis=1)
     pull = np.take_along_axis(quadratic.gradient - change @ quadratic.information, places, axis=1)
     # The prior pulls towards no effect, from where the point is now.
-    ridge, now = quadratic.scatter / quadratic.wide[places] ** 2, quadratic.now[places]
-    blocks = quadratic.information[places[:, :, None], places[:, None, :]]
-    blocks += ridge[:, None, :] * np.eye(places.shape[1])
-    return now + np.linalg.solve(blocks, (pull - ridge * now)[..., None])[..., 0]
+    blocks, now = (places[:, :, None], places[:, None, :]), quadratic.now[places]
+    ridge = quadratic.scatter * quadratic.prior[blocks]
+    pull -= (ridge @ now[..., None])[..., 0]
+    return now + np.linalg.solve(quadratic.information[blocks] + ridge, pull[..., None])[..., 0]
 
 
 def beam(quadratic: Quadratic, causes: dict, rules: Rules

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.linalg import block_diag
 
 from quad_ident_ros.diagnose.candidates import Candidate
 from quad_ident_ros.diagnose.discrepancy import fitted_sizes
@@ -103,13 +104,14 @@ def fitted_of(chosen: tuple, fit: Estimate, vehicle: Vehicle, frame: Frame,
     """
     blocks = blocks_at(frame, fit, distances_of(chosen, fit, vehicle))
     value, sizes = fitted_sizes(blocks, rules.form_error, grids, quadratic.scatter, start)
-    spreads = np.tile(fit.nuisances.spreads, len(fit.nuisances.values))
-    wide = np.append(prior_sizes(vehicle, rules.prior_width)[fit.columns], spreads)
-    distance = np.append((fit.z - nominal(vehicle))[fit.columns], fit.nuisances.values) / wide
+    distance = np.append((fit.z - nominal(vehicle))[fit.columns], fit.nuisances.values)
+    prior = block_diag(np.diag(prior_sizes(vehicle, rules.prior_width)[fit.columns] ** -2.0),
+                       fit.nuisances.precision)
     places = [row for cause in chosen for row in rows[cause]]
-    block = quadratic.information[np.ix_(places, places)]
-    return Fitted(chosen, fit, value - 0.5 * float(np.sum(distance ** 2))
-                  + occam(block, quadratic.wide[places], quadratic.scatter, chosen, rules), sizes)
+    block = np.ix_(places, places)
+    return Fitted(chosen, fit, value - 0.5 * float(distance @ prior @ distance)
+                  + occam(quadratic.information[block], quadratic.prior[block],
+                          quadratic.scatter, chosen, rules), sizes)
 
 
 def out_of_bounds(cause: Candidate, fit: Estimate, vehicle: Vehicle, rules: Rules) -> bool:

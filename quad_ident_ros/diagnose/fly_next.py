@@ -12,6 +12,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.linalg import block_diag
 
 from quad_ident_ros.diagnose.candidates import Candidate
 from quad_ident_ros.diagnose.evidence import occam, Quadratic
@@ -65,7 +66,7 @@ def manoeuvres(selection: Selection, flights: Sequence[Flight], vehicle: Vehicle
     scatter, noise = selection.quadratic.scatter, np.median(selection.noise, axis=0)
     nuisances, columns = NuisanceValues.of(selection.best.nuisances, 1), _columns(selection)
     layout = Layout(columns, nuisances.columns, 1)
-    precision = np.append(np.zeros(len(columns)), nuisances.spreads ** -2.0)
+    precision = block_diag(np.zeros((len(columns), len(columns))), nuisances.precision)
     rate = float(np.clip(1.0 / np.median([flight.period for flight in flights]), RATES[0], RATE))
     found = []
     for name in TRAJECTORIES:
@@ -117,7 +118,8 @@ def _with_another(information: np.ndarray, selection: Selection, one: tuple, oth
         if cause.effect not in effects:
             places = _places(selection, [cause])
             block = _left(information, places, known, selection.quadratic)
-            cost = -2.0 * occam(block, selection.quadratic.wide[places], 1.0, [cause], RULES)
+            prior = selection.quadratic.prior[np.ix_(places, places)]
+            cost = -2.0 * occam(block, prior, 1.0, [cause], RULES)
             found.append((cost, (*other, cause)))
     return found
 
@@ -137,7 +139,7 @@ def visibility(information: np.ndarray, selection: Selection, causes: Sequence[C
 
     Args: information (C, C); causes looked at; present: those that are known to be there.
     """
-    size = selection.quadratic.wide / RULES.prior_width
+    size = np.diag(selection.quadratic.prior) ** -0.5 / RULES.prior_width
     found: dict[str, float] = {}
     for cause in causes:
         places = _places(selection, [cause])
@@ -247,5 +249,5 @@ def _left(information: np.ndarray, places: np.ndarray, free: np.ndarray, quadrat
     if not len(free):
         return block
     ties = information[np.ix_(free, places)]
-    prior = np.diag(quadratic.wide[free] ** -2.0)
-    return block - ties.T @ np.linalg.solve(information[np.ix_(free, free)] + prior, ties)
+    others = np.ix_(free, free)
+    return block - ties.T @ np.linalg.solve(information[others] + quadratic.prior[others], ties)

@@ -112,9 +112,10 @@ class Bench:
         fixed = np.stack(model.vectors) - model.z
         alike = {column for cause in removed for column in _columns_alike(cause.effect)}
         shared = [column for column in sorted(alike) if fixed[:, column].any()]
-        # Thrust and wind of a flight do what many effects do: they stay as they are.
+        # Thrust, wind and moment of a flight do what many effects do: they stay as they are.
         held = {cause for cause in model.chosen
                 if cause.nuisance is not None and (cause.nuisance.of_effect
+                                                   or any(cause.nuisance.sum_to_zero)
                                                    or set(cause.nuisance.columns) & set(shared))}
         free = [column for cause in model.chosen
                 if cause.nuisance is not None and cause not in held

@@ -6,6 +6,7 @@ from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.linalg import block_diag
 
 from quad_ident_ros.diagnose.candidates import Candidate, nuisance_candidates
 from quad_ident_ros.diagnose.discrepancy import AXES, log_likelihood, scales
@@ -248,14 +249,13 @@ class _Search:
         lower, upper, _ = limits(self.vehicle)
         wide = prior_sizes(self.vehicle, self.rules.prior_width)[self.columns]
         null = nominal(self.vehicle)[self.columns]
-        spreads = np.tile(everyone.spreads, len(self.flights))
-        beyond = np.full(len(spreads), np.inf)
+        beyond = np.full(everyone.values.size, np.inf)
         # Without candidates there is nothing whose gradient could scatter.
         scatter = (float(np.median(scatter_of(normal)[:len(self.columns)])) if self.columns
                    else 1.0)
         return Quadratic(normal.information, normal.gradient, normal.cost,
                          np.append(fit.z[self.columns] - null, everyone.values),
-                         np.append(wide, spreads),
+                         block_diag(np.diag(wide ** -2.0), everyone.precision),
                          np.append(lower[self.columns] - null, -beyond),
                          np.append(upper[self.columns] - null, beyond), scatter)
 

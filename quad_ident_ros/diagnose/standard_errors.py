@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from scipy.linalg import block_diag
 
 from quad_ident_ros.diagnose.discrepancy import log_likelihood, scales
 from quad_ident_ros.diagnose.fitted import distances_of, Fitted
@@ -39,8 +40,8 @@ def standard_errors(fitted: Fitted, frame: Frame, vehicle: Vehicle, grids: Seque
     layout = Layout(fit.columns, fit.nuisances.columns, count)
     normal = normal_at(frame, fit, layout, distances, (force, moment),
                        replace(rules, form_error=form_error))
-    precision = np.append(np.zeros(len(fit.columns)),
-                          np.tile(fit.nuisances.spreads, count) ** -2.0)
+    precision = block_diag(np.zeros((len(fit.columns), len(fit.columns))),
+                           fit.nuisances.precision)
     covariance = covariance_of(marginal(normal, len(fit.columns), precision),
                                limits(vehicle)[2, fit.columns])
     return np.sqrt(np.maximum(np.diag(covariance), 0.0))

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.linalg import block_diag
 
 from quad_ident_ros.greybox.flights import Flight
 from quad_ident_ros.greybox.linear import (
@@ -160,11 +161,11 @@ def _descend(flights: Sequence[Flight], vehicle: Vehicle, z: np.ndarray, columns
                    in zip(tangents, raws, scales, whites, strict=True)]
         normal = normal_of(linears, flights, layout, clock)
         now = np.concatenate([z[columns], nuisances.values.ravel()])
-        information = normal.information + np.diag(precision)
-        gradient = normal.gradient - precision * now
+        information = normal.information + precision
+        gradient = normal.gradient - precision @ now
         step, free = bounded_step(information, gradient, now, lower, upper, size)
         told = _aligned(raws, tangents, scales, clock, whites)
-        before = _cost(told, scales, whites) + precision @ now ** 2
+        before = _cost(told, scales, whites) + now @ precision @ now
         for share in SHARES if fresh else SHARES[:1]:
             there, new = z.copy(), now + share * step
             there[columns] = new[:shared]
@@ -176,7 +177,7 @@ def _descend(flights: Sequence[Flight], vehicle: Vehicle, z: np.ndarray, columns
             residuals = [errors_along(flight, vehicle, vector, start) for flight, vector, start in
                          zip(flights, theirs.vectors(there), moved, strict=True)]
             aligned = _aligned(residuals, tangents, scales, clock, whites)
-            after = _cost(aligned, scales, whites) + precision @ new ** 2
+            after = _cost(aligned, scales, whites) + new @ precision @ new
             if after <= before * (1.0 + 1e-9):
                 break
         else:
@@ -193,7 +194,7 @@ def _descend(flights: Sequence[Flight], vehicle: Vehicle, z: np.ndarray, columns
         # Where a step ends at the cost that the slopes say, they are what they were; a fit that is
         # not one of many makes them anew, for its standard errors are those of its end.
         saved = step @ (2.0 * gradient - information @ step)
-        said = normal.cost + precision @ now ** 2 - saved
+        said = normal.cost + now @ precision @ now - saved
         straight = (slopes is not None and share == 1.0
                     and abs(after - said) <= max(STRAIGHT * saved, NEARLY * scatter))
         # The first step is weighed by a first guess of the noise.
@@ -215,12 +216,12 @@ def _descend(flights: Sequence[Flight], vehicle: Vehicle, z: np.ndarray, columns
 
 def _whole(box: np.ndarray, nuisances: NuisanceValues, count: int
            ) -> tuple[int, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Return how many columns are shared; bounds, sizes, precisions of these and all nuisances."""
+    """Return how many columns are shared; bounds, sizes, precision of these and all nuisances."""
     lower, upper, size = box
     spreads = np.tile(nuisances.spreads, count)
     wide = np.full(len(spreads), np.inf)
     return (len(size), np.append(lower, -wide), np.append(upper, wide), np.append(size, spreads),
-            np.append(np.zeros(len(size)), spreads ** -2.0))
+            block_diag(np.zeros((len(size), len(size))), nuisances.precision))
 
 
 def _whitenings(wrenches: Iterable[np.ndarray | None], scales: Iterable[np.ndarray],

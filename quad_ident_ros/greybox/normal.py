@@ -109,12 +109,12 @@ def solve(information: np.ndarray, gradient: np.ndarray, size: np.ndarray) -> np
 
 def marginal(normal: Normal, shared: int, precision: np.ndarray) -> Normal:
     """
-    Return the Normal of the first columns, the others free but for their precision (C,).
+    Return the Normal of the first columns, the others free but for their precision (C, C).
 
     The scores are those of the blocks with the others following, as far as they are free.
     """
     rest = slice(shared, None)
-    block = normal.information[rest, rest] + np.diag(precision[rest])
+    block = normal.information[rest, rest] + precision[rest, rest]
     ties = np.linalg.solve(block, normal.information[rest, :shared])
     return Normal(normal.information[:shared, :shared] - normal.information[:shared, rest] @ ties,
                   normal.gradient[:shared] - normal.gradient[rest] @ ties, normal.cost,

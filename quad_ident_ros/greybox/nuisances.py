@@ -21,6 +21,7 @@ from quad_ident_ros.model.vehicle import Vehicle
 
 CLOCK = 'clock_offset'
 CLOCK_TITLE = 'how much later than the commands the states are stamped'
+TRIM = 'trim_moment'
 LEVEL = 'thrust_level'
 LEVEL_TITLE = 'thrust over that by which commands were set to carry the weight'
 OFF_LEVEL = 0.1     # how far that usually is off: drag, wind, a battery that empties
@@ -28,6 +29,7 @@ RARE, LIKELY = 1e-4, 0.5    # odds of flights having one, before looking
 APART = 0.02        # s, how far clocks usually are apart where nothing shows it,
 REST = 0.001        # s, or
 REST_SHARE = 0.2    # periods, how far where they were put right
+MEAN_SHARE = 0.01   # of a spread, how far from zero the mean of what sums to zero may be
 
 
 @dataclass(frozen=True)
@@ -36,7 +38,9 @@ class Nuisance:
     A kind of it.
 
     name, what it is, unit, places in z and its usual spread from 0 there, SI; odds of flights
-    having it, before looking; of_effect: the name of the effect that differs by flight, or ''.
+    having it, before looking; of_effect: the name of the effect that differs by flight, or '';
+    sum_to_zero: of each place, whether the values of several flights do, because there is an
+    effect for what they share: it must not hide in them.
     """
 
     name: str
@@ -46,6 +50,7 @@ class Nuisance:
     spreads: tuple[float, ...]
     odds: float
     of_effect: str = ''
+    sum_to_zero: tuple[bool, ...] = ()
 
 
 def put_right(tracks: Sequence[Track]) -> bool:
@@ -76,8 +81,9 @@ def nuisances(vehicle: Vehicle, tracks: Sequence[Track]) -> tuple[Nuisance, ...]
                   for spread in (0.01, 0.003)]
         kinds += [('attitude_bias', 'tilt of the attitude', 'rad', tilt, (spread,) * 3, RARE)
                   for spread in (0.005, 0.0015)]
-        kinds.append(('trim_moment', 'moment', 'N m', moment, tuple(trim_wrench(vehicle)[3:]),
-                      RARE))
+        # A weak rotor or a centre of mass that is off tilts all flights alike; nothing turns them.
+        kinds.append((TRIM, 'moment', 'N m', moment, tuple(trim_wrench(vehicle)[3:]), RARE, '',
+                      (True, True, False)))
     level = any(track.levelled for track in tracks)
     if level:
         kinds.append((LEVEL, LEVEL_TITLE, '1', ('thrust_scale.factor',), (OFF_LEVEL,), LIKELY))
@@ -114,12 +120,14 @@ class NuisanceValues:
     """
     Places in z (K,) of the nuisances of flights, their spreads (K,) and values (F, K).
 
+    sum_to_zero (K,): whether those of several flights do;
     fixed (F, Z): what is added to the vector of each flight and is not estimated, or None.
     """
 
     columns: tuple[int, ...]
     spreads: np.ndarray
     values: np.ndarray
+    sum_to_zero: np.ndarray
     fixed: np.ndarray | None = None
 
     @classmethod
@@ -132,12 +140,28 @@ class NuisanceValues:
         """
         columns = tuple(column for kind in kinds for column in kind.columns)
         spreads = np.array([spread for kind in kinds for spread in kind.spreads], float)
+        zero = np.array([sums for kind in kinds for sums in
+                         kind.sum_to_zero or (False,) * len(kind.columns)], bool)
         values = np.zeros((count, len(columns)))
         for k, column in enumerate(columns):
             if known is not None and column not in columns[:k]:
                 same = np.array(known.columns, int) == column
                 values[:, k] = known.values[:, same].sum(axis=1)
-        return cls(columns, spreads, values)
+        return cls(columns, spreads, values, zero)
+
+    @property
+    def precision(self) -> np.ndarray:
+        """
+        Return the precision (F K, F K) of the prior of all values, flight by flight.
+
+        That of independent values, and for those of several flights that sum to zero a mean that
+        is nearly none (Gelman and Hill, Data Analysis Using Regression, 2007, section 19.4).
+        """
+        count = len(self.values)
+        mean = np.zeros((count, count)) if count == 1 else np.full(
+            (count, count), 1.0 / (count * MEAN_SHARE ** 2))
+        shares = np.diag(self.spreads ** -2.0)
+        return np.kron(np.eye(count), shares) + np.kron(mean, shares * self.sum_to_zero)
 
     def vectors(self, z: np.ndarray) -> list[np.ndarray]:
         """Return z (Z,) with the nuisances of each flight, a list of (Z,)."""

@@ -24,7 +24,7 @@ def quadratic(information, best, rest=10.0, lower=-FREE, upper=FREE):
     """Return the Quadratic, from no effect on, of a cost that is `rest` at its best point."""
     information, best = np.asarray(information, float), np.asarray(best, float)
     return Quadratic(information, information @ best, rest + best @ information @ best,
-                     np.zeros(3), WIDE, lower, upper, 1.0)
+                     np.zeros(3), np.diag(WIDE ** -2.0), lower, upper, 1.0)
 
 
 def expected(cost, chosen):
@@ -114,7 +114,7 @@ def test_a_sensor_with_one_bias_may_have_others_and_the_air_has_nothing_to_do_wi
         kinds = [Nuisance(name, name, '', (k,), (0.01,), RARE,
                           name.removesuffix('_by_flight') if 'by_flight' in name else '')
                  for k, name in enumerate(names)]
-        return occam(np.zeros((2, 2)), np.ones(2), 1.0,
+        return occam(np.zeros((2, 2)), np.eye(2), 1.0,
                      [Candidate(kind.name, kind.name, kind.columns, nuisance=kind)
                       for kind in kinds], RULES)
 

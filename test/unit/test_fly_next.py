@@ -165,7 +165,7 @@ def pair(correlation, third=None):
     if third is not None:
         information[:2, 2] = information[2, :2] = third
     quadratic = Quadratic(information, np.zeros(3), 0.0, np.array([1.0, 0.0, 0.0]),
-                          np.full(3, RULES.prior_width * 100.0), np.full(3, -1e3),
+                          np.eye(3) * (RULES.prior_width * 100.0) ** -2, np.full(3, -1e3),
                           np.full(3, 1e3), 1.0)
     rows = {cause: [k] for k, cause in enumerate(causes)}
     return SimpleNamespace(quadratic=quadratic, rows=rows, noise=[np.full(12, 1e-2)],

@@ -17,7 +17,7 @@ from quad_ident_ros.experiment import fly, load_experiment
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import SENSORS
 from quad_ident_ros.greybox.flights import flight_of, track_of
-from quad_ident_ros.greybox.nuisances import nuisances
+from quad_ident_ros.greybox.nuisances import nuisances, NuisanceValues
 from quad_ident_ros.model.attitude import rotation_matrix
 from quad_ident_ros.model.dynamics import STATES
 from quad_ident_ros.model.sensors import product, turn
@@ -63,6 +63,19 @@ def unanswered(record, seed):
 
 def changed(record, **columns):
     return replace(record, columns=record.columns | columns)
+
+
+def trimmed(records, trims):
+    """Return records with rotors that give more at one side, less at the other: a moment."""
+    hover = VEHICLE.mass * VEHICLE.gravity / VEHICLE.thrust_coefficient / len(VEHICLE.rotors)
+    places = np.array([rotor.position for rotor in VEHICLE.rotors]) / VEHICLE.arm_length
+    flights = []
+    for record, (roll, pitch) in zip(records, trims, strict=True):
+        more = hover * (roll * places[:, 1] - pitch * places[:, 0])
+        flights.append(changed(record, **{
+            name: np.sqrt(np.maximum(record.columns[name] ** 2 + more[j], 0.0))
+            for j, name in enumerate(f'cmd{j}' for j in range(1, 1 + len(more)))}))
+    return flights
 
 
 def attitude_of(record):
@@ -133,19 +146,30 @@ def test_a_delay_beyond_the_scatter_of_the_clocks_is_named_with_that_scatter(ope
 
 
 def test_trims_that_differ_from_flight_to_flight_are_no_offset_of_the_centre_of_mass(dragged):
-    """Rotors that give a little more at one side and less at the other: a moment."""
     trims = ((0.012, -0.008), (-0.01, -0.012), (0.004, 0.014), (-0.008, 0.006))
-    hover = VEHICLE.mass * VEHICLE.gravity / VEHICLE.thrust_coefficient / len(VEHICLE.rotors)
-    places = np.array([rotor.position for rotor in VEHICLE.rotors]) / VEHICLE.arm_length
-    flights = []
-    for record, (roll, pitch) in zip(dragged, trims, strict=True):
-        more = hover * (roll * places[:, 1] - pitch * places[:, 0])
-        flights.append(changed(record, **{
-            name: np.sqrt(np.maximum(record.columns[name] ** 2 + more[j], 0.0))
-            for j, name in enumerate(f'cmd{j}' for j in range(1, 1 + len(more)))}))
-    data = diagnose(flights, VEHICLE).as_data()
+    data = diagnose(trimmed(dragged, trims), VEHICLE).as_data()
     assert data['verdict'] == ['rotor_drag']
     assert 'trim_moment' in data['nuisances']
+
+
+def test_what_tilts_all_flights_alike_is_not_hidden_in_their_trims(dragged):
+    """No law here is a constant moment, but one that follows the thrust is nearly that."""
+    trims = ((0.112, -0.108), (0.09, -0.112), (0.104, -0.086), (0.092, -0.094))
+    data = diagnose(trimmed(dragged, trims), VEHICLE).as_data()
+    assert set(data['verdict']) == {'rotor_drag', 'com_offset'}
+
+
+def test_what_sums_to_zero_is_as_likely_as_independent_values_that_do():
+    [kind] = [one for one in nuisances(VEHICLE, []) if one.name == 'trim_moment']
+    random = np.random.default_rng(4)
+    values = random.normal(size=(5, 3)) * kind.spreads
+    centred = values - values.mean(axis=0) * kind.sum_to_zero
+    cost = [np.ravel(one) @ NuisanceValues.of([kind], 5).precision @ np.ravel(one)
+            for one in (centred, values)]
+    assert cost[0] == pytest.approx(np.sum((centred / kind.spreads) ** 2), rel=1e-9)
+    assert cost[1] > 100.0 * cost[0]    # a hundredth of a spread is how far their mean may be
+    alone = NuisanceValues.of([kind], 1).precision
+    assert alone == pytest.approx(np.diag(np.array(kind.spreads) ** -2.0))
 
 
 def test_biases_that_differ_from_flight_to_flight_are_no_effect(dragged):
