@@ -22,6 +22,20 @@ AXES = 3            # of force and of moment
 
 
 @dataclass(frozen=True, eq=False)
+class Products:
+    """
+    Of slopes Z and residuals r of rollouts the products that a discrepancy needs, by blocks.
+
+    Each of them for translation and for rotation: slopes (2, K, N, N), of N columns of Z with one
+    another; cross (2, K, N), of these with r. power (K,): the sum of r squared.
+    """
+
+    slopes: np.ndarray
+    cross: np.ndarray
+    power: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
 class Blocks:
     """
     Residuals r and discrepancy directions U of blocks of rollouts, as their products.
@@ -35,20 +49,23 @@ class Blocks:
     power: float
 
 
+def parts_of(values: np.ndarray) -> np.ndarray:
+    """Return those of translation and of rotation, (2, ..., M / 2), of values (..., M)."""
+    shaped = values.reshape(*values.shape[:-1], -1, ERRORS)
+    return np.stack([part.reshape(*values.shape[:-1], -1)
+                     for part in (shaped[..., :TRANSLATION], shaped[..., TRANSLATION:])])
+
+
 def directions(wrench: np.ndarray, contributions: np.ndarray) -> np.ndarray:
     """
-    Return the directions (B, M, D) of the discrepancy of rollouts.
+    Return the directions (2, N, D) of the discrepancy as sums of slopes in N columns.
 
-    Args: wrench (B, M, 6): what a force and a moment, each of 1, change in the errors;
-    contributions (B, M, E): what each effect does to them. M = samples * 12.
+    Of translation and of rotation. Args: wrench (N, 6): the columns of a force and a moment;
+    contributions (N, E): what each effect has of each column.
     """
-    batch, length, count = contributions.shape
-    samples = length // ERRORS
-    parts = np.zeros((batch, samples, ERRORS, 2 * count))
-    shaped = contributions.reshape(batch, samples, ERRORS, count)
-    parts[:, :, :TRANSLATION, :count] = shaped[:, :, :TRANSLATION]
-    parts[:, :, TRANSLATION:, count:] = shaped[:, :, TRANSLATION:]
-    return np.concatenate([wrench, parts.reshape(batch, length, 2 * count)], axis=2)
+    none = np.zeros(contributions.shape)
+    return np.stack([np.hstack([wrench, contributions, none]),
+                     np.hstack([wrench, none, contributions])])
 
 
 def scales(force: float, moment: float, form_error: float, count: int) -> np.ndarray:
@@ -57,19 +74,15 @@ def scales(force: float, moment: float, form_error: float, count: int) -> np.nda
                            np.full(count - 2 * AXES, form_error)])
 
 
-def blocks_of(parts: list) -> Blocks:
-    """
-    Return the Blocks of flights.
-
-    Args: parts: for each flight U (B, M, D), r (B, M) and the block (B,) of each rollout.
-    """
-    gram, cross, power = [], [], 0.0
-    for basis, residual, block in parts:
-        across = basis.transpose(0, 2, 1)
-        gram.append(summed(across @ basis, block))
-        cross.append(summed((across @ residual[..., None])[..., 0], block))
-        power += float(np.sum(residual ** 2))
-    return Blocks(np.concatenate(gram), np.concatenate(cross), power)
+def blocks_of(flights: list[tuple[Products, np.ndarray]]) -> Blocks:
+    """Return the Blocks of flights: the Products and the directions (2, N, D) of each."""
+    gram, cross = [], []
+    for products, along in flights:
+        across = along.transpose(0, 2, 1)[:, None]
+        gram.append(np.sum(across @ products.slopes @ along[:, None], axis=0))
+        cross.append(np.sum(across @ products.cross[..., None], axis=0)[..., 0])
+    return Blocks(np.concatenate(gram), np.concatenate(cross),
+                  float(sum(products.power.sum() for products, _ in flights)))
 
 
 def summed(values: np.ndarray, block: np.ndarray) -> np.ndarray:

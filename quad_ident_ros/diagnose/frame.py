@@ -2,7 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Flights linearised around a fit, by which all sets of effects near it are judged alike."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -10,8 +12,11 @@ from quad_ident_ros.diagnose.discrepancy import (
     Blocks,
     blocks_of,
     directions,
+    parts_of,
+    Products,
     scales,
     summed,
+    TRANSLATION,
 )
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.greybox.errors import ERRORS
@@ -29,8 +34,7 @@ from quad_ident_ros.greybox.normal import Normal
 from quad_ident_ros.greybox.nuisances import Layout
 from quad_ident_ros.model.vehicle import Vehicle
 
-AT_ONCE = 16    # rollouts whose slopes in units of the noise are made at once
-EVERY = slice(None)
+AT_ONCE = 4     # rollouts whose slopes are put in units of the noise at once: a core's cache
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,7 +44,7 @@ class Frame:
 
     wanted: the columns, places in z; per flight: scale (B, M) weight over noise, basis (B, M, 12)
     of the initial states, block (B,) of each rollout; slopes in the columns and in the clock of
-    the pose, from which those in units of the noise are made where they are used: they are large.
+    the pose.
     """
 
     wanted: list
@@ -49,19 +53,43 @@ class Frame:
     block: list
     slopes: Slopes
 
-    def columns(self, places: list, flight: int, part: slice = EVERY, clock: bool = False
-                ) -> np.ndarray:
-        """
-        Return the slope of rollouts of a flight in some places of z, (B, M, K).
+    @cached_property
+    def products(self) -> list[np.ndarray]:
+        """Slopes of Products per flight, (2, K, N, N), of all columns and, last, the clock."""
+        found = []
+        for tangent, scale, basis, block in zip(self.slopes.tangents, self.scale, self.basis,
+                                                self.block, strict=True):
+            each = []
+            for begin in range(0, len(scale), AT_ONCE):
+                part = slice(begin, begin + AT_ONCE)
+                table = tangent.table[part, ERRORS:] * scale[part, None]
+                table -= (table @ basis[part]) @ basis[part].transpose(0, 2, 1)
+                halves = parts_of(table)
+                each.append(halves @ halves.transpose(0, 1, 3, 2))
+            whole = np.concatenate(each, axis=1)
+            found.append(np.stack([summed(half, block) for half in whole]))
+        return found
 
-        With clock, one more column, the last: that in the clock of the pose.
+    def places(self, columns: Iterable[int]) -> list[int]:
+        """Return where columns (places in z) stand in the products."""
+        return [self.wanted.index(column) for column in columns]
+
+    def with_residual(self, errors: np.ndarray, flight: int, places: list[int]) -> Products:
         """
-        rows = [ERRORS + self.wanted.index(place) for place in places]
-        table = self.slopes.tangents[flight].table[part][:, [*rows, -1] if clock else rows]
-        table *= self.scale[flight][part][:, None]
-        basis = self.basis[flight][part]
-        table -= (table @ basis) @ basis.transpose(0, 2, 1)
-        return table.transpose(0, 2, 1)
+        Return the Products of some columns of a flight with the errors (B, n, 12) of a fit.
+
+        Args: places: where the columns stand in the products, -1 the clock.
+        """
+        residual, basis = self.residual(errors, flight), self.basis[flight]
+        kept = np.where(np.arange(residual.shape[1]) % ERRORS < TRANSLATION, 1.0, 0.0)
+        halves = residual[:, :, None] * np.stack([kept, 1.0 - kept], axis=-1)
+        halves -= basis @ (basis.transpose(0, 2, 1) @ halves)
+        halves *= self.scale[flight][:, :, None]
+        rows = [ERRORS + place if place >= 0 else place for place in places]
+        cross = summed(self.slopes.tangents[flight].table[:, rows] @ halves, self.block[flight])
+        slopes = self.products[flight][:, :, places][..., places]
+        return Products(slopes, cross.transpose(2, 0, 1),
+                        summed(np.sum(residual ** 2, axis=1), self.block[flight]))
 
     def residual(self, errors: np.ndarray, flight: int) -> np.ndarray:
         """Return errors (B, n, 12) in units of the noise, initial states taken out, (B, M)."""
@@ -90,25 +118,27 @@ def frame_at(flights: list, vehicle: Vehicle, fit: Estimate, wanted: list, rules
     return Frame(wanted, scale, basis, block, slopes)
 
 
-def discrepancy_of(frame: Frame, distances: dict, flight: int, part: slice = EVERY
-                   ) -> np.ndarray:
+def directions_of(distances: dict, flight: int, columns: list[int]) -> np.ndarray:
     """
-    Return the directions (B, M, D) of the discrepancy of rollouts of a flight.
+    Return the directions (2, N, D) of the discrepancy of a flight in N columns (places in z).
 
     Args: distances: {(kind, columns): distance (F, K) of their parameters from none in each
     flight} of each effect and nuisance.
     """
-    each = [frame.columns(list(columns), flight, part) @ away[flight]
-            for (_, columns), away in distances.items()]
-    shape = frame.scale[flight][part].shape
-    return directions(frame.columns(list(WRENCH), flight, part),
-                      np.stack(each, axis=2) if each else np.zeros((*shape, 0)))
+    shares = np.zeros((len(columns), len(distances)))
+    for k, ((_, own), away) in enumerate(distances.items()):
+        shares[[columns.index(column) for column in own], k] = away[flight]
+    wrench = np.equal.outer(columns, WRENCH).astype(float)
+    return directions(wrench, shares)
 
 
 def blocks_at(frame: Frame, fit: Estimate, distances: dict) -> Blocks:
     """Return the Blocks of the residuals of an Estimate with its effects' distances."""
-    return blocks_of([(discrepancy_of(frame, distances, k), frame.residual(errors, k),
-                       frame.block[k]) for k, errors in enumerate(fit.residuals)])
+    used = sorted({*WRENCH, *(column for _, columns in distances for column in columns)})
+    places = frame.places(used)
+    return blocks_of([(frame.with_residual(errors, k, places),
+                       directions_of(distances, k, used))
+                      for k, errors in enumerate(fit.residuals)])
 
 
 def normal_at(frame: Frame, fit: Estimate, layout: Layout, distances: dict,
@@ -120,30 +150,27 @@ def normal_at(frame: Frame, fit: Estimate, layout: Layout, distances: dict,
     """
     information = np.zeros((layout.size, layout.size))
     gradient, cost, scores = np.zeros(layout.size), 0.0, []
+    clock, kept = len(frame.wanted), frame.places(layout.wanted)
     for number, errors in enumerate(fit.residuals):
-        residual, block = frame.residual(errors, number), frame.block[number]
-        squares, crosses, products = [], [], []
-        for begin in range(0, len(residual), AT_ONCE):
-            part = slice(begin, begin + AT_ONCE)
-            spread = discrepancy_of(frame, distances, number, part)
-            spread *= scales(*sizes, rules.form_error, spread.shape[2])
-            table = np.concatenate([frame.columns(layout.wanted, number, part, True),
-                                    residual[part, :, None]], axis=2)
-            across = spread.transpose(0, 2, 1)
-            squares.append(across @ spread)
-            crosses.append(across @ table)
-            products.append(table.transpose(0, 2, 1) @ table)
-        inside = summed(np.concatenate(squares), block) + np.eye(spread.shape[2])
-        ties = summed(np.concatenate(crosses), block)
-        each = summed(np.concatenate(products), block)
+        found = frame.with_residual(errors, number, [*range(clock), -1])
+        along = directions_of(distances, number, frame.wanted)
+        along *= scales(*sizes, rules.form_error, along.shape[2])
+        along = np.pad(along, ((0, 0), (0, 1), (0, 0)))[:, None]    # the clock has no part in them
+        # The last row and column are the residual's.
+        each = np.zeros((found.slopes.shape[1], clock + 2, clock + 2))
+        each[:, :-1, :-1] = found.slopes.sum(axis=0)
+        each[:, :-1, -1] = each[:, -1, :-1] = found.cross.sum(axis=0)
+        each[:, -1, -1] = found.power
+        across = along.transpose(0, 1, 3, 2)
+        ties = np.sum(across @ np.concatenate([found.slopes, found.cross[..., None]], axis=3),
+                      axis=0)
+        inside = np.sum(across @ found.slopes @ along, axis=0) + np.eye(along.shape[3])
         each -= ties.transpose(0, 2, 1) @ np.linalg.solve(inside, ties)
         # The clock of the pose is free in each flight: it is taken out of the others.
-        clock = len(layout.wanted)
         whole = each.sum(axis=0)
         size = max(whole[clock, clock], 1e-300)
         share = whole[:, clock] / size
         cost += whole[-1, -1] - size * share[-1] ** 2
-        kept = [layout.wanted.index(place) for place in layout.wanted]
         score = each[:, kept, -1] - share[-1] * each[:, kept, clock]
         score -= share[kept] * (each[:, clock, -1] - share[-1] * each[:, clock, clock])[:, None]
         table = whole[np.ix_(kept, kept)] - size * np.outer(share[kept], share[kept])

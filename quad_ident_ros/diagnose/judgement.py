@@ -23,6 +23,7 @@ from quad_ident_ros.diagnose.select import Selection
 from quad_ident_ros.effects.registry import EFFECTS, PLACES
 from quad_ident_ros.greybox.errors import ERRORS, GROUPS
 from quad_ident_ros.greybox.estimate import Estimate
+from quad_ident_ros.greybox.linear import Slopes, slopes_at, WRENCH
 from quad_ident_ros.greybox.parameters import nominal, SPLIT
 from quad_ident_ros.model.vehicle import Vehicle
 
@@ -99,9 +100,19 @@ class Bench:
         return [gaps.noise_gap(track, self.vehicle, z, self.noise, self.horizon)
                 for track, z in zip(self.tracks, model.vectors, strict=True)]
 
-    def without(self, model: Model, removed: tuple) -> Model:
+    def slopes(self, model: Model) -> Slopes:
+        """Return the Slopes of the flights learnt from at a Model, in all that it has free."""
+        fit = model.estimate
+        wanted = {*fit.columns, *fit.nuisances.columns,
+                  *(WRENCH if self.selection.slow is not None else ())}
+        return slopes_at(self.flights, self.vehicle, fit.z, fit.vectors, fit.starts,
+                         sorted(wanted))
+
+    def without(self, model: Model, removed: tuple, slopes: Slopes | None = None) -> Model:
         """
         Return a Model with some of its effects taken out and everything else refitted.
+
+        slopes: those at the model, by which fits begin that are only for comparison.
 
         What is alike in all flights must not hide in nuisances: those that do what an effect does
         that is taken out may only differ between flights, as they do beside it.
@@ -126,7 +137,7 @@ class Bench:
         noise, scatter = self.selection.noise, self.selection.quadratic.scatter
         slow = self.selection.slow
         estimate = refitted(self.flights, self.vehicle, z, chosen, noise, fit.nuisances,
-                            fit.starts, scatter=scatter, fixed=fixed[:-1], slow=slow)
+                            fit.starts, slopes, scatter, fixed[:-1], slow)
         usual = {cause.effect: cause for cause in self.selection.posterior if cause.usual}
         chosen, estimate = within_bounds(chosen, estimate, usual, self.flights, self.vehicle,
                                          noise, self.rules, scatter, fixed[:-1], slow)
@@ -139,20 +150,22 @@ class Bench:
         A flight that is the only one to learn from is predicted by the model as it is.
         """
         count, found = len(self.flights), []
-        for k in range(count if count > 1 and model.chosen else 0):
+        if count == 1 or not model.chosen:
+            return model.ends
+        slopes = self.slopes(model)
+        for k in range(count):
             kept = [n for n in range(count) if n != k]
             fit, flights = model.estimate, [self.flights[n] for n in kept]
             nuisances = replace(fit.nuisances, values=fit.nuisances.values[kept])
             fixed = fit.nuisances.fixed
             refit = refitted(flights, self.vehicle, fit.z, model.chosen,
                              [self.selection.noise[n] for n in kept], nuisances,
-                             [fit.starts[n] for n in kept],
-                             scatter=self.selection.quadratic.scatter,
-                             fixed=None if fixed is None else fixed[kept],
-                             slow=self.selection.slow)
+                             [fit.starts[n] for n in kept], slopes.of_flights(kept),
+                             self.selection.quadratic.scatter,
+                             None if fixed is None else fixed[kept], self.selection.slow)
             here = self._nuisances(k, refit.z, model.chosen, None if fixed is None else fixed[k])
             found.append(gaps.ends(self.tracks[k], self.vehicle, refit.z + here, self.horizon))
-        return (*(found or model.ends[:-1]), model.ends[-1])
+        return (*found, model.ends[-1])
 
     def _nuisances(self, flight: int, z: np.ndarray, chosen: tuple,
                    fixed: np.ndarray | None = None) -> np.ndarray:
@@ -204,7 +217,9 @@ def judge(bench: Bench) -> Judgement:
     weights: dict[Candidate, Weight] = {}
     without: dict[Candidate, Model] = {}
     while model.effects:
-        smaller = {removed: bench.without(model, removed) for removed in _subsets(model, rules)}
+        slopes = bench.slopes(model)
+        smaller = {removed: bench.without(model, removed, slopes)
+                   for removed in _subsets(model, rules)}
         alone = {removed[0]: one for removed, one in smaller.items() if len(removed) == 1}
         without |= alone
         for cause, weight in with_companions(

@@ -37,9 +37,11 @@ def nuisances_of(track: Track, vehicle: Vehicle, z: np.ndarray, kinds: Sequence[
     fixed = np.zeros(len(z)) if fixed is None else fixed
     if not kinds:
         return fixed
-    found = estimate([flight_of(track, segment)], vehicle, z, [], noise=[noise],
+    flight = flight_of(track, segment)
+    # Nuisances are small: they are fitted together with the initial states, from those recorded.
+    found = estimate([flight], vehicle, z, [], noise=[noise],
                      nuisances=replace(NuisanceValues.of(kinds, 1), fixed=fixed[None]),
-                     slow=slow)
+                     starts=[flight.states[flight.first]], slow=slow)
     return found.vectors[0] - z
 
 

@@ -9,10 +9,19 @@ import numpy as np
 
 from quad_ident_ros.diagnose.accelerometer import residual_force
 from quad_ident_ros.effects.registry import SLICES
-from quad_ident_ros.greybox.estimate import settled, weights_of
+from quad_ident_ros.greybox.errors import ERRORS
+from quad_ident_ros.greybox.estimate import weights_of
 from quad_ident_ros.greybox.flights import Flight, flight_of, inertial, Track
-from quad_ident_ros.greybox.linear import errors_along, linearise, WRENCH
-from quad_ident_ros.greybox.parameters import SPLIT
+from quad_ident_ros.greybox.linear import (
+    errors_along,
+    linear_of,
+    new_starts,
+    seen_along,
+    STEP,
+    tangent_of,
+    WRENCH,
+)
+from quad_ident_ros.greybox.parameters import limits, SPLIT
 from quad_ident_ros.model.attitude import rotation_matrix
 from quad_ident_ros.model.vehicle import Vehicle
 
@@ -22,7 +31,7 @@ EVERY = 0.05        # s from one such window to the next: up to 5 Hz are seen
 STRETCH = 25.0      # s without a break that spectra are taken of,
 STRETCHES = 4       # and how many of them, spread over a longer flight
 AIR = ('horizontal air speed', 'air speed forward', 'air speed to the left', 'climb speed')
-AT_ONCE = 500       # windows whose slopes are held at once, 40 MB
+AT_ONCE = 700       # windows whose slopes are held at once, 30 MB: those of 35 s
 FEWEST = 8          # windows of a stretch that has a spectrum
 
 
@@ -51,25 +60,33 @@ def residual_wrench(track: Track, vehicle: Vehicle, z: np.ndarray, noise: np.nda
         flight.seen[flight.first + flight.count].all(axis=1)])
     first, stretch = _stretches(flight)
     flight = replace(flight, first=first)
-    windows = [replace(flight, first=part) for part in
-               np.split(first, range(AT_ONCE, len(first), AT_ONCE))]
-    starts = settled(windows, vehicle, [z] * len(windows), [noise] * len(windows))
-    weight = weights_of(np.concatenate([
-        errors_along(part, vehicle, z, start) for part, start in
-        zip(windows, starts, strict=True)]), noise, flight)
-    values, errors = np.empty((len(first), 6)), np.empty((len(first), 6))
-    for number, (part, start) in enumerate(zip(windows, starts, strict=True)):
-        here = slice(number * AT_ONCE, (number + 1) * AT_ONCE)
-        linear = linearise(part, vehicle, z, start, list(WRENCH), noise, False, weight[here])
-        inverse = np.linalg.inv(np.einsum('bmc,bmd->bcd', linear.slope, linear.slope))
-        values[here] = np.einsum('bcd,bmd,bm->bc', inverse, linear.slope, linear.error)
-        errors[here] = np.sqrt(np.einsum('bcc->bc', inverse))
+    parts = [_by_motion(replace(flight, first=part), vehicle, z, noise)
+             for part in np.array_split(first, -(-len(first) // AT_ONCE))]
+    values, errors = (np.concatenate(each) for each in zip(*parts, strict=True))
     felt = residual_force(flight, vehicle, z)
     if felt is not None:
         values[:, :3], errors[:, :3] = _combined(values[:, :3], errors[:, :3], *felt)
     middle = flight.first + flight.count // 2
     return ResidualWrench(values, errors, flight.course.t[middle],
                           _features(flight, middle, vehicle, z), stretch)
+
+
+def _by_motion(flight: Flight, vehicle: Vehicle, z: np.ndarray, noise: np.ndarray
+               ) -> tuple[np.ndarray, np.ndarray]:
+    """Return force and moment in the windows of a Flight and their errors, both (B, 6)."""
+    starts = flight.states[flight.first]
+    tangent = tangent_of(flight, vehicle, z, starts, WRENCH,
+                         STEP * limits(vehicle)[2, list(WRENCH)])
+    initial = replace(tangent, kept=[*range(ERRORS), -1])
+    settled = linear_of(initial, errors_along(flight, vehicle, z, starts),
+                        seen_along(flight) / noise, False)
+    # Within the noise of the states, by which these move, the slopes stay the same.
+    raw = errors_along(flight, vehicle, z, new_starts(settled, starts, np.zeros(0)))
+    linear = linear_of(tangent, raw, weights_of(raw, noise, flight) / noise, False)
+    across = linear.slope.transpose(0, 2, 1)
+    inverse = np.linalg.inv(across @ linear.slope)
+    values = inverse @ (across @ linear.error[..., None])
+    return values[..., 0], np.sqrt(np.einsum('bcc->bc', inverse))
 
 
 def _combined(values: np.ndarray, errors: np.ndarray, felt: np.ndarray, noise: np.ndarray

@@ -3,7 +3,7 @@
 """Flights linearised in the parameters, with the initial states of all rollouts taken out."""
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -71,6 +71,12 @@ class Slopes:
         wrench = [ERRORS + self.columns.index(one) for one in WRENCH] if slow else []
         return [Tangent(tangent.table, tangent.table[:, wrench] if slow else None, kept)
                 for tangent in self.tangents]
+
+    def of_flights(self, numbers: Iterable[int]) -> 'Slopes':
+        """Return the Slopes of some of the flights."""
+        numbers = list(numbers)
+        return replace(self, starts=[self.starts[k] for k in numbers],
+                       tangents=[self.tangents[k] for k in numbers])
 
 
 @dataclass(frozen=True, eq=False)

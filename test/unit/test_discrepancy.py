@@ -11,12 +11,16 @@ from quad_ident_ros.diagnose.discrepancy import (
     directions,
     fitted_sizes,
     log_likelihood,
+    parts_of,
+    Products,
     scales,
+    summed,
 )
 
 ROLLOUTS, SAMPLES, EFFECTS = 5, 2, 2
 LENGTH = 12 * SAMPLES
 BLOCK = np.array([0, 0, 1, 1, 1])
+ALONG = directions(np.eye(6 + EFFECTS)[:, :6], np.eye(6 + EFFECTS)[:, 6:])
 
 
 def flight(seed):
@@ -25,6 +29,26 @@ def flight(seed):
     return (random.normal(size=(ROLLOUTS, LENGTH, 6)),
             random.normal(size=(ROLLOUTS, LENGTH, EFFECTS)),
             random.normal(size=(ROLLOUTS, LENGTH)))
+
+
+def products(table, residual, block=BLOCK):
+    """Return the Products of slopes (B, M, N) and residuals (B, M)."""
+    slopes, rest = parts_of(table.transpose(0, 2, 1)), parts_of(residual)
+    return Products(np.stack([summed(part @ part.transpose(0, 2, 1), block) for part in slopes]),
+                    np.stack([summed((part @ one[..., None])[..., 0], block)
+                              for part, one in zip(slopes, rest, strict=True)]),
+                    summed(np.sum(residual ** 2, axis=1), block))
+
+
+def explicit(wrench, parts):
+    """Return the directions (B, M, D) themselves: an effect errs apart in both parts."""
+    translation = (np.arange(LENGTH) % 12 < 6)[:, None]
+    return np.concatenate([wrench, parts * translation, parts * ~translation], axis=2)
+
+
+def blocks_with(wrench, parts, residual):
+    """Return the Blocks of one flight."""
+    return blocks_of([(products(np.concatenate([wrench, parts], axis=2), residual), ALONG)])
 
 
 def dense(flights, deviation, scatter):
@@ -43,40 +67,41 @@ def dense(flights, deviation, scatter):
 @pytest.mark.parametrize('scatter', [1.0, 2.7])
 @pytest.mark.parametrize(('force', 'moment'), [(0.0, 0.0), (0.3, 0.0), (0.0, 2.0), (0.4, 0.7)])
 def test_the_likelihood_is_that_of_the_dense_normal_distribution(force, moment, scatter):
-    flights = [(directions(wrench, parts), residual)
-               for wrench, parts, residual in map(flight, (1, 2))]
-    blocks = blocks_of([(*one, BLOCK) for one in flights])
+    given = [flight(1), flight(2)]
+    flights = [(explicit(wrench, parts), residual) for wrench, parts, residual in given]
+    blocks = blocks_of([(products(np.concatenate([wrench, parts], axis=2), residual), ALONG)
+                        for wrench, parts, residual in given])
     deviation = scales(force, moment, 0.2, flights[0][0].shape[2])
     expected = dense(flights, deviation, scatter)
     assert log_likelihood(blocks, deviation, scatter) == pytest.approx(expected, rel=1e-9)
 
 
 def test_an_effect_errs_apart_in_translation_and_rotation():
-    wrench, parts, _ = flight(3)
-    basis = directions(wrench, parts)
-    assert basis.shape == (ROLLOUTS, LENGTH, 6 + 2 * EFFECTS)
-    np.testing.assert_array_equal(basis[..., :6], wrench)
-    translation, rotation = basis[..., 6:6 + EFFECTS], basis[..., 6 + EFFECTS:]
-    np.testing.assert_array_equal(translation + rotation, parts)
-    each = np.arange(LENGTH) % 12
-    assert not translation[:, each >= 6].any() and not rotation[:, each < 6].any()
+    wrench, parts, residual = flight(3)
+    blocks, basis = blocks_with(wrench, parts, residual), explicit(wrench, parts)
+    across = basis.transpose(0, 2, 1)
+    assert blocks.gram.shape == (2, 6 + 2 * EFFECTS, 6 + 2 * EFFECTS)
+    np.testing.assert_allclose(blocks.gram, summed(across @ basis, BLOCK), atol=1e-12)
+    np.testing.assert_allclose(
+        blocks.cross, summed((across @ residual[..., None])[..., 0], BLOCK), atol=1e-12)
+    assert blocks.power == pytest.approx(np.sum(residual ** 2))
 
 
 def test_without_effects_only_force_and_moment_remain():
-    wrench, _, _ = flight(4)
-    assert directions(wrench, np.zeros((ROLLOUTS, LENGTH, 0))).shape == wrench.shape
+    along = directions(np.eye(6), np.zeros((6, 0)))
+    np.testing.assert_array_equal(along, np.stack([np.eye(6)] * 2))
     assert scales(0.1, 0.2, 0.3, 6).tolist() == [0.1] * 3 + [0.2] * 3
 
 
 def test_an_error_that_an_effect_may_have_costs_what_its_prior_says():
     """A tenth of what it does is half a standard deviation, in two blocks and two parts each."""
     wrench, parts, _ = flight(5)
-    basis, parts = directions(wrench, 100.0 * parts), 100.0 * parts
-    deviation = scales(0.0, 0.0, 0.2, basis.shape[2])
+    parts = 100.0 * parts
+    deviation = scales(0.0, 0.0, 0.2, ALONG.shape[2])
 
     def cost(residual):
-        nothing = log_likelihood(blocks_of([(basis, 0.0 * residual, BLOCK)]), deviation)
-        return nothing - log_likelihood(blocks_of([(basis, residual, BLOCK)]), deviation)
+        nothing = log_likelihood(blocks_with(wrench, parts, 0.0 * residual), deviation)
+        return nothing - log_likelihood(blocks_with(wrench, parts, residual), deviation)
 
     alike, other = 0.1 * parts[..., 0], wrench[..., 0]
     assert cost(alike) == pytest.approx(0.5 * 0.5 ** 2 * 4, rel=0.01)
@@ -89,7 +114,7 @@ def test_the_sizes_are_the_likeliest_on_the_grids():
     block = np.arange(200) // 2
     pushed = np.repeat(random.normal(0.0, 0.3, (100, 3)), 2, axis=0)
     residual = random.normal(size=(200, LENGTH)) + np.einsum('bmd,bd->bm', wrench[..., :3], pushed)
-    blocks = blocks_of([(wrench, residual, block)])
+    blocks = blocks_of([(products(wrench, residual, block), np.stack([np.eye(6)] * 2))])
     grids = (np.array([0.0, 0.03, 0.1, 0.3, 1.0, 3.0]),) * 2
     value, sizes = fitted_sizes(blocks, 0.2, grids)
     assert sizes == (3, 0)

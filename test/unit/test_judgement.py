@@ -248,10 +248,15 @@ def test_what_a_flight_has_by_itself_stays_when_effects_are_taken_out_and_flight
                   noise_of(selection, intake, RULES), RULES)
     model = bench.model(selection.best.chosen, selection.best.estimate)
     assert {cause.effect for cause in model.effects} == {'gyro_bias', 'motor_lag'}
-    less = bench.without(model, tuple(cause for cause in model.effects
-                                      if cause.effect == 'gyro_bias'))
+    removed = tuple(cause for cause in model.effects if cause.effect == 'gyro_bias')
+    less = bench.without(model, removed)
     column = INDEX['thrust_scale.factor']
     thrusts = [vector[column] for vector in less.vectors]
     assert thrusts == pytest.approx([1.06, 0.94, 1.0], abs=0.01)
     for unseen, as_fitted in zip(bench.left_out(less), less.ends, strict=True):
         assert gap([unseen])['velocity'] == pytest.approx(gap([as_fitted])['velocity'], rel=0.05)
+    # Begun by the slopes at the whole model the fit ends where it does by new ones.
+    begun = bench.without(model, removed, bench.slopes(model))
+    columns = less.estimate.columns
+    assert begun.z[columns] == pytest.approx(less.z[columns], abs=0.5 * less.estimate.errors.min())
+    assert begun.gap == pytest.approx(less.gap, rel=0.01)
