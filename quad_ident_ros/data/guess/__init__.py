@@ -11,14 +11,14 @@ import warnings
 
 import numpy as np
 
-from quad_ident_ros.data.guess import attitude, clock, motion, motors
+from quad_ident_ros.data.guess import attitude, clock, motion, motors, programs
 from quad_ident_ros.data.guess.draft import Draft, Guess
 from quad_ident_ros.data.mapping import Mapping
 from quad_ident_ros.data.tabular import Table
 
-STEPS = (clock.time, motion.vectors, attitude.quaternion, attitude.angles, attitude.rates,
-         motion.positions, motion.forces, motion.axes, motion.velocities, motors.motors,
-         motors.battery)
+STEPS = (clock.time, programs.blackbox_decode, motion.vectors, attitude.quaternion,
+         attitude.angles, attitude.rates, motion.positions, motion.forces, motion.axes,
+         motion.velocities, motors.motors, motors.battery)
 BEYOND = 1e30   # no quantity of a flight, in whatever unit, is as large
 
 
