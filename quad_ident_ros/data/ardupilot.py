@@ -19,6 +19,7 @@ from quad_ident_ros.data.motor_order import about_motors, quad
 from quad_ident_ros.data.readers.base import content_of
 from quad_ident_ros.data.record import FlightRecord, QUATERNION
 from quad_ident_ros.data.streams import INTERPOLATED, join, SLOW, Stream
+from quad_ident_ros.data.thrust_curve import ardupilot_curve
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.attitude import quaternion_from_euler
 
@@ -344,7 +345,8 @@ def _about_motors(parameters, channels):
     """Return what is known of the motors, for the info of a record."""
     frame = tuple(parameters.get(name) for name in ('FRAME_CLASS', 'FRAME_TYPE'))
     rotors = _ROTORS.get(frame, ()) if len(channels) == 4 else ()
-    return about_motors(rotors, "ArduPilot's order for FRAME_CLASS and FRAME_TYPE", 'pwm')
+    return about_motors(rotors, "ArduPilot's order for FRAME_CLASS and FRAME_TYPE", 'pwm',
+                        ardupilot_curve(parameters) if channels else None)
 
 
 def _order_notes(parameters, known):

@@ -23,7 +23,7 @@ from rosbags.typesys import get_typestore, Stores
 
 from quad_ident_ros.errors import InputError
 
-_PENDING_BYTES = 1 << 22
+_PENDING_BYTES = 1 << 22    # written at once at the latest, so that memory stays bounded
 _DISTRO = 'ros_distro: rosbags', 'ros_distro: jazzy'
 _FOREVER = QosTime(9223372036, 854775807)
 _QOS = Qos(QosHistory.KEEP_ALL, 0, QosReliability.RELIABLE, QosDurability.VOLATILE, _FOREVER,

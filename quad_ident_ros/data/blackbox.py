@@ -11,6 +11,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 import logging
 from pathlib import Path
+import re
 
 import numpy as np
 
@@ -18,10 +19,14 @@ from quad_ident_ros.errors import InputError
 
 MAGIC = b'H Product:Blackbox'
 
-_MOST_LOGS, _MOST_LINES, _LONGEST, _MOST_FIELDS = 1000, 4000, 1 << 14, 256
+# What a damaged file may claim before it is given up; several times what logs have.
+_MOST_LOGS = 1000
+_MOST_LINES, _LONGEST = 4000, 1 << 14   # of a header, and bytes of one
+_MOST_FIELDS = 256          # of a frame
+_UNPRINTABLE = re.compile(r'[^ -~]')
 _MOST_INTERVAL = 256        # loops from one frame to the next; the firmware has up to 128
 _AGAIN = 20                 # times that a byte may be read where frames are searched for
-_MOST_STARTS = 1000         # of the parser after damage
+_MOST_STARTS = 1000         # of the parser after damage: what has more holes is no flight
 _NOT_READ = {10: 'TAG2_3SVARIABLE'}     # encodings that orangebox does not decode
 _TAG8_8SVB, _TAG8_4S16 = 6, 8
 _JUMP = 10e6                # us; one frame so far from both of its neighbours is damaged
@@ -95,7 +100,9 @@ def _bounded(path, number=None):
                 if not line.startswith(b'H ') or not line.endswith(b'\n') or b':' not in line:
                     file.seek(before)
                     break
-                self._parse_header_line(line.decode('utf-8', 'replace').encode('ascii', 'replace'))
+                # Messages quote it: whatever could begin another line is not of a header.
+                text = _UNPRINTABLE.sub('?', line.decode('utf-8', 'replace').rstrip())
+                self._parse_header_line(text.encode())
             self._header_size = file.tell() - start
 
         def __next__(self):

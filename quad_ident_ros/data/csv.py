@@ -19,7 +19,7 @@ from quad_ident_ros.data.limits import most
 from quad_ident_ros.data.record import faulty, find_fault, FlightRecord, unit
 from quad_ident_ros.errors import InputError
 
-_PENDING_BYTES = 1 << 16
+_PENDING_BYTES = 1 << 16    # that are written at once: a call for each line would cost more
 _CONTROL = re.compile(rb'[\x00-\x08\x0e-\x1a\x1c-\x1f\x7f\x81\x8d\x8f\x90\x9d]')
 """Bytes that no text in the code page of Windows (cp1252) has."""
 

@@ -20,8 +20,8 @@ from quad_ident_ros.errors import InputError
 
 MAGIC = b'\xa3\x95\x80'     # a definition is the first message of a log
 
-_FORMAT, _FORMAT_SIZE = 0x80, 89
-_HEADER = 3
+_FORMAT, _FORMAT_SIZE = 0x80, 89    # type of the message that defines others, and its bytes
+_HEADER = 3     # bytes before the content of a message: two that mark it, and its type
 _LATEST = 366 * 86400 * 10 ** 6     # us, a year after the start of the vehicle
 
 

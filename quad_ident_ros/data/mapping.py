@@ -33,7 +33,7 @@ UNITS = {
     'm/s': {'m/s': 1.0, 'mm/s': 1e-3, 'cm/s': 1e-2},
     'rad': {'rad': 1.0, 'deg': np.pi / 180},
     'rad/s': {'rad/s': 1.0, 'deg/s': np.pi / 180, 'rpm': np.pi / 30},
-    'm/s^2': {'m/s^2': 1.0, 'g': 9.80665, 'mg': 9.80665e-3},
+    'm/s^2': {'m/s^2': 1.0, 'g': 9.80665, 'mg': 9.80665e-3, 'g/2048': 9.80665 / 2048},
     'V': {'V': 1.0, 'mV': 1e-3},
 }
 """Units that a column of a table or a topic may have, by the unit of the flight record."""

@@ -55,14 +55,16 @@ def order_of(where: str | Path, rotors: Sequence[Rotor], source: str,
     return order
 
 
-def about_motors(rotors: Sequence[Rotor] = (), source: str = '', kind: str = '') -> dict:
+def about_motors(rotors: Sequence[Rotor] = (), source: str = '', kind: str = '',
+                 curve: dict | None = None) -> dict:
     """
     Return what a reader knows of its motors, for the info `motors` of a record, JSON-able.
 
-    Args: rotors of motors 1.. as in order_of; source: what says so; kind: of model.motors.KINDS.
+    Args: rotors of motors 1.. as in order_of; source: what says so; kind: of model.motors.KINDS;
+    curve: of thrust, {minimum, maximum, factor}, as data.thrust_curve has it, or None.
     """
     return {'rotors': [[*rotor.position, rotor.spin] for rotor in rotors], 'source': source,
-            'kind': kind}
+            'kind': kind, **({'curve': curve} if curve else {})}
 
 
 def rotors_of(info: dict) -> tuple[Rotor, ...]:

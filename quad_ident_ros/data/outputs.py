@@ -12,6 +12,8 @@ from quad_ident_ros.data.mapping import Actuators, actuators_from, chosen_output
 from quad_ident_ros.data.motor_order import order_of, rotors_of
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.data.signal_kind import described, kinds_of
+from quad_ident_ros.data.thrust_curve import said as curve_said
+from quad_ident_ros.data.thrust_curve import share_of_thrust
 from quad_ident_ros.data.thrust_level import FULL_SPEED, full_speed, levelled
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.motors import (
@@ -76,6 +78,9 @@ def _with_commands(records: list[FlightRecord], vehicle: Vehicle | None,
     """Return records of the same motors with commands, the outputs in the vehicle's order."""
     where = _where(records[0])
     signals = [_signals(record, vehicle, actuators) for record in records]
+    curve = _curve_of(records[0], vehicle, actuators)
+    if curve is not None:
+        signals = [share_of_thrust(values, **curve) for values in signals]
     made = _map_of(where, records[0].info.get('motors', {}), np.concatenate(signals), vehicle,
                    actuators)
     if made is None:
@@ -159,7 +164,10 @@ def _map_of(where: str, about: dict, values: np.ndarray, vehicle: Vehicle | None
         return _Map(motors, '')     # who wrote the mapping knows
     assert vehicle is not None
     told = vehicle.motors
-    if told is None:
+    curve = about.get('curve')
+    if told is None and curve is not None:
+        told, how = Motors('normalised', gives='thrust'), f'by the log: {curve_said(**curve)}'
+    elif told is None:
         kind, how = about.get('kind', ''), 'as the log has them'
         if not kind:
             kinds = _kinds_of(values, vehicle)
@@ -173,8 +181,17 @@ def _map_of(where: str, about: dict, values: np.ndarray, vehicle: Vehicle | None
         _refuse_range(where, values, vehicle)
         how = f'by motors: of {vehicle.name}'
     motors = completed(told, vehicle.thrust_coefficient, vehicle.speed_min, vehicle.speed_max)
-    said = f'commands: outputs taken for {described(told.kind)}, {how}; '
+    kind = about['kind'] if vehicle.motors is None and curve is not None else told.kind
+    said = f'commands: outputs taken for {described(kind)}, {how}; '
     return _Map(motors, said + (_said(motors) if motors.whole else ''))
+
+
+def _curve_of(record: FlightRecord, vehicle: Vehicle | None,
+              actuators: Actuators | None) -> dict[str, float] | None:
+    """Return the thrust curve that a log has, or None where mapping or vehicle say otherwise."""
+    if actuators is not None or vehicle is None or vehicle.motors is not None:
+        return None
+    return record.info.get('motors', {}).get('curve')
 
 
 def _kinds_of(values: np.ndarray, vehicle: Vehicle) -> tuple[str, ...]:

@@ -16,7 +16,7 @@ Reset: TypeAlias = tuple[float, float, str]
 
 SHORTEST = 4.0      # s, of a piece: a diagnosis needs that much
 POSITION = 1.0      # m; estimators drift by less, and errors of measurement are smaller
-HEADING = np.radians(20.0)
+HEADING = np.radians(20.0)     # rad; the compass of an estimator in flight is off by less
 WITHIN = 0.2        # s in which a jump is over: streams of 5 Hz and more, interpolated
 RETURNS = 1.0       # s; what has come back by then was a glitch, and no reset
 CLEAR = 5.0         # times the usual disagreement of the streams

@@ -21,7 +21,7 @@ BLANKS = ' '    # any number of them
 MOTIVE = ('world: Motive has y up unless it is told otherwise: export with Z up and name the '
           'columns in a mapping, or turn them in it, such as py: {column: "Position Z", unit: -m}')
 _HEAD = 20      # lines in which the first numbers come
-_MOST_COLUMNS = 4096
+_MOST_COLUMNS = 4096    # wide logs have hundreds; each costs the guess a look
 _FEW = 0.1      # of the cells of a column: with more text it is one of text
 _DATE = re.compile(r'[12]\d{3}-\d\d-\d\d[T ]\d\d:\d\d:\d\d(\.\d+)?(Z|[+-]00:?00)?$')
 """A time of day in UTC, or without a zone, as ISO 8601 writes it."""

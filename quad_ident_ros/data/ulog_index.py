@@ -20,7 +20,7 @@ ROLES = {
     'actuator_motors': ('commands',), 'actuator_outputs': ('commands',),
     'esc_status': ('rotors',), 'battery_status': ('battery',)}
 
-_MOST_STREAMS = 4096
+_MOST_STREAMS = 4096    # logs have some 200; a damaged one may define any number
 _LATEST = 2 ** 63 // 1000 - 1   # us, of a stamp that fits into ns
 _BEFORE = 60 * 10 ** 9   # ns that a message may be older than the log
 _FIELD = re.compile(r'([A-Za-z0-9_]+(?:\[\d+\])?) ([A-Za-z0-9_]+)')

@@ -22,13 +22,18 @@ from quad_ident_ros.data.thrust_level import on_one_level
 from quad_ident_ros.diagnose.blocks import interleaved, spans_seen
 from quad_ident_ros.diagnose.result import BLOCKS
 from quad_ident_ros.diagnose.rules import Rules
-from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.greybox.flights import Flight, guided, highest_voltage, moved, Track, track_of
 from quad_ident_ros.greybox.near import near_flights
 from quad_ident_ros.greybox.parameters import nominal
-from quad_ident_ros.greybox.rotor_answer import rotor_answer, ruled_out_by
-from quad_ident_ros.model.mixing import BY_SPEEDS, with_commands
+from quad_ident_ros.greybox.rotor_answer import (
+    is_driven_by_speeds,
+    NO_COMMANDS,
+    OF_MOTORS,
+    rotor_answer,
+    ruled_out_by,
+)
+from quad_ident_ros.model.mixing import with_commands
 from quad_ident_ros.model.vehicle import Vehicle
 
 MOST_SHOWN = 8      # blocks that a line names; as data there are all
@@ -117,16 +122,10 @@ def _of_rotors(records: Sequence[FlightRecord], clocks: Sequence[Clock | None], 
 
     What they say in each is added to the findings.
     """
-    measured = [record for record in records if record.info.get(BY_SPEEDS)]
+    measured = [record for record in records if is_driven_by_speeds(record)]
     if measured:
-        of_motors = tuple(name for name, effect in EFFECTS.items() if effect.actuator)
-        findings += [as_caution(Finding(
-            'rotor_speeds', 'info', 'rotor1, rotor2, ...',
-            'the record has no commands, so the measured rotor speeds drive the model; what the '
-            f'motors make of commands, {" and ".join(of_motors)}, cannot be told',
-            'log the commands, too, to have the motors diagnosed'), record)
-            for record in measured]
-        return of_motors
+        findings += [as_caution(NO_COMMANDS, record) for record in measured]
+        return OF_MOTORS
     told = [rotor_answer(record) for record in records]
     # Commands of another clock than the states': whose clock the speeds have is not known.
     ruled_out = ruled_out_by([

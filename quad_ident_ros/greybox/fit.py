@@ -25,6 +25,7 @@ from quad_ident_ros.greybox.near import near_flights
 from quad_ident_ros.greybox.noise import quick_noise
 from quad_ident_ros.greybox.normal import covariance_of, Normal, scatter_of
 from quad_ident_ros.greybox.parameters import as_described, FACTORS, INDEX, limits, SPLIT
+from quad_ident_ros.greybox.rotor_answer import is_driven_by_speeds, NO_COMMANDS, OF_MOTORS
 from quad_ident_ros.model.vehicle import Vehicle
 
 SCHEMA = 'quad_ident/fit/1'
@@ -81,11 +82,13 @@ def fit(records: Sequence[FlightRecord], vehicle: Vehicle, names: Iterable[str],
     Args: names of vehicle constants, effects or parameters of effects (see free.py); on_progress
     is called with the share that is done. What the flights leave undetermined is held at the
     vehicle file's value, and said. Raises InputError, also for what scales thrust over mass where
-    commands were scaled by the weight (thrust_level): it would come out as the file has it.
+    commands were scaled by the weight (thrust_level): it would come out as the file has it; and
+    for effects of the motors where measured rotor speeds take the place of commands.
     """
     free = columns_of_names(names, vehicle)
     refuse_twice(records)
     _refuse_level(records, free)
+    _refuse_motors(records, free)
     records = [with_motion(record) for record in records]
     for record in records:
         if is_inertial(record):
@@ -130,7 +133,10 @@ def fit(records: Sequence[FlightRecord], vehicle: Vehicle, names: Iterable[str],
     order = tuple(name for name, place in free.items() if place in errors)
     pairs = tuple((order[i], order[j], share) for i, j, share in correlated(covariance, STRONG))
     on_progress(1.0)
-    findings = (*(_said(freedom, inside, start[columns]) for freedom in undetermined),
+    findings = (*(f'{flight.name}: {NO_COMMANDS.message}; {NO_COMMANDS.remedy}'
+                  for flight, record in zip(flights, records, strict=True)
+                  if is_driven_by_speeds(record)),
+                *(_said(freedom, inside, start[columns]) for freedom in undetermined),
                 *_findings(found, parameters, pairs, flights))
     return Fit(vehicle, tuple(flight.name for flight in flights), parameters,
                replace(found, covariance=covariance), order, pairs, findings)
@@ -147,6 +153,16 @@ def _refuse_level(records: Iterable[FlightRecord], free: Iterable[str]) -> None:
                 f'by the weight of the vehicle file, so that no flight tells '
                 f'{", ".join(scales)}; leave that out of --free, or give the vehicle file '
                 'speed_max (rad/s) or motors: with a gain')
+
+
+def _refuse_motors(records: Iterable[FlightRecord], free: Iterable[str]) -> None:
+    """Raise InputError where what motors make of commands is asked for, and there are none."""
+    asked = [name for name in free if name.partition('.')[0] in OF_MOTORS]
+    for record in records:
+        if asked and is_driven_by_speeds(record):
+            where = record.info.get('source') or record.info.get('name', 'the flight record')
+            raise InputError(f'{where}: {NO_COMMANDS.message}; leave {", ".join(asked)} out of '
+                             '--free, or give flights with commands')
 
 
 def _apart(names: Sequence[str]) -> list[str]:

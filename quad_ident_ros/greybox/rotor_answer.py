@@ -8,10 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import minimize
 
+from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.record import FlightRecord
-from quad_ident_ros.effects.registry import NULL
+from quad_ident_ros.effects.registry import EFFECTS, NULL
 from quad_ident_ros.greybox.flights import BRIDGED, GAP, RATE
 from quad_ident_ros.model.actuators import actuated, DELAY, LAG
+from quad_ident_ros.model.mixing import BY_SPEEDS
 
 MOST = 20_000           # samples, from the middle of a stretch: more tell nothing new
 LEAST_RATE = 40.0       # Hz of measured speeds; slower ones do not show lags
@@ -23,6 +25,16 @@ DELAYS, LAGS = np.arange(-0.02, 0.121, 0.01), np.array([0.0, 0.01, 0.02, 0.04, 0
 SMALL = 0.5 / RATE      # s: half a sample of what a diagnosis looks at
 SURE = 3.0              # standard errors
 FINEST = 1e-5           # s: no clock tells more
+
+OF_MOTORS = tuple(name for name, effect in EFFECTS.items() if effect.actuator)
+"""Effects of what the motors make of commands."""
+
+NO_COMMANDS = Finding(
+    'rotor_speeds', 'info', 'rotor1, rotor2, ...',
+    'the record has no commands, so the measured rotor speeds drive the model; what the motors '
+    f'make of commands, {" and ".join(OF_MOTORS)}, cannot be told',
+    'log the commands, too, to have the motors diagnosed')
+"""What is said of a record that is_driven_by_speeds."""
 
 
 @dataclass(frozen=True)
@@ -50,6 +62,11 @@ class RotorAnswer:
             text += (f'; at one command they change by {100 * self.per_volt[0]:.2f} ± '
                      f'{100 * self.per_volt[1]:.2f} % per volt')
         return text
+
+
+def is_driven_by_speeds(record: FlightRecord) -> bool:
+    """Return whether the commands of a record are its measured rotor speeds."""
+    return bool(record.info.get(BY_SPEEDS))
 
 
 def ruled_out_by(answers: Iterable[RotorAnswer | None]) -> tuple[str, ...]:

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Flights in the DataFlash logs of ArduPilot."""
 
+from dataclasses import replace
 import random
 import sys
 
@@ -58,6 +59,30 @@ def test_the_parameters_tell_which_output_is_which_motor(tmp_path):
                                   np.round(OUTPUTS))
     np.testing.assert_allclose(read.stack(*ROTORS), SMALL.stack(*CMD), rtol=1e-6)
     assert not read.has('output5')
+
+
+def test_the_thrust_curve_of_the_parameters_tells_the_rotor_speeds(tmp_path):
+    vehicle = replace(VEHICLE, speed_max=1700.0)
+    share = (SMALL.stack(*CMD) / vehicle.speed_max) ** 2    # of the full thrust
+    # What solves 0.65 x^2 + 0.35 x = share, from MOT_SPIN_MIN to MOT_SPIN_MAX of 1100 to 1900 us.
+    x = (np.sqrt(0.35 ** 2 + 4 * 0.65 * share) - 0.35) / (2 * 0.65)
+    outputs = 1100 + 800 * (0.15 + 0.8 * x)
+    told = {'MOT_THST_EXPO': 0.65, 'MOT_PWM_MIN': 1100, 'MOT_PWM_MAX': 1900,
+            'MOT_SPIN_MIN': 0.15, 'MOT_SPIN_MAX': 0.95}
+    messages = [*copter(SMALL, outputs, frame=(1, 3)),  # whose order the reader does not know
+                *(('PARM', (1, *one)) for one in told.items())]
+    read = load(file(tmp_path, messages), None, vehicle)
+    # Outputs are whole us: 1 of 640.
+    np.testing.assert_allclose(read.stack(*CMD), SMALL.stack(*CMD), atol=1.5)
+    [note] = [note for note in read.info['notes'] if note.startswith('commands:')]
+    assert 'PWM' in note and '0.65 s^2 + 0.35 s' in note and '0 at 1220 and 1 at 1860' in note
+    # A mapping, and numbers that make no curve, leave the map linear.
+    linear = load(file(tmp_path, messages), PWM, vehicle).columns['cmd1']
+    np.testing.assert_allclose(linear, vehicle.speed_min + (vehicle.speed_max - vehicle.speed_min)
+                               * (np.round(outputs[:, 0]) - 1000) / 1000)
+    for name, value in (('MOT_PWM_MIN', 0), ('MOT_SPIN_MAX', 0.1), ('MOT_THST_EXPO', 3)):
+        read = load(file(tmp_path, [*messages, ('PARM', (2, name, value))]), None, vehicle)
+        np.testing.assert_allclose(read.columns['cmd1'], linear)
 
 
 def test_without_the_parameters_all_used_outputs_are_kept(tmp_path):

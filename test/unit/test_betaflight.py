@@ -113,6 +113,9 @@ def test_bad_logs_are_refused(tmp_path):
     refused(file(tmp_path, whole.replace(b'P interval:1/2', b'P interval:0/0')), 'P interval')
     refused(file(tmp_path, whole.replace(b'P interval:1/2', b'P interval:1/9999999')),
             'P interval')
+    for end in (b'\x1c', b'\x0b', b'\r', b'\xc2\x85', b'\xe2\x80\xa8'):   # lines, to Python
+        refused(file(tmp_path, whole.replace(b'P interval:1/2', b'P interval:1/' + end + b'2')),
+                'P interval')
     refused(file(tmp_path, whole.replace(b'P encoding:9,0,7,7,7', b'P encoding:9,0,10,10,10')),
             'encoding 10', 'blackbox_decode')
     refused(file(tmp_path, whole.replace(b'P encoding:9', b'P encoding:77')), 'header is damaged')

@@ -212,6 +212,20 @@ def test_names_that_cannot_be_freed_are_refused(problem, names, said):
         fit([problem.clean], VEHICLE, names)
 
 
+def test_where_measured_speeds_drive_the_model_fit_says_what_of_the_motors_is_not_told(problem):
+    record = problem.draw(0)
+    speeds = {name.replace('cmd', 'rotor'): values for name, values in record.columns.items()}
+    driven = with_commands(FlightRecord(record.t, speeds, record.info), VEHICLE)
+    [line] = [line for line in fit([driven], VEHICLE, ['inertia']).findings
+              if 'measured rotor speeds drive the model' in line]
+    assert 'motor_lag and actuation_delay, cannot be told' in line
+    for name in ('motor_lag', 'actuation_delay'):
+        with pytest.raises(InputError, match=f'cannot be told; leave {name}.* out of --free'):
+            fit([record, driven], VEHICLE, ['inertia', name])
+    assert not [line for line in fit([record], VEHICLE, ['inertia']).findings
+                if 'drive the model' in line]
+
+
 def test_a_flight_that_is_given_twice_is_refused(problem):
     one, other = problem.draw(0), problem.draw(0)
     with pytest.raises(InputError, match='given twice'):

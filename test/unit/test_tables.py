@@ -14,8 +14,8 @@ from table_files import FORCE, named, PLACE, Q, RATE, SPEED, table
 from table_files import others as named_otherwise
 
 from quad_ident_ros.cli.main import main
-from quad_ident_ros.data.column_names import plain
-from quad_ident_ros.data.guess import time_unit
+from quad_ident_ros.data.guess.clock import time_unit
+from quad_ident_ros.data.guess.names import plain
 from quad_ident_ros.data.load import contents_of, load, load_all
 from quad_ident_ros.data.mapping import mapping_from
 from quad_ident_ros.errors import InputError

@@ -58,6 +58,31 @@ def test_a_table_of_several_topics_has_rows_of_each(tmp_path):
     assert np.median(np.abs(read.stack(*SPEED) - FLIGHT.stack(*SPEED)[at])) < 0.02
 
 
+@pytest.mark.parametrize('unit', ['', ' (g)'])
+def test_a_table_of_blackbox_decode_has_rates_and_forces_without_units(tmp_path, unit):
+    """It writes the numbers of the log: deg/s, 1/2048 g, and hundreds of electrical turns."""
+    three, four = range(3), range(4)
+    force = FLIGHT.stack(*FORCE) / 9.80665 * (1 if unit else 2048)
+    found = {'loopIteration': 8 * np.arange(len(T)), 'time (us)': np.round(1e6 * T),
+             **named([f'axisP[{k}]' for k in three], 10 * np.sin(FLIGHT.stack(*RATE))),
+             **named([f'setpoint[{k}]' for k in four], 100 * np.sin(FLIGHT.stack(*CMD))),
+             'vbatLatest (V)': FLIGHT.columns['vbat'],
+             **named([f'gyroADC[{k}]' for k in three], np.degrees(FLIGHT.stack(*RATE))),
+             **named([f'gyroUnfilt[{k}]' for k in three], np.degrees(FLIGHT.stack(*RATE)) + 3),
+             **named([f'accSmooth[{k}]{unit}' for k in three], force),
+             **named([f'motor[{k}]' for k in four], np.round(48 + FLIGHT.stack(*CMD) / 2)),
+             **named([f'eRPM[{k}]' for k in four], np.round(FLIGHT.stack(*CMD) * 0.67)),
+             **named(['roll', 'pitch', 'heading'], 0.1 * FLIGHT.stack(*RATE))}
+    read = load(table(tmp_path, found, separator=', '))
+    same(read, RATE, FORCE)
+    assert not read.has('rotor1') and not read.has('qw')
+    assert read.info['motors']['rotors'][0] == [-1.0, -1.0, 0.0, 0]     # rear right
+    notes = ' '.join(read.info['notes'])
+    assert 'eRPM[0] to eRPM[3]: not taken' in notes and '2 front right' in notes
+    np.testing.assert_allclose(read.columns['output2'], found['motor[1]'])
+    np.testing.assert_allclose(read.columns['vbat'], FLIGHT.columns['vbat'])
+
+
 @pytest.mark.parametrize('gyro', [False, True])
 def test_the_pitch_of_a_crazyflie_has_the_other_sign(tmp_path, gyro):
     euler = np.degrees(euler_from_quaternion(FLIGHT.stack(*Q))) * [1.0, -1.0, 1.0]

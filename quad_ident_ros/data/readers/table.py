@@ -25,7 +25,7 @@ ROLES = {'px': 'pose', 'vx': 'velocity', 'wx': 'rate', 'ax': 'specific_force', '
 
 STATES = {'pose', 'velocity', 'rate', 'specific_force'}
 FALL = 1.0          # s by which a time falls where another recording begins; less is disorder
-MOST_FALLS = 100
+MOST_FALLS = 100    # recordings in a table; a column that falls more often is no time
 _HEAD = 1 << 16     # bytes that the first line has its end in
 
 

@@ -62,7 +62,7 @@ FORCES = re.compile(r'(^|_)thrust_?\d')
 
 SPEED = re.compile(r'(^|_)(r|rotor|rotor_speed|motor_rpm|rpm|erpm|motor_speed|esc_rpm|propeller|'
                    r'omega_m|rotor_vel|rotor_velocities)_?(\d{1,2})$')
-BATTERY = re.compile(r'(^|_)(vbat|vbatt|v_bat|bat_v|battery|battery_voltage|voltage|vbatlatest|'
+BATTERY = re.compile(r'(^|_)(vbat|vbatt|v_bat|bat_v|battery|battery_voltage|voltage|vbat_latest|'
                      r'battery_v|bat_volt|supply_voltage)$')
 
 

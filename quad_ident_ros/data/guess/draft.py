@@ -1,0 +1,152 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""A guess of what the columns of a table are, while it is made."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+import re
+
+import numpy as np
+
+from quad_ident_ros.data.columns import FORCE, VELOCITY
+from quad_ident_ros.data.guess.names import AXES, BARE, NOT, plain, TURNED, UNITS
+from quad_ident_ros.data.guess.series import alike, filled, turned
+from quad_ident_ros.data.mapping import Column, factor_of, Mapping
+from quad_ident_ros.data.tabular import Table
+
+OVER = 0.1              # s over which turns are compared, so that noise of samples counts little
+SAME = 0.98             # correlation of two streams of one quantity, as raw and filtered
+
+
+@dataclass
+class Guess:
+    """
+    What the columns of a table are taken for.
+
+    mapping: as a mapping file would say it; said: what was taken for what; doubts: what names and
+    values do not tell; roles: what there is, of data.mapping.ROLES; motors: where they are, as
+    data.motor_order.about_motors has it.
+    """
+
+    mapping: Mapping = None
+    said: list = field(default_factory=list)
+    doubts: list = field(default_factory=list)
+    roles: list = field(default_factory=list)
+    candidates: dict = field(default_factory=dict)
+    motors: dict = field(default_factory=dict)
+
+
+class Draft:
+    """A guess that is being made: what each step takes is open to the next."""
+
+    def __init__(self, table: Table, given: Mapping | None) -> None:
+        self.table, self.given = table, given
+        self.guess = Guess()
+        self.columns, self.world, self.body = {}, given.world, given.body
+        self.order = given.quaternion
+        self.names, self.units = {}, {}
+        for name in table.columns:
+            self.names[name], self.units[name] = plain(name)
+            said = table.units.get(name, '').lower()
+            if said:
+                self.units[name] = UNITS.get(said, said)
+        self.free = [name for name in table.columns if not NOT.search(self.names[name])
+                     and np.isfinite(table.columns[name]).sum() >= 2]
+        self.t = self.attitude = None       # (N,) s; (N, 4), scalar first
+        self.found = {}                     # columns of a group, or None, by the group
+
+    def values(self, names: Sequence[str]) -> np.ndarray:
+        """Return columns, (N, k), interpolated where rows of other streams lie in between."""
+        return np.stack([filled(self.table.columns[name]) for name in names], axis=-1)
+
+    def logged(self, names: Sequence[str]) -> np.ndarray:
+        """Return columns as they are, (N, k)."""
+        return np.stack([self.table.columns[name] for name in names], axis=-1)
+
+    def scaled(self, group: Sequence[str]) -> np.ndarray:
+        """Return the columns of a group that was taken, (N, k), in its unit."""
+        return np.stack([self.values(self.columns[name].names)[:, 0]
+                         * factor_of(name, self.columns[name].unit) for name in group], axis=-1)
+
+    def dt(self) -> np.ndarray:
+        """Return the steps of the time, (N - 1,) s."""
+        return np.diff(self.t)
+
+    def turning(self, attitude: np.ndarray, gyro: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the rates (n, 3) of attitudes and of the gyro, over the same steps in time."""
+        width = max(1, round(OVER / max(float(np.nanmedian(self.dt())), 1e-6)))
+        if len(attitude) < 4 * width:
+            width = 1
+        sums = np.vstack([np.zeros(3), np.cumsum(0.5 * (gyro[1:] + gyro[:-1])
+                                                 * self.dt()[:, None], axis=0)])
+        span = (self.t[width:] - self.t[:-width])[:, None]
+        return turned(attitude[:-width], attitude[width:]) / span, (
+            sums[width:] - sums[:-width]) / span
+
+    def take(self, names: Sequence[str], columns: Sequence[str], unit: str = '',
+             frame: str = 'world', role: str = '', said: str = '') -> None:
+        """Take columns for those of a flight record, in a unit and frame; said: as what."""
+        for name, column in zip(names, columns, strict=True):
+            self.columns[name] = Column((column,), unit, frame)
+        self.taken(columns, role)
+        self.guess.said.append(f'{together(columns)}: {said}')
+
+    def taken(self, columns: Sequence[str], role: str) -> None:
+        """Leave columns to no later step; role: of data.mapping.ROLES, or ''."""
+        self.free = [name for name in self.free if name not in columns]
+        if role and role not in self.guess.roles:
+            self.guess.roles.append(role)
+
+    def unit_of(self, names: Sequence[str], known: Sequence[str]) -> str:
+        """Return the one unit that the names of columns say, '' for none or one not known."""
+        units = {self.units[name] for name in names}
+        units = {{'deg': 'deg/s', 'rad': 'rad/s'}.get(one, one) if 'deg/s' in known else one
+                 for one in units}
+        return units.pop() if len(units) == 1 and units <= set(known) else ''
+
+    def one(self, pattern: str) -> str | None:
+        """Return the column of a pattern; the one of the shortest name where that is clear."""
+        found = [name for name in self.free if re.search(pattern, self.names[name])]
+        found.sort(key=lambda name: len(self.names[name]))
+        if len(found) > 1 and len(self.names[found[0]]) == len(self.names[found[1]]):
+            return None
+        return found[0] if found else None
+
+    def trio(self, group: Sequence[str], entries: str) -> list[str] | None:
+        """Return the columns of a group of axes, of one prefix, or None."""
+        found = {}
+        for name in self.free:
+            for axis in entries:
+                match = re.search(AXES[group].format(axis), self.names[name])
+                if match and not (group in (FORCE, VELOCITY) and TURNED.search(
+                        self.names[name])):
+                    prefix = self.names[name][:match.start(2)]
+                    found.setdefault((prefix, match.group(2)), {}).setdefault(axis, name)
+        whole = sorted((axes for axes in found.values() if len(axes) == len(entries)),
+                       key=lambda axes: sum(len(self.names[name]) for name in axes.values()))
+        self.guess.candidates.setdefault(group, []).extend(
+            [axes[axis] for axis in entries] for axes in whole)
+        if whole:
+            names = [[axes[axis] for axis in entries] for axes in whole]
+            if len(names) > 1 and not self._same(group, names[0], names[1]):
+                self.guess.doubts.append(f'{group[0]}: {together(names[0])} or '
+                                         f'{together(names[1])}')
+            return names[0]
+        by_name = {self.names[name]: name for name in self.free}
+        for bare in BARE.get(group, ()) if len(entries) == 3 else ():
+            if all(letter in by_name for letter in bare):
+                return [by_name[letter] for letter in bare]
+        return None
+
+    def _same(self, group: Sequence[str], one: list[str], other: list[str]) -> bool:
+        """Return whether the first of two trios is the plain one, or both tell the same."""
+        whole = re.compile(AXES[group].format('[wxyz0-4]'))
+        if whole.fullmatch(self.names[one[-1]]) and not whole.fullmatch(self.names[other[-1]]):
+            return True
+        return alike(self.values(one), self.values(other)) > SAME
+
+
+def together(names: Sequence[str]) -> str:
+    """Return the names of columns for a message: many of them by the first and last."""
+    names = [name[:30] for name in names]
+    return f'{names[0]} to {names[-1]}' if len(names) > 4 else ', '.join(names)

@@ -1,0 +1,172 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Positions, velocities and specific forces in a table, and the axes that they are in."""
+
+from collections.abc import Sequence
+import re
+
+import numpy as np
+
+from quad_ident_ros.data import frames
+from quad_ident_ros.data.columns import FORCE, POSITION, RATE, VELOCITY
+from quad_ident_ros.data.guess.draft import Draft, together
+from quad_ident_ros.data.guess.names import TURNING
+from quad_ident_ros.data.guess.series import ratio_of, unit_length
+from quad_ident_ros.data.mapping import factor_of
+
+G = 9.80665             # m/s^2
+HOVERS = 0.6, 1.6       # of gravity: the usual specific force of what flies
+QUICK = 100.0           # m/s: multirotors do under 60, so faster ones are in mm
+BELOW = 0.3             # of the greatest depth or height that the other one may be: ground is 0
+BETTER = 1.5            # times that the wrong axes are further off than the right ones
+SPAN = 0.5              # s, over which noise of single samples counts for little
+
+
+def vectors(draft: Draft) -> None:
+    """Find the trios first: one that is found is not taken for another."""
+    draft.found = {group: draft.trio(group, 'xyz')
+                   for group in (POSITION, VELOCITY, RATE, FORCE)}
+    if draft.found[RATE] is None:
+        turning = [draft.one(rf'(^|_){axis}_?(rate|speed|vel)$') for axis in TURNING]
+        if None not in turning:
+            draft.found[RATE] = turning
+
+
+def positions(draft: Draft) -> None:
+    """Take the position, in the unit that name or velocity tell."""
+    names = draft.found[POSITION]
+    if names is None or any(name not in draft.free for name in names):
+        return
+    unit = draft.unit_of(names, ('m', 'mm', 'cm'))
+    if not unit and draft.t is not None:
+        with np.errstate(all='ignore'):
+            speed = np.linalg.norm(np.diff(draft.values(names), axis=0), axis=1) / draft.dt()
+        speed = speed[np.isfinite(speed) & (speed > 0)]
+        unit = 'mm' if len(speed) and np.quantile(speed, 0.9) > QUICK else 'm'
+        unit = _by_velocity(draft, names) or unit
+    draft.take(POSITION, names, unit or 'm', role='pose', said=f'position in {unit or "m"}')
+
+
+def forces(draft: Draft) -> None:
+    """Take the specific force, in the unit in which it is about gravity."""
+    names = draft.found[FORCE]
+    if names is None or any(name not in draft.free for name in names):
+        return
+    usual = float(np.nanmedian(np.linalg.norm(draft.values(names), axis=1)))
+    for unit, one in (('m/s^2', G), ('g', 1.0), ('mg', 1000.0)):
+        if HOVERS[0] * one < usual < HOVERS[1] * one:
+            draft.take(FORCE, names, unit, role='specific_force',
+                       said=f'specific force in {unit}')
+            return
+    if usual < HOVERS[0]:
+        draft.guess.said.append(f'{together(names)}: not taken, an acceleration without '
+                                'gravity is no specific force')
+        draft.taken(names, '')
+        return
+    draft.guess.doubts.append(f'ax: the unit of {together(names)}, {usual:.3g} as a rule')
+
+
+def axes(draft: Draft) -> None:
+    """Tell FLU or FRD, and ENU or NED, by where up is."""
+    if (draft.given.world, draft.given.body) != ('ENU', 'FLU'):
+        return
+    down = None
+    why = ''
+    if 'az' in draft.columns:
+        down = bool(np.nanmedian(draft.table.columns[draft.columns['az'].names[0]]) < 0)
+        why = 'the accelerometer'
+    elif 'pz' in draft.columns:
+        height = draft.table.columns[draft.columns['pz'].names[0]]
+        low, high = np.nanquantile(height, [0.05, 0.95])
+        if high < BELOW * abs(low):
+            down, why = True, 'the height'
+        elif low > -BELOW * abs(high):
+            down, why = False, 'the height'
+    text = ' '.join(draft.names.values())
+    if down is None and re.search(r'(^|_| )(ned|frd)(_| |$)', text):
+        down, why = True, 'the names'
+    if down:
+        draft.body = 'FRD'
+        level = draft.attitude is None or _up(draft.attitude) > 0
+        draft.world = 'NED' if level else 'ENU'
+    elif down is not None and draft.attitude is not None and _up(draft.attitude) < 0:
+        draft.guess.doubts.append('world, body: by the attitude the vehicle flies upside down')
+    said = f'by {why}' if why else 'taken, as nothing tells'
+    draft.guess.said.append(f'frames {draft.world} and {draft.body}, {said}')
+
+
+def velocities(draft: Draft) -> None:
+    """Take the velocity, in the axes that name, position or accelerometer tell."""
+    names = draft.found[VELOCITY]
+    if names is None or any(name not in draft.free for name in names):
+        return
+    values = draft.values(names)
+    unit = draft.unit_of(names, ('m/s', 'mm/s', 'cm/s'))
+    if not unit:
+        fast = float(np.nanquantile(np.abs(values), 0.9))
+        unit = 'mm/s' if fast > QUICK else 'm/s'
+    frame, said = 'world', 'as no stream tells otherwise'
+    if any('body' in draft.names[name] for name in names):
+        frame, said = 'body', 'by its name'
+    off = _off(draft, values * factor_of('vx', unit))
+    if off is not None and max(off) > BETTER * min(off):
+        frame = 'world' if off[0] < off[1] else 'body'
+        said = 'by the position' if 'px' in draft.columns else 'by the accelerometer'
+    draft.take(VELOCITY, names, unit, frame, role='velocity',
+               said=f'velocity in {unit}, {frame} axes, {said}')
+
+
+def _by_velocity(draft: Draft, names: Sequence[str]) -> str:
+    """Return the unit of positions of which the velocity is the change, '' if not told."""
+    given = draft.found[VELOCITY]
+    if given is None:
+        return ''
+    said = draft.unit_of(given, ('m/s', 'mm/s', 'cm/s')) or 'm/s'
+    place, speed = draft.values(names), draft.values(given) * factor_of('vx', said)
+    width = max(1, round(SPAN / max(float(np.nanmedian(draft.dt())), 1e-6)))
+    if len(place) < 4 * width:
+        return ''
+    moved = place[width:] - place[:-width]
+    sums = np.vstack([np.zeros(3), np.cumsum(np.nan_to_num(
+        0.5 * (speed[1:] + speed[:-1]) * draft.dt()[:, None]), axis=0)])
+    ratio = ratio_of(moved, sums[width:] - sums[:-width])
+    if ratio is None:
+        return ''       # a velocity in body axes of a vehicle that turns, or sparse samples
+    for unit, factor in (('m', 1.0), ('cm', 100.0), ('mm', 1000.0)):
+        if factor / 2 < ratio < 2 * factor:
+            return unit
+    draft.guess.doubts.append(f'px: {together(names)} change {ratio:.3g} times as fast as '
+                              f'{together(given)} says, which is no unit')
+    return 'm'
+
+
+def _off(draft: Draft, speed: np.ndarray) -> list[float] | None:
+    """Return how far off a velocity (N, 3) is, read in world and in body axes, or None."""
+    if draft.attitude is None or draft.t is None:
+        return None
+    q = unit_length(draft.attitude)
+    readings = speed, frames.rotate(q, speed)
+    with np.errstate(all='ignore'):
+        dt = np.diff(draft.t)[:, None]
+        if 'px' in draft.columns:
+            moved = np.diff(draft.scaled(POSITION), axis=0)
+            rest = [moved - 0.5 * (one[1:] + one[:-1]) * dt for one in readings]
+        elif 'ax' in draft.columns:
+            weight = np.array([0.0, 0.0, G if draft.world == 'NED' else -G])
+            force = frames.rotate(q, draft.scaled(FORCE)) + weight
+            rest = [np.diff(one, axis=0) - 0.5 * (force[1:] + force[:-1]) * dt
+                    for one in readings]
+        else:
+            return None
+        width = max(1, round(SPAN / max(float(np.nanmedian(dt)), 1e-6)))
+        if len(speed) < 4 * width:
+            return None
+        sums = [np.cumsum(np.nan_to_num(one), axis=0) for one in rest]
+        off = [float(np.median(np.linalg.norm(one[width:] - one[:-width], axis=1)))
+               for one in sums]
+    return off if np.isfinite(off).all() else None
+
+
+def _up(q: np.ndarray) -> float:
+    """Return the median share of up along the body's own z axis."""
+    return float(np.nanmedian(1 - 2 * (q[:, 1] ** 2 + q[:, 2] ** 2)))

@@ -1,0 +1,96 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The commands, measured rotor speeds and battery in a table."""
+
+import re
+
+import numpy as np
+
+from quad_ident_ros.data.guess.draft import Draft
+from quad_ident_ros.data.guess.names import (
+    BATTERY,
+    CORNER,
+    CORNERS,
+    CRAZYFLIE,
+    FORCES,
+    MOTOR,
+    SPEED,
+)
+from quad_ident_ros.data.mapping import factor_of
+from quad_ident_ros.data.motor_order import about_motors, quad
+from quad_ident_ros.data.signal_kind import kinds_of, TITLES
+
+AROUND = (1, -1), (-1, -1), (-1, 1), (1, 1)     # forward, left: front right to front left
+SLOWEST = 20.0          # rad/s or rpm: no rotor that flies turns more slowly
+FEWEST, MOST = 3, 12    # motors
+CELLS = 2.0, 100.0      # V: one cell that is empty, to over 20 in series; more is in mV
+
+
+def motors(draft: Draft) -> None:
+    """Take the commands, or outputs to the motors, and measured rotor speeds."""
+    measured = _numbered(draft, SPEED)
+    if measured:
+        values = draft.logged(measured)
+        unit = draft.unit_of(measured, ('rad/s', 'rpm')) or (
+            'rpm' if any('rpm' in draft.names[name] for name in measured) else 'rad/s')
+        if np.nanmin(values) >= 0 and np.nanmedian(values) > SLOWEST:
+            draft.take([f'rotor{k}' for k in range(1, len(measured) + 1)], measured, unit,
+                       role='rotors', said=f'measured rotor speeds in {unit}')
+    names = _numbered(draft, MOTOR) or _corners(draft)
+    if not names:
+        return
+    values = draft.logged(names)
+    kinds = kinds_of(values)
+    if FORCES.search(draft.names[names[0]]) and list(kinds) != ['normalised']:
+        return
+    unit = draft.unit_of(names, ('rad/s', 'rpm'))
+    if unit:
+        draft.take([f'cmd{k}' for k in range(1, len(names) + 1)], names, unit,
+                   role='commands', said=f'rotor speed commands in {unit}')
+        return
+    if CRAZYFLIE.fullmatch(draft.names[names[0]]) and list(kinds) == ['duty16']:
+        draft.guess.motors = about_motors(quad(*AROUND), 'the order of the Crazyflie', 'duty16')
+    what = ' or '.join(TITLES[kind] for kind in kinds)
+    draft.take([f'output{k}' for k in range(1, len(names) + 1)], names, role='commands',
+               said='outputs, ' + (f'{what} by their size' if what else 'of an unknown kind'))
+
+
+def battery(draft: Draft) -> None:
+    """Take the voltage of the battery."""
+    name = draft.one(BATTERY.pattern)
+    if name is None:
+        return
+    usual = float(np.nanmedian(draft.table.columns[name]))
+    unit = 'mV' if usual > 1000 else 'V'
+    if CELLS[0] < usual * factor_of('vbat', unit) < CELLS[1]:
+        draft.take(('vbat',), (name,), unit, role='battery', said=f'battery in {unit}')
+
+
+def _numbered(draft: Draft, pattern: re.Pattern) -> list[str] | None:
+    """Return the columns of 3 to 12 numbers from 0 or 1 on, of one name, or None."""
+    groups = {}
+    for name in draft.free:
+        match = pattern.search(draft.names[name])
+        if match:
+            groups.setdefault(draft.names[name][:match.start(3)], {})[
+                int(match.group(3))] = name
+    whole = []
+    for prefix, group in groups.items():
+        first = min(group)
+        count = next(k for k in range(len(group) + 1) if first + k not in group)
+        names = [group[first + k] for k in range(count)]
+        moving = [np.nanstd(draft.table.columns[name]) > 0 for name in names]
+        while len(names) > FEWEST and any(moving) and not moving[len(names) - 1]:
+            names.pop()     # channels that nothing is on
+        if first in (0, 1) and FEWEST <= len(names) <= MOST:
+            whole.append((len(prefix), names))
+    return min(whole)[1] if whole else None
+
+
+def _corners(draft: Draft) -> list[str] | None:
+    """Return the columns of four motors by their places, from front right to front left."""
+    found = [draft.one(CORNER.format(pattern)) for pattern in CORNERS.values()]
+    if None in found or len(set(found)) < 4:
+        return None
+    draft.guess.motors = about_motors(quad(*AROUND), 'the names of the columns')
+    return found

@@ -1,0 +1,53 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Tables of programs whose names of columns mean something else than they say."""
+
+import numpy as np
+
+from quad_ident_ros.data.betaflight import ORDER, QUAD_X
+from quad_ident_ros.data.columns import FORCE, RATE
+from quad_ident_ros.data.guess.draft import Draft
+from quad_ident_ros.data.guess.motion import HOVERS
+from quad_ident_ros.data.motor_order import about_motors
+
+RAW, ONE_G = 'g/2048', 2048.0   # of accelerometers of 16 bits over +-16 g, as Betaflight sets them
+
+
+def blackbox_decode(draft: Draft) -> None:
+    """
+    Take the columns of a CSV that blackbox_decode makes of a log of Betaflight.
+
+    It writes gyro and accelerometer as they are in the log unless it is told a unit, and leaves
+    out the header, which has the scales and the number of poles of the motors.
+    Source: blackbox_decode.c of Betaflight's blackbox-tools.
+    """
+    columns = {plain: name for name, plain in draft.names.items()}
+    if not {'loop_iteration', 'time'} <= set(columns):
+        return
+
+    def group(name: str, count: int) -> list[str]:
+        names = [columns.get(f'{name}_{k}', '') for k in range(count)]
+        return names if all(one in draft.free for one in names) else []
+
+    if gyro := group('gyro_adc', 3):
+        unit = draft.unit_of(gyro, ('rad/s', 'deg/s')) or 'deg/s'
+        draft.take(RATE, gyro, unit, role='rate', said=f'body rate in {unit}, by blackbox_decode')
+    if accelerometer := group('acc_smooth', 3):
+        unit = draft.unit_of(accelerometer, ('m/s^2', 'g'))
+        usual = float(np.nanmedian(np.linalg.norm(draft.values(accelerometer), axis=1)))
+        if not unit and HOVERS[0] * ONE_G < usual < HOVERS[1] * ONE_G:
+            unit = RAW
+        if unit:
+            draft.take(FORCE, accelerometer, unit, role='specific_force',
+                       said=f'specific force in {unit}, by blackbox_decode')
+    reckoned = [columns[name] for name in ('roll', 'pitch', 'heading') if name in columns]
+    electrical = [name for plain, name in columns.items() if plain.startswith('e_rpm_')]
+    for names, why in ((reckoned, 'reckoned by blackbox_decode'),
+                       (electrical, 'hundreds of electrical turns a minute, of motors whose poles '
+                        'the table does not have')):
+        if names:
+            draft.taken(names, '')
+            draft.guess.said.append(f'{names[0]} to {names[-1]}: not taken, {why}')
+    if group('motor', 4) and not group('motor', 5):
+        draft.guess.motors = about_motors(QUAD_X, "Betaflight's order, quad X")
+        draft.guess.said.append(ORDER)

@@ -1,0 +1,58 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Streams of numbers compared: how alike they are, and how much larger one is."""
+
+import numpy as np
+
+from quad_ident_ros.data import frames
+
+FEWEST = 10             # samples that a correlation takes
+UNIT, MOSTLY = 0.02, 0.95   # off the length 1, as of rounded ones; and the share that are so
+RELATED = 0.5           # correlation from which on a ratio of two streams says something
+
+
+def filled(values: np.ndarray) -> np.ndarray:
+    """Return values (N,) without gaps, those before the first and after the last left out."""
+    known = np.isfinite(values)
+    if known.all() or known.sum() < 2:
+        return values
+    rows = np.arange(len(values))
+    return np.interp(rows, rows[known], values[known], left=np.nan, right=np.nan)
+
+
+def alike(one: np.ndarray, other: np.ndarray) -> float:
+    """Return the correlation of two streams (N, 3), all axes together."""
+    use = np.isfinite(one).all(axis=1) & np.isfinite(other).all(axis=1)
+    if use.sum() < FEWEST:
+        return 0.0
+    a, b = one[use] - one[use].mean(axis=0), other[use] - other[use].mean(axis=0)
+    norm = np.linalg.norm(a) * np.linalg.norm(b)
+    return float(np.sum(a * b) / norm) if norm > 0 else 0.0
+
+
+def ratio_of(one: np.ndarray, other: np.ndarray) -> float | None:
+    """Return how much larger one stream (N, 3) is than another, or None where they differ."""
+    use = np.isfinite(one).all(axis=1) & np.isfinite(other).all(axis=1)
+    if use.sum() < FEWEST or abs(alike(one, other)) < RELATED:
+        return None
+    return float(np.std(one[use]) / max(np.std(other[use]), 1e-12))
+
+
+def is_unit(q: np.ndarray) -> bool:
+    """Return whether quaternions (N, 4) have the length 1."""
+    norm = np.linalg.norm(q, axis=-1)
+    norm = norm[np.isfinite(norm)]
+    return len(norm) > 1 and np.mean(np.abs(norm - 1.0) < UNIT) > MOSTLY
+
+
+def unit_length(q: np.ndarray) -> np.ndarray:
+    """Return quaternions (N, 4) at the length 1."""
+    with np.errstate(all='ignore'):
+        return q / np.linalg.norm(q, axis=-1, keepdims=True)
+
+
+def turned(q: np.ndarray, later: np.ndarray) -> np.ndarray:
+    """Return the turns (N, 3) rad in the body from attitudes to later ones."""
+    turn = frames.multiply(frames.conjugate(q), later)
+    turn = turn * np.where(turn[:, :1] < 0, -1.0, 1.0)
+    return 2.0 * turn[:, 1:]
