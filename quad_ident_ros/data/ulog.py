@@ -14,6 +14,7 @@ from quad_ident_ros.data.foreign import BODY_VELOCITY, velocity_in_world
 from quad_ident_ros.data.mapping import Actuators, KINDS, Mapping
 from quad_ident_ros.data.modes import modes_from, PX4
 from quad_ident_ros.data.px4_airframe import FIRST_MOTOR, Motors, motors_of, other_kind
+from quad_ident_ros.data.px4_clock import RECEIVER, utc_of
 from quad_ident_ros.data.px4_motors import commands
 from quad_ident_ros.data.px4_outputs import motor_outputs
 from quad_ident_ros.data.px4_position import estimated
@@ -57,13 +58,13 @@ def read_ulog(path: str | Path, mapping: Mapping | None = None,
     if mapping.topics or mapping.columns or mapping.world != 'ENU' or mapping.body != 'FLU':
         raise InputError(f'{path}: the topics and frames of a PX4 log are known; of a mapping '
                          'only instances and actuators hold for it')
-    log = parse(path, (*TOPICS, *STATES))
+    log = parse(path, (*TOPICS, *STATES, RECEIVER))
     for topic in mapping.instances:
         if topic not in TOPICS:
             raise InputError(f'{path}: instances: {topic!r} is not read; name one of '
                              f'{", ".join(TOPICS)}')
     data = {name: _instance(path, log, name, mapping.instances.get(name))
-            for name in (*TOPICS, *STATES)}
+            for name in (*TOPICS, *STATES, RECEIVER)}
     refuse_others(path, log, data['vehicle_status'])
     notes = [*(['parts of the log are damaged and left out'] if log.file_corruption else []),
              *([f'{counted(len(log.dropouts), "dropout")} while logging'] if log.dropouts else [])]
@@ -80,7 +81,8 @@ def read_ulog(path: str | Path, mapping: Mapping | None = None,
     record = FlightRecord(t, velocity_in_world(path, columns), {
         'name': path.stem, 'source': str(path), 'start_ns': start, 'notes': [*notes, *joined],
         'commands': commands, 'logging': logging,
-        'hardware': _hardware(log), 'modes': _modes(path, data['vehicle_status'], start)})
+        'utc_ns': utc_of(data[RECEIVER], start), 'hardware': _hardware(log),
+        'modes': _modes(path, data['vehicle_status'], start)})
     taken = {stream.source.removeprefix('topic ') for stream in streams
              if {'px', 'body_vx', 'qw'} & stream.columns.keys()}
     return _flights(path, record, data, taken)

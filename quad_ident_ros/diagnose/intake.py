@@ -13,7 +13,7 @@ from quad_ident_ros.data.inertial import is_inertial, reckoned, with_position
 from quad_ident_ros.data.outputs import BY_MOTORS
 from quad_ident_ros.data.quality import cautions, refuse_errors, refuted
 from quad_ident_ros.data.quality.finding import as_caution, Finding
-from quad_ident_ros.data.quality.fleet import vehicles
+from quad_ident_ros.data.quality.fleet import days, vehicles
 from quad_ident_ros.data.quality.ground import airborne, stands
 from quad_ident_ros.data.quality.gyro import bias
 from quad_ident_ros.data.record import FlightRecord, refuse_twice, same_flight
@@ -90,7 +90,7 @@ def take_in(records: Sequence[FlightRecord], vehicle: Vehicle, hold_out: FlightR
     if not all(record.info.get(BY_MOTORS) for record in every):
         vehicle = replace(vehicle, motors=None)     # its uncertainty is none of these commands'
     wrong = refuted([*records, *([] if hold_out is None else [hold_out])], vehicle)
-    findings = vehicles([*records, *([] if hold_out is None else [hold_out])])
+    findings = [*vehicles(every), *days(every)]
     records = [_fit_for_use(record, vehicle, rules, wrong, findings) for record in records]
     if hold_out is not None:
         hold_out = _fit_for_use(hold_out, vehicle, rules, wrong, findings)

@@ -3,19 +3,21 @@
 """Parts of a file: --segment, --from and --to, wherever flights are read."""
 
 from dataclasses import replace
+from datetime import datetime
 import json
+import struct
 
 from blackbox_files import blackbox, rows_of
 from dataflash_files import copter, dataflash
 from flightmaker import changed, flight
 import numpy as np
-from px4_files import log_of
+from px4_files import FORMATS, log_of
 import pytest
 
 from quad_ident_ros.cli.main import main
 from quad_ident_ros.data.csv import read_csv, write_csv
 from quad_ident_ros.data.load import load_all
-from quad_ident_ros.data.quality.fleet import vehicles
+from quad_ident_ros.data.quality.fleet import days, vehicles
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.data.selection import selected, Selection
 from quad_ident_ros.data.split import joined, split
@@ -198,6 +200,38 @@ def test_logs_of_betaflight_know_their_craft(tmp_path):
     path.write_bytes(blackbox(rows_of(part, np.full((300, 4), 900)),
                               **{'Board information': 'SPBE F405', 'Craft name': 'five inch'}))
     assert load_all(path)[0].info['hardware'] == {'board': 'SPBE F405', 'craft': 'five inch'}
+
+
+def dated(name, text, clock='start_ns'):
+    stamp = int(datetime.fromisoformat(f'{text}+00:00').timestamp()) * 10 ** 9
+    return FlightRecord(WHOLE.t, WHOLE.columns, {'name': name, clock: stamp})
+
+
+def test_flights_of_several_days_are_told_apart():
+    flights = [dated('a', '2026-05-12T23:59:00'), dated('b', '2026-05-13T00:01:00', 'utc_ns'),
+               dated('c', '2026-05-12T08:00:00')]
+    assert days(flights[::2]) == []
+    [told] = days(flights)
+    assert told['code'] == 'days' and told['severity'] == 'info'
+    assert told['message'] == 'they are of 2 days: a, c of 2026-05-12; b of 2026-05-13'
+
+
+def test_stamps_since_a_start_tell_no_day():
+    flights = [FlightRecord(WHOLE.t, WHOLE.columns, {'name': 'a', 'start_ns': start})
+               for start in (0, 3 * 86400 * 10 ** 9)]
+    assert days([*flights, dated('c', '2026-05-12T08:00:00')]) == []
+
+
+def test_logs_of_px4_know_their_day(tmp_path):
+    path, utc = tmp_path / 'log.ulg', 1778659200 * 10 ** 6
+    fixes = [('vehicle_gps_position', 0, stamp, struct.pack('<Q', value))
+             for stamp, value in ((100, 0), (600_100, utc))]
+    path.write_bytes(log_of(WHOLE, fixes, {
+        **FORMATS, 'vehicle_gps_position': ('uint64_t timestamp', 'uint64_t time_utc_usec')}))
+    [record] = load_all(path)
+    assert record.info['utc_ns'] - record.info['start_ns'] == (utc - 600_100) * 1000
+    path.write_bytes(log_of(WHOLE))
+    assert load_all(path)[0].info['utc_ns'] is None
 
 
 @pytest.mark.slow

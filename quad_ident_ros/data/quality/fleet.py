@@ -1,14 +1,16 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Whether flights that are looked at together are of one vehicle, by what their logs know."""
+"""Whether flights that are looked at together are of one vehicle and day, as their logs know."""
 
 from collections.abc import Mapping, Sequence
+from datetime import datetime, timezone
 
 from quad_ident_ros.data.quality.finding import as_caution, Finding
 from quad_ident_ros.data.record import FlightRecord
 
 _SHOWN = 4      # flights of a vehicle that the message names
 _LETTERS = 40   # of an id
+_DATED = 946684800 * 10 ** 9     # ns, 2000-01-01: stamps before it count from a start
 
 
 def vehicles(records: Sequence[FlightRecord]) -> list[dict]:
@@ -36,6 +38,27 @@ def vehicles(records: Sequence[FlightRecord]) -> list[dict]:
     return [as_caution(Finding(
         'vehicles', 'warning', 'logs', f'they are of {len(groups)} vehicles: {said}',
         'diagnose the flights of one vehicle at a time'), groups[1][1][0])]
+
+
+def days(records: Sequence[FlightRecord]) -> list[dict]:
+    """
+    Return what to be wary of where flights are of several days (UTC), as data.
+
+    By the info `utc_ns` of the records, or `start_ns` where it is a date.
+    """
+    groups: dict[str, list[FlightRecord]] = {}
+    for record in records:
+        stamp = record.info.get('utc_ns') or record.info.get('start_ns') or 0
+        if stamp >= _DATED:
+            day = datetime.fromtimestamp(stamp // 10 ** 9, timezone.utc).date().isoformat()
+            groups.setdefault(day, []).append(record)
+    if len(groups) < 2:
+        return []
+    said = '; '.join(f'{_named(groups[day])} of {day}' for day in sorted(groups))
+    return [as_caution(Finding(
+        'days', 'info', 'logs', f'they are of {len(groups)} days: {said}',
+        'thrust and wind are estimated for each flight; where the vehicle was changed between '
+        'the days, diagnose one day at a time'), groups[max(groups)][0])]
 
 
 def _differ(one: Mapping[str, str], other: Mapping[str, str]) -> bool:
