@@ -102,9 +102,10 @@ def run(options):
 
 def progress_bar():
     """Return a progress bar on standard error that goes away at the end."""
-    return Progress(TextColumn('{task.description}'), BarColumn(),
+    return Progress(TextColumn('{task.description}', markup=False), BarColumn(),
                     TextColumn('{task.percentage:>3.0f} %'), transient=True,
-                    console=Console(stderr=True), disable=not sys.stderr.isatty())
+                    console=Console(stderr=True, markup=False, emoji=False),
+                    disable=not sys.stderr.isatty())
 
 
 def show(result):
