@@ -33,7 +33,7 @@ class Recording:
     """
 
     def __init__(self, parent, topics, types=None):
-        self.folder = _make_next(_expanded(parent))
+        self.folder = make_next(_expanded(parent), 'recording')
         self._full_names = dict(topics)
         joined = [name for name in topics if name != RUN_TOPIC]
         self.columns = raw_columns(joined) if types is None else ()
@@ -118,11 +118,12 @@ def _expanded(path):
         raise OSError(f'{Path(path).parts[0]} is the home of no user') from None
 
 
-def _make_next(parent):
+def make_next(parent, name):
+    """Make and return the first of the folders name_1, name_2, ... that is not there yet."""
     parent.mkdir(parents=True, exist_ok=True)
     number = 1
     while True:
-        folder = parent / f'recording_{number}'
+        folder = parent / f'{name}_{number}'
         try:
             folder.mkdir()
         except FileExistsError:
