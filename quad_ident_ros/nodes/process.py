@@ -113,7 +113,7 @@ def _ensure_log_folder():
     if 'ROS_LOG_DIR' not in os.environ and 'ROS_HOME' not in os.environ:
         home = os.environ.get('HOME')
         if not home or not os.access(home, os.W_OK):
-            os.environ['ROS_LOG_DIR'] = str(Path(tempfile.gettempdir()) / 'quad_ident_ros_log')
+            os.environ['ROS_LOG_DIR'] = tempfile.mkdtemp(prefix='quad_ident_ros_log_')
 
 
 def _check_parameter_files(args, node):
