@@ -20,10 +20,10 @@ PICTURE = 'responses.png'
 HIDDEN = 1.2    # times the noise's gap, below which an effect does not show
 
 
-def add(commands):
-    """Add the command to the parser."""
+def add(commands, said):
+    """Add the command to the parser; said: what it does."""
     parser = commands.add_parser(
-        'demo', help='simulate, record and identify, or diagnose, on ROS 2, in three processes',
+        'demo', help=said,
         description='Start simulator, recorder and identifier as three processes on a ROS domain '
                     'of their own, fly an experiment, and show what was identified. Writes a '
                     'picture, the bag, CSV files and logs. With --gap the vehicle has an effect '

@@ -21,10 +21,10 @@ from quad_ident_ros.report.picture import save_responses
 from quad_ident_ros.report.table import console, identification_table, legend, notes
 
 
-def add(commands):
-    """Add the command to the parser."""
+def add(commands, said):
+    """Add the command to the parser; said: what it does."""
     parser = commands.add_parser(
-        'identify', help='fit K/((s+a)(s+b)) to recorded flights',
+        'identify', help=said,
         formatter_class=argparse.RawDescriptionHelpFormatter,
         description='Fit K/((s+a)(s+b)) to roll, pitch, yaw and altitude of flight records. '
                     'Several\nrecords, for instance one per axis, make one identification.',

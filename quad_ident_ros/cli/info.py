@@ -32,10 +32,10 @@ FAULTY = 3
 STYLE = {'error': 'bold red', 'warning': 'yellow', 'info': 'default'}
 
 
-def add(commands):
-    """Add the command to the parser."""
+def add(commands, said):
+    """Add the command to the parser; said: what it does."""
     parser = commands.add_parser(
-        'info', help='say what is in a file or flight record, and what is wrong with it',
+        'info', help=said,
         formatter_class=argparse.RawDescriptionHelpFormatter,
         description='Say what is in a file: its streams, their rates and spans, and what they '
                     'could be read for; and of\nthe flight in it: columns, rates, gaps, ranges, '

@@ -17,7 +17,7 @@ def scratch(tmp_path):
     text = RUN.read_text(encoding='utf-8')
     parts = [re.search(rf'^{name}\(\) {{.*?^}}$', text, re.MULTILINE | re.DOTALL)[0]
              for name in ('fail', 'own_scratch')]
-    said = re.search(r"^say\(\) .*$", text, re.MULTILINE)[0]
+    said = re.search(r'^say\(\) .*$', text, re.MULTILINE)[0]
     done = subprocess.run(['bash', '-euc', '\n'.join([said, *parts, 'own_scratch',
                                                       'echo "$scratch"'])],
                           capture_output=True, text=True, check=True,
