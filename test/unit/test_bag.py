@@ -6,6 +6,7 @@ import errno
 from functools import cache
 import os
 from pathlib import Path
+import select
 import shutil
 import signal
 import subprocess
@@ -200,6 +201,34 @@ def test_kill_loses_only_what_came_after_the_last_flush(tmp_path):
             child.send_signal(signal.SIGKILL)
         assert child.wait(60) == -signal.SIGKILL
     assert numbers(tmp_path / 'bag') == swapped(100)
+
+
+FLUSHING = """
+import sys
+from test_bag import *
+
+writer = BagWriter(sys.argv[1], TOPICS)
+for k in range(0, 1_000_000, 500):
+    fill(writer, k, k + 500)
+    writer.flush()
+    print(k + 500, flush=True)
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize('after', range(4))
+def test_a_process_that_is_killed_while_it_flushes_loses_nothing_that_it_flushed(tmp_path, after):
+    """At a moment by chance, of which most of the time goes into the writing."""
+    random = np.random.default_rng(after)
+    with subprocess.Popen([sys.executable, '-c', FLUSHING, str(tmp_path / 'bag')],
+                          cwd=str(Path(__file__).parent), stdout=subprocess.PIPE) as child:
+        for _ in range(1 + after):
+            flushed = int(child.stdout.readline())
+        select.select([child.stdout], [], [], random.uniform(0.0, 0.02))
+        child.kill()
+        flushed = max([flushed, *map(int, child.stdout.read().split())])
+    got = numbers(tmp_path / 'bag')
+    assert len(got) >= flushed and got == swapped(len(got))
 
 
 @pytest.mark.parametrize('more', [4, 60])
