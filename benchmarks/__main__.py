@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Run the benchmarks: `./run bench [SECTION ...] [--quick]`."""
+"""Run the benchmarks: `./run bench [SECTION ...] [--quick | --keep]`."""
 
 import argparse
 import contextlib
@@ -27,14 +27,17 @@ PACKAGES = ('numpy', 'scipy', 'numba', 'pyswarms', 'mealpy', 'nevergrad', 'cma',
 
 
 def main(arguments=None):
-    """Run the sections that are asked for, print their tables and keep them in docs/."""
+    """Run the sections that are asked for, print their tables, and keep them if asked to."""
     parser = argparse.ArgumentParser(prog='./run bench', description=__doc__)
     parser.add_argument('sections', nargs='*', metavar='SECTION',
                         help=f'one of {", ".join(SECTIONS)}; by default all but '
                         f'{" and ".join(APART)}')
-    parser.add_argument('--quick', action='store_true',
-                        help='few draws, to see that it works: keeps nothing')
+    parser.add_argument('--quick', action='store_true', help='few draws, to see that it works')
+    parser.add_argument('--keep', action='store_true',
+                        help='put the tables into docs/, which is tracked; not with --quick')
     options = parser.parse_args(arguments)
+    if options.quick and options.keep:
+        parser.error('--keep: few draws are nothing to keep')
     for name in options.sections:
         if name not in SECTIONS:
             parser.error(f'{name}: no such section, expected one of {", ".join(SECTIONS)}')
@@ -60,7 +63,7 @@ def main(arguments=None):
             found = run(QUICK if options.quick else Size(), bar)
             text = f'{found}\n\nMeasured: {described(PACKAGES, "all" if whole else "one")}.'
             print(f'\n## {name}\n\n{text}\n', flush=True)
-            if not options.quick:
+            if options.keep:
                 keep(SECTIONS[name], name, text)
         except InputError as error:
             screen.print(f'error: {error}', markup=False)

@@ -3,8 +3,11 @@
 """Compilation of the inner loops to machine code, kept on disk between starts."""
 
 from collections.abc import Callable
+from functools import lru_cache
 import hashlib
+import os
 from pathlib import Path
+import stat
 from typing import Any, overload, TypeVar
 
 import numba
@@ -23,6 +26,24 @@ def _stamp() -> str:
 # Numba makes what it keeps on disk anew where the function's own file has changed, but not where
 # that of a function or constant has which it uses: so every file counts.
 STAMP = _stamp()
+
+
+@lru_cache(maxsize=64)
+def is_trusted(folder: str | Path) -> bool:
+    """
+    Return whether what lies in a folder is there by this user or root: it is executed as it is.
+
+    The folder and the one that it lies in must be theirs, and not for everybody to write to
+    unless, as among temporary files, only the owner of a file can take it away.
+    """
+    try:
+        real = os.path.realpath(folder)
+        own, above = os.stat(real), os.stat(os.path.dirname(real))
+    except OSError:
+        return False
+    users = {0, os.geteuid()} if hasattr(os, 'geteuid') else {own.st_uid, above.st_uid}
+    return (own.st_uid in users and above.st_uid in users and not own.st_mode & stat.S_IWOTH
+            and not (above.st_mode & stat.S_IWOTH and not above.st_mode & stat.S_ISVTX))
 
 
 Function = TypeVar('Function', bound=Callable[..., Any])
@@ -45,8 +66,8 @@ def compiled(function: Any = None, *, fused: bool = False, reordered: bool = Fal
     fused lets a product and a sum be one operation and division by zero give infinity, reordered
     lets sums be taken in another order, for kernels that the processor then does several elements
     at a time of; inlined makes it a part of the function that calls it. Not a number and infinity
-    keep their meaning. Where no folder can be written, or numba has another way of keeping, the
-    function is compiled again at each start.
+    keep their meaning. Where no folder can be written, numba has another way of keeping, or the
+    folder is one in which others can put code, the function is compiled again at each start.
     """
     if function is None:
         return lambda function: compiled(function, fused=fused, reordered=reordered,
@@ -58,7 +79,10 @@ def compiled(function: Any = None, *, fused: bool = False, reordered: bool = Fal
     try:
         kept = numba.njit(cache=True, **options)(function)
         # There is no public way to say what a function was made from.
-        file = kept._cache._cache_file
+        file, folder = kept._cache._cache_file, kept._cache.cache_path
+        if not is_trusted(folder) and Path(folder).parent != Path(function.__code__.co_filename
+                                                                  ).parent:
+            return numba.njit(**options)(function)
         file._source_stamp = (file._source_stamp, STAMP)
         return kept
     except (AttributeError, RuntimeError):

@@ -4,6 +4,7 @@
 
 import os
 from pathlib import Path
+import stat
 import sys
 
 import yaml
@@ -12,6 +13,9 @@ from quad_ident_ros import schema
 from quad_ident_ros.errors import InputError
 
 PACKAGE = 'quad_ident_ros'
+MOST_BYTES = 2 ** 18        # of a YAML file, thirty times the longest of those that ship
+MOST_VALUES = 20_000        # in it, each counted as often as an alias repeats it
+MOST_BITS = 64              # of a whole number: stamps and seeds have no more
 
 
 def config_dir():
@@ -68,11 +72,13 @@ def _existing(path, kind=Path.is_file):
 def read_yaml(path):
     """Return the mapping in a YAML file; raises InputError with file and line where it fails."""
     try:
-        data = yaml.safe_load(Path(path).read_text(encoding='utf-8'))
+        data = yaml.load(_text_of(path), _Loader)   # a SafeLoader
     except OSError as error:
         raise InputError(f'{path}: cannot be read: {error.strerror}') from None
     except UnicodeDecodeError:
         raise InputError(f'{path}: is not text in UTF-8; expected a YAML file') from None
+    except InputError:
+        raise
     except yaml.YAMLError as error:
         mark = getattr(error, 'problem_mark', None)
         where = f', line {mark.line + 1}' if mark else ''
@@ -85,4 +91,49 @@ def read_yaml(path):
                          f'{schema.shown(str(error))}') from None
     if not isinstance(data, dict):
         raise InputError(f'{path}: expected `key: value` lines')
+    _refuse_endless(path, data)
     return data
+
+
+class _Loader(yaml.SafeLoader):
+    """One that does not merge mappings without end: nine levels of nine would be 4e8 keys."""
+
+    def flatten_mapping(self, node):
+        """Merge what `<<` names into a mapping; raises YAMLError where that is too much."""
+        super().flatten_mapping(node)
+        if len(node.value) > MOST_VALUES:
+            raise yaml.MarkedYAMLError(problem=f'more than {MOST_VALUES} keys are merged',
+                                       problem_mark=node.start_mark)
+
+
+def _text_of(path):
+    """Return the text of a file; raises InputError for a device and for one that is too long."""
+    mode = Path(path).stat().st_mode
+    if stat.S_ISCHR(mode) or stat.S_ISBLK(mode):
+        raise InputError(f'{path}: this is a device; name a file')
+    with open(path, 'rb') as file:
+        data = file.read(MOST_BYTES + 1)
+    if len(data) > MOST_BYTES:
+        raise InputError(f'{path}: is larger than {MOST_BYTES // 1024} kB: no YAML file that is '
+                         'read here is; name another')
+    return data.decode('utf-8')
+
+
+def _refuse_endless(path, data):
+    """Raise InputError for data whose aliases stand for more than anyone writes, or for ever."""
+    rest, count = [data], 0
+    while rest:
+        value = rest.pop()
+        count += 1
+        if count > MOST_VALUES:
+            raise InputError(f'{path}: holds more than {MOST_VALUES} values, aliases followed; '
+                             'write out what is meant')
+        if isinstance(value, dict):
+            rest += value
+            rest += value.values()
+        elif isinstance(value, list | tuple | set):
+            rest += value
+        elif isinstance(value, int) and value.bit_length() > MOST_BITS:
+            raise InputError(f'{path}: holds a whole number of about '
+                             f'{int(value.bit_length() * 0.30103) + 1} digits; no value has so '
+                             'many')

@@ -12,7 +12,18 @@ from quad_ident_ros.errors import InputError
 
 Option = TypeVar('Option')
 
-_short = reprlib.Repr()
+
+class _Short(reprlib.Repr):
+    """A short form of any value, of whole numbers that Python does not print too."""
+
+    def repr_int(self, x: int, level: int) -> str:
+        """Return a whole number, or how long it is."""
+        if abs(x) < 10 ** 40:
+            return super().repr_int(x, level)
+        return f'a whole number of about {int(x.bit_length() * 0.30103) + 1} digits'
+
+
+_short = _Short()
 _short.maxlevel = 1
 _short.maxstring = _short.maxother = 60
 
@@ -25,7 +36,7 @@ def shown(value: object) -> str:
 def unknown_key(where: str, key: object, known: Collection[str]) -> InputError:
     """Return the InputError for a key that is not known, with the nearest known one."""
     lower = {str(name).lower(): name for name in known}
-    near = difflib.get_close_matches(str(key).lower(), list(lower), n=1)
+    near = difflib.get_close_matches(shown(key).strip("'").lower(), list(lower), n=1)
     hint = f'did you mean {lower[near[0]]!r}?' if near else f'known are {", ".join(sorted(known))}'
     return InputError(f'{where}: {shown(key)} is not known here; {hint}')
 
@@ -116,7 +127,8 @@ def choice(where: str, value: object, options: Collection[Option]) -> Option:
 
 def name(where: str, value: object) -> str:
     """Return a name, of text or a number, that can be part of a file name, or raise InputError."""
-    text = str(value) if isinstance(value, str | int | float) else ''
+    short = not isinstance(value, int) or abs(value) < 10 ** 99
+    text = str(value) if short and isinstance(value, str | int | float) else ''
     if not text.strip() or not text.isprintable() or '/' in text or len(text) > 100:
         raise InputError(f'{where}: expected a name, one line of text without /, got '
                          f'{shown(value)}')

@@ -13,10 +13,10 @@ from quad_ident_ros.data.record import CUT
 from quad_ident_ros.report.data import write_json
 
 
-def add(commands):
-    """Add the command to the parser."""
+def add(commands, said):
+    """Add the command to the parser; said: what it does."""
     parser = commands.add_parser(
-        'convert', help='write a flight record in another format',
+        'convert', help=said,
         formatter_class=argparse.RawDescriptionHelpFormatter,
         description='Read a flight of any kind that is known and write it as CSV or as a bag. '
                     'Nothing is lost: every\ncolumn, known or not, reads back number for number; '

@@ -20,10 +20,10 @@ PICTURE = 'responses.png'
 HIDDEN = 1.2    # times the noise's gap, below which an effect does not show
 
 
-def add(commands):
-    """Add the command to the parser."""
+def add(commands, said):
+    """Add the command to the parser; said: what it does."""
     parser = commands.add_parser(
-        'demo', help='simulate, record and identify, or diagnose, on ROS 2, in three processes',
+        'demo', help=said,
         description='Start simulator, recorder and identifier as three processes on a ROS domain '
                     'of their own, fly an experiment, and show what was identified. Writes a '
                     'picture, the bag, CSV files and logs. With --gap the vehicle has an effect '
@@ -39,7 +39,8 @@ def add(commands):
     parser.add_argument('--real-time-factor', type=float, default=0.0, metavar='X',
                         help='simulated seconds per second; 0 (default): as fast as it goes')
     parser.add_argument('-o', '--output', default='quad_ident_demo', metavar='FOLDER',
-                        help='where everything goes (default: quad_ident_demo)')
+                        help='where everything goes, into run_1, run_2, ... '
+                             '(default: quad_ident_demo)')
     parser.add_argument('--json', metavar='FILE', help='write the results as data; - prints them')
     parser.set_defaults(run=run)
 
@@ -78,7 +79,7 @@ def run(options):
 def _show(options, outcome):
     """Show what was identified."""
     result = outcome.identification
-    picture = f'{options.output}/{PICTURE}'
+    picture = f'{outcome.folder}/{PICTURE}'
     save_responses(result, picture, f'{options.experiment}: measured and identified over ROS 2')
     if options.json != '-':
         show(result)
@@ -119,7 +120,7 @@ def _say_where(options, outcome, **more):
     """Say where things are, and what it took."""
     for name, value in {**more, 'bag': f'{outcome.recording}/bag',
                         'flights': f'{outcome.recording}/flight_*.csv',
-                        'logs': f'{options.output}/log'}.items():
+                        'logs': f'{outcome.folder}/log'}.items():
         print(f'{name:>8}: {value}')
     print(f'    took: {outcome.seconds:.1f} s, {outcome.samples} samples recorded, '
           f'{outcome.dropped} dropped')

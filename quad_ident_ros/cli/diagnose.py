@@ -27,10 +27,10 @@ from quad_ident_ros.report.diagnosis import show
 from quad_ident_ros.tolerances import EXAMPLE, rules_from
 
 
-def add(commands):
-    """Add the command to the parser."""
+def add(commands, said):
+    """Add the command to the parser; said: what it does."""
     parser = commands.add_parser(
-        'diagnose', help='say where the sim-to-real gap lies, what causes it, how far it shrinks',
+        'diagnose', help=said,
         formatter_class=argparse.RawDescriptionHelpFormatter,
         description='Hold flights of a real vehicle against its nominal description. The last '
                     'flight named is held\nout: the effects are not fitted to it. It counts where '

@@ -26,10 +26,10 @@ from quad_ident_ros.report.data import write_json
 from quad_ident_ros.report.table import console
 
 
-def add(commands):
-    """Add the command to the parser."""
+def add(commands, said):
+    """Add the command to the parser; said: what it does."""
     parser = commands.add_parser(
-        'fit', help='estimate mass, inertia, drag, motor lag, ... from flights',
+        'fit', help=said,
         formatter_class=argparse.RawDescriptionHelpFormatter,
         description='Estimate chosen physical parameters of a vehicle from flight records, by '
                     'prediction error over short\nrollouts, with standard errors and a word on '

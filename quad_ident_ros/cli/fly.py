@@ -26,10 +26,10 @@ def _effects_text():
         for parameter in effect.parameters) + '\n' for effect in EFFECTS.values())
 
 
-def add(commands):
-    """Add the command to the parser."""
+def add(commands, said):
+    """Add the command to the parser; said: what it does."""
     parser = commands.add_parser(
-        'fly', help='fly a trajectory under control, with effects that you choose',
+        'fly', help=said,
         formatter_class=argparse.RawDescriptionHelpFormatter,
         description='Fly a trajectory in simulation under a geometric controller and write the '
                     'flight record.\nThe controller knows the vehicle of the file; what flies '

@@ -21,10 +21,10 @@ from quad_ident_ros.report.picture import save_responses
 from quad_ident_ros.report.table import console, identification_table, legend, notes
 
 
-def add(commands):
-    """Add the command to the parser."""
+def add(commands, said):
+    """Add the command to the parser; said: what it does."""
     parser = commands.add_parser(
-        'identify', help='fit K/((s+a)(s+b)) to recorded flights',
+        'identify', help=said,
         formatter_class=argparse.RawDescriptionHelpFormatter,
         description='Fit K/((s+a)(s+b)) to roll, pitch, yaw and altitude of flight records. '
                     'Several\nrecords, for instance one per axis, make one identification.',
@@ -102,9 +102,10 @@ def run(options):
 
 def progress_bar():
     """Return a progress bar on standard error that goes away at the end."""
-    return Progress(TextColumn('{task.description}'), BarColumn(),
+    return Progress(TextColumn('{task.description}', markup=False), BarColumn(),
                     TextColumn('{task.percentage:>3.0f} %'), transient=True,
-                    console=Console(stderr=True), disable=not sys.stderr.isatty())
+                    console=Console(stderr=True, markup=False, emoji=False),
+                    disable=not sys.stderr.isatty())
 
 
 def show(result):

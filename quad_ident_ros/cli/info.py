@@ -32,10 +32,10 @@ FAULTY = 3
 STYLE = {'error': 'bold red', 'warning': 'yellow', 'info': 'default'}
 
 
-def add(commands):
-    """Add the command to the parser."""
+def add(commands, said):
+    """Add the command to the parser; said: what it does."""
     parser = commands.add_parser(
-        'info', help='say what is in a file or flight record, and what is wrong with it',
+        'info', help=said,
         formatter_class=argparse.RawDescriptionHelpFormatter,
         description='Say what is in a file: its streams, their rates and spans, and what they '
                     'could be read for; and of\nthe flight in it: columns, rates, gaps, ranges, '
@@ -124,7 +124,7 @@ def show_streams(inside: dict) -> None:
         table.add_column(name, justify='right', no_wrap=True)
     table.add_column('could be', overflow='fold')
     for stream in inside['streams']:
-        table.add_row(_text(stream['name']), _text(stream['type']), str(stream['samples']),
+        table.add_row(stream['name'], stream['type'], str(stream['samples']),
                       f'{stream["rate_hz"]:.4g}', f'{stream["start_s"]:.2f}',
                       f'{stream["start_s"] + stream["duration_s"]:.2f}',
                       ', '.join(stream['roles']))
@@ -147,7 +147,7 @@ def show_segments(inside: dict) -> None:
     for one in inside['segments']:
         end = one['start_s'] + one['duration_s']
         table.add_row(str(one['number']), f'{one["start_s"]:.2f}', f'{end:.2f}',
-                      f'{one["duration_s"]:.2f}', _text(one['name'] or ''))
+                      f'{one["duration_s"]:.2f}', one['name'] or '')
     screen.print(table)
 
 
@@ -197,11 +197,6 @@ def _show_record(screen, say, summary):
                      f'{1e3 * clock["drift_std_s_per_s"]:.3f} ms/s')
             say(f'{name.replace("_", " ")}: {1e3 * clock["offset_s"]:+.2f} ± '
                 f'{1e3 * clock["std_s"]:.2f} ms{drift}')
-
-
-def _text(value: str) -> str:
-    """Return text that holds no markup."""
-    return value.replace('[', r'\[')
 
 
 def _number(value):

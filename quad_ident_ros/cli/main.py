@@ -3,29 +3,26 @@
 """The command `quad_ident`."""
 
 import argparse
+import importlib
 import sys
 
 from quad_ident_ros import __version__
-from quad_ident_ros.cli import (
-    convert,
-    demo,
-    diagnose,
-    fit,
-    fly,
-    identify,
-    info,
-    node,
-    paper,
-    simulate,
-    warm_up,
-    withheld,
-)
-from quad_ident_ros.cli.outputs import check_outputs
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.memory import hand_back_large
 
-COMMANDS = (demo, simulate, fly, identify, fit, diagnose, info, convert, paper, withheld, node,
-            warm_up)
+COMMANDS = {
+    'demo': 'simulate, record and identify, or diagnose, on ROS 2, in three processes',
+    'simulate': 'fly an experiment in simulation and write flight records',
+    'fly': 'fly a trajectory under control, with effects that you choose',
+    'identify': 'fit K/((s+a)(s+b)) to recorded flights',
+    'fit': 'estimate mass, inertia, drag, motor lag, ... from flights',
+    'diagnose': 'say where the sim-to-real gap lies, what causes it, how far it shrinks',
+    'info': 'say what is in a file or flight record, and what is wrong with it',
+    'convert': 'write a flight record in another format',
+    'paper': "reproduce the paper's tables and figures, and check its claims",
+    'withheld': 'check the diagnosis on flights whose effects are withheld from it',
+    'node': 'run a ROS 2 node (the same as `ros2 run quad_ident_ros NAME`)',
+    'warm-up': 'compile the inner loops once, after install'}
+"""What each command does; it is in the module of its name, whose import takes a second."""
 
 EPILOG = """\
 examples:
@@ -43,23 +40,28 @@ examples:
 """
 
 
-def parser():
-    """Return the parser of the whole command line."""
+def parser(wanted):
+    """Return the parser of the command line, with the options of the commands in `wanted`."""
     top = argparse.ArgumentParser(
         prog='quad_ident', epilog=EPILOG, formatter_class=argparse.RawDescriptionHelpFormatter,
         description='Identify a quadrotor online by PSO, CS, PSO-CS, LS and VP; say where, why '
                     'and how far it differs from its simulation.')
     top.add_argument('--version', action='version', version=__version__)
     commands = top.add_subparsers(dest='command', metavar='COMMAND')
-    for command in COMMANDS:
-        command.add(commands)
+    for name, said in COMMANDS.items():
+        if name in wanted:
+            module = name.replace('-', '_')
+            importlib.import_module(f'quad_ident_ros.cli.{module}').add(commands, said)
+        else:
+            commands.add_parser(name, help=said)
     return top
 
 
 def main(args=None):
     """Run a command and return the exit code: 0, or 2 with one line on standard error."""
-    top = parser()
-    options = top.parse_args(args)
+    words = sys.argv[1:] if args is None else args
+    top = parser(words[:1])
+    options = top.parse_args(words)
     if options.command is None:
         top.print_help()
         return 0
@@ -67,6 +69,8 @@ def main(args=None):
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, 'reconfigure'):
             stream.reconfigure(errors='replace')
+    from quad_ident_ros.cli.outputs import check_outputs
+    from quad_ident_ros.memory import hand_back_large
     hand_back_large()
     try:
         check_outputs(options)

@@ -8,10 +8,10 @@ import importlib
 NODES = ('simulator', 'recorder', 'identifier', 'diagnoser')
 
 
-def add(commands):
-    """Add the command to the parser."""
+def add(commands, said):
+    """Add the command to the parser; said: what it does."""
     parser = commands.add_parser(
-        'node', help='run a ROS 2 node (the same as `ros2 run quad_ident_ros NAME`)',
+        'node', help=said,
         description='Run a ROS 2 node. `quad_ident node NAME --help` lists its topics, services '
                     'and parameters.')
     parser.add_argument('name', choices=NODES)

@@ -17,10 +17,10 @@ from quad_ident_ros.report.data import write_json
 from quad_ident_ros.report.table import console
 
 
-def add(commands):
-    """Add the command to the parser."""
+def add(commands, said):
+    """Add the command to the parser; said: what it does."""
     parser = commands.add_parser(
-        'paper', help="reproduce the paper's tables and figures, and check its claims",
+        'paper', help=said,
         formatter_class=argparse.RawDescriptionHelpFormatter,
         description='Reproduce the paper: fit all methods to its experiments over many seeds, '
                     'compute its Table 3 from\nits Table 2, fly its equations as printed, and say '

@@ -5,9 +5,9 @@
 from quad_ident_ros.warm_up import warm_up, warm_up_diagnosis
 
 
-def add(commands):
-    """Add the command to the parser."""
-    parser = commands.add_parser('warm-up', help='compile the inner loops once, after install')
+def add(commands, said):
+    """Add the command to the parser; said: what it does."""
+    parser = commands.add_parser('warm-up', help=said)
     parser.set_defaults(run=run)
 
 

@@ -13,12 +13,12 @@ from quad_ident_ros.errors import InputError
 ROOT = Path(__file__).resolve().parents[2]
 
 
-def add(commands):
-    """Add the command to the parser."""
+def add(commands, said):
+    """Add the command to the parser; said: what it does."""
     # No argument begins with this: all of them go on to the check as they are.
     parser = commands.add_parser(
         'withheld', add_help=False, prefix_chars='\0',
-        help='check the diagnosis on flights whose effects are withheld from it')
+        help=said)
     parser.add_argument('arguments', nargs='*')
     parser.set_defaults(run=run)
 

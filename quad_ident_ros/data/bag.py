@@ -7,6 +7,8 @@ from functools import cache
 import os
 from pathlib import Path
 import shutil
+import struct
+from zlib import crc32
 
 from rosbags.interfaces import (
     Nodetype,
@@ -21,9 +23,11 @@ from rosbags.rosbag2 import StoragePlugin, Writer
 from rosbags.rosbag2.storage_mcap import McapWriter
 from rosbags.typesys import get_typestore, Stores
 
+from quad_ident_ros.data.recovered import END_BYTES, SUMMARY_CHECKSUM
 from quad_ident_ros.errors import InputError
 
 _PENDING_BYTES = 1 << 22    # written at once at the latest, so that memory stays bounded
+_CHECKSUM = 9 + 3 * 8   # place in a chunk: behind opcode, length, two times and a size
 _DISTRO = 'ros_distro: rosbags', 'ros_distro: jazzy'
 _FOREVER = QosTime(9223372036, 854775807)
 _QOS = Qos(QosHistory.KEEP_ALL, 0, QosReliability.RELIABLE, QosDurability.VOLATILE, _FOREVER,
@@ -64,7 +68,9 @@ class BagWriter:
 
     After every flush the folder on disk is a whole, indexed bag, the same as close would leave,
     and stays it until the next flush: a killed process loses what came after its last flush and
-    nothing else, and a full disk costs no more. A failed flush may be tried again.
+    nothing else, and a full disk costs no more. A failed flush may be tried again. Of a process
+    that is killed within a flush the index at the end is gone, which is written anew; messages
+    are only ever appended, with a checksum by which BagFile tells those that are whole.
     Args: path of a folder that does not exist yet; topics the (name, message type) of each topic.
     Raises InputError where they cannot be, OSError where the folder cannot be written. Not for
     use by several threads at once.
@@ -185,6 +191,11 @@ class _TailedFile:
         self._pending += data
         return len(self._pending) - before
 
+    def amend(self, position, data):
+        """Put other bytes in the place of some that are not committed yet."""
+        at = position - self._base
+        self._pending[at:at + len(data)] = data
+
     def begin_tail(self):
         """Have all that is written from here to the next commit be the tail."""
         self._body = len(self._pending)
@@ -218,6 +229,20 @@ class _TailedFile:
                 done += self._raw.write(rest[done:])
 
 
+class _McapFile(_TailedFile):
+    """That of an MCAP file, whose summary gets its checksum at every commit."""
+
+    def close(self):
+        """Commit with the checksum of the summary, from its begin to that number itself."""
+        place = self.tell() - END_BYTES + SUMMARY_CHECKSUM
+        (begin,) = struct.unpack_from('<Q', self._pending, len(self._pending) - END_BYTES + 9)
+        checked = memoryview(self._pending)[begin - self._base:place - self._base]
+        checksum = crc32(checked)
+        checked.release()
+        self.amend(place, checksum.to_bytes(4, 'little'))
+        super().close()
+
+
 class _Storage(McapWriter):
     """An McapWriter that can be closed, that is finished with an index, again and again."""
 
@@ -230,13 +255,15 @@ class _Storage(McapWriter):
         except OSError:
             raw.close()
             raise
-        self.bio = _TailedFile(raw)
+        self.bio = _McapFile(raw)
 
     def close_chunk(self):
         """Close the pending chunk; one without messages spans the times 0 to 0, as MCAP has it."""
         if not self.chunk.msgs:
             self.chunk.message_start_time = 0
+        start, checksum = self.bio.tell(), crc32(self.chunk.bio.getvalue())
         super().close_chunk()
+        self.bio.amend(start + _CHECKSUM, checksum.to_bytes(4, 'little'))
 
     def close(self, version, metadata):
         """Write the pending chunk and the tail."""

@@ -23,6 +23,7 @@ from rosbags.typesys.msg import normalize_msgtype
 from quad_ident_ros.data.definitions import layouts, START
 from quad_ident_ros.data.limits import most, size_on_disk
 from quad_ident_ros.data.readers.others import is_text
+from quad_ident_ros.data.recovered import Recovering, RecoveringFolder
 from quad_ident_ros.data.unpack import BoundedReader1, TooLarge
 from quad_ident_ros.errors import InputError, Reason, reason_of
 
@@ -97,7 +98,8 @@ class BagFile:
             if self.kind == '.bag':
                 self._reader = BoundedReader1(self.path)
             else:
-                plugins = Reader2.STORAGE_PLUGINS
+                plugins = {**Reader2.STORAGE_PLUGINS, 'dir': RecoveringFolder,
+                           '.mcap': Recovering}
                 self._reader = plugins.get('dir' if self.kind == 'folder' else self.kind,
                                            plugins['.mcap'])(self.path)
             self._reader.open()
@@ -111,6 +113,11 @@ class BagFile:
         """Close the bag."""
         with suppress(Exception):
             self._reader.close()
+
+    @property
+    def recovered(self):
+        """Whether the bag has no end, as where its recorder was killed while it wrote."""
+        return getattr(self._reader, 'recovered', False)
 
     @property
     def topics(self):

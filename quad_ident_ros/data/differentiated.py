@@ -22,8 +22,9 @@ RATE = ('wx', 'wy', 'wz')
 HALF = 0.05     # s to either side: 1 mm at 100 Hz makes 1 cm/s, and what lasts 0.2 s is kept
 FEWEST = 2      # samples to either side, which a cubic needs
 DEGREE = 3      # a parabola takes 15 % of a rate that changes at 4 Hz for noise, a cubic 1 %
+MOST = 100      # samples to each side, those of HALF at 2 kHz
 WIDE = 3.0      # periods from which on a step is a gap, across which nothing is differentiated
-_ROWS = 20_000  # that are worked on at once
+_TABLE = 220_000    # samples around others, that are worked on at once
 
 DIFFERENTIATED = 'differentiated'
 """Info of a record: groups of its states that are derivatives of the others."""
@@ -71,7 +72,7 @@ def _slopes(t: np.ndarray, moved: Callable[[np.ndarray, np.ndarray], np.ndarray]
     """
     steps = np.diff(t)
     period = float(np.median(steps))
-    half = max(FEWEST, round(HALF / period))
+    half = min(max(FEWEST, round(HALF / period)), MOST)
     edges = np.concatenate([[0], np.flatnonzero(steps > WIDE * period) + 1, [len(t)]])
     sizes = np.diff(edges)
     first, last = np.repeat(edges[:-1], sizes), np.repeat(edges[1:] - 1, sizes)   # of each run
@@ -80,8 +81,9 @@ def _slopes(t: np.ndarray, moved: Callable[[np.ndarray, np.ndarray], np.ndarray]
                      np.maximum(last - half, first))
     offsets = np.arange(-half, half + 1)
     found = np.empty((len(t), 3))
-    for begin in range(0, len(t), _ROWS):
-        at = np.arange(begin, min(begin + _ROWS, len(t)))
+    rows = _TABLE // len(offsets)
+    for begin in range(0, len(t), rows):
+        at = np.arange(begin, min(begin + rows, len(t)))
         around = middle[at][:, None] + offsets
         use = (around >= first[at][:, None]) & (around <= last[at][:, None])
         around = np.where(use, around, at[:, None])

@@ -91,6 +91,9 @@ commands: what the outputs to the motors were taken for; logging: what was logge
 without valid estimates.
 """
 
+DENSEST = 1000.0    # times that the mean step may be the usual one, in a record with gaps
+STRAY = 3           # steps over bad stamps or the longest gaps, that the mean does not count
+
 # What holds for a record only from its first sample on.
 FIRST_SAMPLE_INFO = ('starts_at_rest', 'initial')
 
@@ -197,8 +200,15 @@ class FlightRecord:
         return FlightRecord(part.t, part.columns, info)
 
     def period(self):
-        """Return the median time between samples, s."""
-        return float(np.median(np.diff(self.t)))
+        """
+        Return the median time between samples, s, of bursts at least a DENSEST-th of the mean.
+
+        What looks at a time of so many periods thereby looks at no more samples than it can hold.
+        """
+        steps = np.diff(self.t)
+        count = max(1, len(steps) - STRAY)
+        rest = np.partition(steps, count - 1)[:count]
+        return float(max(np.median(steps), rest.mean() / DENSEST))
 
     def _label(self):
         source = self.info.get('source') or self.info.get('name')

@@ -29,11 +29,11 @@ class Recording:
     the topics that rows consist of, and of `run`, each with the full name that the bag keeps;
     types: the message types of topics that are not ours, of which the bag keeps those of ROS 2
     itself: set columns to those of the rows then.
-    Raises OSError where the disk refuses.
+    Raises OSError where the disk refuses, and for the home of a user who is none.
     """
 
     def __init__(self, parent, topics, types=None):
-        self.folder = _make_next(Path(parent).expanduser())
+        self.folder = make_next(_expanded(parent), 'recording')
         self._full_names = dict(topics)
         joined = [name for name in topics if name != RUN_TOPIC]
         self.columns = raw_columns(joined) if types is None else ()
@@ -110,11 +110,20 @@ class Recording:
         self._csv = None
 
 
-def _make_next(parent):
+def _expanded(path):
+    """Return a path without ~; raises OSError where there is no such user."""
+    try:
+        return Path(path).expanduser()
+    except RuntimeError:
+        raise OSError(f'{Path(path).parts[0]} is the home of no user') from None
+
+
+def make_next(parent, name):
+    """Make and return the first of the folders name_1, name_2, ... that is not there yet."""
     parent.mkdir(parents=True, exist_ok=True)
     number = 1
     while True:
-        folder = parent / f'recording_{number}'
+        folder = parent / f'{name}_{number}'
         try:
             folder.mkdir()
         except FileExistsError:

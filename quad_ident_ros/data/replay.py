@@ -46,7 +46,7 @@ def is_recorded(path):
 
     `pose` and `twist` are common names, so they do not tell that.
     """
-    path = _in_recording(path)
+    path = in_recording(path)
     with BagFile(path) as bag:
         topics = bag.topics
     spaces = {}
@@ -60,7 +60,7 @@ def is_recorded(path):
                for names in spaces.values())
 
 
-def _in_recording(path):
+def in_recording(path):
     """Return the bag in a folder of the recorder, or the path itself."""
     bag = Path(path) / 'bag'
     return bag if (bag / 'metadata.yaml').exists() else path
@@ -75,7 +75,7 @@ def read_bag(path):
     Raises InputError for a path that is no bag, or a bag with none of the topics of a flight or
     with those of several vehicles.
     """
-    path = _in_recording(path)
+    path = in_recording(path)
     exact = [_exact(path, topic, message)
              for topic, _, message in read_bag_messages(path, _Named((EXACT_TOPIC,)))
              if message.__msgtype__ == ARRAY_TYPE]

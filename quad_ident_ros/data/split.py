@@ -222,6 +222,8 @@ def _steps(record: FlightRecord, rest: np.ndarray, least: float, value: np.ndarr
     if len(record) <= 2 * width or not np.isfinite(rest).all():
         return []
     change = np.linalg.norm(rest[width:] - rest[:-width], axis=-1)
+    if not np.isfinite(change).all():   # values of no unit: the quality of the record says so
+        return []
     # Nine tenths of a record with a few resets have none of them.
     limit = max(least, CLEAR * float(np.quantile(change, 0.9)))
     after, found, at = max(1, round(RETURNS / period)), [], 0

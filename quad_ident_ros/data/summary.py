@@ -40,6 +40,9 @@ def summarise(record, vehicle=None):
     steps = np.diff(record.t)
     with np.errstate(all='ignore'):     # values so large that nothing can be said of them
         clocks = clock_offset(record), velocity_offset(record), command_offset(record)
+        excited = excitation(record)
+        columns = {name: _column(name, values, record.t)
+                   for name, values in record.columns.items()}
     return {
         'schema': 'quad_ident/info/1',
         'source': record.info.get('source'),
@@ -52,10 +55,9 @@ def summarise(record, vehicle=None):
                  'gaps': int((steps > GAP * record.period()).sum())},
         'modes': [{'mode': name, 'from_s': first, 'to_s': last}
                   for name, first, last in mode_spans(record)],
-        'columns': {name: _column(name, values, record.t)
-                    for name, values in record.columns.items()},
+        'columns': columns,
         'excitation': {name: {'value': value, 'unit': UNITS[name]}
-                       for name, value in excitation(record).items()},
+                       for name, value in excited.items()},
         'clock': dict(zip(('attitude_against_gyro', 'position_against_velocity',
                            'accelerometer_against_commands'), map(_clock, clocks), strict=True)),
         'findings': [asdict(finding) for finding in _findings(record, vehicle)],

@@ -22,6 +22,7 @@ from quad_ident_ros.model.situation import (
 
 DELAY, LAG = SLICES['actuation_delay'].start, SLICES['motor_lag'].start
 BIAS = SLICES['gyro_bias'].start
+EMPTY = 0.7     # of the full voltage, below which none falls: 3 V of the 4.2 V of a cell
 
 
 @compiled
@@ -85,7 +86,7 @@ def close_loop(v, places, theta, tilt, rate_tilt, dt, clock, fall, full, longest
         control(seen, wanted[k], dt, gains, mixer, memory, commands[k])
         if k == 0:
             speed[:, 0] = commands[0]
-        drop[k] = fall * energy
+        drop[k] = min(fall * energy, (1.0 - EMPTY) * full)
         u[5, 0], u[6, 0] = drop[k], drop[k] / full
         s[TIME, 0] = clock * k * dt
         # The command that acts changes within the sample where the delay is no multiple of it.

@@ -92,6 +92,10 @@ def track_of(record: FlightRecord, vehicle: Vehicle, reference_voltage: float | 
     if skip > 1:
         course, states, seen, force = _thinned(course, states, seen, force, skip)
         period *= skip
+    if len(states) < 2:
+        name = record.info.get('source') or record.info.get('name', 'flight')
+        raise InputError(f'{name}: {record.t[-1] - record.t[0]:.3g} s are too short; give a '
+                         'longer flight')
     if across is not None:  # the force has given the velocity, and tells nothing beside it
         course, force = replace(course, across=across[:len(states)]), None
     track = Track(record.info.get('name', 'flight'), course, states, seen, period, clock,

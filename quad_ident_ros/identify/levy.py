@@ -6,6 +6,8 @@ from math import gamma, pi, sin
 
 from quad_ident_ros.errors import InputError
 
+LEAST = 0.1     # below it steps span a hundred decades, which no search can use
+
 
 def levy_sigma(exponent, form='mantegna'):
     """
@@ -13,10 +15,11 @@ def levy_sigma(exponent, form='mantegna'):
 
     The braces of eq. (26) to the power 1/lambda are sigma (R. Mantegna, Phys. Rev. E 49, 1994),
     not sigma squared as printed; 'printed' takes them so all the same. Raises InputError unless
-    0 < lambda < 2 (the paper's 1 < lambda <= 3 makes sigma zero at 2 and complex above).
+    0.1 <= lambda < 2 (the paper's 1 < lambda <= 3 makes sigma zero at 2 and complex above).
     """
-    if not 0.0 < exponent < 2.0:
-        raise InputError(f'lambda: {exponent:g} is out of range, expected 0 < lambda < 2')
+    if not LEAST <= exponent < 2.0:
+        raise InputError(f'lambda: {exponent:g} is out of range, expected '
+                         f'{LEAST:g} <= lambda < 2')
     braces = (gamma(1 + exponent) * sin(pi * exponent / 2)
               / (gamma((1 + exponent) / 2) * exponent * 2 ** ((exponent - 1) / 2)))
     sigma = braces ** (1 / exponent)

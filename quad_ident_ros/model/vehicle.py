@@ -14,6 +14,7 @@ from quad_ident_ros import resources, schema
 from quad_ident_ros.effects import registry
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.motors import Motors, motors_from, motors_to_mapping
+from quad_ident_ros.model.plausible import refuse_absurd
 
 Uncertainty: TypeAlias = float | tuple[float | None, ...]
 
@@ -141,6 +142,7 @@ def vehicle_from_mapping(data: Any, where: str) -> Vehicle:
         raise InputError(f'{where}: rotors: all of them lie on the z axis; give their places')
     if vehicle.speed_max <= vehicle.speed_min:
         raise InputError(f'{where}: speed_max must be greater than speed_min')
+    refuse_absurd(where, vehicle)
     if 'motors' in data:
         vehicle = replace(vehicle, motors=motors_from(f'{where}: motors', data['motors']))
     if 'effects' in data:

@@ -12,6 +12,7 @@ import time
 from diagnostic_msgs.msg import DiagnosticArray
 from std_msgs.msg import Float64MultiArray, String
 
+from quad_ident_ros.data.recording import make_next
 from quad_ident_ros.data.table import record_from_table
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.experiment import load_experiment
@@ -29,9 +30,10 @@ NOISE = {'attitude': 0.002, 'altitude': 0.005}
 
 @dataclass(frozen=True)
 class Outcome:
-    """What the demo gave: the identification, the recording's folder, seconds and counts."""
+    """What the demo gave: the identification, folders of run and recording, seconds, counts."""
 
     identification: Identification
+    folder: str
     recording: str
     seconds: float
     samples: int
@@ -47,32 +49,36 @@ def run_demo(options, on_progress):
     """
     started = time.monotonic()
     experiment = load_experiment(options.experiment)
-    output = prepared(options.output)
+    folder = prepared(options.output)
     noise = {f'noise.{channel}': value for channel, value in NOISE.items()}
     nodes = {
-        'recorder': {'output': str(output)},
+        'recorder': {'output': str(folder.resolve())},
         'identifier': {'seed': options.seed},
         'simulator': {'experiment': os.path.abspath(options.experiment)
                       if os.path.isfile(options.experiment) else options.experiment,
                       'real_time_factor': float(options.real_time_factor),
                       'seed': options.seed, **noise}}
     watcher = Watcher(len(experiment.runs), 'identifier', 'parameters_json', on_progress)
-    watch(watcher, nodes, output / 'log')
+    watch(watcher, nodes, folder.resolve() / 'log')
     pairs, _ = collect(watcher.records, Settings())
-    recording = Path(options.output) / Path(watcher.statistics['recording']).name
-    return Outcome(from_data(watcher.result, pairs), str(recording),
+    recording = folder / Path(watcher.statistics['recording']).name
+    return Outcome(from_data(watcher.result, pairs), str(folder), str(recording),
                    time.monotonic() - started, watcher.statistics['joined'],
                    watcher.statistics['missing'])
 
 
 def prepared(output):
-    """Return the folder (absolute Path) of a demo with its folder for logs; raises InputError."""
-    output = Path(output).resolve()
+    """
+    Return a new folder for one run, with one for its logs in it; raises InputError.
+
+    It is run_1, run_2, ... of a folder in which others may run at the same time.
+    """
     try:
-        (output / 'log').mkdir(parents=True, exist_ok=True)
+        folder = make_next(Path(output), 'run')
+        (folder / 'log').mkdir()
     except OSError as error:
         raise InputError(f'{output}: cannot be written: {error.strerror}') from None
-    return output
+    return folder
 
 
 class Watcher:
@@ -86,18 +92,30 @@ class Watcher:
     def __init__(self, runs, worker, topic, on_progress):
         self.records, self.statistics, self.result = [], {}, None
         self.refusal = None
+        self._topics = []
         self.news = 0
         self._runs, self._worker, self._topic = runs, worker, topic
         self._on_progress = on_progress
 
     def subscribe(self, node):
         """Listen with a node."""
-        node.create_subscription(String, 'run', self._on_run, latched(32))
-        node.create_subscription(Float64MultiArray, 'record', self._on_record, latched(16))
-        node.create_subscription(String, 'recorder/statistics', self._on_statistics, latched())
-        node.create_subscription(String, f'{self._worker}/progress', self._on_work, 10)
-        node.create_subscription(String, self._topic, self._on_result, latched())
+        heard = [node.create_subscription(*each) for each in (
+            (String, 'run', self._on_run, latched(32)),
+            (Float64MultiArray, 'record', self._on_record, latched(16)),
+            (String, 'recorder/statistics', self._on_statistics, latched()),
+            (String, f'{self._worker}/progress', self._on_work, 10),
+            (String, self._topic, self._on_result, latched()))]
         node.create_subscription(DiagnosticArray, '/diagnostics', self._on_status, 10)
+        self._topics = [one.topic_name for one in heard]
+
+    def refuse_others(self, node):
+        """Raise InputError where others publish what only the nodes of this run should."""
+        for topic in self._topics:
+            if node.count_publishers(topic) > 1:
+                raise InputError(
+                    f'others publish {topic}, too, on ROS domain {node.context.get_domain_id()}, '
+                    'which this run has for itself: what they say cannot be told from it; start '
+                    'them on another ROS_DOMAIN_ID, and this again')
 
     @property
     def done(self):
@@ -158,6 +176,7 @@ def watch(watcher, nodes, logs):
             while not watcher.done:
                 executor.spin_once(timeout_sec=0.1)
                 launched.check()
+                watcher.refuse_others(node)
                 if watcher.news != news:
                     news, since = watcher.news, time.monotonic()
                 elif watcher.refusal and watcher.result is None:

@@ -20,11 +20,13 @@ class GapOutcome:
     """
     What the demo gave: the diagnosis as data, and the effects in truth.
 
-    nominal: path of the vehicle file that the diagnosis was given; recording: folder.
+    folder: that of the run; nominal: path of the vehicle file that the diagnosis was given;
+    recording: folder.
     """
 
     diagnosis: dict
     effects: dict
+    folder: str
     nominal: str
     recording: str
     seconds: float
@@ -50,7 +52,8 @@ def run_gap_demo(options, on_progress):
     if experiment.model != CLOSED_LOOP:
         raise InputError(f'--experiment {options.experiment}: --gap needs flights in closed loop '
                          f'(model: {CLOSED_LOOP}), which excite what is looked for')
-    output = prepared(options.output)
+    folder = prepared(options.output)
+    output = folder.resolve()
     nominal, reality = output / NOMINAL, output / REALITY
     write_vehicle(nominal, experiment.vehicle)
     write_vehicle(reality, draw_reality(experiment.vehicle, options.seed))
@@ -63,8 +66,8 @@ def run_gap_demo(options, on_progress):
                       'vehicle': str(reality), 'seed': options.seed,
                       'real_time_factor': float(options.real_time_factor)},
     }, output / 'log')
-    recording = Path(options.output) / Path(watcher.statistics['recording']).name
-    return GapOutcome(watcher.result, load_vehicle(reality).effects,
-                      str(Path(options.output) / NOMINAL), str(recording),
+    recording = folder / Path(watcher.statistics['recording']).name
+    return GapOutcome(watcher.result, load_vehicle(reality).effects, str(folder),
+                      str(folder / NOMINAL), str(recording),
                       time.monotonic() - started, watcher.statistics['joined'],
                       watcher.statistics['missing'])

@@ -12,7 +12,7 @@ from std_msgs.msg import Bool, Float64MultiArray, String
 
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.identify.identify import identify, Settings
-from quad_ident_ros.identify.levy import levy_sigma
+from quad_ident_ros.identify.levy import LEAST, levy_sigma
 from quad_ident_ros.identify.methods import METHODS
 from quad_ident_ros.identify.online import Tracker
 from quad_ident_ros.identify.result import as_data, error_table, parameter_table
@@ -65,8 +65,8 @@ SPECS = (
     ParameterSpec('alpha', _SWARM.alpha, 'Step size of the Levy flights.', limits=(0.0, 1000.0)),
     ParameterSpec('alpha_units', _SWARM.alpha_units, 'Alpha in coordinates of the box (raw) or '
                   'as a share of it (range).', choices=('raw', 'range')),
-    ParameterSpec('lambda', _SWARM.levy_lambda, 'Exponent of the Levy flights, between 0 and 2.',
-                  limits=(0.0, 2.0)),
+    ParameterSpec('lambda', _SWARM.levy_lambda, 'Exponent of the Levy flights, below 2.',
+                  limits=(LEAST, 2.0)),
     ParameterSpec('replacement', _SWARM.replacement, 'Discovery of eggs: standard or eq. (28) as '
                   'printed.', choices=('standard', 'printed')),
     ParameterSpec('levy', _SWARM.levy, 'Eq. (26) as Mantegna has it or as printed.',

@@ -3,7 +3,6 @@
 """A node as a process: start, signals, errors in one line, a clean end."""
 
 import os
-from pathlib import Path
 import signal
 import sys
 import tempfile
@@ -13,9 +12,10 @@ from rclpy.exceptions import ParameterException
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import remove_ros_args
-import yaml
 
+from quad_ident_ros import resources
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.nodes.shared_memory import free_abandoned
 
 try:
     from rclpy.experimental.events_executor import EventsExecutor as FastExecutor
@@ -64,6 +64,7 @@ def _plain_arguments(args):
 
 def _run(node_class, args, executor_class):
     _ensure_log_folder()
+    free_abandoned()
     stop = []
     previous = {number: signal.signal(number, lambda *_: stop.append(True))
                 for number in (signal.SIGINT, signal.SIGTERM)}
@@ -113,7 +114,7 @@ def _ensure_log_folder():
     if 'ROS_LOG_DIR' not in os.environ and 'ROS_HOME' not in os.environ:
         home = os.environ.get('HOME')
         if not home or not os.access(home, os.W_OK):
-            os.environ['ROS_LOG_DIR'] = str(Path(tempfile.gettempdir()) / 'quad_ident_ros_log')
+            os.environ['ROS_LOG_DIR'] = tempfile.mkdtemp(prefix='quad_ident_ros_log_')
 
 
 def _check_parameter_files(args, node):
@@ -121,7 +122,7 @@ def _check_parameter_files(args, node):
     files = [args[i + 1] for i, word in enumerate(args[:-1]) if word == '--params-file']
     full_name = node.get_fully_qualified_name()
     for path in files:
-        keys = list(_node_names(yaml.safe_load(Path(path).read_text(encoding='utf-8')) or {}))
+        keys = list(_node_names(resources.read_yaml(path)))
         if not any(_matches(key, node.get_name(), full_name) for key in keys):
             raise InputError(f'{path}: nothing in it is for this node, {full_name}; it is for '
                              f'{", ".join(keys) or "none"}: use the name of the node or /**')

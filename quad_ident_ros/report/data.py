@@ -3,6 +3,7 @@
 """Results as JSON files."""
 
 import json
+import math
 from pathlib import Path
 import sys
 
@@ -10,8 +11,12 @@ from quad_ident_ros.errors import InputError
 
 
 def write_json(path, data):
-    """Write data to a JSON file, or to standard output for '-'; raises InputError."""
-    text = json.dumps(data, indent=2, allow_nan=False) + '\n'
+    """
+    Write data to a JSON file, or to standard output for '-'; raises InputError.
+
+    JSON has neither infinity nor not-a-number: null stands for them.
+    """
+    text = json.dumps(finite(data), indent=2, allow_nan=False) + '\n'
     if str(path) == '-':
         sys.stdout.write(text)
         return
@@ -20,3 +25,12 @@ def write_json(path, data):
         Path(path).write_text(text, encoding='utf-8')
     except OSError as error:
         raise InputError(f'{path}: cannot be written: {error.strerror}') from None
+
+
+def finite(data):
+    """Return data with None in place of numbers that are not finite."""
+    if isinstance(data, dict):
+        return {key: finite(value) for key, value in data.items()}
+    if isinstance(data, list | tuple):
+        return [finite(value) for value in data]
+    return None if isinstance(data, float) and not math.isfinite(data) else data

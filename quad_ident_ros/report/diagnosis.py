@@ -40,7 +40,7 @@ NEXT = ('manoeuvre', 'to', 'standard errors now', 'with it', 'size', 'height', '
 
 def show(found: Diagnosis, stream: TextIO) -> None:
     """Print a Diagnosis to a stream: the verdict first."""
-    screen = Console(file=stream, width=WIDTH)
+    screen = Console(file=stream, width=WIDTH, markup=False, emoji=False)
 
     def say(text: str, style: str | None = None) -> None:
         screen.print(text, style=style, markup=False, highlight=False, soft_wrap=True)

@@ -63,7 +63,7 @@ def save_responses(identification, path, title, given='measured'):
                            ncols=2 if len(signals) == 1 else len(entries))
     for line in legend.get_lines():
         line.set_linewidth(max(line.get_linewidth(), 1.5))
-    figure.suptitle(title)
+    figure.suptitle(title, parse_math=False)
     save(plt, figure, path)
 
 
@@ -106,7 +106,7 @@ def save_spread(panels, path, title, quantity):
             axis.plot([place - 0.36, place + 0.36], [median, median], color=color, linewidth=2)
         axis.set_xticks(range(len(methods)), [METHODS[name].label for name in methods])
         axis.set_xlim(-0.6, len(methods) - 0.4)
-        axis.set_title(label, fontsize='medium')
+        axis.set_title(label, fontsize='medium', parse_math=False)
         axis.grid(axis='y', color='0.92')
         axis.spines[['top', 'right']].set_visible(False)
     axes[0, 0].set_ylim(bottom, 1.5 * everything.max())
@@ -114,7 +114,7 @@ def save_spread(panels, path, title, quantity):
     axes[0, 0].yaxis.set_major_formatter(plain)
     axes[0, 0].yaxis.set_minor_formatter(plain if narrow else NullFormatter())
     axes[0, 0].set_ylabel(quantity)
-    figure.suptitle(title)
+    figure.suptitle(title, parse_math=False)
     save(plt, figure, path)
 
 
@@ -124,7 +124,6 @@ def pyplot(path):
         raise InputError(f'{path}: the name of a picture ends in .png, .svg or .pdf')
     matplotlib.use('Agg')
     import matplotlib.pyplot as plt
-
     return plt
 
 

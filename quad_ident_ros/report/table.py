@@ -15,8 +15,12 @@ WIDTH = 150   # columns that the table may need: a narrower screen wraps it, and
 
 
 def console():
-    """Return a console that does not cut the table, whatever the width of the screen."""
-    return Console(width=max(Console().width, WIDTH))
+    """
+    Return a console that does not cut the table, whatever the width of the screen.
+
+    Names of files and columns are shown as they are, whatever signs they have.
+    """
+    return Console(width=max(Console().width, WIDTH), markup=False, emoji=False)
 
 
 def identification_table(identification):

@@ -62,6 +62,7 @@ VALUES = {
         ('window', float('inf'), 'window'),
         ('lambda', 2.0, 'lambda'),
         ('lambda', 0.0, 'lambda'),
+        ('lambda', 1e-300, 'lambda'),
         ('lambda', 1, 'lambda'),
         ('pa', 1.5, 'pa'),
         ('population', 1, 'population'),

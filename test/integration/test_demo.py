@@ -4,11 +4,13 @@
 
 import json
 from pathlib import Path
+import re
 import signal
 import subprocess
 import sys
 import time
 
+from graph import Graph
 import numpy as np
 import pytest
 
@@ -18,6 +20,7 @@ from quad_ident_ros.experiment import fly, load_experiment
 from quad_ident_ros.identify.identify import identify
 from quad_ident_ros.identify.result import parameter_table
 from quad_ident_ros.nodes.demo import NOISE
+from quad_ident_ros.nodes.recorder import Recorder
 
 
 @pytest.fixture(scope='module')
@@ -29,7 +32,7 @@ def demo(tmp_path_factory):
                           capture_output=True, text=True, timeout=120)
     assert done.returncode == 0, done.stderr
     assert 'PSO-CS' in done.stdout
-    return folder, json.loads((folder / 'out.json').read_text())
+    return folder / 'run_1', json.loads((folder / 'out.json').read_text())
 
 
 def test_what_came_over_ros_is_what_the_library_computes(demo):
@@ -91,10 +94,45 @@ def test_no_node_outlives_the_demo(tmp_path, number):
     demo = subprocess.Popen([sys.executable, '-m', 'quad_ident_ros', 'demo', '-o', folder,
                              '--real-time-factor', '0.1'], stderr=subprocess.DEVNULL)
     try:
-        _await(lambda: (Path(folder) / 'recording_1' / 'flight_1.csv').exists(), 'the flight')
+        _await(lambda: (Path(folder) / 'run_1/recording_1/flight_1.csv').exists(), 'the flight')
         demo.send_signal(number)
         assert demo.wait(20) != 0
         _await(lambda: not _processes_with(folder), 'the nodes to end')
+    finally:
+        demo.kill()
+        demo.wait()
+
+
+def _domain_of(pid):
+    """Return the ROS domain of the nodes that a process has started, or None."""
+    for place in Path('/proc').glob('[0-9]*'):
+        try:
+            if f'PPid:\t{pid}\n' not in (place / 'status').read_text():
+                continue
+            words = dict(entry.split('=', 1) for entry in
+                         (place / 'environ').read_text().split('\0') if '=' in entry)
+        except OSError:
+            continue    # it ended meanwhile
+        if words.get('ROS_DOMAIN_ID'):
+            return int(words['ROS_DOMAIN_ID'])
+    return None
+
+
+def test_what_others_publish_on_its_domain_ends_the_demo_at_once(tmp_path):
+    """A foreign recorder made it hang for ten minutes: its news were taken for the run's."""
+    demo = subprocess.Popen([sys.executable, '-m', 'quad_ident_ros', 'demo', '-o', str(tmp_path),
+                             '--real-time-factor', '0.01'], stderr=subprocess.PIPE, text=True)
+    try:
+        _await(lambda: (tmp_path / 'run_1/recording_1/flight_1.csv').exists(), 'the flight')
+        graph = Graph(_domain_of(demo.pid))
+        try:
+            graph.start(Recorder)
+            _, errors = demo.communicate(timeout=30)
+        finally:
+            graph.close()
+        assert demo.returncode == 2
+        assert re.search(r'^quad_ident demo: error: others publish /\S+, too, on ROS domain \d+',
+                         errors.splitlines()[-1])
     finally:
         demo.kill()
         demo.wait()

@@ -154,6 +154,16 @@ def test_output_that_cannot_be_written_is_said_once(fast_graph, processes, tmp_p
     assert 'Traceback' not in process.errors()
 
 
+def test_the_home_of_a_user_who_is_none_is_said_and_nothing_else_ends(fast_graph):
+    graph = fast_graph
+    diagnostics = graph.listen(DiagnosticArray, '/diagnostics')
+    statistics = graph.listen(String, 'recorder/statistics', latched())
+    graph.start(Recorder, {'output': '~nosuch/x'})
+    graph.spin_until(lambda: statistics and diagnostics, 'the account')
+    assert statistics.data()[-1]['disk_error'].startswith(
+        '~nosuch/x: recording stopped: ~nosuch is the home of no user')
+
+
 def test_a_disk_that_fills_up_ends_the_recording_only(fast_graph, processes, tmp_path):
     """A limit on file sizes stands in for the full disk: it fails in the middle of a write."""
     graph = fast_graph

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The demo of the gap: what the simulator alone knows is found, and revealed last."""
 
+from concurrent.futures import ThreadPoolExecutor
 import json
 import subprocess
 import sys
@@ -11,7 +12,7 @@ import pytest
 
 from quad_ident_ros.data.replay import read_bag
 from quad_ident_ros.model.vehicle import load_vehicle
-from quad_ident_ros.nodes.demo import Watcher
+from quad_ident_ros.nodes.demo import prepared, Watcher
 
 SEED = '4'      # a drag of the rotors
 
@@ -27,7 +28,7 @@ def demo(tmp_path_factory):
     folder = tmp_path_factory.mktemp('gap')
     done = run('--seed', SEED, '-o', str(folder), '--json', str(folder / 'out.json'))
     assert done.returncode == 0, done.stderr
-    return folder, done.stdout, json.loads((folder / 'out.json').read_text())
+    return folder / 'run_1', done.stdout, json.loads((folder / 'out.json').read_text())
 
 
 def test_the_secret_is_found_and_revealed_last(demo):
@@ -54,6 +55,17 @@ def test_the_diagnosing_process_was_not_told(demo):
         assert name not in json.dumps(record.info)
     for log in ('simulator', 'recorder'):
         assert name not in (folder / 'log' / f'{log}.txt').read_text()
+
+
+def test_everything_of_a_run_is_in_a_folder_that_no_other_run_has(demo, tmp_path):
+    """Two at a time shared the file of the secret: one revealed that of the other."""
+    folder, _, _ = demo
+    assert sorted(path.name for path in folder.parent.iterdir()) == ['out.json', 'run_1']
+    assert {'log', 'nominal.yaml', 'reality.yaml', 'recording_1'} <= {
+        path.name for path in folder.iterdir()}
+    with ThreadPoolExecutor(8) as pool:
+        folders = list(pool.map(lambda _: prepared(tmp_path), range(40)))
+    assert len(set(folders)) == 40 and all((one / 'log').is_dir() for one in folders)
 
 
 @pytest.mark.parametrize('words, said', [

@@ -4,11 +4,12 @@
 
 import os
 import signal
+import socket
 import subprocess
 import sys
 import time
 
-from graph import DEADLINE, ENDLESS, flights, write_experiment
+from graph import DEADLINE, ENDLESS, flights, Graph, write_experiment
 import pytest
 from std_msgs.msg import Float64MultiArray, String
 import yaml
@@ -237,6 +238,28 @@ def test_a_node_that_the_middleware_holds_ends_all_the_same(processes):
         process.send_signal(signal.SIGINT)
         assert process.stdout.readline() == 'closed\n'
         assert process.wait(DEADLINE) == -signal.SIGALRM
+
+
+def test_a_domain_on_which_somebody_else_has_a_node_is_not_free(claim):
+    number, holder = claim_domain()
+    holder.close()
+    graph = Graph(number)   # of whoever knows nothing of our claims
+    try:
+        other, holder = claim_domain()
+        holder.close()
+    finally:
+        graph.close()
+    assert other != number
+
+
+def test_a_domain_whose_multicast_somebody_hears_is_not_free():
+    number, holder = claim_domain()
+    holder.close()
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as foreign:
+        foreign.bind(('', 7400 + 250 * number))
+        other, holder = claim_domain()
+        holder.close()
+    assert other != number
 
 
 def test_a_domain_is_taken_as_long_as_a_node_lives_on_it():

@@ -6,6 +6,7 @@ import errno
 from functools import cache
 import os
 from pathlib import Path
+import select
 import shutil
 import signal
 import subprocess
@@ -21,7 +22,7 @@ from rosbags.typesys import get_typestore, Stores
 import yaml
 
 from quad_ident_ros.data.bag import BagWriter
-from quad_ident_ros.data.bag_file import read_bag_messages
+from quad_ident_ros.data.bag_file import BagFile, read_bag_messages
 from quad_ident_ros.errors import InputError
 
 ARRAY, VECTOR = 'std_msgs/msg/Float64MultiArray', 'geometry_msgs/msg/Vector3'
@@ -202,6 +203,86 @@ def test_kill_loses_only_what_came_after_the_last_flush(tmp_path):
     assert numbers(tmp_path / 'bag') == swapped(100)
 
 
+FLUSHING = """
+import sys
+from test_bag import *
+
+writer = BagWriter(sys.argv[1], TOPICS)
+for k in range(0, 1_000_000, 500):
+    fill(writer, k, k + 500)
+    writer.flush()
+    print(k + 500, flush=True)
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize('after', range(4))
+def test_a_process_that_is_killed_while_it_flushes_loses_nothing_that_it_flushed(tmp_path, after):
+    """At a moment by chance, of which most of the time goes into the writing."""
+    random = np.random.default_rng(after)
+    with subprocess.Popen([sys.executable, '-c', FLUSHING, str(tmp_path / 'bag')],
+                          cwd=str(Path(__file__).parent), stdout=subprocess.PIPE) as child:
+        for _ in range(1 + after):
+            flushed = int(child.stdout.readline())
+        select.select([child.stdout], [], [], random.uniform(0.0, 0.02))
+        child.kill()
+        flushed = max([flushed, *map(int, child.stdout.read().split())])
+    got = numbers(tmp_path / 'bag')
+    assert len(got) >= flushed and got == swapped(len(got))
+
+
+@pytest.mark.parametrize('more', [4, 60])
+def test_a_kill_within_a_flush_loses_nothing_that_was_whole(tmp_path, more):
+    """Wherever a write ends: before it is what is new, behind it what was there."""
+    path = tmp_path / 'bag'
+    writer = BagWriter(path, TOPICS)
+    fill(writer, 0, 40)
+    writer.flush()
+    fill(writer, 40, 80)
+    writer.flush()
+    before = files(path)['bag.mcap']
+    fill(writer, 80, 80 + more)     # less than the index at the end, and more
+    writer.flush()
+    after = files(path)['bag.mcap']
+    begin = next(k for k, (one, other) in enumerate(zip(before, after, strict=False))
+                 if one != other)
+    complete, recovered = set(), 0
+    for place in (*range(begin, begin + 40), *range(begin + 40, len(after), 61), len(after) - 1):
+        (path / 'bag.mcap').write_bytes(after[:place] + before[place:])
+        got = numbers(path)
+        assert got in (swapped(80), swapped(80 + more)), place
+        complete.add(len(got))
+        assert numbers(path / 'bag.mcap') == got
+        with BagFile(path) as bag:
+            recovered += bag.recovered
+    assert len(complete) == 2 and recovered > 10
+    (path / 'bag.mcap').write_bytes(after)
+    with BagFile(path) as bag:
+        assert not bag.recovered
+    writer.close()
+
+
+def test_a_bag_that_is_cut_off_is_read_as_far_as_it_goes(tmp_path):
+    path = tmp_path / 'bag'
+    with BagWriter(path, TOPICS) as writer:
+        for k in range(5):
+            fill(writer, 20 * k, 20 * k + 20)
+            writer.flush()
+    whole = files(path)['bag.mcap']
+    counts = []
+    for end in range(len(whole) - 1, 8, -97):
+        (path / 'bag.mcap').write_bytes(whole[:end])
+        try:
+            got = numbers(path)
+        except InputError as error:
+            assert len(str(error).splitlines()) == 1
+            counts.append(-1)
+        else:
+            counts.append(len(got))
+            assert got == swapped(len(got))
+    assert counts == sorted(counts, reverse=True) and set(counts) == {100, 80, 60, 40, 20, 0, -1}
+
+
 @pytest.mark.parametrize('room', [0, 1, 700, 3000])
 def test_full_disk(tmp_path, room):
     """A flush onto a full disk raises OSError, and what was flushed before stays readable."""
@@ -309,7 +390,7 @@ def damage(path, kind):
     elif kind == 'no data':
         (path / 'bag.mcap').unlink()
     elif kind == 'cut':
-        (path / 'bag.mcap').write_bytes(data[:-20])
+        (path / 'bag.mcap').write_bytes(data[:300])
     elif kind == 'empty':
         (path / 'bag.mcap').write_bytes(b'')
     elif kind == 'rubbish':

@@ -3,12 +3,14 @@
 """What the benchmarks measure with: problems, bounds, best costs and tables. No peer is needed."""
 
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from real import needs_real_flights, real_vehicle
 
 from benchmarks import diagnosis, problems, reference, rollout, tables
+import benchmarks.__main__ as bench
 from benchmarks.__main__ import SECTIONS
 from benchmarks.bound import bound, derivatives, FIRST, SECOND
 from benchmarks.compare import rmse_over_bound
@@ -16,6 +18,18 @@ from benchmarks.joint import Joint, pursue, Tracker
 from quad_ident_ros.identify.transfer import response, SecondOrder
 
 T = problems.PERIOD * np.arange(500)
+
+
+@pytest.mark.parametrize(('words', 'count'), [([], 0), (['--quick'], 0), (['--keep'], 1)])
+def test_tables_go_into_the_documents_only_where_that_is_asked_for(monkeypatch, words, count):
+    kept = []
+    module = SimpleNamespace(run=lambda size, bar: 'a table')
+    monkeypatch.setattr(bench.importlib, 'import_module', lambda name: module)
+    monkeypatch.setattr(bench, 'keep', lambda *text: kept.append(text))
+    assert bench.main(['graph', *words]) == 0
+    assert len(kept) == count
+    with pytest.raises(SystemExit):
+        bench.main(['graph', '--quick', '--keep'])
 STEP = np.ones(500)
 
 

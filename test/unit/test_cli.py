@@ -4,11 +4,13 @@
 
 from dataclasses import replace
 import json
+import subprocess
+import sys
 
 import numpy as np
 import pytest
 
-from quad_ident_ros.cli.main import main
+from quad_ident_ros.cli.main import COMMANDS, main, parser
 from quad_ident_ros.data.commands import with_inputs
 from quad_ident_ros.data.csv import read_csv, write_csv
 from quad_ident_ros.data.record import FlightRecord
@@ -179,3 +181,25 @@ def test_bad_input_gets_one_line_and_exit_code_2(call, flights, tmp_path, capsys
     assert said.startswith('quad_ident ')
     assert ': error: ' in said
     assert '\n' not in said
+
+
+def test_help_loads_no_library():
+    """It took a second and a half."""
+    code = """if True:
+        import sys
+        from quad_ident_ros.cli.main import COMMANDS, main
+        try:
+            main(['--help'])
+        except SystemExit as end:
+            assert end.code == 0
+        assert not {'numpy', 'numba', 'scipy', 'rich', 'yaml'} & set(sys.modules)
+        """
+    done = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert all(f'\n    {name} ' in done.stdout for name in COMMANDS)
+
+
+@pytest.mark.parametrize('name', list(COMMANDS))
+def test_every_command_has_a_parser_in_the_module_of_its_name(name):
+    parsed = parser([name])._subparsers._group_actions[0].choices[name]
+    assert name == 'withheld' or parsed.get_default('run') or parsed._actions[1:]

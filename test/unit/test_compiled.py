@@ -46,12 +46,12 @@ def package(tmp_path):
     return folder
 
 
-def start(package):
+def start(package, **more):
     """Return what a start of the package prints: the result, and how often it was kept."""
     variables = {key: value for key, value in os.environ.items() if key != 'NUMBA_CACHE_DIR'}
     command = [sys.executable, '-m', 'quad_ident_ros.model.outer']
     done = subprocess.run(command, capture_output=True, text=True, check=True, cwd=package.parent,
-                          env={**variables, 'PYTHONPATH': str(package.parent)})
+                          env={**variables, 'PYTHONPATH': str(package.parent), **more})
     return [float(word) for word in done.stdout.split()]
 
 
@@ -61,6 +61,34 @@ def test_a_function_is_kept_until_one_that_it_calls_has_changed(package):
     (package / 'model' / 'inner.py').write_text(INNER.format(factor=50.0))
     assert start(package) == [101.0, 0]
     assert start(package) == [101.0, 1]
+
+
+@pytest.mark.parametrize('whose', ['everybody', 'another', 'link'])
+def test_no_code_is_taken_from_a_folder_into_which_others_write(package, tmp_path, whose):
+    # Numba keeps code as pickles, which can do anything when they are loaded.
+    folder, given = tmp_path / 'kept', tmp_path / 'kept'
+    folder.mkdir(mode=0o700)
+    assert start(package, NUMBA_CACHE_DIR=str(given)) == [7.0, 0]
+    assert start(package, NUMBA_CACHE_DIR=str(given)) == [7.0, 1]
+    inside = [folder, *(path for path in folder.rglob('*') if path.is_dir())]
+    if whose == 'everybody':
+        for place in inside:
+            place.chmod(0o777)
+    elif os.geteuid() != 0:
+        pytest.skip('only root can give a folder to another user')
+    else:
+        for place in inside:
+            os.chown(place, 65534, 65534)
+        if whose == 'link':
+            given = tmp_path / 'link'
+            given.symlink_to(folder)
+    assert start(package, NUMBA_CACHE_DIR=str(given)) == [7.0, 0]
+
+
+def test_a_folder_of_ones_own_is_trusted_and_one_that_is_not_there_is_not(tmp_path):
+    (tmp_path / 'own').mkdir(mode=0o700)
+    assert compiled.is_trusted(tmp_path / 'own')
+    assert not compiled.is_trusted(tmp_path / 'none')
 
 
 def test_a_numba_that_keeps_in_another_way_compiles_at_each_start(monkeypatch):

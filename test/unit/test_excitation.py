@@ -183,6 +183,15 @@ def test_recorded_is_held_at_another_rate_and_after_its_end(tmp_path):
         assert at(values, time) == level, time
 
 
+@pytest.mark.parametrize('content', ['root:secret:0\n', 't,secret\n0,secret\n', ''])
+def test_recorded_shows_nothing_of_a_file_that_is_no_record(tmp_path, content):
+    path = tmp_path / 'shadow'
+    path.write_text(content)
+    for file in (path, tmp_path, '/dev/zero'):
+        message = refused('recorded', file=str(file), column='u2')
+        assert 'is no flight record that can be read' in message and 'secret' not in message
+
+
 @pytest.mark.parametrize(('kind', 'parameters', 'words'), [
     ('step', {'amplitude': 'big'}, "amplitude[0]: expected a number, got 'big'"),
     ('step', {'amplitude': float('nan')}, 'finite'),

@@ -69,3 +69,12 @@ def test_bad_input_is_one_line(arguments, hint, tmp_path, capsys):
     assert error.startswith('quad_ident fly: error: ') and error.count('\n') == 1
     assert hint in error
     assert not list(tmp_path.iterdir())
+
+
+def test_an_empty_battery_keeps_a_voltage():
+    """In an hour of hover it fell far below zero."""
+    record = fly_closed_loop(load_vehicle('paper_quadrotor'), {}, 'hover', duration=600.0,
+                             rate=50.0)
+    voltage = record.columns['vbat']
+    assert voltage[0] == 16.8 and voltage.min() == voltage[-1] == pytest.approx(0.7 * 16.8)
+    assert (np.diff(voltage) <= 0.0).all()

@@ -12,6 +12,7 @@ from rosbags.typesys import get_typestore, Stores
 from quad_ident_ros.data.bag import BagWriter
 from quad_ident_ros.data.bag_file import read_bag_messages
 from quad_ident_ros.data.csv import read_csv
+from quad_ident_ros.data.load import load_all
 from quad_ident_ros.data.recording import Recording
 from quad_ident_ros.data.replay import read_bag
 from quad_ident_ros.data.topics import FLIGHT_TOPICS, RUN_TYPE, RunNotice
@@ -129,6 +130,28 @@ def test_what_was_flushed_is_there_before_the_end(tmp_path):
     check(read_csv(recording.folder / 'flight_1.csv'), 0, 500)
     recording.flush()
     check(read_csv(recording.folder / 'flight_1.csv'), 0, 700)
+    recording.close()
+
+
+def test_a_recording_that_was_killed_within_a_flush_is_read_and_says_so(tmp_path):
+    recording = Recording(tmp_path, NAMES)
+    record(recording, 0, 500)
+    recording.flush()
+    path = recording.folder / 'bag/bag.mcap'
+    before = path.read_bytes()
+    record(recording, 500, 700)
+    recording.flush()
+    after = path.read_bytes()
+    begin = next(k for k, (one, other) in enumerate(zip(before, after, strict=False))
+                 if one != other)
+    path.write_bytes(after[:begin + 2000])
+    [flight] = load_all(recording.folder)
+    check(flight, 0, 500)
+    assert flight.info['notes'][-1].startswith('the bag has no end')
+    path.write_bytes(after)
+    [flight] = load_all(recording.folder)
+    check(flight, 0, 700)
+    assert 'notes' not in flight.info
     recording.close()
 
 

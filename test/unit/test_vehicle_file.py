@@ -12,8 +12,10 @@ import pytest
 import yaml
 
 from quad_ident_ros import resources
+from quad_ident_ros.data.mapping import load_mapping
 from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.greybox.parameters import INDEX, limits, NAMES, prior_sizes
 from quad_ident_ros.model.mixing import infeasibility, squared_speeds
 from quad_ident_ros.model.motors import Motors
@@ -29,6 +31,11 @@ from quad_ident_ros.model.vehicle import (
 FAST = settings(deadline=None, max_examples=120,
                 suppress_health_check=[HealthCheck.function_scoped_fixture])
 PAPER = resources.read_yaml(resources.find('vehicles', 'paper_quadrotor'))
+
+
+# Nine levels of nine aliases would print as 4e8 words.
+BOMB = 'a: &a0 [x, x, x, x, x, x, x, x, x]\n' + ''.join(
+    f'b{k}: &a{k} [{", ".join([f"*a{k - 1}"] * 9)}]\n' for k in range(1, 10))
 
 
 def changed(**values):
@@ -172,8 +179,7 @@ def test_priors_are_as_wide_as_the_file_says():
     assert np.array_equal(told[same], wide[same])
 
 
-positive = st.floats(1e-9, 1e9)
-triples = st.tuples(positive, positive, positive)
+positive = st.floats(1e-9, 1e3)
 
 
 @st.composite
@@ -181,23 +187,28 @@ def vehicles(draw):
     """Return any vehicle that a file can describe."""
     lowest = draw(st.floats(0, 100))
     count = draw(st.integers(1, 8))
-    place = st.floats(0.01, 10.0)
+    place = st.floats(0.1, 0.2)
+    small = st.floats(1e-9, 0.05)
+    triples = st.tuples(small, small, small)
     effects = {}
     for name in draw(st.sets(st.sampled_from(sorted(EFFECTS)))):
         parameter = EFFECTS[name].parameters[0]
         effects[name] = {parameter.name: draw(st.floats(1.01, 1.9)) * 0.01 + parameter.null}
     # Offsets of mass, place and inertia have bounds in units of the vehicle's own.
     mass = draw(st.floats(0.1, 10))
-    known = {'mass': positive, 'gravity': positive, 'rotor_radius': positive,
-             'inertia': st.tuples(positive, st.none() | positive, st.none()),
+    known = {'mass': small, 'gravity': small, 'rotor_radius': small,
+             'inertia': st.tuples(small, st.none() | small, st.none()),
              'rotors[0].position': st.tuples(st.none(), st.none() | positive, positive)}
+    thrust = draw(st.floats(1e-8, 1e-2))
     return Vehicle(
         draw(st.text(st.characters(categories=('L', 'N')), min_size=1, max_size=20)), mass,
-        (0.1, 0.1, 0.1), draw(positive), draw(positive), draw(positive),
+        (0.01 * mass,) * 3, draw(st.floats(1.0, 30.0)), thrust,
+        draw(st.floats(1e-3, 1.0)) * thrust,
         tuple(Rotor((draw(place), draw(place), draw(place)), draw(st.sampled_from([1, -1])))
               for _ in range(count)),
-        draw(positive), draw(positive), draw(triples), draw(triples), lowest,
-        draw(st.just(float('inf')) | st.floats(101, 1e6)),
+        draw(st.floats(0, 1e-3)), draw(small), draw(triples),
+        tuple(1e-3 * mass * one for one in draw(triples)), lowest,
+        draw(st.just(float('inf')) | st.floats(101, 1e5)),
         {name: values for name, values in effects.items()
          if name not in ('com_offset', 'inflow', 'body_drag', 'blade_flapping', 'rotor_gyro')},
         {key: draw(known[key]) for key in draw(st.sets(st.sampled_from(sorted(known))))},
@@ -242,7 +253,7 @@ def test_numbers_that_yaml_takes_for_text_are_numbers():
     # YAML 1.1 wants a dot in 1e-3.
     data = yaml.safe_load('{a: 1e-3}')
     assert data['a'] == '1e-3'
-    assert vehicle_from_mapping(changed(mass='1e-3'), 'v.yaml').mass == 1e-3
+    assert vehicle_from_mapping(changed(mass='6e-1'), 'v.yaml').mass == 0.6
 
 
 @pytest.mark.parametrize(('values', 'words'), [
@@ -277,6 +288,57 @@ def test_bad_values_are_refused_with_key_and_reason(values, words):
     assert words in refused(changed(**values))
 
 
+ABSURD = [
+    ({'mass': 1e-5}, 'mass: 1e-05 kg cannot be, expected 0.0001 to 1e+05'),
+    ({'gravity': 1e300}, 'gravity: 1e+300 m/s^2 cannot be'),
+    ({'inertia': [7.5e-3, 7.5e-3, 7]}, 'inertia[2]: 7 kg m^2 cannot be, expected 3.44e-06 to '
+     '0.86: its mass would lie 14 arms from the axis'),
+    ({'inertia': [7.5e-3, 7.5e-3, 0.3]}, 'inertia[2]: 0.3 kg m^2 cannot be, expected 0 to 0.15: '
+     'no body has one moment of inertia above the sum'),
+    ({'rotational_drag': [1, 0, 0]}, 'rotational_drag[0]: 1 N m/(rad/s)^2 cannot be'),
+    ({'linear_drag': [0, 0, 1000]}, 'would fall no faster than 0.0064 m/s'),
+    ({'rotors': [{'position': [1e300, 0, 0], 'spin': 1}]}, 'position[0]: 1e+300 m cannot be'),
+    ({'rotors': [{'position': [1e-6, 0, 0], 'spin': 1}]}, 'm of arm cannot be'),
+    ({'rotors': PAPER['rotors'] * 17}, 'rotors: 68 of them cannot be'),
+    ({'thrust_coefficient': 1e-300}, 'it would hover at'),
+    ({'thrust_coefficient': 5e-324}, 'it would hover at inf rad/s'),
+    ({'thrust_coefficient': 1e300}, 'thrust_coefficient: 1e+300'),
+    ({'torque_coefficient': 1e300}, 'torque_coefficient: 1e+300'),
+    ({'rotor_inertia': 1e-2}, 'rotor_inertia: 0.01 kg m^2 cannot be'),
+    ({'rotor_radius': 1e300}, 'rotor_radius: 1e+300 m cannot be'),
+    ({'speed_max': 1e300}, 'speed_max: 1e+300 rad/s cannot be'),
+    ({'mass': {'value': 0.65, 'std': 1e300}}, 'mass: std: 1e+300 is no knowledge of it'),
+    ({'linear_drag': [{'value': 0, 'std': 1e300}, 0, 0]}, 'linear_drag: std: 1e+300')]
+
+
+@pytest.mark.parametrize(('values', 'words'), ABSURD, ids=str)
+def test_a_constant_that_no_multirotor_has_is_refused_with_what_it_would_mean(values, words):
+    assert words in refused(changed(**values))
+
+
+numbers = st.floats(allow_nan=False, allow_infinity=False) | st.floats(1e-6, 1e3)
+
+
+@FAST
+@given(st.sampled_from([*(key for key in PAPER if key not in ('name', 'rotors')), 'position']),
+       st.integers(0, 2), numbers)
+def test_a_vehicle_with_any_one_number_flies_or_is_refused(key, axis, value):
+    data = copy.deepcopy(PAPER)
+    target = data['rotors'][1] if key == 'position' else data
+    if isinstance(target[key], list):
+        target[key][axis] = value
+    else:
+        target[key] = value
+    with np.errstate(all='ignore'):
+        try:
+            record = fly_closed_loop(vehicle_from_mapping(data, 'v.yaml'), {}, 'hover',
+                                     duration=2.0)
+        except InputError as error:
+            assert '\n' not in str(error) and len(str(error)) < 400
+        else:
+            assert np.isfinite(record.stack('px', 'wz', 'ax')).all()
+
+
 @pytest.mark.parametrize('data', [None, 3, 'text', [], [{'mass': 1}]])
 def test_what_is_no_mapping_is_refused(data):
     assert 'expected `key: value` lines' in refused(data)
@@ -304,6 +366,15 @@ def test_no_name_is_an_error_of_another_kind(name):
     (b'mass: 0b_', 'cannot be read'), (b'[' * 5000, 'cannot be read'),
     (b'mass: !!int ""', 'cannot be read'), (b'mass: !!python/object:os.system 1', 'is not YAML'),
     (b'mass: 2001-01-01', "'name' is missing"),
+    (b'mass: ' + b'9' * 5000, 'cannot be read'),
+    (b'mass: 0x' + b'f' * 5000, 'a whole number of about 6021 digits'),
+    (b'? 0x' + b'f' * 5000 + b'\n: 1', 'a whole number of about 6021 digits'),
+    (b'#' * 300_000, 'is larger than 256 kB'),
+    (BOMB.encode(), 'holds more than 20000 values, aliases followed'),
+    (b'a0: &a0 {' + b', '.join(b'k%d: 1' % k for k in range(9)) + b'}\n' + b''.join(
+        b'a%d: &a%d {<<: [%s]}\n' % (k, k, b', '.join([b'*a%d' % (k - 1)] * 9))
+        for k in range(1, 10)), 'more than 20000 keys are merged'),
+    (b'a: &a {b: *a}', 'holds more than 20000 values'),
 ], ids=lambda value: repr(value)[:24])
 def test_what_is_no_vehicle_file_is_refused_with_the_file(tmp_path, content, words):
     path = tmp_path / 'v.yaml'
@@ -320,18 +391,17 @@ def test_a_folder_is_no_file(tmp_path):
         load_vehicle(tmp_path / 'v.yaml')
 
 
-def test_messages_stay_short_whatever_the_value(tmp_path):
-    # Nine levels of nine aliases would print as 4e8 words.
-    bomb = 'a: &a0 [x, x, x, x, x, x, x, x, x]\n' + ''.join(
-        f'b{k}: &a{k} [{", ".join([f"*a{k - 1}"] * 9)}]\n' for k in range(1, 10))
-    path = tmp_path / 'v.yaml'
-    path.write_text(bomb + 'mass: *a9\nname: x\n' + ''.join(
-        f'{key}: {value}\n' for key, value in PAPER.items() if key not in ('name', 'mass')))
-    with pytest.raises(InputError) as error:
-        load_vehicle(path)
-    assert len(str(error.value)) < 400
-    data = yaml.safe_load(bomb)
+def test_a_device_is_no_file():
+    for path in ('/dev/zero', '/dev/null'):
+        with pytest.raises(InputError, match=f'{path}: this is a device; name a file'):
+            load_mapping(path)
+
+
+def test_messages_stay_short_whatever_the_value():
+    data = yaml.safe_load(BOMB)
     assert len(refused(changed(mass=data['b9']))) < 300
+    assert len(refused(changed(name=1 << 20_000))) < 300
+    assert len(refused(changed(speed_max=1 << 20_000))) < 300
 
 
 scalars = (st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=8)

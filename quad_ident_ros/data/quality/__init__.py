@@ -37,7 +37,8 @@ from quad_ident_ros.errors import InputError
 
 CHECKS = (columns.known, columns.incomplete, columns.differentiated, columns.frozen,
           columns.dead, columns.quaternions, columns.possible, columns.negative, timing.slow,
-          timing.gaps, timing.duplicates, timing.truncated, timing.reader_notes, stale.held,
+          timing.bursts, timing.gaps, timing.duplicates, timing.truncated, timing.reader_notes,
+          stale.held,
           stale.marked, glitches.attitude,
           units.rates_in_degrees, units.euler_in_degrees, units.force_in_g,
           units.position_in_millimetres, units.speeds_in_rpm, frames.quaternion, frames.world,

@@ -21,6 +21,7 @@ from quad_ident_ros.data.quality.series import attitudes_of
 REACH = 0.1         # s, the largest lag looked for
 SPACING = 2         # samples of the second differences, which see most at a quarter of the rate
 EVEN = 0.05         # periods by which the time from one sample to the next may differ
+ROUNDING = 1e-10    # m, m/s, rad, rad/s: less is of no sensor, but of a simulation without noise
 FAR = 6.0           # usual sizes from which on a difference is a jump, not noise
 TOLD = 0.5          # share of what changes in the commands that the answer has to explain,
 CLEAR = 0.7         # and that of the flight where it is clearest: the vehicle's response may be
@@ -116,7 +117,7 @@ def _series(record):
     if told.sum() < LEAST:
         return None
     usual = np.median(np.abs(states[told]), axis=0)
-    if not (usual > 0.0).all():
+    if not (usual > ROUNDING).all():
         return None
     there, told = told & _calm(states, told), told & _calm(given, told)
     place = np.round((t[n:-n] - t[n]) / period).astype(int)

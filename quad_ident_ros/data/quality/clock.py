@@ -21,6 +21,7 @@ SURE = 0.6        # correlation that an estimate needs
 SHAPE = 0.5       # correlation of the slopes, whose noise is larger
 FINEST = 1e-5     # s, the least standard error: one stream may be made of the other
 THERE = 1e-9      # s, of a step from which on the next one changes nothing
+MANY_LAGS = 500  # from which on a Fourier transform takes fewer steps
 MEMORY = 0.4      # s, over which errors may depend on one another
 ANSWER = 1.0      # s, within which the motion may answer to errors of the attitude
 SEVERAL = 5.0     # standard errors from which on an offset or a drift of the states is one: the
@@ -232,8 +233,12 @@ def _alike(one, other):
 
 def _long_run(score, lags):
     """Return the variance of the sum of a dependent series (Bartlett weights)."""
-    total = np.sum(score ** 2)
-    for lag in range(1, min(lags, len(score) - 1) + 1):
+    total, most = np.sum(score ** 2), min(lags, len(score) - 1)
+    if most > MANY_LAGS:
+        sums = fftconvolve(score, score[::-1])[len(score):len(score) + most]
+        total += 2 * np.sum((1 - np.arange(1, most + 1) / (lags + 1)) * sums)
+        most = 0
+    for lag in range(1, most + 1):
         total += 2 * (1 - lag / (lags + 1)) * np.sum(score[lag:] * score[:-lag])
     return max(total, 0.1 * np.sum(score ** 2), 1e-30)
 

@@ -78,7 +78,7 @@ def _off(t, attitudes, rates):
     apart = turned - 0.5 * (rates[1:] + rates[:-1]) * steps[:, None]
     apart[steps > GAP * period] = 0.0
     sums = np.vstack([np.zeros((1, 3)), np.cumsum(apart, axis=0)])
-    width = 2 * round(LONGEST / period) + 1
+    width = 2 * min(round(LONGEST / period), len(t) // 2) + 1
     # One column at a time, for which SciPy has the faster filter.
     sums -= np.stack([median_filter(column, width, mode='nearest') for column in sums.T], axis=1)
     noise = 1.4826 * np.median(np.abs(sums), axis=0)

@@ -71,8 +71,9 @@ def airborne(record: FlightRecord, vehicle: Vehicle) -> FlightRecord:
 
 def resting(record: FlightRecord, vehicle: Vehicle) -> np.ndarray:
     """Return whether the vehicle stands or is carried at each sample, (N,) of bool."""
-    stood = standing(record, vehicle)
-    return stood | carried(record, vehicle, stood) | unflown(record, vehicle)
+    with np.errstate(all='ignore'):     # values so large that another check refuses them
+        stood = standing(record, vehicle)
+        return stood | carried(record, vehicle, stood) | unflown(record, vehicle)
 
 
 def _kept(record: FlightRecord, rests: np.ndarray) -> list[tuple[int, int]]:

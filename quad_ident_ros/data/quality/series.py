@@ -5,6 +5,8 @@
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.ndimage import maximum_filter1d
+from scipy.signal import fftconvolve
 
 from quad_ident_ros.data.frames import conjugate, continuous, multiply, rotate
 from quad_ident_ros.data.record import EULER, QUATERNION
@@ -15,6 +17,7 @@ GRAVITY = 9.81
 WIDTH = 0.2       # s, full width of the smoothing window
 GAP = 3.0         # median periods from which on a step in time is a gap
 MOST = 100_000    # samples that the checks look at: of more, one of so many, over the whole record
+DIRECT = 2001     # samples of a window, from which on Fourier transforms take fewer steps
 COARSEST = 0.1 * WIDTH  # s between them, however long a record is: smoothing needs a few
 
 
@@ -61,7 +64,8 @@ class Grid:
         t = t[t <= record.t[-1]]
         after = np.clip(np.searchsorted(record.t, t), 1, len(record) - 1)
         wide = record.t[after] - record.t[after - 1] > GAP * period
-        bad = np.convolve(wide, np.ones(2 * round(WIDTH / period) + 1), 'same') > 0.5
+        bad = maximum_filter1d(wide.view(np.uint8), 2 * round(WIDTH / period) + 1,
+                               mode='constant') > 0
         edge = max(1, round(WIDTH / period))
         good = ~bad
         good[:edge] = good[-edge:] = False
@@ -85,10 +89,12 @@ class Grid:
 
     def smooth(self, signal, width=WIDTH):
         """Return a signal (N, k) smoothed by a Hann window of a full width in s."""
-        half = max(1, round(width / 2 / self.period))
+        half = min(max(1, round(width / 2 / self.period)), len(signal))
         window = np.hanning(2 * half + 3)[1:-1]
         window /= window.sum()
         padded = np.pad(signal, ((half, half), (0, 0)), mode='edge')
+        if len(window) > DIRECT:
+            return fftconvolve(padded, window[:, None], 'valid', axes=0)
         return np.stack([np.convolve(column, window, 'valid') for column in padded.T], axis=-1)
 
     def derivative(self, signal):

@@ -10,6 +10,8 @@ from quad_ident_ros.data.quality.series import GAP
 from quad_ident_ros.data.record import CUT, NOTED
 
 COARSE = 0.025    # s between samples from which on commands change unseen between them
+SILENT = 0.9      # share of the time outside of bursts,
+AGAIN = 0.01      # in this share of the steps at least: of fewer each is a gap
 SLOWEST = 0.15    # s between samples: of a rollout of 0.5 s hardly more than its end is then seen
 
 
@@ -31,8 +33,32 @@ def slow(record, vehicle):
         'is right, record faster')]
 
 
+def bursts(record, vehicle):
+    """Find samples that are stamped on arrival, many at once."""
+    if not _in_bursts(record):
+        return []
+    steps = np.diff(record.t)
+    usual = float(np.median(steps))
+    silence = float(np.median(steps[steps > GAP * usual]))
+    return [Finding(
+        'bursts', 'error', 't',
+        f'the stamps come in bursts: {usual:.2g} s from one sample to the next, and between '
+        f'bursts {silence:.2g} s: samples were stamped when they arrived',
+        'stamp samples where they are measured, or spread the times of each burst evenly over '
+        'the time before it')]
+
+
+def _in_bursts(record):
+    """Whether nearly all of the time passes in a few of the steps, again and again."""
+    steps = np.diff(record.t)
+    wide = steps > GAP * np.median(steps)
+    return bool(wide.mean() >= AGAIN and steps[wide].sum() > SILENT * steps.sum())
+
+
 def gaps(record, vehicle):
     """Find steps in time of over three median periods."""
+    if _in_bursts(record):
+        return []
     steps, period = np.diff(record.t), record.period()
     wide = np.flatnonzero((steps > GAP * period)
                           & ~np.isin(record.t[1:], record.info.get('cuts', ())))

@@ -2,12 +2,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """Bags of ROS 2: of the recorder, and those of others by a mapping or by their types."""
 
-from quad_ident_ros.data.bag_file import told_kind
+from dataclasses import replace
+
+from quad_ident_ros.data.bag_file import BagFile, told_kind
 from quad_ident_ros.data.foreign import read_mapped_bag
 from quad_ident_ros.data.mapping import Mapping
 from quad_ident_ros.data.readers.bags import topics_of
 from quad_ident_ros.data.readers.base import Reader
-from quad_ident_ros.data.replay import is_recorded, read_bag
+from quad_ident_ros.data.replay import in_recording, is_recorded, read_bag
+
+NO_END = ('the bag has no end, as where its recorder was killed or the disk was full: read are '
+          'the messages before that')
 
 
 def tells(path, start):
@@ -18,8 +23,17 @@ def tells(path, start):
 def read(path, mapping=None, vehicle=None):
     """Return the flight records in a bag."""
     if mapping is None and is_recorded(path):
-        return read_bag(path)
-    return read_mapped_bag(path, mapping or Mapping())
+        records = read_bag(path)
+    else:
+        records = read_mapped_bag(path, mapping or Mapping())
+    with BagFile(in_recording(path)) as bag:
+        recovered = bag.recovered
+    return [_noted(record) for record in records] if recovered else records
+
+
+def _noted(record):
+    """Return a record of a bag without end, which says so."""
+    return replace(record, info={**record.info, 'notes': [*record.info.get('notes', ()), NO_END]})
 
 
 READER = Reader('rosbag2', 'a bag of ROS 2', tells, read, topics_of,

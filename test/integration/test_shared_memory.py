@@ -1,0 +1,61 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Shared memory of nodes that were killed is freed by the next start, and no other."""
+
+import fcntl
+import os
+import time
+
+from std_msgs.msg import String
+
+from quad_ident_ros.nodes.qos import latched
+from quad_ident_ros.nodes.shared_memory import FOLDER, free_abandoned, SEGMENT
+
+LONG_AGO = time.time() - 3600.0
+
+
+def segments(folder=FOLDER):
+    return {path.name for path in folder.iterdir() if SEGMENT.fullmatch(path.name)}
+
+
+def test_only_what_nobody_holds_is_removed(tmp_path):
+    names = [f'fastrtps_{k:016x}' for k in range(3)] + ['fastrtps_port7400', 'other']
+    for name in names:
+        (tmp_path / name).write_bytes(b'x')
+        (tmp_path / f'{name}_el').touch()
+        os.utime(tmp_path / f'{name}_el', (LONG_AGO, LONG_AGO))
+    os.utime(tmp_path / f'{names[2]}_el')       # just begun
+    with open(tmp_path / f'{names[1]}_el') as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        assert free_abandoned(tmp_path) == 1
+    assert {path.name for path in tmp_path.iterdir()} == {
+        entry for name in names[1:] for entry in (name, f'{name}_el')}
+    assert free_abandoned(tmp_path / 'none') == 0
+
+
+def test_a_node_that_starts_frees_what_a_killed_one_left(graph, processes):
+    before = segments()
+    process = processes.start('recorder')
+    statistics = graph.listen(String, 'recorder/statistics', latched())
+    graph.spin_until(lambda: statistics, 'the recorder')
+    mine = segments()
+    process.kill()
+    left = {name for name in segments() - before if name in mine and _is_free(name)}
+    assert left
+    for name in left:
+        os.utime(FOLDER / f'{name}_el', (LONG_AGO, LONG_AGO))
+    again = processes.start('recorder')
+    count = len(statistics)
+    graph.spin_until(lambda: len(statistics) > count, 'the next one')
+    assert not left & segments()
+    assert again.stop() == 0
+
+
+def _is_free(name):
+    """Return whether the process of a segment is gone."""
+    with open(FOLDER / f'{name}_el') as lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            return False
+    return True

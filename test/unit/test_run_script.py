@@ -1,0 +1,57 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What the script `run` does before Python starts."""
+
+import os
+from pathlib import Path
+import re
+import subprocess
+
+import pytest
+
+RUN = Path(__file__).parents[2] / 'run'
+
+
+def scratch(tmp_path):
+    """Return the folder that `run` takes among the temporary files, and what it says."""
+    text = RUN.read_text(encoding='utf-8')
+    parts = [re.search(rf'^{name}\(\) {{.*?^}}$', text, re.MULTILINE | re.DOTALL)[0]
+             for name in ('fail', 'own_scratch')]
+    said = re.search(r'^say\(\) .*$', text, re.MULTILINE)[0]
+    done = subprocess.run(['bash', '-euc', '\n'.join([said, *parts, 'own_scratch',
+                                                      'echo "$scratch"'])],
+                          capture_output=True, text=True, check=True,
+                          env={**os.environ, 'TMPDIR': str(tmp_path)})
+    return Path(done.stdout.strip()), done.stderr
+
+
+@pytest.fixture
+def usual(tmp_path):
+    return tmp_path / f'quad_ident_ros-{os.getuid()}'
+
+
+def test_the_folder_among_the_temporary_files_is_the_user_s_alone_and_stays(tmp_path, usual):
+    for _ in range(2):
+        assert scratch(tmp_path) == (usual, '')
+        assert usual.stat().st_mode & 0o777 == 0o700
+
+
+@pytest.mark.parametrize('kind', ['open', 'link', 'file', 'another'])
+def test_one_that_others_made_or_write_to_is_not_taken(tmp_path, usual, kind):
+    # It was taken, whoever had made it, and numba's pickles in it were executed.
+    if kind == 'open':
+        usual.mkdir()
+        usual.chmod(0o777)
+    elif kind == 'link':
+        (tmp_path / 'theirs').mkdir(mode=0o700)
+        usual.symlink_to(tmp_path / 'theirs')
+    elif kind == 'file':
+        usual.touch()
+    else:
+        if os.geteuid() != 0:
+            pytest.skip('only root can give a folder to another user')
+        usual.mkdir(mode=0o700)
+        os.chown(usual, 65534, 65534)
+    folder, said = scratch(tmp_path)
+    assert folder != usual and folder.parent == tmp_path and 'not for you alone' in said
+    assert folder.stat().st_mode & 0o777 == 0o700 and folder.stat().st_uid == os.getuid()
