@@ -19,9 +19,10 @@ from quad_ident_ros.errors import InputError
 SECTIONS = {'p1': 'performance.md', 'p2': 'performance.md', 'p3': 'performance.md',
             'scaling': 'performance.md', 'limit': 'performance.md', 'start': 'performance.md',
             'accuracy': 'accuracy.md', 'rollout': 'performance.md',
-            'diagnosis': 'performance.md', 'graph': 'performance.md', 'long': 'performance.md'}
-APART = ('accuracy', 'graph', 'long')   # only where they are asked for
-INSTALLED = ('graph', 'long')   # with the program as it is installed, in .venv; see ../run
+            'diagnosis': 'performance.md', 'graph': 'performance.md', 'long': 'performance.md',
+            'cautions': 'reliability.md'}
+APART = ('accuracy', 'graph', 'long', 'cautions')   # only where they are asked for
+INSTALLED = ('graph', 'long', 'cautions')    # as the program is installed, in .venv; see ../run
 PACKAGES = ('numpy', 'scipy', 'numba', 'pyswarms', 'mealpy', 'nevergrad', 'cma', 'pymoo',
             'sippy-unipi', 'rotorpy', 'mujoco', 'ros-jazzy-rclpy')
 
