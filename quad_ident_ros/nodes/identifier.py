@@ -10,6 +10,7 @@ import sys
 import numpy as np
 from std_msgs.msg import Bool, Float64MultiArray, String
 
+from quad_ident_ros.data.commands import with_inputs
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.identify.identify import identify, Settings
 from quad_ident_ros.identify.levy import LEAST, levy_sigma
@@ -19,6 +20,7 @@ from quad_ident_ros.identify.result import as_data, error_table, parameter_table
 from quad_ident_ros.identify.search import SwarmSettings
 from quad_ident_ros.identify.signals import FEWEST, OUTPUTS
 from quad_ident_ros.identify.vp import COMPLEX_PENALTY
+from quad_ident_ros.model.vehicle import load_vehicle
 from quad_ident_ros.nodes import process
 from quad_ident_ros.nodes.messages import OK, parameter_message, WARN
 from quad_ident_ros.nodes.parameters import help_text, ParameterSpec
@@ -51,6 +53,8 @@ SPECS = (
     ParameterSpec('initial_state', 'auto', 'State at the start of a record: rest, free '
                   '(estimated) or auto (rest where the record says so).',
                   choices=('auto', 'rest', 'free')),
+    ParameterSpec('vehicle', '', 'Name or file of the vehicle whose arm length makes U2 and U3 of '
+                  'moments, for records that do not say it; empty: these have no roll and pitch.'),
     ParameterSpec('trim', [], 'U1..U4 from which inputs count; empty: what the record says, or '
                   'its first sample.', length=(0, 4)),
     ParameterSpec('evaluations', 0, 'Evaluations of the objective per search, the same for each '
@@ -122,6 +126,9 @@ class Identifier(RecordWorker):
         values = self._config.values()
         run = self._tracker.update if self._continuous else identify
         records, settings = self._taken(), _settings(values)
+        if values['vehicle']:
+            vehicle = load_vehicle(values['vehicle'])
+            records = [with_inputs(record, vehicle) for record in records]
         window, order = values['window'], list(settings.methods)
 
         def on_progress(method, output, share):
@@ -179,6 +186,8 @@ class Identifier(RecordWorker):
 def _settings(values):
     """Return the Settings that parameter values stand for; raises InputError."""
     levy_sigma(values['lambda'])
+    if values['vehicle']:
+        load_vehicle(values['vehicle'])
     swarm = SwarmSettings(
         population=values['population'], generations=values['generations'],
         evaluations=values['evaluations'] or None, inertia=values['w'], c1=values['c1'],

@@ -70,8 +70,8 @@ Publishes (reliable; one stamp per sample on all five):
   altitude  geometry_msgs/PointStamped    point.z, m
   pose      geometry_msgs/PoseStamped     in the world (ENU)
   twist     geometry_msgs/TwistStamped    of the body, in body axes (FLU)
-  input     geometry_msgs/WrenchStamped   U1 in force.z (N); U2, U3 (N) and U4 (N m) in torque
-                                          x, y, z; the roll moment is l U2, l the arm length
+  input     geometry_msgs/WrenchStamped   on the body, in body axes: thrust in force.z (N), moments
+                                          in torque x, y, z (N m): l U2, l U3, U4, l the arm length
   run       std_msgs/String (latched)     JSON: what flies now, its stamps and provenance
   /clock    rosgraph_msgs/Clock           with publish_clock
 Subscribes: joined_until (std_msgs/UInt64): how far the recorders are, which full speed waits for

@@ -189,7 +189,7 @@ def test_only_some_topics(graph):
     graph.trigger('recorder/flush')
     graph.spin_until(lambda: records, 'the record')
     [record] = records.records()
-    assert sorted(record.columns) == ['pz', 'u1', 'u2', 'u3', 'u4']
+    assert sorted(record.columns) == ['moment_x', 'moment_y', 'pz', 'u1', 'u4']
     assert stamps_of(record).tolist() == stamps
 
 

@@ -12,6 +12,7 @@ from std_msgs.msg import String
 
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.experiment import fly, load_experiment
+from quad_ident_ros.model.vehicle import load_vehicle
 from quad_ident_ros.nodes.process import FastExecutor
 from quad_ident_ros.nodes.qos import latched
 from quad_ident_ros.nodes.recorder import Recorder
@@ -83,7 +84,10 @@ def check_content(heard, part, record):
     body = Rotation.from_quat(quaternion).inv().apply(world)
     np.testing.assert_allclose(rows('twist', lambda m: vector(m.twist.linear)), body, atol=1e-12)
     equal(rows('twist', lambda m: vector(m.twist.angular)), record.stack('wx', 'wy', 'wz'))
-    equal(rows('input', lambda m: (m.wrench.force.z, *vector(m.wrench.torque))), record.inputs())
+    # A true wrench: the moments (N m) about x and y are the arm length times U2 and U3.
+    arm = load_vehicle('paper_quadrotor').arm_length
+    equal(rows('input', lambda m: (m.wrench.force.z, *vector(m.wrench.torque))),
+          record.inputs() * [1.0, arm, arm, 1.0])
     assert not rows('input', lambda m: (m.wrench.force.x, m.wrench.force.y)).any()
     for topic, frame in {'attitude': 'world', 'altitude': 'world', 'pose': 'world',
                          'twist': 'base_link', 'input': 'base_link'}.items():
