@@ -9,7 +9,6 @@ from diagnostic_msgs.msg import DiagnosticArray
 import geometry_msgs.msg
 from rclpy.clock import Clock, ClockType
 from rclpy.event_handler import SubscriptionEventCallbacks
-from rclpy.node import Node
 from rclpy.serialization import deserialize_message
 from std_msgs.msg import Float64MultiArray, String, UInt64
 from std_srvs.srv import Trigger
@@ -38,6 +37,7 @@ from quad_ident_ros.nodes.mapped import (
     RECEIVED,
 )
 from quad_ident_ros.nodes.messages import diagnostics_message, ERROR, OK, record_message, WARN
+from quad_ident_ros.nodes.node import PackageNode
 from quad_ident_ros.nodes.parameters import help_text, NodeParameters, ParameterSpec
 from quad_ident_ros.nodes.qos import BEST_EFFORT, latched, LOSSLESS
 
@@ -97,7 +97,7 @@ Parameters (--ros-args -p NAME:=VALUE):
 {help_text(SPECS)}"""
 
 
-class Recorder(Node):
+class Recorder(PackageNode):
     """Buffers a flight and hands out records."""
 
     def __init__(self, **kwargs):

@@ -15,7 +15,6 @@ from geometry_msgs.msg import (
 import numpy as np
 from rclpy._rclpy_pybind11 import RCLError
 from rclpy.clock import Clock, ClockType
-from rclpy.node import Node
 from rosgraph_msgs.msg import Clock as ClockMessage
 from std_msgs.msg import String, UInt64
 from std_srvs.srv import Trigger
@@ -25,6 +24,7 @@ from quad_ident_ros.effects.registry import EFFECTS, from_entries
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.experiment import fly, load_experiment, NOISE_UNITS
 from quad_ident_ros.nodes import process
+from quad_ident_ros.nodes.node import PackageNode
 from quad_ident_ros.nodes.parameters import help_text, NodeParameters, ParameterSpec
 from quad_ident_ros.nodes.qos import latched, LOSSLESS, STREAM
 from quad_ident_ros.nodes.samples import SampleMessages, samples_of
@@ -82,7 +82,7 @@ Parameters (--ros-args -p NAME:=VALUE):
 {help_text(SPECS)}"""
 
 
-class Simulator(Node):
+class Simulator(PackageNode):
     """Flies the runs of an experiment one after the other and publishes their samples."""
 
     def __init__(self, **kwargs):
