@@ -3,7 +3,6 @@
 """Node `simulator`: flies an experiment and publishes what a vehicle would."""
 
 import sys
-import threading
 
 from geometry_msgs.msg import (
     PointStamped,
@@ -22,8 +21,9 @@ from std_srvs.srv import Trigger
 from quad_ident_ros.data.topics import JOINED_TOPIC, RUN_TOPIC, RunNotice
 from quad_ident_ros.effects.registry import EFFECTS, from_entries
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.experiment import fly, load_experiment, NOISE_UNITS
+from quad_ident_ros.experiment import load_experiment, NOISE_UNITS
 from quad_ident_ros.nodes import process
+from quad_ident_ros.nodes.flight_worker import FlightWorker
 from quad_ident_ros.nodes.node import PackageNode
 from quad_ident_ros.nodes.parameters import help_text, NodeParameters, ParameterSpec
 from quad_ident_ros.nodes.qos import latched, LOSSLESS, STREAM
@@ -118,7 +118,7 @@ class Simulator(PackageNode):
         self._worker = None
         self._notice = None
         self._epoch = 0
-        self._session = 0
+        self._session = None
         self._waiting = None
         self.done = False
         if self._config['autostart']:
@@ -217,10 +217,7 @@ class Simulator(PackageNode):
             self.get_logger().info('waiting for /clock', throttle_duration_sec=5.0)
 
     def _begin(self):
-        # Simulated time goes on where an experiment before it ended: stamps never go back.
-        if not self._config['publish_clock']:
-            self._epoch = max(self._epoch, self.get_clock().now().nanoseconds)
-        self._session = self._epoch
+        self._session = None
         self._next_run()
 
     def _next_run(self):
@@ -231,8 +228,8 @@ class Simulator(PackageNode):
             return
         run = self._queue.pop(0)
         values = self._config.values()
-        self._worker = _Worker(self._experiment, run, _noise(self._experiment, values),
-                               values['seed'])
+        self._worker = FlightWorker(self._experiment, run, _noise(self._experiment, values),
+                                    values['seed'])
         self._schedule(0.002, lambda: self._await_flight(run))
 
     def _await_flight(self, run):
@@ -262,6 +259,12 @@ class Simulator(PackageNode):
         if flight.status != 'complete':
             self.get_logger().warning(f'{run.name}: the model diverged at t = '
                                       f'{flight.end_time:.6g} s')
+        # Stamps begin now, for the flight has taken its time to compute; simulated time goes on
+        # where it was. They never go back.
+        if not self._config['publish_clock']:
+            self._epoch = max(self._epoch, self.get_clock().now().nanoseconds)
+        if self._session is None:
+            self._session = self._epoch
         self._stamps = self._epoch + np.rint(flight.record.t * 1e9).astype(np.int64)
         self._samples = samples_of(flight.record)
         period = round(experiment.period * 1e9)
@@ -334,40 +337,6 @@ def _noise(experiment, values):
     """Return the noise of an experiment with that of the parameter values in its place."""
     return {**experiment.noise, **{channel: values[f'noise.{channel}'] for channel in NOISE_UNITS
                                    if values[f'noise.{channel}'] >= 0}}
-
-
-class _Cancelled(Exception):
-    pass
-
-
-class _Worker(threading.Thread):
-    """Flies a run beside the executor; outcome is a Simulation or an InputError."""
-
-    def __init__(self, *flight):
-        super().__init__()
-        self._flight, self._cancelled = flight, threading.Event()
-        self.outcome = None
-        self.start()
-
-    def run(self):
-        """Fly."""
-        experiment, run, noise, seed = self._flight
-        try:
-            self.outcome = fly(experiment, run, noise=noise, seed=seed,
-                               on_progress=self._on_progress)
-        except InputError as error:
-            self.outcome = error
-        except _Cancelled:
-            pass
-
-    def cancel(self):
-        """End the flight soon, and wait until it has ended."""
-        self._cancelled.set()
-        self.join()
-
-    def _on_progress(self, _):
-        if self._cancelled.is_set():
-            raise _Cancelled
 
 
 def main(args=None):

@@ -228,6 +228,9 @@ def test_pace_comes_from_an_external_clock(graph, short):
     np.testing.assert_array_equal(stamps_of(heard['pose']), begin + PERIOD * np.arange(11))
     show(begin + 10 ** 9)
     await_samples(graph, heard, 51)
+    # The stamps of the second flight do not fall behind the time at which it begins.
+    graph.spin_until(lambda: len(runs) == 2, 'the second flight')
+    assert runs.data()[1]['start_ns'] == begin + 10 ** 9
     show(begin + 10 ** 10)
     await_samples(graph, heard, 52)
     show(begin + 10 ** 10 + 10 ** 9)
