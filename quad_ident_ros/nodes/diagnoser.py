@@ -48,7 +48,7 @@ SPECS = (
 HELP = f"""diagnoser: says which effects a vehicle has beside its nominal description.
 
   ros2 run quad_ident_ros diagnoser --ros-args -p vehicle:=hummingbird
-  ros2 topic echo /diagnosis --once
+  ros2 topic echo /diagnosis --once --full-length --field data
   ros2 service call /diagnoser/diagnose std_srvs/srv/Trigger
 
 Subscribes: record (std_msgs/Float64MultiArray, latched) of the recorder, which joins pose, twist

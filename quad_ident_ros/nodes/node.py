@@ -17,6 +17,10 @@ class PackageNode(Node):
     may be set to what it is, so that a node takes its own dump.
     """
 
+    def ready(self):
+        """Return what the node does, for the line of log that says that it does it."""
+        raise NotImplementedError
+
     def set_parameters_atomically(self, parameter_list):
         """Set parameters as Node does, also empty lists and fixed ones that stay the same."""
         wanted = [self._typed(parameter) for parameter in parameter_list]

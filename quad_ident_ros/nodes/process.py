@@ -82,6 +82,7 @@ def _run(node_class, args, executor_class):
         _check_parameter_files(args, node)
         executor = executor_class()
         executor.add_node(node)
+        node.get_logger().info(f'ready: {node.ready()}')
         while not stop and is_wanted():
             executor.spin_once(timeout_sec=0.1)
     finally:

@@ -54,6 +54,11 @@ class RecordWorker(PackageNode):
         self.create_timer(1.0, self._report, clock=Clock(clock_type=ClockType.STEADY_TIME))
         self.create_subscription(Float64MultiArray, 'record', self._on_record, latched(16))
 
+    def ready(self):
+        """Say what is worked on, and when."""
+        topic = self.resolve_topic_name('record')
+        return f'{self._words.doing} what comes on {topic}, mode {self._config["mode"]}'
+
     def close(self):
         """End the work that is being done."""
         self._job.close()

@@ -15,7 +15,6 @@ from std_srvs.srv import Trigger
 
 from quad_ident_ros.data.buffer import Limits, RecordBuffer
 from quad_ident_ros.data.flight_joiner import FlightJoiner
-from quad_ident_ros.data.mapping import load_mapping
 from quad_ident_ros.data.recording import Recording
 from quad_ident_ros.data.stream_joiner import StreamJoiner
 from quad_ident_ros.data.topics import (
@@ -29,17 +28,12 @@ from quad_ident_ros.data.topics import (
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.nodes import process
 from quad_ident_ros.nodes.losses import Losses
-from quad_ident_ros.nodes.mapped import (
-    KNOWN,
-    known_mapping,
-    MappedTopics,
-    message_class,
-    RECEIVED,
-)
+from quad_ident_ros.nodes.mapped import message_class, RECEIVED
 from quad_ident_ros.nodes.messages import diagnostics_message, ERROR, OK, record_message, WARN
 from quad_ident_ros.nodes.node import PackageNode
-from quad_ident_ros.nodes.parameters import help_text, NodeParameters, ParameterSpec
+from quad_ident_ros.nodes.parameters import help_text, NodeParameters
 from quad_ident_ros.nodes.qos import BEST_EFFORT, latched, LOSSLESS
+from quad_ident_ros.nodes.recorder_parameters import mapped_topics, SPECS, validate
 
 FLUSH_PERIOD = 0.5   # s; a kill -9 loses at most this much of a recording
 QUIET = 0.5          # s after the last message when the middleware is asked what it lost
@@ -50,26 +44,6 @@ IDLE = 15.0          # s when something may, after which what is incomplete is g
 NO_ROW = 2.0         # s with messages but without a joined row, after which that is said
 KEPT_RECORDS = 16    # records that a late identifier still gets
 NEWS = 10.0          # s between two lines of log on windows that slide
-
-SPECS = (
-    ParameterSpec('topics', tuple(FLIGHT_TOPICS), 'Topics that a row needs: of the first five, '
-                  'or of the last three.', choices=(*FLIGHT_TOPICS, *KNOWN), fixed=True),
-    ParameterSpec('mapping', '', 'File that says which topics of any installed type are what, as '
-                  'for bags (docs/records.md); empty: the topics of the parameter topics.',
-                  fixed=True),
-    ParameterSpec('gap', 0.1, 'Seconds between two samples of a topic of other rate or stamps '
-                  'beyond which rows between them are dropped, where stamps are not equal.',
-                  limits=(0.001, 10.0), fixed=True),
-    ParameterSpec('window_samples', 60000, 'Samples after which a window is complete.',
-                  limits=(2, 10_000_000), fixed=True),
-    ParameterSpec('window_seconds', 600.0, 'Seconds after which a window is complete.',
-                  limits=(0.01, 1e6), fixed=True),
-    ParameterSpec('overlap', 0.0, 'Share of a full window that the next one keeps: 0.9 publishes '
-                  'a sliding window ten times per window length.', limits=(0.0, 0.999),
-                  fixed=True),
-    ParameterSpec('output', '', 'Folder for recordings (a bag and CSV files in a new '
-                  'recording_N); empty records in memory only.', fixed=True),
-)
 
 HELP = f"""recorder: joins the topics of a flight into records, keeps and publishes them.
 
@@ -102,9 +76,9 @@ class Recorder(PackageNode):
 
     def __init__(self, **kwargs):
         super().__init__('recorder', **kwargs)
-        self._config = NodeParameters(self, SPECS, _validate)
+        self._config = NodeParameters(self, SPECS, validate)
         parameters = self._config
-        self._mapped = _mapped(parameters)
+        self._mapped = mapped_topics(parameters)
         if self._mapped is None:
             self._topics = tuple(parameters['topics'])
             self._joiner = FlightJoiner(self._topics, parameters['gap'])
@@ -148,6 +122,10 @@ class Recorder(PackageNode):
         self.create_timer(FLUSH_PERIOD, self._on_flush_timer, clock=self._steady)
         self.create_timer(1.0, self._report, clock=self._steady)
         self._report()
+
+    def ready(self):
+        """Say what is joined, and where it goes."""
+        return f'joins {", ".join(self._topics)}; {self._config["output"] or "in memory only"}'
 
     @property
     def counts(self):
@@ -421,23 +399,6 @@ class Recorder(PackageNode):
         if self._disk_error:
             level, text = ERROR, self._disk_error
         self._diagnostics.publish(diagnostics_message(self, level, text, data))
-
-
-def _mapped(parameters):
-    """Return the MappedTopics of the parameters, or None for the topics of the simulator."""
-    if parameters['mapping']:
-        path = parameters['mapping']
-        return MappedTopics(load_mapping(path), path)
-    names = [name for name in parameters['topics'] if name in KNOWN]
-    return MappedTopics(known_mapping(names), 'parameter topics') if names else None
-
-
-def _validate(values):
-    if not values['topics'] or len(set(values['topics'])) != len(values['topics']):
-        raise InputError('parameter topics: name at least one topic, and each once')
-    if 0 < sum(name in KNOWN for name in values['topics']) < len(values['topics']):
-        raise InputError(f'parameter topics: {", ".join(KNOWN)} do not go with the others, which '
-                         'are joined by equal stamps; name only these, or a mapping')
 
 
 def main(args=None):

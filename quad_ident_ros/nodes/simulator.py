@@ -124,6 +124,11 @@ class Simulator(PackageNode):
         if self._config['autostart']:
             self.start()
 
+    def ready(self):
+        """Say what flies, and when."""
+        what = self._config['experiment']
+        return f'flies {what}' if self._config['autostart'] else f'flies {what} on ~/start'
+
     def start(self):
         """Begin the experiment anew, with the parameters as they are now."""
         experiment = self._load(self._config.values())
