@@ -26,6 +26,7 @@ from quad_ident_ros.nodes.messages import OK, parameter_message, WARN
 from quad_ident_ros.nodes.parameters import help_text, ParameterSpec
 from quad_ident_ros.nodes.qos import latched
 from quad_ident_ros.nodes.record_worker import RecordWorker, Words
+from quad_ident_ros.nodes.stamped import StampedParameters
 from quad_ident_ros.warm_up import warm_up
 
 WORDS = Words('identify', 'fit', 'fitting', 'fitted')
@@ -89,6 +90,10 @@ Publishes (latched, but progress and diagnostics):
   parameters/<method>  std_msgs/Float64MultiArray  the same of one method ({', '.join(METHODS)})
   standard_errors      std_msgs/Float64MultiArray  their standard errors
   changed              std_msgs/Bool               mode continuous: the vehicle changed
+  change               diagnostic_msgs/DiagnosticArray  each change: when, which output, what was
+                                                   before and after; 10 deep
+  outputs/<output>     geometry_msgs/Vector3Stamped  K, a, b in x, y, z, best method, stamped as
+                       the last sample; outputs/<output>/standard_errors their errors
   parameters_json      std_msgs/String             everything: units, standard errors, metrics, ...
   ~/progress           std_msgs/String             JSON: method, output, fraction
   /diagnostics         diagnostic_msgs/DiagnosticArray
@@ -110,6 +115,7 @@ class Identifier(RecordWorker):
         self._errors = self.create_publisher(Float64MultiArray, 'standard_errors', latched())
         self._changed = self.create_publisher(Bool, 'changed', latched())
         self._json = self.create_publisher(String, 'parameters_json', latched())
+        self._stamped = StampedParameters(self)
         self._tracker = Tracker()
 
     def _unfit(self, record):
@@ -154,6 +160,7 @@ class Identifier(RecordWorker):
         best = result.methods[result.best]
         self._best.publish(parameter_message(parameter_table(best)))
         self._errors.publish(parameter_message(error_table(best)))
+        self._stamped.publish(result)
         self._changed.publish(Bool(data=bool(result.changes)))
         data = {**as_data(result), 'time': datetime.now(timezone.utc).isoformat()}
         self._json.publish(String(data=json.dumps(data)))

@@ -99,8 +99,11 @@ def planned(nodes: Sequence[str], arguments: Sequence[Argument], values: Mapping
     if sim_time:
         for node in started:
             given[node]['publish_clock' if node == SIMULATOR else 'use_sim_time'] = True
+    space = values.get(NAMESPACE.name, '').strip('/')
+    if space and simulate:
+        given[SIMULATOR]['frame_prefix'] = f'{space}/'
     # Two simulators, each in its namespace, have two times.
-    clock = ('-r', '/clock:=clock') if sim_time and simulate and values.get('namespace') else ()
+    clock = ('-r', '/clock:=clock') if sim_time and simulate and space else ()
     usual = usual if simulate else {}
     return [Planned(node, (*_words(usual.get(node, {})), *_file(path, node, values, started),
                            *_words(given[node]), *clock)) for node in started]

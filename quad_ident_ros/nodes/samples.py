@@ -33,15 +33,15 @@ def samples_of(record):
 
 
 class SampleMessages:
-    """The messages of one sample, made once and filled for each."""
+    """The messages of one sample, made once and filled for each; prefix: of the body's frame."""
 
-    def __init__(self):
+    def __init__(self, prefix=''):
         self.attitude, self.altitude, self.pose = Vector3Stamped(), PointStamped(), PoseStamped()
         self.twist, self.input, self.clock = TwistStamped(), WrenchStamped(), Clock()
         for message in (self.attitude, self.altitude, self.pose):
             message.header.frame_id = WORLD_FRAME
         for message in (self.twist, self.input):
-            message.header.frame_id = BODY_FRAME
+            message.header.frame_id = prefix + BODY_FRAME
 
     def fill(self, stamp_ns, row):
         """Write a stamp (ns) and a row of samples_of into the messages."""

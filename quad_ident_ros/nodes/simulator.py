@@ -54,6 +54,8 @@ SPECS = (
                   'subscriptions have settled, so that nothing is missed.', fixed=True),
     ParameterSpec('seed', 0, 'Seed of the measurement noise, in closed loop of the trajectories '
                   'too.', limits=(0, 2 ** 31)),
+    ParameterSpec('frame_prefix', '', "Before the name of the body's frame, base_link: uav1/ "
+                  'gives uav1/base_link. The world is common to all.', fixed=True),
     *(ParameterSpec(f'noise.{channel}', -1.0, f'Standard deviation of the {channel} noise, '
                     f"{unit}; negative keeps the experiment's.", limits=(-1.0, 1e6))
       for channel, unit in NOISE_UNITS.items()),
@@ -112,7 +114,7 @@ class Simulator(PackageNode):
         self._joined = self.create_subscription(UInt64, JOINED_TOPIC, self._on_joined, 10)
         self._joined_until = 0
         self._news = 0
-        self._messages = SampleMessages()
+        self._messages = SampleMessages(self._config['frame_prefix'])
         self._queue = []
         self._timer = None
         self._worker = None

@@ -65,7 +65,7 @@ def test_topics_carry_the_state_with_one_stamp(graph, short):
     assert stamps[51] > stamps[50] + PERIOD   # a gap, so that nobody takes them for one flight
 
 
-def check_content(heard, part, record):
+def check_content(heard, part, record, prefix=''):
     """Compare messages, by their fields, with what the library flew."""
     def rows(topic, read):
         return np.array([read(message) for message in heard[topic][part]])
@@ -90,7 +90,8 @@ def check_content(heard, part, record):
           record.inputs() * [1.0, arm, arm, 1.0])
     assert not rows('input', lambda m: (m.wrench.force.x, m.wrench.force.y)).any()
     for topic, frame in {'attitude': 'world', 'altitude': 'world', 'pose': 'world',
-                         'twist': 'base_link', 'input': 'base_link'}.items():
+                         'twist': f'{prefix}base_link',
+                         'input': f'{prefix}base_link'}.items():
         assert {message.header.frame_id for message in heard[topic][part]} == {frame}
 
 
@@ -244,10 +245,10 @@ def test_namespace_and_remapping(graph, short):
     plain = listen(graph, '/')
     runs = notices(graph, '/fleet/one/')
     graph.start(Simulator, {'experiment': short, 'real_time_factor': 0.0}, namespace='fleet/one',
-                arguments=['-r', 'attitude:=/imu/angles'])
+                arguments=['-r', 'attitude:=/imu/angles', '-p', 'frame_prefix:=one/'])
     await_samples(graph, heard, 102)
     assert len(runs) == 2
-    check_content(heard, slice(0, 51), truth(short))
+    check_content(heard, slice(0, 51), truth(short), 'one/')
     assert not any(plain.values())
     names = [name for name, _ in graph.probe.get_topic_names_and_types()]
     assert '/fleet/one/attitude' not in names

@@ -79,6 +79,7 @@ def test_a_parameter_file_goes_to_those_whom_it_names(tmp_path):
     plan = tables.plan(params_file=str(path), overlap='0.5', namespace='uav1')
     assert plan['recorder'] == ['--params-file', str(path), '-p', 'overlap:=0.5']
     assert plan['diagnoser'] == ['-p', 'vehicle:="hummingbird"']
+    assert 'frame_prefix:="uav1/"' in plan['simulator']
     path.write_text('/uav2/recorder:\n  ros__parameters:\n    window_samples: 30\n')
     with pytest.raises(InputError, match='nothing in .* is for simulator, recorder, diagnoser'):
         tables.plan(params_file=str(path), namespace='uav1')
