@@ -7,6 +7,7 @@ import sys
 
 from diagnostic_msgs.msg import DiagnosticArray
 import geometry_msgs.msg
+from rclpy._rclpy_pybind11 import RCLError
 from rclpy.clock import Clock, ClockType
 from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.serialization import deserialize_message
@@ -31,6 +32,7 @@ from quad_ident_ros.nodes.losses import Losses
 from quad_ident_ros.nodes.mapped import message_class, RECEIVED
 from quad_ident_ros.nodes.messages import diagnostics_message, ERROR, OK, record_message, WARN
 from quad_ident_ros.nodes.node import PackageNode
+from quad_ident_ros.nodes.other_types import one_topic_for_two, other_type
 from quad_ident_ros.nodes.parameters import help_text, NodeParameters
 from quad_ident_ros.nodes.qos import BEST_EFFORT, latched, LOSSLESS
 from quad_ident_ros.nodes.recorder_parameters import mapped_topics, SPECS, validate
@@ -99,6 +101,7 @@ class Recorder(PackageNode):
         self._disk_error = None
         self._trouble = None
         self._unreadable = None
+        self._misnamed = False
         self._record_publisher = self.create_publisher(Float64MultiArray, 'record',
                                                        latched(KEPT_RECORDS))
         self._statistics = self.create_publisher(String, '~/statistics', latched())
@@ -195,9 +198,14 @@ class Recorder(PackageNode):
             refused = event.total_count
             self._refused.append(name)
 
-        subscription = self.create_subscription(
-            kind, name, on_message, quality, raw=True,
-            event_callbacks=SubscriptionEventCallbacks(incompatible_qos=on_incompatible))
+        try:
+            subscription = self.create_subscription(
+                kind, name, on_message, quality, raw=True,
+                event_callbacks=SubscriptionEventCallbacks(incompatible_qos=on_incompatible))
+        except RCLError:
+            if self._mapped is not None:
+                raise
+            raise InputError(one_topic_for_two(self, name, self._topics)) from None
         self._subscriptions_by_topic[name] = subscription
         self._losses[name] = Losses(subscription)
 
@@ -359,6 +367,8 @@ class Recorder(PackageNode):
         received = self.counts.received
         news = {name: received[name] - self._heard[name] for name in self._topics}
         self._heard = dict(received)
+        if self._another_type():
+            return
         now = self._steady.now().nanoseconds
         if self._last_row is None and any(news.values()):
             self._last_row = now   # the first messages: rows may take their time from here
@@ -379,6 +389,19 @@ class Recorder(PackageNode):
                                    if silent else apart)
         self._trouble = f'no sample has been joined for {silence:.0f} s: {why}'
         self.get_logger().warning(self._trouble, throttle_duration_sec=10.0)
+
+    def _another_type(self):
+        """Say which silent topic is of another type, if one is, and return whether."""
+        silent = () if self._mapped is not None else (
+            name for name in self._topics if not self.counts.received[name])
+        trouble = next(filter(None, (other_type(self, name) for name in silent)), None)
+        if trouble:
+            self._trouble = trouble
+            self.get_logger().error(trouble, throttle_duration_sec=10.0)
+        elif self._misnamed:
+            self._trouble = None
+        self._misnamed = bool(trouble)
+        return self._misnamed
 
     def _report(self):
         self._look_for_trouble()
