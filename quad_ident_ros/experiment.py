@@ -95,7 +95,6 @@ class Experiment:
             return None
         return mixing.infeasibility(self.vehicle, self.input_signals(run), self.sample_times(run))
 
-
     def with_effects(self, effects, where='effects'):
         """Return the experiment whose vehicle has {effect: {parameter: value}}; InputError."""
         theta = registry.vector(effects, self.vehicle, where)

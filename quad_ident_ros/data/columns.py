@@ -187,5 +187,3 @@ def _kept(table: Table, chosen: Pairs, columns: Pairs, stamps: np.ndarray, known
             continue
         kept[name] = values[known][order][at]
     return kept
-
-

@@ -132,7 +132,7 @@ class Recorder(PackageNode):
 
     @property
     def counts(self):
-        """The account of the messages (data.joiner.Counts)."""
+        """Return the account of the messages (data.joiner.Counts)."""
         return self._joiner.counts
 
     def close(self):

@@ -142,7 +142,7 @@ def test_a_window_is_complete_when_it_is_full(graph, parameters):
     await_joined(graph, recorder, 100)
     graph.spin_until(lambda: len(records) == 2, 'two records')
     assert [stamps_of(record).tolist() for record in records.records()] == [stamps[:40],
-                                                                           stamps[40:80]]
+                                                                            stamps[40:80]]
     graph.trigger('recorder/flush')
     graph.spin_until(lambda: len(records) == 3, 'the rest')
     assert stamps_of(records.records()[2]).tolist() == stamps[80:]

@@ -54,8 +54,7 @@ def test_any_record_survives_every_format(tmp_path_factory, names, data):
     for step in ('a.csv', 'b.mcap', 'c.csv.gz', 'd', 'e.csv'):
         save(folder / step, last)
         last = load(folder / step)
-        same(last, FlightRecord(record.t, {name: values for name, values in
-                                           record.columns.items()}))
+        same(last, FlightRecord(record.t, dict(record.columns)))
 
 
 def test_a_written_bag_has_the_topics_that_people_know(tmp_path):
