@@ -60,7 +60,7 @@ class Score:
 
     @property
     def spent(self):
-        """Evaluations, as text."""
+        """Return the evaluations as text."""
         known = [count for count in self.evaluations if count]
         return number(float(np.median(known)), 4) if known else '–'
 

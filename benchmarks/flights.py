@@ -43,13 +43,13 @@ class FlightProblem:
 
     @cached_property
     def clean(self):
-        """The record without noise."""
+        """Return the record without noise."""
         return fly_closed_loop(self.vehicle, {}, self.trajectory, duration=SECONDS, rate=RATE,
                                seed=self.number)
 
     @property
     def truth(self):
-        """The constants of NAMES but the mass, (7,)."""
+        """Return the constants of NAMES but the mass, (7,)."""
         return nominal(self.vehicle)[[INDEX[name] for name in NAMES[1:]]]
 
     def draw(self, seed):
@@ -79,7 +79,7 @@ class FlightProblem:
     @cached_property
     def bound(self):
         """
-        The Cramer-Rao bound of the standard deviations of NAMES but the mass, (7,).
+        Return the Cramer-Rao bound of the standard deviations of NAMES but the mass, (7,).
 
         The initial states of the rollouts are unknown as well. From central differences of
         predictions; nothing here comes from the estimation.

@@ -30,7 +30,7 @@ class Joint:
         return np.stack([gain, a + b, a * b], axis=2)
 
     def cost(self, points):
-        """Return the cost (n,) of points (n, dimension) of the unit box."""
+        """Return the cost, (n,), of points (n, dimension) of the unit box."""
         models = self.models(points)
         return sum(objective.of_models(*models[:, i].T)
                    for i, objective in enumerate(self.objectives))

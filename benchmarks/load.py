@@ -71,7 +71,7 @@ class Vehicle:
 
     @property
     def lacking(self):
-        """Samples that are in no record."""
+        """Return the samples that are in no record."""
         return len(np.setdiff1d(even_stamps(self.run), np.concatenate(self.stamps)))
 
     @property

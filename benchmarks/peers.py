@@ -96,6 +96,7 @@ def _pymoo(algorithm, tracker, seed):
     from pymoo.optimize import minimize
 
     class Box(Problem):
+
         def __init__(self):
             super().__init__(n_var=tracker.joint.dimension, n_obj=1, xl=0.0, xu=1.0)
 

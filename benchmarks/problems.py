@@ -44,28 +44,28 @@ class Problem:
 
     @cached_property
     def t(self):
-        """Times of the samples, (N,) s."""
+        """Return the times of the samples, (N,) s."""
         return PERIOD * np.arange(self.samples)
 
     @cached_property
     def u(self):
-        """The input, (N,)."""
+        """Return the input, (N,)."""
         return excite(self.title, INPUTS[self.excitation], self.t)
 
     @cached_property
     def clean(self):
-        """The responses without noise, one (N,) per output."""
+        """Return the responses without noise, one (N,) per output."""
         return [response(truth.gain, truth.c1, truth.c0, self.u, PERIOD)
                 for truth in self.truths]
 
     @cached_property
     def deviations(self):
-        """Standard deviation of the noise of each output."""
+        """Return the standard deviation of the noise of each output."""
         return [self.share * np.ptp(y) for y in self.clean]
 
     @cached_property
     def bounds(self):
-        """The Bound of each output."""
+        """Return the Bound of each output."""
         return [bound(truth, self.u, PERIOD, deviation)
                 for truth, deviation in zip(self.truths, self.deviations, strict=True)]
 

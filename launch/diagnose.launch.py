@@ -1,34 +1,28 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Start the simulator, the recorder and the diagnoser side by side."""
+"""Start the recorder and the diagnoser, and the simulator or nothing in a vehicle's place."""
 
+from quad_ident_ros.nodes.launch_plan import Argument, COMMON
 from quad_ident_ros.nodes.launching import describe
 
-# Name, default, description and type of each argument.
+NODES = ('simulator', 'recorder', 'diagnoser')
 ARGUMENTS = (
-    ('namespace', '', 'Namespace of the nodes and of their topics.', str),
-    ('experiment', 'closed_loop', 'Name of an experiment or path of its file.', str),
-    ('reality', '', "Vehicle that flies, name or file with effects; empty: the experiment's.",
-     str),
-    ('vehicle', 'hummingbird', 'Name or file of the nominal vehicle, without effects.', str),
-    ('real_time_factor', '1.0', 'Simulated seconds per second; 0.0: as fast as it goes.', float),
-    ('use_sim_time', 'false', 'Publish the simulated time on /clock and follow it.', bool),
-    ('output', '', 'Folder for recordings; empty: nothing is written.', str),
-    ('mode', 'once', 'Diagnose once, or continuous.', str),
+    *COMMON,
+    Argument('vehicle', 'Nominal vehicle without effects, by name or file.', str,
+             (('diagnoser', 'vehicle'),)),
+    Argument('reality', 'Vehicle that the simulator flies, by name or file.', str,
+             (('simulator', 'vehicle'),)),
+    Argument('seed', 'Seed of the noise and of the trajectories.', int,
+             (('simulator', 'seed'),)),
+    Argument('mode', 'once, or continuous.', str, (('diagnoser', 'mode'),)),
+    Argument('window', 'Seconds at the end of a record that are diagnosed.', float,
+             (('diagnoser', 'window'),)),
+    Argument('tolerance', "Gaps that do not matter, for example ['velocity=0.1'].", list,
+             (('diagnoser', 'tolerance'),)),
 )
-# The parameters of each node, and the arguments that they come from.
-NODES = {
-    'simulator': {
-        'experiment': 'experiment',
-        'vehicle': 'reality',
-        'real_time_factor': 'real_time_factor',
-        'publish_clock': 'use_sim_time',
-    },
-    'recorder': {'use_sim_time': 'use_sim_time', 'output': 'output'},
-    'diagnoser': {'use_sim_time': 'use_sim_time', 'vehicle': 'vehicle', 'mode': 'mode'},
-}
+USUAL = {'simulator': {'experiment': 'closed_loop'}, 'diagnoser': {'vehicle': 'hummingbird'}}
 
 
 def generate_launch_description():
     """Describe the arguments and the nodes."""
-    return describe(ARGUMENTS, NODES)
+    return describe(NODES, ARGUMENTS, USUAL)

@@ -1,32 +1,27 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Start the simulator, the recorder and the identifier side by side."""
+"""Start the recorder and the identifier, and the simulator or nothing in a vehicle's place."""
 
+from quad_ident_ros.nodes.launch_plan import Argument, COMMON
 from quad_ident_ros.nodes.launching import describe
 
-# Name, default, description and type of each argument.
+NODES = ('simulator', 'recorder', 'identifier')
 ARGUMENTS = (
-    ('namespace', '', 'Namespace of the nodes and of their topics.', str),
-    ('experiment', 'hover_single_axis', 'Name of an experiment or path of its file.', str),
-    ('vehicle', '', "Name of a vehicle or path of its file; empty: the experiment's.", str),
-    ('real_time_factor', '1.0', 'Simulated seconds per second; 0.0: as fast as it goes.', float),
-    ('use_sim_time', 'false', 'Publish the simulated time on /clock and follow it.', bool),
-    ('output', '', 'Folder for recordings; empty: nothing is written.', str),
-    ('method', 'all', 'Method of identification, or all.', str),
+    *COMMON,
+    Argument('vehicle', 'Vehicle that flies, by name or file.', str,
+             (('simulator', 'vehicle'), ('identifier', 'vehicle'))),
+    Argument('seed', 'Seed of the noise and of the searches.', int,
+             (('simulator', 'seed'), ('identifier', 'seed'))),
+    Argument('method', 'Method of identification, or all.', str, (('identifier', 'method'),)),
+    Argument('mode', 'once, or continuous.', str, (('identifier', 'mode'),)),
+    Argument('window', 'Seconds at the end of a record that are fitted.', float,
+             (('identifier', 'window'),)),
+    Argument('trim', 'U1..U4 from which inputs count, for example [6.4, 0, 0, 0].', list,
+             (('identifier', 'trim'),)),
 )
-# The parameters of each node, and the arguments that they come from.
-NODES = {
-    'simulator': {
-        'experiment': 'experiment',
-        'vehicle': 'vehicle',
-        'real_time_factor': 'real_time_factor',
-        'publish_clock': 'use_sim_time',
-    },
-    'recorder': {'use_sim_time': 'use_sim_time', 'output': 'output'},
-    'identifier': {'use_sim_time': 'use_sim_time', 'method': 'method'},
-}
+USUAL = {}
 
 
 def generate_launch_description():
     """Describe the arguments and the nodes."""
-    return describe(ARGUMENTS, NODES)
+    return describe(NODES, ARGUMENTS, USUAL)

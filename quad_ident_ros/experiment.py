@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, fields, replace
 import numpy as np
 
 from quad_ident_ros import __version__, resources, schema
-from quad_ident_ros.data.record import FlightRecord
+from quad_ident_ros.data.record import ARM, FlightRecord
 from quad_ident_ros.effects import registry
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.excitation import excite
@@ -94,7 +94,6 @@ class Experiment:
         if self.model == CLOSED_LOOP:
             return None
         return mixing.infeasibility(self.vehicle, self.input_signals(run), self.sample_times(run))
-
 
     def with_effects(self, effects, where='effects'):
         """Return the experiment whose vehicle has {effect: {parameter: value}}; InputError."""
@@ -222,6 +221,7 @@ def fly(experiment, run, *, noise=None, seed=0, on_progress=lambda share: None):
         'starts_at_rest': True, 'unwrapped': True, 'infeasible': experiment.infeasible(run),
         'noise': dict(noise),
         'seed': seed, 'step': experiment.step or LONGEST_STEP[experiment.model],
+        ARM: experiment.vehicle.arm_length,
         'version': __version__}
     omega_r = omega_r_of(experiment.omega_r, experiment.vehicle, inputs, t,
                          experiment.omega_r_sign)
@@ -253,6 +253,7 @@ def _fly_closed_loop(experiment, run, noise, seed):
             'trajectory': run.trajectory, 'sensors': run.sensors, 'noise': dict(noise),
             'trim': experiment.trim_input().tolist(), 'starts_at_rest': False,
             'unwrapped': True, 'infeasible': None, 'seed': seed, 'status': 'complete',
+            ARM: nominal.arm_length,
             'end_time': float(record.t[-1]), 'version': __version__}
     return Simulation(FlightRecord(record.t, columns, info), 'complete', float(record.t[-1]))
 

@@ -223,7 +223,7 @@ def px4_samples(record, outputs=None, motors=None, every=1):
                                    ('actuator_motors', motors, 12)):
             if table is not None:
                 found.append((topic, 0, stamp, [*table[k], *[float('nan')] * (size
-                                                                         - len(table[k]))]))
+                                                                              - len(table[k]))]))
     return found
 
 

@@ -19,10 +19,10 @@ States are those of the vehicle's own centre of mass, without the payload.
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
+import tomllib
 
 import mujoco
 import numpy as np
-import tomllib
 
 from withheld.actuators import Motor
 from withheld.constants import GRAVITY, hover_speed, rotation_of

@@ -49,7 +49,7 @@ class Curve:
             t = np.arange(0.0, FLOWN, GRID)
             pulls = CubicSpline(t, size * self.at(pace * t)[:, :2]).derivative(2)(t)
             low, high = (pace, high) if np.sqrt(np.mean(pulls ** 2)) < acceleration else (low,
-                                                                                         pace)
+                                                                                          pace)
         return low
 
     def _limit(self, turn: float, acceleration: float) -> None:

@@ -25,7 +25,7 @@ GRID, LONGEST = 0.01, 60.0      # s: of the series, and how long a flight is at 
 
 
 def lengths(height):
-    """Return the lengths (3,) m of the gusts along, across and up at a height m over ground."""
+    """Return the lengths, (3,) m, of the gusts along, across and up at a height m over ground."""
     feet = np.clip(height / FOOT, LOWEST, HIGHEST)
     flat = FOOT * feet / (0.177 + 0.000823 * feet) ** 1.2
     return np.array([flat, flat, FOOT * feet])

@@ -57,7 +57,7 @@ class Nominal:
 
 
 def errors(states, predicted):
-    """Return the errors (B, 12) of predicted states: position, velocity, rotation, rate."""
+    """Return the errors, (B, 12), of predicted states: position, velocity, rotation, rate."""
     rotation = Rotation.from_quat(predicted[:, 6:10]).inv() * Rotation.from_quat(states[:, 6:10])
     return np.concatenate([states[:, :6] - predicted[:, :6], rotation.as_rotvec(),
                            states[:, 10:] - predicted[:, 10:]], axis=1)

@@ -11,7 +11,7 @@ class Force(Influence):
     """A force that depends on time and place."""
 
     def force(self, time, position, velocity):
-        """Return the force (3,) N in the world."""
+        """Return the force, (3,) N, in the world."""
         raise NotImplementedError
 
     def wrench(self, now):

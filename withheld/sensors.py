@@ -88,7 +88,7 @@ def noise_of(kind: str, rng: np.random.Generator) -> Noise:
 
 
 def product(one, other):
-    """Return the product (4,) of two quaternions x, y, z, w."""
+    """Return the product, (4,), of two quaternions x, y, z, w."""
     a, b, c, d = one.tolist()
     x, y, z, w = other.tolist()
     return np.array([d * x + a * w + b * z - c * y, d * y - a * z + b * w + c * x,

@@ -13,7 +13,6 @@ import yaml
 
 from withheld.airframes import ASYMMETRIC_H, HEXACOPTER_X, LIFTER_3KG, RACER_250G
 from withheld.constants import GRAVITY
-from withheld.constants import hover_speed as hover_speed
 
 AERODYNAMICS = ('c_Dx', 'c_Dy', 'c_Dz', 'k_d', 'k_z', 'k_h', 'k_flap')
 # rotorpy's parameters, radius of the rotors in m, scale of length.

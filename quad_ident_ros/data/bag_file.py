@@ -121,7 +121,7 @@ class BagFile:
 
     @property
     def topics(self):
-        """The topics, by name; one that has several types is there once for each."""
+        """Return the topics, by name; one of several types is there once for each."""
         counts = {}
         with self._guarded():
             for one in self._reader.connections:
@@ -236,8 +236,8 @@ class _Codec:
         self._ships = not definition.data.strip() and self._type not in _defaults(ros1)
         if not candidates:
             raise BadType(f'topic {connection.topic}: the bag has no definition of '
-                               f'{self._type}, and none ships; convert it to MCAP where the '
-                               'package is installed: ros2 bag convert')
+                          f'{self._type}, and none ships; convert it to MCAP where the '
+                          'package is installed: ros2 bag convert')
         self._topic = connection.topic
         self._candidates = [(version, _store(self._type, source, ros1))
                             for version, source in candidates]
@@ -263,8 +263,8 @@ class _Codec:
             return message
         if self._ships:
             raise BadType(f'topic {self._topic}: the bag has no definition of {self._type}, '
-                               'and its messages have the length of none that ships; convert it '
-                               'to MCAP where the package is installed: ros2 bag convert')
+                          'and its messages have the length of none that ships; convert it '
+                          'to MCAP where the package is installed: ros2 bag convert')
         raise problem
 
     def _reader(self, version, store):

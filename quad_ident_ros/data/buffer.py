@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from quad_ident_ros.data.record import FIRST_SAMPLE_INFO, FlightRecord
-from quad_ident_ros.data.topics import needed_from, record_columns, run_at
+from quad_ident_ros.data.topics import arm_of, needed_from, record_columns, run_at
 
 
 @dataclass(frozen=True)
@@ -115,7 +115,7 @@ class RecordBuffer:
         info.update(start_ns=int(stamps[0]), dropped=missing)
         table = np.array([row[1] for row in rows])
         return [FlightRecord((stamps - stamps[0]) * 1e-9,
-                             record_columns(self.columns, table), info)]
+                             record_columns(self.columns, table, arm_of(info)), info)]
 
     def _full(self):
         span = self._rows[-1][0] - self._rows[0][0]

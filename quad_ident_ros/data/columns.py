@@ -11,7 +11,7 @@ import numpy as np
 from quad_ident_ros.data import frames
 from quad_ident_ros.data.foreign import BODY_VELOCITY, velocity_in_world
 from quad_ident_ros.data.mapping import ATTITUDE, Column, factor_of, Mapping
-from quad_ident_ros.data.record import EULER, FlightRecord, QUATERNION, unit
+from quad_ident_ros.data.record import EULER, FlightRecord, MOMENTS, QUATERNION, unit
 from quad_ident_ros.data.streams import HELD, INTERPOLATED, join, SLOW, Stream
 from quad_ident_ros.data.tabular import Table
 from quad_ident_ros.errors import InputError
@@ -112,6 +112,10 @@ def _streams(path: Path, table: Table, mapping: Mapping, stamps: np.ndarray,
     if 'vbat' in chosen:
         values = _values(table, chosen['vbat']) * factor_of('vbat', chosen['vbat'].unit)
         yield stream(shown(chosen['vbat'].names), ('vbat',), values, SLOW)
+    for name in MOMENTS:
+        if name in chosen:
+            yield stream(shown(chosen[name].names), (name,),
+                         _values(table, chosen[name]) * factor_of(name, chosen[name].unit), HELD)
     for prefix, between in (('cmd', HELD), ('output', HELD), ('rotor', INTERPOLATED), ('u', HELD)):
         names = [name for name in chosen if name.removeprefix(prefix).isdigit()
                  and name.startswith(prefix)]
@@ -183,5 +187,3 @@ def _kept(table: Table, chosen: Pairs, columns: Pairs, stamps: np.ndarray, known
             continue
         kept[name] = values[known][order][at]
     return kept
-
-

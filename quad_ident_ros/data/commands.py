@@ -1,10 +1,11 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""The inputs U1..U4 of a flight of which the rotor speed commands were recorded."""
+"""The inputs U1..U4 of a flight of which rotor speed commands or moments were recorded."""
 
 import numpy as np
 
-from quad_ident_ros.data.record import FlightRecord
+from quad_ident_ros.data.quality.moments import are_forces, FORCES
+from quad_ident_ros.data.record import ARM, FlightRecord, MOMENTS
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.mixing import allocation_matrix
 
@@ -13,11 +14,12 @@ INPUTS = ('u1', 'u2', 'u3', 'u4')
 
 def with_inputs(record, vehicle):
     """
-    Return the record with U1..U4 made from cmd1..cmdN (rad/s) by eq. (19).
+    Return the record with U1..U4 made from moments, or from cmd1..cmdN (rad/s) by eq. (19).
 
-    A record that has any of u1..u4, or no commands, is returned as it is. Raises InputError where
+    A record that has any of u2, u3, or neither, is returned as it is. Raises InputError where
     the commands are not those of this vehicle's rotors.
     """
+    record = with_arm(record, vehicle)
     commands = [name for name in record.columns if name.startswith('cmd')]
     if not commands or any(map(record.has, INPUTS)):
         return record
@@ -28,3 +30,21 @@ def with_inputs(record, vehicle):
     inputs = np.square(record.stack(*wanted)) @ allocation_matrix(vehicle).T
     return FlightRecord(record.t, {**record.columns, **dict(zip(INPUTS, inputs.T, strict=True))},
                         record.info)
+
+
+def with_arm(record, vehicle):
+    """
+    Return the record with u2 and u3 (N) in place of its moments about x and y (N m).
+
+    The arm length is the vehicle's. Where the moments are, by what they turn, forces already, as
+    earlier versions published them, they stay as they are, and the record's info says so.
+    """
+    if not record.has(*MOMENTS) or record.has('u2', 'u3'):
+        return record
+    forces = are_forces(record, vehicle)
+    scale = 1.0 if forces else 1.0 / vehicle.arm_length
+    columns = {{'moment_x': 'u2', 'moment_y': 'u3'}.get(name, name):
+               values * scale if name in MOMENTS else values
+               for name, values in record.columns.items()}
+    info = {**record.info, ARM: vehicle.arm_length, **({FORCES: True} if forces else {})}
+    return FlightRecord(record.t, columns, info)

@@ -11,9 +11,9 @@ import numpy as np
 from quad_ident_ros.data.bag import BagWriter, serialize
 from quad_ident_ros.data.csv import write_csv
 from quad_ident_ros.data.frames import conjugate, rotate
-from quad_ident_ros.data.record import EULER, INPUTS, QUATERNION
+from quad_ident_ros.data.record import EULER, INPUTS, MOMENTS, QUATERNION
 from quad_ident_ros.data.table import record_table
-from quad_ident_ros.data.topics import ARRAY_TYPE, EXACT_TOPIC, FLIGHT_TOPICS
+from quad_ident_ros.data.topics import arm_of, ARRAY_TYPE, EXACT_TOPIC, FLIGHT_TOPICS
 from quad_ident_ros.errors import InputError
 
 VECTOR = 'geometry_msgs/msg/Vector3Stamped'
@@ -84,8 +84,11 @@ def _topics(record):
                           record.stack('vx', 'vy', 'vz'))
         found.append(('twist', kinds['twist'],
                       np.hstack([body, record.stack('wx', 'wy', 'wz')])))
-    if record.has(*INPUTS):
-        found.append(('input', kinds['input'], record.inputs()))
+    arm = arm_of(record.info)
+    if record.has('u1', *MOMENTS, 'u4'):
+        found.append(('input', kinds['input'], record.stack('u1', *MOMENTS, 'u4')))
+    elif record.has(*INPUTS) and arm:     # without the arm nobody knows the moments
+        found.append(('input', kinds['input'], record.inputs() * [1.0, arm, arm, 1.0]))
     if record.has(*EULER):
         found.append(('attitude', kinds['attitude'], record.stack(*EULER)))
     if record.has('pz'):

@@ -39,7 +39,7 @@ class FlightJoiner:
 
     @property
     def counts(self) -> Counts:
-        """The account of the messages."""
+        """Return the account of the messages."""
         return self._now.counts
 
     @property

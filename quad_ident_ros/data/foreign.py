@@ -117,12 +117,12 @@ class TopicPart:
 
     @property
     def count(self):
-        """The number of its samples that are finite."""
+        """Return the number of its samples that are finite."""
         return int(np.isfinite(self._numbers).sum()) // (self._width or 1)
 
     @property
     def offset(self):
-        """The time from the stamps to the receipt, s: the median, or 0 where there are none."""
+        """Return the time from stamp to receipt, s: the median, or 0 where there are no stamps."""
         if not self._stamped:
             return 0.0
         late = np.array(self.received, np.int64) - np.array(self._stamps, np.int64)

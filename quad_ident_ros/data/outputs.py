@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from quad_ident_ros.data.commands import with_arm
 from quad_ident_ros.data.mapping import Actuators, actuators_from, chosen_outputs, motors_of
 from quad_ident_ros.data.motor_order import order_of, rotors_of
 from quad_ident_ros.data.record import FlightRecord
@@ -43,7 +44,7 @@ def commanded(records: Sequence[FlightRecord], vehicle: Vehicle | None,
     to its highest speed, by the kind that the reader knows or the values tell. Where neither has
     the speed at full signal, it is that by which thrust carries the weight: see thrust_level.
     Motors that a reader knows the places of, and their measured speeds, come into the order of
-    the vehicle.
+    the vehicle. Its arm length makes inputs u2 and u3 of moments: see commands.with_arm.
     Args: records; vehicle Vehicle or None; actuators Actuators, or None for those that the first
     record says it has. Without a vehicle and actuators outputs stay.
     Raises InputError, with the lines to write, where the outputs leave a doubt.
@@ -53,6 +54,8 @@ def commanded(records: Sequence[FlightRecord], vehicle: Vehicle | None,
         actuators = actuators_from(f'{_where(records[0])}: {ACTUATORS}', said)
     if vehicle is None and actuators is None:
         return list(records)
+    if vehicle is not None:
+        records = [with_arm(record, vehicle) for record in records]
     found = [_in_order(record, vehicle, actuators) for record in records]
     there = [k for k, record in enumerate(found)
              if record.has('output1') and not record.has('cmd1')]

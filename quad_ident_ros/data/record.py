@@ -23,11 +23,18 @@ KNOWN = {
     'ax': 'm/s^2', 'ay': 'm/s^2', 'az': 'm/s^2',
     'vbat': 'V',
     'u1': 'N', 'u2': 'N', 'u3': 'N', 'u4': 'N m',
+    'moment_x': 'N m', 'moment_y': 'N m',
     'phi': 'rad', 'theta': 'rad', 'psi': 'rad',
 }
 """Unit of each column that the flight record format names, but cmd1..N and rotor1..N."""
 
 INPUTS = ('u1', 'u2', 'u3', 'u4')
+MOMENTS = ('moment_x', 'moment_y')
+"""What u2 and u3 are at the arm, where a record says no arm length."""
+
+ARM = 'arm_length'
+"""Info of a record: the arm length l (m) by which u2 and u3 are moments."""
+
 QUATERNION = ('qw', 'qx', 'qy', 'qz')
 EULER = ('phi', 'theta', 'psi')
 

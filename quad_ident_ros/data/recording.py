@@ -9,6 +9,7 @@ import numpy as np
 from quad_ident_ros.data.bag import BagWriter, is_known
 from quad_ident_ros.data.csv import CsvAppender
 from quad_ident_ros.data.topics import (
+    arm_of,
     FLIGHT_TOPICS,
     needed_from,
     raw_columns,
@@ -96,7 +97,8 @@ class Recording:
         if not rows:
             return
         stamps = np.array([row[0] for row in rows])
-        columns = record_columns(self.columns, np.array([row[1] for row in rows]))
+        columns = record_columns(self.columns, np.array([row[1] for row in rows]),
+                                 arm_of(self._run.info) if self._run else None)
         if self._csv is None:
             self._number += 1
             self._origin = stamps[0]

@@ -13,6 +13,7 @@ import json
 
 import numpy as np
 
+from quad_ident_ros.data.record import ARM, MOMENTS
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.attitude import rotation_matrix
 
@@ -55,7 +56,7 @@ FLIGHT_TOPICS = {topic.name: topic for topic in (
                 ('px', 'py', 'height', 'qw', 'qx', 'qy', 'qz'), _pose),
     FlightTopic('twist', 'geometry_msgs/msg/TwistStamped',
                 ('body_vx', 'body_vy', 'body_vz', 'wx', 'wy', 'wz'), _twist),
-    FlightTopic('input', 'geometry_msgs/msg/WrenchStamped', ('u1', 'u2', 'u3', 'u4'), _input),
+    FlightTopic('input', 'geometry_msgs/msg/WrenchStamped', ('u1', *MOMENTS, 'u4'), _input),
 )}
 
 RUN_TOPIC = 'run'
@@ -64,6 +65,9 @@ RUN_TYPE = 'std_msgs/msg/String'
 # A whole record in one message, number for number, as `quad_ident convert` writes it.
 EXACT_TOPIC = 'flight_record'
 ARRAY_TYPE = 'std_msgs/msg/Float64MultiArray'
+
+AT_THE_ARM = dict(zip(MOMENTS, ('u2', 'u3'), strict=True))
+LONGEST_ARM = 100.0     # m
 
 # The stamp (ns) up to which a recorder has joined: what lets a simulator run as fast as it keeps
 # up. The middleware's own acknowledgements come every 3 s only.
@@ -93,14 +97,18 @@ def raw_columns(topics):
     return tuple(column for name in topics for column in FLIGHT_TOPICS[name].columns)
 
 
-def record_columns(names, table):
+def record_columns(names, table, arm=None):
     """
     Return the columns of the flight record format from raw ones.
 
     Args: names: raw columns; table (N, len(names)). The velocity of `twist` is that of the body
-    frame and is turned into the world by the attitude of `pose`, where both are there.
+    frame and is turned into the world by the attitude of `pose`, where both are there. arm: the
+    arm length in m that makes u2 and u3 of the moments of `input`, None where it is not known.
     """
     columns = dict(zip(names, np.asarray(table, float).T, strict=True))
+    if arm is not None:
+        columns = {AT_THE_ARM.get(name, name): values / arm if name in AT_THE_ARM else values
+                   for name, values in columns.items()}
     height = columns.pop('height', None)
     if height is not None:
         columns.setdefault('pz', height)
@@ -111,6 +119,14 @@ def record_columns(names, table):
             velocity = np.einsum('nij,jn->in', rotation_matrix(quaternion), np.stack(body))
         columns.update(zip(('vx', 'vy', 'vz'), velocity, strict=True))
     return columns
+
+
+def arm_of(info):
+    """Return the arm length (m) that the info of a run or record says, or None."""
+    arm = info.get(ARM)
+    if isinstance(arm, bool) or not isinstance(arm, int | float) or not 0.0 < arm < LONGEST_ARM:
+        return None
+    return float(arm)
 
 
 @dataclass(frozen=True)

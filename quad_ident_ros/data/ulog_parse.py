@@ -61,6 +61,7 @@ class _Log(ULog):
     """A ULog that does not expand formats too large for any message."""
 
     class _MessageAddLogged(ULog._MessageAddLogged):
+
         def _parse_format(self, formats):
             if _size(self.message_name, formats, 0) > _MOST_BYTES:
                 raise _Damaged(f'its format {self.message_name} is too large')
@@ -139,4 +140,3 @@ def _without_samples(data: bytes, messages: Messages, kept: np.ndarray) -> bytes
     found = [(at, size) for _, at, size in messages.others]
     found += zip(messages.data[kept].tolist(), messages.sizes[kept].tolist(), strict=True)
     return data[:START] + b''.join(data[at - HEADER.size:at + size] for at, size in sorted(found))
-

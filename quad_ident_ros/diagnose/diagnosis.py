@@ -91,4 +91,3 @@ def diagnose(records: Iterable[FlightRecord], vehicle: Vehicle, *,
         flight_checks=verdict.flight_checks,
         findings=(*intake.findings, *advice.at_bounds(judged, vehicle, rules)), z=model.z,
         pictures=measure.pictures(bench, judged, before, after))
-

@@ -58,7 +58,7 @@ def parts_of(values: np.ndarray) -> np.ndarray:
 
 def directions(wrench: np.ndarray, contributions: np.ndarray) -> np.ndarray:
     """
-    Return the directions (2, N, D) of the discrepancy as sums of slopes in N columns.
+    Return the directions, (2, N, D), of the discrepancy as sums of slopes in N columns.
 
     Of translation and of rotation. Args: wrench (N, 6): the columns of a force and a moment;
     contributions (N, E): what each effect has of each column.

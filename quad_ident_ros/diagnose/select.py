@@ -68,7 +68,7 @@ class Selection:
     @property
     def errors(self) -> np.ndarray:
         """
-        Return the standard errors (C,) of the best set's columns.
+        Return the standard errors, (C,), of the best set's columns.
 
         How far flights usually differ is not known either: of all sets with the same effects, by
         their evidence. Formulas may be wrong: at least the standard_errors of the best set.

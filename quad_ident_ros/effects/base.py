@@ -131,5 +131,5 @@ class Effect:
 
     @property
     def actuator(self) -> Literal['delay', 'lag'] | None:
-        """What of the actuators it is, in whichever form."""
+        """Return what of the actuators it is, in whichever form."""
         return self.forms[0].actuator

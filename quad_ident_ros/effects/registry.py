@@ -84,7 +84,7 @@ def bounds(vehicle: Vehicle) -> Table:
 def vector(effects: Mapping[str, Mapping[str, float]], vehicle: Vehicle,
            where: str = 'effects') -> Table:
     """
-    Return the parameter vector (P,) of {effect: {parameter: value}}; absent ones have no effect.
+    Return the parameter vector, (P,), of {effect: {parameter: value}}; absent ones have no effect.
 
     Raises InputError for an unknown effect or parameter and for a value out of bounds.
     """

@@ -39,7 +39,7 @@ class Stream:
     held: bool = True
 
     def times(self, t):
-        """Return the times (N,) of what is recorded at t (N,) s; before the flight its start."""
+        """Return the times, (N,), of what is recorded at t (N,) s; before the flight its start."""
         return np.maximum(t - self.delay - self.drift * (t - t[0]), t[0])
 
     def latest(self, t):

@@ -208,7 +208,7 @@ def as_data(fit: Fit) -> dict[str, Any]:
                          for group, part in GROUPS.items()}
                   for name, noise in zip(fit.flights, found.noise, strict=True)},
         'cost': found.cost, 'samples': sum(raw.shape[0] * raw.shape[1]
-                                                  for raw in found.residuals),
+                                           for raw in found.residuals),
         'converged': found.converged, 'findings': list(fit.findings)}
 
 

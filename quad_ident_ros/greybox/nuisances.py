@@ -152,7 +152,7 @@ class NuisanceValues:
     @property
     def precision(self) -> np.ndarray:
         """
-        Return the precision (F K, F K) of the prior of all values, flight by flight.
+        Return the precision, (F K, F K), of the prior of all values, flight by flight.
 
         That of independent values, and for those of several flights that sum to zero a mean that
         is nearly none (Gelman and Hill, Data Analysis Using Regression, 2007, section 19.4).

@@ -162,7 +162,7 @@ class Objective:
 
     @cached_property
     def weight(self):
-        """What makes F of a squared error: 1/(2 N range^2)."""
+        """Return what makes F of a squared error: 1/(2 N range^2)."""
         span = float(np.ptp(self.signal.y))
         span = span if span > 1 / LARGEST else 1.0
         return 0.5 / (self.signal.samples * span ** 2)
@@ -184,7 +184,7 @@ class Objective:
 
     @cached_property
     def _projection(self):
-        """The function that projects gain and unknowns out, and its data: they never change."""
+        """Return what projects gain and unknowns out, and its data: they never change."""
         signal = self.signal
         data = (signal.period, signal.u, signal.y, signal.measured)
         bounds = (float(self.gain_bounds[0]), float(self.gain_bounds[1]))

@@ -44,7 +44,7 @@ class OutputFit:
 
     @property
     def standard_errors(self):
-        """Standard errors by name, None where there is none."""
+        """Return standard errors by name, None where there is none."""
         return self.uncertainty.errors
 
     @property
@@ -63,7 +63,7 @@ class MethodFit:
 
     @property
     def evaluations(self):
-        """Evaluations of F over all outputs."""
+        """Return the evaluations of F over all outputs."""
         return sum(fit.evaluations for fit in self.outputs.values())
 
     @property
@@ -156,7 +156,7 @@ def _output(fit):
     unit = OUTPUT_UNITS[fit.output]
     units = {'K': GAIN_UNITS[fit.output], 'a': '1/s', 'b': '1/s', 'c1': '1/s', 'c0': '1/s^2',
              'output': unit, **{key: text.replace('unit', unit)
-                               for key, text in metrics.UNITS.items()}}
+                                for key, text in metrics.UNITS.items()}}
     data = {'input': INPUT_OF[fit.output], 'units': units, 'cost': fit.cost,
             'errors': fit.errors, 'standard_errors': fit.standard_errors,
             'correlations': _correlations(fit.uncertainty),

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from quad_ident_ros.data.cutting import options, without
+from quad_ident_ros.data.record import MOMENTS
 from quad_ident_ros.errors import InputError
 
 OUTPUTS = ('phi', 'theta', 'psi', 'z')
@@ -20,6 +21,8 @@ FEWEST = 8          # samples that a record needs
 LONGEST_GAP = 10    # periods that interpolation may bridge
 LARGEST = 1e50      # of inputs and outputs
 LARGEST_PERIOD = 1e9    # s between samples; 1 / LARGEST_PERIOD is the shortest
+NO_ARM = ('roll and pitch are not identified: the record has moments in N m, of which an arm '
+          'length makes U2 and U3; name the vehicle (--vehicle, or the parameter vehicle)')
 MISSING_SHARE = 0.2  # of the samples that interpolation may fill
 
 
@@ -87,6 +90,8 @@ def signals(record, *, trim=None, outputs=None, initial_state='auto'):
     if jumps and not record.info.get('unwrapped'):
         measured[:, :3] = np.unwrap(measured[:, :3], axis=0)
         remarks.append('the angles jump by more than half a turn: they were unwrapped')
+    if record.has(*MOMENTS) and not record.has('u2', 'u3'):
+        remarks.append(NO_ARM)
     if record.info.get('truncated'):
         remarks.append('the last line of the file has no line end and was left out')
     at_rest = bool(record.info.get('starts_at_rest')) if initial_state == 'auto' \
@@ -146,6 +151,8 @@ def _columns(record):
         if not any(recorded.values()) and record.has('cmd1'):
             raise InputError('the record has rotor commands and no inputs u1..u4: name its '
                              'vehicle, from which they follow (--vehicle)')
+        if euler and record.has(*MOMENTS):
+            raise InputError(NO_ARM)
         if not any(recorded.values()):
             record.inputs()
         if not euler and not record.has('pz'):

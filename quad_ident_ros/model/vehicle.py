@@ -75,7 +75,7 @@ class Vehicle:
 
     @property
     def hover_input(self) -> np.ndarray:
-        """Inputs U1..U4 (4,) that hold the vehicle still: the weight on U1, N."""
+        """Return the inputs U1..U4 (4,) that hold the vehicle still: the weight on U1, N."""
         return np.array([self.mass * self.gravity, 0.0, 0.0, 0.0])
 
 
@@ -118,7 +118,7 @@ def load_nominal(name_or_path: str | Path) -> Vehicle:
 def vehicle_from_mapping(data: Any, where: str) -> Vehicle:
     """Return the vehicle that the mapping of a vehicle file describes; raises InputError."""
     known = [field.name for field in fields(Vehicle) if field.name != 'uncertainty']
-    required = [name for name in known[:7]]
+    required = known[:7]
     schema.check_keys(where, data, known, required)
     values: dict[str, Any] = {'name': schema.name(f'{where}: name', data['name'])}
     stds: dict[str, Uncertainty | None] = {}

@@ -22,6 +22,7 @@ from quad_ident_ros.nodes.messages import ERROR, OK, table_message, WARN
 from quad_ident_ros.nodes.parameters import help_text, ParameterSpec
 from quad_ident_ros.nodes.qos import latched
 from quad_ident_ros.nodes.record_worker import RecordWorker, Words
+from quad_ident_ros.nodes.stamped import StampedGap
 from quad_ident_ros.report.diagnosis import closed_of, verdict_line
 from quad_ident_ros.tolerances import EXAMPLE, rules_from
 from quad_ident_ros.warm_up import warm_up_diagnosis
@@ -48,7 +49,7 @@ SPECS = (
 HELP = f"""diagnoser: says which effects a vehicle has beside its nominal description.
 
   ros2 run quad_ident_ros diagnoser --ros-args -p vehicle:=hummingbird
-  ros2 topic echo /diagnosis --once
+  ros2 topic echo /diagnosis --once --full-length --field data
   ros2 service call /diagnoser/diagnose std_srvs/srv/Trigger
 
 Subscribes: record (std_msgs/Float64MultiArray, latched) of the recorder, which joins pose, twist
@@ -62,6 +63,9 @@ Publishes (latched, but progress and diagnostics):
                                              rad, rad/s), 0.5 s ahead, held out: before, after the
                                              effects named, and of noise alone
   where          std_msgs/Float64MultiArray  share of the gap of {', '.join(CHANNELS)}
+  gap/<group>    geometry_msgs/Vector3Stamped  of one group: before, after, noise in x, y, z, at
+                                             the stamp of the last sample
+  where/force, where/moment  geometry_msgs/Vector3Stamped  the shares, with that stamp
   ~/progress     std_msgs/String             JSON: fraction
   /diagnostics   diagnostic_msgs/DiagnosticArray  OK: nothing but noise; WARN: known effects, or
                                              undetermined; ERROR: unknown, or refused
@@ -79,6 +83,7 @@ class Diagnoser(RecordWorker):
         self._json = self.create_publisher(String, 'diagnosis', latched())
         self._gap = self.create_publisher(Float64MultiArray, 'gap', latched())
         self._where = self.create_publisher(Float64MultiArray, 'where', latched())
+        self._stamped = StampedGap(self, UNITS)
 
     def _unfit(self, record):
         if self._continuous:
@@ -124,6 +129,7 @@ class Diagnoser(RecordWorker):
         shares = {row.channel: row.share for row in found.where}
         self._where.publish(table_message([[shares.get(name, 0.0)] for name in CHANNELS],
                                           ','.join(CHANNELS), 'share'))
+        self._stamped.publish(span[1], gap, shares)
         self._job.say(1.0)
         verdict = found.verdict
         level = ERROR if 'unknown' in verdict else OK if verdict == ('none',) else WARN

@@ -10,6 +10,7 @@ import sys
 import numpy as np
 from std_msgs.msg import Bool, Float64MultiArray, String
 
+from quad_ident_ros.data.commands import with_inputs
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.identify.identify import identify, Settings
 from quad_ident_ros.identify.levy import LEAST, levy_sigma
@@ -19,11 +20,13 @@ from quad_ident_ros.identify.result import as_data, error_table, parameter_table
 from quad_ident_ros.identify.search import SwarmSettings
 from quad_ident_ros.identify.signals import FEWEST, OUTPUTS
 from quad_ident_ros.identify.vp import COMPLEX_PENALTY
+from quad_ident_ros.model.vehicle import load_vehicle
 from quad_ident_ros.nodes import process
 from quad_ident_ros.nodes.messages import OK, parameter_message, WARN
 from quad_ident_ros.nodes.parameters import help_text, ParameterSpec
 from quad_ident_ros.nodes.qos import latched
 from quad_ident_ros.nodes.record_worker import RecordWorker, Words
+from quad_ident_ros.nodes.stamped import StampedParameters
 from quad_ident_ros.warm_up import warm_up
 
 WORDS = Words('identify', 'fit', 'fitting', 'fitted')
@@ -51,6 +54,8 @@ SPECS = (
     ParameterSpec('initial_state', 'auto', 'State at the start of a record: rest, free '
                   '(estimated) or auto (rest where the record says so).',
                   choices=('auto', 'rest', 'free')),
+    ParameterSpec('vehicle', '', 'Name or file of the vehicle whose arm length makes U2 and U3 of '
+                  'moments, for records that do not say it; empty: these have no roll and pitch.'),
     ParameterSpec('trim', [], 'U1..U4 from which inputs count; empty: what the record says, or '
                   'its first sample.', length=(0, 4)),
     ParameterSpec('evaluations', 0, 'Evaluations of the objective per search, the same for each '
@@ -85,6 +90,10 @@ Publishes (latched, but progress and diagnostics):
   parameters/<method>  std_msgs/Float64MultiArray  the same of one method ({', '.join(METHODS)})
   standard_errors      std_msgs/Float64MultiArray  their standard errors
   changed              std_msgs/Bool               mode continuous: the vehicle changed
+  change               diagnostic_msgs/DiagnosticArray  each change: when, which output, what was
+                                                   before and after; 10 deep
+  outputs/<output>     geometry_msgs/Vector3Stamped  K, a, b in x, y, z, best method, stamped as
+                       the last sample; outputs/<output>/standard_errors their errors
   parameters_json      std_msgs/String             everything: units, standard errors, metrics, ...
   ~/progress           std_msgs/String             JSON: method, output, fraction
   /diagnostics         diagnostic_msgs/DiagnosticArray
@@ -106,6 +115,7 @@ class Identifier(RecordWorker):
         self._errors = self.create_publisher(Float64MultiArray, 'standard_errors', latched())
         self._changed = self.create_publisher(Bool, 'changed', latched())
         self._json = self.create_publisher(String, 'parameters_json', latched())
+        self._stamped = StampedParameters(self)
         self._tracker = Tracker()
 
     def _unfit(self, record):
@@ -122,6 +132,9 @@ class Identifier(RecordWorker):
         values = self._config.values()
         run = self._tracker.update if self._continuous else identify
         records, settings = self._taken(), _settings(values)
+        if values['vehicle']:
+            vehicle = load_vehicle(values['vehicle'])
+            records = [with_inputs(record, vehicle) for record in records]
         window, order = values['window'], list(settings.methods)
 
         def on_progress(method, output, share):
@@ -147,6 +160,7 @@ class Identifier(RecordWorker):
         best = result.methods[result.best]
         self._best.publish(parameter_message(parameter_table(best)))
         self._errors.publish(parameter_message(error_table(best)))
+        self._stamped.publish(result)
         self._changed.publish(Bool(data=bool(result.changes)))
         data = {**as_data(result), 'time': datetime.now(timezone.utc).isoformat()}
         self._json.publish(String(data=json.dumps(data)))
@@ -179,6 +193,8 @@ class Identifier(RecordWorker):
 def _settings(values):
     """Return the Settings that parameter values stand for; raises InputError."""
     levy_sigma(values['lambda'])
+    if values['vehicle']:
+        load_vehicle(values['vehicle'])
     swarm = SwarmSettings(
         population=values['population'], generations=values['generations'],
         evaluations=values['evaluations'] or None, inertia=values['w'], c1=values['c1'],

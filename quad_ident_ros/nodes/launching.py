@@ -3,25 +3,29 @@
 """What the launch files have in common. Only they import it: `launch` comes with a whole ROS 2."""
 
 from launch import LaunchDescription
-from launch.actions import DeclareLaunchArgument
+from launch.actions import DeclareLaunchArgument, OpaqueFunction, Shutdown
 from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
-from launch_ros.parameter_descriptions import ParameterValue
+
+from quad_ident_ros.nodes.launch_plan import planned
 
 
-def describe(arguments, nodes):
+def describe(nodes, arguments, usual):
     """
-    Return the LaunchDescription of nodes of this package.
+    Return the LaunchDescription of nodes of this package, which ends when one of them does.
 
-    Args: arguments: (name, default, description, type) of each; nodes: {executable: {parameter:
-    the argument that it comes from}}.
+    Args: as those of launch_plan.planned.
     """
-    values = {name: ParameterValue(LaunchConfiguration(name), value_type=value_type)
-              for name, _, _, value_type in arguments}
+    def start(context):
+        values = {argument.name: LaunchConfiguration(argument.name).perform(context)
+                  for argument in arguments}
+        return [Node(package='quad_ident_ros', executable=plan.node, name=plan.node,
+                     namespace=values['namespace'], output='screen',
+                     ros_arguments=list(plan.words),
+                     on_exit=Shutdown(reason=f'{plan.node} has ended'))
+                for plan in planned(nodes, arguments, values, usual)]
+
     return LaunchDescription([
-        *(DeclareLaunchArgument(name, default_value=default, description=description)
-          for name, default, description, _ in arguments),
-        *(Node(package='quad_ident_ros', executable=node, name=node,
-               namespace=LaunchConfiguration('namespace'), output='screen',
-               parameters=[{name: values[source] for name, source in parameters.items()}])
-          for node, parameters in nodes.items())])
+        *(DeclareLaunchArgument(argument.name, default_value=argument.default,
+                                description=argument.description) for argument in arguments),
+        OpaqueFunction(function=start)])

@@ -50,7 +50,7 @@ class MappedTopics:
     @property
     def info(self):
         """
-        What records of the topics are to say of themselves.
+        Return what records of the topics are to say of themselves.
 
         It has what the outputs to the motors are: they become speeds where their vehicle is known.
         """

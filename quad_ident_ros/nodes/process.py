@@ -15,6 +15,7 @@ from rclpy.utilities import remove_ros_args
 
 from quad_ident_ros import resources
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.nodes.parameter_files import is_for, names_in
 from quad_ident_ros.nodes.shared_memory import free_abandoned
 
 try:
@@ -82,6 +83,7 @@ def _run(node_class, args, executor_class):
         _check_parameter_files(args, node)
         executor = executor_class()
         executor.add_node(node)
+        node.get_logger().info(f'ready: {node.ready()}')
         while not stop and is_wanted():
             executor.spin_once(timeout_sec=0.1)
     finally:
@@ -122,27 +124,10 @@ def _check_parameter_files(args, node):
     files = [args[i + 1] for i, word in enumerate(args[:-1]) if word == '--params-file']
     full_name = node.get_fully_qualified_name()
     for path in files:
-        keys = list(_node_names(resources.read_yaml(path)))
-        if not any(_matches(key, node.get_name(), full_name) for key in keys):
+        keys = names_in(resources.read_yaml(path))
+        if not is_for(keys, node.get_name(), full_name):
             raise InputError(f'{path}: nothing in it is for this node, {full_name}; it is for '
                              f'{", ".join(keys) or "none"}: use the name of the node or /**')
-
-
-def _node_names(data, prefix=''):
-    for key, value in data.items():
-        name = f'{prefix}/{str(key).strip("/")}'
-        if isinstance(value, dict) and 'ros__parameters' in value:
-            yield name
-        elif isinstance(value, dict):
-            yield from _node_names(value, name)
-
-
-def _matches(key, name, full_name):
-    if key.endswith('/**'):
-        return full_name.startswith(key[:-2])
-    if '*' in key:
-        return key.rsplit('/', 1)[-1] in (name, '*')
-    return key == full_name
 
 
 def _first_line(error):

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 from diagnostic_msgs.msg import DiagnosticArray
 from rclpy.clock import Clock, ClockType
-from rclpy.node import Node
 from std_msgs.msg import Float64MultiArray
 from std_srvs.srv import Trigger
 
@@ -14,6 +13,7 @@ from quad_ident_ros.data.table import record_from_table
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.nodes.job import Job
 from quad_ident_ros.nodes.messages import diagnostics_message, ERROR, OK, WARN
+from quad_ident_ros.nodes.node import PackageNode
 from quad_ident_ros.nodes.parameters import NodeParameters
 from quad_ident_ros.nodes.qos import latched
 from quad_ident_ros.nodes.records import Records
@@ -29,7 +29,7 @@ class Words:
     done: str
 
 
-class RecordWorker(Node):
+class RecordWorker(PackageNode):
     """
     A node that works on records, in a thread of its own so that the executor stays free.
 
@@ -53,6 +53,11 @@ class RecordWorker(Node):
         self.create_service(Trigger, '~/cancel', self._on_cancel)
         self.create_timer(1.0, self._report, clock=Clock(clock_type=ClockType.STEADY_TIME))
         self.create_subscription(Float64MultiArray, 'record', self._on_record, latched(16))
+
+    def ready(self):
+        """Say what is worked on, and when."""
+        topic = self.resolve_topic_name('record')
+        return f'{self._words.doing} what comes on {topic}, mode {self._config["mode"]}'
 
     def close(self):
         """End the work that is being done."""

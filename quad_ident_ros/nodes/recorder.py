@@ -7,16 +7,15 @@ import sys
 
 from diagnostic_msgs.msg import DiagnosticArray
 import geometry_msgs.msg
+from rclpy._rclpy_pybind11 import RCLError
 from rclpy.clock import Clock, ClockType
 from rclpy.event_handler import SubscriptionEventCallbacks
-from rclpy.node import Node
 from rclpy.serialization import deserialize_message
 from std_msgs.msg import Float64MultiArray, String, UInt64
 from std_srvs.srv import Trigger
 
 from quad_ident_ros.data.buffer import Limits, RecordBuffer
 from quad_ident_ros.data.flight_joiner import FlightJoiner
-from quad_ident_ros.data.mapping import load_mapping
 from quad_ident_ros.data.recording import Recording
 from quad_ident_ros.data.stream_joiner import StreamJoiner
 from quad_ident_ros.data.topics import (
@@ -30,16 +29,13 @@ from quad_ident_ros.data.topics import (
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.nodes import process
 from quad_ident_ros.nodes.losses import Losses
-from quad_ident_ros.nodes.mapped import (
-    KNOWN,
-    known_mapping,
-    MappedTopics,
-    message_class,
-    RECEIVED,
-)
+from quad_ident_ros.nodes.mapped import message_class, RECEIVED
 from quad_ident_ros.nodes.messages import diagnostics_message, ERROR, OK, record_message, WARN
-from quad_ident_ros.nodes.parameters import help_text, NodeParameters, ParameterSpec
+from quad_ident_ros.nodes.node import PackageNode
+from quad_ident_ros.nodes.other_types import one_topic_for_two, other_type
+from quad_ident_ros.nodes.parameters import help_text, NodeParameters
 from quad_ident_ros.nodes.qos import BEST_EFFORT, latched, LOSSLESS
+from quad_ident_ros.nodes.recorder_parameters import mapped_topics, SPECS, validate
 
 FLUSH_PERIOD = 0.5   # s; a kill -9 loses at most this much of a recording
 QUIET = 0.5          # s after the last message when the middleware is asked what it lost
@@ -50,26 +46,6 @@ IDLE = 15.0          # s when something may, after which what is incomplete is g
 NO_ROW = 2.0         # s with messages but without a joined row, after which that is said
 KEPT_RECORDS = 16    # records that a late identifier still gets
 NEWS = 10.0          # s between two lines of log on windows that slide
-
-SPECS = (
-    ParameterSpec('topics', tuple(FLIGHT_TOPICS), 'Topics that a row needs: of the first five, '
-                  'or of the last three.', choices=(*FLIGHT_TOPICS, *KNOWN), fixed=True),
-    ParameterSpec('mapping', '', 'File that says which topics of any installed type are what, as '
-                  'for bags (docs/records.md); empty: the topics of the parameter topics.',
-                  fixed=True),
-    ParameterSpec('gap', 0.1, 'Seconds between two samples of a topic of other rate or stamps '
-                  'beyond which rows between them are dropped, where stamps are not equal.',
-                  limits=(0.001, 10.0), fixed=True),
-    ParameterSpec('window_samples', 60000, 'Samples after which a window is complete.',
-                  limits=(2, 10_000_000), fixed=True),
-    ParameterSpec('window_seconds', 600.0, 'Seconds after which a window is complete.',
-                  limits=(0.01, 1e6), fixed=True),
-    ParameterSpec('overlap', 0.0, 'Share of a full window that the next one keeps: 0.9 publishes '
-                  'a sliding window ten times per window length.', limits=(0.0, 0.999),
-                  fixed=True),
-    ParameterSpec('output', '', 'Folder for recordings (a bag and CSV files in a new '
-                  'recording_N); empty records in memory only.', fixed=True),
-)
 
 HELP = f"""recorder: joins the topics of a flight into records, keeps and publishes them.
 
@@ -97,14 +73,14 @@ Parameters (--ros-args -p NAME:=VALUE):
 {help_text(SPECS)}"""
 
 
-class Recorder(Node):
+class Recorder(PackageNode):
     """Buffers a flight and hands out records."""
 
     def __init__(self, **kwargs):
         super().__init__('recorder', **kwargs)
-        self._config = NodeParameters(self, SPECS, _validate)
+        self._config = NodeParameters(self, SPECS, validate)
         parameters = self._config
-        self._mapped = _mapped(parameters)
+        self._mapped = mapped_topics(parameters)
         if self._mapped is None:
             self._topics = tuple(parameters['topics'])
             self._joiner = FlightJoiner(self._topics, parameters['gap'])
@@ -125,6 +101,7 @@ class Recorder(Node):
         self._disk_error = None
         self._trouble = None
         self._unreadable = None
+        self._misnamed = False
         self._record_publisher = self.create_publisher(Float64MultiArray, 'record',
                                                        latched(KEPT_RECORDS))
         self._statistics = self.create_publisher(String, '~/statistics', latched())
@@ -149,9 +126,13 @@ class Recorder(Node):
         self.create_timer(1.0, self._report, clock=self._steady)
         self._report()
 
+    def ready(self):
+        """Say what is joined, and where it goes."""
+        return f'joins {", ".join(self._topics)}; {self._config["output"] or "in memory only"}'
+
     @property
     def counts(self):
-        """The account of the messages (data.joiner.Counts)."""
+        """Return the account of the messages (data.joiner.Counts)."""
         return self._joiner.counts
 
     def close(self):
@@ -217,9 +198,14 @@ class Recorder(Node):
             refused = event.total_count
             self._refused.append(name)
 
-        subscription = self.create_subscription(
-            kind, name, on_message, quality, raw=True,
-            event_callbacks=SubscriptionEventCallbacks(incompatible_qos=on_incompatible))
+        try:
+            subscription = self.create_subscription(
+                kind, name, on_message, quality, raw=True,
+                event_callbacks=SubscriptionEventCallbacks(incompatible_qos=on_incompatible))
+        except RCLError:
+            if self._mapped is not None:
+                raise
+            raise InputError(one_topic_for_two(self, name, self._topics)) from None
         self._subscriptions_by_topic[name] = subscription
         self._losses[name] = Losses(subscription)
 
@@ -381,6 +367,8 @@ class Recorder(Node):
         received = self.counts.received
         news = {name: received[name] - self._heard[name] for name in self._topics}
         self._heard = dict(received)
+        if self._another_type():
+            return
         now = self._steady.now().nanoseconds
         if self._last_row is None and any(news.values()):
             self._last_row = now   # the first messages: rows may take their time from here
@@ -402,6 +390,19 @@ class Recorder(Node):
         self._trouble = f'no sample has been joined for {silence:.0f} s: {why}'
         self.get_logger().warning(self._trouble, throttle_duration_sec=10.0)
 
+    def _another_type(self):
+        """Say which silent topic is of another type, if one is, and return whether."""
+        silent = () if self._mapped is not None else (
+            name for name in self._topics if not self.counts.received[name])
+        trouble = next(filter(None, (other_type(self, name) for name in silent)), None)
+        if trouble:
+            self._trouble = trouble
+            self.get_logger().error(trouble, throttle_duration_sec=10.0)
+        elif self._misnamed:
+            self._trouble = None
+        self._misnamed = bool(trouble)
+        return self._misnamed
+
     def _report(self):
         self._look_for_trouble()
         folder = str(self._recording.folder) if self._recording else None
@@ -421,23 +422,6 @@ class Recorder(Node):
         if self._disk_error:
             level, text = ERROR, self._disk_error
         self._diagnostics.publish(diagnostics_message(self, level, text, data))
-
-
-def _mapped(parameters):
-    """Return the MappedTopics of the parameters, or None for the topics of the simulator."""
-    if parameters['mapping']:
-        path = parameters['mapping']
-        return MappedTopics(load_mapping(path), path)
-    names = [name for name in parameters['topics'] if name in KNOWN]
-    return MappedTopics(known_mapping(names), 'parameter topics') if names else None
-
-
-def _validate(values):
-    if not values['topics'] or len(set(values['topics'])) != len(values['topics']):
-        raise InputError('parameter topics: name at least one topic, and each once')
-    if 0 < sum(name in KNOWN for name in values['topics']) < len(values['topics']):
-        raise InputError(f'parameter topics: {", ".join(KNOWN)} do not go with the others, which '
-                         'are joined by equal stamps; name only these, or a mapping')
 
 
 def main(args=None):

@@ -12,30 +12,36 @@ from geometry_msgs.msg import (
 import numpy as np
 from rosgraph_msgs.msg import Clock
 
+from quad_ident_ros.data.record import ARM
 from quad_ident_ros.model.attitude import rotation_matrix
 
 WORLD_FRAME, BODY_FRAME = 'world', 'base_link'
 
 
 def samples_of(record):
-    """Return the rows that the messages take: plain floats, fast to assign."""
+    """
+    Return the rows that the messages take: plain floats, fast to assign.
+
+    Args: record of a flight whose info says the arm length, by which U2 and U3 are moments.
+    """
     world = record.stack('vx', 'vy', 'vz')
     quaternion = record.stack('qw', 'qx', 'qy', 'qz')
     body = np.einsum('nji,nj->ni', rotation_matrix(quaternion), world)
+    wrench = record.inputs() * [1.0, record.info[ARM], record.info[ARM], 1.0]
     return np.hstack([record.euler(), record.stack('px', 'py', 'pz'), quaternion, body,
-                      record.stack('wx', 'wy', 'wz'), record.inputs()]).tolist()
+                      record.stack('wx', 'wy', 'wz'), wrench]).tolist()
 
 
 class SampleMessages:
-    """The messages of one sample, made once and filled for each."""
+    """The messages of one sample, made once and filled for each; prefix: of the body's frame."""
 
-    def __init__(self):
+    def __init__(self, prefix=''):
         self.attitude, self.altitude, self.pose = Vector3Stamped(), PointStamped(), PoseStamped()
         self.twist, self.input, self.clock = TwistStamped(), WrenchStamped(), Clock()
         for message in (self.attitude, self.altitude, self.pose):
             message.header.frame_id = WORLD_FRAME
         for message in (self.twist, self.input):
-            message.header.frame_id = BODY_FRAME
+            message.header.frame_id = prefix + BODY_FRAME
 
     def fill(self, stamp_ns, row):
         """Write a stamp (ns) and a row of samples_of into the messages."""

@@ -3,7 +3,6 @@
 """Node `simulator`: flies an experiment and publishes what a vehicle would."""
 
 import sys
-import threading
 
 from geometry_msgs.msg import (
     PointStamped,
@@ -15,7 +14,6 @@ from geometry_msgs.msg import (
 import numpy as np
 from rclpy._rclpy_pybind11 import RCLError
 from rclpy.clock import Clock, ClockType
-from rclpy.node import Node
 from rosgraph_msgs.msg import Clock as ClockMessage
 from std_msgs.msg import String, UInt64
 from std_srvs.srv import Trigger
@@ -23,8 +21,10 @@ from std_srvs.srv import Trigger
 from quad_ident_ros.data.topics import JOINED_TOPIC, RUN_TOPIC, RunNotice
 from quad_ident_ros.effects.registry import EFFECTS, from_entries
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.experiment import fly, load_experiment, NOISE_UNITS
+from quad_ident_ros.experiment import load_experiment, NOISE_UNITS
 from quad_ident_ros.nodes import process
+from quad_ident_ros.nodes.flight_worker import FlightWorker
+from quad_ident_ros.nodes.node import PackageNode
 from quad_ident_ros.nodes.parameters import help_text, NodeParameters, ParameterSpec
 from quad_ident_ros.nodes.qos import latched, LOSSLESS, STREAM
 from quad_ident_ros.nodes.samples import SampleMessages, samples_of
@@ -54,6 +54,8 @@ SPECS = (
                   'subscriptions have settled, so that nothing is missed.', fixed=True),
     ParameterSpec('seed', 0, 'Seed of the measurement noise, in closed loop of the trajectories '
                   'too.', limits=(0, 2 ** 31)),
+    ParameterSpec('frame_prefix', '', "Before the name of the body's frame, base_link: uav1/ "
+                  'gives uav1/base_link. The world is common to all.', fixed=True),
     *(ParameterSpec(f'noise.{channel}', -1.0, f'Standard deviation of the {channel} noise, '
                     f"{unit}; negative keeps the experiment's.", limits=(-1.0, 1e6))
       for channel, unit in NOISE_UNITS.items()),
@@ -70,8 +72,8 @@ Publishes (reliable; one stamp per sample on all five):
   altitude  geometry_msgs/PointStamped    point.z, m
   pose      geometry_msgs/PoseStamped     in the world (ENU)
   twist     geometry_msgs/TwistStamped    of the body, in body axes (FLU)
-  input     geometry_msgs/WrenchStamped   U1 in force.z (N); U2, U3 (N) and U4 (N m) in torque
-                                          x, y, z; the roll moment is l U2, l the arm length
+  input     geometry_msgs/WrenchStamped   on the body, in body axes: thrust in force.z (N), moments
+                                          in torque x, y, z (N m): l U2, l U3, U4, l the arm length
   run       std_msgs/String (latched)     JSON: what flies now, its stamps and provenance
   /clock    rosgraph_msgs/Clock           with publish_clock
 Subscribes: joined_until (std_msgs/UInt64): how far the recorders are, which full speed waits for
@@ -82,7 +84,7 @@ Parameters (--ros-args -p NAME:=VALUE):
 {help_text(SPECS)}"""
 
 
-class Simulator(Node):
+class Simulator(PackageNode):
     """Flies the runs of an experiment one after the other and publishes their samples."""
 
     def __init__(self, **kwargs):
@@ -112,17 +114,22 @@ class Simulator(Node):
         self._joined = self.create_subscription(UInt64, JOINED_TOPIC, self._on_joined, 10)
         self._joined_until = 0
         self._news = 0
-        self._messages = SampleMessages()
+        self._messages = SampleMessages(self._config['frame_prefix'])
         self._queue = []
         self._timer = None
         self._worker = None
         self._notice = None
         self._epoch = 0
-        self._session = 0
+        self._session = None
         self._waiting = None
         self.done = False
         if self._config['autostart']:
             self.start()
+
+    def ready(self):
+        """Say what flies, and when."""
+        what = self._config['experiment']
+        return f'flies {what}' if self._config['autostart'] else f'flies {what} on ~/start'
 
     def start(self):
         """Begin the experiment anew, with the parameters as they are now."""
@@ -217,10 +224,7 @@ class Simulator(Node):
             self.get_logger().info('waiting for /clock', throttle_duration_sec=5.0)
 
     def _begin(self):
-        # Simulated time goes on where an experiment before it ended: stamps never go back.
-        if not self._config['publish_clock']:
-            self._epoch = max(self._epoch, self.get_clock().now().nanoseconds)
-        self._session = self._epoch
+        self._session = None
         self._next_run()
 
     def _next_run(self):
@@ -231,8 +235,8 @@ class Simulator(Node):
             return
         run = self._queue.pop(0)
         values = self._config.values()
-        self._worker = _Worker(self._experiment, run, _noise(self._experiment, values),
-                               values['seed'])
+        self._worker = FlightWorker(self._experiment, run, _noise(self._experiment, values),
+                                    values['seed'])
         self._schedule(0.002, lambda: self._await_flight(run))
 
     def _await_flight(self, run):
@@ -262,6 +266,12 @@ class Simulator(Node):
         if flight.status != 'complete':
             self.get_logger().warning(f'{run.name}: the model diverged at t = '
                                       f'{flight.end_time:.6g} s')
+        # Stamps begin now, for the flight has taken its time to compute; simulated time goes on
+        # where it was. They never go back.
+        if not self._config['publish_clock']:
+            self._epoch = max(self._epoch, self.get_clock().now().nanoseconds)
+        if self._session is None:
+            self._session = self._epoch
         self._stamps = self._epoch + np.rint(flight.record.t * 1e9).astype(np.int64)
         self._samples = samples_of(flight.record)
         period = round(experiment.period * 1e9)
@@ -334,40 +344,6 @@ def _noise(experiment, values):
     """Return the noise of an experiment with that of the parameter values in its place."""
     return {**experiment.noise, **{channel: values[f'noise.{channel}'] for channel in NOISE_UNITS
                                    if values[f'noise.{channel}'] >= 0}}
-
-
-class _Cancelled(Exception):
-    pass
-
-
-class _Worker(threading.Thread):
-    """Flies a run beside the executor; outcome is a Simulation or an InputError."""
-
-    def __init__(self, *flight):
-        super().__init__()
-        self._flight, self._cancelled = flight, threading.Event()
-        self.outcome = None
-        self.start()
-
-    def run(self):
-        """Fly."""
-        experiment, run, noise, seed = self._flight
-        try:
-            self.outcome = fly(experiment, run, noise=noise, seed=seed,
-                               on_progress=self._on_progress)
-        except InputError as error:
-            self.outcome = error
-        except _Cancelled:
-            pass
-
-    def cancel(self):
-        """End the flight soon, and wait until it has ended."""
-        self._cancelled.set()
-        self.join()
-
-    def _on_progress(self, _):
-        if self._cancelled.is_set():
-            raise _Cancelled
 
 
 def main(args=None):

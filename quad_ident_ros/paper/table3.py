@@ -53,7 +53,7 @@ class Cell:
 
     @property
     def ratio(self):
-        """Computed over printed."""
+        """Return what is computed over what is printed."""
         return self.computed / self.printed
 
     @property

@@ -153,7 +153,8 @@ class Graph:
         return self.answer(client, request or kind.Request(), deadline)
 
     def answer(self, client, request, deadline=DEADLINE):
-        """Ask a service that is ready, again where no answer comes, and return its response.
+        """
+        Ask a service that is ready, again where no answer comes, and return its response.
 
         FastDDS drops the answer to a client that the server has not discovered within 0.1 s,
         which happens on a busy machine: ready is what the client knows of the server.

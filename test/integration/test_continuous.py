@@ -2,7 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Continuous mode through recorder and identifier: a payload picked up in flight."""
 
-from graph import STREAMS
+from diagnostic_msgs.msg import DiagnosticArray
+from geometry_msgs.msg import Vector3Stamped
+from graph import stamp_of, STREAMS
 import numpy as np
 from payload import climb, GRAVITY, MASS, PAYLOAD, PERIOD, PICKED_UP, START_NS
 import pytest
@@ -25,6 +27,8 @@ class Online:
         self.json, self.parameters, _ = graph.results()
         self.errors = graph.listen(Float64MultiArray, 'standard_errors', latched())
         self.changed = graph.listen(Bool, 'changed', latched())
+        self.stamped = {name: graph.listen(Vector3Stamped, name, latched()) for name in (
+            'outputs/z', 'outputs/z/standard_errors', 'outputs/phi')}
         graph.start(Recorder, {'topics': list(TOPICS), 'window_samples': WINDOW,
                                'overlap': 1 - STRIDE / WINDOW})
         graph.start(Identifier, {'method': 'vp', 'mode': 'continuous', 'initial_state': 'free',
@@ -40,8 +44,10 @@ class Online:
             if count >= WINDOW and count % STRIDE == 0:
                 windows = (count - WINDOW) // STRIDE + 1
                 self.graph.spin_until(lambda expected=windows: all(
-                    len(heard) == expected for heard in (self.json, self.parameters, self.errors,
-                                                         self.changed)), f'result {windows}')
+                    len(heard) == expected for heard in (
+                        self.json, self.parameters, self.errors, self.changed,
+                        self.stamped['outputs/z'],
+                        self.stamped['outputs/z/standard_errors'])), f'result {windows}')
 
     def _publish(self, flight, k):
         altitude, thrust = (STREAMS[name]() for name in TOPICS)
@@ -74,6 +80,16 @@ def test_a_payload_picked_up_in_flight_is_found_within_2_s_of_its_stamp(graph, c
     assert end_of(found[0]) - PICKED_UP_NS < 2e9
     assert change['output'] == 'z' and change['moved']
     assert abs(change['stamp_ns'] - PICKED_UP_NS) < 1e9
+    # Who comes late still gets the event, with the stamp of the change.
+    events = graph.listen(DiagnosticArray, 'change', latched(10))
+    graph.spin_until(lambda: len(events) == len(found), 'the events')
+    event = events[0]
+    assert stamp_of(event) == change['stamp_ns']
+    [status] = event.status
+    assert (status.name, status.hardware_id) == ('z', 'identifier')
+    assert {entry.key: float(entry.value) for entry in status.values} == {
+        f'{name}/{when}': value for name, values in change['moved'].items()
+        for when, value in zip(('before', 'after'), values, strict=True)}
     # The log tells of each change, and now and then that all is well.
     log = capfd.readouterr().err
     assert log.count(' changed at ') == len(found)
@@ -82,6 +98,20 @@ def test_a_payload_picked_up_in_flight_is_found_within_2_s_of_its_stamp(graph, c
     # From then on it is the vehicle as it is that is identified.
     last = results[-1]
     assert last['records'][0]['start_ns'] == pytest.approx(end_of(found[0]), abs=1e4)
+
+
+def test_results_for_plots_have_the_time_of_the_data(graph):
+    online = Online(graph)
+    online.fly(climb(0.0), 0.0, 5.5)
+    assert online.stamped['outputs/z'] and not online.stamped['outputs/phi']
+    for name, tables in (('outputs/z', online.parameters),
+                         ('outputs/z/standard_errors', online.errors)):
+        for data, message, table in zip(online.json.data(), online.stamped[name], tables,
+                                        strict=True):
+            assert abs(stamp_of(message) - end_of(data)) < 2
+            np.testing.assert_array_equal(
+                [message.vector.x, message.vector.y, message.vector.z],
+                np.reshape(table.data, (4, 3))[3])
 
 
 def test_results_come_with_standard_errors(graph):

@@ -7,7 +7,8 @@ import json
 import time
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
-from graph import flights
+from geometry_msgs.msg import Vector3Stamped
+from graph import flights, stamp_of
 import numpy as np
 import pytest
 from rcl_interfaces.srv import ListParameters
@@ -126,7 +127,8 @@ def test_it_finds_the_effect_of_the_simulated_vehicle(graph, tmp_path, experimen
                                  for status in message.status), 'the verdict in the diagnostics')
     # Who comes late hears it, too.
     late = {name: graph.listen(kind, name, latched()) for name, kind in (
-        ('diagnosis', String), ('gap', Float64MultiArray), ('where', Float64MultiArray))}
+        ('diagnosis', String), ('gap', Float64MultiArray), ('where', Float64MultiArray),
+        ('gap/velocity', Vector3Stamped), ('where/force', Vector3Stamped))}
     graph.spin_until(lambda: all(late.values()), 'the latched results')
     assert late['diagnosis'].data() == [data]
     assert [dim.label for dim in late['gap'][0].layout.dim] == [
@@ -139,6 +141,11 @@ def test_it_finds_the_effect_of_the_simulated_vehicle(graph, tmp_path, experimen
     assert late['where'][0].layout.dim[0].label == 'Fx,Fy,Fz,Mx,My,Mz'
     shares = np.array(late['where'][0].data)
     assert shares.sum() == pytest.approx(1.0) and shares[:2].sum() > 0.8
+    # The same for plots, with the time of the data.
+    for name, values in (('gap/velocity', (before, after, noise)), ('where/force', shares[:3])):
+        [message] = late[name]
+        assert stamp_of(message) == data['span_ns'][1]
+        assert (message.vector.x, message.vector.y, message.vector.z) == tuple(values)
 
 
 def test_it_answers_while_it_diagnoses_and_can_be_cancelled(graph, draggy):

@@ -18,6 +18,7 @@ from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.identify.identify import identify, Settings
 from quad_ident_ros.identify.methods import METHODS
 from quad_ident_ros.identify.result import parameter_table
+from quad_ident_ros.model.vehicle import load_vehicle
 from quad_ident_ros.nodes.identifier import Identifier
 from quad_ident_ros.nodes.messages import record_message
 from quad_ident_ros.nodes.qos import latched
@@ -320,6 +321,25 @@ def test_complex_poles_are_not_published_as_real_ones(bench):
     row = np.reshape(bench.best[0].data, (4, 3))[0]
     assert row[0] == pytest.approx(9.25, rel=0.02) and np.isnan(row[1:]).all()
     bench.await_status(DiagnosticStatus.WARN, 'complex poles, so a and b are not published: phi')
+
+
+def test_moments_of_a_real_vehicle_become_inputs_by_the_vehicle(bench, hover):
+    """A vehicle that announces no runs says no arm length: the parameter vehicle knows it."""
+    arm = load_vehicle('paper_quadrotor').arm_length
+    names = {'u2': 'moment_x', 'u3': 'moment_y'}
+    records = [FlightRecord(record.t, {
+        names.get(name, name): arm * values if name in names else values
+        for name, values in record.columns.items()}, record.info) for record in hover]
+    bench = bench({'method': 'ls', 'vehicle': 'paper_quadrotor'})
+    bench.feed(records)
+    bench.await_results(1)
+    expected = parameter_table(identify(hover, Settings(methods=('ls',))).methods['ls'])
+    np.testing.assert_allclose(np.reshape(bench.best[-1].data, (4, 3)), expected, rtol=1e-6)
+    assert bench.graph.set_parameter('identifier', 'vehicle', '').successful
+    bench.graph.trigger('identifier/identify')
+    data = bench.await_results(2)
+    assert np.isnan(np.reshape(bench.best[-1].data, (4, 3))[:2]).all()
+    assert any('name the vehicle' in remark for remark in data['remarks'])
 
 
 def test_a_window_without_samples_is_an_error(bench, hover):

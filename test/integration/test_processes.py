@@ -151,6 +151,21 @@ def test_signals_end_the_nodes_soon_and_well(graph, processes, tmp_path, number)
     check_end(started, number)
 
 
+def test_each_node_says_once_when_it_is_ready(graph, processes):
+    said = {'simulator': 'ready: flies small_angle on ~/start',
+            'recorder': 'ready: joins attitude, altitude, pose, twist, input; in memory only',
+            'identifier': 'ready: fitting what comes on /record, mode once',
+            'diagnoser': 'ready: diagnosing what comes on /record, mode once'}
+    given = {'simulator': {'experiment': 'small_angle', 'autostart': False}}
+    started = [processes.start(node, given.get(node)) for node in said]
+    for process, text in zip(started, said.values(), strict=True):
+        graph.spin_until(lambda p=process: 'ready' in p.errors() or not p.running(),
+                         f'{process.node} to be ready', 4 * DEADLINE)
+        [line] = [line for line in process.errors().splitlines() if 'ready' in line]
+        assert text in line
+    assert [process.stop() for process in started] == [0] * 4
+
+
 def test_a_signal_right_after_the_start_ends_the_nodes(graph, processes):
     started = {node: processes.start(node) for node in NODES}
     await_nodes(graph, NODES)

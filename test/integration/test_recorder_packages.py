@@ -139,7 +139,7 @@ def recorded(graph, parameters, sent, arguments=()):
     ('Crazyswarm2', of_crazyswarm2, DUTY, ('p', 'w', 'a'), 0.02),
     ('Gazebo, `ros_gz_bridge`', of_gazebo, None, ('p', 'v', 'w', 'a'), 1e-9)])
 def test_a_row_of_the_readme_records_the_flight_as_a_bag_has_it(graph, tmp_path, title, messages,
-                                                               motors, groups, within):
+                                                                motors, groups, within):
     """States in ENU and FLU, SI; speeds of the rotors by `motors` of the vehicle file."""
     path = tmp_path / 'topics.yaml'
     path.write_text(row_of(title))

@@ -12,6 +12,7 @@ from std_msgs.msg import String
 
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.experiment import fly, load_experiment
+from quad_ident_ros.model.vehicle import load_vehicle
 from quad_ident_ros.nodes.process import FastExecutor
 from quad_ident_ros.nodes.qos import latched
 from quad_ident_ros.nodes.recorder import Recorder
@@ -64,7 +65,7 @@ def test_topics_carry_the_state_with_one_stamp(graph, short):
     assert stamps[51] > stamps[50] + PERIOD   # a gap, so that nobody takes them for one flight
 
 
-def check_content(heard, part, record):
+def check_content(heard, part, record, prefix=''):
     """Compare messages, by their fields, with what the library flew."""
     def rows(topic, read):
         return np.array([read(message) for message in heard[topic][part]])
@@ -83,10 +84,14 @@ def check_content(heard, part, record):
     body = Rotation.from_quat(quaternion).inv().apply(world)
     np.testing.assert_allclose(rows('twist', lambda m: vector(m.twist.linear)), body, atol=1e-12)
     equal(rows('twist', lambda m: vector(m.twist.angular)), record.stack('wx', 'wy', 'wz'))
-    equal(rows('input', lambda m: (m.wrench.force.z, *vector(m.wrench.torque))), record.inputs())
+    # A true wrench: the moments (N m) about x and y are the arm length times U2 and U3.
+    arm = load_vehicle('paper_quadrotor').arm_length
+    equal(rows('input', lambda m: (m.wrench.force.z, *vector(m.wrench.torque))),
+          record.inputs() * [1.0, arm, arm, 1.0])
     assert not rows('input', lambda m: (m.wrench.force.x, m.wrench.force.y)).any()
     for topic, frame in {'attitude': 'world', 'altitude': 'world', 'pose': 'world',
-                         'twist': 'base_link', 'input': 'base_link'}.items():
+                         'twist': f'{prefix}base_link',
+                         'input': f'{prefix}base_link'}.items():
         assert {message.header.frame_id for message in heard[topic][part]} == {frame}
 
 
@@ -224,6 +229,9 @@ def test_pace_comes_from_an_external_clock(graph, short):
     np.testing.assert_array_equal(stamps_of(heard['pose']), begin + PERIOD * np.arange(11))
     show(begin + 10 ** 9)
     await_samples(graph, heard, 51)
+    # The stamps of the second flight do not fall behind the time at which it begins.
+    graph.spin_until(lambda: len(runs) == 2, 'the second flight')
+    assert runs.data()[1]['start_ns'] == begin + 10 ** 9
     show(begin + 10 ** 10)
     await_samples(graph, heard, 52)
     show(begin + 10 ** 10 + 10 ** 9)
@@ -237,10 +245,10 @@ def test_namespace_and_remapping(graph, short):
     plain = listen(graph, '/')
     runs = notices(graph, '/fleet/one/')
     graph.start(Simulator, {'experiment': short, 'real_time_factor': 0.0}, namespace='fleet/one',
-                arguments=['-r', 'attitude:=/imu/angles'])
+                arguments=['-r', 'attitude:=/imu/angles', '-p', 'frame_prefix:=one/'])
     await_samples(graph, heard, 102)
     assert len(runs) == 2
-    check_content(heard, slice(0, 51), truth(short))
+    check_content(heard, slice(0, 51), truth(short), 'one/')
     assert not any(plain.values())
     names = [name for name, _ in graph.probe.get_topic_names_and_types()]
     assert '/fleet/one/attitude' not in names

@@ -5,11 +5,13 @@
 import time
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
-from graph import Vehicle, write_experiment
+from graph import Graph, Vehicle, write_experiment
+from nav_msgs.msg import Odometry
 import pytest
 from std_msgs.msg import Float64MultiArray
 
-from quad_ident_ros.nodes.qos import latched
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.nodes.qos import latched, LOSSLESS
 from quad_ident_ros.nodes.recorder import Recorder
 from quad_ident_ros.nodes.simulator import Simulator
 
@@ -43,6 +45,48 @@ def test_a_topic_that_is_silent_is_named(graph):
     response = graph.trigger('recorder/flush')
     assert not response.success
     assert 'nothing comes on twist' in response.message
+
+
+def test_odometry_in_the_place_of_a_pose_is_named_and_taken_as_it_says(graph, domain, tmp_path):
+    vehicle = Graph(domain)    # another process would do the same: one context has one type
+    try:
+        publisher = vehicle.probe.create_publisher(Odometry, '/odom', LOSSLESS)
+        heard = graph.listen(DiagnosticArray, '/diagnostics', 10)
+        recorder = graph.start(Recorder, arguments=('-r', 'pose:=/odom'))
+        said = 'pose: /odom is nav_msgs/msg/Odometry, not geometry_msgs/msg/PoseStamped'
+        [status] = graph.spin_until(lambda: [status for message in heard for status in
+                                             message.status if said in status.message][:1], said)
+        assert status.level == DiagnosticStatus.WARN
+        assert '-p topics:="[odometry]" -r odometry:=/odom' in status.message
+        assert graph.trigger('recorder/flush').message == status.message
+        graph.stop(recorder)
+        # Both ways out, with the words that it says.
+        path = tmp_path / 'map.yaml'
+        path.write_text(status.message[status.message.index('topics: {'):].removesuffix(' in it'))
+        for words in (('-p', 'topics:=[odometry]', '-r', 'odometry:=/odom'),
+                      ('-p', f'mapping:={path}')):
+            recorder = graph.start(Recorder, arguments=words)
+            graph.spin_until(lambda: publisher.get_subscription_count() >= 1, 'the recorder')
+            stamps = iter(range(10 ** 9, 10 ** 12, 10 ** 7))
+
+            def joined(recorder=recorder, stamps=stamps):
+                message = Odometry()
+                message.header.stamp.sec, message.header.stamp.nanosec = divmod(
+                    next(stamps), 10 ** 9)
+                message.pose.pose.orientation.w = 1.0
+                publisher.publish(message)
+                return recorder.counts.joined > 10
+
+            graph.spin_until(joined, 'samples')
+            graph.stop(recorder)
+    finally:
+        vehicle.close()
+
+
+def test_one_topic_cannot_be_pose_and_twist(graph):
+    with pytest.raises(InputError, match=r'/odom cannot be both pose \(geometry_msgs/msg/'
+                       r'PoseStamped\) and twist .*; start the recorder with .*odometry'):
+        graph.start(Recorder, arguments=('-r', 'pose:=/odom', '-r', 'twist:=/odom'))
 
 
 def test_stamps_that_never_meet_are_told_and_joined_between(graph):

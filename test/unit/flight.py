@@ -43,7 +43,7 @@ def hover_speed(vehicle):
 
 
 def state(position=(0, 0, 1), velocity=(0, 0, 0), euler=(0, 0, 0), rate=(0, 0, 0)):
-    """Return a state (13,)."""
+    """Return a state, (13,)."""
     return np.concatenate([position, velocity, quaternion_from_euler(np.array(euler, float)),
                            rate]).astype(float)
 

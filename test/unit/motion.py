@@ -23,7 +23,7 @@ def parts(vehicle, inputs, omega_r, count):
 
 
 def derivative(vehicle, state, inputs=(0, 0, 0, 0), omega_r=0.0):
-    """Return the derivative (13,) of a state (13,)."""
+    """Return the derivative, (13,), of a state (13,)."""
     constants, theta, rows = parts(vehicle, inputs, omega_r, 1)
     out, none = np.empty((1, 13)), np.empty((1, 0))
     derivatives(constants[:, None], NO_ROTORS, theta, np.zeros(1), np.array([state], float), none,

@@ -200,7 +200,7 @@ def test_what_is_asked_for_is_no_state(tmp_path):
 def test_an_attitude_of_an_imu_serves_where_nothing_better_is_there(tmp_path):
     q = SMALL.stack(*ATTITUDE)
     turned = [(topic, kind, ns, {**fields, 'orientation': dict(zip('wxyz', map(float, q[k]),
-                                                                    strict=True))})
+                                                                   strict=True))})
               for k, (topic, kind, ns, fields) in enumerate(imu(SMALL))]
     agrees(load(write2(tmp_path / 'a', turned)), ATTITUDE, RATE, FORCE)
     assert not load(write2(tmp_path / 'b', imu(SMALL))).has('qw')   # zero: it has none

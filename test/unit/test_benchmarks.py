@@ -158,7 +158,7 @@ def test_a_target_is_met_or_not_or_nothing_was_measured():
     text = tables.targets([('a', '≤ 1 s', '0.5 s', np.True_), ('b', '≤ 1 s', '2 s', False),
                            ('c', '≤ 1 s', 'nothing', None)])
     assert [line.split('|')[-2].strip() for line in text.splitlines()[2:]] == ['yes', '**no**',
-                                                                              '–']
+                                                                               '–']
 
 
 def test_without_real_flights_their_target_says_so(tmp_path):

@@ -20,7 +20,7 @@ def rows(start, stop, step=10, without=()):
 
 
 def times(record):
-    """Return the times (ms) that the rows of a record were made from."""
+    """Return the times in ms that the rows of a record were made from."""
     return record.columns['pz'].astype(int).tolist()
 
 

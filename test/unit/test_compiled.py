@@ -93,6 +93,7 @@ def test_a_folder_of_ones_own_is_trusted_and_one_that_is_not_there_is_not(tmp_pa
 
 def test_a_numba_that_keeps_in_another_way_compiles_at_each_start(monkeypatch):
     class Other:
+
         def __init__(self, function):
             self.function = function
 

@@ -175,7 +175,6 @@ def _written(folder):
     return folder / 'f.csv'
 
 
-
 def test_no_permission(tmp_path, monkeypatch):
     """A file that may not be read is refused."""
     path = tmp_path / 'flight.csv'

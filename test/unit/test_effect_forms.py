@@ -203,7 +203,7 @@ def test_the_momentum_of_body_and_rotors_together_stays(lag):
     random = np.random.default_rng(4)
     course = held(FREE, TURNING, seconds=1.0)
     course.commands[:] = TURNING * (1.0 + np.repeat(random.uniform(-0.1, 0.1, 21), 5)[:101, None]
-                                  * SPINS)
+                                    * SPINS)
     effects = {**GYRO, 'motor_lag': lag}
     rate = roll(FREE, effects, course, state())[:, 12]
     followed, *_ = (each[0] for each in actuated(course.t, course.t, course.commands,

@@ -61,6 +61,7 @@ def test_over_half_a_second_reckoned_motion_is_the_true_one():
     turns = [np.einsum('nji,njk->nik', one[:-half], one[half:]) for one in (true, own)]
     np.testing.assert_allclose(*turns, atol=2e-3)
     # In the axes of the body at the start gravity is known only as far as the attitude is.
+
     def changes(one, rotation):
         velocity = one.stack('vx', 'vy', 'vz')
         change = velocity[half:] - velocity[:-half] + [0.0, 0.0, G * half / 200.0]

@@ -70,7 +70,7 @@ def test_the_modes_of_ardupilot_are_shown_with_their_spans(tmp_path, capsys):
     path.write_bytes(dataflash(messages, {**TYPES, 'MODE': (80, 'QBB', 'TimeUS,Mode,ModeNum')}))
     _, data = info(capsys, path)
     assert [(one['mode'], one['from_s']) for one in data['modes']] == [('loiter', 0.0),
-                                                                        ('poshold', 2.0)]
+                                                                       ('poshold', 2.0)]
 
 
 def test_what_is_no_flight_record_shows_what_is_in_it(tmp_path, capsys):

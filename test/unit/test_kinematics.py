@@ -36,7 +36,7 @@ def motion():
 
 
 def noise(random, memory):
-    """Return noise (N, 12) of SIZES, half of its power with a memory, s, if there is one."""
+    """Return noise, (N, 12), of SIZES, half of its power with a memory, s, if there is one."""
     white = random.normal(size=(len(TIMES), 12))
     if not memory:
         return SIZES * white

@@ -44,7 +44,7 @@ def test_the_file_has_the_gap_that_was_reported(written):
     z = nominal(NOMINAL.vehicle)
     z[SPLIT:SPLIT + len(vector({}, vehicle))] = vector(vehicle.effects, NOMINAL.vehicle)
     after = gaps.gap([gaps.ends(track_of(flights[-1], NOMINAL.vehicle), NOMINAL.vehicle, z,
-                               gaps.HEADLINE)])
+                                gaps.HEADLINE)])
     assert after['velocity'] == pytest.approx(data['gap']['after']['velocity'], rel=1e-3)
     assert data['gap']['closed'] > 0.95
 

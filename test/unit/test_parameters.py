@@ -10,8 +10,8 @@ from rcl_interfaces.msg import ParameterType
 
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.nodes import diagnoser, identifier, recorder, simulator
+from quad_ident_ros.nodes.parameter_files import is_for, names_in
 from quad_ident_ros.nodes.parameters import help_text, NodeParameters, ParameterSpec, TYPES
-from quad_ident_ros.nodes.process import _matches, _node_names
 
 SHARE = ParameterSpec('share', 0.5, 'A share.', limits=(0.0, 1.0))
 COUNT = ParameterSpec('count', 3, 'A count.', limits=(1, 10), fixed=True)
@@ -97,7 +97,7 @@ def test_names_in_a_parameter_file_are_found():
     data = {'identifier': {'ros__parameters': {}}, '/quad': {'recorder': {'ros__parameters': {}}},
             '/**': {'ros__parameters': {}}, '/**/simulator': {'ros__parameters': {}},
             'no': 'mapping'}
-    assert list(_node_names(data)) == ['/identifier', '/quad/recorder', '/**', '/**/simulator']
+    assert names_in(data) == ['/identifier', '/quad/recorder', '/**', '/**/simulator']
 
 
 @pytest.mark.parametrize('key, name, matches', [
@@ -108,4 +108,4 @@ def test_names_in_a_parameter_file_are_found():
     ('/**/identifier', '/identifier', True), ('/**/recorder', '/identifier', False),
     ('/*/identifier', '/quad/identifier', True), ('/*', '/identifier', True)])
 def test_a_name_in_a_parameter_file_matches_as_in_ros(key, name, matches):
-    assert _matches(key, name.rsplit('/', 1)[-1], name) is matches
+    assert is_for([key], name.rsplit('/', 1)[-1], name) is matches

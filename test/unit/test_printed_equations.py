@@ -177,6 +177,7 @@ def test_15_friction_has_roll_times_yaw_for_pitch_times_yaw():
     assert close(change[2], 2 * 3.0 * 5.0 * 0.5)
     # Pitch times yaw is not in the printed friction; in the derived one it is: -Kfaz w^2 / Iz of
     # the body's yaw rate w = psi' c - theta' s = 2 / sqrt(2).
+
     def right(*euler_rate):
         return printed((np.pi / 4, 0, 0), euler_rate)[0][2]
     assert right(0, 3.0, 5.0) - right(0, 3.0, 0) - right(0, 0, 5.0) == pytest.approx(0, abs=1e-12)

@@ -67,7 +67,7 @@ def test_a_vehicle_that_cannot_hover_is_found(wrong, said):
 
 
 @pytest.mark.parametrize(('arms', 'inertia'), [(100.0, 1.0), (1000.0, 1.0), (1.0, 1e3),
-                                                (1.0, 1e4)],
+                                               (1.0, 1e4)],
                          ids=['cm', 'mm', 'g m^2', 'kg cm^2'])
 def test_arms_or_inertia_in_another_unit_are_found(arms, inertia):
     wrong = replace(VEHICLE, inertia=tuple(inertia * one for one in VEHICLE.inertia), rotors=tuple(

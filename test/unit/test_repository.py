@@ -23,11 +23,16 @@ def test_style():
     assert done.returncode == 0, done.stdout
 
 
-@pytest.mark.parametrize('path', sorted((ROOT / 'quad_ident_ros').rglob('*.py')),
-                         ids=lambda path: path.name)
+PARTS = ('benchmarks', 'docs', 'launch', 'quad_ident_ros', 'scripts', 'test', 'withheld')
+
+
+@pytest.mark.parametrize('path', [ROOT / 'setup.py', *sorted(
+    path for part in PARTS for path in (ROOT / part).rglob('*')
+    if path.suffix == '.py' or part == 'scripts')], ids=lambda path: path.name)
 def test_every_source_file_names_its_licence(path):
-    assert path.read_text(encoding='utf-8').splitlines()[1] == \
-        '# SPDX-License-Identifier: Apache-2.0'
+    lines = path.read_text(encoding='utf-8').splitlines()
+    assert lines[lines[0].startswith('#!'):][:2] == [
+        '# Copyright 2026 quad_ident_ros contributors', '# SPDX-License-Identifier: Apache-2.0']
 
 
 @pytest.mark.parametrize('name', resources.names('experiments'))

@@ -138,6 +138,7 @@ def test_a_vehicle_whose_axes_are_turned_flies_the_same_flight():
         back = np.broadcast_to(QUARTER * [1, 1, 1, -1], (*states.shape[:-1], 4))
         return np.concatenate([states[..., :6], product(states[..., 6:10], back),
                                turned(states[..., 10:])], axis=-1)
+
     def swapped(triple):
         return (triple[1], triple[0], triple[2])
     vehicle = replace(VEHICLE, inertia=swapped(VEHICLE.inertia),

@@ -38,7 +38,7 @@ def same(read, *groups, atol=1e-6):
 
 
 def test_a_table_of_several_topics_has_rows_of_each(tmp_path):
-    """PlotJuggler and pandas write a row for each message, and the twist in the body."""
+    """Programs (PlotJuggler, pandas) write a row for each message, and the twist in the body."""
     body, odd, even = world_velocity_in_body(FLIGHT), slice(1, None, 4), slice(0, None, 2)
     found = {'__time': 1.7e9 + T}
     odom = {**columns('/odom/pose/pose/position/', 'xyz', PLACE),

@@ -98,6 +98,7 @@ def test_estimates_lie_about_the_truth(system):
 
 def test_standard_errors_grow_with_the_noise_and_shrink_with_the_data():
     truth = SYSTEMS['real']
+
     def error(noise, repeat=1):
         u = np.tile(PRBS, repeat)
         t = np.arange(len(u)) * PERIOD

@@ -121,6 +121,7 @@ def test_every_column_has_cases_of_its_own(make):
 def test_a_case_counts_where_what_is_hardest_about_it_is(options, column):
     assert Case('single', {'wind': 1.0}, **options).column == column
 
+
 def test_the_order_of_the_cases_tells_nothing():
     first, second = (full_set(np.random.default_rng(seed)) for seed in (1, 2))
     assert first != second
@@ -346,7 +347,7 @@ def test_chance_is_what_other_diagnoses_would_reach():
 
 def test_the_score_does_not_change_what_it_is_given_and_makes_tables():
     labels = {'a': label(['wind']), 'b': label(kind='none'), 'c': label(stranger='slosh',
-                                                                         kind='unknown'),
+                                                                        kind='unknown'),
               'd': label(['wind'], faulty=True)}
     found = {'a': diagnosis('wind'), 'b': diagnosis('none'), 'c': diagnosis('unknown'),
              'd': {'refused': 'clocks'}}

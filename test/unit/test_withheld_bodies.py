@@ -14,13 +14,14 @@ from withheld.sensors import Noise
 for name in ('rotorpy', 'mujoco', 'drone_models'):
     if find_spec(name) is None:
         pytest.skip(f'{name} is not installed', allow_module_level=True)
-bodies, flying, paths, plants, vehicles = (
-    import_module(f'withheld.{name}') for name in ('bodies', 'fly', 'paths', 'plant', 'vehicles'))
+bodies, constants, flying, paths, plants, vehicles = (
+    import_module(f'withheld.{name}') for name in (
+        'bodies', 'constants', 'fly', 'paths', 'plant', 'vehicles'))
 Bodies, Payload = bodies.Bodies, bodies.Payload
 
 STEP = 0.01
 PARAMS = vehicles.vehicle_of('px4_quadrotor', np.random.default_rng(1), False)
-HOVER = np.full(4, vehicles.hover_speed(PARAMS))
+HOVER = np.full(4, constants.hover_speed(PARAMS))
 
 
 def start(height=2.0, velocity=(0.0, 0.0, 0.0), speeds=HOVER):
@@ -146,6 +147,6 @@ def test_it_flies_under_the_same_controller(options):
     path = paths.Sines(np.random.default_rng(3), size=1.5, acceleration=2.0, low=1.0, turn=0.5)
     sensors = {'tilt': np.zeros(3), 'bias': np.zeros(3)}
     flown = flying.fly(Bodies(PARAMS, {}, **options), PARAMS, path, 2.0, STEP, Noise(),
-                np.random.default_rng(1), sensors)
+                       np.random.default_rng(1), sensors)
     aims = np.array([path.update(k * STEP)['x'] for k in range(len(flown.states))])
     assert np.linalg.norm(flown.states[:, :3] - aims, axis=1).max() < 0.5

@@ -23,7 +23,7 @@ nominal, paths, plant, vehicles = (
 STEP = 0.01
 PARAMS = vehicles.vehicle_of('px4_quadrotor', np.random.default_rng(1), True)
 SILENT = sensors.Imu(gyro=0.0, accelerometer=0.0, gyro_bias=0.0, accelerometer_bias=0.0,
-                       shaking=(0.0, 0.0))
+                     shaking=(0.0, 0.0))
 MOCAP, GPS = setups.SETUPS['development']
 ALL = [setup for part in setups.SETUPS.values() for setup in part]
 

@@ -51,7 +51,7 @@ def test_what_the_fit_leaves_of_a_form_of_the_library_is_nothing():
 
 
 def commands():
-    """Return held commands (N, 4) as a controller gives them, and the times of their samples."""
+    """Return held commands, (N, 4), as a controller gives them, and the times of their samples."""
     rng, t = np.random.default_rng(1), np.arange(0.0, 6.0, STEP_OF_MOTORS)
     rates = 2.0 * np.pi * np.exp(rng.uniform(np.log(0.3), np.log(8.0), (4, 15, 1)))
     waves = np.sin(rates * t + rng.uniform(0.0, 6.28, (4, 15, 1))).sum(axis=1).T

@@ -106,8 +106,8 @@ def test_what_the_vehicle_has_more_than_its_file():
 def diagnosis(verdict, **parameters):
     return {'verdict': verdict, 'ranking': [
         {'effect': effect, 'probability': 0.9,
-         'parameters': {name: {'value': value, 'std': std} for name, (value, std) in all.items()}}
-        for effect, all in parameters.items()]}
+         'parameters': {name: {'value': value, 'std': std} for name, (value, std) in two.items()}}
+        for effect, two in parameters.items()]}
 
 
 def label(change):

@@ -15,9 +15,9 @@ from withheld import lists
 
 if find_spec('rotorpy') is None:
     pytest.skip('rotorpy is not installed', allow_module_level=True)
-controllers, outside, paths, plant, realities, sensors, vehicles = (
+constants, controllers, outside, paths, plant, realities, sensors, vehicles = (
     import_module(f'withheld.{name}') for name in (
-        'controllers', 'outside', 'paths', 'plant', 'realities',
+        'constants', 'controllers', 'outside', 'paths', 'plant', 'realities',
         'sensors', 'vehicles'))
 setups = import_module('withheld.estimator.setups')
 EVALUATION = lists.EVALUATION
@@ -62,7 +62,7 @@ def test_the_library_reads_their_files(name, tmp_path):
     (tmp_path / 'vehicle.yaml').write_text(vehicles.nominal_file(params, name))
     vehicle = load_nominal(str(tmp_path / 'vehicle.yaml'))
     assert len(vehicle.rotors) == params['num_rotors']
-    assert vehicle.hover_speed == pytest.approx(vehicles.hover_speed(params))
+    assert vehicle.hover_speed == pytest.approx(constants.hover_speed(params))
 
 
 def test_a_hexacopter_hovers_on_six_rotors():

@@ -19,6 +19,7 @@ from quad_ident_ros.data.quality import (
     glitches,
     ground,
     gyro,
+    moments,
     rotors,
     saturation,
     stale,
@@ -42,9 +43,9 @@ CHECKS = (columns.known, columns.incomplete, columns.differentiated, columns.fro
           stale.marked, glitches.attitude,
           units.rates_in_degrees, units.euler_in_degrees, units.force_in_g,
           units.position_in_millimetres, units.speeds_in_rpm, frames.quaternion, frames.world,
-          frames.velocity_in_body, frames.signs, rotors.hover, rotors.size, rotors.count,
-          rotors.order_and_spin, thrust.carried,
-          thrust.level, clock.attitude, clock.velocity, clock.commands,
+          frames.velocity_in_body, frames.rate_in_world, frames.signs, rotors.hover, rotors.size,
+          rotors.count, rotors.order_and_spin, moments.unit, thrust.carried, thrust.level,
+          clock.attitude, clock.velocity, clock.commands,
           ground.stands, gyro.bias, answer.commands, saturation.speeds, excitation.axes)
 
 TOLD = 'commands', 'logging', 'differentiated'

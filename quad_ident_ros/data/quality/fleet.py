@@ -42,7 +42,7 @@ def vehicles(records: Sequence[FlightRecord]) -> list[dict]:
 
 def days(records: Sequence[FlightRecord]) -> list[dict]:
     """
-    Return what to be wary of where flights are of several days (UTC), as data.
+    Return what to be wary of where flights are of several days, by UTC, as data.
 
     By the info `utc_ns` of the records, or `start_ns` where it is a date.
     """

@@ -7,7 +7,7 @@ import numpy as np
 from quad_ident_ros.data.frames import body_vector, conjugate, rotate, world_vector
 from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.quality.once import once
-from quad_ident_ros.data.quality.series import correlation, explained, Grid
+from quad_ident_ros.data.quality.series import correlation, explained, Grid, is_rather, WIDTH
 from quad_ident_ros.data.record import QUATERNION
 
 SURE, BETTER = 0.7, 0.3   # correlation that an explanation needs, and its lead
@@ -96,6 +96,26 @@ def quaternion(record, vehicle):
                     f'turn the sign of w{axis}, or the attitude to FLU; in a mapping of a table '
                     'unit: -rad/s or -deg turns that of a column')
             for axis in _opposed(rate, gyro)]
+
+
+def rate_in_world(record, vehicle):
+    """Find rates about the axes of the world: turned back by the attitude they are the body's."""
+    grid = Grid.of(record)
+    if grid is None or not record.has(*QUATERNION, 'wx', 'wy', 'wz'):
+        return []
+    name, attitude = best_reading(record)
+    if attitude is None or name != 'as it is' or _still(grid, attitude):
+        return []
+    gyro = grid.signal('wx', 'wy', 'wz')
+    if not is_rather(grid.rate_of(attitude)[grid.good], grid.smooth(gyro)[grid.good],
+                     grid.smooth(rotate(conjugate(attitude), gyro))[grid.good],
+                     WIDTH / grid.period):
+        return []
+    return [Finding('rate_in_world', 'error', 'wx, wy, wz',
+                    'the attitude turns as the rate says only where that is turned back by the '
+                    'attitude: it is about the axes of the world, not of the body',
+                    'publish the twist in body axes (base_link), or turn the rates by the inverse '
+                    'of the attitude')]
 
 
 def _opposed(one, other):
@@ -192,11 +212,16 @@ def velocity_in_body(record, vehicle):
     missed = 1.0 - explained(moved, grid.smooth(velocity)[grid.good])
     turned = 1.0 - explained(moved, grid.smooth(rotate(attitude, velocity))[grid.good])
     back = 1.0 - explained(moved, grid.smooth(rotate(conjugate(attitude), velocity))[grid.good])
-    if missed >= TURNED and back <= 0.1 and back <= 0.25 * min(missed, turned):
+    in_world = missed >= TURNED and back <= 0.1 and back <= 0.25 * min(missed, turned)
+    if in_world or is_rather(moved, grid.smooth(velocity)[grid.good],
+                             grid.smooth(rotate(conjugate(attitude), velocity))[grid.good],
+                             WIDTH / grid.period):
         return [Finding('velocity_in_world', 'error', 'vx, vy, vz',
                         'the position changes as the velocity says only where that is turned '
                         'back by the attitude: it was taken for one in body axes and is of the '
-                        'world', 'say frame: world of the velocity in a mapping')]
+                        'world',
+                        'publish the twist in body axes (base_link), or say frame: world of the '
+                        'velocity in a mapping')]
     if missed < TURNED or turned > 0.1 or turned > 0.25 * missed:
         return _strangers(moved, grid.smooth(velocity)[grid.good])
     return [Finding('velocity_in_body', 'error', 'vx, vy, vz',

@@ -18,6 +18,7 @@ WIDTH = 0.2       # s, full width of the smoothing window
 GAP = 3.0         # median periods from which on a step in time is a gap
 MOST = 100_000    # samples that the checks look at: of more, one of so many, over the whole record
 DIRECT = 2001     # samples of a window, from which on Fourier transforms take fewer steps
+NEAR, SHARE_ERROR, ALIKE = 0.25, 0.1, 0.5   # of a share that is 1, its error, and a correlation
 COARSEST = 0.1 * WIDTH  # s between them, however long a record is: smoothing needs a few
 
 
@@ -124,6 +125,24 @@ class Grid:
     def acceleration(self, attitude):
         """Return the acceleration in the world from attitude and specific force, (N, 3)."""
         return rotate(attitude, self.force()) - np.array([0.0, 0.0, GRAVITY])
+
+
+def is_rather(target, signal, other, together):
+    """
+    Return whether a target is another reading of a signal and not the signal, all (N, k).
+
+    That is so where it has all of their difference, within the error, and little besides: also
+    where they differ by less than noise does. together: samples that smoothing makes one.
+    """
+    difference, missed = other - signal, target - signal
+    power = np.sum(difference ** 2)
+    if not power > 0.0:
+        return False
+    share = np.sum(difference * missed) / power
+    left = np.mean((missed - share * difference) ** 2)
+    error = np.sqrt(together * left / power)
+    alike = correlation(missed, difference)[0]
+    return bool(abs(share - 1.0) < NEAR and error < SHARE_ERROR and alike > ALIKE)
 
 
 def explained(target, model):

@@ -67,7 +67,7 @@ def records_from(path: Path, table: Table, mapping: Mapping | None) -> list[Flig
         **record.info, 'name': f'{record.info["name"]}_{k}', 'source': f'{path}, recording {k}',
         'notes': [*record.info['notes'], f'the time begins anew in the table: this is recording '
                                          f'{k} of {len(records)}']})
-        for k, record in enumerate(records, 1)]
+            for k, record in enumerate(records, 1)]
 
 
 def _recordings(path: Path, table: Table, mapping: Mapping) -> list[Table]:

@@ -1,0 +1,42 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""A flight that is computed beside the executor of a node."""
+
+import threading
+
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.experiment import fly
+
+
+class _Cancelled(Exception):
+    pass
+
+
+class FlightWorker(threading.Thread):
+    """Flies a run beside the executor; outcome is a Simulation or an InputError."""
+
+    def __init__(self, *flight):
+        super().__init__()
+        self._flight, self._cancelled = flight, threading.Event()
+        self.outcome = None
+        self.start()
+
+    def run(self):
+        """Fly."""
+        experiment, run, noise, seed = self._flight
+        try:
+            self.outcome = fly(experiment, run, noise=noise, seed=seed,
+                               on_progress=self._on_progress)
+        except InputError as error:
+            self.outcome = error
+        except _Cancelled:
+            pass
+
+    def cancel(self):
+        """End the flight soon, and wait until it has ended."""
+        self._cancelled.set()
+        self.join()
+
+    def _on_progress(self, _):
+        if self._cancelled.is_set():
+            raise _Cancelled

@@ -1,0 +1,157 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Which nodes a launch file starts, with which ROS arguments: without `launch` itself."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+import json
+from pathlib import Path
+
+import yaml
+
+from quad_ident_ros import schema
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.nodes.parameter_files import is_for, names_in
+
+SIMULATOR = 'simulator'
+
+
+@dataclass(frozen=True)
+class Argument:
+    """
+    An argument of a launch file: its name, what it is, its type and the parameters that it sets.
+
+    kind: str, int, float, bool or list; sets: (node, parameter) pairs. The default is '' where
+    nothing is to be set, so that a parameter file and the nodes' own defaults hold.
+    """
+
+    name: str
+    description: str
+    kind: type = str
+    sets: tuple[tuple[str, str], ...] = ()
+    default: str = ''
+
+
+NAMESPACE = Argument('namespace', 'Namespace of the nodes, their topics and their clock.')
+SIMULATE = Argument('simulate', 'Start the simulator; false where a vehicle, a bag or another '
+                    'simulator publishes its topics.', bool, default='true')
+PARAMS_FILE = Argument('params_file', 'Parameter file, such as config/parameters.yaml; arguments '
+                       'that are given go before it.')
+USE_SIM_TIME = Argument('use_sim_time', 'Follow the simulated time: that of the simulator here, '
+                        'or with simulate:=false that on /clock.', bool, default='false')
+COMMON = (
+    NAMESPACE, SIMULATE, PARAMS_FILE, USE_SIM_TIME,
+    Argument('experiment', 'Name of an experiment or path of its file.', str,
+             ((SIMULATOR, 'experiment'),)),
+    Argument('effects', "Effects of the vehicle that flies, for example ['wind:x=3'].", list,
+             ((SIMULATOR, 'effects'),)),
+    Argument('real_time_factor', 'Simulated seconds per second; 0.0: as fast as it goes.', float,
+             ((SIMULATOR, 'real_time_factor'),)),
+    Argument('output', 'Folder for recordings; empty: nothing is written.', str,
+             (('recorder', 'output'),)),
+    Argument('topics', "Topics that a row needs, for example ['odometry', 'imu', 'actuators'].",
+             list, (('recorder', 'topics'),)),
+    Argument('mapping', 'Mapping file for topics of other names and types.', str,
+             (('recorder', 'mapping'),)),
+    Argument('window_samples', 'Samples after which a window is complete.', int,
+             (('recorder', 'window_samples'),)),
+    Argument('window_seconds', 'Seconds after which a window is complete.', float,
+             (('recorder', 'window_seconds'),)),
+    Argument('overlap', 'Share of a window that the next one keeps.', float,
+             (('recorder', 'overlap'),)),
+)
+"""Arguments of all launch files."""
+
+
+@dataclass(frozen=True)
+class Planned:
+    """A node of this package to start: its executable and ROS arguments."""
+
+    node: str
+    words: tuple[str, ...]
+
+
+def planned(nodes: Sequence[str], arguments: Sequence[Argument], values: Mapping[str, str],
+            usual: Mapping[str, Mapping[str, object]]) -> list[Planned]:
+    """
+    Return what is started.
+
+    Args: nodes: of this package, the simulator first; arguments of the launch file; values: their
+    texts by name; usual: {node: {parameter: value}} of a
+    flight that is simulated, before the parameter file has the say.
+    Raises InputError for values of another type, and for those of a simulator that is not started.
+    """
+    simulate = _value(SIMULATE, values)
+    sim_time = _value(USE_SIM_TIME, values)
+    path = values.get(PARAMS_FILE.name, '')
+    started = [node for node in nodes if simulate or node != SIMULATOR]
+    given: dict[str, dict[str, object]] = {node: {} for node in started}
+    for argument in arguments:
+        if not argument.sets or not values.get(argument.name, ''):
+            continue
+        value = _value(argument, values)
+        here = [(node, name) for node, name in argument.sets if node in given]
+        if not here:
+            raise InputError(f'launch argument {argument.name}: is for the simulator, which '
+                             'simulate:=false leaves out; give one of the two')
+        for node, name in here:
+            given[node][name] = value
+    if sim_time:
+        for node in started:
+            given[node]['publish_clock' if node == SIMULATOR else 'use_sim_time'] = True
+    space = values.get(NAMESPACE.name, '').strip('/')
+    if space and simulate:
+        given[SIMULATOR]['frame_prefix'] = f'{space}/'
+    # Two simulators, each in its namespace, have two times.
+    clock = ('-r', '/clock:=clock') if sim_time and simulate and space else ()
+    usual = usual if simulate else {}
+    return [Planned(node, (*_words(usual.get(node, {})), *_file(path, node, values, started),
+                           *_words(given[node]), *clock)) for node in started]
+
+
+def _words(parameters: Mapping[str, object]) -> list[str]:
+    # As JSON, a text is a text to YAML too, whatever is in it.
+    return [word for name, value in parameters.items()
+            for word in ('-p', f'{name}:={json.dumps(value)}')]
+
+
+def _file(path: str, node: str, values: Mapping[str, str], started: Sequence[str]) -> tuple:
+    """Return the ROS arguments for a parameter file where it has something for a node."""
+    if not path:
+        return ()
+    try:
+        keys = names_in(yaml.safe_load(Path(path).read_text(encoding='utf-8')) or {})
+    except (OSError, UnicodeDecodeError, AttributeError, yaml.YAMLError) as error:
+        raise InputError(f'launch argument params_file: {path} cannot be read: '
+                         f'{str(error).splitlines()[0]}') from None
+    space = '/' + values.get(NAMESPACE.name, '').strip('/')
+    if not any(is_for(keys, one, f'{space.rstrip("/")}/{one}') for one in started):
+        raise InputError(f'launch argument params_file: nothing in {path} is for '
+                         f'{", ".join(started)}; it is for {", ".join(keys) or "none"}')
+    return ('--params-file', path) if is_for(keys, node, f'{space.rstrip("/")}/{node}') else ()
+
+
+def _value(argument: Argument, values: Mapping[str, str]) -> object:
+    """Return the value of an argument in its type; InputError."""
+    where, text = f'launch argument {argument.name}', values.get(argument.name, argument.default)
+    if argument.kind is str:
+        return text
+    try:
+        value = yaml.safe_load(text)
+    except yaml.YAMLError:
+        value = None
+    if argument.kind is bool:
+        if not isinstance(value, bool):
+            raise InputError(f'{where}: expected true or false, got {text!r}')
+        return value
+    if argument.kind is list:
+        if not isinstance(value, list):
+            raise InputError(f"{where}: expected a list, for example \"['a', 'b']\", got {text!r}")
+        # A whole number among numbers is one of them.
+        numbers = value and all(isinstance(one, int | float) and not isinstance(one, bool)
+                                for one in value)
+        return [float(one) for one in value] if numbers else value
+    number = schema.number(where, value)
+    if argument.kind is int and number != int(number):
+        raise InputError(f'{where}: expected a whole number, got {text!r}')
+    return argument.kind(number)

@@ -1,0 +1,30 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""For which nodes a parameter file is."""
+
+
+def names_in(data):
+    """Return the names of nodes, which may have wild cards, in the data of a parameter file."""
+    return list(_names(data, ''))
+
+
+def is_for(keys, name, full_name):
+    """Return whether one of the keys of a parameter file is a node's, by its name."""
+    return any(_matches(key, name, full_name) for key in keys)
+
+
+def _names(data, prefix):
+    for key, value in data.items():
+        name = f'{prefix}/{str(key).strip("/")}'
+        if isinstance(value, dict) and 'ros__parameters' in value:
+            yield name
+        elif isinstance(value, dict):
+            yield from _names(value, name)
+
+
+def _matches(key, name, full_name):
+    if key.endswith('/**'):
+        return full_name.startswith(key[:-2])
+    if '*' in key:
+        return key.rsplit('/', 1)[-1] in (name, '*')
+    return key == full_name

@@ -1,0 +1,86 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What the launch files start; that nodes take these words is in test/integration."""
+
+from launch_files import Tables
+import pytest
+
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.nodes import diagnoser, identifier, recorder, simulator
+
+FILES = ('identify', 'diagnose')
+SPECS = {node.__name__.rpartition('.')[2]: {spec.name: spec for spec in node.SPECS}
+         for node in (simulator, recorder, identifier, diagnoser)}
+
+
+@pytest.mark.parametrize('name', FILES)
+def test_arguments_set_parameters_of_their_type(name):
+    tables = Tables(name)
+    names = [argument.name for argument in tables.arguments]
+    assert len(names) == len(set(names))
+    for argument in tables.arguments:
+        assert argument.description.endswith('.')
+        for node, parameter in argument.sets:
+            kind = type(SPECS[node][parameter].default)
+            assert {tuple: list}.get(kind, kind) is argument.kind, (argument.name, node)
+    for node, parameters in tables.usual.items():
+        assert set(parameters) <= set(SPECS[node])
+
+
+@pytest.mark.parametrize('name', FILES)
+def test_a_real_vehicle_has_no_simulator(name):
+    tables = Tables(name)
+    assert list(tables.plan()) == list(tables.nodes)
+    plan = tables.plan(simulate='false', window_seconds='20', overlap='0.9', namespace='uav1')
+    assert list(plan) == list(tables.nodes[1:])
+    assert plan['recorder'] == ['-p', 'window_seconds:=20.0', '-p', 'overlap:=0.9']
+    assert plan[tables.nodes[-1]] == []    # its own defaults: they are no simulated vehicle's
+    for argument in ('experiment', 'effects', 'real_time_factor'):
+        with pytest.raises(InputError, match=f'{argument}: is for the simulator'):
+            tables.plan(simulate='false', **{argument: '[]' if argument == 'effects' else '1'})
+
+
+def test_lists_and_numbers_arrive_as_such():
+    plan = Tables('identify').plan(
+        effects="['wind:x=3']", seed='7', trim='[6.374, 0, 0, 0]', window='4', experiment='1e3',
+        window_samples='500', vehicle='quad.yaml', topics='[input, altitude]')
+    assert plan['simulator'] == ['-p', 'experiment:="1e3"', '-p', 'effects:=["wind:x=3"]',
+                                 '-p', 'vehicle:="quad.yaml"', '-p', 'seed:=7']
+    assert plan['recorder'] == ['-p', 'topics:=["input", "altitude"]',
+                                '-p', 'window_samples:=500']
+    assert plan['identifier'] == ['-p', 'vehicle:="quad.yaml"', '-p', 'seed:=7',
+                                  '-p', 'window:=4.0', '-p', 'trim:=[6.374, 0.0, 0.0, 0.0]']
+
+
+@pytest.mark.parametrize(('values', 'said'), [
+    ({'effects': 'wind:x=3'}, 'effects: expected a list'), ({'simulate': 'perhaps'}, 'simulate'),
+    ({'seed': '1.5'}, 'seed: expected a whole number'), ({'overlap': 'much'}, 'overlap'),
+    ({'window': '[1'}, 'window'), ({'params_file': '/nowhere.yaml'}, 'cannot be read')])
+def test_bad_arguments_are_refused_by_name(values, said):
+    with pytest.raises(InputError, match=said):
+        Tables('identify').plan(**values)
+
+
+def test_simulated_time_has_one_clock_in_each_namespace():
+    tables = Tables('identify')
+    alone, fleet, replayed = (tables.plan(use_sim_time='true', **more) for more in (
+        {}, {'namespace': 'uav1'}, {'namespace': 'uav1', 'simulate': 'false'}))
+    assert alone['simulator'] == ['-p', 'publish_clock:=true']
+    assert alone['recorder'] == alone['identifier'] == ['-p', 'use_sim_time:=true']
+    assert all(words[-2:] == ['-r', '/clock:=clock'] for words in fleet.values())
+    # The clock of a bag or of another simulator is everybody's.
+    assert replayed['recorder'] == ['-p', 'use_sim_time:=true']
+
+
+def test_a_parameter_file_goes_to_those_whom_it_names(tmp_path):
+    path = tmp_path / 'some.yaml'
+    path.write_text('/**/recorder:\n  ros__parameters:\n    window_samples: 30\n')
+    tables = Tables('diagnose')
+    plan = tables.plan(params_file=str(path), overlap='0.5', namespace='uav1')
+    assert plan['recorder'] == ['--params-file', str(path), '-p', 'overlap:=0.5']
+    assert plan['diagnoser'] == ['-p', 'vehicle:="hummingbird"']
+    assert 'frame_prefix:="uav1/"' in plan['simulator']
+    path.write_text('/uav2/recorder:\n  ros__parameters:\n    window_samples: 30\n')
+    with pytest.raises(InputError, match='nothing in .* is for simulator, recorder, diagnoser'):
+        tables.plan(params_file=str(path), namespace='uav1')
+    assert '--params-file' in tables.plan(params_file=str(path), namespace='/uav2/')['recorder']
