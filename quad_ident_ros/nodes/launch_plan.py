@@ -5,11 +5,10 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 import json
-from pathlib import Path
 
 import yaml
 
-from quad_ident_ros import schema
+from quad_ident_ros import resources, schema
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.nodes.parameter_files import is_for, names_in
 
@@ -119,11 +118,7 @@ def _file(path: str, node: str, values: Mapping[str, str], started: Sequence[str
     """Return the ROS arguments for a parameter file where it has something for a node."""
     if not path:
         return ()
-    try:
-        keys = names_in(yaml.safe_load(Path(path).read_text(encoding='utf-8')) or {})
-    except (OSError, UnicodeDecodeError, AttributeError, yaml.YAMLError) as error:
-        raise InputError(f'launch argument params_file: {path} cannot be read: '
-                         f'{str(error).splitlines()[0]}') from None
+    keys = names_in(resources.read_yaml(path))
     space = '/' + values.get(NAMESPACE.name, '').strip('/')
     if not any(is_for(keys, one, f'{space.rstrip("/")}/{one}') for one in started):
         raise InputError(f'launch argument params_file: nothing in {path} is for '
