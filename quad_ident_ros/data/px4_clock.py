@@ -21,5 +21,7 @@ def utc_of(receiver: Mapping[str, np.ndarray] | None, start_ns: int) -> int | No
     known = np.flatnonzero(receiver['time_utc_usec'] > 0)
     if not len(known):
         return None
-    utc, stamp = (int(receiver[name][known[0]]) for name in ('time_utc_usec', 'timestamp'))
-    return start_ns + (utc - stamp) * 1000
+    # One time that is damaged is no matter.
+    ahead = (receiver['time_utc_usec'][known].astype(float)
+             - receiver['timestamp'][known].astype(float))
+    return start_ns + int(np.median(ahead)) * 1000

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from quad_ident_ros.model.vehicle import Vehicle
 
 MASSES = (1e-4, 1e5)        # kg: insects with wings of foil, and ten times the largest helicopter
-GRAVITIES = (0.1, 30.0)     # m/s^2: a large asteroid, and Jupiter has 24.8
+GRAVITIES = (0.01, 30.0)    # m/s^2: an asteroid, and Jupiter has 24.8
 FARTHEST = 100.0            # m of a rotor from the centre of mass; tips stay below sound
 SHORTEST_ARM = 1e-3         # m
 MOST_ROTORS = 64
@@ -22,7 +22,7 @@ SPEEDS = (1.0, 1e5)         # rad/s at hover: 10 rpm and a million
 GYRATION = (0.01, 5.0)      # radius, in arms: what flies is neither a needle nor a long boom
 FLAT = 10.0     # times the sum of the other two: of a rigid body it is 1, estimates are not exact
 REACTION = (1e-6, 10.0)     # torque over thrust, in arms: of real rotors about 0.1
-SLOWEST_FALL = 0.5          # m/s at which drag carries the weight
+SLOWEST_FALL = 0.1          # m/s at which drag carries the weight: a kite falls faster
 SLOWEST_TURN = 5.0          # rad/s at which drag stands against the weight on one arm
 MOST_STDS = 1e3             # of the scale of a constant: more says nothing of it
 
@@ -70,7 +70,8 @@ def _ranges(vehicle: Vehicle) -> Iterator[tuple[str, float, float, float, str, s
     per_rotor = weight / len(vehicle.rotors)
     yield ('thrust_coefficient', vehicle.thrust_coefficient, per_rotor / SPEEDS[1] ** 2,
            per_rotor / SPEEDS[0] ** 2, 'N/(rad/s)^2',
-           f'it would hover at {math.sqrt(per_rotor / vehicle.thrust_coefficient):.2g} rad/s')
+           f'it would hover at {math.sqrt(per_rotor / vehicle.thrust_coefficient):.2g} rad/s; '
+           'signals of 0 to 1, PWM or duty stand in the section motors')
     per_reaction = arm * vehicle.thrust_coefficient
     yield ('torque_coefficient', vehicle.torque_coefficient, REACTION[0] * per_reaction,
            REACTION[1] * per_reaction, 'N m/(rad/s)^2',

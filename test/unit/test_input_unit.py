@@ -56,7 +56,7 @@ def test_the_unit_of_earlier_versions_is_told_by_what_turns_the_vehicle(name, ve
     assert [one.severity for one in told] == ['warning'] and 'N m' in told[0].remedy
 
 
-@pytest.mark.parametrize('factor', [0.6, 1.7])
+@pytest.mark.parametrize('factor', [0.8, 1.25])
 def test_an_inertia_that_is_off_does_not_change_the_unit(factor):
     record, vehicle = flight('closed_loop')
     wrong = replace(vehicle, inertia=tuple(factor * value for value in vehicle.inertia))
@@ -64,6 +64,17 @@ def test_an_inertia_that_is_off_does_not_change_the_unit(factor):
         found = with_inputs(with_moments(record, scale), wrong)
         np.testing.assert_allclose(found.inputs(), record.inputs(), rtol=1e-12)
         assert any(one.code == 'input_unit' for one in findings(found, wrong)) == told
+
+
+@pytest.mark.parametrize('vehicle', [None, 'crazyflie', 'hummingbird'])
+@pytest.mark.parametrize('factor', [0.45, 0.6, 1.7, 2.5])
+def test_what_may_be_an_inertia_that_is_far_off_is_not_taken_for_a_unit(vehicle, factor):
+    record, vehicle = flight('closed_loop', vehicle)
+    wrong = replace(vehicle, inertia=tuple(factor * value for value in vehicle.inertia))
+    found = with_inputs(with_moments(record, vehicle.arm_length), wrong)
+    np.testing.assert_allclose(found.inputs(), record.inputs(), rtol=1e-12)
+    for one in (found, record):
+        assert 'input_unit' not in {each.code for each in findings(one, wrong)}
 
 
 def test_forces_that_are_moments_are_an_error():

@@ -213,7 +213,7 @@ def test_flights_of_several_days_are_told_apart():
     assert days(flights[::2]) == []
     [told] = days(flights)
     assert told['code'] == 'days' and told['severity'] == 'info'
-    assert told['message'] == 'they are of 2 days: a, c of 2026-05-12; b of 2026-05-13'
+    assert told['message'] == 'they are of 2 days (UTC): a, c of 2026-05-12; b of 2026-05-13'
 
 
 def test_stamps_since_a_start_tell_no_day():
@@ -222,10 +222,17 @@ def test_stamps_since_a_start_tell_no_day():
     assert days([*flights, dated('c', '2026-05-12T08:00:00')]) == []
 
 
+@pytest.mark.parametrize('stamp', [2 ** 72, -1, 1e300, 'today', True])
+def test_a_stamp_that_is_no_date_tells_no_day(stamp):
+    odd = FlightRecord(WHOLE.t, WHOLE.columns, {'name': 'a', 'utc_ns': stamp})
+    assert days([odd, dated('c', '2026-05-12T08:00:00')]) == []
+
+
 def test_logs_of_px4_know_their_day(tmp_path):
     path, utc = tmp_path / 'log.ulg', 1778659200 * 10 ** 6
     fixes = [('vehicle_gps_position', 0, stamp, struct.pack('<Q', value))
-             for stamp, value in ((100, 0), (600_100, utc))]
+             for stamp, value in ((100, 0), (600_100, utc), (700_100, utc + 100_000),
+                                 (800_100, 2 ** 62))]
     path.write_bytes(log_of(WHOLE, fixes, {
         **FORMATS, 'vehicle_gps_position': ('uint64_t timestamp', 'uint64_t time_utc_usec')}))
     [record] = load_all(path)

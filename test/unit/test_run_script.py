@@ -52,6 +52,14 @@ def test_one_that_others_made_or_write_to_is_not_taken(tmp_path, usual, kind):
             pytest.skip('only root can give a folder to another user')
         usual.mkdir(mode=0o700)
         os.chown(usual, 65534, 65534)
+    for _ in range(2):      # one folder, not a new one with nothing in it at each start
+        folder, said = scratch(tmp_path)
+        assert folder == usual.with_name(f'{usual.name}-alone') and not said
+        assert folder.stat().st_mode & 0o777 == 0o700 and folder.stat().st_uid == os.getuid()
+
+
+def test_where_both_are_taken_a_new_one_is_made_and_that_is_said(tmp_path, usual):
+    for name in (usual.name, f'{usual.name}-alone'):
+        (tmp_path / name).touch()
     folder, said = scratch(tmp_path)
-    assert folder != usual and folder.parent == tmp_path and 'not for you alone' in said
-    assert folder.stat().st_mode & 0o777 == 0o700 and folder.stat().st_uid == os.getuid()
+    assert folder.is_dir() and folder.parent == tmp_path and 'not for you alone' in said

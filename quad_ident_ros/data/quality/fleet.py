@@ -10,7 +10,7 @@ from quad_ident_ros.data.record import FlightRecord
 
 _SHOWN = 4      # flights of a vehicle that the message names
 _LETTERS = 40   # of an id
-_DATED = 946684800 * 10 ** 9     # ns, 2000-01-01: stamps before it count from a start
+_DATED = range(946684800 * 10 ** 9, 4102444800 * 10 ** 9)   # ns, 2000 to 2100: else no dates
 
 
 def vehicles(records: Sequence[FlightRecord]) -> list[dict]:
@@ -48,15 +48,15 @@ def days(records: Sequence[FlightRecord]) -> list[dict]:
     """
     groups: dict[str, list[FlightRecord]] = {}
     for record in records:
-        stamp = record.info.get('utc_ns') or record.info.get('start_ns') or 0
-        if stamp >= _DATED:
+        stamp = record.info.get('utc_ns') or record.info.get('start_ns')
+        if isinstance(stamp, int) and stamp in _DATED:
             day = datetime.fromtimestamp(stamp // 10 ** 9, timezone.utc).date().isoformat()
             groups.setdefault(day, []).append(record)
     if len(groups) < 2:
         return []
     said = '; '.join(f'{_named(groups[day])} of {day}' for day in sorted(groups))
     return [as_caution(Finding(
-        'days', 'info', 'logs', f'they are of {len(groups)} days: {said}',
+        'days', 'info', 'logs', f'they are of {len(groups)} days (UTC): {said}',
         'thrust and wind are estimated for each flight; where the vehicle was changed between '
         'the days, diagnose one day at a time'), groups[max(groups)][0])]
 

@@ -13,8 +13,8 @@ FORCES = 'moments_as_forces'
 """Info of a record: the moments of its input were taken for U2 and U3, by their size."""
 
 SURE = 0.7        # correlation of what was commanded with what turned the body
-LONGEST = 0.4     # m of arm, up to which the two units differ more than vehicle files err
-FAR = 2.5         # of a factor beyond that of the other unit, where it is neither
+LONGEST = 0.4     # m of arm, up to which the two units are farther apart than NEAR is wide
+NEAR = 1.35       # of a factor about a unit's: beyond a third, it may be the file's inertia
 SLOW = 1.0        # s; what changes more slowly is trim and aerodynamics
 LATEST = 0.08     # s that motors follow their commands within
 
@@ -23,7 +23,7 @@ def are_forces(record: FlightRecord, vehicle: Vehicle) -> bool:
     """Return whether moment_x, moment_y turn the body as forces (N) at the arm length would."""
     arm = vehicle.arm_length
     factor = _factor(record, vehicle, MOMENTS)
-    return factor is not None and arm <= LONGEST and arm / FAR < factor < np.sqrt(arm)
+    return factor is not None and arm <= LONGEST and _near(factor, arm)
 
 
 def unit(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
@@ -38,13 +38,17 @@ def unit(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
         return []
     arm = vehicle.arm_length
     factor = _factor(record, vehicle, ('u2', 'u3'))
-    if factor is None or not np.sqrt(arm) < factor < FAR:
+    if factor is None or not _near(factor, 1.0):
         return []
     return [Finding(
         'input_unit', 'warning' if record.has('cmd1') else 'error', 'u2, u3',
         f'they turn {vehicle.name} as moments in N m would, not as forces at its arms of '
         f'{arm:.3g} m',
         'name the columns moment_x and moment_y, or divide them by the arm length')]
+
+
+def _near(factor: float, usual: float) -> bool:
+    return bool(usual / NEAR < factor < usual * NEAR)
 
 
 def _factor(record: FlightRecord, vehicle: Vehicle, names: tuple[str, ...]) -> float | None:

@@ -11,7 +11,8 @@ from quad_ident_ros.data.record import CUT, NOTED
 
 COARSE = 0.025    # s between samples from which on commands change unseen between them
 SILENT = 0.9      # share of the time outside of bursts,
-AGAIN = 0.01      # in this share of the steps at least: of fewer each is a gap
+AGAIN = 0.01      # in this share of the steps at least, and
+OFTEN = 10        # so many of them: of fewer each is a gap
 SLOWEST = 0.15    # s between samples: of a rollout of 0.5 s hardly more than its end is then seen
 
 
@@ -52,7 +53,8 @@ def _in_bursts(record):
     """Whether nearly all of the time passes in a few of the steps, again and again."""
     steps = np.diff(record.t)
     wide = steps > GAP * np.median(steps)
-    return bool(wide.mean() >= AGAIN and steps[wide].sum() > SILENT * steps.sum())
+    return bool(wide.sum() >= max(OFTEN, AGAIN * len(steps))
+                and steps[wide].sum() > SILENT * steps.sum())
 
 
 def gaps(record, vehicle):
