@@ -45,6 +45,7 @@ def is_trusted(folder: str | Path) -> bool:
     return (own.st_uid in users and above.st_uid in users and not own.st_mode & stat.S_IWOTH
             and not (above.st_mode & stat.S_IWOTH and not above.st_mode & stat.S_ISVTX))
 
+
 FUNCTIONS: list[Any] = []
 """What was made to be compiled, of which `signatures` has something where it can be called."""
 
@@ -84,9 +85,8 @@ def compiled(function: Any = None, *, fused: bool = False, reordered: bool = Fal
         file, folder = made._cache._cache_file, made._cache.cache_path
         if not is_trusted(folder) and Path(folder).parent != Path(function.__code__.co_filename
                                                                   ).parent:
-            made = numba.njit(**options)(function)
-        else:
-            file._source_stamp = (file._source_stamp, STAMP)
+            raise RuntimeError(f'others can write to {folder}')
+        file._source_stamp = (file._source_stamp, STAMP)
     except (AttributeError, RuntimeError):
         made = numba.njit(**options)(function)
     FUNCTIONS.append(made)

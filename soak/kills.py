@@ -19,7 +19,7 @@ from soak.rig import Finding, Watch
 NODES = ('recorder', 'identifier', 'diagnoser', 'simulator')
 RATES = (100, 1000)     # Hz
 LOSS = 1.0              # s of a recording that a kill may cost
-AGAIN = 30.0            # s within which a node that was started again is there
+AGAIN = 120.0           # s within which a node that was started again is ready
 FLIGHT = 120.0          # s; it is flown again when it is over
 
 

@@ -10,6 +10,7 @@ import signal
 import time
 
 from diagnostic_msgs.msg import DiagnosticArray
+from rcl_interfaces.msg import Log
 from std_msgs.msg import Float64MultiArray, String
 
 from quad_ident_ros.data.recording import make_next
@@ -21,6 +22,7 @@ from quad_ident_ros.identify.result import from_data, Identification
 from quad_ident_ros.nodes.launched import Launched
 from quad_ident_ros.nodes.messages import ERROR
 from quad_ident_ros.nodes.qos import latched
+from quad_ident_ros.nodes.start_news import COMPILING
 
 PATIENCE = 60.0      # s without any news after which the demo gives up
 
@@ -106,6 +108,7 @@ class Watcher:
             (String, f'{self._worker}/progress', self._on_work, 10),
             (String, self._topic, self._on_result, latched()))]
         node.create_subscription(DiagnosticArray, '/diagnostics', self._on_status, 10)
+        node.create_subscription(Log, '/rosout', self._on_log, 10)
         self._topics = [one.topic_name for one in heard]
 
     def refuse_others(self, node):
@@ -126,6 +129,10 @@ class Watcher:
     def _tell(self, text, share):
         self.news += 1
         self._on_progress(text, share)
+
+    def _on_log(self, message):
+        # A node that compiles has no other news.
+        self.news += message.msg.startswith(COMPILING)
 
     def _on_run(self, message):
         info = json.loads(message.data)['info']
@@ -183,7 +190,8 @@ def watch(watcher, nodes, logs):
                     raise InputError(watcher.refusal)
                 elif time.monotonic() - since > PATIENCE:
                     raise InputError(f'nothing has happened for {PATIENCE:g} s; the logs are in '
-                                     f'{logs}')
+                                     f'{logs}; where one of them compiles, let '
+                                     '`quad_ident warm-up` do that before')
 
 
 def _end(number, _):

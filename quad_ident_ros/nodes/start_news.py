@@ -8,6 +8,7 @@ from quad_ident_ros.compiling import CompilationWatch
 
 BRIEF = 1.0     # s of compilation that nobody needs to hear of
 NEWS = 5.0      # s between two lines on how far it is
+COMPILING = 'compil'     # what the lines on it begin with
 
 
 class StartNews:
@@ -41,10 +42,10 @@ class StartNews:
                 self._watch.close()
                 self._watch = CompilationWatch()
         elif self._told is None and state.seconds > BRIEF:
-            logger.info('compiles its inner loops, which takes one to two minutes once after '
-                        'each change; what comes meanwhile is kept')
+            logger.info(f'{COMPILING}es its inner loops, which takes one to two minutes once '
+                        'after each change, more on a busy machine; what comes meanwhile is kept')
             self._told = now
         elif self._told is not None and now - self._told >= NEWS:
-            logger.info(f'compiling: {state.ready} of at most {state.all} functions, '
+            logger.info(f'{COMPILING}ing: {state.ready} of at most {state.all} functions, '
                         f'{state.seconds:.0f} s')
             self._told = now
