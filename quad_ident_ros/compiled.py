@@ -46,6 +46,9 @@ def is_trusted(folder: str | Path) -> bool:
             and not (above.st_mode & stat.S_IWOTH and not above.st_mode & stat.S_ISVTX))
 
 
+FUNCTIONS: list[Any] = []
+"""What was made to be compiled, of which `signatures` has something where it can be called."""
+
 Function = TypeVar('Function', bound=Callable[..., Any])
 
 
@@ -77,13 +80,14 @@ def compiled(function: Any = None, *, fused: bool = False, reordered: bool = Fal
     options = {'nogil': True, 'fastmath': flags, 'forceinline': inlined,
                'error_model': 'numpy' if fused else 'python'}
     try:
-        kept = numba.njit(cache=True, **options)(function)
+        made = numba.njit(cache=True, **options)(function)
         # There is no public way to say what a function was made from.
-        file, folder = kept._cache._cache_file, kept._cache.cache_path
+        file, folder = made._cache._cache_file, made._cache.cache_path
         if not is_trusted(folder) and Path(folder).parent != Path(function.__code__.co_filename
                                                                   ).parent:
-            return numba.njit(**options)(function)
+            raise RuntimeError(f'others can write to {folder}')
         file._source_stamp = (file._source_stamp, STAMP)
-        return kept
     except (AttributeError, RuntimeError):
-        return numba.njit(**options)(function)
+        made = numba.njit(**options)(function)
+    FUNCTIONS.append(made)
+    return made

@@ -151,7 +151,7 @@ def _validate(values):
 
 def main(args=None):
     """Run the node; returns the exit code."""
-    return process.run(Diagnoser, HELP, args, before=warm_up_diagnosis)
+    return process.run(Diagnoser, HELP, args, warm_up=warm_up_diagnosis)
 
 
 if __name__ == '__main__':

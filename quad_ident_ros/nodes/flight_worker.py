@@ -7,6 +7,8 @@ import threading
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.experiment import fly
 
+ENDING = 1.0    # s that a flight has to end; a compilation in it cannot be told to
+
 
 class _Cancelled(Exception):
     pass
@@ -16,7 +18,7 @@ class FlightWorker(threading.Thread):
     """Flies a run beside the executor; outcome is a Simulation or an InputError."""
 
     def __init__(self, *flight):
-        super().__init__()
+        super().__init__(daemon=True)
         self._flight, self._cancelled = flight, threading.Event()
         self.outcome = None
         self.start()
@@ -33,9 +35,9 @@ class FlightWorker(threading.Thread):
             pass
 
     def cancel(self):
-        """End the flight soon, and wait until it has ended."""
+        """End the flight soon, and wait until it has ended, or compiles."""
         self._cancelled.set()
-        self.join()
+        self.join(ENDING)
 
     def _on_progress(self, _):
         if self._cancelled.is_set():

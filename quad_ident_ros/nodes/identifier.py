@@ -217,7 +217,7 @@ def _settings(values):
 
 def main(args=None):
     """Run the node; returns the exit code."""
-    return process.run(Identifier, HELP, args, before=warm_up)
+    return process.run(Identifier, HELP, args, warm_up=warm_up)
 
 
 if __name__ == '__main__':

@@ -13,6 +13,7 @@ from quad_ident_ros.errors import InputError
 from quad_ident_ros.identify.search import Cancelled
 
 PROGRESS_PERIOD = 0.1   # s between two messages on ~/progress
+ENDING = 1.0            # s that work has to end; a compilation cannot be told to
 
 
 class Job:
@@ -33,6 +34,7 @@ class Job:
         self._waiting = False
         self._worker = None
         self._cancelled = threading.Event()
+        self.warming_up = False
         self._outcomes = []
         # The thread wakes the executor by this, and does no more than that and publish.
         self._finished = node.create_guard_condition(self.collect)
@@ -49,20 +51,30 @@ class Job:
             return
         self._waiting = False
         self._cancelled.clear()
-        self._worker = threading.Thread(target=self._work, args=(self._prepare(),))
+        self._start(self._prepare())
+
+    def warm_up(self, function):
+        """Do something before the first work; what is requested meanwhile waits for it."""
+        self.warming_up = True
+        self._start(function)
+
+    def _start(self, function):
+        # A daemon: a compilation in it must not keep the process from ending.
+        self._worker = threading.Thread(target=self._work, args=(function,), daemon=True)
         self._worker.start()
 
     def cancel(self):
         """End the work that is being done, and forget what waits; return whether there is any."""
+        there = self._waiting if self.warming_up else self.busy
         self._waiting = False
         self._cancelled.set()
-        return self.busy
+        return there
 
     def close(self):
-        """Cancel, and wait for the end."""
+        """Cancel, and wait for the end as far as it can be told to end."""
         self._cancelled.set()
         if self._worker is not None:
-            self._worker.join()
+            self._worker.join(ENDING)
 
     def tell(self, share, **more):
         """Publish how far the work is, from its thread; raises Cancelled where it shall end."""
@@ -83,7 +95,13 @@ class Job:
             return
         self._worker.join()
         self._worker = None
-        self._on_end(self._outcomes.pop())
+        outcome = self._outcomes.pop()
+        if self.warming_up:
+            self.warming_up = False
+            if isinstance(outcome, InputError):   # what it is for will say so too
+                self._logger.warning(str(outcome))
+        else:
+            self._on_end(outcome)
         if self._waiting:
             self.request()
 

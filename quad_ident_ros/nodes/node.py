@@ -21,6 +21,11 @@ class PackageNode(Node):
         """Return what the node does, for the line of log that says that it does it."""
         raise NotImplementedError
 
+    @property
+    def is_ready(self):
+        """Whether the node can do what it is there for, or still gets ready for it."""
+        return True
+
     def set_parameters_atomically(self, parameter_list):
         """Set parameters as Node does, also empty lists and fixed ones that stay the same."""
         wanted = [self._typed(parameter) for parameter in parameter_list]

@@ -6,6 +6,7 @@ import os
 import signal
 import sys
 import tempfile
+import threading
 
 import rclpy
 from rclpy.exceptions import ParameterException
@@ -17,6 +18,7 @@ from quad_ident_ros import resources
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.nodes.parameter_files import is_for, names_in
 from quad_ident_ros.nodes.shared_memory import free_abandoned
+from quad_ident_ros.nodes.start_news import StartNews
 
 try:
     from rclpy.experimental.events_executor import EventsExecutor as FastExecutor
@@ -28,14 +30,15 @@ PARENT = 'QUAD_IDENT_PARENT'   # a process whose death ends the node
 
 
 def run(node_class, help_page, args=None, executor_class=SingleThreadedExecutor,
-        before=lambda: None):
+        warm_up=None):
     """
     Run a node until it is told to stop and return the exit code.
 
     Args: node_class: called without arguments, its `close()` is called at the end; help_page:
-    printed for --help; args: the command line, by default that of the process; before: called
-    before the node is made. Bad input gives one line on standard error and exit code 2. Where the
-    middleware does not let go of a closed node, SIGALRM ends the process.
+    printed for --help; args: the command line, by default that of the process; warm_up: a function
+    that `warm_up` of the node runs while the node is there. Bad input gives one line on standard
+    error and exit code 2. Where the middleware does not let go of a closed node, SIGALRM ends the
+    process.
     """
     name = node_class.__name__.lower()
     args = [name, *(sys.argv[1:] if args is None else args)]
@@ -47,8 +50,7 @@ def run(node_class, help_page, args=None, executor_class=SingleThreadedExecutor,
         if plain:
             raise InputError(f'{plain[0]!r} is no option here: parameters are given as '
                              '--ros-args -p NAME:=VALUE; --help lists them')
-        before()
-        return _run(node_class, args, executor_class)
+        return _run(node_class, args, executor_class, warm_up)
     except InputError as error:
         print(f'{name}: error: {error}', file=sys.stderr)
         return 2
@@ -63,7 +65,7 @@ def _plain_arguments(args):
                          f'{_first_line(error)}') from None
 
 
-def _run(node_class, args, executor_class):
+def _run(node_class, args, executor_class, warm_up):
     _ensure_log_folder()
     free_abandoned()
     stop = []
@@ -83,8 +85,11 @@ def _run(node_class, args, executor_class):
         _check_parameter_files(args, node)
         executor = executor_class()
         executor.add_node(node)
-        node.get_logger().info(f'ready: {node.ready()}')
+        if warm_up is not None:
+            node.warm_up(warm_up)
+        news = StartNews(node)
         while not stop and is_wanted():
+            news.tell()
             executor.spin_once(timeout_sec=0.1)
     finally:
         if node is not None:
@@ -102,7 +107,21 @@ def _run(node_class, args, executor_class):
         signal.alarm(0)
         for number, handler in previous.items():
             signal.signal(number, handler)
+    _leave_compilation()
     return 0
+
+
+def _leave_compilation():
+    """
+    End the process where a thread of it still compiles: nothing can interrupt that.
+
+    All else is closed by now, and numba keeps a function on disk in one step, whole or not at all.
+    """
+    if any(thread.daemon and thread.is_alive() for thread in threading.enumerate()
+           if thread is not threading.current_thread()):
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(0)
 
 
 def is_wanted():

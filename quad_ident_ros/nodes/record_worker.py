@@ -18,6 +18,8 @@ from quad_ident_ros.nodes.parameters import NodeParameters
 from quad_ident_ros.nodes.qos import latched
 from quad_ident_ros.nodes.records import Records
 
+GETTING_READY = 'gets ready: loads or compiles its inner loops, and keeps the records that come'
+
 
 @dataclass(frozen=True)
 class Words:
@@ -59,6 +61,15 @@ class RecordWorker(PackageNode):
         topic = self.resolve_topic_name('record')
         return f'{self._words.doing} what comes on {topic}, mode {self._config["mode"]}'
 
+    @property
+    def is_ready(self):
+        """Whether the node can work at once: what comes before is kept and worked on then."""
+        return not self._job.warming_up
+
+    def warm_up(self, function):
+        """Run a function before the first work, beside the executor."""
+        self._job.warm_up(function)
+
     def close(self):
         """End the work that is being done."""
         self._job.close()
@@ -96,8 +107,10 @@ class RecordWorker(PackageNode):
         busy = self._job.busy
         self._job.request()
         response.success = True
-        response.message = (f'a {self._words.noun} is running; another follows' if busy else
-                            f'{self._words.doing} {len(self._taken())} records')
+        response.message = (
+            f'the node still gets ready; a {self._words.noun} follows' if not self.is_ready else
+            f'a {self._words.noun} is running; another follows' if busy else
+            f'{self._words.doing} {len(self._taken())} records')
         return response
 
     def _on_cancel(self, _, response):
@@ -128,6 +141,8 @@ class RecordWorker(PackageNode):
 
     def _publish_status(self):
         level, text, values = self._status
-        if self._job.busy:
+        if not self.is_ready:
+            level, text = OK, GETTING_READY
+        elif self._job.busy:
             level, text = OK, self._words.doing
         self._diagnostics.publish(diagnostics_message(self, level, text, values))

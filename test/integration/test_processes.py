@@ -228,13 +228,16 @@ def test_a_node_ends_with_the_process_that_it_belongs_to(graph, processes):
 # A middleware that does not let go, and holds the interpreter as rclpy does while it is asked to.
 STUCK = """
 import ctypes, sys
-from rclpy.node import Node
+from quad_ident_ros.nodes.node import PackageNode
 from quad_ident_ros.nodes.process import run
 
-class Stuck(Node):
+class Stuck(PackageNode):
     def __init__(self):
         super().__init__('stuck')
+
+    def ready(self):
         print('up', flush=True)
+        return 'stuck'
 
     def close(self):
         print('closed', flush=True)
