@@ -20,7 +20,8 @@ class Counts:
     received: per topic. joined: rows. dropped: stamps that some topic never delivered. late:
     messages after their row was given up. duplicated: a stamp twice on one topic. out_of_order: a
     stamp older than the one before it on its topic. nan: messages with a value that is no finite
-    number. lost and incompatible_qos: as the middleware reports them. restarts: of the clock.
+    number. lost and incompatible_qos: as the middleware reports them. unread: messages that waited
+    when the recorder was told to end, for too long to be joined. restarts: of the clock.
     missing: samples that the records lack, whatever became of them, by the count that the sender
     announced or else by the sample period.
     """
@@ -34,6 +35,7 @@ class Counts:
     nan: int = 0
     lost: int = 0
     incompatible_qos: int = 0
+    unread: int = 0
     restarts: int = 0
     missing: int = 0
 

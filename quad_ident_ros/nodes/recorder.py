@@ -28,14 +28,16 @@ from quad_ident_ros.data.topics import (
 )
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.nodes import process
+from quad_ident_ros.nodes.health import Health
 from quad_ident_ros.nodes.losses import Losses
 from quad_ident_ros.nodes.mapped import message_class, RECEIVED
-from quad_ident_ros.nodes.messages import diagnostics_message, ERROR, OK, record_message, WARN
+from quad_ident_ros.nodes.messages import diagnostics_message, record_message
 from quad_ident_ros.nodes.node import PackageNode
 from quad_ident_ros.nodes.other_types import one_topic_for_two, other_type
 from quad_ident_ros.nodes.parameters import help_text, NodeParameters
 from quad_ident_ros.nodes.qos import BEST_EFFORT, latched, LOSSLESS
 from quad_ident_ros.nodes.recorder_parameters import mapped_topics, SPECS, validate
+from quad_ident_ros.nodes.waiting import take_waiting
 
 FLUSH_PERIOD = 0.5   # s; a kill -9 loses at most this much of a recording
 QUIET = 0.5          # s after the last message when the middleware is asked what it lost
@@ -43,9 +45,9 @@ ACKNOWLEDGED = 10    # rows after which the publishers are told how far the join
 GONE = 2.0           # s after the last message when nothing more is to come, and
 IDLE = 15.0          # s when something may, after which what is incomplete is given up; lost
                      # messages are sent again every 3 s
-NO_ROW = 2.0         # s with messages but without a joined row, after which that is said
 KEPT_RECORDS = 16    # records that a late identifier still gets
 NEWS = 10.0          # s between two lines of log on windows that slide
+ENDING = 8.0         # s for what waits when the node is told to end: `ros2 launch` gives 10
 
 HELP = f"""recorder: joins the topics of a flight into records, keeps and publishes them.
 
@@ -63,7 +65,7 @@ are the first five where their stamps are seldom equal.
 Publishes:
   record        std_msgs/Float64MultiArray (latched, 16 deep)  samples x columns, see the labels
   ~/statistics  std_msgs/String (latched)                      JSON: received, joined, dropped,
-                late, duplicated, out of order, NaN, lost, recordings
+                late, duplicated, out of order, NaN, lost, unread, recordings
   joined_until  std_msgs/UInt64                                stamp (ns) of the last joined row
   /diagnostics  diagnostic_msgs/DiagnosticArray
 A record is complete when an announced run ends, when the window is full, or on the service.
@@ -93,15 +95,14 @@ class Recorder(PackageNode):
             parameters['window_samples'], parameters['window_seconds'], parameters['overlap']))
         self._records = 0
         self._last_message = None
-        self._last_row = None
-        self._heard = dict.fromkeys(self._topics, 0)
+        self._health = Health(self._topics, self._apart,
+                              'the parameter topics leaves topics out' if self._mapped is None
+                              else 'a mapping names the topics that a row needs')
         self._announced = None
         self._steady = Clock(clock_type=ClockType.STEADY_TIME)
         self._recording = None
         self._disk_error = None
-        self._trouble = None
         self._unreadable = None
-        self._misnamed = False
         self._record_publisher = self.create_publisher(Float64MultiArray, 'record',
                                                        latched(KEPT_RECORDS))
         self._statistics = self.create_publisher(String, '~/statistics', latched())
@@ -137,10 +138,18 @@ class Recorder(PackageNode):
 
     def close(self):
         """Finish the files on disk and publish the last account."""
+        self.counts.unread += take_waiting(self._subscriptions_by_topic.values(), ENDING)
+        # There is room for messages again: none is lost just now, which Losses asks for.
+        self._count_lost()
         self._keep(self._joiner.drain())
+        self._buffer.complete()
+        self.counts.missing = self._buffer.missing
         if self._recording is not None:
             self._on_disk(self._recording.close)
         self._report()
+        if problems := self.counts.problems():
+            self.get_logger().warning('ends; of what came: ' + ', '.join(
+                f'{count} {name}' for name, count in problems.items()))
         for losses in self._losses.values():
             losses.close()
 
@@ -210,7 +219,7 @@ class Recorder(PackageNode):
         self._losses[name] = Losses(subscription)
 
     def _on_message(self, topic, kind, raw):
-        self._last_message = self._steady.now().nanoseconds
+        self._last_message = self._now()
         message = deserialize_message(raw, kind)
         self._write(topic.name, raw)
         restarts = self.counts.restarts
@@ -232,7 +241,7 @@ class Recorder(PackageNode):
                 f'{self._joiner.base}, within {self._config["gap"]:g} s (parameter gap)')
 
     def _on_mapped(self, name, kind, raw):
-        self._last_message = self._steady.now().nanoseconds
+        self._last_message = self._now()
         self._write(name, raw)
         by_receipt = self._mapped.by_receipt
         try:
@@ -240,7 +249,7 @@ class Recorder(PackageNode):
                                            self.get_clock().now().nanoseconds,
                                            deserialize_message(raw, kind))
         except InputError as error:
-            self._trouble = self._unreadable = str(error)
+            self._health.trouble = self._unreadable = str(error)
             self.get_logger().error(self._unreadable, throttle_duration_sec=10.0)
             return
         if self._mapped.by_receipt and not by_receipt:
@@ -277,7 +286,7 @@ class Recorder(PackageNode):
                 self._buffer.columns = self._joiner.raw_columns()
                 if self._recording is not None:
                     self._recording.columns = self._buffer.columns
-            self._last_row = self._steady.now().nanoseconds
+            self._health.note_rows(self._now())
             self._unacknowledged += len(rows)
             if self._unacknowledged >= ACKNOWLEDGED:
                 self._unacknowledged = 0
@@ -305,20 +314,21 @@ class Recorder(PackageNode):
             self._report()
 
     def _on_flush(self, _, response):
-        self._keep(self._joiner.drain())
+        if self._silence() > QUIET:
+            self._keep(self._joiner.drain())
+        # Else a flight goes on: rows that still lack a topic are of the next record.
         records = self._buffer.complete()
         self._publish(records)
         response.success = bool(records)
-        response.message = (f'published a record of {len(records[0])} samples' if records
-                            else self._trouble or 'there are fewer than two samples to publish')
+        response.message = (f'published a record of {len(records[0])} samples' if records else
+                            self._health.trouble or 'there are fewer than two samples to publish')
         return response
 
     def _on_flush_timer(self):
-        now = self._steady.now().nanoseconds
-        silence = now - self._last_message if self._last_message is not None else 0
-        if silence > QUIET * 1e9:
-            self.counts.lost += sum(losses.count_new() for losses in self._losses.values())
-        if silence > self._patience() * 1e9:
+        silence = self._silence()
+        if silence > QUIET:
+            self._count_lost()
+        if silence > self._patience():
             self._last_message = None
             self._keep(self._joiner.drain())
             if self._buffer.run_name:
@@ -328,6 +338,16 @@ class Recorder(PackageNode):
         self._adapt()
         if self._mapped is not None:
             self._look_for_topics()
+
+    def _now(self):
+        return self._steady.now().nanoseconds * 1e-9
+
+    def _silence(self):
+        """Return the time since the last message, s; 0 before the first, or once given up."""
+        return 0.0 if self._last_message is None else self._now() - self._last_message
+
+    def _count_lost(self):
+        self.counts.lost += sum(losses.count_new() for losses in self._losses.values())
 
     def _patience(self):
         if self._announced is not None and self._joiner.has_reached(self._announced):
@@ -362,65 +382,33 @@ class Recorder(PackageNode):
                 except OSError:
                     pass   # it has been said
 
-    def _look_for_trouble(self):
-        """Say why no rows come while messages do."""
-        received = self.counts.received
-        news = {name: received[name] - self._heard[name] for name in self._topics}
-        self._heard = dict(received)
-        if self._another_type():
-            return
-        now = self._steady.now().nanoseconds
-        if self._last_row is None and any(news.values()):
-            self._last_row = now   # the first messages: rows may take their time from here
-        if not any(news.values()):
-            return
-        silence = (now - self._last_row) * 1e-9
-        if silence < NO_ROW:
-            self._trouble = None
-            return
-        silent = [name for name in self._topics if not news[name]]
-        equal = self._mapped is None and not self._joiner.interpolates
-        apart = ('the stamps of the topics are never equal' if equal else
-                 f'the samples of the topics are never within {self._config["gap"]:g} s of one '
-                 'another (parameter gap)')
-        way_out = ('the parameter topics leaves topics out' if self._mapped is None
-                   else 'a mapping names the topics that a row needs')
-        why = self._unreadable or (f'nothing comes on {", ".join(silent)} ({way_out})'
-                                   if silent else apart)
-        self._trouble = f'no sample has been joined for {silence:.0f} s: {why}'
-        self.get_logger().warning(self._trouble, throttle_duration_sec=10.0)
+    def _apart(self):
+        """Say that the stamps of the topics are too far apart."""
+        if self._mapped is None and not self._joiner.interpolates:
+            return 'the stamps of the topics are never equal'
+        return (f'the samples of the topics are never within {self._config["gap"]:g} s of one '
+                'another (parameter gap)')
 
     def _another_type(self):
-        """Say which silent topic is of another type, if one is, and return whether."""
+        """Say which silent topic is of another type, or return None."""
         silent = () if self._mapped is not None else (
             name for name in self._topics if not self.counts.received[name])
-        trouble = next(filter(None, (other_type(self, name) for name in silent)), None)
-        if trouble:
-            self._trouble = trouble
-            self.get_logger().error(trouble, throttle_duration_sec=10.0)
-        elif self._misnamed:
-            self._trouble = None
-        self._misnamed = bool(trouble)
-        return self._misnamed
+        return next(filter(None, (other_type(self, name) for name in silent)), None)
 
     def _report(self):
-        self._look_for_trouble()
+        now = self._now()
+        trouble = self._health.look(now, self.counts.received, self._unreadable)
+        if other := self._another_type():
+            self._health.blame(now, other)
+            self.get_logger().error(other, throttle_duration_sec=10.0)
+        elif trouble:
+            self.get_logger().warning(trouble, throttle_duration_sec=10.0)
         folder = str(self._recording.folder) if self._recording else None
         data = {**vars(self.counts), 'records': self._records, 'buffered': len(self._buffer),
                 'run': self._buffer.run_name,
                 'recording': folder, 'disk_error': self._disk_error}
         self._statistics.publish(String(data=json.dumps(data)))
-        problems = self.counts.problems()
-        level, text = OK, f'{self.counts.joined} samples joined'
-        if self._between():
-            text += f'; {self._between()}'
-        if problems:
-            level = WARN
-            text += ', ' + ', '.join(f'{count} {name}' for name, count in problems.items())
-        if self._trouble:
-            level, text = WARN, self._trouble
-        if self._disk_error:
-            level, text = ERROR, self._disk_error
+        level, text = self._health.status(now, self.counts, self._between(), self._disk_error)
         self._diagnostics.publish(diagnostics_message(self, level, text, data))
 
 

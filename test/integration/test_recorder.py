@@ -13,6 +13,8 @@ from rclpy.qos import HistoryPolicy, QoSProfile, ReliabilityPolicy
 from std_msgs.msg import Float64MultiArray, String
 
 from quad_ident_ros.data.topics import RunNotice
+from quad_ident_ros.nodes import health
+from quad_ident_ros.nodes import recorder as recorder_module
 from quad_ident_ros.nodes.qos import BEST_EFFORT, latched, STREAM
 from quad_ident_ros.nodes.recorder import Recorder
 from quad_ident_ros.nodes.simulator import Simulator
@@ -249,6 +251,80 @@ def test_what_the_middleware_lost_is_counted(graph, processes):
     assert graph.trigger('recorder/flush').success
     account = await_counts(graph, statistics, records=1)
     assert account['missing'] == account['lost']
+
+
+def overrun(depth):
+    """Return a quality of publishers that keep some messages only."""
+    return QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=depth,
+                      reliability=ReliabilityPolicy.RELIABLE)
+
+
+@pytest.mark.parametrize('seconds', [20.0, 0.02])
+def test_what_waits_when_a_recorder_is_stopped_is_joined_or_counted(graph, monkeypatch, seconds):
+    monkeypatch.setattr(recorder_module, 'ENDING', seconds)
+    recorder = graph.start(Recorder, {'topics': ['altitude']})
+    Vehicle(graph, ('altitude',), overrun(1000)).fly(4000)
+    assert recorder.counts.joined == 0
+    graph.stop(recorder)
+    counts = recorder.counts
+    assert counts.received['altitude'] == counts.joined > 0
+    assert counts.joined + counts.unread == 4000
+    assert (counts.unread > 0) == (seconds < 1.0)
+
+
+def test_a_recorder_that_is_stopped_while_behind_accounts_for_all(graph, processes):
+    """What the middleware had no room for is waited for, or counted as lost."""
+    process = processes.start('recorder', {'topics': ['altitude']})
+    _, statistics = listen(graph)
+    vehicle = Vehicle(graph, ('altitude',), overrun(1000))
+    vehicle.send(SECOND)
+    graph.spin_until(lambda: statistics and statistics.data()[-1]['received']['altitude'],
+                     'the first message')
+    sent = 40_001
+    vehicle.fly(sent - 1, first=SECOND + PERIOD)
+    assert process.stop() == 0
+    # The last account, which was published while the process ended.
+    graph.spin_for(0.5)
+    account = statistics.data()[-1]
+    assert account['received']['altitude'] < sent
+    assert account['joined'] + account['lost'] + account['unread'] == sent
+    assert account['missing'] == account['lost'] > 0
+
+
+def test_a_flush_in_flight_loses_no_sample(graph):
+    recorder = graph.start(Recorder)
+    records, _ = listen(graph)
+    vehicle = Vehicle(graph)
+    early, late = ('attitude', 'pose'), ('altitude', 'twist', 'input')
+    for k in range(200):
+        vehicle.send(SECOND + k * PERIOD, topics=early)
+        if k in (60, 120):    # each time with half a sample under way
+            graph.spin_until(lambda k=k: recorder.counts.received['pose'] == k + 1, 'that half')
+            assert graph.trigger('recorder/flush').success
+        vehicle.send(SECOND + k * PERIOD, topics=late)
+    await_joined(graph, recorder, 200)
+    graph.trigger('recorder/flush')
+    graph.spin_until(lambda: len(records) == 3, 'the records')
+    stamps = np.concatenate([stamps_of(record) for record in records.records()])
+    assert stamps.tolist() == [SECOND + k * PERIOD for k in range(200)]
+    assert [record.info['dropped'] for record in records.records()] == [0, 0, 0]
+    assert not recorder.counts.problems()
+
+
+def test_diagnostics_recover_from_a_warning(graph, monkeypatch):
+    monkeypatch.setattr(health, 'RECENT', 1.0)
+    graph.start(Recorder, {'topics': ['altitude']})
+    diagnostics = graph.listen(DiagnosticArray, '/diagnostics')
+    vehicle = Vehicle(graph, ('altitude',))
+    for stamp in (SECOND, SECOND + PERIOD, SECOND + PERIOD):
+        vehicle.send(stamp)
+
+    def said(level):
+        status = diagnostics and diagnostics[-1].status[0]
+        return status and status.level == level and '1 duplicated' in status.message
+
+    graph.spin_until(lambda: said(DiagnosticStatus.WARN), 'the warning')
+    graph.spin_until(lambda: said(DiagnosticStatus.OK), 'its end')
 
 
 def test_a_clock_that_begins_anew_begins_a_record(graph):
