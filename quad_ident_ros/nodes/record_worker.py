@@ -18,6 +18,7 @@ from quad_ident_ros.nodes.parameters import NodeParameters
 from quad_ident_ros.nodes.qos import latched
 from quad_ident_ros.nodes.records import Records
 
+NEWS = 10.0     # s between two lines of log on records that are left aside, windows come fast
 GETTING_READY = 'gets ready: loads or compiles its inner loops, and keeps the records that come'
 
 
@@ -86,7 +87,7 @@ class RecordWorker(PackageNode):
             return
         why = self._unfit(record)
         if why:
-            self.get_logger().warning(why)
+            self.get_logger().warning(why, throttle_duration_sec=NEWS)
             return
         if self._records.add(record, longest=not self._continuous):
             self._on_session()

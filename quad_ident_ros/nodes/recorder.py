@@ -11,10 +11,9 @@ from rclpy._rclpy_pybind11 import RCLError
 from rclpy.clock import Clock, ClockType
 from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.serialization import deserialize_message
-from std_msgs.msg import Float64MultiArray, String, UInt64
+from std_msgs.msg import String, UInt64
 from std_srvs.srv import Trigger
 
-from quad_ident_ros.data.buffer import Limits, RecordBuffer
 from quad_ident_ros.data.flight_joiner import FlightJoiner
 from quad_ident_ros.data.recording import Recording
 from quad_ident_ros.data.stream_joiner import StreamJoiner
@@ -31,9 +30,10 @@ from quad_ident_ros.nodes import process
 from quad_ident_ros.nodes.health import Health
 from quad_ident_ros.nodes.losses import Losses
 from quad_ident_ros.nodes.mapped import message_class, RECEIVED
-from quad_ident_ros.nodes.messages import diagnostics_message, record_message
+from quad_ident_ros.nodes.messages import diagnostics_message
 from quad_ident_ros.nodes.node import PackageNode
 from quad_ident_ros.nodes.other_types import one_topic_for_two, other_type
+from quad_ident_ros.nodes.outlets import outlets_of
 from quad_ident_ros.nodes.parameters import help_text, NodeParameters
 from quad_ident_ros.nodes.qos import BEST_EFFORT, latched, LOSSLESS
 from quad_ident_ros.nodes.recorder_parameters import mapped_topics, SPECS, validate
@@ -45,8 +45,6 @@ ACKNOWLEDGED = 10    # rows after which the publishers are told how far the join
 GONE = 2.0           # s after the last message when nothing more is to come, and
 IDLE = 15.0          # s when something may, after which what is incomplete is given up; lost
                      # messages are sent again every 3 s
-KEPT_RECORDS = 16    # records that a late identifier still gets
-NEWS = 10.0          # s between two lines of log on windows that slide
 ENDING = 8.0         # s for what waits when the node is told to end: `ros2 launch` gives 10
 
 HELP = f"""recorder: joins the topics of a flight into records, keeps and publishes them.
@@ -55,6 +53,8 @@ HELP = f"""recorder: joins the topics of a flight into records, keeps and publis
   ros2 run quad_ident_ros recorder --ros-args -p mapping:=topics.yaml
   ros2 run quad_ident_ros recorder --ros-args -p topics:="[odometry, imu, actuators]" \\
     -r odometry:=/odom -r imu:=/imu/data -r actuators:=/command/motor_speed
+  ros2 run quad_ident_ros recorder --ros-args -p window_seconds:=1.5 -p overlap:=0.9 \\
+    -p windows:="['record_long=30,0.5']"
   ros2 service call /recorder/flush std_srvs/srv/Trigger
 
 Subscribes (as the publisher offers, reliable first): attitude, altitude, pose, twist, input (types
@@ -63,7 +63,8 @@ as the simulator publishes them), run (std_msgs/String, announces runs; not need
 that a mapping names, which are joined at the stamps of the pose, or else of the first state. So
 are the first five where their stamps are seldom equal.
 Publishes:
-  record        std_msgs/Float64MultiArray (latched, 16 deep)  samples x columns, see the labels
+  record        std_msgs/Float64MultiArray (latched, 16 deep)  samples x columns, see the labels;
+                and the topics of the parameter windows
   ~/statistics  std_msgs/String (latched)                      JSON: received, joined, dropped,
                 late, duplicated, out of order, NaN, lost, unread, recordings
   joined_until  std_msgs/UInt64                                stamp (ns) of the last joined row
@@ -91,9 +92,8 @@ class Recorder(PackageNode):
             self._topics = tuple(self._mapped.streams)
             self._joiner = StreamJoiner(self._mapped.streams, parameters['gap'])
             columns = ()
-        self._buffer = RecordBuffer(columns, Limits(
-            parameters['window_samples'], parameters['window_seconds'], parameters['overlap']))
-        self._records = 0
+        self._outlets = outlets_of(self, columns, parameters)
+        self._buffer = self._outlets[0].buffer
         self._last_message = None
         self._health = Health(self._topics, self._apart,
                               'the parameter topics leaves topics out' if self._mapped is None
@@ -103,8 +103,6 @@ class Recorder(PackageNode):
         self._recording = None
         self._disk_error = None
         self._unreadable = None
-        self._record_publisher = self.create_publisher(Float64MultiArray, 'record',
-                                                       latched(KEPT_RECORDS))
         self._statistics = self.create_publisher(String, '~/statistics', latched())
         self._joined = self.create_publisher(UInt64, JOINED_TOPIC, 10)
         self._unacknowledged = 0
@@ -278,14 +276,16 @@ class Recorder(PackageNode):
         self._announced = notice.stop_ns
         if self._recording is not None:
             self._recording.add_run(notice)
-        self._publish(self._buffer.add_run(notice))
+        self._publish(lambda buffer: buffer.add_run(notice))
 
     def _keep(self, rows):
         if rows:
             if self._mapped is not None:
-                self._buffer.columns = self._joiner.raw_columns()
+                columns = self._joiner.raw_columns()
+                for outlet in self._outlets:
+                    outlet.buffer.columns = columns
                 if self._recording is not None:
-                    self._recording.columns = self._buffer.columns
+                    self._recording.columns = columns
             self._health.note_rows(self._now())
             self._unacknowledged += len(rows)
             if self._unacknowledged >= ACKNOWLEDGED:
@@ -293,34 +293,29 @@ class Recorder(PackageNode):
                 self._joined.publish(UInt64(data=rows[-1][0]))
             if self._recording is not None:
                 self._on_disk(lambda: self._recording.add_rows(rows))
-            self._publish(self._buffer.add_rows(rows))
+            self._publish(lambda buffer: buffer.add_rows(rows))
 
-    def _publish(self, records):
+    def _publish(self, step):
+        """Publish the records that a step (a function of a RecordBuffer) completes; return all."""
+        complete = [(outlet, step(outlet.buffer)) for outlet in self._outlets]
         self.counts.missing = self._buffer.missing
-        for record in records:
-            self._records += 1
-            info = {**record.info, 'problems': self.counts.problems(),
+        found = [record for _, records in complete for record in records]
+        if found:
+            more = {'problems': self.counts.problems(),
                     **(self._mapped.info if self._mapped else {})}
-            self._record_publisher.publish(record_message(
-                type(record)(record.t, record.columns, info)))
-            text = (f'record {self._records}: {len(record)} samples'
-                    f'{" of " + info["name"] if "name" in info else ""}, '
-                    f'{record.info["dropped"]} missing')
-            if self._config['overlap']:
-                self.get_logger().info(text, throttle_duration_sec=NEWS)
-            else:
-                self.get_logger().info(text)
-        if records:
+            for outlet, records in complete:
+                outlet.publish(records, more)
             self._report()
+        return found
 
     def _on_flush(self, _, response):
         if self._silence() > QUIET:
             self._keep(self._joiner.drain())
         # Else a flight goes on: rows that still lack a topic are of the next record.
-        records = self._buffer.complete()
-        self._publish(records)
+        records = self._publish(lambda buffer: buffer.complete())
         response.success = bool(records)
-        response.message = (f'published a record of {len(records[0])} samples' if records else
+        response.message = (f'published a record of {max(map(len, records))} samples'
+                            if records else
                             self._health.trouble or 'there are fewer than two samples to publish')
         return response
 
@@ -332,7 +327,7 @@ class Recorder(PackageNode):
             self._last_message = None
             self._keep(self._joiner.drain())
             if self._buffer.run_name:
-                self._publish(self._buffer.complete(run_over=True))
+                self._publish(lambda buffer: buffer.complete(run_over=True))
         if self._recording is not None:
             self._on_disk(self._recording.flush)
         self._adapt()
@@ -404,8 +399,8 @@ class Recorder(PackageNode):
         elif trouble:
             self.get_logger().warning(trouble, throttle_duration_sec=10.0)
         folder = str(self._recording.folder) if self._recording else None
-        data = {**vars(self.counts), 'records': self._records, 'buffered': len(self._buffer),
-                'run': self._buffer.run_name,
+        data = {**vars(self.counts), 'records': self._outlets[0].count,
+                'buffered': len(self._buffer), 'run': self._buffer.run_name,
                 'recording': folder, 'disk_error': self._disk_error}
         self._statistics.publish(String(data=json.dumps(data)))
         level, text = self._health.status(now, self.counts, self._between(), self._disk_error)

@@ -6,6 +6,7 @@ from quad_ident_ros.data.mapping import load_mapping
 from quad_ident_ros.data.topics import FLIGHT_TOPICS
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.nodes.mapped import KNOWN, known_mapping, MappedTopics
+from quad_ident_ros.nodes.outlets import windows_of
 from quad_ident_ros.nodes.parameters import ParameterSpec
 
 SPECS = (
@@ -24,6 +25,8 @@ SPECS = (
     ParameterSpec('overlap', 0.0, 'Share of a full window that the next one keeps: 0.9 publishes '
                   'a sliding window ten times per window length.', limits=(0.0, 0.999),
                   fixed=True),
+    ParameterSpec('windows', (), 'Further windows, each TOPIC=SECONDS or TOPIC=SECONDS,OVERLAP, '
+                  'whose records go out on topics of their own: record_long=30,0.5.', fixed=True),
     ParameterSpec('output', '', 'Folder for recordings (a bag and CSV files in a new '
                   'recording_N); empty records in memory only.', fixed=True),
 )
@@ -40,6 +43,7 @@ def mapped_topics(parameters):
 
 def validate(values):
     """Raise InputError where the parameters do not go together."""
+    windows_of(values['windows'])
     if not values['topics'] or len(set(values['topics'])) != len(values['topics']):
         raise InputError('parameter topics: name at least one topic, and each once')
     if 0 < sum(name in KNOWN for name in values['topics']) < len(values['topics']):
