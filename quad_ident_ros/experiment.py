@@ -38,7 +38,9 @@ class Run:
     """
     One flight of an experiment: its name, length (s), excitations and outputs to identify.
 
-    In closed loop it has a trajectory (of flight.trajectories) and sensors (of flight.measure).
+    In closed loop it has a trajectory (of flight.trajectories), sensors (of flight.measure) and
+    changes (time s, {effect: {parameter: value}}): what the vehicle has from then on in the place
+    of what it had of these effects.
     """
 
     name: str
@@ -47,6 +49,7 @@ class Run:
     outputs: tuple = ()
     trajectory: str | None = None
     sensors: str = 'clean'
+    changes: tuple = ()
 
 
 @dataclass(frozen=True)
@@ -167,22 +170,52 @@ def _run(where, data, period, folder):
     if duration / period > MOST_SAMPLES - 1:
         raise InputError(f'{where}: duration: {duration:g} s at {period:g} s a sample are more '
                          f'than {MOST_SAMPLES} samples; shorten it or lengthen the period')
-    if not isinstance(data['outputs'], list) or not data['outputs']:
-        raise InputError(f'{where}: outputs: expected a list of {", ".join(OUTPUTS)}')
-    outputs = tuple(schema.choice(f'{where}: outputs', name, OUTPUTS) for name in data['outputs'])
+    outputs = _outputs(where, data['outputs'])
     inputs = {name: _located(spec, folder) for name, spec in data['inputs'].items()}
     return Run(schema.name(f'{where}: name', data['name']), duration, inputs, outputs)
 
 
+def _outputs(where, names):
+    if not isinstance(names, list) or not names:
+        raise InputError(f'{where}: outputs: expected a list of {", ".join(OUTPUTS)}')
+    return tuple(schema.choice(f'{where}: outputs', name, OUTPUTS) for name in names)
+
+
 def _closed_loop_run(where, data):
-    schema.check_keys(where, data, ('name', 'duration', 'trajectory', 'sensors'),
+    schema.check_keys(where, data, ('name', 'duration', 'trajectory', 'sensors', 'changes',
+                                    'outputs'),
                       ('name', 'duration', 'trajectory'))
     return Run(schema.name(f'{where}: name', data['name']),
                schema.number(f'{where}: duration', data['duration'], SHORTEST, LONGEST),
+               outputs=_outputs(where, data['outputs']) if 'outputs' in data else (),
                trajectory=schema.choice(f'{where}: trajectory', data['trajectory'],
                                         tuple(TRAJECTORIES)),
                sensors=schema.choice(f'{where}: sensors', data.get('sensors', 'clean'),
-                                     tuple(SENSORS)))
+                                     tuple(SENSORS)),
+               changes=_changes(f'{where}: changes', data.get('changes', [])))
+
+
+def _changes(where, entries):
+    """Return ((time s, effects), ...) of the changes of a run; flight.fly checks the rest."""
+    if not isinstance(entries, list):
+        raise InputError(f'{where}: expected a list of changes, each with at (s) and effects')
+    found = []
+    for number, entry in enumerate(entries):
+        here = f'{where}[{number}]'
+        schema.check_keys(here, entry, ('at', 'effects'), ('at', 'effects'))
+        schema.check_keys(f'{here}: effects', entry['effects'], registry.EFFECTS)
+        found.append((schema.number(f'{here}: at', entry['at'], 0.0, exclusive=True),
+                      entry['effects']))
+    return tuple(found)
+
+
+def _in_flight(effects, changes):
+    """Return the changes with all that the vehicle has from each of them on."""
+    found = []
+    for time, changed in changes:
+        effects = {**effects, **changed}
+        found.append((time, effects))
+    return tuple(found)
 
 
 def _located(spec, folder):
@@ -242,7 +275,8 @@ def _fly_closed_loop(experiment, run, noise, seed):
     nominal = replace(experiment.vehicle, effects={})
     record = fly_closed_loop(nominal, experiment.vehicle.effects, run.trajectory,
                              duration=run.duration, rate=1.0 / experiment.period, seed=own,
-                             noise=_sensors(run, noise))
+                             noise=_sensors(run, noise),
+                             changes=_in_flight(experiment.vehicle.effects, run.changes))
     commands = record.stack(*(f'cmd{j}' for j in range(1, len(nominal.rotors) + 1)))
     inputs = commands ** 2 @ mixing.allocation_matrix(nominal).T
     columns = {**record.columns, **dict(zip(('u1', 'u2', 'u3', 'u4'), inputs.T, strict=True)),
@@ -250,6 +284,7 @@ def _fly_closed_loop(experiment, run, noise, seed):
     # What effects the vehicle has stays with who flies it: a diagnosis is not to be told.
     info = {'name': f'{experiment.name}/{run.name}', 'experiment': experiment.name,
             'run': run.name, 'model': experiment.model, 'vehicle': nominal.name,
+            **({'outputs': list(run.outputs)} if run.outputs else {}),
             'trajectory': run.trajectory, 'sensors': run.sensors, 'noise': dict(noise),
             'trim': experiment.trim_input().tolist(), 'starts_at_rest': False,
             'unwrapped': True, 'infeasible': None, 'seed': seed, 'status': 'complete',

@@ -27,8 +27,12 @@ MOST_SAMPLES = 1_000_000    # of a flight: 2.8 hours at 100 Hz, some 200 MB
 SHORTEST, LONGEST = 5.0, 3600.0     # s
 
 
+REMEMBERING = ('battery_sag', 'motor_lag', 'actuation_delay')
+MEASURING = ('com_offset', 'attitude_misalignment', 'gyro_bias')
+
+
 def fly_closed_loop(vehicle, effects, trajectory, *, duration=30.0, rate=100.0, seed=0,
-                    noise=CLEAN):
+                    noise=CLEAN, changes=()):
     """
     Return the FlightRecord of a closed-loop flight, in the columns of the record format.
 
@@ -37,8 +41,9 @@ def fly_closed_loop(vehicle, effects, trajectory, *, duration=30.0, rate=100.0, 
     the record the vehicle hovers until it is trimmed; at t = 0 the rotors follow the first
     command. vbat begins at FULL_VOLTAGE and falls with the energy drawn, by FALL at hover.
     Args: effects {effect: {parameter: value}} of the truth; trajectory: a name of TRAJECTORIES;
-    duration s; rate Hz; seed of trajectory and noise; noise: Sensors. Raises InputError for what
-    cannot be, and where the vehicle leaves its course.
+    duration s; rate Hz; seed of trajectory and noise; noise: Sensors; changes: (time s, effects)
+    of those that the vehicle has from then on. Raises InputError for what cannot be, and where the
+    vehicle leaves its course.
     """
     duration = schema.number('duration (s)', duration, SHORTEST, LONGEST)
     rate = schema.number('rate (Hz)', rate, *RATES)
@@ -50,12 +55,14 @@ def fly_closed_loop(vehicle, effects, trajectory, *, duration=30.0, rate=100.0, 
     if fault:
         raise InputError('; '.join(fault))
     theta = vector(effects, vehicle)
+    parts = _parts_of(effects, changes, vehicle, duration)
     course = plan(trajectory, vehicle, duration, seed)
     t = np.arange(int(duration * rate + 1e-6) + 1) / rate
     *places, yaw, yaw_rate = course(t)
     wanted = np.concatenate([*places, yaw[:, None], yaw_rate[:, None]], axis=1)
     errors = errors_of(noise, len(t), 1 / rate, seed)
-    states, commands, speeds, forces, drop = _flown(vehicle, theta, wanted, errors[:, :12], rate)
+    states, commands, speeds, forces, drop = _flown(vehicle, theta, wanted, errors[:, :12], rate,
+                                                     parts)
     states = recorded(theta, states)
     forces = forces @ rotation_matrix(turn(theta[BLOCK]))   # the accelerometer is in the block
     _check_course(vehicle, states, wanted, t)
@@ -75,22 +82,60 @@ def fly_closed_loop(vehicle, effects, trajectory, *, duration=30.0, rate=100.0, 
     return FlightRecord(t[rows], {name: values[rows] for name, values in columns.items()}, info)
 
 
-def _flown(vehicle, theta, wanted, errors, rate):
+def _parts_of(effects, changes, vehicle, duration):
+    """
+    Return [(time s from which, parameter vector)] of the changes in flight; raises InputError.
+
+    Effects with a memory of their own, of rotors or battery, would forget it at a change, and
+    those of what is measured would move it in a step: these cannot change.
+    """
+    parts, before = [], 0.0
+    for number, (time, wanted) in enumerate(changes, 1):
+        where = f'change {number}'
+        schema.number(f'{where}: at (s)', time, before, duration, exclusive=True)
+        if lasting := [name for name in REMEMBERING if name in effects or name in wanted]:
+            raise InputError(f'{where}: a vehicle with {lasting[0]} cannot change in flight: take '
+                             'the effect or the change out')
+        moved = [name for name in MEASURING if effects.get(name) != wanted.get(name)]
+        if moved:
+            raise InputError(f'{where}: {moved[0]} cannot change in flight, for it would move '
+                             'what is measured in a step')
+        parts.append((time, vector(wanted, vehicle, f'{where}: effects')))
+        before = time
+    return parts
+
+
+def _phases(theta, parts, wanted, errors, rate):
+    """Return (theta, wanted, errors, clock) of the hover before the record and of its parts."""
+    still = np.tile(wanted[0], (int(SETTLING * rate), 1))
+    phases = [(theta, still, np.zeros((len(still), 12)), 0.0)]
+    places = [0, *(int(np.ceil(time * rate - 1e-9)) for time, _ in parts), len(wanted)]
+    for each, first, end in zip((theta, *(part for _, part in parts)), places[:-1], places[1:],
+                                strict=True):
+        phases.append((each, wanted[first:end], errors[first:end], 1.0))
+    return phases
+
+
+def _flown(vehicle, theta, wanted, errors, rate, parts):
     """Return true states, commands, rotor speeds, forces and fall of the voltage by sample."""
     tilt, rate_tilt = (rotation_matrix(each) for each in tilts_of(theta))
     x, memory = np.zeros(STATE), np.zeros(MEMORY)
     x[:3] = wanted[0, :3]
     x[6:10] = quaternion_from_euler([0.0, 0.0, wanted[0, 12]])
-    still = np.tile(wanted[0], (int(SETTLING * rate), 1))
-    for phase, seen, clock in ((still, np.zeros((len(still), 12)), 0.0), (wanted, errors, 1.0)):
+    flown, fallen = [], 0.0
+    for acting, phase, seen, clock in _phases(theta, parts, wanted, errors, rate):
         count, n = len(phase), len(vehicle.rotors)
         out = (np.empty((count, STATE)), np.empty((count, n)), np.empty((count, n)),
                np.empty((count, 3)), np.empty(count))
         close_loop(vehicle_vector(vehicle)[:, None], rotor_table(vehicle),
-                   theta[:, None].copy(), tilt, rate_tilt, 1 / rate, clock, clock * FALL,
-                   FULL_VOLTAGE, LONGEST_STEP, x, phase, np.ascontiguousarray(seen),
-                   gains_of(vehicle), mixer_of(vehicle), memory, *out)
-    return out
+                   acting[:, None].copy(), tilt, rate_tilt, 1 / rate, clock, clock * FALL,
+                   FULL_VOLTAGE, LONGEST_STEP, x, np.ascontiguousarray(phase),
+                   np.ascontiguousarray(seen), gains_of(vehicle), mixer_of(vehicle), memory, *out)
+        if clock:
+            out[-1][:] += fallen
+            fallen = out[-1][-1]
+            flown.append(out)
+    return tuple(np.concatenate(each) for each in zip(*flown, strict=True))
 
 
 def _check_course(vehicle, states, wanted, t):
