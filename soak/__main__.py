@@ -1,0 +1,54 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Run long runs and faults: `./run soak [CASE ...] [--short]`."""
+
+import argparse
+import sys
+
+from benchmarks.tables import markdown
+from quad_ident_ros.errors import InputError
+from soak import busy, disks, hours, kills, streams
+
+CASES = {'disks': disks.run, 'streams': streams.run, 'kills': kills.run, 'busy': busy.run,
+         'hours': hours.run}
+KILLS, SECONDS = 5, 120.0
+SHORT_KILLS, SHORT_SECONDS = 1, 20.0
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run the cases that are asked for and print a table; returns 1 where one does not hold."""
+    parser = argparse.ArgumentParser(
+        prog='./run soak', description='Kill, flood, fill and confuse the nodes, and say what '
+        'held. By default ten minutes or so; docs/reliability.md has the commands for longer.')
+    parser.add_argument('cases', nargs='*', metavar='CASE',
+                        help=f'one of {", ".join(CASES)}; by default all')
+    parser.add_argument('--kills', type=int, help=f'kills of each node at each rate ({KILLS})')
+    parser.add_argument('--seconds', type=float,
+                        help=f'of the long flight, and at most a minute of the busy one '
+                        f'({SECONDS:g}); 3600 for an hour')
+    parser.add_argument('--short', action='store_true',
+                        help=f'{SHORT_KILLS} kill, {SHORT_SECONDS:g} s: to see that it works')
+    options = parser.parse_args(arguments)
+    for name in options.cases:
+        if name not in CASES:
+            parser.error(f'{name}: no such case, expected one of {", ".join(CASES)}')
+    kills_ = options.kills or (SHORT_KILLS if options.short else KILLS)
+    seconds = options.seconds or (SHORT_SECONDS if options.short else SECONDS)
+    if kills_ < 1 or not 10.0 <= seconds <= 3600.0:
+        parser.error('expected at least one kill, and 10 to 3600 seconds')
+    findings = []
+    for name in options.cases or CASES:
+        print(f'{name} ...', file=sys.stderr, flush=True)
+        try:
+            findings += CASES[name](kills=kills_, seconds=seconds)
+        except InputError as error:
+            print(f'./run soak: {name}: {error}', file=sys.stderr)
+            return 2
+    print(markdown(('case', 'what was done', 'what came of it', 'holds'), [
+        (each.case, each.done, each.result, 'yes' if each.held else '**no**')
+        for each in findings]))
+    return 0 if all(each.held for each in findings) else 1
+
+
+if __name__ == '__main__':
+    sys.exit(main())

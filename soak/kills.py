@@ -1,0 +1,93 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""kill -9 of each node at random moments: what is on disk, and whether all goes on."""
+
+from pathlib import Path
+import random
+import tempfile
+import time
+
+from benchmarks import load
+from quad_ident_ros.data.csv import read_csv
+from quad_ident_ros.data.replay import read_bag
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.nodes.launched import Launched
+from soak.rig import Finding, Watch
+
+NODES = ('recorder', 'identifier', 'diagnoser', 'simulator')
+RATES = (100, 1000)     # Hz
+LOSS = 1.0              # s of a recording that a kill may cost
+AGAIN = 30.0            # s within which a node that was started again is there
+
+
+def run(kills: int, **_: object) -> list[Finding]:
+    """Return a Finding for each node and rate."""
+    return [_killed(node, rate, kills) for rate in RATES for node in NODES]
+
+
+def _killed(victim: str, rate: int, kills: int) -> Finding:
+    random.seed(rate)
+    with tempfile.TemporaryDirectory() as name, Launched(name) as launched:
+        folder = Path(name)
+        parameters = {
+            'recorder': {'output': name, 'window_seconds': 2.0, 'overlap': 0.5},
+            'identifier': {'method': 'vp', 'mode': 'continuous'},
+            'diagnoser': {'mode': 'continuous'},
+            'simulator': {**load.simulator(folder, 1 / rate, 60.0 + 4.0 * kills),
+                          'autostart': True, 'wait_for_subscribers': False}}
+        for node in NODES:
+            launched.start(node, parameters[node])
+        worst, back, unreadable = 0.0, 0.0, 0
+        with launched.watcher('soak') as pair:
+            watch = Watch(*pair)
+            watch.until(lambda: watch.account.get('joined', 0) > rate and all(
+                node in watch.heard for node in NODES), 'all nodes and a second of flight',
+                10 * AGAIN)
+            for _ in range(kills):
+                watch.wait(random.uniform(0.6, 1.6))
+                newest, recording = watch.newest, watch.account['recording']
+                launched.processes[victim].kill()
+                launched.processes[victim].wait()
+                if victim == 'recorder':
+                    try:
+                        worst = max(worst, lost(Path(recording), newest))
+                    except InputError:
+                        unreadable += 1
+                begin = time.monotonic()
+                launched.start(victim, parameters[victim])
+                watch.until(lambda begin=begin: watch.heard[victim] > begin + 0.1,
+                            f'{victim} again', AGAIN)
+                watch.until(lambda r=recording: victim != 'recorder' or (
+                    watch.account['recording'] != r and watch.account['joined'] > 0),
+                    'samples again', AGAIN)
+                back = max(back, time.monotonic() - begin)
+            joined = watch.account['joined']
+            watch.until(lambda: watch.account['joined'] > joined, 'samples to go on', AGAIN)
+            rest = watch.account
+    text = f'back and at work within {back:.1f} s'
+    held = back < AGAIN and unreadable == 0 and worst <= LOSS
+    if victim == 'recorder':
+        text = (f'{unreadable} recordings unreadable, at most {worst:.2f} s lost of bag and CSV; '
+                + text)
+    elif victim != 'simulator':
+        others = {key: rest[key] for key in ('lost', 'dropped', 'late') if rest[key]}
+        text += f'; the recorder lost {others or "nothing"}'
+        held = held and not others
+    return Finding('kill -9', f'{victim}, {kills} times at {rate} Hz', text, held)
+
+
+def lost(recording: Path, newest: int) -> float:
+    """
+    Return how much of a recording is not on disk, s.
+
+    Args: recording: its folder; newest: the newest stamp on the wire, ns. Raises InputError where
+    bag or CSV cannot be read.
+    """
+    flights = read_bag(recording / 'bag')
+    bag = flights[-1].info['start_ns'] + round(1e9 * flights[-1].t[-1])
+    tables = sorted(recording.glob('flight_*.csv'),
+                    key=lambda path: int(path.stem.rpartition('_')[2]))
+    table = read_csv(tables[-1])
+    # The table begins with the first sample of the bag.
+    rows = flights[-1].info['start_ns'] + round(1e9 * (table.t[-1] - table.t[0]))
+    return max(newest - bag, newest - rows, 0) * 1e-9
