@@ -16,7 +16,6 @@ FLIGHT = 'flight.csv'
 # What each command writes, and its words; {out} is the file.
 COMMANDS = {
     'fly': ('csv', 'fly lissajous --vehicle hummingbird --duration 10 -o {out}'),
-    'simulate': ('csv', 'simulate small_angle -o {out}'),
     'convert to CSV': ('csv', f'convert {FLIGHT} {{out}}'),
     'convert to a bag': ('mcap', f'convert {FLIGHT} {{out}}'),
     'convert to gzip': ('csv.gz', f'convert {FLIGHT} {{out}}'),

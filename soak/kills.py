@@ -7,6 +7,8 @@ import random
 import tempfile
 import time
 
+from std_srvs.srv import Trigger
+
 from benchmarks import load
 from quad_ident_ros.data.csv import read_csv
 from quad_ident_ros.data.replay import read_bag
@@ -17,60 +19,68 @@ from soak.rig import Finding, Watch
 NODES = ('recorder', 'identifier', 'diagnoser', 'simulator')
 RATES = (100, 1000)     # Hz
 LOSS = 1.0              # s of a recording that a kill may cost
-AGAIN = 30.0            # s within which a node that was started again is there
+AGAIN = 120.0           # s within which a node that was started again is ready
+FLIGHT = 120.0          # s; it is flown again when it is over
 
 
 def run(kills: int, **_: object) -> list[Finding]:
     """Return a Finding for each node and rate."""
-    return [_killed(node, rate, kills) for rate in RATES for node in NODES]
+    return [finding for rate in RATES for finding in _killed(rate, kills)]
 
 
-def _killed(victim: str, rate: int, kills: int) -> Finding:
+def _killed(rate: int, kills: int) -> list[Finding]:
     random.seed(rate)
     with tempfile.TemporaryDirectory() as name, Launched(name) as launched:
-        folder = Path(name)
         parameters = {
             'recorder': {'output': name, 'window_seconds': 2.0, 'overlap': 0.5},
             'identifier': {'method': 'vp', 'mode': 'continuous'},
             'diagnoser': {'mode': 'continuous'},
-            'simulator': {**load.simulator(folder, 1 / rate, 60.0 + 4.0 * kills),
+            'simulator': {**load.simulator(Path(name), 1 / rate, FLIGHT),
                           'autostart': True, 'wait_for_subscribers': False}}
-        for node in NODES:
-            launched.start(node, parameters[node])
-        worst, back, unreadable = 0.0, 0.0, 0
         with launched.watcher('soak') as pair:
             watch = Watch(*pair)
-            watch.until(lambda: watch.account.get('joined', 0) > rate and all(
-                node in watch.heard for node in NODES), 'all nodes and a second of flight',
-                10 * AGAIN)
-            for _ in range(kills):
-                watch.wait(random.uniform(0.6, 1.6))
-                newest, recording = watch.newest, watch.account['recording']
-                launched.processes[victim].kill()
-                launched.processes[victim].wait()
-                if victim == 'recorder':
-                    try:
-                        worst = max(worst, lost(Path(recording), newest))
-                    except InputError:
-                        unreadable += 1
-                begin = time.monotonic()
-                launched.start(victim, parameters[victim])
-                watch.until(lambda begin=begin: watch.heard[victim] > begin + 0.1,
-                            f'{victim} again', AGAIN)
-                watch.until(lambda r=recording: victim != 'recorder' or (
-                    watch.account['recording'] != r and watch.account['joined'] > 0),
-                    'samples again', AGAIN)
-                back = max(back, time.monotonic() - begin)
-            joined = watch.account['joined']
-            watch.until(lambda: watch.account['joined'] > joined, 'samples to go on', AGAIN)
-            rest = watch.account
-    text = f'back and at work within {back:.1f} s'
+            for node in NODES:
+                launched.start(node, parameters[node])
+            watch.until(lambda: watch.heard.keys() >= set(NODES), 'all nodes', 10 * AGAIN)
+            return [_victim(watch, launched, Path(name), node, parameters[node], rate, kills)
+                    for node in NODES]
+
+
+def _victim(watch: Watch, launched: Launched, folder: Path, victim: str, parameters: dict,
+            rate: int, kills: int) -> Finding:
+    """Kill one of the nodes again and again, while the others go on; folder: of their logs."""
+    worst, back, unreadable = 0.0, 0.0, 0
+    for _ in range(kills):
+        if time.monotonic() - watch.heard['simulator'] > 1.0:   # it has landed: fly again
+            watch.node.create_client(Trigger, 'simulator/start').call_async(Trigger.Request())
+        joined = watch.account['joined']
+        watch.until(lambda j=joined: watch.account['joined'] > j, 'the flight', AGAIN)
+        watch.wait(random.uniform(0.6, 1.6))
+        newest, recording = watch.newest, watch.account['recording']
+        before = watch.account
+        launched.processes[victim].kill()
+        launched.processes[victim].wait()
+        if victim == 'recorder':
+            try:
+                worst = max(worst, lost(Path(recording), newest))
+            except InputError:
+                unreadable += 1
+        begin = time.monotonic()
+        launched.start(victim, parameters)
+        log = folder / f'{victim}.txt'
+        watch.until(lambda f=log: 'ready: ' in f.read_text('utf-8', 'replace'),
+                    f'{victim} again', AGAIN)
+        watch.until(lambda r=recording: victim != 'recorder' or (
+            watch.account['recording'] != r and watch.account['joined'] > 0), 'samples', AGAIN)
+        back = max(back, time.monotonic() - begin)
+    text = f'at work again within {back:.1f} s'
     held = back < AGAIN and unreadable == 0 and worst <= LOSS
     if victim == 'recorder':
         text = (f'{unreadable} recordings unreadable, at most {worst:.2f} s lost of bag and CSV; '
                 + text)
     elif victim != 'simulator':
-        others = {key: rest[key] for key in ('lost', 'dropped', 'late') if rest[key]}
+        others = {key: watch.account[key] - before[key] for key in ('lost', 'dropped', 'late')
+                  if watch.account[key] > before[key]}
         text += f'; the recorder lost {others or "nothing"}'
         held = held and not others
     return Finding('kill -9', f'{victim}, {kills} times at {rate} Hz', text, held)

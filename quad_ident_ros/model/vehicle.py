@@ -15,6 +15,7 @@ from quad_ident_ros.effects import registry
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.motors import Motors, motors_from, motors_to_mapping
 from quad_ident_ros.model.plausible import refuse_absurd
+from quad_ident_ros.whole_file import write_whole
 
 Uncertainty: TypeAlias = float | tuple[float | None, ...]
 
@@ -178,7 +179,7 @@ def write_vehicle(path: str | Path, vehicle: Vehicle) -> None:
     check_ending(path)
     text = yaml.safe_dump(vehicle_to_mapping(vehicle), sort_keys=False, default_flow_style=None)
     try:
-        Path(path).write_text(text, encoding='utf-8')
+        write_whole(path, text)
     except OSError as error:
         raise InputError(f'{path}: cannot be written: {error.strerror}') from None
 

@@ -8,6 +8,7 @@ from pathlib import Path
 import sys
 
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.whole_file import write_whole
 
 
 def write_json(path, data):
@@ -22,7 +23,7 @@ def write_json(path, data):
         return
     try:
         Path(path).parent.mkdir(parents=True, exist_ok=True)
-        Path(path).write_text(text, encoding='utf-8')
+        write_whole(path, text)
     except OSError as error:
         raise InputError(f'{path}: cannot be written: {error.strerror}') from None
 

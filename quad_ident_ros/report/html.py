@@ -7,6 +7,7 @@ from html import escape
 from pathlib import Path
 
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.whole_file import write_whole
 
 STYLE = """\
 :root { color-scheme: light; }
@@ -100,6 +101,6 @@ def write_page(path, title, body):
             f'{tag("h1", title)}\n{markup(body)}\n</body></html>\n')
     try:
         Path(path).parent.mkdir(parents=True, exist_ok=True)
-        Path(path).write_text(text, encoding='utf-8')
+        write_whole(path, text)
     except OSError as error:
         raise InputError(f'{path}: cannot be written: {error.strerror}') from None
