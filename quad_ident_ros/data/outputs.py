@@ -227,11 +227,12 @@ def _power(exponent: float) -> str:
 def _doubt(where: str, values: np.ndarray, kinds: Sequence[str]) -> InputError:
     """Return the InputError for signals that could be of several kinds, or of none."""
     low, high = np.nanmin(values), np.nanmax(values)
-    what = (f'could be {" or ".join(map(described, kinds))}' if kinds else
-            'are of no kind that is known by its size')
+    what = (f'could be {" or ".join(map(described, kinds))};' if kinds else
+            'are of no kind that is known by its size, nor rotor speeds near those of hover; give '
+            'the vehicle that flew, or')
     line = ('{kind: ' + kinds[0] + '}' if kinds else
-            f'{{kind: pwm, minimum: {low:.6g}, maximum: {high:.6g}}}')
-    return InputError(f'{where}: the outputs, {low:.6g} to {high:.6g}, {what}; write into the '
+            '{kind: pwm, minimum: ..., maximum: ...}')
+    return InputError(f'{where}: the outputs, {low:.6g} to {high:.6g}, {what} write into the '
                       f'vehicle file what they are, such as motors: {line}, or into a mapping as '
                       f'actuators: {line}; kinds are {", ".join(KINDS)}')
 
