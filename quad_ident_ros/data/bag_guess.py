@@ -110,7 +110,8 @@ def _holds(role, msgtype, message):
         if is_tf(msgtype):
             return len(message.transforms) > 0
         reading = reading_of(role, msgtype, message)
-        values = np.array(reading.values(message), float)
+        with np.errstate(invalid='ignore'):     # a signalling not-a-number becomes a quiet one
+            values = np.array(reading.values(message), float)
         if role == 'velocity' and msgtype.startswith('geometry_msgs/'):
             return reading.frame(message) != ''
     except (NoSuch, *OTHER_SHAPE):
