@@ -7,6 +7,7 @@ import sys
 
 from benchmarks.tables import markdown
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.warm_up import warm_up, warm_up_diagnosis
 from soak import busy, disks, hours, kills, streams
 
 CASES = {'disks': disks.run, 'streams': streams.run, 'kills': kills.run, 'busy': busy.run,
@@ -36,6 +37,9 @@ def main(arguments: list[str] | None = None) -> int:
     seconds = options.seconds or (SHORT_SECONDS if options.short else SECONDS)
     if kills_ < 1 or not 10.0 <= seconds <= 3600.0:
         parser.error('expected at least one kill, and 10 to 3600 seconds')
+    # Else the nodes would compile while they are looked at.
+    warm_up()
+    warm_up_diagnosis()
     findings = []
     for name in options.cases or CASES:
         print(f'{name} ...', file=sys.stderr, flush=True)

@@ -19,7 +19,7 @@ from soak.rig import Finding, Watch
 NODES = ('recorder', 'identifier', 'diagnoser', 'simulator')
 RATES = (100, 1000)     # Hz
 LOSS = 1.0              # s of a recording that a kill may cost
-AGAIN = 120.0           # s within which a node that was started again is ready
+AGAIN = 60.0            # s within which a node that was started again is ready
 FLIGHT = 120.0          # s; it is flown again when it is over
 
 
@@ -49,7 +49,7 @@ def _killed(rate: int, kills: int) -> list[Finding]:
 def _victim(watch: Watch, launched: Launched, folder: Path, victim: str, parameters: dict,
             rate: int, kills: int) -> Finding:
     """Kill one of the nodes again and again, while the others go on; folder: of their logs."""
-    worst, back, unreadable = 0.0, 0.0, 0
+    worst, back, unreadable = 0.0, 0.0, []
     for _ in range(kills):
         if time.monotonic() - watch.heard['simulator'] > 1.0:   # it has landed: fly again
             watch.node.create_client(Trigger, 'simulator/start').call_async(Trigger.Request())
@@ -63,8 +63,8 @@ def _victim(watch: Watch, launched: Launched, folder: Path, victim: str, paramet
         if victim == 'recorder':
             try:
                 worst = max(worst, lost(Path(recording), newest))
-            except InputError:
-                unreadable += 1
+            except InputError as error:
+                unreadable.append(str(error))
         begin = time.monotonic()
         launched.start(victim, parameters)
         log = folder / f'{victim}.txt'
@@ -74,10 +74,11 @@ def _victim(watch: Watch, launched: Launched, folder: Path, victim: str, paramet
             watch.account['recording'] != r and watch.account['joined'] > 0), 'samples', AGAIN)
         back = max(back, time.monotonic() - begin)
     text = f'at work again within {back:.1f} s'
-    held = back < AGAIN and unreadable == 0 and worst <= LOSS
+    held = back < AGAIN and not unreadable and worst <= LOSS
     if victim == 'recorder':
-        text = (f'{unreadable} recordings unreadable, at most {worst:.2f} s lost of bag and CSV; '
-                + text)
+        why = f' ({unreadable[0]})' if unreadable else ''
+        text = (f'{len(unreadable)} recordings unreadable{why}, at most {worst:.2f} s lost of bag '
+                f'and CSV; {text}')
     elif victim != 'simulator':
         others = {key: watch.account[key] - before[key] for key in ('lost', 'dropped', 'late')
                   if watch.account[key] > before[key]}
