@@ -115,11 +115,13 @@ class NodeParameters:
         # rclpy takes an empty list for bytes: the type is declared, and the list set after it.
         kind = (Parameter.Type.DOUBLE_ARRAY if isinstance(spec.default, list)
                 else Parameter.Type.STRING_ARRAY)
-        value = self.node.declare_parameter(spec.name, kind, spec.descriptor()).value
+        descriptor = spec.descriptor()
+        descriptor.read_only = False    # until the list is set
+        value = self.node.declare_parameter(spec.name, kind, descriptor).value
         if value is None:
             self.node.set_parameters([Parameter(spec.name, kind, [])])
-            return []
-        return list(value)
+        self.node.set_descriptor(spec.name, spec.descriptor())
+        return list(value or [])
 
     def _type_error(self, spec, given, error):
         if given is None:

@@ -38,7 +38,7 @@ from quad_ident_ros.experiment import fly, load_experiment
 from quad_ident_ros.nodes.process import PARENT
 from quad_ident_ros.nodes.qos import latched, LOSSLESS
 
-DEADLINE = 20.0   # s that anything may take before a test fails
+DEADLINE = 60.0   # s that anything may take before a test fails: others may load the machine
 ASK_AGAIN = 4.0   # s without an answer of a service after which it is asked again
 
 STREAMS = {'attitude': Vector3Stamped, 'altitude': PointStamped, 'pose': PoseStamped,
