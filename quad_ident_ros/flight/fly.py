@@ -61,8 +61,8 @@ def fly_closed_loop(vehicle, effects, trajectory, *, duration=30.0, rate=100.0, 
     *places, yaw, yaw_rate = course(t)
     wanted = np.concatenate([*places, yaw[:, None], yaw_rate[:, None]], axis=1)
     errors = errors_of(noise, len(t), 1 / rate, seed)
-    states, commands, speeds, forces, drop = _flown(vehicle, theta, wanted, errors[:, :12], rate,
-                                                     parts)
+    states, commands, speeds, forces, drop = _flown(
+        vehicle, theta, wanted, errors[:, :12], rate, parts)
     states = recorded(theta, states)
     forces = forces @ rotation_matrix(turn(theta[BLOCK]))   # the accelerometer is in the block
     _check_course(vehicle, states, wanted, t)

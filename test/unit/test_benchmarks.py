@@ -30,6 +30,8 @@ def test_tables_go_into_the_documents_only_where_that_is_asked_for(monkeypatch, 
     assert len(kept) == count
     with pytest.raises(SystemExit):
         bench.main(['graph', '--quick', '--keep'])
+
+
 STEP = np.ones(500)
 
 

@@ -230,9 +230,9 @@ def test_a_stamp_that_is_no_date_tells_no_day(stamp):
 
 def test_logs_of_px4_know_their_day(tmp_path):
     path, utc = tmp_path / 'log.ulg', 1778659200 * 10 ** 6
+    times = ((100, 0), (600_100, utc), (700_100, utc + 100_000), (800_100, 2 ** 62))
     fixes = [('vehicle_gps_position', 0, stamp, struct.pack('<Q', value))
-             for stamp, value in ((100, 0), (600_100, utc), (700_100, utc + 100_000),
-                                 (800_100, 2 ** 62))]
+             for stamp, value in times]
     path.write_bytes(log_of(WHOLE, fixes, {
         **FORMATS, 'vehicle_gps_position': ('uint64_t timestamp', 'uint64_t time_utc_usec')}))
     [record] = load_all(path)
