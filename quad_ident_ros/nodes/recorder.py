@@ -9,6 +9,7 @@ from diagnostic_msgs.msg import DiagnosticArray
 import geometry_msgs.msg
 from rclpy._rclpy_pybind11 import RCLError
 from rclpy.clock import Clock, ClockType
+from rclpy.duration import Duration
 from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.serialization import deserialize_message
 from std_msgs.msg import String, UInt64
@@ -46,6 +47,7 @@ GONE = 2.0           # s after the last message when nothing more is to come, an
 IDLE = 15.0          # s when something may, after which what is incomplete is given up; lost
                      # messages are sent again every 3 s
 ENDING = 8.0         # s for what waits when the node is told to end: `ros2 launch` gives 10
+PARTING = 1.0        # s for listeners to take the last account before the node is gone
 
 HELP = f"""recorder: joins the topics of a flight into records, keeps and publishes them.
 
@@ -145,6 +147,7 @@ class Recorder(PackageNode):
         if self._recording is not None:
             self._on_disk(self._recording.close)
         self._report()
+        self._statistics.wait_for_all_acked(Duration(seconds=PARTING))
         if problems := self.counts.problems():
             self.get_logger().warning('ends; of what came: ' + ', '.join(
                 f'{count} {name}' for name, count in problems.items()))

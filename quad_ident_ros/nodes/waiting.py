@@ -5,34 +5,33 @@
 import time
 
 FULL = 5000         # messages of a topic that the middleware keeps for a reader that is behind
-SENT_AGAIN = 3.5    # s within which it sends again what it had no room for, or tells that it is
-                    # lost
+BEHIND = 100        # messages without a pause by which a reader is behind: 0.1 s at 1 kHz
+SENT_AGAIN = 3.5    # s within which the middleware sends again what it had no room for, or tells
+                    # that it is lost: writers tell what they have every 3 s
 
 
 def take_waiting(subscriptions, seconds):
     """
     Hand the messages that wait to the callbacks of their subscriptions, and return how many not.
 
-    Where as many wait as the middleware keeps, what it refused comes within SENT_AGAIN, and is
-    waited for. What cannot be handed out within so many seconds is taken and counted, of each
+    Where the node was behind, what the middleware refused meanwhile comes within SENT_AGAIN, and
+    is waited for. What cannot be handed out within so many seconds is taken and counted, of each
     subscription up to FULL: a publisher may go on all the while.
     """
-    begin = time.monotonic()
-    end, settled = begin + seconds, begin
-    taken = dict.fromkeys(subscriptions, 0)
+    settled = time.monotonic()
+    end, waited = settled + seconds, 0
     while time.monotonic() < end:
-        news = False
-        for subscription in subscriptions:
-            message = _take(subscription)
-            if message is not None:
-                news = True
-                taken[subscription] += 1
-                if taken[subscription] == FULL:
-                    settled = time.monotonic() + SENT_AGAIN
-                subscription.callback(message)
-        if not news:
+        messages = [(subscription, message) for subscription in subscriptions
+                    if (message := _take(subscription)) is not None]
+        for subscription, message in messages:
+            subscription.callback(message)
+        waited += len(messages)
+        if waited >= BEHIND:
+            settled = time.monotonic() + SENT_AGAIN
+        if not messages:
             if time.monotonic() >= settled:
                 return 0
+            waited = 0
             time.sleep(0.005)
     return sum(_count(subscription) for subscription in subscriptions)
 

@@ -272,8 +272,6 @@ def test_what_waits_when_a_recorder_is_stopped_is_joined_or_counted(graph, monke
     assert (counts.unread > 0) == (seconds < 1.0)
 
 
-@pytest.mark.xfail(strict=False, reason='on a busy machine the middleware tells of some losses '
-                   'only after the recorder has ended: see docs/reliability.md')
 def test_a_recorder_that_is_stopped_while_behind_accounts_for_all(graph, processes):
     """What the middleware had no room for is waited for, or counted as lost."""
     process = processes.start('recorder', {'topics': ['altitude']})
