@@ -8,22 +8,17 @@ import gzip
 import io
 import os
 from pathlib import Path
-import re
-import zlib
 
 import numpy as np
 
 from quad_ident_ros.data.counted import counted
 from quad_ident_ros.data.cutting import deletion
-from quad_ident_ros.data.limits import most
+from quad_ident_ros.data.plain_numbers import plain_numbers
 from quad_ident_ros.data.record import faulty, find_fault, FlightRecord, unit
+from quad_ident_ros.data.text_lines import error_at, rows_of
 from quad_ident_ros.errors import InputError
 
 _PENDING_BYTES = 1 << 16    # that are written at once: a call for each line would cost more
-_CONTROL = re.compile(rb'[\x00-\x08\x0e-\x1a\x1c-\x1f\x7f\x81\x8d\x8f\x90\x9d]')
-"""Bytes that no text in the code page of Windows (cp1252) has."""
-
-_LINE_BYTES = 60   # that a line takes in memory besides its text
 
 
 def read_csv(path):
@@ -37,9 +32,14 @@ def read_csv(path):
     Raises InputError that names file, line (from 1, as editors count) and column.
     """
     path = Path(path)
-    rows, truncated = rows_of(path)
-    names = _header(path, rows[0])
-    lines, columns = _parse_plain(rows, names) or _parse_any(path, rows, names)
+    plain = plain_numbers(path, skip=1)
+    names = _header(path, plain.head[0]) if plain else []
+    if plain and plain.values.shape[1] == len(names):
+        lines, truncated = plain.lines, plain.truncated
+        columns = plain.columns(names)
+    else:
+        rows, truncated = rows_of(path)
+        lines, columns = _parse_any(path, rows, _header(path, rows[0]))
     count = len(columns['t'])
     if count < 2:
         dropped = ', its last line has no line end and was dropped' if truncated else ''
@@ -50,8 +50,8 @@ def read_csv(path):
     if fault is not None:
         wrong = np.flatnonzero(faulty(t, columns))
         ways = [deletion([lines[k] for k in wrong], count), fault.remedy]
-        raise _error(path, lines[fault.sample], fault.column, fault.problem,
-                     ', or '.join(filter(None, ways)))
+        raise error_at(path, lines[fault.sample], fault.column, fault.problem,
+                       ', or '.join(filter(None, ways)))
     info = {'name': path.name.removesuffix('.gz').removesuffix('.csv'), 'source': str(path)}
     return FlightRecord(t, columns, info | ({'truncated': True} if truncated else {}))
 
@@ -134,90 +134,22 @@ class CsvAppender:
         self.close()
 
 
-def _error(path, line, column, problem, remedy):
-    """Return the one-line InputError of a place in a file."""
-    where = f', column {column[:40]!r}' if column is not None else ''
-    return InputError(f'{path}, line {line}{where}: {problem}; {remedy}')
-
-
-def rows_of(path):
-    """Return the whole lines of a file, header first, and whether a cut one was dropped."""
-    data = _bytes(path)
-    try:
-        text = data.decode('utf-8-sig')
-    except UnicodeDecodeError as error:
-        line = data[:error.start].count(b'\n') + 1
-        if _CONTROL.search(data) or not re.search(rb'[A-Za-z]', data.splitlines()[line - 1]):
-            raise _error(path, line, None, 'this is not text',
-                         'give a CSV file in UTF-8') from None
-        text = data.decode('cp1252', 'replace')     # as Windows writes degrees and umlauts
-    if '\r' in text:
-        text = text.replace('\r\n', '\n').replace('\r', '\n')
-    if not text.strip():
-        raise InputError(f'{path}: the file is empty; give a CSV file with a header and samples')
-    *rows, rest = text.split('\n')
-    return rows or [rest], bool(rows and rest.strip())
-
-
-def is_packed(path: Path) -> bool:
-    """Return whether a file is packed by gzip, or named so; raises OSError."""
-    with open(path, 'rb') as file:
-        return path.suffix == '.gz' or file.read(2) == b'\x1f\x8b'
-
-
-def _bytes(path):
-    """Return the content of a file, unpacked where it is packed by gzip, or named so."""
-    try:
-        if not path.is_file():
-            problem = 'this is no file' if path.exists() else 'there is no such file'
-            raise InputError(f'{path}: {problem}; give the path of a .csv or .csv.gz file')
-        packed = is_packed(path)
-        limit = most(path.stat().st_size)
-        with (gzip.open if packed else open)(path, 'rb') as file:
-            data = file.read(limit + 1 if packed else -1)
-        if packed and len(data) + _LINE_BYTES * data.count(b'\n') > limit:
-            raise InputError(f'{path}: unpacks to far more than flights do; if it is one, unpack '
-                             'it first: zcat FILE > flight.csv')
-        return data
-    except (EOFError, zlib.error, gzip.BadGzipFile):
-        raise InputError(f'{path}: this is no whole gzip file; copy it again, or save what is '
-                         'left of it with: zcat FILE > flight.csv') from None
-    except OSError as error:
-        raise InputError(f'{path}: cannot be read ({error.strerror or error}); check the path and '
-                         'its permissions') from None
-
-
 def _header(path, row):
     """Return the column names of the header line; '' for columns without a name."""
     try:
         names = [name.strip() for name in next(csv.reader([row], strict=True), [''])]
     except csv.Error as error:
-        raise _error(path, 1, None, f'no header ({error})', 'begin with column names') from None
+        raise error_at(path, 1, None, f'no header ({error})', 'begin with column names') from None
     doubled = [name for name, count in Counter(names).items() if count > 1 and name]
     if doubled:
-        raise _error(path, 1, doubled[0], 'the header names it twice', 'rename or remove one')
+        raise error_at(path, 1, doubled[0], 'the header names it twice', 'rename or remove one')
     if 't' not in names:
-        raise _error(path, 1, 't', f'the header, {row[:40]!r}, does not name it',
-                     'begin with a line of comma-separated column names, t among them')
+        raise error_at(path, 1, 't', f'the header, {row[:40]!r}, does not name it',
+                       'begin with a line of comma-separated column names, t among them')
     for name in names:
         if not name.isprintable():
-            raise _error(path, 1, name, 'this is no column name', 'use printable text')
+            raise error_at(path, 1, name, 'this is no column name', 'use printable text')
     return names
-
-
-def _parse_plain(rows, names):
-    """Return line numbers and columns of a table of nothing but numbers; None for another."""
-    if not any(rows[1:]):
-        return None
-    try:
-        table = np.loadtxt(rows[1:], delimiter=',', comments=None, ndmin=2)
-    except ValueError:
-        return None
-    if table.shape[1] != len(names):
-        return None
-    lines = [k for k, row in enumerate(rows, 1) if k > 1 and row]
-    named = zip(names, table.T.copy(), strict=True)
-    return lines, {name: column for name, column in named if name}
 
 
 def _parse_any(path, rows, names):
@@ -232,8 +164,8 @@ def _parse_any(path, rows, names):
         elif unit(name) is not None:
             wrong = [k for k, number in enumerate(numbers) if number is None]
             k, delete = wrong[0], deletion([lines[k] for k in wrong], len(lines))
-            raise _error(path, lines[k], name, f'{column[k][:40]!r} is no number',
-                         'write a decimal number' + (f', or {delete}' if delete else ''))
+            raise error_at(path, lines[k], name, f'{column[k][:40]!r} is no number',
+                           'write a decimal number' + (f', or {delete}' if delete else ''))
     columns.pop('', None)
     return lines, columns
 
@@ -252,7 +184,7 @@ def _cells(path, rows, names):
             lines.append(reader.line_num)
             cells.append(row)
     except csv.Error as error:
-        raise _error(path, reader.line_num, None, f'no CSV ({error})', 'mend the line') from None
+        raise error_at(path, reader.line_num, None, f'no CSV ({error})', 'mend the line') from None
     refuse_uneven(path, wrong, len(names), len(lines))
     return lines, cells
 
@@ -267,8 +199,8 @@ def refuse_uneven(path, wrong, width, right):
     if wrong:
         line, cells = wrong[0]
         delete = deletion([number for number, _ in wrong], right + len(wrong))
-        raise _error(path, line, None, f'{cells} cells where the header has {width}',
-                     'complete the line' + (f', or {delete}' if delete else ''))
+        raise error_at(path, line, None, f'{cells} cells where the header has {width}',
+                       'complete the line' + (f', or {delete}' if delete else ''))
 
 
 def _number(cell, may_be_empty):

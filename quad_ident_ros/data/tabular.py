@@ -12,8 +12,10 @@ from typing import Any
 
 import numpy as np
 
-from quad_ident_ros.data.csv import refuse_uneven, rows_of
+from quad_ident_ros.data.csv import refuse_uneven
 from quad_ident_ros.data.limits import most
+from quad_ident_ros.data.plain_numbers import plain_numbers
+from quad_ident_ros.data.text_lines import first_rows, rows_of
 from quad_ident_ros.errors import InputError
 
 SEPARATORS = (',', ';', '\t')
@@ -52,27 +54,55 @@ def read_text(path: Path, separator: str = '') -> Table:
 
     Raises InputError that names file, line and column.
     """
-    rows, truncated = rows_of(path)
-    places = [k for k, row in enumerate(rows, 1) if row.strip()]    # as editors count
-    rows = [rows[k - 1] for k in places]
+    begin = first_rows(path, _HEAD + 1)
+    layout = _layout(path, *begin, separator) if begin else None
+    plain = layout and plain_numbers(path, layout.line - 1, layout.delimiter, layout.comma)
+    if plain and plain.values.shape[1] == len(layout.names):
+        columns, truncated, more = plain.columns(layout.names), plain.truncated, []
+    else:
+        rows, truncated = rows_of(path)
+        places = [k for k, row in enumerate(rows, 1) if row.strip()]    # as editors count
+        rows = [rows[k - 1] for k in places]
+        layout = _layout(path, rows, places, separator)
+        first = places.index(layout.line)
+        columns, more = _thorough(path, rows[first:], places[first:], layout.names,
+                                  layout.separator, layout.comma)
+    notes = ['the last line has no line end and was left out'] if truncated else []
+    if not columns or len(next(iter(columns.values()))) < 2:
+        raise InputError(f'{path}: there are fewer than 2 lines of numbers; give a table with a '
+                         'header and samples')
+    how = {',': 'commas', ';': 'semicolons', '\t': 'tabs', BLANKS: 'blanks'}.get(
+        layout.separator, repr(layout.separator))
+    return Table(columns, layout.units, (*notes, *more),
+                 f'{how}{", decimal commas" if layout.comma else ""}', layout.doubts)
+
+
+@dataclass(frozen=True)
+class _Layout:
+    """How a table begins; line: of the first numbers, from 1; comma: whether it is decimal."""
+
+    separator: str
+    comma: bool
+    names: list[str]
+    units: dict[str, str]
+    line: int
+    doubts: tuple[str, ...]
+
+    @property
+    def delimiter(self) -> str | None:
+        return None if self.separator == BLANKS else self.separator
+
+
+def _layout(path: Path, rows: list[str], places: list[int], separator: str) -> _Layout:
+    """Return the _Layout of a table from its first lines, and where they stand."""
     separator = separator or told_separator(rows)
     comma = separator != ',' and any(',' in row for row in rows[1:_HEAD])
     head, first = _head(path, rows, separator, comma)
     names, units = _names(path, rows, places[head], head, first, separator)
     names = _under_headings(names, rows[first:first + _HEAD], separator)
     _refuse_doubled(path, places[head], names)
-    columns = _fast(rows[first:], names, separator, comma)
-    notes = ['the last line has no line end and was left out'] if truncated else []
-    if columns is None:
-        columns, left = _thorough(path, rows[first:], places[first:], names, separator, comma)
-        notes += left
-    if not columns or len(next(iter(columns.values()))) < 2:
-        raise InputError(f'{path}: there are fewer than 2 lines of numbers; give a table with a '
-                         'header and samples')
-    how = {',': 'commas', ';': 'semicolons', '\t': 'tabs', BLANKS: 'blanks'}.get(
-        separator, repr(separator))
-    return Table(columns, units, tuple(notes), f'{how}{", decimal commas" if comma else ""}',
-                 (MOTIVE,) if rows[0].startswith('Format Version') else ())
+    return _Layout(separator, comma, names, units, places[first],
+                   (MOTIVE,) if rows[0].startswith('Format Version') else ())
 
 
 def told_separator(rows: list[str]) -> str:
@@ -250,23 +280,6 @@ def _refuse_doubled(path: Path, line: int, names: list[str]) -> None:
     if doubled:
         raise InputError(f'{path}, line {line}, column {doubled[0][:40]!r}: the header names '
                          'it twice; rename or remove one')
-
-
-def _fast(rows: list[str], names: list[str], separator: str,
-          comma: bool) -> dict[str, np.ndarray] | None:
-    """Return the columns of a table of nothing but numbers; None for another."""
-    if comma:
-        if any('.' in row for row in rows[:_HEAD]):
-            return None
-        rows = [row.replace(',', '.') for row in rows]
-    try:
-        table = np.loadtxt(rows, delimiter=None if separator == BLANKS else separator,
-                           comments=None, ndmin=2)
-    except ValueError:
-        return None
-    if table.shape[1] != len(names):
-        return None
-    return {name: column for name, column in zip(names, table.T.copy(), strict=True) if name}
 
 
 def _seconds(cells: Sequence[str]) -> np.ndarray:

@@ -10,13 +10,14 @@ import zlib
 import numpy as np
 
 from quad_ident_ros.data.columns import record_of, shown
-from quad_ident_ros.data.csv import is_packed, read_csv, rows_of
+from quad_ident_ros.data.csv import read_csv
 from quad_ident_ros.data.guess import Guess, guess
 from quad_ident_ros.data.mapping import ATTITUDE, factor_of, Mapping
 from quad_ident_ros.data.mapping_text import flow
 from quad_ident_ros.data.readers.base import Content, content_of, Reader
 from quad_ident_ros.data.record import EULER, FlightRecord, QUATERNION, unit
 from quad_ident_ros.data.tabular import read_text, Table
+from quad_ident_ros.data.text_lines import is_packed, rows_of
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.vehicle import Vehicle
 
