@@ -5,10 +5,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 import math
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.model.motors import Motors, rotor_speeds, TO_SPEED
 
 if TYPE_CHECKING:
     from quad_ident_ros.model.vehicle import Vehicle
@@ -24,6 +28,12 @@ FLAT = 10.0     # times the sum of the other two: of a rigid body it is 1, estim
 REACTION = (1e-6, 10.0)     # torque over thrust, in arms: of real rotors about 0.1
 SLOWEST_FALL = 0.1          # m/s at which drag carries the weight: a kite falls faster
 SLOWEST_TURN = 5.0          # rad/s at which drag stands against the weight on one arm
+SIGNALS = 1e6               # at no and full throttle: 16 bits have 65535
+EXPONENTS = (0.1, 10.0)     # of a map: 0.5 to 2 are usual
+VOLTAGES = (0.5, 1e3)       # V: less than a cell has, and ten times a car's
+MOST_BY_VOLTAGE = 10.0      # exponent of the voltage: thrust goes with its square at most
+FULL_THRUSTS = (1e-3, 1e3)  # in shares of the weight: racers lift ten times theirs, and a map in
+                            # another unit is off by more
 MOST_STDS = 1e3             # of the scale of a constant: more says nothing of it
 
 
@@ -86,6 +96,33 @@ def _ranges(vehicle: Vehicle) -> Iterator[tuple[str, float, float, float, str, s
         yield (f'rotational_drag[{axis}]', drag, 0.0, weight * arm / SLOWEST_TURN ** 2,
                'N m/(rad/s)^2', 'its weight on one arm would turn the vehicle no faster than '
                f'{math.sqrt(_ratio(weight * arm, drag)):.2g} rad/s')
+    if vehicle.motors is not None and vehicle.motors.kind not in TO_SPEED:
+        yield from _motor_ranges(vehicle, vehicle.motors, per_rotor)
+
+
+def _motor_ranges(vehicle: Vehicle, motors: Motors, per_rotor: float
+                  ) -> Iterator[tuple[str, float, float, float, str, str]]:
+    """Give the ranges of the section motors; per_rotor: the weight that a rotor carries, N."""
+    for key in ('minimum', 'maximum'):
+        yield (f'motors: {key}', getattr(motors, key), -SIGNALS, SIGNALS, 'as signal',
+               'signals of 16 bits go to 65535')
+    yield (f'motors: {motors.gives}: exponent', motors.exponent, *EXPONENTS, 'as exponent',
+           'it is between 0.5 and 2 of real motors')
+    if motors.voltage_reference is not None:
+        yield ('motors: voltage: reference', motors.voltage_reference, *VOLTAGES, 'V',
+               'it is in V')
+        yield ('motors: voltage: exponent', motors.voltage_exponent, 0.0, MOST_BY_VOLTAGE,
+               'as exponent', 'thrust goes with the square of the voltage at most')
+    if motors.whole:
+        coefficient = vehicle.thrust_coefficient
+        with np.errstate(over='ignore'):
+            speed = rotor_speeds(replace(motors, voltage_reference=None), [[motors.maximum]],
+                                 coefficient)[0, 0]
+            thrust = coefficient * speed ** 2
+        low, high = (share * per_rotor for share in FULL_THRUSTS)
+        yield (f'motors: {motors.gives}', thrust, low, high,
+               'N at full signal', f'each rotor carries {per_rotor:.3g} N in hover; speed is in '
+               'rad/s, thrust in N')
 
 
 def _deviations(vehicle: Vehicle) -> Iterator[tuple[str, float, float]]:

@@ -143,9 +143,9 @@ def vehicle_from_mapping(data: Any, where: str) -> Vehicle:
         raise InputError(f'{where}: rotors: all of them lie on the z axis; give their places')
     if vehicle.speed_max <= vehicle.speed_min:
         raise InputError(f'{where}: speed_max must be greater than speed_min')
-    refuse_absurd(where, vehicle)
     if 'motors' in data:
         vehicle = replace(vehicle, motors=motors_from(f'{where}: motors', data['motors']))
+    refuse_absurd(where, vehicle)
     if 'effects' in data:
         theta = registry.vector(data['effects'], vehicle, f'{where}: effects')
         vehicle = replace(vehicle, effects=registry.mapping(theta))

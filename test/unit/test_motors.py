@@ -76,6 +76,24 @@ def test_what_is_wrong_with_motors_is_one_line(section, words):
     assert words in message and '\n' not in message
 
 
+@pytest.mark.parametrize(('section', 'words'), [
+    ({'kind': 'pwm', 'maximum': 1e300}, 'motors: maximum: 1e+300 as signal cannot be'),
+    ({'kind': 'pwm', 'minimum': -1e300}, 'motors: minimum: -1e+300 as signal cannot be'),
+    ({'kind': 'pwm', 'speed': {'gain': 1e300}}, 'motors: speed: inf N at full signal cannot be'),
+    ({'kind': 'pwm', 'thrust': {'gain': 1e300}}, 'motors: thrust: 1e+300 N at full signal'),
+    ({'kind': 'pwm', 'thrust': {'gain': 1e-6}}, 'each rotor carries 1.59 N in hover'),
+    ({'kind': 'pwm', 'speed': [0, 1e-3, 1e-3]}, 'each rotor carries 1.59 N in hover'),
+    ({'kind': 'pwm', 'thrust': {'exponent': 1e3}}, 'motors: thrust: exponent: 1000 as exponent'),
+    ({'kind': 'pwm', 'thrust': {'gain': 4}, 'voltage': {'reference': 1e9, 'exponent': 1}},
+     'motors: voltage: reference: 1e+09 V cannot be'),
+    ({'kind': 'pwm', 'thrust': {'gain': 4}, 'voltage': {'reference': 12, 'exponent': 1e9}},
+     'motors: voltage: exponent: 1e+09 as exponent cannot be')], ids=str)
+def test_a_map_that_no_motor_has_is_refused_with_what_it_would_mean(section, words):
+    with pytest.raises(InputError) as error:
+        made(section)
+    assert words in str(error.value) and '\n' not in str(error.value)
+
+
 def test_signals_become_the_speeds_of_their_map():
     linear = made({'kind': 'pwm', 'speed': {'offset': 100, 'gain': 1000}})
     # 900 and nan are off, 2100 turns no faster than 2000.

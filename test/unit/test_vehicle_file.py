@@ -180,6 +180,19 @@ def test_priors_are_as_wide_as_the_file_says():
 
 
 positive = st.floats(1e-9, 1e3)
+near_one = st.floats(0.5, 2.0)
+
+
+@st.composite
+def motors(draw, weight, coefficient):
+    """Return a map whose rotors lift about that weight, N each; coefficient: of their thrust."""
+    gives = draw(st.sampled_from(['speed', 'thrust']))
+    full = draw(near_one) * (weight if gives == 'thrust' else (weight / coefficient) ** 0.5)
+    return Motors(
+        'pwm', draw(st.floats(0, 1000)), draw(st.floats(1001, 3000)), gives,
+        draw(near_one) * full, full, draw(near_one), voltage_reference=10.0 * draw(near_one),
+        voltage_exponent=draw(near_one), uncertainty=draw(st.dictionaries(
+            st.sampled_from(['minimum', 'gain', 'voltage_exponent']), positive)))
 
 
 @st.composite
@@ -199,10 +212,10 @@ def vehicles(draw):
     known = {'mass': small, 'gravity': small, 'rotor_radius': small,
              'inertia': st.tuples(small, st.none() | small, st.none()),
              'rotors[0].position': st.tuples(st.none(), st.none() | positive, positive)}
-    thrust = draw(st.floats(1e-8, 1e-2))
+    gravity, thrust = draw(st.floats(1.0, 30.0)), draw(st.floats(1e-8, 1e-2))
     return Vehicle(
         draw(st.text(st.characters(categories=('L', 'N')), min_size=1, max_size=20)), mass,
-        (0.01 * mass,) * 3, draw(st.floats(1.0, 30.0)), thrust,
+        (0.01 * mass,) * 3, gravity, thrust,
         draw(st.floats(1e-3, 1.0)) * thrust,
         tuple(Rotor((draw(place), draw(place), draw(place)), draw(st.sampled_from([1, -1])))
               for _ in range(count)),
@@ -212,11 +225,7 @@ def vehicles(draw):
         {name: values for name, values in effects.items()
          if name not in ('com_offset', 'inflow', 'body_drag', 'blade_flapping', 'rotor_gyro')},
         {key: draw(known[key]) for key in draw(st.sets(st.sampled_from(sorted(known))))},
-        draw(st.none() | st.builds(
-            Motors, st.just('pwm'), st.floats(0, 1000), st.floats(1001, 3000),
-            st.sampled_from(['speed', 'thrust']), positive, positive, positive,
-            voltage_reference=positive, voltage_exponent=positive, uncertainty=st.dictionaries(
-                st.sampled_from(['minimum', 'gain', 'voltage_exponent']), positive))))
+        draw(st.none() | motors(mass * gravity / count, thrust)))
 
 
 @FAST
