@@ -107,12 +107,12 @@ def shares(step: float, lag: float) -> tuple[float, float, float]:
     return 0.0, 0.0, 0.0
 
 
-@compiled
+@compiled(fused=True)
 def _act(t: np.ndarray, stamps: np.ndarray, commands: np.ndarray, delay: float, lag: float,
          followed: np.ndarray, speeds: np.ndarray, added: np.ndarray) -> None:
     """Write the Actuation of one delay and lag, s."""
     count, last, n = len(t), len(stamps), commands.shape[1]
-    sums, same = np.empty((3, n)), np.empty((3, n))
+    sums, same, now = np.empty((3, n)), np.empty((3, n)), np.empty(n)
     at = 0
     for k in range(count):
         step = t[k + 1] - t[k] if k + 1 < count else t[k] - t[k - 1]
@@ -124,7 +124,8 @@ def _act(t: np.ndarray, stamps: np.ndarray, commands: np.ndarray, delay: float, 
         followed[k] = commands[at]
         if k + 1 == count:
             break
-        now, done, first = speeds[k].copy(), 0.0, at
+        now[:] = speeds[k]
+        done, first = 0.0, at
         sums[:] = 0.0
         while at + 1 < last and stamps[at + 1] + delay < t[k + 1] - close:
             length = stamps[at + 1] + delay - t[k] - done
@@ -158,7 +159,7 @@ def _act(t: np.ndarray, stamps: np.ndarray, commands: np.ndarray, delay: float, 
                 added[k, 2, j] = np.sqrt(at_end) - now[j]
 
 
-@compiled
+@compiled(fused=True, inlined=True)
 def _advance(speed: np.ndarray, command: np.ndarray, length: float, left: float, lag: float,
              sums: np.ndarray) -> None:
     """
@@ -186,7 +187,7 @@ def _advance(speed: np.ndarray, command: np.ndarray, length: float, left: float,
         speed[j] = target + gap * gone
 
 
-@compiled
+@compiled(fused=True)
 def _act_by_law(t: np.ndarray, stamps: np.ndarray, commands: np.ndarray, delay: float, up: float,
                 down: float, slew: float, followed: np.ndarray, speeds: np.ndarray,
                 added: np.ndarray) -> None:
@@ -230,7 +231,7 @@ def follow(speed: np.ndarray, command: np.ndarray, step: float, up: float, down:
     _match(sums, step, speed, added)
 
 
-@compiled
+@compiled(fused=True, inlined=True)
 def _follow(speed: np.ndarray, command: np.ndarray, length: float, left: float, up: float,
             down: float, slew: float, sums: np.ndarray) -> None:
     """Advance speeds (n,) as _advance does, by a lag up, another one down and a limited rate."""
@@ -254,7 +255,7 @@ def _follow(speed: np.ndarray, command: np.ndarray, length: float, left: float, 
                      sums[:, j:j + 1])
 
 
-@compiled
+@compiled(fused=True)
 def _match(sums: np.ndarray, step: float, end: np.ndarray, added: np.ndarray) -> None:
     """Write what added to the speeds `end` (n,) has the sums (3, n) of a step s: see actuated."""
     same = np.zeros(sums.shape)

@@ -30,7 +30,6 @@ from quad_ident_ros.model.vehicle import Vehicle
 
 STATES = ('px', 'py', 'pz', 'vx', 'vy', 'vz', 'qw', 'qx', 'qy', 'qz', 'wx', 'wy', 'wz')
 LONGEST_STEP = 0.01     # s, of the integration: errors of about 1e-6 of what happens in it
-LONG = 20_000           # samples of a flight, 160 s at 125 Hz: of shorter ones all fit into memory
 
 
 @dataclass(frozen=True, eq=False)
@@ -173,18 +172,17 @@ def rows_needed(length: int, first: ArrayLike, count: int) -> np.ndarray:
     """
     Return the samples of a flight of so many that rollouts need, rising, from the first one on.
 
-    All of a flight that is not LONG, or most of whose samples are needed. Args: first (B,), count:
-    as of predict.
+    Those of each, and the one before it, whose command the rotors still follow where it begins.
+    All of a flight most of whose samples are needed. Args: first (B,), count: as of predict.
     """
-    needed = np.zeros(length + 1, np.int64)
-    if length > LONG:
-        first = np.unique(np.asarray(first, np.int64))
-        needed[first] += 1
-        needed[first + count + 1] -= 1
-        needed = np.cumsum(needed)
-        needed[0] = 1
-    rows = np.flatnonzero(needed)
-    return rows if 0 < 2 * len(rows) < length else np.arange(length)
+    first = np.unique(np.asarray(first, np.int64))
+    change = np.zeros(length + 1, np.int64)
+    change[0] = 1
+    change[1] = -1
+    np.add.at(change, np.maximum(first - 1, 0), 1)
+    change[first + count + 1] -= 1
+    rows = np.flatnonzero(np.cumsum(change))
+    return rows if 2 * len(rows) < length else np.arange(length)
 
 
 def _guides(thetas: np.ndarray, sensors: Sensors, guide: np.ndarray, t: np.ndarray,
