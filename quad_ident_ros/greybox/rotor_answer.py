@@ -117,12 +117,14 @@ def rotor_answer(record: FlightRecord) -> RotorAnswer | None:
 
     beside = _sag(record, part, speeds)
 
-    def left(place: np.ndarray) -> float:
-        return float(np.sum(_apart(speeds, [acted(*place), *beside])[0] ** 2))
+    def left(answer: np.ndarray) -> float:
+        return float(np.sum(_apart(speeds, [answer, *beside])[0] ** 2))
 
-    starts = [np.array([delay, lag]) for delay in DELAYS for lag in LAGS]
-    near = min(starts, key=left)
-    best = minimize(left, near, method='Nelder-Mead', options={
+    # A delay moves the answer of a lag in time, nearly enough to begin with.
+    lagged = [acted(0.0, lag) for lag in LAGS]
+    near = np.array(min(((delay, lag) for delay in DELAYS for lag in LAGS), key=lambda one: left(
+        _moved(t, lagged[int(np.searchsorted(LAGS, one[1]))], one[0]))))
+    best = minimize(lambda place: left(acted(*place)), near, method='Nelder-Mead', options={
         'initial_simplex': near + np.array([[0.0, 0.0], [0.005, 0.0], [0.0, 0.005]]),
         'xatol': FINEST, 'fatol': np.inf, 'maxiter': 120}).x
     delay, lag = float(best[0]), max(float(best[1]), 0.0)
@@ -156,6 +158,11 @@ def _part(t: np.ndarray) -> slice:
     begin, end = int(edges[longest]), int(edges[longest + 1])
     begin += max(0, (end - begin - MOST) // 2)
     return slice(begin, min(end, begin + MOST))
+
+
+def _moved(t: np.ndarray, values: np.ndarray, late: float) -> np.ndarray:
+    """Return values (N, n) at t (N,) s that come so many s later."""
+    return np.stack([np.interp(t - late, t, column) for column in values.T], axis=-1)
 
 
 def _apart(speeds: np.ndarray, columns: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
