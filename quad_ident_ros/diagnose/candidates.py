@@ -37,6 +37,9 @@ class Candidate:
     share: float = 1.0
     nuisance: Nuisance | None = None
 
+    def __hash__(self) -> int:      # of sets of them there are thousands: that of all is slow
+        return hash((self.label, self.form))
+
 
 def candidates(flights: list, vehicle: Vehicle, rules: Rules,
                effects: list[str] | None = None) -> tuple[Candidate, ...]:

@@ -4,6 +4,7 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+import math
 
 import numpy as np
 
@@ -60,7 +61,7 @@ def _odds(causes: Sequence[Candidate], rules: Rules) -> float:
               enumerate(kind for kind in nuisances if kind not in apart)]
     effects = [rules.prior_odds * cause.share for cause in causes if cause.nuisance is None]
     shares = effects + [kind.odds for kind in apart] + biases
-    return sum(np.log(share / (1.0 - share)) for share in shares)
+    return sum(math.log(share / (1.0 - share)) for share in shares)
 
 
 def linear_evidence(quadratic: Quadratic, sets: Sequence[tuple], rows: dict, rules: Rules
@@ -71,10 +72,14 @@ def linear_evidence(quadratic: Quadratic, sets: Sequence[tuple], rows: dict, rul
     Args: sets: N tuples of causes; rows {cause: rows of the quadratic}. A row that would leave its
     bounds is held there. -inf where all rows of a cause are held at no effect.
     """
-    free = np.zeros((len(sets), len(quadratic.now)), bool)
-    for mine, chosen in zip(free, sets, strict=True):
-        for cause in chosen:
-            mine[rows[cause]] = True
+    number = {cause: k for k, cause in enumerate(rows)}
+    member = np.zeros((len(sets), len(rows)))
+    for mine, chosen in zip(member, sets, strict=True):
+        mine[[number[cause] for cause in chosen]] = 1.0
+    freed = np.zeros((len(rows), len(quadratic.now)))
+    for mine, places in zip(freed, rows.values(), strict=True):
+        mine[places] = 1.0
+    free = member @ freed > 0.0
     found = np.zeros(free.shape)
     going = np.arange(len(sets))
     while len(going):
@@ -96,9 +101,9 @@ def linear_evidence(quadratic: Quadratic, sets: Sequence[tuple], rows: dict, rul
         blocks = places[:, :, None], places[:, None, :]
         value[which] += _volume(quadratic.information[blocks], quadratic.prior[blocks],
                                 quadratic.scatter)
-    acts = {cause: np.any(found[:, places], axis=1) for cause, places in rows.items()}
-    value += [_odds(chosen, rules) if all(acts[cause][k] for cause in chosen) else -np.inf
-              for k, chosen in enumerate(sets)]
+    still = (found != 0.0) @ freed.T == 0.0
+    value += [_odds(chosen, rules) for chosen in sets]
+    value[np.any(still & (member > 0.0), axis=1)] = -np.inf
     return value, found
 
 
@@ -134,6 +139,7 @@ def beam(quadratic: Quadratic, causes: dict, rules: Rules
         values, distances = linear_evidence(quadratic, sets, causes, rules)
         return dict(zip(sets, zip(values, sets, distances, strict=True), strict=True))
 
+    apart = {cause: {other for other in causes if excludes(cause, other)} for cause in causes}
     seen = entries([()])
     level = list(seen.values())
     while level:
@@ -141,8 +147,7 @@ def beam(quadratic: Quadratic, causes: dict, rules: Rules
         for _, chosen, _ in level:
             full = sum(cause.nuisance is None for cause in chosen) >= MOST
             for cause in causes:
-                if full and cause.nuisance is None or any(excludes(cause, other)
-                                                          for other in chosen):
+                if full and cause.nuisance is None or not apart[cause].isdisjoint(chosen):
                     continue
                 grown[key_of((*chosen, cause))] = None
         grown = entries(list(grown))

@@ -74,19 +74,20 @@ class Frame:
         """Return where columns (places in z) stand in the products."""
         return [self.wanted.index(column) for column in columns]
 
-    def with_residual(self, errors: np.ndarray, flight: int, places: list[int]) -> Products:
+    def with_residual(self, errors: np.ndarray, flight: int, places: list[int] | slice
+                      ) -> Products:
         """
         Return the Products of some columns of a flight with the errors (B, n, 12) of a fit.
 
-        Args: places: where the columns stand in the products, -1 the clock.
+        Args: places: where the columns stand in the products.
         """
         residual, basis = self.residual(errors, flight), self.basis[flight]
         kept = np.where(np.arange(residual.shape[1]) % ERRORS < TRANSLATION, 1.0, 0.0)
         halves = residual[:, :, None] * np.stack([kept, 1.0 - kept], axis=-1)
         halves -= basis @ (basis.transpose(0, 2, 1) @ halves)
         halves *= self.scale[flight][:, :, None]
-        rows = [ERRORS + place if place >= 0 else place for place in places]
-        cross = summed(self.slopes.tangents[flight].table[:, rows] @ halves, self.block[flight])
+        table = self.slopes.tangents[flight].table[:, ERRORS:][:, places]
+        cross = summed(table @ halves, self.block[flight])
         slopes = self.products[flight][:, :, places][..., places]
         return Products(slopes, cross.transpose(2, 0, 1),
                         summed(np.sum(residual ** 2, axis=1), self.block[flight]))
@@ -152,7 +153,7 @@ def normal_at(frame: Frame, fit: Estimate, layout: Layout, distances: dict,
     gradient, cost, scores = np.zeros(layout.size), 0.0, []
     clock, kept = len(frame.wanted), frame.places(layout.wanted)
     for number, errors in enumerate(fit.residuals):
-        found = frame.with_residual(errors, number, [*range(clock), -1])
+        found = frame.with_residual(errors, number, slice(None))
         along = directions_of(distances, number, frame.wanted)
         along *= scales(*sizes, rules.form_error, along.shape[2])
         along = np.pad(along, ((0, 0), (0, 1), (0, 0)))[:, None]    # the clock has no part in them

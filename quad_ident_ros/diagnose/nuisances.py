@@ -12,6 +12,7 @@ from quad_ident_ros.data.clocks import Clock, controllers_own
 from quad_ident_ros.diagnose.select import Selection
 from quad_ident_ros.greybox.estimate import estimate
 from quad_ident_ros.greybox.flights import Flight, flight_of, Track
+from quad_ident_ros.greybox.linear import slopes_at, WRENCH
 from quad_ident_ros.greybox.nuisances import (
     APART,
     CLOCK,
@@ -38,10 +39,14 @@ def nuisances_of(track: Track, vehicle: Vehicle, z: np.ndarray, kinds: Sequence[
     if not kinds:
         return fixed
     flight = flight_of(track, segment)
-    # Nuisances are small: they are fitted together with the initial states, from those recorded.
+    # Nuisances are small: they are fitted together with the initial states, from those recorded,
+    # and by the slopes there as long as these hold, because nobody asks for standard errors.
+    values, starts = NuisanceValues.of(kinds, 1), [flight.states[flight.first]]
+    columns = sorted({*values.columns, *(WRENCH if slow is not None else ())})
+    slopes = slopes_at([flight], vehicle, z, [z + fixed], starts, columns)
     found = estimate([flight], vehicle, z, [], noise=[noise],
-                     nuisances=replace(NuisanceValues.of(kinds, 1), fixed=fixed[None]),
-                     starts=[flight.states[flight.first]], slow=slow)
+                     nuisances=replace(values, fixed=fixed[None]), starts=starts, slopes=slopes,
+                     slow=slow)
     return found.vectors[0] - z
 
 
