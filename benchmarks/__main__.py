@@ -20,9 +20,9 @@ SECTIONS = {'p1': 'performance.md', 'p2': 'performance.md', 'p3': 'performance.m
             'scaling': 'performance.md', 'limit': 'performance.md', 'start': 'performance.md',
             'accuracy': 'accuracy.md', 'rollout': 'performance.md',
             'diagnosis': 'performance.md', 'graph': 'performance.md', 'long': 'performance.md',
-            'cautions': 'reliability.md'}
-APART = ('accuracy', 'graph', 'long', 'cautions')   # only where they are asked for
-INSTALLED = ('graph', 'long', 'cautions')    # as the program is installed, in .venv; see ../run
+            'cautions': 'reliability.md', 'changes': 'reliability.md'}
+APART = ('accuracy', 'graph', 'long', 'cautions', 'changes')   # only where they are asked for
+INSTALLED = ('graph', 'long', 'cautions', 'changes')    # as the program is installed; see run
 PACKAGES = ('numpy', 'scipy', 'numba', 'pyswarms', 'mealpy', 'nevergrad', 'cma', 'pymoo',
             'sippy-unipi', 'rotorpy', 'mujoco', 'ros-jazzy-rclpy')
 

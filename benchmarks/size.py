@@ -16,7 +16,8 @@ class Size:
     the longest record; accuracy_draws: per scenario of the accuracy study, and ten times that, to
     tell chance from fault; flight: s of each flight through the nodes; rollouts: calls of each
     kind of rollout; diagnoses: vehicles that are diagnosed; real_flights: that are diagnosed
-    together; long_flight: s of each long one; clean_flights: of each noise that are checked.
+    together; long_flight: s of each long one; clean_flights: of each noise that are checked;
+    change_flights: with a change of the vehicle, and as many without.
     """
 
     draws: int = 30
@@ -33,8 +34,10 @@ class Size:
     real_flights: int = 7
     long_flight: float = 1200.0
     clean_flights: int = 200
+    change_flights: int = 100
 
 
 QUICK = Size(draws=3, share_draws=4, seconds=1.0, long_runs=1, long_budget=20_000,
              long_seconds=2.0, largest=50_000, accuracy_draws=(10, 20), flight=8.0,
-             rollouts=3, diagnoses=3, real_flights=2, long_flight=60.0, clean_flights=4)
+             rollouts=3, diagnoses=3, real_flights=2, long_flight=60.0, clean_flights=4,
+             change_flights=4)

@@ -1,30 +1,35 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Whether a vehicle changed within a window: a payload picked up, a rotor that weakens.
+Whether a vehicle changed: a payload picked up, a rotor that weakens.
 
-One model for the whole window is compared with one before and another after each of a few
-instants, by the Bayesian information criterion (the generalised likelihood ratio of A. S. Willsky
-and H. L. Jones, IEEE Trans. Automatic Control 21(1), 1976). The better description must also have
-parameters that differ by more than their errors. Where the model leaves dynamics out, two models
-are always better than one: what they are better by in the windows before is the measure then.
+The last seconds of a flight are compared with the minute before them (generalised likelihood
+ratio; A. S. Willsky and H. L. Jones, IEEE Trans. Automatic Control 21(1), 1976), whenever there is
+another block of it, each of which gives one equation (see blocks). What counts as unusual follows
+from a rate of false alarms that is stated beforehand, shared among all tests (Bonferroni).
 """
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
+from scipy.stats import t as student
 
-from quad_ident_ros.identify.order import independent_count
-from quad_ident_ros.identify.uncertainty import disturbance_error, uncertainty
-from quad_ident_ros.identify.vp import residual_of, vp
+from quad_ident_ros.identify.blocks import blocks_of, GRAVITY, PRIOR_DAMPING
+from quad_ident_ros.identify.signals import OUTPUTS
 
-PLACES = 12          # instants within a window that are tried
-FINER = 5            # steps in which an instant that was found is narrowed down
-SHORTEST = 40        # samples that a part needs
-STRONG = 20.0        # advantage of two models that counts as evidence,
-UNUSUAL = 3.0        # and as how many times what it was before
-BEYOND_NOISE = 4.0   # standard errors by which a parameter has moved
-WATCHED = ('K', 'c1', 'c0', 'disturbance')
+FALSE_PER_HOUR = 0.1        # alarms of all outputs of a vehicle that stays as it is, at most
+LENGTHS = ((2, 3, 4), (6, 8), (12, 16))     # blocks after a change that are looked at, 0.75 to
+# 4.25 s; those together have one reference
+REFERENCE = 240             # blocks before it, a minute: a battery that sags is slower
+GUARD = 1                   # block between, which overlaps with both
+LEAST_FREEDOM = 3.0         # independent residuals without which nothing is known of the noise
+MOST_CARRIED = 60.0         # residuals by which the noise before a change counts after it
+LASTING = 3                 # blocks for which a change is looked at before it is told
+MOST_ALIKE = 0.95           # correlation of neighbours
+# Share of the acceleration that the linear model may leave out: two thirds of what a payload of
+# 30 % takes of K. Drag may reach it in z at a tilt of 22 degrees.
+LARGEST_SHARE = 0.15
 
 
 @dataclass(frozen=True)
@@ -32,9 +37,9 @@ class Change:
     """
     A change of a vehicle: the output that shows it, and when, in s of the window and as a stamp.
 
-    advantage: of two models over one, by the criterion; moved: for each parameter beyond its noise
-    its value before and after. 'disturbance' is the constant beside K u: weight that the trim does
-    not carry.
+    advantage: twice the logarithm of the likelihood ratio; moved: for each parameter beyond its
+    noise its value before and after. 'disturbance' is the constant beside K u: a moment that the
+    trim does not carry.
     """
 
     output: str
@@ -44,85 +49,165 @@ class Change:
     stamp_ns: int | None = None
 
 
-def find_change(signal, fitted, usual=0.0):
+@dataclass(frozen=True)
+class Reference:
     """
-    Return the Change within a signal, or None, and the advantage of two models over one.
+    The equation before a change: its parameters (k,), and how well they are known.
 
-    Args: fitted: the Fitted of the whole; usual: the advantage in windows without a change.
+    spread (k, k): their covariance over the variance of a residual; freedom: how many independent
+    residuals the variance is from; alike: the correlation of neighbours; neglected: the mean of
+    what the linear model leaves out.
     """
-    samples = len(signal.y)
-    if samples < 2 * SHORTEST:
-        return None, 0.0
-    one = residual_of(signal, fitted)[signal.measured]
-    latest = samples - SHORTEST
-    places = np.unique(np.linspace(SHORTEST, latest, PLACES).astype(int))
-    best = _best_place(signal, places, fitted.model)
-    if best is None:
-        return None, 0.0
-    before, after, place = best
-    two = np.concatenate([residual_of(*part)[part[0].measured] for part in (before, after)])
-    count = independent_count(two)
-    # The second model, its state at the start and the instant: what the criterion charges for.
-    extra = 3 + after[0].unknowns + 1
-    better = max(one @ one, 1e-300) / max(two @ two, 1e-300)
-    advantage = float(count * np.log(better) - extra * np.log(count))
-    if advantage < max(STRONG, UNUSUAL * usual):
-        return None, advantage
-    gap = -(-(latest - SHORTEST) // (PLACES - 1))
-    near = np.linspace(max(place - gap, SHORTEST), min(place + gap, latest), 2 * FINER + 1)
-    *parts, place = _best_place(signal, np.unique(near.astype(int)), fitted.model)
-    # What it became may be far from what it was: searched for, not stepped to.
-    moved = _moved(*((part, vp(part)) for part, _ in parts))
-    return (Change(signal.output, float(signal.t[place]), advantage, moved) if moved else None,
-            advantage)
+
+    parameters: np.ndarray
+    spread: np.ndarray
+    variance: float
+    freedom: float
+    alike: float
+    neglected: float
 
 
-def _best_place(signal, places, model):
-    """Return the parts, (Signal, Fitted) each, that leave the least, and where; or None."""
-    found = [(*parts, place) for place in places
-             if (parts := _parts(signal, place, model)) is not None]
-    return min(found, key=lambda entry: _power(*entry[:2]), default=None)
+class Watch:
+    """Watches one output of a flight."""
+
+    def __init__(self, output):
+        self._output = output
+        self._blocks = None
+        self._reached = 0
+        self._noise = (0.0, 0.0)    # variance and freedom of what was before a change
+        self._unusual = 0           # blocks since the first that was
+
+    def update(self, signal):
+        """
+        Return the Change that a Signal with a start_ns shows in what is new of it, or None.
+
+        It is told LASTING blocks after the first that is unusual, if it still is: then most of it
+        is from after the change, and a knock is over.
+        """
+        new = blocks_of(signal, self._reached)
+        for k in range(len(new)):
+            one = new.part(slice(k, k + 1))
+            blocks = one if self._blocks is None else self._blocks.followed_by(one)
+            self._blocks = blocks.part(slice(-(REFERENCE + GUARD + LENGTHS[-1][-1]), None))
+            self._reached = int(one.ends_ns[0])
+            change = find_change(self._blocks, self._output, self._noise)
+            self._unusual += change is not None or self._unusual > 0
+            if self._unusual > LASTING:
+                self._unusual = 0
+                if change is not None:
+                    return replace(change, time=(change.stamp_ns - signal.start_ns) * 1e-9)
+        return None
+
+    def restart(self, at_ns):
+        """Forget what was before a stamp but its noise: from there on the vehicle is another."""
+        if self._blocks is None:
+            return
+        before = self._blocks.part(slice(0, -(GUARD + LENGTHS[0][-1])))
+        reference = reference_of(before.part(holding(before, self._output)), self._output,
+                                 self._noise)
+        if reference is not None:
+            self._noise = reference.variance, min(reference.freedom, MOST_CARRIED)
+        self._blocks, self._reached, self._unusual = None, at_ns, 0
 
 
-def _part(signal, start, stop):
-    part = slice(start, stop)
-    return replace(signal, t=signal.t[part] - signal.t[part][0], u=signal.u[part],
-                   y=signal.y[part], measured=signal.measured[part],
-                   at_rest=signal.at_rest and start == 0)
+def holding(blocks, output):
+    """Return for which blocks (n,) the linear model holds: it leaves out less than its share."""
+    if output == 'z':
+        return blocks.neglected <= LARGEST_SHARE * GRAVITY
+    usual = np.sqrt(np.mean(blocks.target ** 2)) if len(blocks) else 0.0
+    return blocks.neglected <= LARGEST_SHARE * usual
 
 
-def _parts(signal, place, model):
-    """Return (Signal, Fitted) before and after a place, or None where one has no model."""
-    pairs = []
-    for part in (_part(signal, 0, place), _part(signal, place, None)):
-        fitted = vp(part, near=model)
-        if not np.isfinite(fitted.cost):
-            return None
-        pairs.append((part, fitted))
-    return pairs
+def watched(output):
+    """Return the columns of the features whose parameters are watched, by name."""
+    return {'K': 0} if output == 'z' else {'K': 0, 'disturbance': 2}
 
 
-def _power(*parts):
-    return sum(float(np.sum(residual_of(*part)[part[0].measured] ** 2)) for part in parts)
+def find_change(blocks, output, noise=(0.0, 0.0)):
+    """
+    Return the Change that the last Blocks show against those before, or None; time is not said.
+
+    Args: noise: variance and freedom of residuals of an earlier reference.
+    """
+    if len(blocks) < 2:
+        return None
+    holds, hop = holding(blocks, output), int(np.diff(blocks.ends_ns).min())
+    columns = watched(output)
+    rare = (FALSE_PER_HOUR * hop * 1e-9 / 3600
+            / (2 * len(OUTPUTS) * sum(map(len, LENGTHS)) * len(columns)))
+    best, found = 1.0, None
+    for lengths in LENGTHS:
+        end = len(blocks) - lengths[-1] - GUARD
+        before = slice(max(end - REFERENCE, 0), max(end, 0))
+        reference = reference_of(blocks.part(before).part(holds[before]), output, noise)
+        if reference is None:
+            break
+        limit = _limit(rare, round(reference.freedom, 1))
+        for length in lengths:
+            last = blocks.part(slice(len(blocks) - length, None))
+            if not holds[-length:].all() or last.ends_ns[-1] - last.ends_ns[0] > length * hop:
+                return found
+            moves = {name: _move(last, column, reference) for name, column in columns.items()}
+            largest = max(size for size, _ in moves.values())
+            if largest > best * limit:
+                best, found = largest / limit, _change(output, last, moves, reference, limit, hop)
+    return found
 
 
-def _moved(before, after):
-    """Return the parameters that differ by more than their noise, with both values."""
-    # Residuals that hang together count as fewer, and the errors as larger.
-    samples = np.concatenate([residual_of(*part)[part[0].measured] for part in (before, after)])
-    inflation = np.sqrt(len(samples) / independent_count(samples))
-    values, errors = [], []
-    for part, fitted in (before, after):
-        model = fitted.model
-        values.append({'K': model.gain, 'c1': model.c1, 'c0': model.c0,
-                       'disturbance': fitted.disturbance})
-        errors.append({**uncertainty(part, fitted).errors,
-                       'disturbance': disturbance_error(part, fitted)})
-    moved = {}
-    for name in WATCHED:
-        spread = [error[name] for error in errors]
-        if None in spread:
-            continue
-        if abs(values[1][name] - values[0][name]) > BEYOND_NOISE * inflation * np.hypot(*spread):
-            moved[name] = (values[0][name], values[1][name])
-    return moved
+@lru_cache(1000)
+def _limit(rare, freedom):
+    return float(student.isf(rare, freedom))
+
+
+def _change(output, last, moves, reference, limit, hop):
+    largest, columns = max(size for size, _ in moves.values()), watched(output)
+    moved = {name: (float(reference.parameters[columns[name]]), float(value))
+             for name, (size, value) in moves.items() if size > limit}
+    advantage = reference.freedom * np.log1p(largest ** 2 / reference.freedom)
+    # The first block after a change may have begun before it: by a quarter of it, it is there.
+    return Change(output, 0.0, float(advantage), moved, int(last.ends_ns[0]) - 3 * hop // 2)
+
+
+def reference_of(blocks, output, noise):
+    """Return the Reference that Blocks are, or None where they are too few."""
+    features, target = blocks.features, blocks.target
+    count, size = features.shape
+    if count <= size:
+        return None
+    # Damping is known to be small before the flight tells it: else a first climb would be unusual.
+    main = np.delete(features, 1, axis=1)
+    rough = target - main @ np.linalg.lstsq(main, target, rcond=None)[0]
+    normal = features.T @ features
+    normal[1, 1] += rough @ rough / (count - size + 1) / PRIOR_DAMPING[output] ** 2
+    spread = np.linalg.pinv(normal, hermitian=True)
+    parameters = spread @ (features.T @ target)
+    residual = target - features @ parameters
+    power = residual @ residual
+    alike = residual[1:] @ residual[:-1] / power if power > 0 else 0.0
+    # The correlation of few residuals seems too small (M. G. Kendall, Biometrika 41, 1954).
+    alike = min(max(alike + (1 + 3 * alike) / count, 0.0), MOST_ALIKE)
+    # And fewer of those that hang together are independent (M. S. Bartlett, JRSS 98, 1935).
+    freedom = (count - size) * (1 - alike ** 2) / (1 + alike ** 2)
+    variance = (power / (count - size) * freedom + noise[0] * noise[1]) / (freedom + noise[1])
+    if not (freedom + noise[1] >= LEAST_FREEDOM and variance > 0):
+        return None
+    return Reference(parameters, spread, float(variance), float(freedom + noise[1]), float(alike),
+                     float(blocks.neglected.mean()))
+
+
+def _move(last, column, reference):
+    """Return by how many errors a parameter moved, beyond what is neglected, and its value."""
+    direction = last.features[:, column]
+    power = direction @ direction
+    if not power > 0:
+        return 0.0, np.nan
+    weights = direction / power
+    move = weights @ (last.target - last.features @ reference.parameters)
+    lags = np.abs(np.subtract.outer(np.arange(len(last)), np.arange(len(last))))
+    carried = weights @ last.features
+    together = (1 + reference.alike) / (1 - reference.alike)
+    error = np.sqrt(reference.variance * (weights @ reference.alike ** lags @ weights
+                                          + together * (carried @ reference.spread @ carried)))
+    # What the linear model leaves out may have become another part of what it may be.
+    allowed = np.abs(weights) @ np.abs(last.neglected - reference.neglected)
+    return (abs(move) - allowed) / error, reference.parameters[column] + move

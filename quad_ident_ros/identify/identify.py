@@ -21,6 +21,7 @@ from quad_ident_ros.identify.signals import OUTPUTS, signals
 from quad_ident_ros.identify.space import check_bounds, find_space, literal_space, no_space, SIZE
 from quad_ident_ros.identify.transfer import response, SecondOrder
 from quad_ident_ros.identify.uncertainty import KEYS, Uncertainty, uncertainty
+from quad_ident_ros.identify.validity import validity
 
 FIRST_SAMPLE = ('search joint: the level at rest is taken from the first sample, whose noise '
                 'enters the fit')
@@ -141,8 +142,10 @@ def identify(records, settings=None, *, on_progress=lambda method, output, share
                                     settings, random, on_progress) for output in pairs}
         on_progress(name, '', 1.0)
         results[name] = MethodFit(name, fits, time.perf_counter() - started)
+    held = {name: validity(signal) for name, signal in pairs.items()}
+    remarks += [f'{name}: {one.why}' for name, one in held.items() if one.holds is False]
     return Identification(results, pairs, _described(settings, spaces), tuple(remarks),
-                          _provenance(records))
+                          _provenance(records), validity=held)
 
 
 def _direct(method, objective, space, output):

@@ -13,6 +13,7 @@ from quad_ident_ros.identify.residuals import ResidualTests
 from quad_ident_ros.identify.signals import GAIN_UNITS, INPUT_OF, OUTPUT_UNITS, OUTPUTS
 from quad_ident_ros.identify.transfer import response, SecondOrder
 from quad_ident_ros.identify.uncertainty import Uncertainty
+from quad_ident_ros.identify.validity import Validity
 
 
 @dataclass(frozen=True)
@@ -77,7 +78,8 @@ class Identification:
     """
     The results of all methods on one set of signals.
 
-    signals maps output to Signal; changes are those of the vehicle that a tracker found.
+    signals maps output to Signal; changes are those of the vehicle that a tracker found;
+    validity maps output to whether the linear model holds (see validity.Validity).
     """
 
     methods: dict
@@ -86,6 +88,7 @@ class Identification:
     remarks: tuple = ()
     provenance: dict = field(default_factory=dict)
     changes: tuple = ()
+    validity: dict = field(default_factory=dict)
 
     @property
     def best(self):
@@ -142,6 +145,7 @@ def as_data(identification):
         'period': {name: signal.period for name, signal in identification.signals.items()},
         'settings': identification.settings,
         'remarks': list(identification.remarks),
+        'linear_model': {name: vars(one) for name, one in identification.validity.items()},
         'changes': [vars(change) for change in identification.changes],
         **identification.provenance})
 
@@ -214,9 +218,12 @@ def from_data(data, signals):
         outputs = {output: _output_from(output, fit, signals[output])
                    for output, fit in method['outputs'].items()}
         methods[name] = MethodFit(name, outputs, method['seconds'])
-    known = ('schema', 'best', 'methods', 'samples', 'period', 'settings', 'remarks', 'changes')
+    known = ('schema', 'best', 'methods', 'samples', 'period', 'settings', 'remarks', 'changes',
+             'linear_model')
     provenance = {key: value for key, value in data.items() if key not in known}
-    return Identification(methods, signals, data['settings'], tuple(data['remarks']), provenance)
+    held = {name: Validity(**one) for name, one in data.get('linear_model', {}).items()}
+    return Identification(methods, signals, data['settings'], tuple(data['remarks']), provenance,
+                          validity=held)
 
 
 def _output_from(output, data, signal):

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from quad_ident_ros.data.cutting import options, without
-from quad_ident_ros.data.record import MOMENTS
+from quad_ident_ros.data.record import EULER, MOMENTS, QUATERNION
 from quad_ident_ros.errors import InputError
 
 OUTPUTS = ('phi', 'theta', 'psi', 'z')
@@ -19,6 +19,7 @@ GAIN_UNITS = {'phi': 'rad/s^2/N', 'theta': 'rad/s^2/N', 'psi': 'rad/s^2/(N m)', 
 GRID_TOLERANCE = 1e-3
 FEWEST = 8          # samples that a record needs
 LONGEST_GAP = 10    # periods that interpolation may bridge
+TILT_MATTERS = 1e-3     # of an input's largest deviation that the tilt takes of it
 LARGEST = 1e50      # of inputs and outputs
 LARGEST_PERIOD = 1e9    # s between samples; 1 / LARGEST_PERIOD is the shortest
 NO_ARM = ('roll and pitch are not identified: the record has moments in N m, of which an arm '
@@ -32,7 +33,8 @@ class Signal:
     One input-output pair on an even grid: deviations u (N,) from trim and y (N,) from the start.
 
     at_rest tells that the vehicle was at rest at the first sample, at y = 0 where level_known;
-    measured (N,) which samples of y there are, by default all; start_ns is the stamp of the first.
+    measured (N,) which samples of y there are, by default all; start_ns is the stamp of the first;
+    trim: what u deviates from; attitude (N, 3) roll, pitch and yaw, rad, where recorded.
     """
 
     output: str
@@ -44,6 +46,8 @@ class Signal:
     level_known: bool = True
     measured: np.ndarray | None = None
     start_ns: int | None = None
+    trim: float = 0.0
+    attitude: np.ndarray | None = None
 
     def __post_init__(self):
         """Take all samples as measured where nothing else is said."""
@@ -76,8 +80,10 @@ def signals(record, *, trim=None, outputs=None, initial_state='auto'):
     Args: trim: inputs U1..U4 from which deviations count, by default the record's own
     (`info['trim']`) or else the first sample's; outputs: names to identify, by default the
     record's own or all; initial_state 'rest', 'free' or 'auto' (rest where the record says that
-    it starts so). Angles that jump by more than half a turn are unwrapped, unless the record says
-    (`info['unwrapped']`) that they turn so fast.
+    it starts so). A flight that begins anywhere has the vertical part of U1 as the input of z (see
+    vertical_share); one from rest is the paper's experiment, with U1 itself. Angles that jump by
+    more than half a turn are unwrapped, unless the record says (`info['unwrapped']`) that they
+    turn so fast.
     Returns (list of Signal, list of str). Raises InputError for missing columns, too few samples
     or gaps that cannot be bridged.
     """
@@ -101,6 +107,9 @@ def signals(record, *, trim=None, outputs=None, initial_state='auto'):
     if trim is None:
         trim = inputs[0]
         remarks.append('the record says no trim: inputs count from their first sample')
+    attitude = measured[:, :3].copy() if _has_attitude(record) else None
+    if attitude is not None and not at_rest:
+        inputs = np.column_stack([_vertical(inputs[:, 0], attitude, trim[0]), inputs[:, 1:]])
     deviation = inputs - np.asarray(trim, float)
     known = record.info.get('initial', {}) if at_rest else {}
     start = [known.get(name, measured[0, i]) for i, name in enumerate(OUTPUTS)]
@@ -116,10 +125,39 @@ def signals(record, *, trim=None, outputs=None, initial_state='auto'):
             found.append(Signal(name, t - t[0], np.ascontiguousarray(u),
                                 measured[:, i] - start[i], float(t[1] - t[0]), at_rest,
                                 level_known=name in known, measured=there_at,
-                                start_ns=record.info.get('start_ns')))
+                                start_ns=record.info.get('start_ns'),
+                                trim=float(trim[int(INPUT_OF[name][1]) - 1]),
+                                attitude=attitude))
         else:
             remarks.append(f'{name} does not move: there is nothing to identify in it')
     return found, remarks
+
+
+def vertical_share(phi, theta):
+    """
+    Return the share of the thrust that acts along the vertical while each input is held, (N,).
+
+    Args: phi, theta (N,) rad. The thrust U1 acts along body z, whose vertical part in the rotation
+    matrix of eq. (2) is cos(phi) cos(theta), so that eq. (18) reads m z'' = cos(phi) cos(theta) U1
+    - m g - Kftz z'. An input is held over a sample in which the tilt goes on: the mean of its two
+    ends counts.
+    """
+    share = np.cos(phi) * np.cos(theta)
+    return np.append((share[:-1] + share[1:]) / 2, share[-1])
+
+
+def _has_attitude(record):
+    return record.has(*EULER) or record.has(*QUATERNION)
+
+
+def _vertical(thrust, attitude, trim):
+    """Return the vertical part of U1 (N,), or U1 where the tilt takes next to nothing of it."""
+    vertical = vertical_share(attitude[:, 0], attitude[:, 1]) * thrust
+    most = np.abs(thrust[:-1] - trim).max()
+    if most <= 1e-9 * (1 + np.abs(thrust).max()):
+        most = np.abs(thrust).max()
+    # Without a tilt to speak of, the attitude's noise would but spoil an input that is exact.
+    return vertical if np.abs(thrust - vertical)[:-1].max() > TILT_MATTERS * most else thrust
 
 
 def _check_size(t, inputs, measured):
@@ -144,7 +182,7 @@ def _columns(record):
     Those that are not recorded, or whose input is not, are zero. Raises InputError where none is.
     """
     recorded = {f'U{i}': record.has(f'u{i}') for i in range(1, 5)}
-    euler = record.has('phi', 'theta', 'psi') or record.has('qw', 'qx', 'qy', 'qz')
+    euler = _has_attitude(record)
     there = [name for name in OUTPUTS
              if recorded[INPUT_OF[name]] and (record.has('pz') if name == 'z' else euler)]
     if not there:

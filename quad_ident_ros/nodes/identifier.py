@@ -173,15 +173,19 @@ class Identifier(RecordWorker):
             text += f'; not excited: {", ".join(missing)}'
         if notes:
             text += f'; complex poles, so a and b are not published: {", ".join(notes)}'
+        beyond = {name: one.why for name, one in result.validity.items() if one.holds is False}
+        if beyond:
+            text += f'; the linear model does not hold: {", ".join(beyond)}'
         for change in result.changes:
             moved = ', '.join(f'{name} {values[0]:.4g} -> {values[1]:.4g}'
                               for name, values in change.moved.items())
             text += f'; {change.output} changed at {change.stamp_ns * 1e-9:.2f} s: {moved}'
             self.get_logger().warning(text)
-        self._status = (WARN if missing or notes or result.changes or data['dropped_samples']
-                        else OK, text,
+        self._status = (WARN if missing or notes or result.changes or beyond
+                        or data['dropped_samples'] else OK, text,
                         {'best': result.best, 'cost': best.cost,
                          'dropped_samples': data['dropped_samples'],
+                         **{f'linear_model/{name}': why for name, why in beyond.items()},
                          **{f'fit_percent/{name}': fit.errors['fit_percent']
                             for name, fit in best.outputs.items()}})
         if self._config['mode'] == 'once':

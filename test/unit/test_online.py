@@ -5,15 +5,12 @@
 from functools import cache
 
 import numpy as np
-from payload import climb, GRAVITY, MASS, PAYLOAD, PERIOD, PICKED_UP, START_NS
+from payload import climb, GRAVITY, MASS, PAYLOAD, PICKED_UP, START_NS
 import pytest
 
 from quad_ident_ros.data.record import FlightRecord
-from quad_ident_ros.identify.change import find_change, SHORTEST
 from quad_ident_ros.identify.identify import identify, Settings
 from quad_ident_ros.identify.online import Tracker
-from quad_ident_ros.identify.signals import Signal
-from quad_ident_ros.identify.vp import vp
 
 pytestmark = pytest.mark.slow
 WINDOW, STRIDE = 500, 5     # 20 windows a second
@@ -120,24 +117,3 @@ def test_a_window_that_does_not_say_when_it_begins_is_taken_whole():
     info = {key: value for key, value in window.info.items() if key != 'start_ns'}
     result = Tracker().update([FlightRecord(window.t, window.columns, info)], SETTINGS)
     assert result.changes == () and len(result.signals['z'].y) == WINDOW
-
-
-@pytest.mark.parametrize('samples', [2 * SHORTEST, 2 * SHORTEST + 1, 3 * SHORTEST])
-def test_a_change_is_found_in_the_shortest_window_that_can_show_one(samples):
-    t = np.arange(samples) * PERIOD
-    middle = samples // 2
-    u = np.sign(np.sin(20 * t))
-    gain = np.where(np.arange(samples) < middle, 1.0, 5.0)
-    y = np.cumsum(np.cumsum(gain * u)) * 1e-4
-    y = y + 1e-5 * np.random.default_rng(0).normal(size=samples)
-    short = Signal('z', t, u, y, PERIOD, False)
-    change, _ = find_change(short, vp(short))
-    assert change.moved and abs(change.time - t[middle]) < 5 * PERIOD
-
-
-def test_a_part_too_short_to_tell_shows_no_change():
-    t = np.arange(60) * PERIOD
-    u = np.sign(np.sin(20 * t))
-    y = np.cumsum(np.cumsum(u)) * 1e-4
-    short = Signal('z', t, u, y, PERIOD, False)
-    assert find_change(short, vp(short)) == (None, 0.0)

@@ -1,0 +1,129 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Equations of motion averaged over short blocks of a flight, without derivatives of measurements.
+
+With a smooth weight w that begins and ends at zero, the mean of y'' is the integral of w'' y
+(modulating functions: M. Shinbrot, Trans. ASME 79, 1957). A block is one line of a linear
+regression: no initial state is in it, and blocks apart have independent noise.
+"""
+
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+from scipy.signal import savgol_filter
+
+from quad_ident_ros.identify.signals import OUTPUTS
+from quad_ident_ros.model.attitude import body_rate
+
+GRAVITY = 9.81      # m/s^2
+LENGTH = 0.5        # s, over which noise of mm averages to some cm/s^2
+FEWEST = 20         # samples of a block, for which the sums are integrals
+SMOOTHED = 0.1      # s, over which angles are differentiated: no vehicle turns to and fro faster
+STEEP = 1.5         # rad, where a tangent is as good as infinite
+POWER = 4           # of the weight s^4 (1 - s)^4
+PRIOR_DAMPING = {'z': 0.5, 'phi': 5.0, 'theta': 5.0, 'psi': 5.0}    # 1/s, usual size of c1
+
+
+@dataclass(frozen=True)
+class Blocks:
+    """
+    Blocks of one output.
+
+    ends_ns (n,) stamps of the last samples; target (n,), which the features (n, k) times K, c1 and
+    for angles a constant are: y'', of z together with gravity; neglected (n,): the most that the
+    linear model leaves out of the target (see `neglected`); tilt (n,) rad, the largest in a block,
+    not a number where no attitude is recorded.
+    """
+
+    ends_ns: np.ndarray
+    target: np.ndarray
+    features: np.ndarray
+    neglected: np.ndarray
+    tilt: np.ndarray
+
+    def __len__(self):
+        """Return how many blocks there are."""
+        return len(self.target)
+
+    def part(self, rows):
+        """Return some of the blocks, by a slice or a mask."""
+        return Blocks(*(values[rows] for values in vars(self).values()))
+
+    def followed_by(self, others):
+        """Return these blocks and others after them."""
+        return Blocks(*(np.concatenate(pair) for pair in zip(
+            vars(self).values(), vars(others).values(), strict=True)))
+
+
+def samples_of(period):
+    """Return how many periods a block has, even, so that blocks overlap by half."""
+    return 2 * max(FEWEST // 2, round(LENGTH / period / 2))
+
+
+@cache
+def _weights(count):
+    """Return the weight, its first and second derivative (count + 1,), and its held integral."""
+    s = np.linspace(0.0, 1.0, count + 1)
+    base = np.polynomial.Polynomial([0, 1, -1]) ** POWER
+    base = base / base.integ()(1.0)
+    return base(s), base.deriv()(s), base.deriv(2)(s), np.diff(base.integ()(s))
+
+
+def blocks_of(signal, after_ns):
+    """
+    Return the Blocks of a Signal with a start_ns that end after a stamp.
+
+    They end on a grid of stamps, half a block apart, whatever window of the flight it is.
+    """
+    count = samples_of(signal.period)
+    hop_ns = round(count // 2 * signal.period * 1e9)
+    t_ns = signal.start_ns + signal.t * 1e9
+    first = max(after_ns, t_ns[0] + count * signal.period * 1e9 - 0.5e9 * signal.period)
+    ends = np.arange(first // hop_ns + 1, (t_ns[-1] + 1e3) // hop_ns + 1) * hop_ns
+    last = np.searchsorted(t_ns, ends + 1e3) - 1
+    rows = last[last >= count][:, None] + np.arange(-count, 1)
+    weight, slope, bend, held = _weights(count)
+    length = count * signal.period
+    y = signal.y[rows] - signal.y[rows].mean(axis=1, keepdims=True)
+    acceleration = y @ bend / (count * length ** 2)
+    rate = -(y @ slope) / (count * length)
+    thrust = (signal.u[rows[:, :-1]] + signal.trim) @ held
+    if signal.output == 'z':
+        target, features = acceleration + GRAVITY, [thrust, -rate]
+    else:
+        target, features = acceleration, [thrust, -rate, np.ones(len(rows))]
+    if signal.attitude is None:
+        most, tilt = np.zeros(len(rows)), np.full(len(rows), np.nan)
+    else:
+        tilts = np.arccos(np.cos(signal.attitude[:, 0]) * np.cos(signal.attitude[:, 1]))
+        unsteady, steady = neglected(signal, tilts)
+        most = (np.abs(unsteady[rows] @ slope) / (count * length)
+                + steady[rows] @ weight / count)
+        tilt = tilts[rows].max(axis=1, initial=0.0)
+    return Blocks(ends[last >= count].astype(np.int64), target, np.column_stack(features), most,
+                  tilt)
+
+
+def neglected(signal, tilts):
+    """
+    Return what the linear model leaves out: a rate (N,) and the most of an acceleration (N,).
+
+    z: in steady flight at a tilt drag is at most thrust x tan(tilt) across body z, of which
+    sin(tilt) is vertical; in a flight from rest, whose input is U1, what the tilt takes of it too.
+    Angles: the Euler rate is not the body rate, by eq. (3); and the
+    products of two rates in eqs. (13) to (15), whose factor, a difference of two moments of
+    inertia over the third, is at most 1 for any rigid body.
+    """
+    if signal.output == 'z':
+        lost = 1 - np.cos(tilts) if signal.at_rest else 0.0
+        share = np.tan(np.minimum(tilts, STEEP)) * np.abs(np.sin(tilts)) + lost
+        return np.zeros_like(tilts), GRAVITY * share
+    width = max(5, 2 * round(SMOOTHED / signal.period / 2) + 1)
+    if len(signal.y) < width:
+        return np.zeros_like(tilts), np.zeros_like(tilts)
+    rates = savgol_filter(signal.attitude, width, 2, deriv=1, delta=signal.period, axis=0)
+    body = body_rate(signal.attitude, rates)
+    axis = OUTPUTS.index(signal.output)
+    return (rates - body)[:, axis], np.abs(np.prod(np.delete(body, axis, axis=1), axis=1))
