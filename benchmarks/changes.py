@@ -15,10 +15,10 @@ from quad_ident_ros.identify.online import Changes
 EXPERIMENT = 'payload_in_flight'    # vehicle, noise and rate
 PAYLOAD = 0.3           # of the mass
 COURSES = {'hover': ('hover',), 'lateral': ('circle', 'figure8', 'lissajous')}
-WITH, WITHOUT = 45.0, 120.0         # s of each flight with a change, and without
-AT = (15.0, 30.0)       # s, between which the change is
+WITH, WITHOUT = 35.0, 45.0         # s of each flight with a change, and without
+AT = (15.0, 25.0)       # s, between which the change is
 SOON = 5.0              # s after it, by which it counts as found
-WINDOW, STRIDE = 500, 25            # samples, as a recorder's with an overlap of 0.95
+WINDOW, STRIDE = 150, 25            # samples, of a recorder's; the blocks are those of any window
 SURE = 0.95
 
 

@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
-from scipy.signal import savgol_filter
 
 from quad_ident_ros.identify.signals import OUTPUTS
 from quad_ident_ros.model.attitude import body_rate
@@ -83,7 +82,11 @@ def blocks_of(signal, after_ns):
     first = max(after_ns, t_ns[0] + count * signal.period * 1e9 - 0.5e9 * signal.period)
     ends = np.arange(first // hop_ns + 1, (t_ns[-1] + 1e3) // hop_ns + 1) * hop_ns
     last = np.searchsorted(t_ns, ends + 1e3) - 1
-    rows = last[last >= count][:, None] + np.arange(-count, 1)
+    ends, last = ends[last >= count].astype(np.int64), last[last >= count]
+    if not len(ends):
+        return Blocks(ends, np.empty(0), np.empty((0, 3 - (signal.output == 'z'))), np.empty(0),
+                      np.empty(0))
+    rows = last[:, None] + np.arange(-count, 1)
     weight, slope, bend, held = _weights(count)
     length = count * signal.period
     y = signal.y[rows] - signal.y[rows].mean(axis=1, keepdims=True)
@@ -101,9 +104,8 @@ def blocks_of(signal, after_ns):
         unsteady, steady = neglected(signal, tilts)
         most = (np.abs(unsteady[rows] @ slope) / (count * length)
                 + steady[rows] @ weight / count)
-        tilt = tilts[rows].max(axis=1, initial=0.0)
-    return Blocks(ends[last >= count].astype(np.int64), target, np.column_stack(features), most,
-                  tilt)
+        tilt = tilts[rows].max(axis=1)
+    return Blocks(ends, target, np.column_stack(features), most, tilt)
 
 
 def neglected(signal, tilts):
@@ -120,10 +122,16 @@ def neglected(signal, tilts):
         lost = 1 - np.cos(tilts) if signal.at_rest else 0.0
         share = np.tan(np.minimum(tilts, STEEP)) * np.abs(np.sin(tilts)) + lost
         return np.zeros_like(tilts), GRAVITY * share
-    width = max(5, 2 * round(SMOOTHED / signal.period / 2) + 1)
-    if len(signal.y) < width:
-        return np.zeros_like(tilts), np.zeros_like(tilts)
-    rates = savgol_filter(signal.attitude, width, 2, deriv=1, delta=signal.period, axis=0)
+    rates = _rates(signal.attitude, signal.period)
     body = body_rate(signal.attitude, rates)
     axis = OUTPUTS.index(signal.output)
     return (rates - body)[:, axis], np.abs(np.prod(np.delete(body, axis, axis=1), axis=1))
+
+
+def _rates(angles, period):
+    """Return the rates (N, 3) rad/s of angles: the slopes of lines through those around."""
+    half = max(2, round(SMOOTHED / period / 2))
+    padded = np.pad(angles, ((half, half), (0, 0)), 'reflect', reflect_type='odd')
+    kernel = np.arange(half, -half - 1, -1.0)
+    kernel /= period * (kernel @ kernel)
+    return np.column_stack([np.convolve(column, kernel, 'valid') for column in padded.T])

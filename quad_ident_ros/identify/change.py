@@ -25,7 +25,7 @@ REFERENCE = 240             # blocks before it, a minute: a battery that sags is
 GUARD = 1                   # block between, which overlaps with both
 LEAST_FREEDOM = 3.0         # independent residuals without which nothing is known of the noise
 MOST_CARRIED = 60.0         # residuals by which the noise before a change counts after it
-LASTING = 3                 # blocks for which a change is looked at before it is told
+LASTING = 3                 # blocks after the first unusual one in which a change is still there
 MOST_ALIKE = 0.95           # correlation of neighbours
 # Share of the acceleration that the linear model may leave out: two thirds of what a payload of
 # 30 % takes of K. Drag may reach it in z at a tilt of 22 degrees.
@@ -148,10 +148,20 @@ def find_change(blocks, output, noise=(0.0, 0.0)):
             if not holds[-length:].all() or last.ends_ns[-1] - last.ends_ns[0] > length * hop:
                 return found
             moves = {name: _move(last, column, reference) for name, column in columns.items()}
+            if length > LASTING and not _lasts(blocks, moves, reference, columns):
+                continue
             largest = max(size for size, _ in moves.values())
             if largest > best * limit:
                 best, found = largest / limit, _change(output, last, moves, reference, limit, hop)
     return found
+
+
+def _lasts(blocks, moves, reference, columns):
+    """Return whether half of the largest move is there in the very last blocks: no knock is."""
+    name = max(moves, key=lambda each: moves[each][0])
+    now = _move(blocks.part(slice(-LASTING, None)), columns[name], reference)
+    before = reference.parameters[columns[name]]
+    return (now[1] - before) / (moves[name][1] - before) > 0.5
 
 
 @lru_cache(1000)
