@@ -104,12 +104,13 @@ def signals(record, *, trim=None, outputs=None, initial_state='auto'):
         else initial_state == 'rest'
     if trim is None:
         trim = record.info.get('trim')
+    attitude = measured[:, :3].copy() if _has_attitude(record) else None
+    if attitude is not None and not at_rest:
+        vertical = _vertical(inputs[:, 0], attitude, inputs[0, 0] if trim is None else trim[0])
+        inputs = np.column_stack([vertical, inputs[:, 1:]])
     if trim is None:
         trim = inputs[0]
         remarks.append('the record says no trim: inputs count from their first sample')
-    attitude = measured[:, :3].copy() if _has_attitude(record) else None
-    if attitude is not None and not at_rest:
-        inputs = np.column_stack([_vertical(inputs[:, 0], attitude, trim[0]), inputs[:, 1:]])
     deviation = inputs - np.asarray(trim, float)
     known = record.info.get('initial', {}) if at_rest else {}
     start = [known.get(name, measured[0, i]) for i, name in enumerate(OUTPUTS)]

@@ -113,8 +113,8 @@ def test_a_payload_is_found_in_lateral_flight_and_where_the_model_does_not_hold_
     before, after = change['moved']['K']
     assert before == pytest.approx(1 / MASS, rel=0.03) and after < 0.85 * before
     held = [data['linear_model']['z'] for data in results]
-    # Just after the change a window is too short to tell.
-    assert [one['holds'] for one in held].count(None) <= 2
+    # Just after the change three windows are shorter than a block and its grid.
+    assert [one['holds'] for one in held].count(None) <= 3
     for one in held:
         assert one['holds'] is None or one['holds'] and one['tilt'] < 0.36 and 'deg' in one['why']
 

@@ -131,6 +131,10 @@ def test_the_altitude_has_the_vertical_part_of_the_thrust_as_its_input():
     assert 19.0 < np.degrees(np.arccos(share.min())) < 21.0
     [pair] = [pair for pair in signals(flight)[0] if pair.output == 'z']
     np.testing.assert_allclose(pair.u + pair.trim, share * flight.columns['u1'])
+    # Without a trim it counts from the first sample, whatever the tilt there.
+    late = FlightRecord(flight.t, flight.columns, {}).slice(300)
+    [pair] = [pair for pair in signals(late)[0] if pair.output == 'z']
+    assert pair.u[0] == 0.0
     # One from rest is the paper's experiment.
     rest = FlightRecord(flight.t, flight.columns, {**flight.info, 'starts_at_rest': True})
     [pair] = [pair for pair in signals(rest)[0] if pair.output == 'z']

@@ -75,7 +75,8 @@ def test_inputs_count_from_the_trim_of_the_record_or_the_one_stated():
 
 
 def test_a_missing_trim_is_the_first_sample_and_a_remark():
-    found, remarks = signals(record(info={}))
+    little = np.linspace(0.0, 1e-3, 501)    # of tilt, which would take a part of U1 (test_change)
+    found, remarks = signals(record(info={}, phi=little, theta=little))
     assert of(found, 'z').u[0] == 0.0 and of(found, 'z').u[-1] == pytest.approx(1.0)
     assert len(remarks) == 1 and 'no trim' in remarks[0] and 'first sample' in remarks[0]
     # The remark goes on into the result.
