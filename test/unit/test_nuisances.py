@@ -236,6 +236,18 @@ def test_single_attitudes_that_are_off_are_found_and_no_others(dragged):
     assert f'{int(found.sum())} times the attitude jumps' in finding.message
 
 
+@pytest.mark.parametrize('lost', [range(145, 150), range(151, 156), range(145, 150, 4)])
+def test_an_attitude_that_is_off_beside_lost_rows_is_a_glitch_and_these_are_none(lost):
+    random, t = np.random.default_rng(3), 0.01 * np.arange(300)
+    turns = np.stack([0.3 * np.sin(2.0 * t), *np.zeros((2, 300))], axis=1)
+    rates = np.stack([0.6 * np.cos(2.0 * t), *np.zeros((2, 300))], axis=1)
+    q = product(turn(turns), turn(random.normal(0.0, 0.002, (300, 3))))
+    kept = np.delete(np.arange(300), lost)
+    assert not glitches(t[kept], q[kept], rates[kept]).any()
+    q[150] = product(q[150], turn([0.0, 0.3, 0.0]))
+    assert list(kept[glitches(t[kept], q[kept], rates[kept])]) == [150]
+
+
 def test_an_attitude_that_turns_and_stays_is_no_glitch():
     t = 0.01 * np.arange(300)
     q = np.tile([1.0, 0.0, 0.0, 0.0], (300, 1))

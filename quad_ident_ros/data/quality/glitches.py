@@ -9,7 +9,7 @@ from quad_ident_ros.data.frames import conjugate, continuous, multiply
 from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.quality.frames import best_reading, SURE
 from quad_ident_ros.data.quality.once import once
-from quad_ident_ros.data.quality.series import attitudes_of, correlation, GAP, Grid
+from quad_ident_ros.data.quality.series import attitudes_of, correlation, Grid
 from quad_ident_ros.data.record import QUATERNION
 
 LONGEST = 0.15            # s, that a jump lasts
@@ -76,7 +76,9 @@ def _off(t, attitudes, rates):
     period = float(np.median(steps))
     turned = 2.0 * multiply(conjugate(q[:-1]), q[1:])[:, 1:]
     apart = turned - 0.5 * (rates[1:] + rates[:-1]) * steps[:, None]
-    apart[steps > GAP * period] = 0.0
+    # Over lost rows the gyro leads on: a jump that begins or ends there is one all the same. What
+    # it misses stays, and the median follows what stays.
+    apart[steps > LONGEST] = 0.0
     sums = np.vstack([np.zeros((1, 3)), np.cumsum(apart, axis=0)])
     width = 2 * min(round(LONGEST / period), len(t) // 2) + 1
     # One column at a time, for which SciPy has the faster filter.
