@@ -32,8 +32,9 @@ class Rules:
         no effect: wide enough for the largest that is flown.
       alike: log evidence within which sets are about as good, so that the smallest is taken: a
         Bayes factor under 20 is not strong (Kass and Raftery, JASA 90, 1995).
-      worth: share of the cost that forms with more parameters must save over others: a form that
-        is wrong by 10 % of what an effect does leaves that much of a gap ten times the noise.
+      worth: share of the cost that forms with more parameters must save over others of the same
+        effects: a form that is wrong by 10 % of what an effect does leaves that much of a gap ten
+        times the noise.
       untried: log evidence, beside the best set, that the linear model alone may give a set: it
         has been wrong by more.
     Discrepancy (see discrepancy.py):

@@ -334,9 +334,11 @@ class _Search:
         self.judged = {key: one for key, one in self.judged.items() if key in self.tried}
         # The usual forms in its place may do less than other sets that were fitted.
         self.best = self.simplest(list(self.tried))
-        # More parameters are for what the fewer leave, not for a little of the noise.
+        # More parameters are for what the fewer leave, not for a little of the noise. That is a
+        # choice among forms; which effects are there is told by the evidence alone.
         plain = self.simplest([key for key in self.tried if _plain(key)])
-        if plain.estimate.cost < (1.0 + self.rules.worth) * self.best.estimate.cost:
+        if (plain.estimate.cost < (1.0 + self.rules.worth) * self.best.estimate.cost
+                and _names(plain) <= _names(self.best)):
             self.judged = {key: one for key, one in self.judged.items() if _plain(key)}
             self.ranked = [one for one in self.ranked if _plain(one[1])]
             self.best = plain
@@ -420,6 +422,11 @@ def _other_actuator(best: tuple, causes: Sequence[Candidate], z: np.ndarray, veh
 def _plain(chosen: tuple) -> bool:
     """Return whether no effect of a set is in a form with more parameters than usual."""
     return all(cause.plain for cause in effects_in(chosen))
+
+
+def _names(fitted: Fitted) -> set[str]:
+    """Return the effects of a set, in whichever form."""
+    return {cause.effect for cause in fitted.causes}
 
 
 def _swapped(chosen: tuple, top: tuple) -> bool:

@@ -47,29 +47,52 @@ def test_no_error_is_smaller_than_what_formulas_may_be_wrong_by():
     assert errors(NARROW, least=0.3) == pytest.approx([0.3])
 
 
-def test_a_form_at_its_bound_gives_way_to_the_best_of_all_sets_that_were_fitted(monkeypatch):
-    """The usual form in its place is far worse here than a set that was not judged of late."""
-    usual, odd = Candidate('a', 'usual', (0,)), Candidate('a', 'odd', (0,), usual=False)
-    other = Candidate('b', 'b', (1,))
-    evidence = {(odd,): 100.0, (usual,): 0.0, (other,): 90.0}
+def searched(costs, evidence):
+    """Return a search that has fitted sets {set: cost} with {set: log evidence}."""
     search = object.__new__(_Search)
-    search.all_causes, search.rules, search.ranked = (usual, odd, other), RULES, []
+    search.all_causes = tuple(dict.fromkeys(cause for key in costs for cause in key))
+    search.rules, search.ranked, search.judged = RULES, [], {}
     search.flights = search.vehicle = search.noise = search.slow = None
     search.quadratic = SimpleNamespace(scatter=1.0)
-    search.tried = {key: SimpleNamespace(cost=-value) for key, value in evidence.items()}
-    search.judged = {}
+    search.tried = {key: SimpleNamespace(cost=cost) for key, cost in costs.items()}
 
     def judge(key):
         made = Fitted(key, search.tried[key], evidence[key], (0, 0))
         return search.judged.setdefault(key, made)
 
     search.judge = judge
-    judge((odd,))
+    judge(max(evidence, key=evidence.get))
+    return search
+
+
+def test_a_form_at_its_bound_gives_way_to_the_best_of_all_sets_that_were_fitted(monkeypatch):
+    """The usual form in its place is far worse here than a set that was not judged of late."""
+    usual, odd = Candidate('a', 'usual', (0,)), Candidate('a', 'odd', (0,), usual=False)
+    other = Candidate('b', 'b', (1,))
+    evidence = {(odd,): 100.0, (usual,): 0.0, (other,): 90.0}
+    search = searched({key: -value for key, value in evidence.items()}, evidence)
     monkeypatch.setattr(selecting, 'within_bounds',
                         lambda *_, slow=None: ((usual,), search.tried[(usual,)]))
     monkeypatch.setattr(selecting, 'out_of_bounds', lambda cause, *_: cause is odd)
     search.settle()
     assert search.best.chosen == (other,)
+
+
+@pytest.mark.parametrize('effect, saved, kept', [
+    ('a', 0.005, False),    # of one effect, the form with fewer parameters
+    ('a', 0.02, True),      # unless it leaves more than 1 % of the cost
+    ('b', 0.005, True)])    # another effect is no form: the evidence decides
+def test_more_parameters_give_way_to_a_form_of_the_same_effect_alone(
+        monkeypatch, effect, saved, kept):
+    curve = Candidate('a', 'a curve', (0, 1), usual=False, plain=False)
+    fewer = Candidate(effect, effect, (2,))
+    search = searched({(curve,): 72000.0, (fewer,): 72000.0 * (1.0 + saved)},
+                      {(curve,): 20.0, (fewer,): 0.0})
+    monkeypatch.setattr(selecting, 'within_bounds', lambda chosen, fit, *_, slow=None:
+                        (chosen, fit))
+    monkeypatch.setattr(selecting, 'out_of_bounds', lambda *_: False)
+    search.settle()
+    assert search.best.chosen == ((curve,) if kept else (fewer,))
 
 
 def test_sets_that_are_as_good_count_alike_with_what_they_differ_in():
