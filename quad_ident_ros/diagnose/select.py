@@ -335,13 +335,21 @@ class _Search:
         # The usual forms in its place may do less than other sets that were fitted.
         self.best = self.simplest(list(self.tried))
         # More parameters are for what the fewer leave, not for a little of the noise. That is a
-        # choice among forms; which effects are there is told by the evidence alone.
+        # choice among forms; between effects the evidence decides where the parameters show.
         plain = self.simplest([key for key in self.tried if _plain(key)])
-        if (plain.estimate.cost < (1.0 + self.rules.worth) * self.best.estimate.cost
-                and _names(plain) <= _names(self.best)):
-            self.judged = {key: one for key, one in self.judged.items() if _plain(key)}
-            self.ranked = [one for one in self.ranked if _plain(one[1])]
-            self.best = plain
+        if plain.estimate.cost < (1.0 + self.rules.worth) * self.best.estimate.cost:
+            told = self.simplest([key for key in self.tried if self.shows(key)])
+            keeps = _plain if _names(plain) <= _names(told) else self.shows
+            self.judged = {key: one for key, one in self.judged.items() if keeps(key)}
+            self.ranked = [one for one in self.ranked if keeps is not _plain or _plain(one[1])]
+            self.best = plain if keeps is _plain else told
+
+    def shows(self, chosen: tuple) -> bool:
+        """Return whether each parameter of the forms with more than usual differs from none."""
+        fit, null = self.tried[chosen], nominal(self.vehicle)
+        return all(abs(fit.z[column] - null[column])
+                   > self.rules.shown * fit.errors[fit.columns.index(column)]
+                   for cause in effects_in(chosen) if not cause.plain for column in cause.columns)
 
     def selection(self) -> Selection:
         """Return the Selection."""

@@ -78,16 +78,23 @@ def test_a_form_at_its_bound_gives_way_to_the_best_of_all_sets_that_were_fitted(
     assert search.best.chosen == (other,)
 
 
-@pytest.mark.parametrize('effect, saved, kept', [
-    ('a', 0.005, False),    # of one effect, the form with fewer parameters
-    ('a', 0.02, True),      # unless it leaves more than 1 % of the cost
-    ('b', 0.005, True)])    # another effect is no form: the evidence decides
-def test_more_parameters_give_way_to_a_form_of_the_same_effect_alone(
-        monkeypatch, effect, saved, kept):
+@pytest.mark.parametrize('effect, saved, error, kept', [
+    ('a', 0.005, 0.001, False),    # of one effect, the form with fewer parameters
+    ('a', 0.02, 0.001, True),      # unless it leaves more than 1 % of the cost
+    ('b', 0.005, 0.001, True),     # another effect is no form: the evidence decides
+    ('b', 0.005, 0.1, False)])     # if the flights tell that the form is another
+def test_more_parameters_give_way_to_a_form_of_the_same_effect(
+        monkeypatch, effect, saved, error, kept):
+    vehicle = load_vehicle('hummingbird')
     curve = Candidate('a', 'a curve', (0, 1), usual=False, plain=False)
     fewer = Candidate(effect, effect, (2,))
     search = searched({(curve,): 72000.0, (fewer,): 72000.0 * (1.0 + saved)},
                       {(curve,): 20.0, (fewer,): 0.0})
+    search.vehicle = vehicle
+    for fit in search.tried.values():
+        fit.z, fit.columns = nominal(vehicle), [0, 1]
+        fit.z[:2] += [0.5, 0.01]
+        fit.errors = [0.001, error]
     monkeypatch.setattr(selecting, 'within_bounds', lambda chosen, fit, *_, slow=None:
                         (chosen, fit))
     monkeypatch.setattr(selecting, 'out_of_bounds', lambda *_: False)
