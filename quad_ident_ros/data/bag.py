@@ -2,8 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Rosbag2 folders (MCAP), written so that a crash costs little."""
 
+from collections import defaultdict
 from contextlib import suppress
 from functools import cache
+from io import BytesIO
+from itertools import starmap
 import os
 from pathlib import Path
 import shutil
@@ -20,15 +23,25 @@ from rosbags.interfaces import (
     QosTime,
 )
 from rosbags.rosbag2 import StoragePlugin, Writer
-from rosbags.rosbag2.storage_mcap import McapWriter
+from rosbags.rosbag2.storage_mcap import McapWriter, PendingChunk
 from rosbags.typesys import get_typestore, Stores
 
-from quad_ident_ros.data.recovered import END_BYTES, SUMMARY_CHECKSUM
+from quad_ident_ros.data.bag_metadata import inner_metadata, metadata_template, metadata_text
+from quad_ident_ros.data.recovered import (
+    CHUNK,
+    END_BYTES,
+    HEAD,
+    INDEX,
+    MESSAGE,
+    SUMMARY_CHECKSUM,
+)
 from quad_ident_ros.errors import InputError
 
 _PENDING_BYTES = 1 << 22    # written at once at the latest, so that memory stays bounded
-_CHECKSUM = 9 + 3 * 8   # place in a chunk: behind opcode, length, two times and a size
-_DISTRO = 'ros_distro: rosbags', 'ros_distro: jazzy'
+_CHUNK_BYTES = 1 << 20      # of messages that are read at once
+_CHUNK = struct.Struct('<BQQQQIIQ')      # opcode, length, two times, size, checksum, packing, size
+_MESSAGE = struct.Struct('<BQHIQQ')     # opcode, length, topic, sequence, two times; content
+_PLACE = struct.Struct('<QQ')           # of a message in its chunk: its time, and where it begins
 _FOREVER = QosTime(9223372036, 854775807)
 _QOS = Qos(QosHistory.KEEP_ALL, 0, QosReliability.RELIABLE, QosDurability.VOLATILE, _FOREVER,
            _FOREVER, QosLiveliness.AUTOMATIC, _FOREVER, False)
@@ -68,7 +81,8 @@ class BagWriter:
 
     After every flush the folder on disk is a whole, indexed bag, the same as close would leave,
     and stays it until the next flush: a killed process loses what came after its last flush and
-    nothing else, and a full disk costs no more. A failed flush may be tried again. Of a process
+    nothing else, and a full disk costs no more. The folder appears whole, without messages.
+    A failed flush may be tried again. Of a process
     that is killed within a flush the index at the end is gone, which is written anew; messages
     are only ever appended, with a checksum by which BagFile tells those that are whole.
     Args: path of a folder that does not exist yet; topics the (name, message type) of each topic.
@@ -90,22 +104,26 @@ class BagWriter:
             if msgtype not in types:
                 raise InputError(f'{path}, topic {name}: {msgtype!r} is no message type of ROS 2 '
                                  'Jazzy; name one such as geometry_msgs/msg/PoseStamped')
-        self._writer = _Writer(path, version=9, storage_plugin=StoragePlugin.MCAP)
+        begun = path.with_name(f'.{path.name}.begun')
+        shutil.rmtree(begun, ignore_errors=True)    # of one that was killed just here
+        self._writer = _Writer(begun, version=9, storage_plugin=StoragePlugin.MCAP)
         self._dirty = True
         self._failed = False
         self._storage = None
         try:
             self._writer.open()
             self._storage = self._writer.storage
+            self._storage.move(begun / f'{path.name}.mcap')
             self._connections = {
                 name: self._writer.add_connection(name, msgtype, typestore=_typestore(),
                                                   offered_qos_profiles=[_QOS])
                 for name, msgtype in topics}
             self.flush()
+            self._writer.move(path)
         except OSError:
             if self._storage:
                 self._storage.abort()
-            shutil.rmtree(path, ignore_errors=True)
+            shutil.rmtree(begun, ignore_errors=True)
             raise
 
     def write(self, topic, stamp_ns, cdr):
@@ -128,15 +146,7 @@ class BagWriter:
         if not self._dirty:
             return
         self._failed = True
-        try:
-            self._writer.close()
-            _replace_text(self._writer.metapath, *_DISTRO)
-        except BaseException:
-            with suppress(OSError):
-                _temporary(self._writer.metapath).unlink(missing_ok=True)
-            raise
-        finally:
-            self._writer.storage = self._storage
+        self._writer.close()
         self._dirty = self._failed = False
 
     def close(self):
@@ -257,13 +267,45 @@ class _Storage(McapWriter):
             raise
         self.bio = _McapFile(raw)
 
+    def write(self, connection, timestamp, data):
+        """Add a message; what McapWriter.write does, in a fifth of its time."""
+        chunk = self.chunk
+        self.channel_stats[connection.id] += 1
+        chunk.message_start_time = min(timestamp, chunk.message_start_time)
+        chunk.message_end_time = max(timestamp, chunk.message_end_time)
+        chunk.msgs[connection.id].append((timestamp, chunk.bio.tell()))
+        chunk.bio.write(_MESSAGE.pack(MESSAGE, _MESSAGE.size - HEAD + len(data), connection.id, 0,
+                                      timestamp, timestamp))
+        chunk.bio.write(data)
+        if chunk.bio.tell() > _CHUNK_BYTES:
+            self.close_chunk()
+
     def close_chunk(self):
-        """Close the pending chunk; one without messages spans the times 0 to 0, as MCAP has it."""
-        if not self.chunk.msgs:
-            self.chunk.message_start_time = 0
-        start, checksum = self.bio.tell(), crc32(self.chunk.bio.getvalue())
-        super().close_chunk()
-        self.bio.amend(start + _CHECKSUM, checksum.to_bytes(4, 'little'))
+        """
+        Write the pending chunk with its checksum, and the places of its messages.
+
+        One without messages spans the times 0 to 0, as MCAP has it.
+        """
+        chunk, content = self.chunk, self.chunk.bio.getbuffer()
+        first = chunk.message_start_time if chunk.msgs else 0
+        last = chunk.message_end_time
+        if chunk.msgs:
+            self.message_start_time = min(first, self.message_start_time)
+            self.message_end_time = max(last, self.message_end_time)
+        begin, size = self.bio.tell(), len(content)
+        self.bio.write(_CHUNK.pack(CHUNK, _CHUNK.size - HEAD + size, first, last, size,
+                                   crc32(content), 0, size))
+        self.bio.write(content)
+        end, places = self.bio.tell(), b''
+        for topic, messages in chunk.msgs.items():
+            places += struct.pack('<HQ', topic, self.bio.tell())
+            index = b''.join(starmap(_PLACE.pack, messages))
+            self.bio.write(struct.pack('<BQHI', INDEX, 6 + len(index), topic, len(index)) + index)
+        self.chunks.append(BytesIO())
+        self.chunks[-1].write(
+            struct.pack('<QQQQI', first, last, begin, end - begin, len(places)) + places
+            + struct.pack('<QIQQ', self.bio.tell() - end, 0, size, size))
+        self.chunk = PendingChunk(2 ** 63 - 1, 0, BytesIO(), defaultdict(list))
 
     def close(self, version, metadata):
         """Write the pending chunk and the tail."""
@@ -271,10 +313,15 @@ class _Storage(McapWriter):
             self.close_chunk()
         self.bio.begin_tail()
         try:
-            super().close(version, metadata.replace(*_DISTRO))
+            super().close(version, metadata)
         except BaseException:
             self.bio.drop_tail()
             raise
+
+    def move(self, path):
+        """Give the file another path on the same disk."""
+        os.rename(self.path, path)
+        self.path = path
 
     def abort(self):
         """Close the file on disk as it is."""
@@ -282,18 +329,29 @@ class _Storage(McapWriter):
 
 
 class _Writer(Writer):
-    """A Writer onto that storage; its close may be called again once storage is set again."""
+    """A Writer onto that storage, which can be closed again and again."""
 
     STORAGE_PLUGINS = {StoragePlugin.MCAP: _Storage}
+    _template = None    # of metadata.yaml
 
+    def close(self):
+        """Write what is pending, the index, and metadata.yaml, which is whole at all times."""
+        # As rosbags does, which makes it anew by a slow way.
+        if self._template is None:
+            self._template = metadata_template(self.storage.path.name, self.connections)
+        text = metadata_text(self._template, self.counts, self.min_timestamp, self.max_timestamp)
+        self.storage.close(self.version, inner_metadata(text))
+        temporary = self.metapath.with_name(f'{self.metapath.name}.tmp')
+        try:
+            temporary.write_text(text, 'utf8')
+            os.replace(temporary, self.metapath)
+        except BaseException:
+            with suppress(OSError):
+                temporary.unlink(missing_ok=True)
+            raise
 
-def _replace_text(path, old, new):
-    """Replace text in a file, which is whole at all times."""
-    temporary = _temporary(path)
-    temporary.write_text(path.read_text('utf8').replace(old, new), 'utf8')
-    os.replace(temporary, path)
-
-
-def _temporary(path):
-    """Return the path that Writer and _replace_text make a file at before they rename it."""
-    return path.with_name(f'{path.name}.tmp')
+    def move(self, path):
+        """Give the folder another path on the same disk."""
+        os.rename(self.path, path)
+        self.path, self.metapath = path, path / self.metapath.name
+        self.storage.path = path / self.storage.path.name

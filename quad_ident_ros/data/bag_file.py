@@ -120,6 +120,12 @@ class BagFile:
         return getattr(self._reader, 'recovered', False)
 
     @property
+    def skipped(self):
+        """How many of its parts (chunks) are damaged: their messages are left out."""
+        with self._guarded():
+            return getattr(self._reader, 'skipped', 0)
+
+    @property
     def topics(self):
         """Return the topics, by name; one of several types is there once for each."""
         counts = {}

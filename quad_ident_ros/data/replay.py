@@ -95,6 +95,12 @@ def read_bag(path):
     present = {name for _, name, _ in messages}
     topics = [name for name in FLIGHT_TOPICS if name in present]
     if not topics:
+        with BagFile(path) as bag:
+            empty = any(_TYPES.get(topic.name.rpartition('/')[2]) == topic.type
+                        for topic in bag.topics)
+        if empty:
+            raise InputError(f'{path}: has the topics of a flight and no message on them yet: its '
+                             'recorder heard none, or ended within its first second')
         raise InputError(f'{path}: has none of the topics {", ".join(FLIGHT_TOPICS)}; for those '
                          'of others give a mapping file (--mapping)')
     samples = [(space, name, message if name == RUN_TOPIC else _sample(path, name, message))

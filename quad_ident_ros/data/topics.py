@@ -13,6 +13,7 @@ import json
 
 import numpy as np
 
+from quad_ident_ros.data.cdr import Reader, stamped_numbers
 from quad_ident_ros.data.record import ARM, MOMENTS
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.attitude import rotation_matrix
@@ -20,12 +21,17 @@ from quad_ident_ros.model.attitude import rotation_matrix
 
 @dataclass(frozen=True)
 class FlightTopic:
-    """A topic: its message type, the raw columns it carries, and how to read them."""
+    """
+    A topic: its message type, the raw columns it carries, and how to read them.
+
+    values: of a message; read: as data.cdr.stamped_numbers, the same of a serialized one.
+    """
 
     name: str
     type: str
     columns: tuple
     values: Callable
+    read: Reader
 
 
 def _pose(message):
@@ -50,13 +56,17 @@ def _attitude(message):
 # The pose's height comes as `height`, so that the `altitude` topic, where joined, has the say.
 FLIGHT_TOPICS = {topic.name: topic for topic in (
     FlightTopic('attitude', 'geometry_msgs/msg/Vector3Stamped', ('phi', 'theta', 'psi'),
-                _attitude),
-    FlightTopic('altitude', 'geometry_msgs/msg/PointStamped', ('pz',), lambda m: (m.point.z,)),
+                _attitude, stamped_numbers(3, (0, 1, 2))),
+    FlightTopic('altitude', 'geometry_msgs/msg/PointStamped', ('pz',), lambda m: (m.point.z,),
+                stamped_numbers(3, (2,))),
     FlightTopic('pose', 'geometry_msgs/msg/PoseStamped',
-                ('px', 'py', 'height', 'qw', 'qx', 'qy', 'qz'), _pose),
+                ('px', 'py', 'height', 'qw', 'qx', 'qy', 'qz'), _pose,
+                stamped_numbers(7, (0, 1, 2, 6, 3, 4, 5))),
     FlightTopic('twist', 'geometry_msgs/msg/TwistStamped',
-                ('body_vx', 'body_vy', 'body_vz', 'wx', 'wy', 'wz'), _twist),
-    FlightTopic('input', 'geometry_msgs/msg/WrenchStamped', ('u1', *MOMENTS, 'u4'), _input),
+                ('body_vx', 'body_vy', 'body_vz', 'wx', 'wy', 'wz'), _twist,
+                stamped_numbers(6, range(6))),
+    FlightTopic('input', 'geometry_msgs/msg/WrenchStamped', ('u1', *MOMENTS, 'u4'), _input,
+                stamped_numbers(6, (2, 3, 4, 5))),
 )}
 
 RUN_TOPIC = 'run'

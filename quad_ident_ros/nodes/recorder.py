@@ -4,6 +4,7 @@
 
 import json
 import sys
+import time
 
 from diagnostic_msgs.msg import DiagnosticArray
 import geometry_msgs.msg
@@ -40,7 +41,8 @@ from quad_ident_ros.nodes.qos import BEST_EFFORT, latched, LOSSLESS
 from quad_ident_ros.nodes.recorder_parameters import mapped_topics, SPECS, validate
 from quad_ident_ros.nodes.waiting import take_waiting
 
-FLUSH_PERIOD = 0.5   # s; a kill -9 loses at most this much of a recording
+FLUSH_PERIOD = 0.5   # s; a kill -9 loses at most this much of a recording, or
+OVERDUE = 0.6        # s while messages wait, which the timer waits behind
 QUIET = 0.5          # s after the last message when the middleware is asked what it lost
 ACKNOWLEDGED = 10    # rows after which the publishers are told how far the joining is
 GONE = 2.0           # s after the last message when nothing more is to come, and
@@ -101,8 +103,10 @@ class Recorder(PackageNode):
                               'the parameter topics leaves topics out' if self._mapped is None
                               else 'a mapping names the topics that a row needs')
         self._announced = None
+        self._time = self.get_clock()
         self._steady = Clock(clock_type=ClockType.STEADY_TIME)
         self._recording = None
+        self._flushed = self._now()
         self._disk_error = None
         self._unreadable = None
         self._statistics = self.create_publisher(String, '~/statistics', latched())
@@ -220,17 +224,21 @@ class Recorder(PackageNode):
         self._losses[name] = Losses(subscription)
 
     def _on_message(self, topic, kind, raw):
-        self._last_message = self._now()
-        message = deserialize_message(raw, kind)
+        now = self._last_message = self._now()
+        sample = topic.read(raw)
+        if sample is None:
+            message = deserialize_message(raw, kind)
+            sample = stamp_ns(message), topic.values(message)
         self._write(topic.name, raw)
-        restarts = self.counts.restarts
-        interpolated = self._joiner.interpolates
-        rows = self._joiner.add(topic.name, stamp_ns(message), topic.values(message))
-        if self._joiner.interpolates and not interpolated:
+        joiner, counts = self._joiner, self.counts
+        restarts, interpolated = counts.restarts, joiner.interpolates
+        rows = joiner.add(topic.name, *sample)
+        if joiner.interpolates and not interpolated:
             self.get_logger().warning(self._between())
         self._keep(rows)
-        if self.counts.restarts != restarts:
+        if counts.restarts != restarts and counts is self.counts:
             self.get_logger().warning('the clock of the messages went back: a new record begins')
+        self._flush_when_due(now)
 
     def _between(self):
         """Return how rows come about where the stamps are not what they should be, or ''."""
@@ -242,8 +250,9 @@ class Recorder(PackageNode):
                 f'{self._joiner.base}, within {self._config["gap"]:g} s (parameter gap)')
 
     def _on_mapped(self, name, kind, raw):
-        self._last_message = self._now()
+        now = self._last_message = self._now()
         self._write(name, raw)
+        self._flush_when_due(now)
         by_receipt = self._mapped.by_receipt
         try:
             samples = self._mapped.samples(name, self._types[name],
@@ -266,8 +275,12 @@ class Recorder(PackageNode):
 
     def _write(self, name, raw):
         if self._recording is not None:
-            now = self.get_clock().now().nanoseconds
-            self._on_disk(lambda: self._recording.write(name, now, raw))
+            now = (self._time.now().nanoseconds if self._time.ros_time_is_active
+                   else time.time_ns())     # the same, ten times faster
+            try:
+                self._recording.write(name, now, raw)
+            except OSError as error:
+                self._stop_recording(error)
 
     def _on_run(self, raw):
         self._write(RUN_TOPIC, raw)
@@ -331,14 +344,23 @@ class Recorder(PackageNode):
             self._keep(self._joiner.drain())
             if self._buffer.run_name:
                 self._publish(lambda buffer: buffer.complete(run_over=True))
-        if self._recording is not None:
-            self._on_disk(self._recording.flush)
+        self._flush()
         self._adapt()
         if self._mapped is not None:
             self._look_for_topics()
 
+    def _flush_when_due(self, now):
+        """Flush what was recorded where the timer did not: it waits while messages do."""
+        if now - self._flushed > OVERDUE:
+            self._flush()
+
+    def _flush(self):
+        if self._recording is not None:
+            self._on_disk(self._recording.flush)
+        self._flushed = self._now()
+
     def _now(self):
-        return self._steady.now().nanoseconds * 1e-9
+        return time.monotonic()
 
     def _silence(self):
         """Return the time since the last message, s; 0 before the first, or once given up."""
@@ -369,16 +391,19 @@ class Recorder(PackageNode):
         try:
             action()
         except OSError as error:
-            recording, self._recording = self._recording, None
-            where = recording.folder if recording else self._config['output']
-            self._disk_error = (f'{where}: recording stopped: {error.strerror or error}; what was '
-                                'written stays, the run goes on in memory')
-            self.get_logger().error(self._disk_error)
-            if recording is not None:
-                try:
-                    recording.close()
-                except OSError:
-                    pass   # it has been said
+            self._stop_recording(error)
+
+    def _stop_recording(self, error):
+        recording, self._recording = self._recording, None
+        where = recording.folder if recording else self._config['output']
+        self._disk_error = (f'{where}: recording stopped: {error.strerror or error}; what was '
+                            'written stays, the run goes on in memory')
+        self.get_logger().error(self._disk_error)
+        if recording is not None:
+            try:
+                recording.close()
+            except OSError:
+                pass   # it has been said
 
     def _apart(self):
         """Say that the stamps of the topics are too far apart."""

@@ -3,14 +3,16 @@
 """What the recorder writes: it is what was published, and it survives kill -9 and full disks."""
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
-from graph import stamps_of, STREAMS, Vehicle, write_experiment
+from graph import sample, stamps_of, STREAMS, Vehicle, write_experiment
 import numpy as np
 import pytest
+from rclpy.serialization import serialize_message
 from std_msgs.msg import Float64MultiArray, String
 
 from quad_ident_ros.data.bag_file import read_bag_messages
 from quad_ident_ros.data.csv import read_csv
 from quad_ident_ros.data.replay import read_bag
+from quad_ident_ros.nodes import recorder as recorder_module
 from quad_ident_ros.nodes.qos import latched
 from quad_ident_ros.nodes.recorder import Recorder
 from quad_ident_ros.nodes.simulator import Simulator
@@ -101,6 +103,18 @@ def test_kill_9_loses_at_most_the_last_second(graph, processes, tmp_path, second
     assert flight.info['start_ns'] == stamps_of(wire)[0]
     assert max(lost.values()) <= 1.0
     assert flight.info['run'] == 'psi'
+
+
+def test_a_recorder_that_is_behind_flushes_all_the_same(fast_graph, tmp_path, monkeypatch):
+    """Its timer waits behind the messages: here, it never has its turn."""
+    recorder = fast_graph.start(Recorder, {'output': str(tmp_path)})
+    monkeypatch.setattr(recorder_module, 'OVERDUE', 0.0)
+    for k in range(30):
+        for name in STREAMS:
+            message = sample(name, SECOND + k * 10 ** 7)
+            recorder._subscriptions_by_topic[name].callback(serialize_message(message))
+    [flight] = read_bag(tmp_path / 'recording_1/bag')
+    assert len(flight) == len(read_csv(tmp_path / 'recording_1/flight_1.csv')) == 30
 
 
 def test_a_recorder_that_was_killed_goes_on_in_a_new_folder(graph, processes, tmp_path):

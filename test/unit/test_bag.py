@@ -106,6 +106,29 @@ def test_an_empty_bag_is_a_bag(tmp_path):
         assert sorted(reader.topics) == ['/cmd', '/wind', '/wind2']
 
 
+BEGINNING = """
+import os
+import sys
+from quad_ident_ros.data import bag
+from test_bag import *
+
+setattr(bag._Writer, sys.argv[2], lambda *_, **__: os._exit(9))
+BagWriter(sys.argv[1], TOPICS)
+"""
+
+
+@pytest.mark.parametrize('step', ['add_connection', 'close', 'move'])
+def test_a_folder_that_is_there_is_a_bag(tmp_path, step):
+    """A process that ends at once while it makes one leaves none that cannot be read."""
+    done = subprocess.run([sys.executable, '-c', BEGINNING, str(tmp_path / 'bag'), step],
+                          cwd=str(Path(__file__).parent), check=False,
+                          env={**os.environ, 'PYTHONPATH': os.pathsep.join(sys.path)})
+    assert done.returncode == 9 and not (tmp_path / 'bag').exists()
+    with BagWriter(tmp_path / 'bag', TOPICS) as writer:
+        fill(writer, 0, 10)
+    assert os.listdir(tmp_path) == ['bag'] and numbers(tmp_path / 'bag') == swapped(10)
+
+
 def test_nothing_on_disk_changes_between_flushes(tmp_path):
     """Even messages that fill several chunks leave the file of the last flush whole."""
     path = tmp_path / 'bag'
@@ -253,12 +276,12 @@ def test_a_kill_within_a_flush_loses_nothing_that_was_whole(tmp_path, more):
         assert got in (swapped(80), swapped(80 + more)), place
         complete.add(len(got))
         assert numbers(path / 'bag.mcap') == got
-        with BagFile(path) as bag:
-            recovered += bag.recovered
+        with BagFile(path) as read:
+            recovered += read.recovered
     assert len(complete) == 2 and recovered > 10
     (path / 'bag.mcap').write_bytes(after)
-    with BagFile(path) as bag:
-        assert not bag.recovered
+    with BagFile(path) as read:
+        assert not read.recovered
     writer.close()
 
 
@@ -281,6 +304,34 @@ def test_a_bag_that_is_cut_off_is_read_as_far_as_it_goes(tmp_path):
             counts.append(len(got))
             assert got == swapped(len(got))
     assert counts == sorted(counts, reverse=True) and set(counts) == {100, 80, 60, 40, 20, 0, -1}
+
+
+@pytest.mark.parametrize('end', [True, False], ids=['with its end', 'without'])
+@pytest.mark.parametrize('damage', ['content', 'length', 'everything'])
+def test_a_damaged_chunk_is_left_out_and_the_others_are_read(tmp_path, damage, end):
+    """Also those behind it, whatever of it is damaged, and how many are is said."""
+    path = tmp_path / 'bag'
+    with BagWriter(path, TOPICS) as writer:
+        for k in range(5):
+            fill(writer, 20 * k, 20 * k + 20)
+            writer.flush()
+    data = bytearray(files(path)['bag.mcap'])
+    with BagFile(path) as read:
+        places = [one.chunk_start_offset for one in read._reader.storages[0].chunks]
+        assert read.skipped == 0
+    begin, behind = places[2], places[3]
+    if damage == 'content':
+        data[begin + 200] ^= 1
+    elif damage == 'length':
+        data[begin + 1] ^= 4
+    else:
+        data[begin:behind] = np.random.default_rng(1).bytes(behind - begin)
+    (path / 'bag.mcap').write_bytes(data if end else data[:-100])
+    for place in (path, path / 'bag.mcap'):
+        kept = end and damage == 'length'   # the index says it too
+        assert numbers(place) == [k for k in swapped(100) if kept or not 20 <= k < 40]
+        with BagFile(place) as read:
+            assert (read.skipped, read.recovered) == (0 if kept else 1, not end)
 
 
 @pytest.mark.parametrize('room', [0, 1, 700, 3000])

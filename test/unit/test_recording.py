@@ -152,6 +152,11 @@ def test_a_recording_that_was_killed_within_a_flush_is_read_and_says_so(tmp_path
     [flight] = load_all(recording.folder)
     check(flight, 0, 700)
     assert 'notes' not in flight.info
+    path.write_bytes(after[:begin + 1000] + b'damaged' + after[begin + 1007:])
+    [flight] = load_all(recording.folder)
+    check(flight, 0, 500)
+    assert flight.info['notes'] == ['damaged parts (chunks) of the bag were left out, with all '
+                                    'their messages: 1']
     recording.close()
 
 
@@ -227,7 +232,7 @@ def test_a_bag_tells_what_it_lacks(tmp_path):
     ([('/a/altitude', FLIGHT_TOPICS['altitude'].type),
       ('/b/altitude', FLIGHT_TOPICS['altitude'].type)], r'several vehicles \(2 namespaces\)'),
     ([('/chatter', RUN_TYPE)], 'has none of the topics attitude, altitude'),
-    ([('/altitude', FLIGHT_TOPICS['altitude'].type)], 'has none of the topics attitude, altitude'),
+    ([('/altitude', FLIGHT_TOPICS['altitude'].type)], 'no message on them yet'),
 ])
 def test_a_bag_without_a_flight_is_refused(tmp_path, topics, said):
     with BagWriter(tmp_path / 'bag', topics) as writer:

@@ -13,6 +13,7 @@ from quad_ident_ros.data.replay import in_recording, is_recorded, read_bag
 
 NO_END = ('the bag has no end, as where its recorder was killed or the disk was full: read are '
           'the messages before that')
+SKIPPED = 'damaged parts (chunks) of the bag were left out, with all their messages: {}'
 
 
 def tells(path, start):
@@ -27,13 +28,14 @@ def read(path, mapping=None, vehicle=None):
     else:
         records = read_mapped_bag(path, mapping or Mapping())
     with BagFile(in_recording(path)) as bag:
-        recovered = bag.recovered
-    return [_noted(record) for record in records] if recovered else records
+        notes = [*([NO_END] if bag.recovered else ()),
+                 *([SKIPPED.format(bag.skipped)] if bag.skipped else ())]
+    return [_noted(record, notes) for record in records] if notes else records
 
 
-def _noted(record):
-    """Return a record of a bag without end, which says so."""
-    return replace(record, info={**record.info, 'notes': [*record.info.get('notes', ()), NO_END]})
+def _noted(record, notes):
+    """Return a record that says more."""
+    return replace(record, info={**record.info, 'notes': [*record.info.get('notes', ()), *notes]})
 
 
 READER = Reader('rosbag2', 'a bag of ROS 2', tells, read, topics_of,
