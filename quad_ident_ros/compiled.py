@@ -33,8 +33,9 @@ def is_trusted(folder: str | Path) -> bool:
     """
     Return whether what lies in a folder is there by this user or root: it is executed as it is.
 
-    The folder and the one that it lies in must be theirs, and not for everybody to write to
-    unless, as among temporary files, only the owner of a file can take it away.
+    The folder and the one that it lies in must be theirs, and not for everybody or a group to
+    write to, but for the group of this user alone, and unless, as among temporary files, only the
+    owner of a file can take it away.
     """
     try:
         real = os.path.realpath(folder)
@@ -42,8 +43,25 @@ def is_trusted(folder: str | Path) -> bool:
     except OSError:
         return False
     users = {0, os.geteuid()} if hasattr(os, 'geteuid') else {own.st_uid, above.st_uid}
-    return (own.st_uid in users and above.st_uid in users and not own.st_mode & stat.S_IWOTH
-            and not (above.st_mode & stat.S_IWOTH and not above.st_mode & stat.S_ISVTX))
+    return (own.st_uid in users and above.st_uid in users and not _others_write(own)
+            and (not _others_write(above) or bool(above.st_mode & stat.S_ISVTX)))
+
+
+def _others_write(status: os.stat_result) -> bool:
+    """Return whether others than this user may write to what has a status."""
+    if status.st_mode & stat.S_IWOTH:
+        return True
+    return bool(status.st_mode & stat.S_IWGRP) and not _is_own_group(status.st_gid)
+
+
+def _is_own_group(gid: int) -> bool:
+    """Return whether a group is this user's alone: it has the name of the user."""
+    try:
+        import grp
+        import pwd
+        return grp.getgrgid(gid).gr_name == pwd.getpwuid(os.geteuid()).pw_name
+    except (ImportError, KeyError):     # no such group or user, or another system
+        return False
 
 
 FUNCTIONS: list[Any] = []

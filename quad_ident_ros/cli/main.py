@@ -7,6 +7,7 @@ import importlib
 import sys
 
 from quad_ident_ros import __version__
+from quad_ident_ros.cli.node import NODES
 from quad_ident_ros.errors import InputError
 
 COMMANDS = {
@@ -61,6 +62,8 @@ def main(args=None):
     """Run a command and return the exit code: 0, or 2 with one line on standard error."""
     words = sys.argv[1:] if args is None else args
     top = parser(words[:1])
+    if words and words[0] in NODES:
+        top.error(f'{words[0]} is a node, not a command; did you mean: node {words[0]}')
     options = top.parse_args(words)
     if options.command is None:
         top.print_help()

@@ -133,7 +133,7 @@ def _value(argument: Argument, values: Mapping[str, str]) -> object:
         return text
     try:
         value = yaml.safe_load(text)
-    except yaml.YAMLError:
+    except (yaml.YAMLError, ValueError, RecursionError):    # ValueError: a day that is none
         value = None
     if argument.kind is bool:
         if not isinstance(value, bool):
@@ -142,10 +142,13 @@ def _value(argument: Argument, values: Mapping[str, str]) -> object:
     if argument.kind is list:
         if not isinstance(value, list):
             raise InputError(f"{where}: expected a list, for example \"['a', 'b']\", got {text!r}")
+        if all(isinstance(one, str) for one in value):
+            return value
+        if not all(isinstance(one, int | float) and not isinstance(one, bool) for one in value):
+            raise InputError(f'{where}: expected texts or numbers in the list, got {text!r}; put '
+                             'quotes around what is text')
         # A whole number among numbers is one of them.
-        numbers = value and all(isinstance(one, int | float) and not isinstance(one, bool)
-                                for one in value)
-        return [float(one) for one in value] if numbers else value
+        return [float(schema.number(where, one)) for one in value]
     number = schema.number(where, value)
     if argument.kind is int and number != int(number):
         raise InputError(f'{where}: expected a whole number, got {text!r}')

@@ -41,6 +41,13 @@ def test_help_of_every_command_names_it(capsys):
         assert command in capsys.readouterr().out
 
 
+def test_a_node_that_is_taken_for_a_command_is_told_how_to_start(capsys):
+    with pytest.raises(SystemExit) as end:
+        main(['simulator', '--ros-args'])
+    assert end.value.code == 2
+    assert 'did you mean: node simulator' in capsys.readouterr().err
+
+
 def test_simulate_writes_what_the_library_flies(flights):
     experiment = load_experiment('small_angle')
     for run in experiment.runs:

@@ -91,6 +91,20 @@ def test_a_folder_of_ones_own_is_trusted_and_one_that_is_not_there_is_not(tmp_pa
     assert not compiled.is_trusted(tmp_path / 'none')
 
 
+@pytest.mark.skipif(os.geteuid() != 0, reason='only root can give a folder to another group')
+def test_a_folder_for_a_group_to_write_to_is_trusted_where_the_group_is_the_users(tmp_path):
+    for name, gid, trusted in (('own', os.getegid(), True), ('nobody', 65534, False)):
+        (tmp_path / name / 'inside').mkdir(parents=True)
+        for path in (tmp_path / name, tmp_path / name / 'inside'):
+            os.chown(path, -1, gid)
+            path.chmod(0o770)
+            compiled.is_trusted.cache_clear()
+            assert compiled.is_trusted(tmp_path / name / 'inside') is trusted
+            path.chmod(0o750)
+        compiled.is_trusted.cache_clear()
+        assert compiled.is_trusted(path)
+
+
 def test_a_numba_that_keeps_in_another_way_compiles_at_each_start(monkeypatch):
     class Other:
 

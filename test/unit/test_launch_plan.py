@@ -55,6 +55,12 @@ def test_lists_and_numbers_arrive_as_such():
 @pytest.mark.parametrize(('values', 'said'), [
     ({'effects': 'wind:x=3'}, 'effects: expected a list'), ({'simulate': 'perhaps'}, 'simulate'),
     ({'seed': '1.5'}, 'seed: expected a whole number'), ({'overlap': 'much'}, 'overlap'),
+    ({'effects': '[2026-11-23]'}, 'effects: expected texts or numbers'),
+    ({'topics': '[[input]]'}, 'topics: expected texts or numbers'),
+    ({'trim': '[1, true, 0, 0]'}, 'trim: expected texts or numbers'),
+    ({'trim': '[.nan, 0, 0, 0]'}, 'trim'),
+    ({'effects': '[2026-99-99]'}, 'effects: expected a list'),
+    ({'trim': '[' * 5000}, 'trim: expected a list'),
     ({'window': '[1'}, 'window'), ({'params_file': '/nowhere.yaml'}, 'cannot be read')])
 def test_bad_arguments_are_refused_by_name(values, said):
     with pytest.raises(InputError, match=said):
