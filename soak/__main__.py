@@ -8,12 +8,13 @@ import sys
 from benchmarks.tables import markdown
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.warm_up import warm_up, warm_up_diagnosis
-from soak import busy, disks, hours, kills, streams
+from soak import busy, disks, hours, kills, parameters, streams
 
-CASES = {'disks': disks.run, 'streams': streams.run, 'kills': kills.run, 'busy': busy.run,
-         'hours': hours.run}
+CASES = {'disks': disks.run, 'streams': streams.run, 'parameters': parameters.run,
+         'kills': kills.run, 'busy': busy.run, 'hours': hours.run}
+SHORT = ('disks', 'streams', 'parameters', 'kills')     # what holds however loaded a machine is
 KILLS, SECONDS = 5, 120.0
-SHORT_KILLS, SHORT_SECONDS = 1, 20.0
+SHORT_KILLS, SHORT_SECONDS, SHORT_RATES = 1, 20.0, (100,)
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -27,24 +28,31 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument('--seconds', type=float,
                         help=f'of the long flight, and at most a minute of the busy one '
                         f'({SECONDS:g}); 3600 for an hour')
+    parser.add_argument('--count', type=int, default=parameters.COUNT,
+                        help='inputs to parameters (%(default)s)')
+    parser.add_argument('--seed', type=int, default=0, help='of these (%(default)s)')
     parser.add_argument('--short', action='store_true',
-                        help=f'{SHORT_KILLS} kill, {SHORT_SECONDS:g} s: to see that it works')
+                        help=f'two minutes of {", ".join(SHORT)}: {SHORT_KILLS} kill at '
+                        f'{SHORT_RATES[0]} Hz, {parameters.SHORT_COUNT} inputs; on a loaded '
+                        'machine it takes longer, and holds')
     options = parser.parse_args(arguments)
     for name in options.cases:
         if name not in CASES:
             parser.error(f'{name}: no such case, expected one of {", ".join(CASES)}')
     kills_ = options.kills or (SHORT_KILLS if options.short else KILLS)
     seconds = options.seconds or (SHORT_SECONDS if options.short else SECONDS)
-    if kills_ < 1 or not 10.0 <= seconds <= 3600.0:
-        parser.error('expected at least one kill, and 10 to 3600 seconds')
+    if kills_ < 1 or options.count < 1 or not 10.0 <= seconds <= 3600.0:
+        parser.error('expected at least one kill and one input, and 10 to 3600 seconds')
     # Else the nodes would compile while they are looked at.
     warm_up()
     warm_up_diagnosis()
     findings = []
-    for name in options.cases or CASES:
+    rates = SHORT_RATES if options.short else kills.RATES
+    for name in options.cases or (SHORT if options.short else CASES):
         print(f'{name} ...', file=sys.stderr, flush=True)
         try:
-            findings += CASES[name](kills=kills_, seconds=seconds)
+            findings += CASES[name](kills=kills_, seconds=seconds, rates=rates,
+                                    count=options.count, seed=options.seed, short=options.short)
         except InputError as error:
             print(f'./run soak: {name}: {error}', file=sys.stderr)
             return 2

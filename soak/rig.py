@@ -11,13 +11,18 @@ from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PointStamped
-from std_msgs.msg import String
+from rclpy.qos import QoSProfile, ReliabilityPolicy
+from std_msgs.msg import String, UInt64
 
-from quad_ident_ros.data.topics import stamp_ns
+from quad_ident_ros.data.topics import FLIGHT_TOPICS, JOINED_TOPIC
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.nodes.qos import latched, STREAM
+from quad_ident_ros.nodes.qos import latched
 
-PATIENCE = 120.0    # s after which something is wrong
+PATIENCE = 120.0    # s after which something is wrong, on a machine that does nothing else
+SLOWEST = 10.0      # times longer, at most, on one that does
+SAMPLE = 0.05       # s of computing that tell how much slower it is
+# The newest sample alone: a watcher is not to keep anybody waiting, nor busy itself.
+NEWEST = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
 @dataclass(frozen=True)
@@ -31,25 +36,33 @@ class Finding:
 
 
 class Watch:
-    """Hears the account of the recorder, the newest stamp on the wire and who lives."""
+    """
+    Hears the account of the recorder, how far it is, the newest stamp on the wire and who lives.
+
+    newest, joined: stamps (ns) of the newest sample, and of the last that the recorder joined.
+    """
 
     def __init__(self, node: Any, executor: Any) -> None:
         self.node, self._executor = node, executor
         self.account: dict = {}
-        self.newest = 0
+        self.newest = self.joined = 0
         self.heard: dict[str, float] = {}
         self.results: list = []
         node.create_subscription(String, 'recorder/statistics', self._on_account, latched())
-        node.create_subscription(PointStamped, 'altitude', self._on_sample, STREAM)
+        node.create_subscription(PointStamped, 'altitude', self._on_sample, NEWEST, raw=True)
+        node.create_subscription(UInt64, JOINED_TOPIC, self._on_joined, 10)
         node.create_subscription(DiagnosticArray, '/diagnostics', self._on_status, 10)
         node.create_subscription(String, 'parameters_json', self._on_result, latched())
 
     def _on_account(self, message: String) -> None:
         self.account = json.loads(message.data)
 
-    def _on_sample(self, message: PointStamped) -> None:
-        self.newest = stamp_ns(message)
+    def _on_sample(self, raw: bytes) -> None:
+        self.newest = FLIGHT_TOPICS['altitude'].read(raw)[0]
         self.heard['simulator'] = time.monotonic()
+
+    def _on_joined(self, message: UInt64) -> None:
+        self.joined = message.data
 
     def _on_status(self, message: DiagnosticArray) -> None:
         for status in message.status:
@@ -59,19 +72,35 @@ class Watch:
         self.results.append((time.time(), message.data))
 
     def until(self, done: Callable[[], Any], what: str, patience: float = PATIENCE) -> float:
-        """Spin until something holds and return how long that took, s; raises InputError."""
-        begin = time.monotonic()
+        """
+        Spin until something holds and return how long that took, s.
+
+        Raises InputError after the patience (s), which is longer where others keep the machine
+        busy.
+        """
+        begin, slower = time.monotonic(), 1.0
         while not done():
             self._executor.spin_once(timeout_sec=0.02)
-            if time.monotonic() - begin > patience:
-                raise InputError(f'after {patience:g} s still waiting for {what}; the account of '
-                                 f'the recorder: {self.account}')
+            if time.monotonic() - begin > slower * patience:
+                now = slowness()
+                if now <= slower:
+                    raise InputError(f'after {slower * patience:.0f} s still waiting for {what}; '
+                                     f'the account of the recorder: {self.account}')
+                slower = now
         return time.monotonic() - begin
 
     def wait(self, seconds: float) -> None:
         """Spin for a while."""
         end = time.monotonic() + seconds
         self.until(lambda: time.monotonic() > end, 'time to pass', seconds + PATIENCE)
+
+
+def slowness() -> float:
+    """Return how many times longer computing takes than on a core that is free, at least 1."""
+    begin, used = time.monotonic(), time.process_time()
+    while time.process_time() - used < SAMPLE:
+        pass
+    return min(max((time.monotonic() - begin) / SAMPLE, 1.0), SLOWEST)
 
 
 def memory_of(process: Any) -> float:

@@ -19,9 +19,9 @@ SECOND = 10 ** 9
 PLACES = ('joined', 'dropped', 'late', 'duplicated', 'out_of_order', 'nan')
 
 
-def run(**_: object) -> list[Finding]:
-    """Return a Finding for each kind of trouble."""
-    return [_one(name, trouble) for name, trouble in TROUBLES.items()]
+def run(short: bool = False, **_: object) -> list[Finding]:
+    """Return a Finding for each kind of trouble; short: of the first two."""
+    return [_one(name, trouble) for name, trouble in list(TROUBLES.items())[:2 if short else None]]
 
 
 class Source:

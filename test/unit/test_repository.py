@@ -23,7 +23,7 @@ def test_style():
     assert done.returncode == 0, done.stdout
 
 
-PARTS = ('benchmarks', 'docs', 'launch', 'quad_ident_ros', 'scripts', 'test', 'withheld')
+PARTS = ('benchmarks', 'docs', 'launch', 'quad_ident_ros', 'scripts', 'soak', 'test', 'withheld')
 
 
 @pytest.mark.parametrize('path', [ROOT / 'setup.py', *sorted(
@@ -60,6 +60,21 @@ def _flat(mapping, prefix=''):
             yield from _flat(value, f'{prefix}{key}.')
         else:
             yield prefix + key, value
+
+
+@pytest.mark.parametrize('name', ['requirements.txt', '.ci/requirements-ament.txt',
+                                  '.ci/requirements-colcon.txt'])
+def test_what_is_installed_is_pinned_with_checksums_and_from_no_named_host(name):
+    text = re.sub('#.*', '', (ROOT / name).read_text(encoding='utf-8'))
+    entries = text.replace('\\\n', ' ').split('\n')
+    entries = [entry.split('--hash=') for entry in entries if entry.strip()]
+    assert len(entries) > 10
+    for pin, *checksums in entries:
+        assert re.fullmatch(r'[a-z0-9-]+==[0-9.]+( ; [a-z_]+ [=!<>]+ .*)? +', pin), pin
+        assert checksums and all(re.fullmatch(r'sha256:[0-9a-f]{64} *', one) for one in checksums)
+    # pip takes no checksums with packages that have none.
+    assert {pin.split('==')[0] for pin, *_ in entries} >= ({'numpy', 'ros-jazzy-rclpy'} if name
+                                                           == 'requirements.txt' else set())
 
 
 def test_the_readme_calls_commands_that_exist():
