@@ -1,7 +1,9 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Text files that are written whole or not at all."""
+"""Files that are written whole or not at all."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 import os
 from pathlib import Path
 
@@ -16,9 +18,25 @@ def write_whole(path: str | Path, text: str) -> None:
     if path.exists() and not path.is_file():
         path.write_text(text, encoding='utf-8')
         return
-    temporary = path.with_name(f'.{path.name}.{os.getpid()}.tmp')
-    try:
+    with replacing(path) as temporary:
         temporary.write_text(text, encoding='utf-8')
+
+
+@contextmanager
+def replacing(path: str | Path) -> Iterator[Path]:
+    """
+    Give a path to write to, of the same ending, which takes the place of a file at the end.
+
+    Where that fails, what was there before stays. Raises OSError with the name of that file.
+    """
+    path = Path(path).resolve()
+    temporary = path.with_name(f'.{os.getpid()}.{path.name}')
+    try:
+        yield temporary
         temporary.replace(path)
+    except OSError as error:
+        error.filename, error.filename2 = str(path), None   # the one that was asked for
+        raise
     finally:
-        temporary.unlink(missing_ok=True)
+        with suppress(OSError):     # on a disk that has become read-only, it stays
+            temporary.unlink(missing_ok=True)

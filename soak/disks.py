@@ -22,7 +22,56 @@ COMMANDS = {
     'diagnose --json': ('json', f'diagnose {FLIGHT} --vehicle hummingbird --json {{out}}'),
     'diagnose --report': ('html', f'diagnose {FLIGHT} --vehicle hummingbird --report {{out}}'),
 }
+ROOT = str(Path(__file__).resolve().parents[1])
 KEPT = 'what was there before\n'
+# What each command writes into the folder `in`, and the file of it that is there before.
+WRITTEN = {
+    **{title: (f'in/out.{ending}', words.format(out=f'in/out.{ending}'))
+       for title, (ending, words) in COMMANDS.items()},
+    'diagnose --out-vehicle': ('in/out.yaml', f'diagnose {FLIGHT} --vehicle hummingbird '
+                               '--out-vehicle in/out.yaml'),
+    'paper': ('in/paper.html', 'paper --preset paper_table3 --seeds 1 -o in'),
+    'demo': ('in/kept', 'demo -o in'),
+    'demo --gap': ('in/kept', 'demo --gap -o in'),
+}
+# Runs a command, which meets what happens just when it opens or renames its first file in `in`.
+CHILD = """
+import os
+import shutil
+import subprocess
+import sys
+
+place, event, what = sys.argv[1:4]
+happened = False
+
+def hook(name, values):
+    global happened
+    if happened or name != event or not isinstance(values[0], str | os.PathLike):
+        return
+    if name == 'open' and not values[2] & (os.O_WRONLY | os.O_RDWR):
+        return
+    if os.path.abspath(values[0]).startswith(f'{place}/in/'):
+        happened = True
+        if what == 'gone':
+            shutil.rmtree(f'{place}/in')
+        else:
+            subprocess.run(['mount', '-o', 'remount,ro', place], check=True)
+
+sys.addaudithook(hook)
+from quad_ident_ros.cli.main import main
+code = main(sys.argv[4:])
+sys.exit(code if happened else 99)
+"""
+# On a disk in memory of its own: its content is all that is said on standard output.
+MOUNTED = """
+mount -t tmpfs none "$1" && cp "$2" "$1" && cd "$1" && mkdir in && printf %s "$4" > "$3" || exit 98
+kept=$3
+shift 4
+"$@" > /dev/null
+code=$?
+cat "$kept" 2> /dev/null
+exit $code
+"""
 
 
 SHORT = ('fly', 'convert to CSV', 'convert to a bag')
@@ -37,10 +86,30 @@ def run(short: bool = False, **_: object) -> list[Finding]:
         if made.returncode:
             return [Finding('disk', 'a flight', made.stderr.strip(), False)]
         (folder / 'file').write_text('x')
-        return [finding for title, (ending, words) in COMMANDS.items()
-                if not short or title in SHORT for finding in (
-            _full(title, words, folder, f'out.{ending}'),
-            _gone(title, words, folder, f'file/out.{ending}'))]
+        found = [finding for title, (ending, words) in COMMANDS.items()
+                 if not short or title in SHORT for finding in (
+                     _full(title, words, folder, f'out.{ending}'),
+                     _gone(title, words, folder, f'file/out.{ending}'))]
+        if subprocess.run(['unshare', '-m', 'true'], capture_output=True, check=False).returncode:
+            return found    # only root may mount
+        return found + [_halfway(title, file, words, folder, event, what)
+                        for title, (file, words) in WRITTEN.items()
+                        if not short or title in SHORT
+                        for event in ('open', 'os.rename') for what in ('read-only', 'gone')
+                        # A demo renames nothing itself.
+                        if not (event == 'os.rename' and title == 'demo')]
+
+
+def _halfway(title: str, file: str, words: str, folder: Path, event: str,
+             what: str) -> Finding:
+    """Have the disk become read-only, or the folder go, while a command writes."""
+    place = folder / 'mounted'
+    place.mkdir(exist_ok=True)
+    done = subprocess.run(
+        ['unshare', '-m', 'sh', '-c', MOUNTED, 'sh', str(place), str(folder / FLIGHT), file, KEPT,
+         sys.executable, '-c', CHILD, str(place), event, what, *words.split()],
+        env={**os.environ, 'PYTHONPATH': ROOT}, capture_output=True, text=True, check=False)
+    return _finding(f'{what} at {event}', title, done, what == 'gone' or done.stdout == KEPT)
 
 
 def _full(title: str, words: str, folder: Path, out: str) -> Finding:
@@ -68,8 +137,7 @@ def _quad_ident(words: str, folder: Path, full: bool = False) -> subprocess.Comp
     def limit() -> None:
         resource.setrlimit(resource.RLIMIT_FSIZE, (LIMIT, LIMIT))
 
-    root = str(Path(__file__).resolve().parents[1])
     # What is compiled has to be kept elsewhere: it would not fit either.
     return subprocess.run([sys.executable, '-m', 'quad_ident_ros', *words.split()], cwd=folder,
-                          env={**os.environ, 'PYTHONPATH': root}, capture_output=True, text=True,
+                          env={**os.environ, 'PYTHONPATH': ROOT}, capture_output=True, text=True,
                           preexec_fn=limit if full else None, check=False)

@@ -6,7 +6,6 @@ from collections import Counter
 import csv
 import gzip
 import io
-import os
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +16,7 @@ from quad_ident_ros.data.plain_numbers import plain_numbers
 from quad_ident_ros.data.record import faulty, find_fault, FlightRecord, unit
 from quad_ident_ros.data.text_lines import error_at, rows_of
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.whole_file import replacing
 
 _PENDING_BYTES = 1 << 16    # that are written at once: a call for each line would cost more
 
@@ -67,15 +67,8 @@ def write_csv(path, record):
     data += _lines([record.t, *record.columns.values()])
     if path.suffix == '.gz':
         data = gzip.compress(data, compresslevel=6, mtime=0)
-    temporary = path.with_name(f'.{path.name}.{os.getpid()}.tmp')
-    try:
+    with replacing(path) as temporary:
         temporary.write_bytes(data)
-        temporary.replace(path)
-    except OSError as error:
-        error.filename = str(path)   # the one that was asked for
-        raise
-    finally:
-        temporary.unlink(missing_ok=True)
 
 
 class CsvAppender:

@@ -63,10 +63,21 @@ def run_demo(options, on_progress):
     watcher = Watcher(len(experiment.runs), 'identifier', 'parameters_json', on_progress)
     watch(watcher, nodes, folder.resolve() / 'log')
     pairs, _ = collect(watcher.records, Settings())
-    recording = folder / Path(watcher.statistics['recording']).name
+    recording = recording_of(watcher.statistics, folder)
     return Outcome(from_data(watcher.result, pairs), str(folder), str(recording),
                    time.monotonic() - started, watcher.statistics['joined'],
                    watcher.statistics['missing'])
+
+
+def recording_of(account, folder):
+    """
+    Return the path of the recording that the account of a recorder names, in a folder.
+
+    Raises InputError where the disk refused it.
+    """
+    if account['recording'] is None:
+        raise InputError(account['disk_error'])
+    return folder / Path(account['recording']).name
 
 
 def prepared(output):

@@ -10,7 +10,7 @@ from quad_ident_ros.errors import InputError
 from quad_ident_ros.experiment import CLOSED_LOOP, load_experiment
 from quad_ident_ros.flight.secret import draw_reality
 from quad_ident_ros.model.vehicle import load_vehicle, write_vehicle
-from quad_ident_ros.nodes.demo import prepared, watch, Watcher
+from quad_ident_ros.nodes.demo import prepared, recording_of, watch, Watcher
 
 NOMINAL, REALITY = 'nominal.yaml', 'reality.yaml'
 
@@ -66,7 +66,7 @@ def run_gap_demo(options, on_progress):
                       'vehicle': str(reality), 'seed': options.seed,
                       'real_time_factor': float(options.real_time_factor)},
     }, output / 'log')
-    recording = folder / Path(watcher.statistics['recording']).name
+    recording = recording_of(watcher.statistics, folder)
     return GapOutcome(watcher.result, load_vehicle(reality).effects, str(folder),
                       str(folder / NOMINAL), str(recording),
                       time.monotonic() - started, watcher.statistics['joined'],

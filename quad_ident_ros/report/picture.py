@@ -11,6 +11,7 @@ import numpy as np
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.identify.methods import METHODS
 from quad_ident_ros.identify.signals import INPUT_OF, OUTPUT_UNITS
+from quad_ident_ros.whole_file import replacing
 
 NAMES = {'phi': 'roll φ', 'theta': 'pitch θ', 'psi': 'yaw ψ', 'z': 'altitude z'}
 MEASURED = '#9aa0a6'
@@ -131,8 +132,10 @@ def save(plt, figure, path):
     """Write a figure to a file and forget it; raises InputError."""
     try:
         Path(path).parent.mkdir(parents=True, exist_ok=True)
-        figure.savefig(path)
+        with replacing(path) as temporary:
+            figure.savefig(temporary)
     except (OSError, ValueError) as error:
-        raise InputError(f'{path}: the picture cannot be written: {error}') from None
+        raise InputError(f'{path}: the picture cannot be written: '
+                         f'{getattr(error, "strerror", None) or error}') from None
     finally:
         plt.close(figure)

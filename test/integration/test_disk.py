@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the recorder writes: it is what was published, and it survives kill -9 and full disks."""
 
+import shutil
+
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from graph import sample, stamps_of, STREAMS, Vehicle, write_experiment
 import numpy as np
@@ -12,7 +14,9 @@ from std_msgs.msg import Float64MultiArray, String
 from quad_ident_ros.data.bag_file import read_bag_messages
 from quad_ident_ros.data.csv import read_csv
 from quad_ident_ros.data.replay import read_bag
+from quad_ident_ros.errors import InputError
 from quad_ident_ros.nodes import recorder as recorder_module
+from quad_ident_ros.nodes.demo import recording_of
 from quad_ident_ros.nodes.qos import latched
 from quad_ident_ros.nodes.recorder import Recorder
 from quad_ident_ros.nodes.simulator import Simulator
@@ -176,6 +180,23 @@ def test_the_home_of_a_user_who_is_none_is_said_and_nothing_else_ends(fast_graph
     graph.spin_until(lambda: statistics and diagnostics, 'the account')
     assert statistics.data()[-1]['disk_error'].startswith(
         '~nosuch/x: recording stopped: ~nosuch is the home of no user')
+
+
+def test_a_folder_that_goes_while_it_is_recorded_to_ends_the_recording_only(fast_graph, tmp_path):
+    recorder = fast_graph.start(Recorder, {'output': str(tmp_path / 'flights')})
+    statistics = fast_graph.listen(String, 'recorder/statistics', latched())
+    vehicle = Vehicle(fast_graph)
+    vehicle.fly(60)
+    fast_graph.spin_until(lambda: recorder.counts.joined == 60, 'the samples')
+    shutil.rmtree(tmp_path / 'flights')
+    vehicle.fly(60, first=100 * SECOND)
+    fast_graph.spin_until(lambda: statistics and statistics.data()[-1]['disk_error']
+                          and recorder.counts.joined == 120, 'the account')
+    assert 'recording stopped: No such file' in statistics.data()[-1]['disk_error']
+    assert fast_graph.trigger('recorder/flush').success
+    with pytest.raises(InputError, match='recording stopped'):
+        recording_of(statistics.data()[-1], tmp_path)
+    fast_graph.stop(recorder)
 
 
 def test_a_disk_that_fills_up_ends_the_recording_only(fast_graph, processes, tmp_path):
