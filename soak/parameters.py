@@ -23,7 +23,7 @@ COUNT, SHORT_COUNT = 4000, 200      # inputs while the nodes work, and
 STARTS = 100                        # so many of them for one at a start
 ANSWER = 30.0                       # s that a node may take to answer, or to be there
 LONG = 200_000                      # characters or entries of what is absurdly long
-KIND = ParameterType
+KIND, NO_TYPE = ParameterType, 200
 NUMBERS = (0.0, -0.0, 1.0, -1.0, 5e-324, 1e-300, 1e308, -1e308, float('nan'), float('inf'),
            float('-inf'), 0.5, 2.5, 1e6)
 WHOLE = (0, 1, -1, 2, 7, 2 ** 31, -2 ** 31, 2 ** 63 - 1, -2 ** 63)
@@ -88,7 +88,7 @@ def value_for(spec: Any, source: random.Random) -> ParameterValue:
     """Return a value for a parameter (a ParameterSpec): of its type in half the cases, or any."""
     kind = spec.descriptor().type
     if source.random() < 0.5:
-        kind = source.randrange(KIND.PARAMETER_NOT_SET, KIND.PARAMETER_STRING_ARRAY + 1)
+        kind = source.choice((*range(KIND.PARAMETER_STRING_ARRAY + 1), NO_TYPE))
     texts = (*TEXTS, *(spec.choices or ()))
     numbers = (*NUMBERS, *(map(float, spec.limits or ())), source.gauss(0.0, 10.0))
     length = source.choice((0, 1, 2, 3, 4, 4, 17, LONG))

@@ -3,8 +3,10 @@
 """What all nodes of the package share."""
 
 from rcl_interfaces.msg import SetParametersResult
+from rcl_interfaces.srv import SetParameters
 from rclpy.node import Node
 from rclpy.parameter import Parameter
+from rclpy.parameter_service import ParameterService
 
 LISTS = (Parameter.Type.DOUBLE_ARRAY, Parameter.Type.STRING_ARRAY)
 
@@ -14,8 +16,13 @@ class PackageNode(Node):
     A node that takes parameters as the `ros2` command sends them.
 
     An empty list has no type: `ros2 param set` sends it as one of truth values. A fixed parameter
-    may be set to what it is, so that a node takes its own dump.
+    may be set to what it is, so that a node takes its own dump. A value of no type that there is
+    is refused; in a node of rclpy it ends the process.
     """
+
+    def __init__(self, name, **kwargs):
+        super().__init__(name, start_parameter_services=False, **kwargs)
+        self._parameter_service = _TypedParameterService(self)
 
     def ready(self):
         """Return what the node does, for the line of log that says that it does it."""
@@ -51,6 +58,34 @@ class PackageNode(Node):
         now = self.get_parameter(parameter.name)
         return (self.describe_parameter(parameter.name).read_only and now.type_ == parameter.type_
                 and _plain(now.value) == _plain(parameter.value))
+
+
+class _TypedParameterService(ParameterService):
+    """The services of rclpy, which take parameters of known types only."""
+
+    def _set_parameters_callback(self, request, response):
+        for message in request.parameters:
+            if refusal := _of_no_type([message]):
+                response.results.append(refusal)
+            else:
+                super()._set_parameters_callback(SetParameters.Request(parameters=[message]),
+                                                 response)
+        return response
+
+    def _set_parameters_atomically_callback(self, request, response):
+        if refusal := _of_no_type(request.parameters):
+            response.result = refusal
+            return response
+        return super()._set_parameters_atomically_callback(request, response)
+
+
+def _of_no_type(messages):
+    """Return why one of several parameter messages is refused, or None."""
+    known = {kind.value for kind in Parameter.Type}
+    return next((SetParametersResult(
+        successful=False, reason=f'parameter {message.name}: {message.value.type} is no type of a '
+        'parameter (rcl_interfaces/ParameterType)')
+        for message in messages if message.value.type not in known), None)
 
 
 def _plain(value):

@@ -143,6 +143,22 @@ def test_a_parameter_that_is_not_there_cannot_be_set(graph):
     assert not result.successful and result.reason
 
 
+@pytest.mark.parametrize('service, answered', [
+    (SetParameters, lambda response: response.results),
+    (SetParametersAtomically, lambda response: [response.result])])
+def test_a_value_of_no_type_is_refused_and_ends_nothing(graph, service, answered):
+    running = graph.start(Identifier)
+    message = ParameterMessage(name='seed')
+    message.value.type = 200
+    name = 'set_parameters' + '_atomically' * (service is SetParametersAtomically)
+    response = graph.call(service, f'identifier/{name}', service.Request(parameters=[message]))
+    [result] = answered(response)
+    assert not result.successful
+    assert result.reason.startswith('parameter seed: 200 is no type of a parameter')
+    assert running.get_parameter('seed').value == 0
+    assert graph.set_parameter('identifier', 'seed', 3).successful
+
+
 @pytest.mark.parametrize('name', ['seed', 'method', 'lambda', 'pole_bounds'])
 def test_a_parameter_cannot_be_unset(graph, name):
     running = graph.start(Identifier)
