@@ -14,13 +14,14 @@ from quad_ident_ros.data.csv import read_csv
 from quad_ident_ros.data.replay import read_bag
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.nodes.launched import Launched
-from soak.rig import Finding, Watch
+from soak.rig import Finding, slowness, Watch
 
 NODES = ('recorder', 'identifier', 'diagnoser', 'simulator')
 RATES = (100, 1000)     # Hz
 LOSS = 1.0              # s of what the recorder joined that a kill may cost
 AGAIN = 60.0            # s within which a node that was started again is ready, if nobody else
                         # keeps the machine busy
+BUSY = 1.5              # times longer that computing takes where others keep the machine busy
 ON_ITS_WAY = 0.3        # s in which a watcher hears what was said before a kill
 FLIGHT = 120.0          # s; it is flown again when it is over
 
@@ -86,8 +87,12 @@ def _victim(watch: Watch, launched: Launched, folder: Path, victim: str, paramet
     elif victim != 'simulator':
         others = {key: watch.account[key] - before[key] for key in ('lost', 'dropped', 'late')
                   if watch.account[key] > before[key]}
+        slower = slowness()
         text += f'; the recorder lost {others or "nothing"}'
-        held = held and not others
+        if others:
+            text += f', which it counted; computing took {slower:.1f} times what it takes'
+        # Where others keep the machine busy, it is they that cost something.
+        held = held and (not others or slower > BUSY)
     return Finding('kill -9', f'{victim}, {kills} times at {rate} Hz', text, held)
 
 

@@ -36,6 +36,9 @@ def save(path, record, on_progress=None):
         try:
             write_bag(folder, record, on_progress)
             os.replace(next(folder.glob('*.mcap')), path)
+        except OSError as error:
+            error.filename, error.filename2 = str(path), None   # the one that was asked for
+            raise
         finally:
             shutil.rmtree(folder, ignore_errors=True)
     elif not path.suffix:
