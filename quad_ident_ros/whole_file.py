@@ -29,11 +29,11 @@ def replacing(path: str | Path) -> Iterator[Path]:
 
     Where that fails, what was there before stays. Raises OSError with the name of that file.
     """
-    path = Path(path).resolve()
-    temporary = path.with_name(f'.{os.getpid()}.{path.name}')
+    place = Path(path).resolve()    # of a link, the file that it leads to
+    temporary = place.with_name(f'.{os.getpid()}.{place.name}')
     try:
         yield temporary
-        temporary.replace(path)
+        temporary.replace(place)
     except OSError as error:
         error.filename, error.filename2 = str(path), None   # the one that was asked for
         raise
