@@ -42,20 +42,24 @@ class Recovering(McapReader):
     @property
     def skipped(self):
         """How many chunks are damaged and left out."""
-        if self._skipped is None:
-            state = self.path.stat()
-            damaged = _damaged(str(self.path), state.st_mtime_ns, state.st_size, tuple(
-                (one.chunk_start_offset, one.chunk_length) for one in self.chunks))
-            whole = [one for one in self.chunks if one.chunk_start_offset not in damaged]
-            self._skipped = len(damaged)
-            if whole:   # else reading raises what is wrong
-                self.chunks[:] = whole
+        self._leave_out_damaged()
         return self._skipped
 
     def messages(self, *args, **kwargs):
         """Read messages as McapReader, without those of damaged chunks."""
-        assert self.skipped >= 0
+        self._leave_out_damaged()
         yield from super().messages(*args, **kwargs)
+
+    def _leave_out_damaged(self):
+        if self._skipped is not None:
+            return
+        state = self.path.stat()
+        damaged = _damaged(str(self.path), state.st_mtime_ns, state.st_size, tuple(
+            (one.chunk_start_offset, one.chunk_length) for one in self.chunks))
+        whole = [one for one in self.chunks if one.chunk_start_offset not in damaged]
+        self._skipped = len(damaged)
+        if whole:   # else reading raises what is wrong
+            self.chunks[:] = whole
 
     def _open(self):
         try:
