@@ -20,6 +20,7 @@ from rosbags.typesys import (
 )
 from rosbags.typesys.msg import normalize_msgtype
 
+from quad_ident_ros.data.alike import layout_of, Waiting
 from quad_ident_ros.data.definitions import layouts, START
 from quad_ident_ros.data.limits import most, size_on_disk
 from quad_ident_ros.data.readers.others import is_text
@@ -158,6 +159,39 @@ class BagFile:
             for connection, stamp, data in self._raw(topics):
                 yield connection.topic, stamp, self._codec(connection).message(data)
 
+    def together(self, topics, fixed):
+        """
+        Yield (topic, times of receipt in ns, messages) of the named topics, those of each by time.
+
+        Messages whose bytes lie alike come together: an array of times (n,), and one message with
+        columns (n,), or (k, n) of a list, in place of its numbers. Others come one by one, with
+        an integer, as the first of each topic does.
+        Args: fixed(topic): the fields that have one value in messages that come together, or None
+        where none may; asked after the first message of the topic.
+        """
+        waiting, codecs = {}, {}
+        with self._guarded():
+            for connection, stamp, data in self._raw(topics):
+                topic = connection.topic
+                codec = codecs.get(id(connection))
+                if codec is None:
+                    codec = codecs[id(connection)] = self._codec(connection)
+                before, now = waiting.get(topic, (None, None))
+                if before is codec and now.fits(data):
+                    if now.add(stamp, data):
+                        yield from ((topic, *one) for one in now.taken())
+                    continue
+                if now is not None:
+                    yield from ((topic, *one) for one in now.taken())
+                message = codec.message(data)
+                yield topic, stamp, message
+                if before is not codec:
+                    names = fixed(topic)
+                    layout = None if names is None else codec.layout(data, message, names)
+                    waiting[topic] = codec, Waiting(layout, codec.message)
+            for topic, (_, now) in waiting.items():
+                yield from ((topic, *one) for one in now.taken())
+
     def first(self, topics):
         """Return {topic: its first message} of those of the named topics that have one."""
         found = {}
@@ -247,7 +281,11 @@ class _Codec:
         self._topic = connection.topic
         self._candidates = [(version, _store(self._type, source, ros1))
                             for version, source in candidates]
-        self._chosen = None
+        self._chosen = self._store = None
+
+    def layout(self, data, message, fixed):
+        """Return the Layout of a message that was read, or None, see alike.layout_of."""
+        return layout_of(data, message, self._store, ros1=self._ros1, fixed=fixed)
 
     def paths(self):
         """Return the paths of the fields of the usual layout."""
@@ -265,7 +303,7 @@ class _Codec:
             except Exception as error:
                 problem = problem or error
                 continue
-            self._chosen = read
+            self._chosen, self._store = read, store
             return message
         if self._ships:
             raise BadType(f'topic {self._topic}: the bag has no definition of {self._type}, '

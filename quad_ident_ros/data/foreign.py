@@ -21,6 +21,7 @@ from quad_ident_ros.data.message_roles import (
     ROLES_OF,
     shaped,
     stamp_of,
+    stamps_of,
 )
 from quad_ident_ros.data.px4_resets import Counters, split_at_resets, TOPIC_OF
 from quad_ident_ros.data.record import FlightRecord, QUATERNION
@@ -61,9 +62,13 @@ def read_mapped_bag(path, mapping):
         by_topic = {}
         for part in parts:
             by_topic.setdefault(part.source.topic, []).append(part)
-        for topic, received, message in bag.messages(by_topic):
+        for topic, received, message in bag.together(
+                by_topic, lambda name: _fixed(by_topic[name])):
             for part in by_topic[topic]:
-                part.add(received, message)
+                if isinstance(received, int):
+                    part.add(received, message)
+                else:
+                    part.add_many(received, message)
     parts = [part for part in parts if not (notes and part.role == 'battery' and part.count < 2)]
     streams = [part.stream(mapping) for part in parts]
     if np.ptp([part.offset for part in parts]) > ONE_CLOCK:
@@ -90,6 +95,12 @@ def velocity_in_world(path, columns):
         attitude = attitude / np.linalg.norm(attitude, axis=-1, keepdims=True)
         columns.update(zip(('vx', 'vy', 'vz'), frames.rotate(attitude, body).T, strict=True))
     return columns
+
+
+def _fixed(parts):
+    """Return the fields that say how parts are read, or None where they are read one by one."""
+    each = [part.fixed for part in parts]
+    return None if None in each else {name for names in each for name in names}
 
 
 class TopicPart:
@@ -145,6 +156,32 @@ class TopicPart:
             self._stamps.append(stamp)
             self.received.append(received)
             self._numbers.extend(values)
+
+    @property
+    def fixed(self):
+        """
+        Return the fields that say how a message is read, after the first.
+
+        None where messages with columns in place of numbers cannot be read: of transforms each has
+        those that it has, and angles become a quaternion one by one.
+        """
+        if is_tf(self._type) or (self.role == 'attitude' and self.source.unit):
+            return None
+        return self._reading.fixed if self._reading else ()
+
+    def add_many(self, received, message):
+        """Take messages in one, with columns in place of numbers, as add; received (n,) ns."""
+        count = len(received)
+        columns = in_record_unit(self.role, self._values(message, self._type, many=True),
+                                 self.source.unit)
+        self._messages += count
+        if self.counters:
+            self.counters.add_many(message, count)
+        with np.errstate(invalid='ignore'):     # nan of a kind that signals
+            table = np.stack(columns, axis=-1).astype(float)
+        self._numbers.frombytes(table.tobytes())
+        self._stamps.frombytes(np.maximum(stamps_of(message, self._type, count), 0).tobytes())
+        self.received.frombytes(received.tobytes())
 
     def samples(self, received, message, kind, mapping):
         """
@@ -214,13 +251,14 @@ class TopicPart:
                              'world: NED and body: FRD into a mapping (--mapping), or record it '
                              'in ENU')
 
-    def _values(self, message, kind):
+    def _values(self, message, kind, many=False):
         path = self.source.field
         if not path and kind not in ROLES_OF and self.role in _DEFAULT_FIELD:
             path = _DEFAULT_FIELD[self.role]
         if path:
             angles = self.role == 'attitude' and self.source.unit
-            return shaped('angles' if angles else self.role, at_path(message, path, kind), path)
+            return shaped('angles' if angles else self.role, at_path(message, path, kind), path,
+                          many)
         if self.role == 'attitude' and self.source.unit:
             raise NoSuch(f'{kind} has a quaternion, which has no unit; leave unit out, or name '
                          'the field with roll, pitch and yaw')

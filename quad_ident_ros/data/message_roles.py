@@ -29,15 +29,17 @@ class Reading:
     """
     How a message is read for a role.
 
-    values(message): a tuple of numbers; rank: how far behind other types one is for the role, by
-    default, or None where the type alone does not say that it is meant; kind: of actuator outputs
-    (mapping.KINDS) where the type says it; frame(message): world or body, of a velocity.
+    values(message): a tuple of numbers, or of columns where the message has columns; rank: how far
+    behind other types one is for the role, by default, or None where the type alone does not say
+    that it is meant; kind: of actuator outputs (mapping.KINDS) where the type says it;
+    frame(message): world or body, of a velocity; fixed: fields that say how others are read.
     """
 
     values: Callable
     rank: int | None = 0
     kind: str = ''
     frame: Callable | None = None
+    fixed: tuple[str, ...] = ()
 
 
 def _xyz(v):
@@ -63,7 +65,10 @@ def _odometry_frame(message):
 
 def _known(index, covariance, values):
     """Return values, nan where the message says by a covariance of -1 that it has none."""
-    return values if covariance[index] != -1 else tuple([math.nan] * len(values))
+    known = covariance[index] != -1
+    if np.ndim(known):
+        return tuple(np.where(known, value, math.nan) for value in values)
+    return values if known else tuple([math.nan] * len(values))
 
 
 def _px4_pose(m):
@@ -155,7 +160,8 @@ ROLES_OF = {
     'px4_msgs/msg/VehicleOdometry': {
         'pose': Reading(_either(_px4_pose, lambda m: (*_xyz(m), *m.q))),
         'velocity': Reading(_either(lambda m: tuple(m.velocity), lambda m: (m.vx, m.vy, m.vz)),
-                            frame=_either(_px4_velocity_frame, _px4_old_velocity_frame)),
+                            frame=_either(_px4_velocity_frame, _px4_old_velocity_frame),
+                            fixed=('velocity_frame',)),
         'rate': Reading(_either(lambda m: tuple(m.angular_velocity),
                                 lambda m: (m.rollspeed, m.pitchspeed, m.yawspeed)), 2)},
     'px4_msgs/msg/VehicleAttitude': {'attitude': Reading(lambda m: tuple(m.q), 1)},
@@ -170,8 +176,9 @@ ROLES_OF = {
     'px4_msgs/msg/ActuatorMotors': {
         'commands': Reading(lambda m: tuple(m.control), 1, 'normalised')},
     'px4_msgs/msg/ActuatorOutputs': {
-        'commands': Reading(lambda m: tuple(m.output[:max(int(m.noutputs), 1)]), 2, 'pwm')},
-    'px4_msgs/msg/EscStatus': {'rotors': Reading(_esc_rpm, 0, 'rpm')},
+        'commands': Reading(lambda m: tuple(m.output[:max(int(m.noutputs), 1)]), 2, 'pwm',
+                            fixed=('noutputs',))},
+    'px4_msgs/msg/EscStatus': {'rotors': Reading(_esc_rpm, 0, 'rpm', fixed=('esc_count',))},
     'px4_msgs/msg/BatteryStatus': {'battery': Reading(lambda m: (m.voltage_v,))},
     'mavros_msgs/msg/ESCStatus': {
         'rotors': Reading(lambda m: tuple(item.rpm for item in m.esc_status), 0, 'rpm')},
@@ -255,6 +262,23 @@ def stamp_of(message, msgtype):
     return int(stamp_ns(message)) if hasattr(message, 'header') else 0
 
 
+def stamps_of(message, msgtype, count):
+    """Return the stamps in a message with columns, (count,) ns, or 0 where it has none."""
+    if is_px4(msgtype):
+        stamps = _column(getattr(message, 'timestamp', 0), count)
+        samples = _column(getattr(message, 'timestamp_sample', 0), count)
+        stamps = np.where(samples != 0, samples, stamps)
+        return 1000 * np.where(stamps <= (2 ** 63 - 1) // 1000, stamps, 0).astype(np.int64)
+    if not hasattr(message, 'header'):
+        return np.zeros(count, np.int64)
+    stamp = message.header.stamp
+    return 10 ** 9 * stamp.sec.astype(np.int64) + stamp.nanosec.astype(np.int64)
+
+
+def _column(value, count):
+    return np.broadcast_to(np.asarray(value, np.uint64), count)
+
+
 def at_path(message, path, msgtype):
     """
     Return what the path of a field leads to: a value, or a list of them through a list.
@@ -285,8 +309,12 @@ def at_path(message, path, msgtype):
     return values if through_list else values[0]
 
 
-def shaped(role, value, path):
-    """Return the numbers of a role from what a path leads to; NoSuch where they are not that."""
+def shaped(role, value, path, many=False):
+    """
+    Return the numbers of a role from what a path leads to; NoSuch where they are not that.
+
+    Args: many: whether the message has columns, which then are returned.
+    """
     try:
         if role == 'pose':
             while hasattr(value, 'pose'):
@@ -295,7 +323,7 @@ def shaped(role, value, path):
                 getattr(value, 'transform', value))
         if role == 'attitude':
             value = getattr(value, 'orientation', getattr(value, 'quaternion', value))
-            return _wxyz(value) if hasattr(value, 'w') else _numbers(value, path, 4)
+            return _wxyz(value) if hasattr(value, 'w') else _numbers(value, path, many, 4)
         if role in ('position', 'velocity', 'rate', 'specific_force', 'angles'):
             for name in {'velocity': ('twist', 'linear'), 'rate': ('twist', 'angular'),
                          'position': ('point', 'position')}.get(role, ('vector',)):
@@ -303,20 +331,23 @@ def shaped(role, value, path):
             if role == 'angles' and hasattr(value, 'w'):
                 raise NoSuch(f'the field {path!r} holds a quaternion, which has no unit; leave '
                              'unit out')
-            return _xyz(value) if hasattr(value, 'x') else _numbers(value, path, 3)
+            return _xyz(value) if hasattr(value, 'x') else _numbers(value, path, many, 3)
     except AttributeError:
         raise NoSuch(f'the field {path!r} holds no {role}') from None
-    return _numbers(value, path)
+    return _numbers(value, path, many)
 
 
-def _numbers(value, path, count=None):
+def _numbers(value, path, many, count=None):
+    dims = 2 if many else 1
     try:
         with np.errstate(invalid='ignore'):   # nan of a kind that signals
-            numbers = np.atleast_1d(np.asarray(value, float))
+            numbers = np.asarray(value, float)
     except (TypeError, ValueError):
-        numbers = np.empty((0, 0))
-    if numbers.ndim != 1 or not 1 <= len(numbers) <= MOST_NUMBERS:
+        numbers = np.empty([0] * (dims + 1))
+    if numbers.ndim == dims - 1:
+        numbers = numbers[None]
+    if numbers.ndim != dims or not 1 <= len(numbers) <= MOST_NUMBERS:
         raise NoSuch(f'the field {path!r} holds no list of 1 to {MOST_NUMBERS} numbers')
     if count not in (None, len(numbers)):
         raise NoSuch(f'the field {path!r} holds {len(numbers)} numbers, not {count}')
-    return tuple(numbers.tolist())
+    return tuple(numbers) if many else tuple(numbers.tolist())

@@ -49,13 +49,23 @@ class Counters:
 
     def add(self, message: object) -> None:
         """Take the counters of a message."""
+        self._numbers.extend(self._of(message))
+
+    def add_many(self, message: object, count: int) -> None:
+        """Take the counters of messages in one, with columns (count,) in place of numbers."""
+        columns = [np.broadcast_to(value, count) for value in self._of(message)]
+        self._numbers.frombytes(np.stack(columns, axis=-1).astype(float).tobytes())
+
+    def _of(self, message: object) -> list:
+        values = []
         for name in self._names:
             field, _, place = name.partition('[')
             value = getattr(message, field, np.nan)
             if place:
                 k = int(place[:-1])
                 value = value[k] if np.ndim(value) and len(value) > k else np.nan
-            self._numbers.append(value)
+            values.append(value)
+        return values
 
     def fields(self) -> dict[str, np.ndarray]:
         """Return the fields that all messages have, name -> (n,)."""
