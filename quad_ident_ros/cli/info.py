@@ -3,6 +3,7 @@
 """`quad_ident info`: what is in a flight record, and what is wrong with it."""
 
 import argparse
+from collections.abc import Sequence
 
 from rich import box
 from rich.table import Table
@@ -11,7 +12,7 @@ from quad_ident_ros.cli.identify import progress_bar
 from quad_ident_ros.cli.options import (
     add_selection,
     AUTO,
-    flights_from,
+    read_flights,
     selection_of,
     thrust_by_log,
     vehicle_from,
@@ -19,7 +20,8 @@ from quad_ident_ros.cli.options import (
 from quad_ident_ros.data.begin_mapping import begin_mapping
 from quad_ident_ros.data.load import contents_of
 from quad_ident_ros.data.mapping import load_mapping
-from quad_ident_ros.data.selection import selected
+from quad_ident_ros.data.record import FlightRecord
+from quad_ident_ros.data.selection import refuse_spoilt, segment_of, selected, Selection
 from quad_ident_ros.data.summary import contents, segments, summarise, unread
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.vehicle import Vehicle
@@ -74,12 +76,11 @@ def run(options):
         if options.write_mapping:
             begin_mapping(options.write_mapping, options.flight, streams)
         try:
-            records = flights_from(options.flight, options.mapping, vehicle, by_log=by_log)
+            records = read_flights(options.flight, options.mapping, vehicle, selection, by_log)
         except InputError as error:
             records, found = [], [unread(options.flight, error)]
         else:
-            found = [summarise(record, vehicle) for record in
-                     selected(options.flight, records, selection)]
+            found = _summaries(options.flight, records, selection, vehicle)
             found = [{**one, 'findings': [*without, *one['findings']]} for one in found]
     inside = {**contents(options.flight, title, streams), 'segments': segments(records)}
     if options.json != '-':
@@ -96,6 +97,17 @@ def run(options):
     errors = any(finding['severity'] == 'error' for summary in found
                  for finding in summary['findings'])
     return FAULTY if errors else 0
+
+
+def _summaries(path: str, records: Sequence[FlightRecord], selection: Selection,
+               vehicle: Vehicle | None) -> list[dict]:
+    """Return what is in the part of a file that is asked for, or what is wrong with it."""
+    chosen = segment_of(path, records, selection)
+    try:
+        refuse_spoilt(chosen, selection)
+    except InputError as error:
+        return [unread(path, error)]
+    return [summarise(record, vehicle) for record in selected(path, records, selection)]
 
 
 def _vehicle(options: argparse.Namespace) -> tuple[Vehicle | None, list[dict]]:

@@ -60,11 +60,19 @@ def flights_from(path: str | Path, mapping: str | None = None,
     """
     if isinstance(vehicle, str):
         vehicle = load_vehicle(vehicle)
-    found = load_all(path, load_mapping(mapping) if mapping else None, vehicle)
+    found = read_flights(path, mapping, vehicle, selection, by_log)
+    return found if selection is None else selected(path, found, selection)
+
+
+def read_flights(path: str | Path, mapping: str | None, vehicle: Vehicle | None,
+                 selection: Selection | None, by_log: bool = False) -> list[FlightRecord]:
+    """Return all flight records that a path stands for, of which a Selection is taken then."""
+    in_part = selection is not None and not selection.is_all
+    found = load_all(path, load_mapping(mapping) if mapping else None, vehicle, in_part)
     give_back()
     if by_log and vehicle is not None:
         found = [carried_by_log(record, vehicle) for record in found]
-    return found if selection is None else selected(path, found, selection)
+    return found
 
 
 def asking_for_vehicle(path: str) -> str:

@@ -11,9 +11,9 @@ from pathlib import Path
 import numpy as np
 
 from quad_ident_ros.data.counted import counted
-from quad_ident_ros.data.cutting import deletion
+from quad_ident_ros.data.cutting import deletion, keeping
 from quad_ident_ros.data.plain_numbers import plain_numbers
-from quad_ident_ros.data.record import faulty, find_fault, FlightRecord, unit
+from quad_ident_ros.data.record import faulty, find_fault, FlightRecord, SPOILT, unit
 from quad_ident_ros.data.text_lines import error_at, rows_of
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.whole_file import replacing
@@ -21,7 +21,7 @@ from quad_ident_ros.whole_file import replacing
 _PENDING_BYTES = 1 << 16    # that are written at once: a call for each line would cost more
 
 
-def read_csv(path):
+def read_csv(path, spoilt=False):
     """
     Return the FlightRecord of a .csv or .csv.gz file.
 
@@ -29,6 +29,7 @@ def read_csv(path):
     nan). A last line without a line end is one that a recording was cut off in, and is dropped:
     even where it looks whole, its last number may be cut. info has the file's name and source,
     and truncated=True where a line was dropped.
+    Args: path; spoilt: leave faulty samples out, and tell them in the info, see record.SPOILT.
     Raises InputError that names file, line (from 1, as editors count) and column.
     """
     path = Path(path)
@@ -46,14 +47,35 @@ def read_csv(path):
         raise InputError(f'{path}: {counted(count, "sample")} make no flight{dropped}; '
                          'give at least 2')
     t = columns.pop('t')
+    info = {'name': path.name.removesuffix('.gz').removesuffix('.csv'), 'source': str(path)}
     fault = find_fault(t, columns)
     if fault is not None:
-        wrong = np.flatnonzero(faulty(t, columns))
-        ways = [deletion([lines[k] for k in wrong], count), fault.remedy]
-        raise error_at(path, lines[fault.sample], fault.column, fault.problem,
-                       ', or '.join(filter(None, ways)))
-    info = {'name': path.name.removesuffix('.gz').removesuffix('.csv'), 'source': str(path)}
+        wrong = faulty(t, columns)
+        error = _faulty(path, lines, t, wrong, fault)
+        if not spoilt or (~wrong).sum() < 2:
+            raise error
+        info[SPOILT] = [[time, str(error)] for time in _times_of(t, wrong)]
+        t, columns = t[~wrong], {name: values[~wrong] for name, values in columns.items()}
     return FlightRecord(t, columns, info | ({'truncated': True} if truncated else {}))
+
+
+def _faulty(path, lines, t, wrong, fault):
+    """Return the error of a Fault; wrong (N,) bool: all samples that have to go, on lines (N,)."""
+    part = keeping(t, ~wrong)
+    ways = [deletion([lines[k] for k in np.flatnonzero(wrong)], len(wrong)), fault.remedy,
+            f'take a part: {part}' if part else '']
+    return error_at(path, lines[fault.sample], fault.column, fault.problem,
+                  ', or '.join(filter(None, ways)))
+
+
+def _times_of(t, wrong):
+    """Return the times (s) of wrong samples (N,): between those of the good ones around them."""
+    good = np.flatnonzero(~wrong)
+    places = np.flatnonzero(wrong)
+    beyond = float(np.median(np.diff(t[good])))     # before the first and after the last one
+    known = np.concatenate([[t[good[0]] - beyond], t[good], [t[good[-1]] + beyond]])
+    after = np.searchsorted(good, places) + 1
+    return (0.5 * (known[after - 1] + known[after])).tolist()
 
 
 def write_csv(path, record):

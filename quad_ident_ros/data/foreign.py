@@ -24,7 +24,7 @@ from quad_ident_ros.data.message_roles import (
     stamps_of,
 )
 from quad_ident_ros.data.px4_resets import Counters, split_at_resets, TOPIC_OF
-from quad_ident_ros.data.record import FlightRecord, QUATERNION
+from quad_ident_ros.data.record import FlightRecord, QUATERNION, SPOILT
 from quad_ident_ros.data.signal_kind import kinds_of
 from quad_ident_ros.data.streams import HELD, INTERPOLATED, join, SLOW, Stream
 from quad_ident_ros.data.topics import not_unit, OTHER_SHAPE
@@ -42,7 +42,7 @@ _COLUMNS = {'position': ('px', 'py', 'pz'), 'velocity': ('vx', 'vy', 'vz'),
             'rate': ('wx', 'wy', 'wz'), 'specific_force': ('ax', 'ay', 'az')}
 
 
-def read_mapped_bag(path, mapping):
+def read_mapped_bag(path, mapping, spoilt=False):
     """
     Return the FlightRecords in a bag of ROS 1 or ROS 2 whose topics a mapping names.
 
@@ -50,7 +50,8 @@ def read_mapped_bag(path, mapping):
     is filled by the types of the topics, where these leave no doubt. Stamps are those in the
     messages where all of a topic have one, else the times of receipt; all are the times of
     receipt where the stamps are of several clocks.
-    Args: path of a bag; mapping Mapping.
+    Args: path of a bag; mapping Mapping; spoilt: leave attitudes that are none out, and tell them
+    in the info, see record.SPOILT.
     Raises InputError that names file, topic and message.
     """
     notes = []
@@ -70,7 +71,7 @@ def read_mapped_bag(path, mapping):
                 else:
                     part.add_many(received, message)
     parts = [part for part in parts if not (notes and part.role == 'battery' and part.count < 2)]
-    streams = [part.stream(mapping) for part in parts]
+    streams = [part.stream(mapping, spoilt) for part in parts]
     if np.ptp([part.offset for part in parts]) > ONE_CLOCK:
         streams = [Stream(stream.source, np.array(part.received, np.int64), stream.columns,
                           stream.between) for part, stream in zip(parts, streams, strict=True)]
@@ -78,10 +79,18 @@ def read_mapped_bag(path, mapping):
                  'used for all of them']
     start, t, columns, left_out = join(path, streams)
     record = FlightRecord(t, velocity_in_world(path, columns),
-                          {'source': str(path), 'start_ns': start, 'notes': [*notes, *left_out]})
+                          {'source': str(path), 'start_ns': start, 'notes': [*notes, *left_out]}
+                          | _told(parts, streams, start))
     return split_at_resets([record], start, {
         part.counters.topic: (stream.stamps, part.counters.fields())
         for part, stream in zip(parts, streams, strict=True) if part.counters})
+
+
+def _told(parts, streams, start):
+    """Return the info of the samples that were left out as spoilt; start: of the record, ns."""
+    told = [[(int(stream.stamps[k]) - start) * 1e-9, part.not_unit(k)]
+            for part, stream in zip(parts, streams, strict=True) for k in part.spoilt]
+    return {SPOILT: told} if told else {}
 
 
 def velocity_in_world(path, columns):
@@ -123,6 +132,7 @@ class TopicPart:
         self._stamps = array('q')
         self.received = array('q')
         self.counters = None    # of resets, where its type has them
+        self.spoilt = ()        # messages, counted from 0, whose attitude was left out
         self._messages = 0
         self._children = {}
 
@@ -272,8 +282,12 @@ class TopicPart:
         self._reading = reading
         return reading.values(message)
 
-    def stream(self, mapping):
-        """Return the Stream of the messages; InputError where there are none."""
+    def stream(self, mapping, spoilt=False):
+        """
+        Return the Stream of the messages; InputError where there are none.
+
+        Args: mapping; spoilt: let attitudes that are none be nan, and name them in `spoilt`.
+        """
         if not self._numbers:
             child = f' with child_frame_id {self.source.child}' if self.source.child else ''
             raise InputError(f'{self._where}: there is no such topic in this bag, or nothing on '
@@ -281,6 +295,10 @@ class TopicPart:
         self._one_child()
         self._refuse_down(mapping)
         table = np.frombuffer(self._numbers, float).reshape(-1, self._width)
+        if spoilt and self.role in ('pose', 'attitude'):
+            bad = not_unit(table[:, -4:])
+            self.spoilt = np.flatnonzero(bad).tolist()
+            table = np.where(bad[:, None], np.nan, table)
         stamps = self._stamps if self._stamped else self.received
         columns = self._columns(table, mapping)
         if self._is_unnamed(mapping, table):
@@ -290,6 +308,11 @@ class TopicPart:
             columns.popitem()   # outputs without a motor come last
         return Stream(f'topic {self.source.topic}', np.array(stamps, np.int64), columns,
                       {'commands': HELD, 'battery': SLOW}.get(self.role, INTERPOLATED))
+
+    def not_unit(self, number):
+        """Return the error of a message, counted from 0, whose attitude is none."""
+        return (f'{self._where}, message {number + 1}: the quaternion has not the length 1; '
+                f'record a {self.role} with an attitude, or leave it out with --from and --to')
 
     def _is_unnamed(self, mapping, table):
         """Whether commands of a type that says no kind are by their size no rotor speeds."""
@@ -313,9 +336,7 @@ class TopicPart:
         if role in ('pose', 'attitude'):
             bad = not_unit(table[:, -4:])
             if bad.any():
-                raise InputError(f'{self._where}, message {int(np.argmax(bad)) + 1}: the '
-                                 f'quaternion has not the length 1; record a {role} with an '
-                                 'attitude')
+                raise InputError(self.not_unit(int(np.argmax(bad))))
             columns = dict(zip(QUATERNION, frames.attitude(table[:, -4:], world, body).T,
                                strict=True))
             if role == 'pose':

@@ -33,16 +33,18 @@ def load(path, mapping=None, vehicle=None):
     return flights[0]
 
 
-def load_all(path, mapping=None, vehicle=None):
+def load_all(path, mapping=None, vehicle=None, in_part=False):
     """
     Return the flight records in a file or bag, at least one; arguments and errors of load.
 
     They are split where position or heading jump, as where an estimator was reset. Outputs to the
     motors become commands by the mapping or the vehicle, see data.outputs.
+    Args: in_part: for data.selection.selected, which then refuses what is wrong inside the part.
     """
     path = Path(path)
     flights = _with_package(path, reader_of(path),
-                            lambda reader: reader.read(path, mapping, vehicle))
+                            lambda reader: (in_part and reader.spoilt or reader.read)(
+                                path, mapping, vehicle))
     pieces = [piece for flight in flights for piece in split_at_jumps(flight)]
     return commanded(pieces, vehicle, mapping.actuators if mapping else None)
 

@@ -90,6 +90,12 @@ CUT = ('the last line of the file has no line end and was left out: a recording 
        'there may have cut its last number')
 """What the info `truncated` of a record means."""
 
+SPOILT = 'spoilt'
+"""
+Info of a record that is read for a part of it: [time in s, error] of each sample that was left out
+because no record can hold it. It is an error where that part has the time (data.selection).
+"""
+
 NOTED = 'commands', 'logging'
 """
 Info of a record: those of its notes that a diagnosis tells, too.

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from quad_ident_ros.data.record import FlightRecord
+from quad_ident_ros.data.record import FlightRecord, SPOILT
 from quad_ident_ros.data.split import part
 from quad_ident_ros.errors import InputError
 
@@ -38,6 +38,11 @@ class Selection:
         if self.begin is not None and self.end is not None and not self.begin < self.end:
             raise InputError(f'{self}: the first time has to come before the second')
 
+    @property
+    def is_all(self) -> bool:
+        """Whether it keeps all of a file."""
+        return self == Selection()
+
     def __str__(self) -> str:
         """Return the options of the command line that say the same."""
         return ' '.join(f'{name} {value:.12g}' for name, value in (
@@ -51,20 +56,49 @@ def selected(path: object, records: Sequence[FlightRecord],
     Return what a Selection keeps of the records of a file, at least one.
 
     Times hold for each of the records; a record of which fewer than two samples are kept is left
-    out. Raises InputError, with the spans of the records, where nothing is kept.
+    out. Raises InputError, with the spans of the records, where nothing is kept, and where what
+    is kept has samples that no record can hold (record.SPOILT).
     """
-    chosen = list(records)
-    if selection.segment is not None:
-        if selection.segment > len(records):
-            raise InputError(f'{path}: {selection} is asked for, and the file has '
-                             f'{_spans(records)}')
-        chosen = [_noted(records[selection.segment - 1],
-                         f'segment {selection.segment} of {len(records)}')]
+    chosen = segment_of(path, records, selection)
+    refuse_spoilt(chosen, selection)
+    chosen = [_without_spoilt(record) for record in chosen]
     kept = [cut for record in chosen if (cut := _between(record, selection)) is not None]
     if not kept:
         raise InputError(f'{path}: {selection} is asked for, which leaves nothing of '
                          f'{_spans(chosen)}')
     return kept
+
+
+def segment_of(path: object, records: Sequence[FlightRecord],
+               selection: Selection) -> list[FlightRecord]:
+    """Return the records, or the one that is asked for; InputError where there is none such."""
+    if selection.segment is None:
+        return list(records)
+    if selection.segment > len(records):
+        raise InputError(f'{path}: {selection} is asked for, and the file has {_spans(records)}')
+    return [_noted(records[selection.segment - 1],
+                   f'segment {selection.segment} of {len(records)}')]
+
+
+def refuse_spoilt(records: Sequence[FlightRecord], selection: Selection) -> None:
+    """Raise the error of a spoilt sample in what is asked for of records."""
+    begin = -np.inf if selection.begin is None else selection.begin
+    end = np.inf if selection.end is None else selection.end
+    for record in records:
+        inside = begin, end
+        if selection.segment is not None:   # what is spoilt elsewhere is in other segments
+            inside = max(record.t[0], begin), min(record.t[-1], end)
+        for time, error in record.info.get(SPOILT, ()):
+            if inside[0] <= time <= inside[1]:
+                raise InputError(error)
+
+
+def _without_spoilt(record: FlightRecord) -> FlightRecord:
+    """Return a record whose spoilt samples are no longer told."""
+    if SPOILT not in record.info:
+        return record
+    return replace(record, info={key: value for key, value in record.info.items()
+                                 if key != SPOILT})
 
 
 def _between(record: FlightRecord, selection: Selection) -> FlightRecord | None:

@@ -3,6 +3,10 @@
 """Bags unpacked within limits: rosbags has none, and no way to set one."""
 
 import bz2
+from collections import OrderedDict
+from heapq import merge
+from io import BytesIO
+from os import SEEK_CUR
 from types import SimpleNamespace
 
 from lz4.frame import LZ4FrameDecompressor
@@ -82,6 +86,21 @@ storage_mcap.DECOMPRESSORS.update(zstd=_bounded(_zstd), lz4=_bounded(_lz4))
 reader.zstd = SimpleNamespace(decompress=_message, open=_open)
 
 
+def _entry(chunk, entry, connected):
+    """Return (connection, time in ns, data) of an entry of the index of an unpacked chunk."""
+    chunk.seek(entry.offset)
+    header = reader1.Header.read(chunk)
+    while header.get_uint8('op') == reader1.RecordType.CONNECTION:
+        chunk.seek(reader1.read_uint32(chunk), SEEK_CUR)
+        header = reader1.Header.read(chunk)
+    if header.get_uint8('op') != reader1.RecordType.MSGDATA:
+        raise ReaderError('a message is not where the index says')
+    data = reader1.read_bytes(chunk, reader1.read_uint32(chunk))
+    if header.get_time('time') != entry.time:
+        raise ReaderError('a message is not of the time that the index says')
+    return connected[header.get_uint32('conn')], entry.time, data
+
+
 class BoundedReader1(reader1.Reader):
     """A reader of ROS 1 bags whose chunks and index are no larger than the file can mean."""
 
@@ -91,6 +110,32 @@ class BoundedReader1(reader1.Reader):
         self._left = limits.most(self._packed)
         self._index = 0
         super().open()
+
+    def messages(self, connections=(), start=None, stop=None):
+        """
+        Yield (connection, time in ns, data) of messages by time, from start to before stop.
+
+        Where topics were written one after the other, messages come from many chunks in turn:
+        those that were used last stay unpacked, as far as one chunk may unpack to.
+        """
+        self._check_open()
+        connected = {one.id: one for one in self.connections}
+        unpacked, size = OrderedDict(), 0
+        for entry in merge(*(self.indexes[one.id] for one in connections or self.connections)):
+            if start is not None and entry.time < start:
+                continue
+            if stop is not None and entry.time >= stop:
+                return
+            if entry.chunk_pos not in unpacked:
+                header = self.chunks[entry.chunk_pos]
+                self.bio.seek(header.datapos)
+                data = header.decompressor(reader1.read_bytes(self.bio, header.datasize))
+                unpacked[entry.chunk_pos] = BytesIO(data)
+                size += len(data)
+                while size > limits.PART and len(unpacked) > 1:
+                    size -= unpacked.popitem(last=False)[1].getbuffer().nbytes
+            unpacked.move_to_end(entry.chunk_pos)
+            yield _entry(unpacked[entry.chunk_pos], entry, connected)
 
     def read_chunk(self):
         """Return the next chunk, which unpacks within limits."""

@@ -7,12 +7,14 @@ from datetime import datetime
 import json
 import struct
 
+from bag_files import imu, odometry, write1, write2
 from blackbox_files import blackbox, rows_of
 from dataflash_files import copter, dataflash
-from flightmaker import changed, flight
+from flightmaker import changed, flight, px4_samples, ulog
 import numpy as np
-from px4_files import FORMATS, log_of
+from px4_files import controls, FORMATS, log_of, parameters
 import pytest
+from table_files import others, table
 
 from quad_ident_ros.cli.main import main
 from quad_ident_ros.data.csv import read_csv, write_csv
@@ -268,3 +270,84 @@ def test_a_diagnosis_says_which_part_is_used():
         assert f'{begin:.2f} to {end:.2f}' in blocks['where'] and 1.0 <= begin < end <= 14.0
     assert not [one for one in take_in([whole], hummingbird, None, RULES).findings
                 if one['code'] == 'kept']
+
+
+def faulty_table(tmp_path, **cells):
+    """Return the path of WHOLE as a table in which cells (column: {sample: text}) are others."""
+    path = tmp_path / 'faulty.csv'
+    write_csv(path, WHOLE)
+    head, *rows = path.read_text().splitlines()
+    names, rows = head.split(','), [row.split(',') for row in rows]
+    for name, texts in cells.items():
+        for sample, text in texts.items():
+            rows[sample][names.index(name)] = text
+    path.write_text('\n'.join([head, *map(','.join, rows)]) + '\n')
+    return path
+
+
+@pytest.mark.parametrize('cells', [
+    {'px': {1500: 'nan'}}, {'t': {1500: 'nan'}}, {'t': {1500: '3.0'}},
+    {'px': {1999: 'inf'}, 'vz': {1700: 'nan'}}])
+@pytest.mark.parametrize('command', ['info', 'convert'])
+def test_what_is_wrong_outside_the_times_does_not_refuse_a_table(tmp_path, capsys, cells,
+                                                                 command):
+    path = faulty_table(tmp_path, **cells)
+    words = [command, str(path), *([str(tmp_path / 'out.csv')] if command == 'convert' else [])]
+    assert main([*words, '--from', '2', '--to', '12']) == 0
+    if command == 'convert':
+        kept = read_csv(tmp_path / 'out.csv')
+        np.testing.assert_array_equal(kept.t, WHOLE.t[200:1201])
+        assert (tmp_path / 'out.csv').unlink() is None
+    capsys.readouterr()
+    assert main([*words, '--from', '2', '--to', '19.995']) != 0     # inside
+    said = ''.join(capsys.readouterr())
+    assert 'line ' in said and f'take a part: --to {"16.99" if "vz" in cells else "14.99"}' in said
+    assert main(words) != 0
+
+
+def test_what_is_wrong_in_another_segment_does_not_refuse_one(tmp_path):
+    far = {k: repr(float(WHOLE.columns['px'][k] + 2.5)) for k in range(800, len(WHOLE))}
+    path = faulty_table(tmp_path, px=far, vx={300: 'nan'})
+    pieces = load_all(path, in_part=True)
+    assert [len(piece) for piece in pieces] == [799, len(WHOLE) - 800]
+    [second] = selected(path, pieces, Selection(segment=2))
+    assert second.t[0] == WHOLE.t[800] and 'spoilt' not in second.info
+    with pytest.raises(InputError, match='line 302, column .vx.: nan'):
+        selected(path, pieces, Selection(segment=1))
+    [late] = selected(path, pieces, Selection(segment=1, begin=3.5))
+    assert late.t[0] == pytest.approx(3.5)
+
+
+def test_tables_of_others_hold_gaps_where_a_number_is_none(tmp_path):
+    path = table(tmp_path, others(WHOLE) | {'pos_x': np.where(
+        WHOLE.t > 15.0, np.nan, WHOLE.columns['px'])})
+    [kept] = selected(path, load_all(path, in_part=True), Selection(end=12.0))
+    assert kept.t[-1] == pytest.approx(12.0, abs=0.011)
+
+
+@pytest.mark.parametrize('write', [write1, write2])
+def test_an_attitude_that_is_none_outside_the_times_does_not_refuse_a_bag(tmp_path, write):
+    """As motion capture writes it where it has lost the vehicle."""
+    rows = [*odometry(WHOLE), *imu(WHOLE)]
+    for k in range(1500, 1600):
+        rows[k][3]['pose']['pose']['orientation'] = {}
+    path = write(tmp_path / ('f.bag' if write is write1 else 'f'), rows)
+    with pytest.raises(InputError, match='message 1501.*not the length 1.*--from'):
+        load_all(path)
+    pieces = load_all(path, in_part=True)
+    [kept] = selected(path, pieces, Selection(end=12.0))
+    assert kept.t[-1] == pytest.approx(12.0) and len(kept) == 1201
+    with pytest.raises(InputError, match='message 1501'):
+        selected(path, pieces, Selection(end=15.5))
+
+
+@pytest.mark.parametrize('bad', [0.0, float('nan'), 3.0])
+def test_an_attitude_that_is_none_outside_the_times_does_not_refuse_a_log(tmp_path, bad):
+    path = tmp_path / 'f.ulg'
+    lost = 5_000_000 + 15_000_000
+    samples = [(topic, which, stamp, [bad] * 4 if topic == 'vehicle_attitude' and stamp > lost
+                else values)
+               for topic, which, stamp, values in px4_samples(WHOLE, motors=controls(WHOLE))]
+    path.write_bytes(ulog(samples, FORMATS, parameters()))
+    [kept] = selected(path, load_all(path, in_part=True), Selection(end=12.0))
+    assert kept.t[-1] == pytest.approx(12.0, abs=0.011)

@@ -5,16 +5,18 @@
 import gzip
 import tracemalloc
 
+from bag_files import imu, odometry, write1
 from flightmaker import flight
 import lz4.frame
 import numpy as np
 import pytest
+from rosbags.rosbag1 import Writer as Writer1
 from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
 from rosbags.rosbag2.storage_mcap import decompress, zstd
 from rosbags.typesys import get_typestore, Stores
 
-from quad_ident_ros.data import limits
-from quad_ident_ros.data.bag_file import read_bag_messages
+from quad_ident_ros.data import limits, unpack
+from quad_ident_ros.data.bag_file import BagFile, read_bag_messages
 from quad_ident_ros.data.export import write_bag
 from quad_ident_ros.data.limits import most, size_on_disk
 from quad_ident_ros.data.load import load
@@ -104,3 +106,24 @@ def test_a_csv_that_unpacks_to_anything_is_refused(tmp_path, line):
     assert path.stat().st_size < 100_000
     with pytest.raises(InputError, match='far more than flights'):
         load(path)
+
+
+@pytest.mark.parametrize('packing', [None, Writer1.CompressionFormat.BZ2])
+def test_bags_of_ros1_with_one_topic_after_the_other_unpack_each_chunk_once(
+        tmp_path, monkeypatch, packing):
+    """As programs write them that convert or merge; by time their chunks take turns."""
+    record = flight(seconds=15.0, noise=0.0)
+    path = write1(tmp_path / 'f.bag', [*odometry(record), *imu(record)], packing)
+    calls = []
+    within = unpack.BoundedReader1._within
+
+    def counted(self, machine):
+        bounded = within(self, machine)
+        return lambda data: calls.append(0) or bounded(data)
+
+    monkeypatch.setattr(unpack.BoundedReader1, '_within', counted)
+    with BagFile(path) as bag:
+        stamps = [stamp for _, stamp, _ in bag.messages()]
+        chunks = len(bag._reader.chunks)
+    assert chunks > 1 and len(calls) == chunks
+    assert len(stamps) == 2 * len(record) and (np.diff(stamps) >= 0).all()

@@ -42,8 +42,10 @@ class Reader:
     path is of this kind by its content; suffixes: of files whose content tells no kind, which are
     then taken for damaged ones of this kind; read(path, mapping, vehicle): its flight records, at
     least one; contents(path): the Content of all its streams; package: of PyPI that it needs
-    beyond the program's own, imported as `module`, and installed by the extra of this name.
-    Both raise InputError in one line.
+    beyond the program's own, imported as `module`, and installed by the extra of this name;
+    spoilt: as read, for a part of a file: samples that it would refuse are left out and told in
+    the info of the records (record.SPOILT); None where it refuses none.
+    All raise InputError in one line.
     """
 
     name: str
@@ -55,6 +57,7 @@ class Reader:
     module: str = ''
     extra: str = ''
     suffixes: tuple[str, ...] = ()
+    spoilt: Callable[[Path, Mapping | None, Vehicle | None], list[FlightRecord]] | None = None
 
 
 def content_of(name: str, kind: str, stamps_ns: np.ndarray, origin_ns: int,

@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Bags of ROS 1, by a mapping or by the types of their topics."""
 
+from functools import partial
+
 from quad_ident_ros.data.bag_file import told_kind
 from quad_ident_ros.data.foreign import read_mapped_bag
 from quad_ident_ros.data.mapping import Mapping
@@ -14,9 +16,10 @@ def tells(path, start):
     return told_kind(path, start) == '.bag'
 
 
-def read(path, mapping=None, vehicle=None):
-    """Return the flight records in a bag."""
-    return read_mapped_bag(path, mapping or Mapping())
+def read(path, mapping=None, vehicle=None, spoilt=False):
+    """Return the flight records in a bag; spoilt: see Reader."""
+    return read_mapped_bag(path, mapping or Mapping(), spoilt)
 
 
-READER = Reader('rosbag1', 'a bag of ROS 1', tells, read, topics_of, suffixes=('.bag',))
+READER = Reader('rosbag1', 'a bag of ROS 1', tells, read, topics_of, suffixes=('.bag',),
+                spoilt=partial(read, spoilt=True))

@@ -3,6 +3,7 @@
 """Bags of ROS 2: of the recorder, and those of others by a mapping or by their types."""
 
 from dataclasses import replace
+from functools import partial
 
 from quad_ident_ros.data.bag_file import BagFile, told_kind
 from quad_ident_ros.data.foreign import read_mapped_bag
@@ -21,12 +22,12 @@ def tells(path, start):
     return told_kind(path, start) in ('folder', '.mcap', '.db3')
 
 
-def read(path, mapping=None, vehicle=None):
-    """Return the flight records in a bag."""
+def read(path, mapping=None, vehicle=None, spoilt=False):
+    """Return the flight records in a bag; spoilt: see Reader."""
     if mapping is None and is_recorded(path):
         records = read_bag(path)
     else:
-        records = read_mapped_bag(path, mapping or Mapping())
+        records = read_mapped_bag(path, mapping or Mapping(), spoilt)
     with BagFile(in_recording(path)) as bag:
         notes = [*([NO_END] if bag.recovered else ()),
                  *([SKIPPED.format(bag.skipped)] if bag.skipped else ())]
@@ -39,4 +40,4 @@ def _noted(record, notes):
 
 
 READER = Reader('rosbag2', 'a bag of ROS 2', tells, read, topics_of,
-                suffixes=('.mcap', '.db3'))
+                suffixes=('.mcap', '.db3'), spoilt=partial(read, spoilt=True))

@@ -3,6 +3,7 @@
 """Tables of text, plain or gzip: flight records as CSV, and the tables of others."""
 
 from dataclasses import replace
+from functools import partial
 import gzip
 from pathlib import Path
 import zlib
@@ -31,11 +32,15 @@ _HEAD = 1 << 16     # bytes that the first line has its end in
 
 
 def read(path: Path, mapping: Mapping | None = None,
-         vehicle: Vehicle | None = None) -> list[FlightRecord]:
-    """Return the flight records of a CSV file: in our format, by a mapping, or by guess."""
+         vehicle: Vehicle | None = None, spoilt: bool = False) -> list[FlightRecord]:
+    """
+    Return the flight records of a CSV file: in our format, by a mapping, or by guess.
+
+    Args: spoilt: leave faulty samples out, see Reader. Those of others hold gaps as they are.
+    """
     path = Path(path)
     if mapping in (None, Mapping()) and is_record(path):
-        return [read_csv(path)]
+        return [read_csv(path, spoilt)]
     table = read_text(path, mapping.separator if mapping else '')
     return records_from(path, table, mapping)
 
@@ -137,7 +142,7 @@ def contents(path: Path) -> list[Content]:
     path = Path(path)
     if not is_record(path):
         return contents_of_table(read_text(path), 'CSV')
-    record = read_csv(path)
+    record = read_csv(path, spoilt=True)
     fields = [name if unit(name) is None else f'{name} ({unit(name)})'
               for name in record.columns]
     stamps = ((record.t - record.t[0]) * 1e9).round().astype('int64')
@@ -172,5 +177,6 @@ def _doubtful(path: Path, table: Table, found: Guess) -> str:
             'one with: quad_ident info FILE --write-mapping map.yaml')
 
 
-READER = Reader('csv', 'a table of text (CSV)', lambda path, start: False, read, contents)
+READER = Reader('csv', 'a table of text (CSV)', lambda path, start: False, read, contents,
+                spoilt=partial(read, spoilt=True))
 """Told last, by what no other kind is."""
