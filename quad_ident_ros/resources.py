@@ -53,8 +53,9 @@ def find(kind, name_or_path):
                              f'{", ".join(names(kind))}')
         return path
     shipped = _existing(config_dir() / kind / f'{text}.yaml')
-    if shipped is not None:
-        return shipped
+    path = shipped or _existing(text)
+    if path is not None:
+        return path
     raise InputError(f'{schema.shown(text)} is not among the {kind} ({", ".join(names(kind))}); '
                      'give one of these or the path of a .yaml file')
 
@@ -76,7 +77,9 @@ def read_yaml(path):
     except OSError as error:
         raise InputError(f'{path}: cannot be read: {error.strerror}') from None
     except UnicodeDecodeError:
-        raise InputError(f'{path}: is not text in UTF-8; expected a YAML file') from None
+        what = _kind_of(path)
+        raise InputError(f'{path}: ' + (f'this is {what}; ' if what else 'is not text in UTF-8; ')
+                         + 'expected a YAML file') from None
     except InputError:
         raise
     except yaml.YAMLError as error:
@@ -113,10 +116,23 @@ def _text_of(path):
         raise InputError(f'{path}: this is a device; name a file')
     with open(path, 'rb') as file:
         data = file.read(MOST_BYTES + 1)
+    what = _kind_of(path) if len(data) > MOST_BYTES else ''
+    if what:
+        raise InputError(f'{path}: this is {what}; expected a YAML file')
     if len(data) > MOST_BYTES:
         raise InputError(f'{path}: is larger than {MOST_BYTES // 1024} kB: no YAML file that is '
                          'read here is; name another')
     return data.decode('utf-8')
+
+
+def _kind_of(path):
+    """Return what a file is by its content, such as a picture or a log, or ''."""
+    from quad_ident_ros.data.readers.others import START, title_of
+    from quad_ident_ros.data.readers.registry import READERS
+    with open(path, 'rb') as file:
+        start = file.read(START)
+    known = (reader.title for reader in READERS if reader.tells(Path(path), start))
+    return title_of(start) or next(known, '')
 
 
 def _refuse_endless(path, data):

@@ -19,6 +19,7 @@ from quad_ident_ros.errors import InputError
 from quad_ident_ros.whole_file import replacing
 
 _PENDING_BYTES = 1 << 16    # that are written at once: a call for each line would cost more
+_NAMED = 8                  # columns that a message names
 
 
 def read_csv(path, spoilt=False):
@@ -44,8 +45,10 @@ def read_csv(path, spoilt=False):
     count = len(columns['t'])
     if count < 2:
         dropped = ', its last line has no line end and was dropped' if truncated else ''
-        raise InputError(f'{path}: {counted(count, "sample")} make no flight{dropped}; '
+        make = 'makes' if count == 1 else 'make'
+        raise InputError(f'{path}: {counted(count, "sample")} {make} no flight{dropped}; '
                          'give at least 2')
+    _refuse_empty(path, columns)
     t = columns.pop('t')
     info = {'name': path.name.removesuffix('.gz').removesuffix('.csv'), 'source': str(path)}
     fault = find_fault(t, columns)
@@ -57,6 +60,24 @@ def read_csv(path, spoilt=False):
         info[SPOILT] = [[time, str(error)] for time in _times_of(t, wrong)]
         t, columns = t[~wrong], {name: values[~wrong] for name, values in columns.items()}
     return FlightRecord(t, columns, info | ({'truncated': True} if truncated else {}))
+
+
+def _refuse_empty(path, columns):
+    """Raise InputError where known columns have no number in any line."""
+    empty = [name for name, values in columns.items()
+             if unit(name) is not None and not np.isfinite(values).any()]
+    if empty:
+        raise InputError(f'{path}: no line has a finite number in {_columns(empty)}; '
+                         + ('give the times of the samples' if 't' in empty else
+                            f'leave {"it" if len(empty) == 1 else "them"} out of the table, or '
+                            'fill in the values'))
+
+
+def _columns(names):
+    """Return names of columns in words."""
+    shown = ', '.join(repr(name[:40]) for name in names[:_NAMED])
+    more = f' and {len(names) - _NAMED} more' if len(names) > _NAMED else ''
+    return f'column{"s" * (len(names) > 1)} {shown}{more}'
 
 
 def _faulty(path, lines, t, wrong, fault):
@@ -176,6 +197,8 @@ def _parse_any(path, rows, names):
         numbers = [_number(cell, unit(name) is None) for cell in column]
         if None not in numbers:
             columns[name] = np.array(numbers, dtype=float)
+        elif unit(name) is not None and not ''.join(column).strip():
+            columns[name] = np.full(len(column), np.nan)
         elif unit(name) is not None:
             wrong = [k for k, number in enumerate(numbers) if number is None]
             k, delete = wrong[0], deletion([lines[k] for k in wrong], len(lines))

@@ -38,6 +38,9 @@ UNITS = {
 }
 """Units that a column of a table or a topic may have, by the unit of the flight record."""
 
+COUNTED = re.compile(r'(?=.*[1-9])(\d{1,5}(?:\.\d{1,6})?) Hz')
+"""Unit of a time that is a count, as the frames of a camera: their rate."""
+
 UNIT_OF_ROLE = {'pose': 'm', 'position': 'm', 'attitude': 'rad', 'velocity': 'm/s',
                 'rate': 'rad/s', 'specific_force': 'm/s^2', 'rotors': 'rad/s', 'battery': 'V'}
 """Role of a topic -> its unit in the flight record. That of an attitude makes it three angles."""
@@ -189,8 +192,12 @@ def factor_of(name: str, said: str) -> float:
     """
     Return what values in a unit of UNITS are multiplied by for a column of the record.
 
-    A unit with a minus before it is that of values with the other sign.
+    A unit with a minus before it is that of values with the other sign; that of a time may be a
+    rate, of values that count at it.
     """
+    rate = COUNTED.fullmatch(said) if name == 't' else None
+    if rate:
+        return 1.0 / float(rate[1])
     known = UNITS.get(unit_of(name), {})
     return known.get(said.removeprefix('-'), 1.0) * (-1.0 if said.startswith('-') else 1.0)
 
@@ -347,6 +354,8 @@ def _column(where: str, name: str, entry: object) -> Column:
     if 'unit' in entry:
         units = tuple(UNITS.get(unit_of(name), {})) or ('1',)
         turned = tuple(f'-{one}' for one in units) if name != 't' else ()
-        said = schema.choice(f'{where}: unit', str(entry['unit']), (*units, *turned))
+        said = str(entry['unit'])
+        if not (name == 't' and COUNTED.fullmatch(said)):
+            said = schema.choice(f'{where}: unit', said, (*units, *turned))
     frame = schema.choice(f'{where}: frame', entry.get('frame', 'world'), ('world', 'body'))
     return Column(tuple(one.strip() for one in names), said, frame)

@@ -19,6 +19,8 @@ from quad_ident_ros.data.text_lines import first_rows, rows_of
 from quad_ident_ros.errors import InputError
 
 SEPARATORS = (',', ';', '\t')
+VICON = ('objects', 'segments', 'trajectories', 'global angles', 'model outputs')
+"""What is in a table of Vicon, by its first line; the second has the rate of the cameras."""
 BLANKS = ' '    # any number of them
 MOTIVE = ('world: Motive has y up unless it is told otherwise: export with Z up and name the '
           'columns in a mapping, or turn them in it, such as py: {column: "Position Z", unit: -m}')
@@ -38,7 +40,7 @@ class Table:
 
     columns: name -> (N,) float, nan for an empty cell; units: name -> unit, where a line says
     them; notes: what was left out; how: what separates the cells, for messages; doubts: what the
-    program that wrote the table leaves open.
+    program that wrote the table leaves open; rate: Hz, of frames that are counted, or 0.
     """
 
     columns: dict
@@ -46,6 +48,7 @@ class Table:
     notes: tuple = ()
     how: str = ''
     doubts: tuple = ()
+    rate: float = 0.0
 
 
 def read_text(path: Path, separator: str = '') -> Table:
@@ -74,12 +77,16 @@ def read_text(path: Path, separator: str = '') -> Table:
     how = {',': 'commas', ';': 'semicolons', '\t': 'tabs', BLANKS: 'blanks'}.get(
         layout.separator, repr(layout.separator))
     return Table(columns, layout.units, (*notes, *more),
-                 f'{how}{", decimal commas" if layout.comma else ""}', layout.doubts)
+                 f'{how}{", decimal commas" if layout.comma else ""}', layout.doubts, layout.rate)
 
 
 @dataclass(frozen=True)
 class _Layout:
-    """How a table begins; line: of the first numbers, from 1; comma: whether it is decimal."""
+    """
+    How a table begins.
+
+    line: of the first numbers, from 1; comma: whether it is decimal; rate: of frames, as of Table.
+    """
 
     separator: str
     comma: bool
@@ -87,6 +94,7 @@ class _Layout:
     units: dict[str, str]
     line: int
     doubts: tuple[str, ...]
+    rate: float
 
     @property
     def delimiter(self) -> str | None:
@@ -102,7 +110,16 @@ def _layout(path: Path, rows: list[str], places: list[int], separator: str) -> _
     names = _under_headings(names, rows[first:first + _HEAD], separator)
     _refuse_doubled(path, places[head], names)
     return _Layout(separator, comma, names, units, places[first],
-                   (MOTIVE,) if rows[0].startswith('Format Version') else ())
+                   (MOTIVE,) if rows[0].startswith('Format Version') else (),
+                   _rate_of_frames(rows[:head]))
+
+
+def _rate_of_frames(rows: list[str]) -> float:
+    """Return the rate (Hz) in the lines above the names of a table of Vicon, or 0."""
+    if len(rows) < 2 or rows[0].strip('",; \t').lower() not in VICON:
+        return 0.0
+    said = re.match(r'"?(\d{1,5}(\.\d{1,6})?)\b', rows[1].strip())
+    return float(said[1]) if said else 0.0
 
 
 def told_separator(rows: list[str]) -> str:

@@ -12,7 +12,9 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 import numpy as np
 import pytest
+from records import SMALL
 
+from quad_ident_ros.cli.main import main
 from quad_ident_ros.data.csv import CsvAppender, read_csv, write_csv
 from quad_ident_ros.data.record import FlightRecord, unit
 from quad_ident_ros.errors import InputError
@@ -348,3 +350,28 @@ def test_appender_on_a_full_disk(tmp_path):
     live.flush()
     live.close()
     assert read_csv(tmp_path / 'live2.csv').t.tolist() == list(range(0, 400, 2))
+
+
+def test_columns_without_any_number_are_named_together(tmp_path):
+    path = tmp_path / 'f.csv'
+    write_csv(path, SMALL)
+    head, *rows = path.read_text().splitlines()
+    places = [head.split(',').index(name) for name in ('px', 'vz')]
+    for cell in ('nan', '', 'inf'):
+        cells = [[cell if k in places else one for k, one in enumerate(row.split(','))]
+                 for row in rows]
+        text = '\n'.join([head, *map(','.join, cells)]) + '\n'
+        refused(tmp_path, text, "no line has a finite number in columns 'px', 'vz'; leave them out")
+    refused(tmp_path, f'{head}\n{rows[0]}\n', '1 sample makes no flight')
+
+
+@pytest.mark.parametrize('option', ['--vehicle', '--mapping'])
+def test_a_picture_or_a_log_is_told_where_a_yaml_file_belongs(tmp_path, capsys, monkeypatch,
+                                                              option):
+    write_csv(tmp_path / 'f.csv', SMALL)
+    (tmp_path / 'pic.png').write_bytes(b'\x89PNG\r\n\x1a\n' + bytes(range(256)))
+    (tmp_path / 'log.ulg').write_bytes(b'ULog\x01\x12\x35\x01' + bytes(range(256)) * 2000)
+    monkeypatch.chdir(tmp_path)
+    for name, what in (('pic.png', 'a picture (PNG)'), ('log.ulg', 'a log of PX4 (ULog)')):
+        assert main(['info', 'f.csv', option, name]) == 2
+        assert f'{name}: this is {what}; expected a YAML file' in capsys.readouterr().err

@@ -149,6 +149,8 @@ def test_what_is_in_doubt_is_asked_with_the_lines_to_write(tmp_path):
     refused(path, 'foo, bar', 'columns: {t: time}', '--write-mapping')
     path = table(tmp_path, {'frame': np.arange(len(FLIGHT)),
                             **dict.fromkeys(('x', 'y', 'z'), FLIGHT.t)})
+    refused(path, "'frame' counts at a rate that the table does not say", 'unit: 100 Hz')
+    path = table(tmp_path, dict.fromkeys(('x', 'y', 'z'), np.sin(FLIGHT.t)))
     refused(path, 'no column of a time')
 
 

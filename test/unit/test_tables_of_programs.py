@@ -11,8 +11,10 @@ from records import refused
 from table_files import FORCE, named, PLACE, Q, RATE, SPEED, table
 
 from quad_ident_ros.data.columns import from_euler
+from quad_ident_ros.data.frames import multiply
 from quad_ident_ros.data.load import load, load_all
 from quad_ident_ros.data.mapping import mapping_from
+from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.attitude import euler_from_quaternion
 
 FLIGHT = flight(seconds=10.0, rate=100.0)
@@ -281,3 +283,66 @@ def test_text_of_windows_is_read(tmp_path):
     same(load(path), RATE)
     path.write_bytes(b'\x00\x01' + path.read_bytes())
     refused(path)
+
+
+def vicon(tmp_path, names, units, values, rate='100'):
+    """Write a table as Vicon's Tracker exports an object, with rows of frames, and return it."""
+    path = tmp_path / 'take.csv'
+    rows = np.column_stack([1 + np.arange(len(T)), 0 * T, values]).tolist()
+    path.write_text(f'Objects\n{rate}\n,,Quad:Quad{"," * (len(names) - 1)}\nFrame,Sub Frame,'
+                    f'{",".join(names)}\n,,{",".join(units)}\n'
+                    + ''.join(f'{",".join(map(repr, row))}\n' for row in rows))
+    return path
+
+
+def test_what_vicon_writes_counts_frames_and_has_w_last(tmp_path):
+    """World with z up and x forward, mm, the rate of the cameras above the names."""
+    values = np.hstack([FLIGHT.stack(*XYZW), 1e3 * FLIGHT.stack(*PLACE)])
+    names = ('RX', 'RY', 'RZ', 'RW', 'TX', 'TY', 'TZ')
+    read = load(vicon(tmp_path, names, [''] * 4 + ['mm'] * 3, values))
+    np.testing.assert_allclose(read.t - read.t[0], T - T[0], atol=1e-9)
+    same(replace(read, t=read.t - read.t[0]), PLACE, Q)
+    assert 'Frame: time, frames at 100 Hz' in read.info['notes']
+
+
+def test_a_rotation_of_vicon_that_is_no_quaternion_is_asked_for(tmp_path):
+    values = np.hstack([FLIGHT.stack('qx', 'qy', 'qz'), 1e3 * FLIGHT.stack(*PLACE)])
+    path = vicon(tmp_path, ('RX', 'RY', 'RZ', 'TX', 'TY', 'TZ'), ['rad'] * 3 + ['mm'] * 3, values)
+    refused(path, 'RX, RY, RZ are angles or a rotation vector', 'quaternion')
+
+
+def test_frames_at_a_rate_that_is_not_said_are_asked_for_and_mapped(tmp_path):
+    named_columns = {'Frame': 7 + np.arange(len(T)), **columns('p_', 'xyz', PLACE),
+                     **columns('q', 'wxyz', Q)}
+    path = table(tmp_path, named_columns)
+    refused(path, "'Frame' counts at a rate", 'unit: 100 Hz')
+    given = {'t': {'column': 'Frame', 'unit': '100 Hz'}, 'q': ['qw', 'qx', 'qy', 'qz'],
+             **{f'p{axis}': f'p_{axis}' for axis in 'xyz'}}
+    read = load(path, mapping_from({'columns': given}, 'a test'))
+    np.testing.assert_allclose(np.diff(read.t), 0.01, atol=1e-9)
+    for wrong in ('0 Hz', '-5 Hz', 'Hz', '1e9 Hz'):
+        given['t'] = {'column': 'Frame', 'unit': wrong}
+        with pytest.raises(InputError, match='unit'):
+            mapping_from({'columns': given}, 'a test')
+
+
+@pytest.mark.parametrize('order', ['wxyz', 'xyzw'])
+@pytest.mark.parametrize('turned', [0.0, 0.5, 2.0])
+def test_motion_capture_with_z_up_is_not_guessed_wrongly(tmp_path, order, turned):
+    """Letters tell the order of a quaternion; numbers do, or are asked for, never turned round."""
+    yaw = from_euler(np.zeros(1), np.zeros(1), np.array([turned]))[0]
+    q = multiply(np.broadcast_to(yaw, (len(T), 4)), FLIGHT.stack(*Q))
+    place = FLIGHT.stack(*PLACE)
+    letters = named([f'q{letter}' for letter in order], q[:, ['wxyz'.index(one) for one in order]])
+    numbers = dict(zip(('q0', 'q1', 'q2', 'q3'), letters.values(), strict=True))
+    for cells in (letters, numbers):
+        path = table(tmp_path, {'Time': T, **named(('X [mm]', 'Y [mm]', 'Z [mm]'), 1e3 * place),
+                                **cells})
+        try:
+            read = load(path)
+        except InputError as error:
+            assert cells is numbers and 'the order of q0, q1, q2, q3' in str(error)
+            continue
+        close = np.abs(np.sum(read.stack(*Q) * q, axis=1))
+        np.testing.assert_allclose(close, 1.0, atol=1e-9)
+        np.testing.assert_allclose(read.stack(*PLACE), place, atol=1e-9)

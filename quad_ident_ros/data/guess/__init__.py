@@ -16,7 +16,7 @@ from quad_ident_ros.data.guess.draft import Draft, Guess
 from quad_ident_ros.data.mapping import Mapping
 from quad_ident_ros.data.tabular import Table
 
-STEPS = (clock.time, programs.blackbox_decode, motion.vectors, attitude.quaternion,
+STEPS = (clock.time, programs.blackbox_decode, programs.vicon, motion.vectors, attitude.quaternion,
          attitude.angles, attitude.rates, motion.positions, motion.forces, motion.axes,
          motion.velocities, motors.motors, motors.battery)
 BEYOND = 1e30   # no quantity of a flight, in whatever unit, is as large

@@ -24,6 +24,8 @@ def time(draft: Draft) -> None:
     first = next(iter(draft.table.columns))
     if not found and _is_clock(draft.table.columns[first]):
         rising = [first]        # in whatever language
+    if not rising and _by_count(draft):
+        return
     if not rising:
         draft.guess.doubts.append(
             f't: no column of a time that rises{_but(found)}; add one in s to the file')
@@ -40,6 +42,33 @@ def time(draft: Draft) -> None:
     draft.t = values * factor_of('t', unit)
     draft.taken([name], '')
     draft.guess.said.append(f'{name}: time in {unit}')
+
+
+def _by_count(draft: Draft) -> bool:
+    """Take a count of frames as the time, or doubt its rate; return whether there is one."""
+    counts = [name for name in draft.free if draft.names[name] in ('frame', 'frames')
+              and _is_count(draft.table.columns[name])]
+    if len(counts) != 1:
+        return False
+    rate = draft.table.rate
+    if not rate:
+        draft.guess.doubts.append(
+            f't: {counts[0]!r} counts at a rate that the table does not say; write it, such as '
+            f't: {{column: {counts[0]}, unit: 100 Hz}}')
+        draft.guess.candidates['t'] = counts
+        return True
+    draft.columns['t'] = Column((counts[0],), f'{rate:.10g} Hz')
+    draft.t = draft.table.columns[counts[0]] / rate
+    draft.taken(counts, '')
+    draft.guess.said.append(f'{counts[0]}: time, frames at {rate:g} Hz')
+    return True
+
+
+def _is_count(values: np.ndarray) -> bool:
+    """Return whether values rise by one from each row to the next, but for rows left out."""
+    steps = np.diff(values)
+    return bool(len(steps) and (steps >= 1).all() and (steps % 1 == 0).all()
+                and np.median(steps) == 1)
 
 
 def time_unit(values: np.ndarray) -> str:

@@ -6,11 +6,35 @@ import numpy as np
 
 from quad_ident_ros.data.betaflight import ORDER, QUAD_X
 from quad_ident_ros.data.columns import FORCE, RATE
-from quad_ident_ros.data.guess.draft import Draft
+from quad_ident_ros.data.guess.draft import Draft, together
 from quad_ident_ros.data.guess.motion import HOVERS
+from quad_ident_ros.data.guess.series import is_unit, unit_length
 from quad_ident_ros.data.motor_order import about_motors
+from quad_ident_ros.data.record import QUATERNION
 
 RAW, ONE_G = 'g/2048', 2048.0   # of accelerometers of 16 bits over +-16 g, as Betaflight sets them
+
+
+def vicon(draft: Draft) -> None:
+    """
+    Take the rotation in a table of Vicon's Tracker where it is a quaternion, RX, RY, RZ, RW.
+
+    RX, RY, RZ alone are angles or a rotation vector, as the program is set, which no name tells.
+    Source: Vicon Tracker, export of objects as CSV.
+    """
+    columns = {plain: name for name, plain in draft.names.items()}
+    names = [columns.get(f'r{letter}', '') for letter in 'wxyz']
+    if not {'tx', 'ty', 'tz'} <= set(columns) or '' in names[1:]:
+        return
+    if names[0]:
+        q = draft.values(names)
+        if is_unit(q):
+            draft.take(QUATERNION, names, role='pose', said='attitude')
+            draft.attitude = unit_length(q)
+        return
+    draft.guess.doubts.append(
+        f'attitude: whether {together(names[1:])} are angles or a rotation vector; export the '
+        'rotation as a quaternion, which has RW beside them')
 
 
 def blackbox_decode(draft: Draft) -> None:

@@ -64,6 +64,12 @@ def refuse_others(path: Path, start: bytes) -> None:
         raise InputError(f'{path}: this is {title}; {instead}')
 
 
+def title_of(start: bytes) -> str:
+    """Return what a file is that is known to be none of a flight, by its first bytes, or ''."""
+    found = _told(start)
+    return found[0] if found else ''
+
+
 def refuse_unknown(path: Path, start: bytes, known: str) -> None:
     """Raise InputError for a file that is no text either; known: the kinds that are read."""
     # A letter that is none is an error of a table, which its reader tells with its place.
