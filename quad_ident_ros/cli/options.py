@@ -107,7 +107,7 @@ def vehicle_from(option: str, path: str, mapping: str | None = None,
     if option != AUTO:
         return load_nominal(option) if nominal else load_vehicle(option)
     if reader_of(Path(path)).name != 'px4':
-        raise InputError(f'{path}: --vehicle auto is for logs of PX4, whose parameters describe '
-                         'the vehicle; give a vehicle file')
+        raise InputError(f'{path}: --vehicle auto is for logs of PX4 (ULog), whose parameters '
+                         'describe the vehicle; give a vehicle file')
     from quad_ident_ros.data.px4_nominal import vehicle_of_log
     return vehicle_of_log(path, load_mapping(mapping) if mapping else None)

@@ -10,11 +10,14 @@ import numpy as np
 
 from quad_ident_ros.data.bag_file import BagFile
 from quad_ident_ros.data.bag_guess import guessed
+from quad_ident_ros.data.csv import read_csv
 from quad_ident_ros.data.guess import guess
 from quad_ident_ros.data.load import reader_of
-from quad_ident_ros.data.mapping import Mapping
+from quad_ident_ros.data.mapping import Column, Mapping
 from quad_ident_ros.data.mapping_text import names_text, table_text, topics_text
 from quad_ident_ros.data.readers.base import Content
+from quad_ident_ros.data.readers.table import is_record
+from quad_ident_ros.data.record import unit
 from quad_ident_ros.data.signal_kind import kinds_of
 from quad_ident_ros.data.tabular import read_parquet, read_text
 from quad_ident_ros.errors import InputError
@@ -37,6 +40,8 @@ def begin_mapping(out: str | Path, path: str | Path, streams: Sequence[Content])
     name = reader_of(path).name
     if name in BAGS:
         text = topics_text(path, streams, _as_read(path))
+    elif name == 'csv' and is_record(path):
+        text = table_text(path, _of_record(path), [], [])
     elif name in TABLES:
         table = TABLES[name](path)
         found = guess(table)
@@ -51,6 +56,13 @@ def begin_mapping(out: str | Path, path: str | Path, streams: Sequence[Content])
                          'another') from None
     except OSError as error:
         raise InputError(f'{out}: cannot be written: {error.strerror}') from None
+
+
+def _of_record(path: Path) -> Mapping:
+    """Return the Mapping that says of a flight record what its names say."""
+    record = read_csv(path, spoilt=True)
+    return Mapping(columns={name: Column((name,)) for name in ('t', *record.columns)
+                            if unit(name) is not None})
 
 
 def _outputs(path: Path) -> tuple[list[int], str]:

@@ -361,7 +361,7 @@ def test_columns_without_any_number_are_named_together(tmp_path):
         cells = [[cell if k in places else one for k, one in enumerate(row.split(','))]
                  for row in rows]
         text = '\n'.join([head, *map(','.join, cells)]) + '\n'
-        refused(tmp_path, text, "no line has a finite number in columns 'px', 'vz'; leave them out")
+        refused(tmp_path, text, "a finite number in columns 'px', 'vz'; leave them out")
     refused(tmp_path, f'{head}\n{rows[0]}\n', '1 sample makes no flight')
 
 

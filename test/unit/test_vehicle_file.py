@@ -370,7 +370,8 @@ def test_no_name_is_an_error_of_another_kind(name):
 
 @pytest.mark.parametrize(('content', 'words'), [
     (b'mass: [1', 'line 1: is not YAML'), (b'a: b: c', 'line 1: is not YAML'),
-    (b'\xff\xfe\x00mass', 'this is text in UTF-16'), (b'\xffmass', 'is not text'), (b'', 'expected `key: value` lines'),
+    (b'\xff\xfe\x00mass', 'this is text in UTF-16'), (b'\xffmass', 'is not text'),
+    (b'', 'expected `key: value` lines'),
     (b'- 1', 'expected `key: value` lines'), (b'mass: 2001-99-99', 'cannot be read'),
     (b'mass: 0b_', 'cannot be read'), (b'[' * 5000, 'cannot be read'),
     (b'mass: !!int ""', 'cannot be read'), (b'mass: !!python/object:os.system 1', 'is not YAML'),
