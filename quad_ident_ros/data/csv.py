@@ -86,7 +86,7 @@ def _faulty(path, lines, t, wrong, fault):
     ways = [deletion([lines[k] for k in np.flatnonzero(wrong)], len(wrong)), fault.remedy,
             f'take a part: {part}' if part else '']
     return error_at(path, lines[fault.sample], fault.column, fault.problem,
-                  ', or '.join(filter(None, ways)))
+                    ', or '.join(filter(None, ways)))
 
 
 def _times_of(t, wrong):
