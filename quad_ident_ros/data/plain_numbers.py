@@ -15,7 +15,7 @@ import zlib
 import numpy as np
 
 from quad_ident_ros.data.limits import most
-from quad_ident_ros.data.text_lines import is_packed
+from quad_ident_ros.data.text_lines import is_packed, LINE_BYTES
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,7 +73,7 @@ class _Samples(Iterator):
     def __next__(self) -> str:
         for line in self._file:
             self._number += 1
-            self._rest -= len(line)
+            self._rest -= len(line) + LINE_BYTES
             if self._rest < 0:
                 raise ValueError('far more than flights have')
             if not line.endswith('\n'):

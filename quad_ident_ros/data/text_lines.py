@@ -13,7 +13,7 @@ from quad_ident_ros.errors import InputError
 _CONTROL = re.compile(rb'[\x00-\x08\x0e-\x1a\x1c-\x1f\x7f\x81\x8d\x8f\x90\x9d]')
 """Bytes that no text in the code page of Windows (cp1252) has."""
 
-_LINE_BYTES = 60   # that a line takes in memory besides its text
+LINE_BYTES = 60   # that a line takes in memory besides its text
 
 
 def error_at(path, line, column, problem, remedy):
@@ -79,7 +79,7 @@ def _bytes(path):
         limit = most(path.stat().st_size)
         with (gzip.open if packed else open)(path, 'rb') as file:
             data = file.read(limit + 1 if packed else -1)
-        if packed and len(data) + _LINE_BYTES * data.count(b'\n') > limit:
+        if packed and len(data) + LINE_BYTES * data.count(b'\n') > limit:
             raise InputError(f'{path}: unpacks to far more than flights do; if it is one, unpack '
                              'it first: zcat FILE > flight.csv')
         return data
