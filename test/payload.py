@@ -11,7 +11,7 @@ from quad_ident_ros.data.record import FlightRecord
 PERIOD = 0.01
 MASS, PAYLOAD, GRAVITY, DRAG = 0.65, 0.2, 9.806, 6.354e-4
 PICKED_UP = 12.0       # s
-START_NS = 10 ** 12
+START_NS = 1_795_402_874_187_903_202    # of 2026, which no double has exactly
 
 
 @cache

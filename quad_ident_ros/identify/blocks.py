@@ -78,11 +78,12 @@ def blocks_of(signal, after_ns):
     """
     count = samples_of(signal.period)
     hop_ns = round(count // 2 * signal.period * 1e9)
-    t_ns = signal.start_ns + signal.t * 1e9
-    first = max(after_ns, t_ns[0] + count * signal.period * 1e9 - 0.5e9 * signal.period)
-    ends = np.arange(first // hop_ns + 1, (t_ns[-1] + 1e3) // hop_ns + 1) * hop_ns
-    last = np.searchsorted(t_ns, ends + 1e3) - 1
-    ends, last = ends[last >= count].astype(np.int64), last[last >= count]
+    # Stamps are whole numbers: as doubles, those of today are only good to 256 ns.
+    earliest = signal.start_ns + round((signal.t[0] + (count - 0.5) * signal.period) * 1e9)
+    latest = signal.start_ns + round(signal.t[-1] * 1e9 + 1e3)
+    ends = hop_ns * np.arange(max(int(after_ns), earliest) // hop_ns + 1, latest // hop_ns + 1)
+    last = np.searchsorted(signal.t, (ends - signal.start_ns) * 1e-9 + 1e-6) - 1
+    ends, last = ends[last >= count], last[last >= count]
     if not len(ends):
         return Blocks(ends, np.empty(0), np.empty((0, 3 - (signal.output == 'z'))), np.empty(0),
                       np.empty(0))

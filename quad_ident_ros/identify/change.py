@@ -148,7 +148,7 @@ def find_change(blocks, output, noise=(0.0, 0.0)):
             if not holds[-length:].all() or last.ends_ns[-1] - last.ends_ns[0] > length * hop:
                 return found
             moves = {name: _move(last, column, reference) for name, column in columns.items()}
-            if length > LASTING and not _lasts(blocks, moves, reference, columns):
+            if not _lasts(blocks, moves, reference, columns):
                 continue
             largest = max(size for size, _ in moves.values())
             if largest > best * limit:
@@ -157,9 +157,13 @@ def find_change(blocks, output, noise=(0.0, 0.0)):
 
 
 def _lasts(blocks, moves, reference, columns):
-    """Return whether half of the largest move is there in the very last blocks: no knock is."""
+    """
+    Return whether half of the largest move is there in the very last block.
+
+    Blocks overlap by half, so that a knock of a quarter of a second is in three at most.
+    """
     name = max(moves, key=lambda each: moves[each][0])
-    now = _move(blocks.part(slice(-LASTING, None)), columns[name], reference)
+    now = _move(blocks.part(slice(-1, None)), columns[name], reference)
     before = reference.parameters[columns[name]]
     return (now[1] - before) / (moves[name][1] - before) > 0.5
 
