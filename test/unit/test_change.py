@@ -117,7 +117,7 @@ def test_windows_of_any_step_give_the_same_blocks():
 
 
 def test_a_block_is_the_mean_of_the_equation_of_motion():
-    """y'' of a parabola and of a sine, and the held thrust, all under the same weight."""
+    """The means of a parabola's and a sine's second derivative and of the held thrust."""
     flight = climb(0.0, noise=0.0)
     [pair] = [pair for pair in signals(flight)[0] if pair.output == 'z']
     blocks = blocks_of(pair, 0)
