@@ -23,6 +23,7 @@ AGAIN = 60.0            # s within which a node that was started again is ready,
                         # keeps the machine busy
 BUSY = 1.5              # times longer that computing takes where others keep the machine busy
 ON_ITS_WAY = 0.3        # s in which a watcher hears what was said before a kill
+LANDED = 5.0            # s without a sample after which a flight is over
 FLIGHT = 120.0          # s; it is flown again when it is over
 
 
@@ -54,10 +55,9 @@ def _victim(watch: Watch, launched: Launched, folder: Path, victim: str, paramet
     """Kill one of the nodes again and again, while the others go on; folder: of their logs."""
     worst, behind, back, unreadable = 0.0, 0.0, 0.0, []
     for _ in range(kills):
-        if time.monotonic() - watch.heard['simulator'] > 1.0:   # it has landed: fly again
-            watch.node.create_client(Trigger, 'simulator/start').call_async(Trigger.Request())
         joined = watch.account['joined']
-        watch.until(lambda j=joined: watch.account['joined'] > j, 'the flight', AGAIN)
+        watch.until(lambda j=joined: flies(watch) and watch.account['joined'] > j, 'the flight',
+                    AGAIN)
         watch.wait(random.uniform(0.6, 1.6))
         recording, before = watch.account['recording'], watch.account
         launched.processes[victim].kill()
@@ -76,7 +76,8 @@ def _victim(watch: Watch, launched: Launched, folder: Path, victim: str, paramet
         watch.until(lambda f=log: 'ready: ' in f.read_text('utf-8', 'replace'),
                     f'{victim} again', AGAIN)
         watch.until(lambda r=recording: victim != 'recorder' or (
-            watch.account['recording'] != r and watch.account['joined'] > 0), 'samples', AGAIN)
+            flies(watch) and watch.account['recording'] != r and watch.account['joined'] > 0),
+            'samples', AGAIN)
         back = max(back, time.monotonic() - begin)
     text = f'at work again within {back:.1f} s'
     held = not unreadable and worst <= LOSS
@@ -94,6 +95,15 @@ def _victim(watch: Watch, launched: Launched, folder: Path, victim: str, paramet
         # Where others keep the machine busy, it is they that cost something.
         held = held and (not others or slower > BUSY)
     return Finding('kill -9', f'{victim}, {kills} times at {rate} Hz', text, held)
+
+
+def flies(watch: Watch) -> bool:
+    """Return whether the simulator flies; where it has landed, it is asked to fly again."""
+    landed = time.monotonic() - watch.flown > LANDED
+    if landed:
+        watch.flown = time.monotonic()      # it has time to begin
+        watch.node.create_client(Trigger, 'simulator/start').call_async(Trigger.Request())
+    return not landed
 
 
 def lost(recording: Path, newest: int) -> float:

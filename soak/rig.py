@@ -39,13 +39,15 @@ class Watch:
     """
     Hears the account of the recorder, how far it is, the newest stamp on the wire and who lives.
 
-    newest, joined: stamps (ns) of the newest sample, and of the last that the recorder joined.
+    newest, joined: stamps (ns) of the newest sample, and of the last that the recorder joined;
+    flown: when the last sample came, s of the monotonic clock.
     """
 
     def __init__(self, node: Any, executor: Any) -> None:
         self.node, self._executor = node, executor
         self.account: dict = {}
         self.newest = self.joined = 0
+        self.flown = time.monotonic()
         self.heard: dict[str, float] = {}
         self.results: list = []
         node.create_subscription(String, 'recorder/statistics', self._on_account, latched())
@@ -59,7 +61,7 @@ class Watch:
 
     def _on_sample(self, raw: bytes) -> None:
         self.newest = FLIGHT_TOPICS['altitude'].read(raw)[0]
-        self.heard['simulator'] = time.monotonic()
+        self.heard['simulator'] = self.flown = time.monotonic()
 
     def _on_joined(self, message: UInt64) -> None:
         self.joined = message.data
