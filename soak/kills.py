@@ -100,9 +100,9 @@ def _victim(watch: Watch, launched: Launched, folder: Path, victim: str, paramet
 def flies(watch: Watch) -> bool:
     """Return whether the simulator flies; where it has landed, it is asked to fly again."""
     landed = time.monotonic() - watch.flown > LANDED
-    if landed:
+    if landed and watch.start.service_is_ready():
         watch.flown = time.monotonic()      # it has time to begin
-        watch.node.create_client(Trigger, 'simulator/start').call_async(Trigger.Request())
+        watch.start.call_async(Trigger.Request())
     return not landed
 
 

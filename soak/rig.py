@@ -13,6 +13,7 @@ from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PointStamped
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from std_msgs.msg import String, UInt64
+from std_srvs.srv import Trigger
 
 from quad_ident_ros.data.topics import FLIGHT_TOPICS, JOINED_TOPIC
 from quad_ident_ros.errors import InputError
@@ -40,7 +41,7 @@ class Watch:
     Hears the account of the recorder, how far it is, the newest stamp on the wire and who lives.
 
     newest, joined: stamps (ns) of the newest sample, and of the last that the recorder joined;
-    flown: when the last sample came, s of the monotonic clock.
+    flown: when the last sample came, s of the monotonic clock; start: client of the simulator.
     """
 
     def __init__(self, node: Any, executor: Any) -> None:
@@ -48,6 +49,7 @@ class Watch:
         self.account: dict = {}
         self.newest = self.joined = 0
         self.flown = time.monotonic()
+        self.start = node.create_client(Trigger, 'simulator/start')
         self.heard: dict[str, float] = {}
         self.results: list = []
         node.create_subscription(String, 'recorder/statistics', self._on_account, latched())
