@@ -12,7 +12,7 @@ from rosbags.typesys import get_types_from_msg, get_typestore, Stores
 
 from quad_ident_ros.data.definitions import layouts
 
-START = 10 ** 12    # ns
+START = 1_795_402_874_187_903_000    # ns, of 2026, which no double has exactly
 ODOMETRY, IMU = 'nav_msgs/msg/Odometry', 'sensor_msgs/msg/Imu'
 POSE, TWIST = 'geometry_msgs/msg/PoseStamped', 'geometry_msgs/msg/TwistStamped'
 TF, ESC = 'tf2_msgs/msg/TFMessage', 'mavros_msgs/msg/ESCStatus'
@@ -83,7 +83,7 @@ def xyz(values):
 
 def stamps(record):
     """Return the stamps of the samples of a record, ns."""
-    return (START + np.round((record.t - record.t[0]) * 1e9)).astype(int).tolist()
+    return (START + np.round((record.t - record.t[0]) * 1e9).astype(int)).tolist()
 
 
 def odometry(record, topic='/odom', frame='map', child='base_link'):

@@ -17,6 +17,7 @@ from bag_files import (
     poses,
     PX4,
     px4,
+    START,
     store,
     transforms,
     TWIST,
@@ -78,7 +79,7 @@ def test_the_topics_of_px4_are_known_by_type(tmp_path, velocity, old, write):
     path = write(tmp_path / 'bag', px4(SMALL, SHARES, velocity, old), types=types)
     read = load(path)
     agrees(read, PLACE, SPEED, ATTITUDE, RATE, FORCE, within=1e-5)
-    assert read.info['start_ns'] == 10 ** 12
+    assert read.info['start_ns'] == START
     np.testing.assert_allclose(read.stack(*[f'output{k}' for k in range(1, 5)]), SHARES, atol=1e-6)
     assert not read.has('output5') and not read.has('cmd1')
     assert set(read.columns['vbat']) == {15.5}
@@ -105,7 +106,7 @@ def test_the_resets_that_px4_counts_split_a_bag(tmp_path, odometry):
     messages = [one for one in px4(record, np.full((len(record), 4), 0.5))
                 if odometry or 'odometry' not in one[0]]
     for topic, _, ns, fields in messages:
-        late = ns >= 10 ** 12 + 6 * 10 ** 9
+        late = ns >= START + 6 * 10 ** 9
         if topic.endswith('vehicle_odometry') and late:
             fields['reset_counter'] = 1
             fields['position'][0] += 0.8
