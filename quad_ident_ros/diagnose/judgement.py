@@ -233,8 +233,8 @@ def judge(bench: Bench) -> Judgement:
                                len(removed) == 1 and clear(weights[removed[0]], rules))]
         if not idle:
             break
-        first = max(idle, key=lambda removed: (len(removed), -lost_share(
-            model.gap, smaller[removed].gap, before, noise, rules)))
+        # Where either of two does and their gaps hardly differ, the likelihood tells them apart.
+        first = max(idle, key=lambda removed: (len(removed), -smaller[removed].estimate.cost))
         model = smaller[first]
     # Where forms gave way to the usual ones, these stand for their effects.
     there = {cause.effect: cause for cause in (*full.effects, *model.effects)}

@@ -412,11 +412,11 @@ def _other_actuator(best: tuple, causes: Sequence[Candidate], z: np.ndarray, veh
     """
     Return [(set, vector)] with another delay or lag for those of a set, at its usual size.
 
-    From a delay that does the work of a lag no slope leads to the lag. Only forms with one
-    parameter: slopes lead from these to the others.
+    From a delay that does the work of a lag no slope leads to the lag, and none from a lag of the
+    first order to one of the second.
     """
     found, size = [], limits(vehicle)[2]
-    actuators = [cause for cause in causes if EFFECTS[cause.effect].actuator and cause.plain]
+    actuators = [cause for cause in causes if EFFECTS[cause.effect].actuator]
     there = [cause for cause in best if cause.nuisance is None and EFFECTS[cause.effect].actuator]
     gone = [column for cause in there for column in cause.columns]
     for other in [cause for cause in actuators if there and cause not in there]:

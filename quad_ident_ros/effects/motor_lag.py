@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Rotor speed follows its command with a first-order lag."""
 
-from quad_ident_ros.effects import motor_lag_rise_fall, motor_lag_slew
+from quad_ident_ros.effects import motor_lag_rise_fall, motor_lag_second_order, motor_lag_slew
 from quad_ident_ros.effects.base import Effect, Form, Parameter
 
 FORM = Form(
@@ -14,6 +14,6 @@ FORM = Form(
     actuator='lag')
 EFFECT = Effect(
     name='motor_lag', title='lag of the motors',
-    forms=(FORM, motor_lag_rise_fall.FORM, motor_lag_slew.FORM),
+    forms=(FORM, motor_lag_rise_fall.FORM, motor_lag_slew.FORM, motor_lag_second_order.FORM),
     excitation='commands that change within a few time constants: steps, chirps, fast turns',
     confused_with=('actuation_delay', 'inertia_mismatch'))

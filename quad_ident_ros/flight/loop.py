@@ -7,7 +7,7 @@ import numpy as np
 from quad_ident_ros.compiled import compiled
 from quad_ident_ros.effects.registry import SLICES, TABLE
 from quad_ident_ros.flight.controller import control, SEEN
-from quad_ident_ros.model.actuators import FALL, follow, RISE, SLEW
+from quad_ident_ros.model.actuators import FALL, follow, INNER_LAG, is_followed, MEAN_LAG, RISE, SLEW
 from quad_ident_ros.model.rigid_body import derivative, INPUT, prepare, STATE
 from quad_ident_ros.model.rollout import step, take_up
 from quad_ident_ros.model.situation import (
@@ -64,12 +64,13 @@ def close_loop(v, places, theta, tilt, rate_tilt, dt, clock, fall, full, longest
     u, h = np.zeros((INPUT, 1)), np.empty(1)
     speed, command, extra = np.empty((n, 1)), np.empty((n, 1)), np.zeros((3, n, 1))
     up, down, slew = theta[LAG, 0] + theta[RISE, 0], theta[LAG, 0] + theta[FALL, 0], theta[SLEW, 0]
-    by_law = theta[RISE, 0] > 0.0 or theta[FALL, 0] > 0.0 or slew > 0.0
+    mean_lag, inner_lag = theta[MEAN_LAG, 0], theta[INNER_LAG, 0]
+    by_law = is_followed(theta[:, 0])
     acting = theta.copy()
     if by_law:
         acting[LAG, 0] = 0.0
     lag = acting[LAG]
-    end, added = np.empty(n), np.zeros((3, n))
+    end, added, inner = np.empty(n), np.zeros((3, n)), np.zeros((2, n))
     seen, force, lever = np.empty(SEEN), np.empty(3), np.empty(3)
     state[:, 0] = x
     prepare(v, places, theta, s, rotors)
@@ -86,6 +87,7 @@ def close_loop(v, places, theta, tilt, rate_tilt, dt, clock, fall, full, longest
         control(seen, wanted[k], dt, gains, mixer, memory, commands[k])
         if k == 0:
             speed[:, 0] = commands[0]
+            inner[0] = commands[0]
         drop[k] = min(fall * energy, (1.0 - EMPTY) * full)
         u[5, 0], u[6, 0] = drop[k], drop[k] / full
         s[TIME, 0] = clock * k * dt
@@ -116,8 +118,8 @@ def close_loop(v, places, theta, tilt, rate_tilt, dt, clock, fall, full, longest
             for _ in range(pieces):
                 if by_law:
                     end[:] = speed[:, 0]
-                    follow(end, commands[before if piece == 0 else max(k - whole, 0)], h[0], up,
-                           down, slew, added)
+                    follow(end, inner, commands[before if piece == 0 else max(k - whole, 0)],
+                           h[0], up, down, slew, mean_lag, inner_lag, added)
                     command[:, 0], extra[:, :, 0] = end, added
                 take_up(state, speed, command, h, acting, places, s, rotors, work)
                 step(state, h, u, v, places, theta, speed, command, extra, lag, s, rotors, work)

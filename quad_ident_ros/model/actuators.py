@@ -15,9 +15,13 @@ from quad_ident_ros.compiled import compiled
 from quad_ident_ros.effects.registry import PLACE, SLICES
 
 DELAY, LAG = SLICES['actuation_delay'].start, SLICES['motor_lag'].start
-RISE, FALL, SLEW = (PLACE['motor_lag', name] for name in ('rise', 'fall', 'slew'))
-FOLLOWED = [RISE, FALL, SLEW]
+RISE, FALL, SLEW, MEAN_LAG, INNER_LAG = (
+    PLACE['motor_lag', name] for name in ('rise', 'fall', 'slew', 'mean_lag', 'inner_lag'))
+FOLLOWED = [RISE, FALL, SLEW, MEAN_LAG]
 CLOSE = 1e-9    # of a step, within which a command changes at a sample
+PIECES = 8      # of a mean lag, over each of which a response of the second order is its mean
+MOST_PIECES = 64
+NO_LAG = 1e-9   # s, of the torque, in place of none
 
 
 class Actuation(NamedTuple):
@@ -65,10 +69,23 @@ def distinct(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return np.unique(which, return_index=True)[1], which
 
 
-def law_of(thetas: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return lags up and down, s, and one over the fastest change of speed, of sets (..., P)."""
+def law_of(thetas: np.ndarray) -> tuple[np.ndarray, ...]:
+    """
+    Return what parameter sets (..., P) say of the motors, each (...).
+
+    Lags up and down, s, one over the fastest change of speed, and mean and inner lag, s, of a
+    response of the second order, which the others follow.
+    """
     lag = thetas[..., LAG]
-    return lag + thetas[..., RISE], lag + thetas[..., FALL], thetas[..., SLEW]
+    return (lag + thetas[..., RISE], lag + thetas[..., FALL], thetas[..., SLEW],
+            thetas[..., MEAN_LAG], thetas[..., INNER_LAG])
+
+
+@compiled
+def is_followed(theta: np.ndarray) -> bool:
+    """Return whether the speeds by a parameter set (P,) are followed here: see actuated."""
+    return (theta[RISE] > 0.0 or theta[FALL] > 0.0 or theta[SLEW] > 0.0
+            or theta[MEAN_LAG] > 0.0)
 
 
 def without_lag(thetas: np.ndarray) -> np.ndarray:
@@ -189,11 +206,11 @@ def _advance(speed: np.ndarray, command: np.ndarray, length: float, left: float,
 
 @compiled(fused=True)
 def _act_by_law(t: np.ndarray, stamps: np.ndarray, commands: np.ndarray, delay: float, up: float,
-                down: float, slew: float, followed: np.ndarray, speeds: np.ndarray,
-                added: np.ndarray) -> None:
+                down: float, slew: float, mean_lag: float, inner_lag: float, followed: np.ndarray,
+                speeds: np.ndarray, added: np.ndarray) -> None:
     """Write the Actuation of one delay and any law: see law_of."""
-    count, last = len(t), len(stamps)
-    sums = np.empty((3, commands.shape[1]))
+    count, last, n = len(t), len(stamps), commands.shape[1]
+    sums, inner = np.empty((3, n)), np.zeros((2, n))
     at = 0
     for k in range(count):
         step = t[k + 1] - t[k] if k + 1 < count else t[k] - t[k - 1]
@@ -201,7 +218,7 @@ def _act_by_law(t: np.ndarray, stamps: np.ndarray, commands: np.ndarray, delay: 
         while at + 1 < last and stamps[at + 1] + delay <= t[k] + close:
             at += 1
         if k == 0:
-            speeds[k] = commands[at]
+            speeds[k] = inner[0] = commands[at]
         followed[k] = speeds[k]
         if k + 1 == count:
             break
@@ -209,31 +226,77 @@ def _act_by_law(t: np.ndarray, stamps: np.ndarray, commands: np.ndarray, delay: 
         sums[:] = 0.0
         while at + 1 < last and stamps[at + 1] + delay < t[k + 1] - close:
             length = stamps[at + 1] + delay - t[k] - done
-            _follow(followed[k], commands[at], length, step - done, up, down, slew, sums)
+            _follow(followed[k], inner, commands[at], length, step - done, up, down, slew,
+                    mean_lag, inner_lag, sums)
             done += length
             at += 1
-        _follow(followed[k], commands[at], step - done, step - done, up, down, slew, sums)
+        _follow(followed[k], inner, commands[at], step - done, step - done, up, down, slew,
+                mean_lag, inner_lag, sums)
         _match(sums, step, followed[k], added[k])
         speeds[k + 1] = followed[k]
 
 
 @compiled
-def follow(speed: np.ndarray, command: np.ndarray, step: float, up: float, down: float,
-           slew: float, added: np.ndarray) -> None:
+def follow(speed: np.ndarray, inner: np.ndarray, command: np.ndarray, step: float, up: float,
+           down: float, slew: float, mean_lag: float, inner_lag: float, added: np.ndarray) -> None:
     """
     Advance speeds (n,) by a step s towards commands (n,), by any law: see law_of.
 
-    Writes into added (3, n) what is to be added to the speeds at the end to have those at the
-    begin, the middle and the end of the step as its integration takes them.
+    inner (2, n): speeds and their rates of change, of a response of the second order alone; it
+    begins at the speeds and at 0. Writes into added (3, n) what is to be added to the speeds at
+    the end to have those at the begin, the middle and the end of the step as its integration takes
+    them.
     """
     sums = np.zeros((3, len(speed)))
-    _follow(speed, command, step, step, up, down, slew, sums)
+    _follow(speed, inner, command, step, step, up, down, slew, mean_lag, inner_lag, sums)
     _match(sums, step, speed, added)
 
 
+@compiled(fused=True)
+def _follow(speed: np.ndarray, inner: np.ndarray, command: np.ndarray, length: float, left: float,
+            up: float, down: float, slew: float, mean_lag: float, inner_lag: float,
+            sums: np.ndarray) -> None:
+    """
+    Advance speeds (n,) as _advance does, by all of a law: see law_of.
+
+    A response of the second order is exact at the end of each of its pieces, and stands still at
+    its mean in it for what follows: lags, and the integrals.
+    """
+    if mean_lag == 0.0:
+        _follow_lags(speed, command, length, left, up, down, slew, sums)
+        return
+    pieces = min(max(int(np.ceil(PIECES * length / mean_lag)), 1), MOST_PIECES)
+    piece = length / pieces
+    inner_lag = max(inner_lag, NO_LAG)
+    fade, stiffness = 0.5 / inner_lag, 1.0 / (mean_lag * inner_lag)
+    turn = np.sqrt(abs(stiffness - fade * fade))
+    if turn * piece < 1e-6:
+        even, odd = np.exp(-fade * piece), piece * np.exp(-fade * piece)
+    elif stiffness > fade * fade:
+        even = np.exp(-fade * piece) * np.cos(turn * piece)
+        odd = np.exp(-fade * piece) * np.sin(turn * piece) / turn
+    else:
+        slow = np.exp(-stiffness / (fade + turn) * piece)
+        quick = np.exp(-(fade + turn) * piece)
+        even, odd = 0.5 * (slow + quick), 0.5 * (slow - quick) / turn
+    mean = np.empty(len(speed))
+    for k in range(pieces):
+        for j in range(len(speed)):
+            gap, change = inner[0, j] - command[j], inner[1, j]
+            end = even * gap + odd * (change + fade * gap)
+            inner[0, j] = command[j] + end
+            inner[1, j] = even * change - odd * (fade * change + stiffness * gap)
+            # The integral of the gap, by the differential equation itself.
+            mean[j] = command[j] - mean_lag * (inner_lag * (inner[1, j] - change)
+                                               + end - gap) / piece
+        _follow_lags(speed, mean, piece, left - k * piece, up, down, slew, sums)
+    if up == 0.0 and down == 0.0 and slew == 0.0:
+        speed[:] = inner[0]
+
+
 @compiled(fused=True, inlined=True)
-def _follow(speed: np.ndarray, command: np.ndarray, length: float, left: float, up: float,
-            down: float, slew: float, sums: np.ndarray) -> None:
+def _follow_lags(speed: np.ndarray, command: np.ndarray, length: float, left: float, up: float,
+                 down: float, slew: float, sums: np.ndarray) -> None:
     """Advance speeds (n,) as _advance does, by a lag up, another one down and a limited rate."""
     for j in range(len(speed)):
         gap = speed[j] - command[j]

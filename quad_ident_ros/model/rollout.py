@@ -9,7 +9,7 @@ import numpy as np
 
 from quad_ident_ros.compiled import compiled
 from quad_ident_ros.effects.registry import ROWS_OF, SLICES, TABLE
-from quad_ident_ros.model.actuators import FALL, RISE, shares, SLEW
+from quad_ident_ros.model.actuators import is_followed, shares
 from quad_ident_ros.model.rigid_body import derivative, INPUT, prepare, STATE
 from quad_ident_ros.model.situation import (
     GUIDE,
@@ -63,7 +63,7 @@ def take_up(x: np.ndarray, speed: np.ndarray, command: np.ndarray, span: np.ndar
                 if theta[LAG, i] == 0.0:
                     change[i] += places[j, 3] * (command[j, i] - speed[j, i])
         for i in range(s.shape[1]):
-            if theta[RISE, i] > 0.0 or theta[FALL, i] > 0.0 or theta[SLEW, i] > 0.0:
+            if is_followed(theta[:, i]):
                 change[i] /= span[i]
             else:
                 x[12, i] += theta[GYRO, i] * change[i] * s[PER_IZ, i]

@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 import numpy as np
 import pytest
+from scipy.signal import lsim
 
 from quad_ident_ros.effects.inflow_momentum import AIR_DENSITY, induced_velocity
 from quad_ident_ros.effects.registry import EFFECTS, FORMS, from_entries, vector
@@ -33,6 +34,7 @@ OTHERS = {
     ('battery_sag', 'time_and_load'): {'drain': 0.01, 'sink': 0.1},
     ('motor_lag', 'rise_fall'): {'rise': 0.03, 'fall': 0.06},
     ('motor_lag', 'slew'): {'slew': 2e-4},
+    ('motor_lag', 'second_order'): {'mean_lag': 0.05, 'inner_lag': 0.03},
     ('ground_effect', 'exponential'): {'gain': 0.5, 'length': 2.0},
     ('ground_effect', 'hayden'): {'hayden': 4.0},
     ('rotor_drag', 'axes'): {'x': 0.3, 'y': 0.2, 'z': -0.1},
@@ -122,6 +124,45 @@ def test_a_limited_rotor_with_a_lag_ends_in_its_exponential():
     assert np.abs(speeds - exact).max() < 1e-9
 
 
+@pytest.mark.parametrize('damping', [0.4, 0.999, 1.0, 1.001, 2.5, 50.0])
+@pytest.mark.parametrize('mean_lag', [0.004, 0.05])
+def test_a_response_of_the_second_order_solves_its_equation(damping, mean_lag):
+    t = np.arange(41) * 0.01
+    commands = np.full((41, 1), 500.0)
+    commands[10:25] = 700.0
+    inner_lag = mean_lag / (2.0 * damping) ** 2
+    speeds = law(t, commands, mean_lag=mean_lag, inner_lag=inner_lag)[1][:, 0]
+    exact = lsim(([1.0], [mean_lag * inner_lag, mean_lag, 1.0]), commands[:, 0] - 500.0, t,
+                 interp=False)[1] + 500.0
+    assert np.abs(speeds - exact).max() < 1e-5
+
+
+def test_a_response_of_the_second_order_without_an_inner_lag_is_of_the_first():
+    t = np.arange(41) * 0.01
+    commands = np.random.default_rng(3).uniform(300.0, 1000.0, (41, 2))
+    one, usual = (law(t, commands, **lag) for lag in ({'mean_lag': 0.03}, {'time_constant': 0.03}))
+    assert np.abs(one[1] - usual[1]).max() < 1e-4
+
+
+@pytest.mark.parametrize('inner_lag', [0.003, 0.01, 0.04])
+def test_a_response_of_the_second_order_is_behind_a_rising_command_by_its_mean_lag(inner_lag):
+    t = np.arange(2001) * 1e-3
+    commands = (400.0 + 300.0 * t)[:, None]
+    speeds = law(t, commands, mean_lag=0.04, inner_lag=inner_lag)[1][-1, 0]
+    # Each command is held to the next, half a sample late in the mean.
+    assert commands[-1, 0] - speeds == pytest.approx(300.0 * (0.04 + 0.5e-3), rel=0.02)
+
+
+def test_a_lag_behind_a_response_of_the_second_order_is_one_of_the_third():
+    t = np.arange(61) * 0.01
+    commands = np.full((61, 1), 500.0)
+    commands[10:] = 700.0
+    speeds = law(t, commands, mean_lag=0.04, inner_lag=0.02, time_constant=0.03)[1][:, 0]
+    exact = lsim(([1.0], np.polymul([0.04 * 0.02, 0.04, 1.0], [0.03, 1.0])),
+                 commands[:, 0] - 500.0, t, interp=False)[1] + 500.0
+    assert np.abs(speeds - exact).max() < 0.2    # of 200, where it is made of pieces
+
+
 @FAST
 @given(st.floats(0, 0.2), st.floats(0.002, 0.2), st.integers(0, 1000))
 def test_the_same_lag_up_and_down_is_the_usual_form(delay, lag, seed):
@@ -140,7 +181,9 @@ def test_followed_speeds_drive_as_those_of_the_integration_do():
 
 
 @pytest.mark.parametrize('parameters', [{'rise': 0.02, 'fall': 0.05}, {'slew': 3e-4},
-                                        {'slew': 3e-4, 'time_constant': 0.02}])
+                                        {'slew': 3e-4, 'time_constant': 0.02},
+                                        {'mean_lag': 0.04, 'inner_lag': 0.03},
+                                        {'mean_lag': 0.003, 'inner_lag': 1e-3}])
 def test_samples_of_10_ms_fly_as_samples_of_1_ms(parameters):
     course = steps(VEHICLE)
     fine = Course(np.arange(1001) * 1e-3, np.repeat(course.commands, 10, axis=0)[:1001],
@@ -198,7 +241,7 @@ def test_rotors_that_jump_hand_their_momentum_to_the_body():
 
 
 @pytest.mark.parametrize('lag', [{}, {'time_constant': 0.05}, {'rise': 0.02, 'fall': 0.06},
-                                 {'slew': 1e-3}], ids=lambda lag: '_'.join(lag) or 'jump')
+                                 {'slew': 1e-3}, {'mean_lag': 0.05}], ids=lambda lag: '_'.join(lag) or 'jump')
 def test_the_momentum_of_body_and_rotors_together_stays(lag):
     random = np.random.default_rng(4)
     course = held(FREE, TURNING, seconds=1.0)

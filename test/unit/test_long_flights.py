@@ -18,7 +18,8 @@ from quad_ident_ros.model.dynamics import course_of, predict, rows_needed, state
 @pytest.mark.parametrize('effects', [
     {}, {('motor_lag', 'time_constant'): 0.08}, {('motor_lag', 'rise'): 0.05},
     {('actuation_delay', 'delay'): 0.013, ('motor_lag', 'time_constant'): 0.03},
-    {('motor_lag', 'slew'): 1e-4}, {('rotor_gyro', 'rotor_inertia'): 1e-5}], ids=str)
+    {('motor_lag', 'mean_lag'): 0.05}, {('motor_lag', 'slew'): 1e-4},
+    {('rotor_gyro', 'rotor_inertia'): 1e-5}], ids=str)
 @pytest.mark.parametrize('guided', [False, True])
 @pytest.mark.parametrize('rate', [100.0, 40.0])
 def test_a_part_of_a_flight_is_predicted_as_in_the_whole(monkeypatch, effects, guided, rate):
