@@ -321,11 +321,6 @@ def lost_shares(after: dict, without: dict, before: dict, noise: dict, rules: Ru
         for name in after}
 
 
-def lost_share(after: dict, without: dict, before: dict, noise: dict, rules: Rules) -> float:
-    """Return the share that is lost in the group of outputs where it is most."""
-    return float(max(lost_shares(after, without, before, noise, rules).values()))
-
-
 def matters(after: dict, without: dict, before: dict, noise: dict, rules: Rules,
             apart: bool = False) -> bool:
     """

@@ -16,7 +16,6 @@ from quad_ident_ros.diagnose.judgement import (
     Bench,
     beyond,
     clear,
-    lost_share,
     lost_shares,
     matters,
     pooled,
@@ -65,12 +64,6 @@ def test_a_share_of_next_to_nothing_is_a_share_of_the_least_that_is_seen():
     after, without = of(velocity=0.04), of(velocity=0.041)
     shares = lost_shares(after, without, without, NOISE, RULES)
     assert shares['velocity'] == pytest.approx(0.001 / RULES.least('velocity', 0.04))
-
-
-def test_the_share_that_counts_is_that_of_the_group_that_loses_most():
-    before = of(velocity=1.04, attitude=0.11)
-    without = of(velocity=0.14, attitude=0.06)
-    assert lost_share(of(), without, before, NOISE, RULES) == pytest.approx(0.5)
 
 
 def test_what_closes_less_than_what_is_material_does_not_matter():

@@ -123,6 +123,14 @@ def test_an_oscillating_motor_overshoots_by_what_its_damping_says():
     assert shown[-1] == pytest.approx(1.2 * HOVER, rel=1e-4)
 
 
+def test_a_motor_with_a_dead_band_stops_at_its_edge_on_either_side():
+    motor = motors.DeadBand(2.0, PARAMS, None)
+    speeds, command = np.array([0.8, 1.2, 1.0, 1.0]) * HOVER, np.array([1.0, 1.0, 1.005, 1.0])
+    for _ in range(2000):
+        speeds = motor.turn(speeds, command * HOVER, 0.0005)
+    assert speeds / HOVER == pytest.approx([0.99, 1.01, 1.0, 1.0], abs=1e-6)
+
+
 def test_a_motor_in_balance_of_torque_rises_faster_than_it_falls():
     motor, step = motors.TorqueBalance(2.0, PARAMS, None), 0.0005
     speeds = np.array([0.8, 1.2, 1.0, 1.0]) * HOVER

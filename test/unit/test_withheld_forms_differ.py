@@ -9,7 +9,9 @@ from scipy.optimize import minimize
 from scipy.spatial.transform import Rotation
 from test_withheld_forms import fresh, HOVER, PARAMS, PLACES
 
-from quad_ident_ros.effects.registry import EFFECTS
+from quad_ident_ros.effects.registry import EFFECTS, vector
+from quad_ident_ros.model.actuators import actuated
+from quad_ident_ros.model.vehicle import load_vehicle
 from withheld.actuators import Battery
 from withheld.forms import body, EVALUATION, form_of
 
@@ -21,6 +23,7 @@ FORCES = [(effect, form) for effect in (
     'rotor_fault', 'blade_flapping') for form in EVALUATION[effect]]
 FLIGHT = flown(PARAMS, HOVER)
 STEP_OF_MOTORS = 0.002
+VEHICLE = load_vehicle('iris')
 
 
 def made(effect, form, size=SIZE):
@@ -67,19 +70,29 @@ def followed(turn, command):
 
 @pytest.mark.slow
 @pytest.mark.parametrize('form', EVALUATION['motor_lag'])
-def test_a_motor_is_no_lag_of_the_first_order_up_or_down(form):
-    motor, (command, _) = made('motor_lag', form), commands()
+def test_a_motor_is_no_lag_of_the_library(form):
+    motor, (command, t) = made('motor_lag', form), commands()
     true = followed(lambda w, c: motor.turn(w, c, STEP_OF_MOTORS), command)
 
-    def missed(logs):
-        up, down = np.exp(logs)
-        lag = followed(lambda w, c: c + (w - c) * np.exp(
-            -STEP_OF_MOTORS / np.where(c > w, up, down)), command)
-        return np.sqrt(np.mean((lag - true) ** 2) / np.mean((true - command) ** 2))
+    def missed(speeds):
+        return np.sqrt(np.mean((speeds - true) ** 2) / np.mean((true - command) ** 2))
 
-    best = minimize(missed, np.log([0.03, 0.03]), method='Nelder-Mead',
-                    options={'xatol': 1e-3, 'fatol': 1e-4})
-    assert best.success and best.fun > LEAST
+    def up_and_down(logs):
+        up, down = np.exp(logs)
+        return missed(followed(lambda w, c: c + (w - c) * np.exp(
+            -STEP_OF_MOTORS / np.where(c > w, up, down)), command))
+
+    def second_order(logs):
+        mean_lag, inner_lag = np.exp(logs)
+        theta = vector({'motor_lag': {'mean_lag': mean_lag, 'inner_lag': inner_lag}}, VEHICLE)
+        return missed(actuated(t, t[:-1], command, theta[None]).speeds[0][1:])
+
+    # What follows a command is at the end of its step.
+    true, command = true[:-1], command[:-1]
+    for law in (up_and_down, second_order):
+        best = minimize(law, np.log([0.03, 0.03]), method='Nelder-Mead',
+                        options={'xatol': 1e-3, 'fatol': 1e-4})
+        assert best.success and best.fun > LEAST
 
 
 @pytest.mark.parametrize('form', EVALUATION['actuation_delay'])

@@ -12,7 +12,8 @@ from withheld.forms import air, batteries, body, hung, motors
 
 # Those that one develops with, and those that nobody looks at before a release.
 DEVELOPMENT = {
-    'motor_lag': {'underdamped': motors.Underdamped, 'speed_dependent': motors.SpeedDependent,
+    'motor_lag': {'underdamped': motors.Underdamped, 'two_poles': motors.TwoPoles,
+                  'speed_dependent': motors.SpeedDependent,
                   'brushed': hung.identified('cf2x_P250'),
                   'brushless': hung.identified('cf21B_500')},
     'actuation_delay': {'jitter': motors.Jitter, 'staggered': motors.Staggered},
@@ -33,7 +34,7 @@ DEVELOPMENT = {
     'gyro_bias': {'warming': body.Warming, 'wandering': body.Wandering},
 }
 EVALUATION = {
-    'motor_lag': {'torque_balance': motors.TorqueBalance, 'two_poles': motors.TwoPoles},
+    'motor_lag': {'torque_balance': motors.TorqueBalance, 'dead_band': motors.DeadBand},
     'actuation_delay': {'clocked': motors.Clocked, 'growing': motors.Growing},
     'rotor_drag': {'power_1.25': air.Steeper, 'skewed': air.Skewed},
     'body_drag': {'crisis': air.Crisis, 'plate': air.Plate},

@@ -79,6 +79,21 @@ class TwoPoles(Motor):
                         0.6 * self.times, step)
 
 
+class DeadBand(Motor):
+    """A speed controller that takes a small error for none, with a lag of the first order."""
+
+    BAND = 0.005        # of the speed in hover, per size
+
+    def __init__(self, size, params, rng):
+        """Set the time constant and the error, rad/s, that is none."""
+        self.parameters = {'time': TIME * size, 'band': self.BAND * size * hover_speed(params)}
+
+    def turn(self, speeds, command, step):
+        """Return the speeds."""
+        error = np.clip(command - speeds, -self.parameters['band'], self.parameters['band'])
+        return _towards(speeds, command - error, self.parameters['time'], step)
+
+
 def _towards(speeds, command, time, step):
     """Return the speeds after a step of a lag of the first order; time s, 0 for none."""
     with np.errstate(divide='ignore'):
