@@ -7,7 +7,15 @@ import numpy as np
 from quad_ident_ros.compiled import compiled
 from quad_ident_ros.effects.registry import SLICES, TABLE
 from quad_ident_ros.flight.controller import control, SEEN
-from quad_ident_ros.model.actuators import FALL, follow, INNER_LAG, is_followed, MEAN_LAG, RISE, SLEW
+from quad_ident_ros.model.actuators import (
+    FALL,
+    follow,
+    INNER_LAG,
+    is_followed,
+    MEAN_LAG,
+    RISE,
+    SLEW,
+)
 from quad_ident_ros.model.rigid_body import derivative, INPUT, prepare, STATE
 from quad_ident_ros.model.rollout import step, take_up
 from quad_ident_ros.model.situation import (

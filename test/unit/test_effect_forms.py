@@ -241,7 +241,8 @@ def test_rotors_that_jump_hand_their_momentum_to_the_body():
 
 
 @pytest.mark.parametrize('lag', [{}, {'time_constant': 0.05}, {'rise': 0.02, 'fall': 0.06},
-                                 {'slew': 1e-3}, {'mean_lag': 0.05}], ids=lambda lag: '_'.join(lag) or 'jump')
+                                 {'slew': 1e-3}, {'mean_lag': 0.05}],
+                         ids=lambda lag: '_'.join(lag) or 'jump')
 def test_the_momentum_of_body_and_rotors_together_stays(lag):
     random = np.random.default_rng(4)
     course = held(FREE, TURNING, seconds=1.0)
