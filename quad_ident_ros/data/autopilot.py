@@ -8,8 +8,6 @@ from quad_ident_ros.data.mapping import Mapping
 from quad_ident_ros.data.streams import HELD, Stream
 from quad_ident_ros.errors import InputError
 
-G = 9.80665     # m/s^2, by which accelerometers are scaled
-
 
 def known_names(path, title, mapping, instances=False):
     """

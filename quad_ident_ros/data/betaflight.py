@@ -14,13 +14,14 @@ import struct
 import numpy as np
 
 from quad_ident_ros.data import frames
-from quad_ident_ros.data.autopilot import G, known_names, outputs_stream
+from quad_ident_ros.data.autopilot import known_names, outputs_stream
 from quad_ident_ros.data.blackbox import read_logs
 from quad_ident_ros.data.motor_order import about_motors, quad
 from quad_ident_ros.data.readers.base import content_of
 from quad_ident_ros.data.record import FlightRecord, QUATERNION
 from quad_ident_ros.data.streams import INTERPOLATED, join, SLOW, Stream
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.gravity import GRAVITY
 
 
 def _three(name):
@@ -151,7 +152,8 @@ def _specific_force(log, notes):
     if one is None:
         notes.append('accSmooth: the header has no acc_1G, so that it is left out')
         return None
-    return _stream(log, 'accSmooth', ('ax', 'ay', 'az'), _stack(log, ACCELEROMETER) * (G / one))
+    force = _stack(log, ACCELEROMETER) * (GRAVITY / one)
+    return _stream(log, 'accSmooth', ('ax', 'ay', 'az'), force)
 
 
 def _attitude(log):

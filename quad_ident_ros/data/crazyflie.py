@@ -12,13 +12,14 @@ from pathlib import Path
 import numpy as np
 
 from quad_ident_ros.data import frames
-from quad_ident_ros.data.autopilot import G, known_names, outputs_stream, unit_quaternions
+from quad_ident_ros.data.autopilot import known_names, outputs_stream, unit_quaternions
 from quad_ident_ros.data.motor_order import about_motors, quad
 from quad_ident_ros.data.readers.base import content_of
 from quad_ident_ros.data.record import FlightRecord, QUATERNION
 from quad_ident_ros.data.streams import INTERPOLATED, join, SLOW, Stream
 from quad_ident_ros.data.usdlog import read_events
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.gravity import GRAVITY
 from quad_ident_ros.model.attitude import quaternion_from_euler
 
 POSITION, VELOCITY = ('px', 'py', 'pz'), ('vx', 'vy', 'vz')
@@ -93,7 +94,7 @@ SOURCES = (
         (_of('gyro', *'xyz'), _scaled(np.pi / 180.0)),
         (_of('stateEstimateZ', 'rateRoll', 'ratePitch', 'rateYaw'),
          _scaled(np.array([1e-3, -1e-3, 1e-3]))))),
-    ('specific_force', FORCE, INTERPOLATED, ((_of('acc', *'xyz'), _scaled(G)),)),
+    ('specific_force', FORCE, INTERPOLATED, ((_of('acc', *'xyz'), _scaled(GRAVITY)),)),
     ('rotors', ROTORS, INTERPOLATED, ((_of('rpm', 'm1', 'm2', 'm3', 'm4'),
                                        _scaled(np.pi / 30.0)),)),
     ('battery', ('vbat',), SLOW, ((_of('pm', 'vbat'), _scaled(1.0)),

@@ -13,6 +13,7 @@ from quad_ident_ros import resources, schema
 from quad_ident_ros.data.frames import BODIES, WORLDS
 from quad_ident_ros.data.record import KNOWN, unit
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.gravity import GRAVITY
 from quad_ident_ros.model import motors
 from quad_ident_ros.model.attitude import quaternion_from_euler
 from quad_ident_ros.model.motors import KINDS, Motors, TO_SPEED
@@ -33,7 +34,8 @@ UNITS = {
     'm/s': {'m/s': 1.0, 'mm/s': 1e-3, 'cm/s': 1e-2},
     'rad': {'rad': 1.0, 'deg': np.pi / 180},
     'rad/s': {'rad/s': 1.0, 'deg/s': np.pi / 180, 'rpm': np.pi / 30},
-    'm/s^2': {'m/s^2': 1.0, 'g': 9.80665, 'mg': 9.80665e-3, 'g/2048': 9.80665 / 2048},
+    'm/s^2': {'m/s^2': 1.0, 'g': GRAVITY, 'mg': 1e-3 * GRAVITY,
+              'g/2048': GRAVITY / 2048},
     'V': {'V': 1.0, 'mV': 1e-3},
 }
 """Units that a column of a table or a topic may have, by the unit of the flight record."""

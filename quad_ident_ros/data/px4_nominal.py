@@ -13,6 +13,7 @@ from quad_ident_ros.data.px4_airframe import Motors, motors_of
 from quad_ident_ros.data.ulog import read_ulog, refuse_others
 from quad_ident_ros.data.ulog_parse import parse
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.gravity import GRAVITY
 from quad_ident_ros.model.vehicle import Vehicle, vehicle_from_mapping
 
 FULL = 1000.0       # rad/s at full signal where no rpm is logged; only thrust over mass counts
@@ -24,7 +25,7 @@ _HEAD = """\
 name: {name}
 mass:                           # kg
 inertia: [null, null, null]     # kg m2: Ixx, Iyy, Izz
-gravity: 9.80665                # m/s2
+gravity: {gravity:<23}# m/s2
 thrust_coefficient:             # N/(rad/s)^2; empty: {coefficient:.4g} times the mass, by this log
 torque_coefficient:             # N m/(rad/s)^2; empty: {ratio:g} m times the thrust coefficient
                                 # ({where})
@@ -105,7 +106,7 @@ def has_thrust(path: str | Path) -> bool:
 def _thrust(path: Path, motors: Motors,
             mapping: Mapping | None) -> tuple[float, tuple[float, float], bool]:
     """Return (thrust over mass and squared speeds, (low, high) rad/s, whether by rpm)."""
-    trial = Vehicle('trial', 1.0, (1.0, 1.0, 1.0), 9.80665, 1.0, 1.0, motors.rotors,
+    trial = Vehicle('trial', 1.0, (1.0, 1.0, 1.0), GRAVITY, 1.0, 1.0, motors.rotors,
                     speed_max=FULL)
     records = read_ulog(path, mapping, trial)
     record = max(records, key=len)
@@ -114,7 +115,7 @@ def _thrust(path: Path, motors: Motors,
         raise InputError(f'{path}: the log has no commands of {len(motors.rotors)} motors; '
                          'give a vehicle file')
     squares = np.sum(record.stack(*names) ** 2, axis=1)
-    force = record.columns['az'] if record.has('az') else np.full(len(record), 9.80665)
+    force = record.columns['az'] if record.has('az') else np.full(len(record), GRAVITY)
     use = (squares > 0) & (force > 0)
     if not use.any():
         raise InputError(f'{path}: the motors stand in this log; give a vehicle file')
@@ -129,7 +130,8 @@ def _text(path: Path, motors: Motors, coefficient: float, ratio: float,
           speeds: tuple[float, float], measured: bool) -> str:
     low, high = speeds
     head = _HEAD.format(
-        log=path.name, name=path.stem, coefficient=coefficient, ratio=ratio, low=low, high=high,
+        log=path.name, name=path.stem, gravity=GRAVITY, coefficient=coefficient, ratio=ratio,
+        low=low, high=high,
         where=motors.source if math.isfinite(motors.ratio) else 'a usual value, the log has none',
         scale='1.1 times the fastest of the log, by its rpm' if measured else
         'taken, as no rpm is logged; thrust counts, not speed', source=motors.source)

@@ -11,7 +11,6 @@ from scipy.interpolate import make_interp_spline
 from quad_ident_ros import schema
 
 KNOT = 0.01     # s between the knots of the spline that a trajectory is
-GRAVITY = 9.81
 
 
 @dataclass(frozen=True)
@@ -44,7 +43,7 @@ def scale_of(vehicle, duration):
     """Return the Scale of a vehicle: lengths as the root of its size, half of its free thrust."""
     weight = vehicle.mass * vehicle.gravity
     most = len(vehicle.rotors) * vehicle.thrust_coefficient * vehicle.speed_max ** 2
-    acceleration = min(max(0.5 * GRAVITY * (most / weight - 1), 0.5), 4.5)
+    acceleration = min(max(0.5 * vehicle.gravity * (most / weight - 1), 0.5), 4.5)
     length = min(math.sqrt(vehicle.arm_length / 0.05), acceleration * (duration / 6) ** 2 / 10)
     yaw = (0.3 * vehicle.torque_coefficient / vehicle.thrust_coefficient * weight
            / vehicle.inertia[2])

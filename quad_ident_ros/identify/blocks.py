@@ -13,10 +13,10 @@ from functools import cache
 
 import numpy as np
 
+from quad_ident_ros.gravity import GRAVITY
 from quad_ident_ros.identify.signals import OUTPUTS
 from quad_ident_ros.model.attitude import body_rate
 
-GRAVITY = 9.81      # m/s^2
 LENGTH = 0.5        # s, over which noise of mm averages to some cm/s^2
 FEWEST = 20         # samples of a block, for which the sums are integrals
 SMOOTHED = 0.1      # s, over which angles are differentiated: no vehicle turns to and fro faster

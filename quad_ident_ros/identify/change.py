@@ -15,7 +15,8 @@ from functools import lru_cache
 import numpy as np
 from scipy.stats import t as student
 
-from quad_ident_ros.identify.blocks import blocks_of, GRAVITY, PRIOR_DAMPING
+from quad_ident_ros.gravity import GRAVITY
+from quad_ident_ros.identify.blocks import blocks_of, PRIOR_DAMPING
 from quad_ident_ros.identify.signals import OUTPUTS
 
 FALSE_PER_HOUR = 0.1        # alarms of all outputs of a vehicle that stays as it is, at most

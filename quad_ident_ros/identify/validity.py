@@ -6,7 +6,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from quad_ident_ros.identify.blocks import blocks_of, GRAVITY
+from quad_ident_ros.gravity import GRAVITY
+from quad_ident_ros.identify.blocks import blocks_of
 from quad_ident_ros.identify.change import LARGEST_SHARE
 
 

@@ -7,8 +7,9 @@ from payload import climb, MASS, PAYLOAD, PICKED_UP, START_NS
 import pytest
 
 from quad_ident_ros.data.record import FlightRecord
+from quad_ident_ros.gravity import GRAVITY
 from quad_ident_ros.identify import change
-from quad_ident_ros.identify.blocks import Blocks, blocks_of, GRAVITY
+from quad_ident_ros.identify.blocks import Blocks, blocks_of
 from quad_ident_ros.identify.change import find_change, Watch
 from quad_ident_ros.identify.identify import collect, identify, Settings
 from quad_ident_ros.identify.online import Changes

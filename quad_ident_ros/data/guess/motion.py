@@ -13,8 +13,8 @@ from quad_ident_ros.data.guess.draft import Draft, together
 from quad_ident_ros.data.guess.names import TURNING
 from quad_ident_ros.data.guess.series import ratio_of, unit_length
 from quad_ident_ros.data.mapping import factor_of
+from quad_ident_ros.gravity import GRAVITY
 
-G = 9.80665             # m/s^2
 HOVERS = 0.6, 1.6       # of gravity: the usual specific force of what flies
 QUICK = 100.0           # m/s: multirotors do under 60, so faster ones are in mm
 BELOW = 0.3             # of the greatest depth or height that the other one may be: ground is 0
@@ -53,7 +53,7 @@ def forces(draft: Draft) -> None:
     if names is None or any(name not in draft.free for name in names):
         return
     usual = float(np.nanmedian(np.linalg.norm(draft.values(names), axis=1)))
-    for unit, one in (('m/s^2', G), ('g', 1.0), ('mg', 1000.0)):
+    for unit, one in (('m/s^2', GRAVITY), ('g', 1.0), ('mg', 1000.0)):
         if HOVERS[0] * one < usual < HOVERS[1] * one:
             draft.take(FORCE, names, unit, role='specific_force',
                        said=f'specific force in {unit}')
@@ -152,7 +152,7 @@ def _off(draft: Draft, speed: np.ndarray) -> list[float] | None:
             moved = np.diff(draft.scaled(POSITION), axis=0)
             rest = [moved - 0.5 * (one[1:] + one[:-1]) * dt for one in readings]
         elif 'ax' in draft.columns:
-            weight = np.array([0.0, 0.0, G if draft.world == 'NED' else -G])
+            weight = np.array([0.0, 0.0, GRAVITY if draft.world == 'NED' else -GRAVITY])
             force = frames.rotate(q, draft.scaled(FORCE)) + weight
             rest = [np.diff(one, axis=0) - 0.5 * (force[1:] + force[:-1]) * dt
                     for one in readings]

@@ -11,9 +11,9 @@ from scipy.signal import fftconvolve
 from quad_ident_ros.data.frames import conjugate, continuous, multiply, rotate
 from quad_ident_ros.data.record import EULER, QUATERNION
 from quad_ident_ros.data.streams import slerp
+from quad_ident_ros.gravity import GRAVITY
 from quad_ident_ros.model.attitude import quaternion_from_euler
 
-GRAVITY = 9.81
 WIDTH = 0.2       # s, full width of the smoothing window
 GAP = 3.0         # median periods from which on a step in time is a gap
 MOST = 100_000    # samples that the checks look at: of more, one of so many, over the whole record

@@ -7,7 +7,7 @@ import numpy as np
 from quad_ident_ros.data.cutting import without
 from quad_ident_ros.data.quality import units
 from quad_ident_ros.data.quality.finding import Finding
-from quad_ident_ros.data.quality.series import GRAVITY, Grid
+from quad_ident_ros.data.quality.series import Grid
 from quad_ident_ros.data.thrust_level import BY_LOG, FULL_SPEED
 
 APART = 10.0      # times too much or too little: no vehicle file is that wrong,
@@ -42,9 +42,9 @@ def carried(record, vehicle):
             or units.position_in_millimetres(record, vehicle)):
         return []
     velocity = grid.signal('vx', 'vy', 'vz')
-    needed = np.linalg.norm(grid.derivative(velocity) + [0.0, 0.0, GRAVITY], axis=1)
+    needed = np.linalg.norm(grid.derivative(velocity) + [0.0, 0.0, vehicle.gravity], axis=1)
     speed = np.linalg.norm(grid.smooth(velocity), axis=1)
-    flying = grid.good & (speed > MOVING) & (needed > FLYING * GRAVITY)
+    flying = grid.good & (speed > MOVING) & (needed > FLYING * vehicle.gravity)
     given = vehicle.thrust_coefficient / vehicle.mass * np.sum(grid.held(*names) ** 2, axis=1)
     found = []
     for bad, what in ((given * APART < needed, 'less than a tenth of'),

@@ -5,8 +5,9 @@
 import numpy as np
 
 from quad_ident_ros.data.quality.finding import Finding
-from quad_ident_ros.data.quality.series import correlation, GRAVITY, Grid
+from quad_ident_ros.data.quality.series import correlation, Grid
 from quad_ident_ros.data.record import EULER, QUATERNION
+from quad_ident_ros.gravity import GRAVITY
 from quad_ident_ros.model.attitude import body_rate
 
 DEGREE = np.pi / 180
@@ -91,8 +92,8 @@ def force_in_g(record, vehicle):
         return []
     return [Finding('force_in_g', 'error', 'ax, ay, az',
                     f'the specific force is {size:.2f} m/s^2 in the middle, in flight it is '
-                    f'about {GRAVITY}: it is in g',
-                    'multiply ax, ay and az by 9.80665, or say unit: g in a mapping')]
+                    f'about {GRAVITY:.3g}: it is in g',
+                    f'multiply ax, ay and az by {GRAVITY}, or say unit: g in a mapping')]
 
 
 def position_in_millimetres(record, vehicle):
