@@ -21,11 +21,12 @@ from quad_ident_ros.model.vehicle import Vehicle
 ASKS = (('none',), ('undetermined',))   # verdicts that ask for another flight
 
 
-def not_shown(selection: Selection, causes: tuple, verdict: Verdict) -> tuple[str, ...]:
+def not_shown(selection: Selection, causes: tuple, verdict: Verdict, rules: Rules
+              ) -> tuple[str, ...]:
     """Return the names of effects that the flights would not show at their usual size."""
     named = {*verdict.sure, *verdict.undetermined}
     return tuple(design.hidden(selection, [cause for cause in causes if cause.effect not in named],
-                               list(verdict.certain)))
+                               list(verdict.certain), rules))
 
 
 def cannot_show(flights: Sequence[Flight], verdict: Verdict) -> tuple[str, ...]:
@@ -38,12 +39,12 @@ def cannot_show(flights: Sequence[Flight], verdict: Verdict) -> tuple[str, ...]:
 
 
 def fly_next(selection: Selection, flights: list, vehicle: Vehicle, z: np.ndarray,
-             verdict: Verdict, unseen: tuple) -> list | None:
+             verdict: Verdict, unseen: tuple, rules: Rules) -> list | None:
     """Return what to fly next, as data, where the verdict leaves something open, else None."""
     if verdict.names not in ASKS or inertial(flights):
         return None
     return design.fly_next(selection, flights, vehicle, z, verdict.certain, verdict.doubts,
-                           unseen) or None
+                           unseen, rules) or None
 
 
 def at_bounds(judged: Judgement, vehicle: Vehicle, rules: Rules) -> tuple[dict, ...]:

@@ -8,35 +8,39 @@ import numpy as np
 
 from quad_ident_ros.greybox.flights import inertial, Track
 
-BLOCK = 3.0     # s: room for a few rollouts, and the errors of a formula hang together for one
 
-
-def interleaved(track: Track) -> tuple[Track, Track]:
+def interleaved(track: Track, length: float) -> tuple[Track, Track]:
     """
     Return a Track with the blocks of a flight to learn from, and one with those held out.
 
     Of each two blocks that follow one another one is held out, whichever keeps the motion of both
     parts alike: of two halves one may only hover. The rows of the other part are there, unseen.
+    Args: length s of a block, about.
     """
     # Time flown: between the parts of a flight there is nothing to hold out.
     steps = np.diff(track.course.t)
-    t = np.append(0.0, np.cumsum(np.where(steps > BLOCK, track.period, steps)))
-    pairs = max(1, round((t[-1] - t[0]) / (2.0 * BLOCK)))
+    t = np.append(0.0, np.cumsum(np.where(steps > length, track.period, steps)))
+    pairs = max(1, round((t[-1] - t[0]) / (2.0 * length)))
     edges = np.linspace(t[0], t[-1], 2 * pairs + 1)
     block = np.searchsorted(edges[1:-1], t, side='right')
     held = np.isin(block, _held_out(_motion(track, block, 2 * pairs)))
-    length = (t[-1] - t[0]) / (2 * pairs)
-    named = {False: f'{track.name} (half of its blocks of {length:.2g} s)',
-             True: f'{track.name} (the other half of its blocks of {length:.2g} s)'}
+    each = (t[-1] - t[0]) / (2 * pairs)
+    named = {False: f'{track.name} (half of its blocks of {each:.2g} s)',
+             True: f'{track.name} (the other half of its blocks of {each:.2g} s)'}
     learnt, rest = (replace(track, name=named[part], seen=track.seen & (held == part)[:, None])
                     for part in (False, True))
     return learnt, rest
 
 
-def spans_seen(track: Track) -> list[tuple[float, float]]:
-    """Return the first and last time (s) of each stretch that belongs to a part of a Track."""
+def spans_seen(track: Track, length: float) -> list[tuple[float, float]]:
+    """
+    Return the first and last time (s) of each stretch that belongs to a part of a Track.
+
+    Rows of the other part, or a break that is longer than a block, are between stretches.
+    Args: length s of a block.
+    """
     t, rows = track.course.t, np.flatnonzero(track.seen.any(axis=1))
-    apart = np.flatnonzero((np.diff(rows) > 1) | (np.diff(t[rows]) > BLOCK)) + 1
+    apart = np.flatnonzero((np.diff(rows) > 1) | (np.diff(t[rows]) > length)) + 1
     return [(float(t[part[0]]), float(t[part[-1]])) for part in np.split(rows, apart)]
 
 

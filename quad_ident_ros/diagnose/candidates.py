@@ -72,7 +72,7 @@ def candidates(flights: list, vehicle: Vehicle, rules: Rules,
                 found.append(Candidate(name, f'{name} {form.name}', columns, form.name,
                                        form is forms[0],
                                        len(form.parameters) <= len(forms[0].parameters),
-                                       _share(form is forms[0], len(forms))))
+                                       _share(form is forms[0], len(forms), rules)))
     return tuple(found)
 
 
@@ -88,11 +88,11 @@ def _without_height(flights: Sequence[Flight]) -> bool:
     return any('position' in flight.summed for flight in flights)
 
 
-def _share(usual: bool, count: int) -> float:
-    """Return a form's part of the prior probability of its effect: half is the usual one's."""
+def _share(usual: bool, count: int, rules: Rules) -> float:
+    """Return a form's part of the prior probability of its effect, which has so many."""
     if count == 1:
         return 1.0
-    return 0.5 if usual else 0.5 / (count - 1)
+    return rules.usual_form if usual else (1.0 - rules.usual_form) / (count - 1)
 
 
 def nuisance_candidates(vehicle: Vehicle, tracks: list) -> tuple[Candidate, ...]:

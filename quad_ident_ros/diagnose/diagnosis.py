@@ -72,7 +72,7 @@ def diagnose(records: Iterable[FlightRecord], vehicle: Vehicle, *,
                                        noise.deviation)
     after = measure.residual_wrenches(bench, model.vectors, whole)
     on_progress(0.95)
-    unseen = advice.not_shown(selection, causes, verdict)
+    unseen = advice.not_shown(selection, causes, verdict, rules)
     return Diagnosis(
         vehicle=vehicle, verdict=verdict.names, minor=verdict.minor, ranking=verdict.ranking,
         where=measure.channels(before, vehicle, rules), gap=measure.open_loop_gap(bench, judged),
@@ -83,7 +83,8 @@ def diagnose(records: Iterable[FlightRecord], vehicle: Vehicle, *,
         undetermined=verdict.undetermined, sure=verdict.sure,
         one_finding=advice.one_finding(verdict), not_shown=tuple(dict.fromkeys(
             (*unseen, *advice.cannot_show(intake.flights, verdict)))),
-        fly_next=advice.fly_next(selection, intake.flights, vehicle, model.z, verdict, unseen),
+        fly_next=advice.fly_next(selection, intake.flights, vehicle, model.z, verdict, unseen,
+                                 rules),
         nuisances=nuisances_as_data(
             tuple(cause.nuisance for cause in model.chosen if cause.nuisance),
             [z - model.z for z in model.vectors], intake.late, intake.clocks, prompt),

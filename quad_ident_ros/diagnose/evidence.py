@@ -13,6 +13,7 @@ from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.greybox.nuisances import CLOCK, LEVEL, LIKELY
 
+# How wide the search is; the thresholds of a verdict are those of Rules.
 BEAM = 12           # sets kept per size
 MOST = 8            # causes in a set, beside the nuisances of flights
 BEHIND = 40.0       # log-evidence behind the best set from which on none grows

@@ -20,7 +20,7 @@ from quad_ident_ros.greybox.nuisances import NuisanceValues
 from quad_ident_ros.greybox.parameters import limits, nominal, prior_sizes
 from quad_ident_ros.model.vehicle import Vehicle
 
-FIT_STEPS = 5       # of Gauss and Newton: sets start near where they end
+FIT_STEPS = 5       # of Gauss and Newton, of the search: sets start near where they end
 
 
 @dataclass(frozen=True, eq=False)

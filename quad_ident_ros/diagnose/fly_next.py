@@ -16,7 +16,7 @@ from scipy.linalg import block_diag
 
 from quad_ident_ros.diagnose.candidates import Candidate
 from quad_ident_ros.diagnose.evidence import occam, Quadratic
-from quad_ident_ros.diagnose.rules import RULES
+from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.diagnose.select import Selection
 from quad_ident_ros.effects.registry import mapping
 from quad_ident_ros.errors import InputError
@@ -29,6 +29,7 @@ from quad_ident_ros.greybox.nuisances import Layout, NuisanceValues
 from quad_ident_ros.greybox.parameters import nominal, SPLIT
 from quad_ident_ros.model.vehicle import Vehicle
 
+# What is flown and proposed; no verdict is a matter of these.
 DURATION = 20.0     # s of a manoeuvre
 SEED = 0            # of its trajectory
 ROLLOUTS = 12       # of a manoeuvre that are looked at, for all of them
@@ -91,7 +92,7 @@ def manoeuvres(selection: Selection, flights: Sequence[Flight], vehicle: Vehicle
     return found
 
 
-def separation(information: np.ndarray, selection: Selection, sets: dict) -> float:
+def separation(information: np.ndarray, selection: Selection, sets: dict, rules: Rules) -> float:
     """
     Return how far apart the two closest of sets of causes are, standard errors.
 
@@ -105,12 +106,12 @@ def separation(information: np.ndarray, selection: Selection, sets: dict) -> flo
             if not set(one) <= set(other):
                 least = min(least, *(
                     cost + _distance(information, selection, one, distances, others)
-                    for cost, others in _with_another(information, selection, one, other)))
+                    for cost, others in _with_another(information, selection, one, other, rules)))
     return float(np.sqrt(max(least, 0.0)))
 
 
-def _with_another(information: np.ndarray, selection: Selection, one: tuple, other: tuple
-                  ) -> list[tuple[float, tuple]]:
+def _with_another(information: np.ndarray, selection: Selection, one: tuple, other: tuple,
+                  rules: Rules) -> list[tuple[float, tuple]]:
     """Return [(cost, causes)]: a set and with it each cause that neither it nor `one` has."""
     found, known = [(0.0, other)], _places(selection, other)
     effects = {cause.effect for cause in (*one, *other)}
@@ -119,7 +120,7 @@ def _with_another(information: np.ndarray, selection: Selection, one: tuple, oth
             places = _places(selection, [cause])
             block = _left(information, places, known, selection.quadratic)
             prior = selection.quadratic.prior[np.ix_(places, places)]
-            cost = -2.0 * occam(block, prior, 1.0, [cause], RULES)
+            cost = -2.0 * occam(block, prior, 1.0, [cause], rules)
             found.append((cost, (*other, cause)))
     return found
 
@@ -133,13 +134,13 @@ def _distance(information: np.ndarray, selection: Selection, one: tuple, distanc
 
 
 def visibility(information: np.ndarray, selection: Selection, causes: Sequence[Candidate],
-               present: Sequence[Candidate]) -> dict[str, float]:
+               present: Sequence[Candidate], rules: Rules) -> dict[str, float]:
     """
     Return, per effect, how far from none it would be at its usual size, standard errors.
 
     Args: information (C, C); causes looked at; present: those that are known to be there.
     """
-    size = np.diag(selection.quadratic.prior) ** -0.5 / RULES.prior_width
+    size = np.diag(selection.quadratic.prior) ** -0.5 / rules.prior_width
     found: dict[str, float] = {}
     for cause in causes:
         places = _places(selection, [cause])
@@ -152,15 +153,16 @@ def visibility(information: np.ndarray, selection: Selection, causes: Sequence[C
     return found
 
 
-def hidden(selection: Selection, causes: Sequence[Candidate], present: Sequence[Candidate]
-           ) -> list[str]:
+def hidden(selection: Selection, causes: Sequence[Candidate], present: Sequence[Candidate],
+           rules: Rules) -> list[str]:
     """Return the names of effects that the flights would not show at their usual size."""
-    seen = visibility(_of_record(selection), selection, causes, present)
-    return [name for name, away in seen.items() if away < RULES.hidden]
+    seen = visibility(_of_record(selection), selection, causes, present, rules)
+    return [name for name, away in seen.items() if away < rules.hidden]
 
 
 def fly_next(selection: Selection, flights: Sequence[Flight], vehicle: Vehicle, z: np.ndarray,
-             sure: Sequence[Candidate], doubts: dict, unseen: Sequence[str]) -> list[dict]:
+             sure: Sequence[Candidate], doubts: dict, unseen: Sequence[str],
+             rules: Rules) -> list[dict]:
     """
     Return what to fly next, as data: [{purpose, effects, the manoeuvre, now, after, manoeuvres}].
 
@@ -171,35 +173,36 @@ def fly_next(selection: Selection, flights: Sequence[Flight], vehicle: Vehicle, 
     if not doubts and not unseen:
         return []
     options = manoeuvres(selection, flights, vehicle, z)
-    return (_to_separate(selection, options, vehicle, doubts)
-            + _to_show(selection, options, unseen, sure))
+    return (_to_separate(selection, options, vehicle, doubts, rules)
+            + _to_show(selection, options, unseen, sure, rules))
 
 
-def _to_separate(selection: Selection, options: list[Manoeuvre], vehicle: Vehicle, doubts: dict
-                 ) -> list[dict]:
+def _to_separate(selection: Selection, options: list[Manoeuvre], vehicle: Vehicle, doubts: dict,
+                 rules: Rules) -> list[dict]:
     """Return at most one proposal: the manoeuvre that separates doubtful causes best."""
     columns = _columns(selection)
     sets = {fit.causes: (fit.estimate.z - nominal(vehicle))[columns] for fit in doubts.values()}
     if len(sets) < 2 or not options:
         return []
     record = _of_record(selection)
-    after = {option.trajectory: separation(record + option.information, selection, sets)
+    after = {option.trajectory: separation(record + option.information, selection, sets, rules)
              for option in options}
     return [_proposal('separate', [cause.effect for cause in doubts], options,
-                      separation(record, selection, sets), after)]
+                      separation(record, selection, sets, rules), after)]
 
 
 def _to_show(selection: Selection, options: list[Manoeuvre], names: Sequence[str],
-             present: Sequence[Candidate]) -> list[dict]:
+             present: Sequence[Candidate], rules: Rules) -> list[dict]:
     """Return the proposals of a few manoeuvres that together show effects by name."""
     record, left = _of_record(selection), list(names)
     found: list[dict] = []
     causes = [cause for cause in _causes(selection) if cause.effect in left]
-    now = visibility(record, selection, causes, present)
-    seen = {option.trajectory: visibility(record + option.information, selection, causes, present)
+    now = visibility(record, selection, causes, present, rules)
+    seen = {option.trajectory: visibility(record + option.information, selection, causes, present,
+                                          rules)
             for option in options}
     while left and len(found) < MOST:
-        shown = {name: [one for one in left if away[one] >= RULES.shown]
+        shown = {name: [one for one in left if away[one] >= rules.shown]
                  for name, away in seen.items()}
         best = max(shown, default=None, key=lambda name: (len(shown[name]), sum(
             np.log(seen[name][one]) for one in shown[name])))

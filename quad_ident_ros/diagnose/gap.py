@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.greybox.errors import difference, ERRORS, GROUPS, moved
 from quad_ident_ros.greybox.flights import flight_of, inertial, Track
 from quad_ident_ros.greybox.linear import STATE_STEP
@@ -19,21 +20,18 @@ from quad_ident_ros.greybox.parameters import constants_of, SPLIT
 from quad_ident_ros.model.dynamics import predict
 from quad_ident_ros.model.vehicle import Vehicle
 
-HORIZONS = (0.1, 0.5, 1.0)      # s
-HEADLINE = 0.5                  # s
-NEAR = 0.1                      # s, of inertial flights: what the air does is not modelled there,
-                                # and soon turns the vehicle elsewhere
+# How finely the gap is sampled, and what is shown of it; no verdict is a matter of these.
+HORIZONS = (0.1, 0.5, 1.0)      # s, beside the one at which predictions are judged
 EVERY = 0.1                     # s from one start to the next
 AT_ONCE = 2048                  # predictions that memory holds along their whole way
 NOISE_STARTS = 60               # starts at which the noise is carried along
-BLOCK = 2.0                     # s of the bootstrap's blocks
-DRAWS = 400
+DRAWS = 400                     # of the bootstrap
 LEAST = 0.01                    # of the noise's gap: what is less above it is none
 
 
-def horizon_of(tracks: Sequence[Track]) -> float:
+def horizon_of(tracks: Sequence[Track], rules: Rules) -> float:
     """Return the time (s) ahead at which predictions along Tracks are judged."""
-    return NEAR if inertial(tracks) else HEADLINE
+    return rules.near_horizon if inertial(tracks) else rules.horizon
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,21 +83,21 @@ def gap(all_ends: Sequence[Ends]) -> dict[str, float]:
             for name, part in GROUPS.items()}
 
 
-def surely(one: Ends, errors: float) -> dict[str, float]:
+def surely(one: Ends, rules: Rules) -> dict[str, float]:
     """
-    Return {group: gap} of a flight that is there but for so many standard errors.
+    Return {group: gap} of a flight that is there but for as many standard errors as show a thing.
 
-    Standard errors of the mean square are those of blocks of BLOCK s, in which errors may hang
-    together (Künsch, Annals of Statistics 17, 1989).
+    Standard errors of the mean square are those of blocks in which errors may hang together
+    (Künsch, Annals of Statistics 17, 1989).
     """
-    block = np.unique((one.t // BLOCK).astype(int), return_inverse=True)[1]
+    block = np.unique((one.t // rules.steady_block).astype(int), return_inverse=True)[1]
     counts = np.bincount(block)
     found = {}
     for name, part in GROUPS.items():
         sums = np.bincount(block, np.sum(one.errors[:, part] ** 2, axis=1))
         mean = sums.sum() / counts.sum()
         spread = np.sum((sums - mean * counts) ** 2) * len(sums) / max(len(sums) - 1, 1)
-        found[name] = float(np.sqrt(max(mean - errors * np.sqrt(spread) / counts.sum(), 0.0)))
+        found[name] = float(np.sqrt(max(mean - rules.shown * np.sqrt(spread) / counts.sum(), 0.0)))
     return found
 
 
@@ -137,11 +135,12 @@ def noise_gap(track: Track, vehicle: Vehicle, z: np.ndarray, noise: Noise, horiz
     return {name: float(np.sqrt(value)) for name, value in found.items()}
 
 
-def interval(all_ends: Sequence[Ends], seed: int = 0) -> dict[str, tuple[float, ...]]:
+def interval(all_ends: Sequence[Ends], rules: Rules, seed: int = 0
+             ) -> dict[str, tuple[float, ...]]:
     """Return {group: (low, high)}, the 95 % interval of the gap: bootstrap of blocks of time."""
     blocks = []
     for one in all_ends:
-        which = (one.t // BLOCK).astype(int)
+        which = (one.t // rules.steady_block).astype(int)
         blocks += [one.errors[which == k] for k in np.unique(which)]
     sums = {name: np.array([np.sum(block[:, part] ** 2) for block in blocks])
             for name, part in GROUPS.items()}

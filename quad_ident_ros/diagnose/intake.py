@@ -36,7 +36,7 @@ from quad_ident_ros.greybox.rotor_answer import (
 from quad_ident_ros.model.mixing import with_commands
 from quad_ident_ros.model.vehicle import Vehicle
 
-MOST_SHOWN = 8      # blocks that a line names; as data there are all
+MOST_SHOWN = 8      # blocks that a line names, for display alone; as data there are all
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,8 +108,8 @@ def take_in(records: Sequence[FlightRecord], vehicle: Vehicle, hold_out: FlightR
     tracks = [guided(track_of(record, vehicle, voltage, clock))
               for record, clock in zip(every, clocks, strict=True)]
     if alone:
-        tracks, late, clocks = list(interleaved(tracks[0])), 2 * late, 2 * clocks
-        findings.append(_halves(tracks[1], every[0]))
+        tracks, late, clocks = list(interleaved(tracks[0], rules.held_block)), 2 * late, 2 * clocks
+        findings.append(_halves(tracks[1], every[0], rules))
     *tracks, held_out = tracks
     return Intake(vehicle, tuple(tracks), held_out, rollouts(tracks, vehicle), tuple(late),
                   tuple(clocks), findings, ruled_out)
@@ -192,9 +192,9 @@ def _cut(record: FlightRecord) -> Finding:
                    'nothing needs to be done; --segment, --from and --to choose another part')
 
 
-def _halves(held_out: Track, record: FlightRecord) -> dict:
+def _halves(held_out: Track, record: FlightRecord, rules: Rules) -> dict:
     """Return the finding that says which blocks of a single flight are held out, as data."""
-    spans = spans_seen(held_out)
+    spans = spans_seen(held_out, rules.held_block)
     shown = ', '.join(f'{begin:.2f} to {end:.2f}' for begin, end in spans[:MOST_SHOWN])
     more = f' s and {len(spans) - MOST_SHOWN} more' if len(spans) > MOST_SHOWN else ' s'
     finding = Finding(BLOCKS, 'info', f't = {shown}{more}',

@@ -78,7 +78,7 @@ class Bench:
     @property
     def horizon(self) -> float:
         """Return the time (s) ahead at which effects are judged."""
-        return gaps.horizon_of(self.flights)
+        return gaps.horizon_of(self.flights, self.rules)
 
     def model(self, chosen: tuple, estimate: Estimate, fixed: np.ndarray | None = None) -> Model:
         """
@@ -274,7 +274,7 @@ def _weight(model: Model, without: Model, before: dict, noise: dict, rules: Rule
                                   rules.least(name, noise[name])) for name in shares}
     # Where it does most: a small share of one group may be all that is explained in another.
     name = max(shares, key=lambda group: shares[group] * explained[group])
-    return Weight(max(shares.values()), stability(model.ends, without.ends, noise),
+    return Weight(max(shares.values()), stability(model.ends, without.ends, noise, rules),
                   explained[name], without.gap)
 
 
@@ -289,12 +289,12 @@ def pooled(gap: list) -> dict:
     return {name: float(np.sqrt(np.mean([one[name] ** 2 for one in gap]))) for name in gap[0]}
 
 
-def stability(with_it: tuple, without: tuple, noise: dict) -> float:
+def stability(with_it: tuple, without: tuple, noise: dict, rules: Rules) -> float:
     """
     Return how steadily an effect helps: what it saves per block of time over its standard error.
 
-    The statistic of Vuong (Econometrica 57, 1989) for two models, over blocks of 2 s of all
-    flights, the one held out among them. Squared errors count in units of what remains.
+    The statistic of Vuong (Econometrica 57, 1989) for two models, over blocks of all flights,
+    the one held out among them. Squared errors count in units of what remains.
     Args: the Ends of all flights with and without the effect; noise {group: gap}.
     """
     scale = np.empty(ERRORS)
@@ -303,7 +303,7 @@ def stability(with_it: tuple, without: tuple, noise: dict) -> float:
     blocks = []
     for one, other in zip(with_it, without, strict=True):
         change = np.sum((other.errors ** 2 - one.errors ** 2) / scale ** 2, axis=1)
-        block = np.unique((one.t // gaps.BLOCK).astype(int), return_inverse=True)[1]
+        block = np.unique((one.t // rules.steady_block).astype(int), return_inverse=True)[1]
         blocks.append(np.bincount(block, change))
     saved = np.concatenate(blocks)
     error = np.std(saved) * np.sqrt(len(saved))
@@ -326,13 +326,13 @@ def matters(after: dict, without: dict, before: dict, noise: dict, rules: Rules,
     """
     Return whether effects matter, by the gap with and without them.
 
-    In some group of outputs the share that is lost without them is material, beside the tolerance
-    of the user, too, and more than the error of form of the other effects may be, unless it is
+    In some group of outputs the share that is lost without them is material, beside the floors of
+    the tolerance, too, and more than the error of form of the other effects may be, unless it is
     known apart from these.
     """
     shares = lost_shares(after, without, before, noise, rules)
     return any(share >= rules.material
-               and without[name] - after[name] >= 0.5 * rules.material * rules.floors[name]
+               and without[name] - after[name] >= rules.lost * rules.floors[name]
                and (apart or beyond(without[name], after[name])
                     >= rules.form_error * beyond(before[name], without[name]))
                for name, share in shares.items())

@@ -30,7 +30,8 @@ TRANSLATION = ('position', 'velocity')
 def open_loop_gap(bench: Bench, judged: Judgement) -> Gap:
     """Return the Gap of full open-loop predictions."""
     track = replace(bench.tracks[-1], guide=None)
-    horizons = {horizon: _gap(track, bench, judged, horizon) for horizon in gaps.HORIZONS}
+    horizons = {horizon: _gap(track, bench, judged, horizon)
+                for horizon in sorted({*gaps.HORIZONS, bench.horizon})}
     head = horizons[bench.horizon]
     return Gap(horizon=bench.horizon, units=UNITS, **head,
                closed=gaps.closed(*(head[stage]['velocity']
@@ -59,7 +60,8 @@ def _gap(track: Track, bench: Bench, judged: Judgement, horizon: float) -> dict:
     return {'before': gaps.gap([before]), 'before_own': gaps.gap([nuisance]),
             'after': gaps.gap([after]),
             'noise': gaps.noise_gap(track, bench.vehicle, after_z, bench.noise, horizon),
-            'before_interval': gaps.interval([before]), 'after_interval': gaps.interval([after])}
+            'before_interval': gaps.interval([before], bench.rules),
+            'after_interval': gaps.interval([after], bench.rules)}
 
 
 def residual_wrenches(bench: Bench, vectors: Sequence[np.ndarray], noise: np.ndarray

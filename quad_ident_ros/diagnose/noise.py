@@ -14,8 +14,6 @@ from quad_ident_ros.greybox.errors import GROUPS
 from quad_ident_ros.greybox.kinematics import measurement_noise
 from quad_ident_ros.greybox.noise import near_noise, quick_noise
 
-LAGS = (0.02, 0.05, 0.1)    # s: gyros are filtered at 20 Hz and more, effects take half a second
-
 
 def noise_of(selection: Selection, intake: Intake, rules: Rules) -> Noise:
     """
@@ -32,29 +30,29 @@ def noise_of(selection: Selection, intake: Intake, rules: Rules) -> Noise:
     attitude, position = GROUPS['attitude'], GROUPS['position']
     period = float(np.median([flight.period for flight in intake.flights]))
     steady = max(0.0, float(np.mean(deviation[attitude] ** 2 - white[attitude] ** 2)))
-    mean = float(np.mean(white[attitude] ** 2)) * period / horizon_of(intake.flights)
+    mean = float(np.mean(white[attitude] ** 2)) * period / horizon_of(intake.flights, rules)
     # A position that is the integral of the velocity has no noise to go by.
     summed = {name for flight in intake.flights for name in flight.summed}
     levels = ('attitude' not in summed and np.mean(near[attitude]) < rules.filtered_attitude
               and ('position' in summed or np.mean(near[position]) > rules.tracked_position))
     level, drift = (rules.levelling, rules.drift) if levels else (0.0, 0.0)
     walk = rate_walk([(raw[..., GROUPS['rate']], flight.period) for raw, flight in
-                      zip(best.residuals, intake.flights, strict=True)], rules.shown)
+                      zip(best.residuals, intake.flights, strict=True)], rules)
     return Noise(deviation, float(np.sqrt(steady + mean + level ** 2)), drift, walk)
 
 
-def rate_walk(parts: Sequence[tuple[np.ndarray, float]], shown: float) -> np.ndarray:
+def rate_walk(parts: Sequence[tuple[np.ndarray, float]], rules: Rules) -> np.ndarray:
     """
     Return the growth (3,) (rad/s)^2/s of the variance of the rate by independent moments.
 
     The mean square change of an error over a lag is that of noise, flat beyond its memory, of
     independent moments, in proportion to the lag, and of slow ones, to its square. The slopes
-    between three lags tell these apart; 0 where less than `shown` standard errors remain.
+    between three lags tell these apart; 0 where what remains does not show.
     Args: parts: residuals (B, count + 1, 3) of the rate and the period s of each flight.
     """
     each = []
     for errors, period in parts:
-        near, mid, far = lags = _lags(period)
+        near, mid, far = lags = _lags(period, rules)
         if far >= errors.shape[1]:
             return np.zeros(errors.shape[-1])
         change = [np.mean((errors[:, lag:] - errors[:, :-lag]) ** 2, axis=1) for lag in lags]
@@ -66,12 +64,12 @@ def rate_walk(parts: Sequence[tuple[np.ndarray, float]], shown: float) -> np.nda
     error = slopes.std(axis=1) / np.sqrt(slopes.shape[1])
     least = np.argmin(mean, axis=0)[None]
     value, spread = (np.take_along_axis(table, least, axis=0)[0] for table in (mean, error))
-    return np.where(value > shown * spread, value, 0.0)
+    return np.where(value > rules.shown * spread, value, 0.0)
 
 
-def _lags(period: float) -> tuple[int, ...]:
+def _lags(period: float, rules: Rules) -> tuple[int, ...]:
     """Return three lags, in samples: beyond the memory of filters, below that of effects."""
-    near, mid, far = (round(lag / period) for lag in LAGS)
+    near, mid, far = (round(lag / period) for lag in rules.walk_lags)
     near = max(near, 1)
     mid = max(mid, near + 1)
     return near, mid, max(far, mid + 1)

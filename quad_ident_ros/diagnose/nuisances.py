@@ -23,7 +23,7 @@ from quad_ident_ros.greybox.nuisances import (
 )
 from quad_ident_ros.model.vehicle import Vehicle
 
-WIDE = 1.64     # standard errors below which 95 % lie
+WIDE = 1.64     # standard errors below which 95 % lie, of a bound that is only reported
 DELAY = 'actuation_delay'
 
 

@@ -26,6 +26,7 @@ from quad_ident_ros.model.attitude import rotation_matrix
 from quad_ident_ros.model.vehicle import Vehicle
 
 CHANNELS = ('Fx', 'Fy', 'Fz', 'Mx', 'My', 'Mz')
+# How finely `where` is told; no verdict is a matter of these.
 WINDOW = 0.2        # s over which force and moment are taken as constant,
 EVERY = 0.05        # s from one such window to the next: up to 5 Hz are seen
 STRETCH = 25.0      # s without a break that spectra are taken of,

@@ -13,6 +13,8 @@ class Rules:
     Intake:
       shortest: s of a flight. Half of a single one is held out: four rollouts of half a second
         for each half; whether that tells anything is a matter of information, see `not_shown`.
+      held_block: s of a block of a single flight, of which half are held out: room for a few
+        rollouts, and longer than the errors of a formula hang together.
     Candidates:
       voltage: V that a recorded voltage must change for it to tell anything of the battery: what
         the coarsest loggers resolve. at_bound: usual sizes from a bound that are at it.
@@ -24,10 +26,14 @@ class Rules:
         states. drift: m/s, that of the velocity of such a filter, which stays over a prediction.
         filtered_attitude: rad from sample to sample, below which an attitude is that of
         a filter; tracked_position: m, above which its position is not from motion capture.
+      walk_lags: s, by which the growth of the rate's errors is told from their noise: gyros are
+        filtered at 20 Hz and more, effects take half a second.
     Prior:
       prior_odds: probability of each effect before looking. One to three of some seventeen are
         there in vehicles that are looked at; less, for the many that may be named by chance
         (multiplicity: Scott and Berger, Annals of Statistics 38, 2010).
+      usual_form: share of that which the usual form of an effect has where there are others: an
+        effect is not more probable for having more laws.
       prior_width: usual sizes of a parameter that are one standard deviation of its prior about
         no effect: wide enough for the largest that is flown.
       alike: log evidence within which sets are about as good, so that the smallest is taken: a
@@ -47,12 +53,20 @@ class Rules:
         development of the withheld check: docs/method.md has the command.
       companion: contribution and stability (standard errors) from which on another effect clearly
         contributes.
+    Gap (see gap.py):
+      horizon: s ahead at which predictions are judged: the length of the rollouts that are fitted.
+        near_horizon: that of inertial flights: what the air does is not modelled there, and soon
+        turns the vehicle elsewhere.
+      steady_block: s of a flight over which errors may hang together, as for the scatter of the
+        cost. What helps in most of such blocks helps steadily.
     Naming:
       present: probability from which on an effect is named: more likely there than not.
       doubt: probability of a rival from which on it is not ruled out; an effect of 1 - doubt is
         sure. instead: how many times likelier a rival must be without an effect than with it.
       material: share of the closable gap that an effect must close to be in the verdict: less is
         below what a change of the weather or of a battery does.
+      lost: share of the floor of the tolerance that must be lost, too: as much as a material share
+        of `smallest` is, so that it only counts where a user has set wider floors.
       stand_in: share of its parameters beyond which, at bounds, an effect does the work of
         something else: one at a bound may be one that the flights do not tell.
       tied: correlation of two effects' parameters from which on they are taken out together, too.
@@ -77,6 +91,7 @@ class Rules:
     """
 
     shortest: float = 4.0
+    held_block: float = 3.0
     voltage: float = 0.02
     at_bound: float = 1e-3
     coloured: float = 2.0
@@ -84,13 +99,18 @@ class Rules:
     drift: float = 0.05
     filtered_attitude: float = 5e-4
     tracked_position: float = 1e-3
+    walk_lags: tuple[float, float, float] = (0.02, 0.05, 0.1)
     prior_odds: float = 0.02
+    usual_form: float = 0.5
     prior_width: float = 3.0
     alike: float = 3.0
     worth: float = 0.01
     untried: float = -2.0
     form_error: float = 0.2
     form_time: float = 1.0
+    horizon: float = 0.5
+    near_horizon: float = 0.1
+    steady_block: float = 2.0
     present: float = 0.5
     doubt: float = 0.12
     instead: float = 2.0
@@ -101,6 +121,7 @@ class Rules:
     hidden: float = 1.0
     shown: float = 3.0
     material: float = 0.05
+    lost: float = 0.025
     visible: float = 0.25
     noise_share: float = 0.75
     floors: dict = field(default_factory=lambda: {

@@ -36,6 +36,7 @@ from quad_ident_ros.greybox.parameters import limits, nominal, prior_sizes
 from quad_ident_ros.memory import give_back
 from quad_ident_ros.model.vehicle import Vehicle
 
+# How long and how far the search goes; the thresholds of a verdict are those of Rules.
 ROUNDS = 6
 REFITS = 3          # sets that are refitted in a round
 KEPT = 10           # fitted sets that are judged anew around each new best one

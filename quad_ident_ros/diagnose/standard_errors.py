@@ -17,7 +17,8 @@ from quad_ident_ros.greybox.nuisances import Layout
 from quad_ident_ros.greybox.parameters import limits
 from quad_ident_ros.model.vehicle import Vehicle
 
-FORM_ERRORS = (0.0, *(0.02 * 2.0 ** (0.5 * k) for k in range(10)))    # of formulas, tried
+# Relative errors of formulas that are tried, the likeliest of which is taken.
+FORM_ERRORS = (0.0, *(0.02 * 2.0 ** (0.5 * k) for k in range(10)))
 
 
 def standard_errors(fitted: Fitted, frame: Frame, vehicle: Vehicle, grids: Sequence[np.ndarray],

@@ -65,7 +65,7 @@ def flight_checks(bench: Bench, judged: Judgement) -> tuple[FlightCheck, ...]:
                      for ends in (judged.left_out, judged.before))
     named, rows = bool(judged.material), []
     for k, (track, gap, noise) in enumerate(zip(bench.tracks, found, judged.noise, strict=True)):
-        sure = gaps.surely(judged.left_out[k], bench.rules.shown)
+        sure = gaps.surely(judged.left_out[k], bench.rules)
         remains = unexplained(sure, before[k], noise, named, bench.rules)
         others = {name: np.median([beyond(one[name], other[name]) for j, (one, other) in enumerate(
             zip(found, judged.noise, strict=True)) if j != k]) for name in remains}

@@ -12,6 +12,7 @@ from quad_ident_ros.diagnose.blocks import interleaved, spans_seen
 from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.diagnose.gap import ends
 from quad_ident_ros.diagnose.result import FlightCheck
+from quad_ident_ros.diagnose.rules import RULES
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import SENSORS
 from quad_ident_ros.greybox.flights import flight_of, track_of
@@ -37,7 +38,7 @@ def half_hovered():
 
 def test_both_parts_move_alike_and_share_no_row(half_hovered):
     track = track_of(half_hovered, VEHICLE)
-    learnt, held_out = interleaved(track)
+    learnt, held_out = interleaved(track, RULES.held_block)
     assert not (learnt.seen & held_out.seen).any()
     np.testing.assert_array_equal(learnt.seen | held_out.seen, track.seen)
     speeds = np.linalg.norm(track.states[:, 3:5], axis=1)
@@ -50,10 +51,10 @@ def test_both_parts_move_alike_and_share_no_row(half_hovered):
 def test_time_between_the_parts_of_a_flight_makes_no_blocks(half_hovered):
     """Five minutes on the ground are five minutes without anything to hold out."""
     later = replace(half_hovered, t=half_hovered.t + 300.0 * (half_hovered.t > 20.0))
-    learnt, held_out = interleaved(track_of(later, VEHICLE))
-    as_one, _ = interleaved(track_of(half_hovered, VEHICLE))
+    learnt, held_out = interleaved(track_of(later, VEHICLE), RULES.held_block)
+    as_one, _ = interleaved(track_of(half_hovered, VEHICLE), RULES.held_block)
     assert learnt.name == as_one.name and 'half of its blocks of 3 s' in learnt.name
-    spans = spans_seen(held_out)
+    spans = spans_seen(held_out, RULES.held_block)
     assert all(end - begin < 6.5 for begin, end in spans)
     assert any(end < 20.0 for _, end in spans) and any(begin > 300.0 for begin, _ in spans)
     for part in (learnt, held_out):
@@ -66,7 +67,7 @@ def test_time_between_the_parts_of_a_flight_makes_no_blocks(half_hovered):
 
 
 def test_predictions_of_the_part_held_out_begin_and_end_in_it(half_hovered):
-    _, held_out = interleaved(track_of(half_hovered, VEHICLE))
+    _, held_out = interleaved(track_of(half_hovered, VEHICLE), RULES.held_block)
     starts = ends(held_out, VEHICLE, nominal(VEHICLE), 0.5).t
     rows = np.searchsorted(held_out.course.t, starts - 1e-9)
     assert held_out.seen[rows].all() and held_out.seen[rows + round(0.5 / held_out.period)].all()

@@ -152,7 +152,7 @@ def test_a_vehicle_that_cannot_fly_is_asked_for_nothing():
     z = nominal(VEHICLE)
     z[INDEX['mass_offset.mass']] = 3.0 * VEHICLE.mass
     selection = pair(0.9)
-    assert fly_next(selection, flights, VEHICLE, z, (), {}, ['rotor_drag']) == []
+    assert fly_next(selection, flights, VEHICLE, z, (), {}, ['rotor_drag'], RULES) == []
 
 
 def pair(correlation, third=None):
@@ -176,9 +176,10 @@ def test_the_distance_of_two_causes_is_what_the_other_cannot_take_up():
     selection = pair(0.8)
     a, b, _ = selection.rows
     sets = {(a,): np.array([1.0, 0.0, 0.0]), (b,): np.array([0.0, 2.0, 0.0])}
-    away = separation(selection.quadratic.information, selection, sets)
+    away = separation(selection.quadratic.information, selection, sets, RULES)
     assert away == pytest.approx(10.0 * np.sqrt(1.0 - 0.8 ** 2), rel=1e-4)
-    assert separation(selection.quadratic.information, selection, {(a,): sets[(a,)]}) == np.inf
+    assert separation(selection.quadratic.information, selection, {(a,): sets[(a,)]},
+                      RULES) == np.inf
 
 
 def test_a_further_cause_that_helps_the_rival_brings_them_closer():
@@ -186,7 +187,7 @@ def test_a_further_cause_that_helps_the_rival_brings_them_closer():
     selection = pair(0.0, third=70.0)
     a, b, _ = selection.rows
     sets = {(a,): np.array([10.0, 0.0, 0.0]), (b,): np.array([0.0, 10.0, 0.0])}
-    away = separation(selection.quadratic.information, selection, sets)
+    away = separation(selection.quadratic.information, selection, sets, RULES)
     assert 10.0 < away < 100.0 * 0.75
 
 
@@ -194,8 +195,9 @@ def test_an_effect_beside_another_that_looks_alike_is_less_visible():
     selection = pair(0.99)
     a, b, _ = selection.rows
     information = selection.quadratic.information
-    assert visibility(information, selection, [b], [])['thrust_scale'] == pytest.approx(1000.0)
-    beside = visibility(information, selection, [b], [a])['thrust_scale']
+    alone = visibility(information, selection, [b], [], RULES)['thrust_scale']
+    assert alone == pytest.approx(1000.0)
+    beside = visibility(information, selection, [b], [a], RULES)['thrust_scale']
     assert beside == pytest.approx(1000.0 * np.sqrt(1.0 - 0.99 ** 2), rel=1e-3)
 
 

@@ -131,8 +131,8 @@ def test_the_stability_is_the_mean_over_its_standard_error_over_blocks():
     saved = more.reshape(blocks, -1).sum(axis=1) / scale
     expected = saved.mean() / (saved.std() / np.sqrt(blocks))
     noise = dict.fromkeys(GROUPS, 1e-3)
-    assert stability((ends(one),), (ends(other),), noise) == pytest.approx(expected)
-    assert stability((ends(other),), (ends(one),), noise) < 0.0
+    assert stability((ends(one),), (ends(other),), noise, RULES) == pytest.approx(expected)
+    assert stability((ends(other),), (ends(one),), noise, RULES) < 0.0
 
 
 def test_blocks_of_every_flight_count():
@@ -140,7 +140,7 @@ def test_blocks_of_every_flight_count():
     flights = [(ends(random.normal(size=(200, 12))), ends(random.normal(size=(200, 12)) * 1.2))
                for _ in range(9)]
     noise = dict.fromkeys(GROUPS, 0.1)
-    few, many = (stability(*zip(*flights[:k], strict=True), noise) for k in (1, 9))
+    few, many = (stability(*zip(*flights[:k], strict=True), noise, RULES) for k in (1, 9))
     assert many == pytest.approx(3.0 * few, rel=0.5) and many > 6.0
 
 
@@ -148,7 +148,8 @@ def test_chance_is_not_steady():
     """About as many values as a standard normal variable has lie beyond 2."""
     random, noise = np.random.default_rng(3), dict.fromkeys(GROUPS, 0.1)
     values = [stability((ends(random.normal(size=(400, 12))),),
-                        (ends(random.normal(size=(400, 12))),), noise) for _ in range(200)]
+                        (ends(random.normal(size=(400, 12))),), noise, RULES)
+              for _ in range(200)]
     assert np.mean(np.abs(values) > 2.0) < 0.12 and abs(np.mean(values)) < 0.25
 
 

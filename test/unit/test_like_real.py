@@ -11,6 +11,7 @@ import pytest
 from quad_ident_ros.cli.main import main
 from quad_ident_ros.data.csv import read_csv, write_csv
 from quad_ident_ros.diagnose import gap as gaps
+from quad_ident_ros.diagnose.rules import RULES
 from quad_ident_ros.effects.registry import vector
 from quad_ident_ros.experiment import fly, load_experiment
 from quad_ident_ros.greybox.flights import track_of
@@ -44,7 +45,7 @@ def test_the_file_has_the_gap_that_was_reported(written):
     z = nominal(NOMINAL.vehicle)
     z[SPLIT:SPLIT + len(vector({}, vehicle))] = vector(vehicle.effects, NOMINAL.vehicle)
     after = gaps.gap([gaps.ends(track_of(flights[-1], NOMINAL.vehicle), NOMINAL.vehicle, z,
-                                gaps.HEADLINE)])
+                                RULES.horizon)])
     assert after['velocity'] == pytest.approx(data['gap']['after']['velocity'], rel=1e-3)
     assert data['gap']['closed'] > 0.95
 

@@ -7,8 +7,9 @@ import pytest
 from scipy.signal import lfilter
 
 from quad_ident_ros.diagnose.noise import rate_walk
+from quad_ident_ros.diagnose.rules import RULES
 
-PERIOD, COUNT, ROLLOUTS, SIGMA, SHOWN = 0.01, 50, 240, 0.01, 3.0
+PERIOD, COUNT, ROLLOUTS, SIGMA = 0.01, 50, 240, 0.01
 
 
 def white(seed=1, period=PERIOD):
@@ -22,19 +23,19 @@ def white(seed=1, period=PERIOD):
 def test_a_random_walk_grows_by_what_its_steps_have(growth, period):
     noise = white(period=period)
     steps = np.sqrt(growth * period) * np.random.default_rng(2).standard_normal(noise.shape)
-    found = rate_walk([(noise + np.cumsum(steps, axis=1), period)], SHOWN)
+    found = rate_walk([(noise + np.cumsum(steps, axis=1), period)], RULES)
     # The smaller of two slopes is taken: a little low where both are as noisy.
     assert np.all((0.5 * growth < found) & (found < 1.25 * growth))
 
 
 def test_noise_of_the_sensor_is_no_walk():
-    assert np.all(rate_walk([(white(), PERIOD)], SHOWN) == 0.0)
+    assert np.all(rate_walk([(white(), PERIOD)], RULES) == 0.0)
 
 
 def test_filtered_noise_is_no_walk():
     share = 1.0 - np.exp(-2.0 * np.pi * 20.0 * PERIOD)
     filtered = lfilter([share], [1.0, share - 1.0], white(), axis=1)[:, 10:]
-    assert np.all(rate_walk([(filtered, PERIOD)], SHOWN) == 0.0)
+    assert np.all(rate_walk([(filtered, PERIOD)], RULES) == 0.0)
 
 
 @pytest.mark.parametrize('frequency', [0.0, 0.5, 1.0])
@@ -45,8 +46,8 @@ def test_slow_moments_are_little_of_a_walk(frequency):
     moment = np.cos(2.0 * np.pi * frequency * t[:, None] + phase)
     error = np.cumsum(moment, axis=1) * PERIOD
     made = np.mean((error[:, -1] - error[:, 0]) ** 2, axis=0)
-    assert np.all(rate_walk([(error + white(), PERIOD)], SHOWN) * t[-1] < 0.1 * made)
+    assert np.all(rate_walk([(error + white(), PERIOD)], RULES) * t[-1] < 0.1 * made)
 
 
 def test_rollouts_that_are_too_short_tell_nothing():
-    assert np.all(rate_walk([(white()[:, :5], PERIOD)], SHOWN) == 0.0)
+    assert np.all(rate_walk([(white()[:, :5], PERIOD)], RULES) == 0.0)
