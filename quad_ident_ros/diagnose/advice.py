@@ -11,7 +11,7 @@ from quad_ident_ros.diagnose.candidates import not_told, SCALES
 from quad_ident_ros.diagnose.fitted import columns_at_bounds
 from quad_ident_ros.diagnose.judgement import Judgement
 from quad_ident_ros.diagnose.rules import Rules
-from quad_ident_ros.diagnose.select import Selection
+from quad_ident_ros.diagnose.selection import Selection
 from quad_ident_ros.diagnose.verdict import Verdict
 from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.greybox.flights import Flight, inertial

@@ -9,7 +9,7 @@ import numpy as np
 from quad_ident_ros.diagnose.candidates import Candidate
 from quad_ident_ros.diagnose.fitted import Fitted
 from quad_ident_ros.diagnose.rules import Rules
-from quad_ident_ros.diagnose.select import Selection
+from quad_ident_ros.diagnose.selection import Selection
 
 
 def doubts_of(selection: Selection, named: Sequence[Candidate], rules: Rules

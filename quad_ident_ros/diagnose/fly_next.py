@@ -17,7 +17,7 @@ from scipy.linalg import block_diag
 from quad_ident_ros.diagnose.candidates import Candidate
 from quad_ident_ros.diagnose.evidence import occam, Quadratic
 from quad_ident_ros.diagnose.rules import Rules
-from quad_ident_ros.diagnose.select import Selection
+from quad_ident_ros.diagnose.selection import Selection
 from quad_ident_ros.effects.registry import mapping
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.flight.fly import fly_closed_loop, FULL_VOLTAGE, RATES

@@ -19,7 +19,7 @@ from quad_ident_ros.diagnose.gap import Noise
 from quad_ident_ros.diagnose.nuisances import nuisances_of
 from quad_ident_ros.diagnose.probability import presence, probabilities, Weight, with_companions
 from quad_ident_ros.diagnose.rules import Rules
-from quad_ident_ros.diagnose.select import Selection
+from quad_ident_ros.diagnose.selection import Selection
 from quad_ident_ros.effects.registry import EFFECTS, PLACES
 from quad_ident_ros.greybox.errors import ERRORS, GROUPS
 from quad_ident_ros.greybox.estimate import Estimate

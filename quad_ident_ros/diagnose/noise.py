@@ -9,7 +9,7 @@ import numpy as np
 from quad_ident_ros.diagnose.gap import horizon_of, Noise
 from quad_ident_ros.diagnose.intake import Intake
 from quad_ident_ros.diagnose.rules import Rules
-from quad_ident_ros.diagnose.select import Selection
+from quad_ident_ros.diagnose.selection import Selection
 from quad_ident_ros.greybox.errors import GROUPS
 from quad_ident_ros.greybox.kinematics import measurement_noise
 from quad_ident_ros.greybox.noise import near_noise, quick_noise

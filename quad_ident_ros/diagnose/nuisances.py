@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from quad_ident_ros.data.clocks import Clock, controllers_own
-from quad_ident_ros.diagnose.select import Selection
+from quad_ident_ros.diagnose.selection import Selection
 from quad_ident_ros.greybox.estimate import estimate
 from quad_ident_ros.greybox.flights import Flight, flight_of, Track
 from quad_ident_ros.greybox.linear import slopes_at, WRENCH

@@ -2,15 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Which effects explain flights: sets of candidates compared jointly, each refitted."""
 
-from collections.abc import Callable, Collection, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from scipy.linalg import block_diag
 
 from quad_ident_ros.diagnose.candidates import Candidate, nuisance_candidates
 from quad_ident_ros.diagnose.discrepancy import AXES, log_likelihood, scales
-from quad_ident_ros.diagnose.evidence import beam, key_of, Quadratic
+from quad_ident_ros.diagnose.evidence import beam, Quadratic
 from quad_ident_ros.diagnose.fitted import (
     distances_of,
     effects_in,
@@ -22,9 +21,10 @@ from quad_ident_ros.diagnose.fitted import (
     within_bounds,
 )
 from quad_ident_ros.diagnose.frame import blocks_at, Frame, frame_at, normal_at
+from quad_ident_ros.diagnose.promising import other_actuators, promising, REFITS
 from quad_ident_ros.diagnose.rules import Rules
+from quad_ident_ros.diagnose.selection import posteriors, Selection
 from quad_ident_ros.diagnose.standard_errors import standard_errors
-from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.greybox.errors import GROUPS
 from quad_ident_ros.greybox.estimate import Estimate, estimate
 from quad_ident_ros.greybox.flights import Flight, inertial
@@ -38,49 +38,9 @@ from quad_ident_ros.model.vehicle import Vehicle
 
 # How long and how far the search goes; the thresholds of a verdict are those of Rules.
 ROUNDS = 6
-REFITS = 3          # sets that are refitted in a round
 KEPT = 10           # fitted sets that are judged anew around each new best one
 PASSES = 3          # times, at most, in each stage, that the noise is taken anew
-NEAR = 25.0         # log-evidence behind the best set by the slopes that may be made up for
 LOST = 4.0          # times the scatter that a fit may cost more than a subset does
-
-
-@dataclass(frozen=True, eq=False)
-class Selection:
-    """
-    What the flights say of the candidates.
-
-    best: the simplest Fitted of those with about the most evidence; fitted: it and the others
-    that were refitted; posterior: probability of each candidate effect; quadratic, rows: the cost
-    around the best, with all candidates free; noise: per flight (12,); least: the standard_errors
-    (C,) of the columns of the best; slow (6,): the force and moment that nothing explains, by
-    which errors that hang together counted less in the fits, or None.
-    """
-
-    best: Fitted
-    fitted: tuple
-    posterior: dict
-    quadratic: Quadratic
-    rows: dict
-    noise: list
-    least: np.ndarray
-    slow: np.ndarray | None = None
-
-    @property
-    def errors(self) -> np.ndarray:
-        """
-        Return the standard errors, (C,), of the best set's columns.
-
-        How far flights usually differ is not known either: of all sets with the same effects, by
-        their evidence. Formulas may be wrong: at least the standard_errors of the best set.
-        """
-        same = [one for one in self.fitted if one.causes == self.best.causes]
-        evidences = np.array([one.evidence for one in same])
-        shares = np.exp(evidences - evidences.max())
-        squares = [one.estimate.errors ** 2
-                   + (one.estimate.z - self.best.estimate.z)[one.estimate.columns] ** 2
-                   for one in same]
-        return np.maximum(np.sqrt(np.average(squares, axis=0, weights=shares)), self.least)
 
 
 def select(flights: list[Flight], vehicle: Vehicle, causes: tuple[Candidate, ...],
@@ -275,7 +235,7 @@ class _Search:
 
     def try_promising(self) -> None:
         """Fit the sets that the linear model finds promising, and judge them."""
-        for chosen, distances in _promising(self.ranked, self.tried):
+        for chosen, distances in promising(self.ranked, self.tried):
             start = nominal(self.vehicle)
             lower, upper, _ = limits(self.vehicle)
             start[self.columns] += distances[:len(self.columns)]
@@ -286,7 +246,7 @@ class _Search:
             self.fit(chosen, start, everyone, self.frame.slopes.starts)
         best = self.best_key()
         fit = self.tried[best]
-        for chosen, start in _other_actuator(best, self.causes, fit.z, self.vehicle):
+        for chosen, start in other_actuators(best, self.causes, fit.z, self.vehicle):
             if chosen not in self.tried:
                 self.fit(chosen, start, fit.nuisances, fit.starts)
 
@@ -364,70 +324,6 @@ class _Search:
                                          self.quadratic.scatter, self.rules), self.slow)
 
 
-def posteriors(fitted: Sequence[Fitted], ranked: list, causes: Sequence[Candidate],
-               tried: Collection[tuple], rules: Rules) -> dict:
-    """
-    Return {effect candidate: probability of being present}: the evidence of sets that have it.
-
-    Sets that were not refitted count by the linear model, beside the best one, for little. The
-    best one is the simplest of those that are about as good: sets that only add effects to it
-    tell no more of these than was known before looking.
-    """
-    top = fitted[0]
-    best = set(top.causes)
-    base = next((value for value, chosen, _ in ranked if chosen == top.chosen), None)
-    weights = {one.chosen: one.evidence - top.evidence for one in fitted}
-    if base is not None and np.isfinite(base):
-        for value, chosen, _ in ranked:
-            if chosen not in tried and len(set(chosen) ^ set(top.chosen)) <= 2:
-                weights[chosen] = min(value - base, rules.untried)
-    values = np.array(list(weights.values()))
-    shares = np.exp(np.clip(values - values.max(), -700, 0))
-    shares /= shares.sum()
-    found = dict.fromkeys(causes, 0.0)
-    for share, chosen in zip(shares, weights, strict=True):
-        for cause in effects_in(chosen):
-            adds = cause not in best and best <= set(chosen)
-            found[cause] += float(share) * (rules.prior_odds if adds else 1.0)
-    return found
-
-
-def _promising(ranked: list, tried: Collection[tuple]) -> list[tuple[tuple, np.ndarray]]:
-    """
-    Return [(set, distances)] of the untried sets that are worth refitting.
-
-    Those with the most evidence, and those with another candidate in place of one of the best
-    set's: slopes at a point tell little of which of two is there that do nearly the same.
-    """
-    most, top, _ = ranked[0]
-    fresh = [(chosen, away) for _, chosen, away in ranked[:3 * REFITS] if chosen not in tried]
-    first = {chosen for chosen, _ in fresh[:REFITS]}
-    rivals = [(chosen, away) for value, chosen, away in ranked
-              if value > most - NEAR and chosen not in tried and chosen not in first
-              and len(chosen) == len(top) and _swapped(chosen, top)]
-    return [*fresh[:REFITS], *rivals[:REFITS]]
-
-
-def _other_actuator(best: tuple, causes: Sequence[Candidate], z: np.ndarray, vehicle: Vehicle
-                    ) -> list[tuple[tuple, np.ndarray]]:
-    """
-    Return [(set, vector)] with another delay or lag for those of a set, at its usual size.
-
-    From a delay that does the work of a lag no slope leads to the lag, and none from a lag of the
-    first order to one of the second.
-    """
-    found, size = [], limits(vehicle)[2]
-    actuators = [cause for cause in causes if EFFECTS[cause.effect].actuator]
-    there = [cause for cause in best if cause.nuisance is None and EFFECTS[cause.effect].actuator]
-    gone = [column for cause in there for column in cause.columns]
-    for other in [cause for cause in actuators if there and cause not in there]:
-        start = z.copy()
-        start[gone] = nominal(vehicle)[gone]
-        start[list(other.columns)] += size[list(other.columns)]
-        found.append((key_of((other, *(cause for cause in best if cause not in there))), start))
-    return found
-
-
 def _plain(chosen: tuple) -> bool:
     """Return whether no effect of a set is in a form with more parameters than usual."""
     return all(cause.plain for cause in effects_in(chosen))
@@ -436,12 +332,6 @@ def _plain(chosen: tuple) -> bool:
 def _names(fitted: Fitted) -> set[str]:
     """Return the effects of a set, in whichever form."""
     return {cause.effect for cause in fitted.causes}
-
-
-def _swapped(chosen: tuple, top: tuple) -> bool:
-    """Return whether sets differ by one effect, in whose place there is another candidate."""
-    apart = set(chosen) ^ set(top)
-    return len(apart) == 2 and bool(effects_in(tuple(apart)))
 
 
 def _rows(causes: Sequence[Candidate], nuisances: Sequence[Candidate], columns: list[int],

@@ -10,8 +10,10 @@ import pytest
 from quad_ident_ros.diagnose import select as selecting
 from quad_ident_ros.diagnose.candidates import Candidate, candidates
 from quad_ident_ros.diagnose.fitted import Fitted, refitted
+from quad_ident_ros.diagnose.promising import other_actuators
 from quad_ident_ros.diagnose.rules import RULES
-from quad_ident_ros.diagnose.select import _other_actuator, _Search, posteriors, Selection
+from quad_ident_ros.diagnose.select import _Search
+from quad_ident_ros.diagnose.selection import posteriors, Selection
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import SENSORS
 from quad_ident_ros.greybox.flights import flight_of, track_of
@@ -147,7 +149,7 @@ def test_from_a_delay_that_does_the_work_of_a_lag_the_lag_is_found():
         return refitted(flights, vehicle, z, chosen, noise, NuisanceValues.of((), 1), None)
 
     late = fit(nominal(vehicle), (causes['actuation_delay'],))
-    [(chosen, start)] = _other_actuator((causes['actuation_delay'],), list(causes.values()),
+    [(chosen, start)] = other_actuators((causes['actuation_delay'],), list(causes.values()),
                                         late.z, vehicle)
     assert chosen == (causes['motor_lag'],)
     found = fit(start, chosen)
