@@ -80,22 +80,6 @@ def level_spread(signal, model):
     return abs(model.c0 * np.ptp(signal.y[signal.measured]) / signal.u[0])
 
 
-def disturbance_error(signal, fitted):
-    """Return the standard error of a fitted disturbance, or None where none was estimated."""
-    if signal.unknowns < 3:
-        return None
-    factor, variance = _factor(signal, fitted)
-    if factor is None:
-        return None
-    width = signal.unknowns + 3
-    size = np.linalg.norm(factor[:width, :width], axis=0)
-    with np.errstate(all='ignore'):
-        if not np.linalg.cond(factor[:width, :width] / size) <= WORST_CONDITION:
-            return None
-    row = np.linalg.inv(factor[:width, :width] / size)[2] / size[2]
-    return float(np.sqrt(variance * row @ row))
-
-
 def _factor(signal, fitted):
     """Return the factor of the fit linearised at a model and the variance, or None, None."""
     model, last = fitted.model, signal.unknowns + 3
