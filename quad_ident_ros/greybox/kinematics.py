@@ -13,7 +13,7 @@ import numpy as np
 from scipy.optimize import nnls
 
 from quad_ident_ros.greybox.errors import difference, GROUPS
-from quad_ident_ros.greybox.flights import Flight
+from quad_ident_ros.greybox.flights import Flight, GAP
 from quad_ident_ros.greybox.parameters import SPLIT
 from quad_ident_ros.model.attitude import rotation_matrix
 from quad_ident_ros.model.sensors import product, turn, underlying
@@ -26,7 +26,6 @@ LAGS = 14
 ALIKE = 0.1     # weight of shares that are alike, beside the drift's
 KEPT = 0.995    # of pairs of samples, the others being glitches that were not told
 FEWEST = 50     # pairs of samples from which on a lag tells anything
-BREAK = 1.6     # usual periods between two samples over which nothing is integrated
 
 
 def measurement_noise(flights: Sequence[Flight], vectors: Sequence[np.ndarray],
@@ -73,7 +72,7 @@ def _drifts(flight: Flight, z: np.ndarray) -> list[np.ndarray]:
     moved[:, 6:10] = product(moved[:, 6:10], turn(step * rate))
     errors = difference(states[1:], moved)
     # A bias turns with the body. Its noise sums up to nothing in a mean, unlike in a median.
-    whole = step[:, 0] <= BREAK * flight.period
+    whole = step[:, 0] <= GAP * flight.period
     turned = errors[:, GROUPS['attitude']]
     turned = turned - step * turned[whole].sum(axis=0) / step[whole].sum()
     turned = np.einsum('nij,nj->ni', rotation_matrix(states[1:, 6:10]), turned)
@@ -91,7 +90,7 @@ def _spreads(flights: Sequence[Flight], drifts: Sequence[np.ndarray], group: sli
         found = []
         for flight, drift in zip(flights, drifts, strict=True):
             t, seen = flight.course.t, np.asarray(flight.seen[:, group].all(axis=1))
-            piece = np.append(0, np.cumsum(np.diff(t) > BREAK * flight.period))
+            piece = np.append(0, np.cumsum(np.diff(t) > GAP * flight.period))
             whole = (piece[stride:] == piece[:-stride]) & seen[stride:] & seen[:-stride]
             if whole.sum() >= FEWEST:
                 change = (drift[stride:] - drift[:-stride])[whole]

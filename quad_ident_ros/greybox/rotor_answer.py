@@ -12,12 +12,12 @@ from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.effects.registry import EFFECTS, NULL
 from quad_ident_ros.greybox.flights import BRIDGED, GAP, RATE
+from quad_ident_ros.greybox.normal import BLOCK
 from quad_ident_ros.model.actuators import actuated, DELAY, LAG
 from quad_ident_ros.model.mixing import BY_SPEEDS
 
 MOST = 20_000           # samples, from the middle of a stretch: more tell nothing new
 LEAST_RATE = 40.0       # Hz of measured speeds; slower ones do not show lags
-BLOCK = 2.0             # s over which errors may hang together
 FOLLOWS = 0.5           # of the spread of the speeds that commands explain, at least
 COPY, COPIED = 1e-9, 1e-4   # of the variance, and s: what is left, and how late, by a copy of
                             # the commands, which no sensor measures
