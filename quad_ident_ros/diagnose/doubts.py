@@ -8,6 +8,7 @@ import numpy as np
 
 from quad_ident_ros.diagnose.candidates import Candidate
 from quad_ident_ros.diagnose.fitted import Fitted
+from quad_ident_ros.diagnose.probability import by_effect
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.diagnose.selection import Selection
 
@@ -20,9 +21,7 @@ def doubts_of(selection: Selection, named: Sequence[Candidate], rules: Rules
     Those of the named ones whose effects are not sure, and those that may be there in their place,
     each with the Fitted set that speaks for it: {cause: Fitted}.
     """
-    total: dict[str, float] = {}
-    for cause, value in selection.posterior.items():
-        total[cause.effect] = total.get(cause.effect, 0.0) + value
+    total = by_effect(selection.posterior)
     present = {cause.effect for cause in named}
     others = [cause for cause in selection.posterior
               if cause.effect not in present and total[cause.effect] > rules.doubt]

@@ -49,10 +49,16 @@ def probabilities(posterior: dict, weights: dict, rules: Rules) -> dict[str, flo
     of all sets that have them, in whichever form.
     Args: posterior {candidate: ...} of the Selection; weights {candidate: Weight}.
     """
+    there = {cause.effect: presence(weight, rules) for cause, weight in weights.items()}
+    return by_effect(posterior) | there
+
+
+def by_effect(posterior: dict) -> dict[str, float]:
+    """Return {effect: sum over its candidates} of a posterior {candidate: probability}."""
     found = {cause.effect: 0.0 for cause in posterior}
     for cause, value in posterior.items():
         found[cause.effect] += value
-    return found | {cause.effect: presence(weight, rules) for cause, weight in weights.items()}
+    return found
 
 
 def presence(weight: Weight, rules: Rules) -> float:
