@@ -17,7 +17,6 @@ from std_msgs.msg import String, UInt64
 from std_srvs.srv import Trigger
 
 from quad_ident_ros.data.flight_joiner import FlightJoiner
-from quad_ident_ros.data.recording import Recording
 from quad_ident_ros.data.stream_joiner import StreamJoiner
 from quad_ident_ros.data.topics import (
     FLIGHT_TOPICS,
@@ -34,6 +33,7 @@ from quad_ident_ros.nodes.losses import Losses
 from quad_ident_ros.nodes.mapped import message_class, RECEIVED
 from quad_ident_ros.nodes.messages import diagnostics_message
 from quad_ident_ros.nodes.node import PackageNode
+from quad_ident_ros.nodes.on_disk import FLUSH_PERIOD, OnDisk
 from quad_ident_ros.nodes.other_types import one_topic_for_two, other_type
 from quad_ident_ros.nodes.outlets import outlets_of
 from quad_ident_ros.nodes.parameters import help_text, NodeParameters
@@ -41,8 +41,6 @@ from quad_ident_ros.nodes.qos import BEST_EFFORT, latched, LOSSLESS
 from quad_ident_ros.nodes.recorder_parameters import mapped_topics, SPECS, validate
 from quad_ident_ros.nodes.waiting import take_waiting
 
-FLUSH_PERIOD = 0.5   # s; a kill -9 loses at most this much of a recording, or
-OVERDUE = 0.6        # s while messages wait, which the timer waits behind
 QUIET = 0.5          # s after the last message when the middleware is asked what it lost
 ACKNOWLEDGED = 10    # rows after which the publishers are told how far the joining is
 GONE = 2.0           # s after the last message when nothing more is to come, and
@@ -103,11 +101,7 @@ class Recorder(PackageNode):
                               'the parameter topics leaves topics out' if self._mapped is None
                               else 'a mapping names the topics that a row needs')
         self._announced = None
-        self._time = self.get_clock()
-        self._steady = Clock(clock_type=ClockType.STEADY_TIME)
-        self._recording = None
-        self._flushed = self._now()
-        self._disk_error = None
+        self._disk = OnDisk(parameters['output'], self.get_clock(), self.get_logger())
         self._unreadable = None
         self._statistics = self.create_publisher(String, '~/statistics', latched())
         self._joined = self.create_publisher(UInt64, JOINED_TOPIC, 10)
@@ -127,8 +121,9 @@ class Recorder(PackageNode):
         elif parameters['output']:
             self._open_recording()
         self.create_service(Trigger, '~/flush', self._on_flush)
-        self.create_timer(FLUSH_PERIOD, self._on_flush_timer, clock=self._steady)
-        self.create_timer(1.0, self._report, clock=self._steady)
+        steady = Clock(clock_type=ClockType.STEADY_TIME)
+        self.create_timer(FLUSH_PERIOD, self._on_flush_timer, clock=steady)
+        self.create_timer(1.0, self._report, clock=steady)
         self._report()
 
     def ready(self):
@@ -148,8 +143,7 @@ class Recorder(PackageNode):
         self._keep(self._joiner.drain())
         self._buffer.complete()
         self.counts.missing = self._buffer.missing
-        if self._recording is not None:
-            self._on_disk(self._recording.close)
+        self._disk.close()
         self._report()
         self._statistics.wait_for_all_acked(Duration(seconds=PARTING))
         if problems := self.counts.problems():
@@ -162,11 +156,7 @@ class Recorder(PackageNode):
         names = {name: subscription.topic_name
                  for name, subscription in self._subscriptions_by_topic.items()}
         names[RUN_TOPIC] = self._runs.topic_name
-
-        def make():
-            self._recording = Recording(self._config['output'], names, self._types or None)
-            self.get_logger().info(f'recording to {self._recording.folder}')
-        self._on_disk(make)
+        self._disk.open(names, self._types or None)
 
     def _look_for_topics(self):
         """Subscribe to the topics of the mapping that are there: only then are their types."""
@@ -229,7 +219,7 @@ class Recorder(PackageNode):
         if sample is None:
             message = deserialize_message(raw, kind)
             sample = stamp_ns(message), topic.values(message)
-        self._write(topic.name, raw)
+        self._disk.write(topic.name, raw)
         joiner, counts = self._joiner, self.counts
         restarts, interpolated = counts.restarts, joiner.interpolates
         rows = joiner.add(topic.name, *sample)
@@ -238,7 +228,7 @@ class Recorder(PackageNode):
         self._keep(rows)
         if counts.restarts != restarts and counts is self.counts:
             self.get_logger().warning('the clock of the messages went back: a new record begins')
-        self._flush_when_due(now)
+        self._disk.flush_when_due(now)
 
     def _between(self):
         """Return how rows come about where the stamps are not what they should be, or ''."""
@@ -251,8 +241,8 @@ class Recorder(PackageNode):
 
     def _on_mapped(self, name, kind, raw):
         now = self._last_message = self._now()
-        self._write(name, raw)
-        self._flush_when_due(now)
+        self._disk.write(name, raw)
+        self._disk.flush_when_due(now)
         by_receipt = self._mapped.by_receipt
         try:
             samples = self._mapped.samples(name, self._types[name],
@@ -273,42 +263,29 @@ class Recorder(PackageNode):
                                           'begins')
             self._keep(rows)
 
-    def _write(self, name, raw):
-        if self._recording is not None:
-            now = (self._time.now().nanoseconds if self._time.ros_time_is_active
-                   else time.time_ns())     # the same, ten times faster
-            try:
-                self._recording.write(name, now, raw)
-            except OSError as error:
-                self._stop_recording(error)
-
     def _on_run(self, raw):
-        self._write(RUN_TOPIC, raw)
+        self._disk.write(RUN_TOPIC, raw)
         try:
             notice = RunNotice.from_json(deserialize_message(raw, String).data)
         except InputError as error:
             self.get_logger().error(str(error), throttle_duration_sec=10.0)
             return
         self._announced = notice.stop_ns
-        if self._recording is not None:
-            self._recording.add_run(notice)
+        self._disk.add_run(notice)
         self._publish(lambda buffer: buffer.add_run(notice))
 
     def _keep(self, rows):
         if rows:
-            if self._mapped is not None:
-                columns = self._joiner.raw_columns()
+            columns = None if self._mapped is None else self._joiner.raw_columns()
+            if columns is not None:
                 for outlet in self._outlets:
                     outlet.buffer.columns = columns
-                if self._recording is not None:
-                    self._recording.columns = columns
             self._health.note_rows(self._now())
             self._unacknowledged += len(rows)
             if self._unacknowledged >= ACKNOWLEDGED:
                 self._unacknowledged = 0
                 self._joined.publish(UInt64(data=rows[-1][0]))
-            if self._recording is not None:
-                self._on_disk(lambda: self._recording.add_rows(rows))
+            self._disk.add_rows(rows, columns)
             self._publish(lambda buffer: buffer.add_rows(rows))
 
     def _publish(self, step):
@@ -344,20 +321,10 @@ class Recorder(PackageNode):
             self._keep(self._joiner.drain())
             if self._buffer.run_name:
                 self._publish(lambda buffer: buffer.complete(run_over=True))
-        self._flush()
+        self._disk.flush()
         self._adapt()
         if self._mapped is not None:
             self._look_for_topics()
-
-    def _flush_when_due(self, now):
-        """Flush what was recorded where the timer did not: it waits while messages do."""
-        if now - self._flushed > OVERDUE:
-            self._flush()
-
-    def _flush(self):
-        if self._recording is not None:
-            self._on_disk(self._recording.flush)
-        self._flushed = self._now()
 
     def _now(self):
         return time.monotonic()
@@ -386,25 +353,6 @@ class Recorder(PackageNode):
             self.get_logger().warning(f'{name} is offered as best effort: messages may be lost, '
                                       'and are counted')
 
-    def _on_disk(self, action):
-        """Do something on disk; where it fails say so once and go on in memory."""
-        try:
-            action()
-        except OSError as error:
-            self._stop_recording(error)
-
-    def _stop_recording(self, error):
-        recording, self._recording = self._recording, None
-        where = recording.folder if recording else self._config['output']
-        self._disk_error = (f'{where}: recording stopped: {error.strerror or error}; what was '
-                            'written stays, the run goes on in memory')
-        self.get_logger().error(self._disk_error)
-        if recording is not None:
-            try:
-                recording.close()
-            except OSError:
-                pass   # it has been said
-
     def _apart(self):
         """Say that the stamps of the topics are too far apart."""
         if self._mapped is None and not self._joiner.interpolates:
@@ -426,12 +374,12 @@ class Recorder(PackageNode):
             self.get_logger().error(other, throttle_duration_sec=10.0)
         elif trouble:
             self.get_logger().warning(trouble, throttle_duration_sec=10.0)
-        folder = str(self._recording.folder) if self._recording else None
+        folder = str(self._disk.folder) if self._disk.folder else None
         data = {**vars(self.counts), 'records': self._outlets[0].count,
                 'buffered': len(self._buffer), 'run': self._buffer.run_name,
-                'recording': folder, 'disk_error': self._disk_error}
+                'recording': folder, 'disk_error': self._disk.error}
         self._statistics.publish(String(data=json.dumps(data)))
-        level, text = self._health.status(now, self.counts, self._between(), self._disk_error)
+        level, text = self._health.status(now, self.counts, self._between(), self._disk.error)
         self._diagnostics.publish(diagnostics_message(self, level, text, data))
 
 

@@ -15,7 +15,7 @@ from quad_ident_ros.data.bag_file import read_bag_messages
 from quad_ident_ros.data.csv import read_csv
 from quad_ident_ros.data.replay import read_bag
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.nodes import recorder as recorder_module
+from quad_ident_ros.nodes import on_disk
 from quad_ident_ros.nodes.demo import recording_of
 from quad_ident_ros.nodes.qos import latched
 from quad_ident_ros.nodes.recorder import Recorder
@@ -112,7 +112,7 @@ def test_kill_9_loses_at_most_the_last_second(graph, processes, tmp_path, second
 def test_a_recorder_that_is_behind_flushes_all_the_same(fast_graph, tmp_path, monkeypatch):
     """Its timer waits behind the messages: here, it never has its turn."""
     recorder = fast_graph.start(Recorder, {'output': str(tmp_path)})
-    monkeypatch.setattr(recorder_module, 'OVERDUE', 0.0)
+    monkeypatch.setattr(on_disk, 'OVERDUE', 0.0)
     for k in range(30):
         for name in STREAMS:
             message = sample(name, SECOND + k * 10 ** 7)

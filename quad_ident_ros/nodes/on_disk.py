@@ -1,0 +1,93 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What a node records on disk: a failure is said once, and the run goes on in memory."""
+
+import time
+
+from quad_ident_ros.data.recording import Recording
+
+FLUSH_PERIOD = 0.5   # s; a kill -9 loses at most this much of a recording, or
+OVERDUE = 0.6        # s while messages wait, which the timer waits behind
+
+
+class OnDisk:
+    """
+    A Recording that the disk may refuse, or none yet, to which nothing is written then.
+
+    Args: output: the folder in which it is made; clock: of the node, for times of receipt; logger.
+    error: what the disk refused, or None.
+    """
+
+    def __init__(self, output, clock, logger):
+        self._output, self._clock, self._logger = output, clock, logger
+        self._recording = None
+        self._flushed = time.monotonic()
+        self.error = None
+
+    @property
+    def folder(self):
+        """Return the folder of the recording, or None."""
+        return self._recording.folder if self._recording else None
+
+    def open(self, topics, types):
+        """Begin a Recording; topics and types as it has them."""
+        def make():
+            self._recording = Recording(self._output, topics, types)
+            self._logger.info(f'recording to {self._recording.folder}')
+        self._try(make)
+
+    def write(self, name, raw):
+        """Write a message of a topic as it came."""
+        if self._recording is not None:
+            now = (self._clock.now().nanoseconds if self._clock.ros_time_is_active
+                   else time.time_ns())     # the same, ten times faster
+            try:
+                self._recording.write(name, now, raw)
+            except OSError as error:
+                self._stop(error)
+
+    def add_run(self, notice):
+        """Take the notice of a run."""
+        if self._recording is not None:
+            self._recording.add_run(notice)
+
+    def add_rows(self, rows, columns=None):
+        """Take joined rows; columns: their names where these are no longer as at the beginning."""
+        if self._recording is not None:
+            if columns is not None:
+                self._recording.columns = columns
+            self._try(lambda: self._recording.add_rows(rows))
+
+    def flush_when_due(self, now):
+        """Flush what was recorded where no timer did: it waits while messages do."""
+        if now - self._flushed > OVERDUE:
+            self.flush()
+
+    def flush(self):
+        """Bring what was recorded to disk."""
+        if self._recording is not None:
+            self._try(self._recording.flush)
+        self._flushed = time.monotonic()
+
+    def close(self):
+        """Finish the files."""
+        if self._recording is not None:
+            self._try(self._recording.close)
+
+    def _try(self, action):
+        try:
+            action()
+        except OSError as error:
+            self._stop(error)
+
+    def _stop(self, error):
+        recording, self._recording = self._recording, None
+        where = recording.folder if recording else self._output
+        self.error = (f'{where}: recording stopped: {error.strerror or error}; what was '
+                      'written stays, the run goes on in memory')
+        self._logger.error(self.error)
+        if recording is not None:
+            try:
+                recording.close()
+            except OSError:
+                pass   # it has been said
