@@ -64,7 +64,7 @@ def rate_walk(parts: Sequence[tuple[np.ndarray, float]], rules: Rules) -> np.nda
     error = slopes.std(axis=1) / np.sqrt(slopes.shape[1])
     least = np.argmin(mean, axis=0)[None]
     value, spread = (np.take_along_axis(table, least, axis=0)[0] for table in (mean, error))
-    return np.where(value > rules.shown * spread, value, 0.0)
+    return np.where(value > rules.hidden * spread, value, 0.0)
 
 
 def _lags(period: float, rules: Rules) -> tuple[int, ...]:

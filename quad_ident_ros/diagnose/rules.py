@@ -72,7 +72,8 @@ class Rules:
       tied: correlation of two effects' parameters from which on they are taken out together, too.
     Advice:
       hidden, shown: standard errors from no effect below which an effect of usual size is not
-        seen, and from which on it is, and so is a parameter that shapes a form.
+        seen, and from which on it is, and so is a parameter that shapes a form. Noise needs no
+        proof: that of moments between the samples counts from `hidden` on.
     Tolerance (a gap that matters, by group of outputs, at 0.5 s):
       visible: of the noise's gap: of what can be closed below it, shares mean nothing.
       noise_share: of the noise's gap: what remains below it is hard to see in a prediction, and
