@@ -44,6 +44,8 @@ def topics_text(source: object, found: Sequence[Content],
     roles = {role: [content for content in found if role in content.roles] for role in ROLES}
     one = {role: topics[0].name for role, topics in roles.items() if len(topics) == 1
            and not (roles['pose'] and role in ('position', 'attitude'))}    # a pose has both
+    if one.get('rotors') == one.get('commands'):
+        one.pop('rotors', None)     # measured speeds that are the commands would deny every lag
     chosen = one | dict(chosen or {})
     lines = []
     for role, topics in roles.items():

@@ -174,6 +174,21 @@ def test_topics_with_one_candidate_are_filled_in():
     assert mapping_from(yaml.safe_load(names_text('log', [], '', {})), 'm').topics == {}
 
 
+def test_the_topic_of_the_commands_is_not_that_of_measured_speeds_too():
+    """Commands that are taken for measured speeds would deny every lag of the rotors."""
+    found = [Content('/speed', 'actuator_msgs/msg/Actuators', 9, 0, 1, 10, (),
+                     ('commands', 'rotors'))]
+    for chosen in (None, {'commands': '/speed'}):
+        text = topics_text('bag', found, chosen)
+        assert list(mapping_from(yaml.safe_load(text), 'm').topics) == ['commands']
+        assert '# rotors: {topic: /speed}' in text
+    other = Content('/measured', 'actuator_msgs/msg/Actuators', 9, 0, 1, 10, (), ('rotors',))
+    measured = {'commands': '/speed', 'rotors': '/measured'}
+    text = topics_text('bag', [*found, other], measured)
+    assert {role: source.topic for role, source in
+            mapping_from(yaml.safe_load(text), 'm').topics.items()} == measured
+
+
 @FAST
 @given(st.lists(st.text(min_size=1, max_size=12).map(str.strip).filter(
     lambda name: name and name.isprintable()), min_size=4, max_size=4, unique=True))
