@@ -77,6 +77,9 @@ def read_mapped_bag(path, mapping, spoilt=False):
                           stream.between) for part, stream in zip(parts, streams, strict=True)]
         notes = [*notes, 'the stamps of the topics are of several clocks; times of receipt are '
                  'used for all of them']
+    else:
+        notes = [*notes, *dict.fromkeys(without_stamps(part.source.topic) for part in parts
+                                        if not part.stamped)]
     start, t, columns, left_out = join(path, streams)
     record = FlightRecord(t, velocity_in_world(path, columns),
                           {'source': str(path), 'start_ns': start, 'notes': [*notes, *left_out]}
@@ -91,6 +94,12 @@ def _told(parts, streams, start):
     told = [[(int(stream.stamps[k]) - start) * 1e-9, part.not_unit(k)]
             for part, stream in zip(parts, streams, strict=True) for k in part.spoilt]
     return {SPOILT: told} if told else {}
+
+
+def without_stamps(topic):
+    """Return what is said of a topic whose messages say not when they are of."""
+    return (f'the messages of topic {topic} have no stamps; their times of receipt are used, '
+            'which are later by what transport takes')
 
 
 def velocity_in_world(path, columns):
@@ -144,13 +153,14 @@ class TopicPart:
     @property
     def offset(self):
         """Return the time from stamp to receipt, s: the median, or 0 where there are no stamps."""
-        if not self._stamped:
+        if not self.stamped:
             return 0.0
         late = np.array(self.received, np.int64) - np.array(self._stamps, np.int64)
         return float(np.median(late)) * 1e-9
 
     @property
-    def _stamped(self):
+    def stamped(self):
+        """Whether each of its messages has a stamp."""
         return min(self._stamps) > 0
 
     def add(self, received, message):
@@ -202,6 +212,10 @@ class TopicPart:
         """
         found = []
         for stamp, values in self._read(message, kind):
+            self._refuse_down(mapping)
+            if self.role in ('pose', 'attitude') and not_unit(values[-4:]):
+                raise InputError(f'{self._here()}: the quaternion has not the length 1; publish a '
+                                 f'{self.role} with an attitude')
             columns = self._columns(np.array([values]), mapping)
             found.append((stamp or received,
                           {name: float(column[0]) for name, column in columns.items()}))
@@ -299,7 +313,7 @@ class TopicPart:
             bad = not_unit(table[:, -4:])
             self.spoilt = np.flatnonzero(bad).tolist()
             table = np.where(bad[:, None], np.nan, table)
-        stamps = self._stamps if self._stamped else self.received
+        stamps = self._stamps if self.stamped else self.received
         columns = self._columns(table, mapping)
         if self._is_unnamed(mapping, table):
             columns = {name.replace('cmd', 'output'): values for name, values in columns.items()}

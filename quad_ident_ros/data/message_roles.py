@@ -245,8 +245,8 @@ def reading_of(role, msgtype, message):
     known = ROLES_OF.get(msgtype, {})
     if role not in known:
         types = ', '.join(sorted(name for name, roles in ROLES_OF.items() if role in roles))
-        raise NoSuch(f'{msgtype} cannot be read for this; possible are {types}, or any type with '
-                     'field:')
+        raise NoSuch(f'{msgtype} cannot be read for {role}; name the field that holds it '
+                     f'(field:), or a topic of a type that is known: {types}')
     if known[role].kind == 'speed' and hasattr(message, 'normalized'):
         speeds = getattr(message, 'velocity', getattr(message, 'angular_velocities', ()))
         if len(speeds) == 0 < len(message.normalized):

@@ -75,6 +75,12 @@ class StreamJoiner:
         """Whether each stream has delivered this stamp or a later one."""
         return all(last >= stamp_ns for last in self._last.values())
 
+    def behind(self):
+        """Return {name: s} by which the last stamp of each stream heard is behind the base's."""
+        last = self._last[self._base]
+        return {name: (last - stamp) * 1e-9 for name, stamp in self._last.items()
+                if name != self._base and min(stamp, last) >= 0}
+
     def drain(self):
         """Return the rows that are complete, giving up those that are not."""
         return self._ready(True)

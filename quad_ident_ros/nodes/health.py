@@ -13,12 +13,12 @@ class Health:
     What goes wrong, and what did a short while ago.
 
     Args: topics: names that a row needs; apart: called for what to say where their stamps do not
-    go together; way_out: what to do where some are silent.
+    go together; silent: called with those that nothing comes on, for what to say of them.
     Times are in s, of one steady clock.
     """
 
-    def __init__(self, topics, apart, way_out):
-        self._topics, self._apart, self._way_out = topics, apart, way_out
+    def __init__(self, topics, apart, silent):
+        self._topics, self._apart, self._silent = topics, apart, silent
         self._heard = dict.fromkeys(topics, 0)
         self._last_row = None
         self._problems = {}
@@ -47,8 +47,7 @@ class Health:
             self.trouble = None
             return None
         silent = [name for name in self._topics if not news[name]]
-        why = unreadable or (f'nothing comes on {", ".join(silent)} ({self._way_out})'
-                             if silent else self._apart())
+        why = unreadable or (self._silent(silent) if silent else self._apart())
         self.blame(now, f'no sample has been joined for {silence:.0f} s: {why}')
         return self.trouble
 

@@ -4,7 +4,7 @@
 
 from importlib import import_module
 
-from quad_ident_ros.data.foreign import BODY_VELOCITY, TopicPart
+from quad_ident_ros.data.foreign import BODY_VELOCITY, TopicPart, without_stamps
 from quad_ident_ros.data.mapping import actuators_to_mapping, mapping_from, ROLES
 from quad_ident_ros.data.outputs import ACTUATORS
 from quad_ident_ros.data.stream_joiner import between_of
@@ -16,6 +16,7 @@ KNOWN = {'odometry': ('pose', 'velocity', 'rate'), 'imu': ('rate', 'specific_for
 
 
 APART = 60.0        # s by which stamps of one clock are never late, however fast they are played
+SETTLED = 2.0       # s after which all topics follow a clock that was set anew
 RECEIVED = ('the stamps of the topics are of several clocks; times of receipt are used for all of '
             'them')
 
@@ -40,7 +41,9 @@ class MappedTopics:
             raise InputError(f'{where}: the mapping names no topics; add topics: to it')
         self._mapping = mapping
         self._late = {}     # s from the stamp to the receipt, by topic
+        self._settled = 0   # ns of receipt from which on they are compared
         self.by_receipt = False
+        self.without_stamps = []    # topics, in the order in which they were heard
         self._parts = {role: TopicPart(f'topic {mapping.topics[role].topic}', role,
                                        mapping.topics[role])
                        for role in ROLES if role in mapping.topics}
@@ -56,7 +59,20 @@ class MappedTopics:
         """
         told = self._mapping.actuators
         return {**({} if told is None else {ACTUATORS: actuators_to_mapping(told)}),
-                **({'notes': [RECEIVED]} if self.by_receipt else {})}
+                **({'notes': notes} if (notes := self.notes()) else {})}
+
+    def notes(self):
+        """Return what is to be said of the stamps."""
+        if self.by_receipt:
+            return [RECEIVED]
+        return [without_stamps(topic) for topic in self.without_stamps]
+
+    def named(self, roles):
+        """Return roles with the topics that they come on, for messages."""
+        by_topic = {}
+        for role in roles:
+            by_topic.setdefault(self._parts[role].source.topic, []).append(role)
+        return ', '.join(f'{" and ".join(some)} ({topic})' for topic, some in by_topic.items())
 
     def samples(self, topic, kind, received_ns, message):
         """
@@ -72,12 +88,23 @@ class MappedTopics:
                 BODY_VELOCITY[0] in values for _, _, values in found):
             raise InputError(f'topic {topic}: a velocity in body axes needs an attitude; map a '
                              'pose, or say frame: world')
+        if found and found[0][1] == received_ns and topic not in self.without_stamps:
+            self.without_stamps.append(topic)
         if found and not self.by_receipt:
-            self._late[topic] = (received_ns - found[0][1]) * 1e-9
-            self.by_receipt = len(self._late) == len(self.topics) and (
-                max(self._late.values()) - min(self._late.values()) > APART)
+            self._compare(topic, received_ns, found[0][1])
         return [(role, received_ns if self.by_receipt else stamp, values)
                 for role, stamp, values in found]
+
+    def _compare(self, topic, received_ns, stamp):
+        """Note how late a topic is: where some are APART the stamps are of several clocks."""
+        late = (received_ns - stamp) * 1e-9
+        if abs(late - self._late.get(topic, late)) > APART:
+            # The clock was set, or a simulation began anew: the other topics are about to follow.
+            self._late = {}
+            self._settled = received_ns + int(SETTLED * 1e9)
+        self._late[topic] = late
+        if received_ns >= self._settled and len(self._late) == len(self.topics):
+            self.by_receipt = max(self._late.values()) - min(self._late.values()) > APART
 
 
 def message_class(kind):

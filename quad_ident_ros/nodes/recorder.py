@@ -30,7 +30,7 @@ from quad_ident_ros.errors import InputError
 from quad_ident_ros.nodes import process
 from quad_ident_ros.nodes.health import Health
 from quad_ident_ros.nodes.losses import Losses
-from quad_ident_ros.nodes.mapped import message_class, RECEIVED
+from quad_ident_ros.nodes.mapped import message_class
 from quad_ident_ros.nodes.messages import diagnostics_message
 from quad_ident_ros.nodes.node import PackageNode
 from quad_ident_ros.nodes.on_disk import FLUSH_PERIOD, OnDisk
@@ -46,6 +46,8 @@ ACKNOWLEDGED = 10    # rows after which the publishers are told how far the join
 GONE = 2.0           # s after the last message when nothing more is to come, and
 IDLE = 15.0          # s when something may, after which what is incomplete is given up; lost
                      # messages are sent again every 3 s
+AWAITED = 5.0        # s for a vehicle to begin, after which what is not there is said
+OTHER_CLOCK = 1.0    # s by which stamps are of another clock, as data.foreign has it for bags
 ENDING = 8.0         # s for what waits when the node is told to end: `ros2 launch` gives 10
 PARTING = 1.0        # s for listeners to take the last account before the node is gone
 
@@ -86,20 +88,22 @@ class Recorder(PackageNode):
         self._config = NodeParameters(self, SPECS, validate)
         parameters = self._config
         self._mapped = mapped_topics(parameters)
+        self._begun = self._now()
+        self._told = set()      # notes on the stamps
+        self._awaits = self._mapped is not None
         if self._mapped is None:
             self._topics = tuple(parameters['topics'])
             self._joiner = FlightJoiner(self._topics, parameters['gap'])
             columns = raw_columns(self._topics)
         else:
+            self._check_names()
             self._topics = tuple(self._mapped.streams)
             self._joiner = StreamJoiner(self._mapped.streams, parameters['gap'])
             columns = ()
         self._outlets = outlets_of(self, columns, parameters)
         self._buffer = self._outlets[0].buffer
         self._last_message = None
-        self._health = Health(self._topics, self._apart,
-                              'the parameter topics leaves topics out' if self._mapped is None
-                              else 'a mapping names the topics that a row needs')
+        self._health = Health(self._topics, self._apart, self._silent)
         self._announced = None
         self._disk = OnDisk(parameters['output'], self.get_clock(), self.get_logger())
         self._unreadable = None
@@ -157,6 +161,17 @@ class Recorder(PackageNode):
                  for name, subscription in self._subscriptions_by_topic.items()}
         names[RUN_TOPIC] = self._runs.topic_name
         self._disk.open(names, self._types or None)
+
+    def _check_names(self):
+        """Raise InputError for a name in the mapping that no topic can have."""
+        for name in self._mapped.topics:
+            try:
+                self.resolve_topic_name(name)
+            except RCLError:
+                raise InputError(
+                    f'{self._config["mapping"]}: topics: {name!r} is no name of a topic; letters, '
+                    'digits, _ and / make one, no digit first and no / last, as `ros2 topic list` '
+                    'shows it') from None
 
     def _look_for_topics(self):
         """Subscribe to the topics of the mapping that are there: only then are their types."""
@@ -233,7 +248,7 @@ class Recorder(PackageNode):
     def _between(self):
         """Return how rows come about where the stamps are not what they should be, or ''."""
         if self._mapped is not None:
-            return RECEIVED if self._mapped.by_receipt else ''
+            return '; '.join(self._mapped.notes())
         if not self._joiner.interpolates:
             return ''
         return ('the stamps of the topics are seldom equal: joined by interpolation at those of '
@@ -243,7 +258,6 @@ class Recorder(PackageNode):
         now = self._last_message = self._now()
         self._disk.write(name, raw)
         self._disk.flush_when_due(now)
-        by_receipt = self._mapped.by_receipt
         try:
             samples = self._mapped.samples(name, self._types[name],
                                            self.get_clock().now().nanoseconds,
@@ -252,8 +266,10 @@ class Recorder(PackageNode):
             self._health.trouble = self._unreadable = str(error)
             self.get_logger().error(self._unreadable, throttle_duration_sec=10.0)
             return
-        if self._mapped.by_receipt and not by_receipt:
-            self.get_logger().warning(self._between())
+        for note in self._mapped.notes():
+            if note not in self._told:
+                self._told.add(note)
+                self.get_logger().warning(note)
         restarts = self.counts.restarts
         for role, stamp, values in samples:
             rows = self._joiner.add(role, stamp, values)
@@ -353,10 +369,31 @@ class Recorder(PackageNode):
             self.get_logger().warning(f'{name} is offered as best effort: messages may be lost, '
                                       'and are counted')
 
+    def _silent(self, names):
+        """Say that nothing comes on some of the topics, and what to do."""
+        if self._mapped is None:
+            return (f'nothing comes on {", ".join(names)} (the parameter topics leaves topics '
+                    'out)')
+        absent = self._absent()
+        return f'nothing comes on {self._mapped.named(names)}; ' + (
+            f'nobody publishes {", ".join(absent)}: correct the name, or leave it out of the '
+            'mapping' if absent else 'leave out of the mapping what is not to come')
+
+    def _absent(self):
+        """Return the topics of the mapping that nobody publishes."""
+        return [name for name in self._mapped.topics if not self.count_publishers(name)]
+
     def _apart(self):
         """Say that the stamps of the topics are too far apart."""
         if self._mapped is None and not self._joiner.interpolates:
             return 'the stamps of the topics are never equal'
+        if self._mapped is not None:
+            name, behind = max(self._joiner.behind().items(), key=lambda one: abs(one[1]),
+                               default=('', 0.0))
+            if abs(behind) > OTHER_CLOCK:
+                return (f'the stamps of {self._mapped.named([name])} are {abs(behind):.1f} s '
+                        f'{"behind" if behind > 0 else "ahead of"} those of '
+                        f'{self._mapped.named(self._topics[:1])}; set their clocks alike')
         return (f'the samples of the topics are never within {self._config["gap"]:g} s of one '
                 'another (parameter gap)')
 
@@ -366,9 +403,22 @@ class Recorder(PackageNode):
             name for name in self._topics if not self.counts.received[name])
         return next(filter(None, (other_type(self, name) for name in silent)), None)
 
+    def _say_what_is_awaited(self, now):
+        """Say once that none of the topics of the mapping is there."""
+        if not self._awaits or now - self._begun < AWAITED:
+            return
+        self._awaits = False
+        absent = self._absent()
+        if any(self.counts.received.values()) or len(absent) < len(self._mapped.topics):
+            return
+        self.get_logger().warning(f'waits for {", ".join(absent)}: nobody publishes them; if they '
+                                  'should be there, `ros2 topic list` has the names')
+
     def _report(self):
         now = self._now()
         trouble = self._health.look(now, self.counts.received, self._unreadable)
+        self._unreadable = None
+        self._say_what_is_awaited(now)
         if other := self._another_type():
             self._health.blame(now, other)
             self.get_logger().error(other, throttle_duration_sec=10.0)

@@ -2,9 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Node recorder on topics of any type, that a mapping names, at rates of their own."""
 
+import itertools
 import json
 import time
 
+from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PoseStamped, TwistStamped
 from graph import Vehicle
 import numpy as np
@@ -167,6 +169,7 @@ def test_topics_of_several_clocks_are_joined_by_their_receipt(graph, tmp_path):
     graph.spin_until(lambda: records, 'the record')
     [record] = records.records()
     assert 'several clocks' in record.info['notes'][0]
+    assert recorder.counts.restarts == 0
     assert abs(record.info['start_ns'] * 1e-9 - time.time()) < 60.0
     sample = (record.columns['px'] - 2.0) / 0.02
     assert np.abs(sample - record.columns['cmd1'])[5:].max() <= 2.0
@@ -180,7 +183,9 @@ def test_what_is_not_there_is_said(graph, mapping):
         publisher.publish(pose(START + k * 10 * MS))
         graph.spin_for(0.3)
     response = graph.trigger('recorder/flush')
-    assert not response.success and 'nothing comes on velocity, rate' in response.message
+    assert not response.success
+    assert ('nothing comes on velocity (/mocap/speed), rate (/gyro); nobody publishes '
+            '/mocap/speed, /gyro' in response.message)
     assert json.loads(statistics[-1].data)['received']['pose'] >= 10
 
 
@@ -192,7 +197,7 @@ def test_a_message_that_holds_something_else_is_said(graph, tmp_path):
         publisher.publish(pose(START + k * 10 * MS))
         graph.spin_for(0.3)
     response = graph.trigger('recorder/flush')
-    assert 'topic /p' in response.message and 'cannot be read for this' in response.message
+    assert 'topic /p' in response.message and 'cannot be read for rate' in response.message
 
 
 @pytest.mark.parametrize('parameters, said', [
@@ -201,6 +206,64 @@ def test_a_message_that_holds_something_else_is_said(graph, tmp_path):
 def test_parameters_that_cannot_be_are_refused(graph, parameters, said):
     with pytest.raises(InputError, match=said):
         graph.start(Recorder, parameters)
+
+
+@pytest.mark.parametrize('name', ['/od om', '/odom/', '3odom'])
+def test_a_name_that_no_topic_can_have_is_refused(graph, tmp_path, name):
+    (tmp_path / 'm.yaml').write_text(f'topics:\n  pose: {{topic: "{name}"}}\n')
+    with pytest.raises(InputError, match=f"m.yaml: topics: '{name}' is no name of a topic"):
+        graph.start(Recorder, {'mapping': str(tmp_path / 'm.yaml')})
+
+
+def test_a_clock_that_begins_anew_is_no_other_clock(graph, tmp_path):
+    """A simulation that is reset: one topic after the other goes back by 100 s."""
+    (tmp_path / 'm.yaml').write_text('topics:\n  pose: {topic: /p}\n  velocity: {topic: /v, '
+                                     'frame: world}\n')
+    recorder = graph.start(Recorder, {'mapping': str(tmp_path / 'm.yaml')})
+    poses = graph.probe.create_publisher(PoseStamped, '/p', 1000)
+    speeds = graph.probe.create_publisher(TwistStamped, '/v', 1000)
+    for publisher in (poses, speeds):
+        graph.await_listeners(publisher)
+    for begin in (START + 100_000 * MS, START):
+        for k in range(50):
+            poses.publish(pose(begin + k * 10 * MS))
+            speeds.publish(twist(begin + k * 10 * MS + 3 * MS, speed=k))
+            graph.spin_for(0.002)
+    graph.spin_until(lambda: recorder.counts.received['velocity'] >= 100
+                     and recorder.counts.received['pose'] >= 100, 'all of both runs')
+    assert recorder.counts.restarts == 1
+    assert recorder.counts.joined >= 90
+
+
+def test_stamps_of_an_other_clock_are_named(graph, tmp_path):
+    """Velocities that are stamped 5 s before the poses they come with."""
+    (tmp_path / 'm.yaml').write_text('topics:\n  pose: {topic: /p}\n  velocity: {topic: /v, '
+                                     'frame: world}\n')
+    graph.start(Recorder, {'mapping': str(tmp_path / 'm.yaml')})
+    poses, speeds = (graph.advertise(kind, name, 1000)
+                     for kind, name in ((PoseStamped, '/p'), (TwistStamped, '/v')))
+    diagnostics = graph.listen(DiagnosticArray, '/diagnostics', 10)
+    count = itertools.count()
+
+    def is_said():
+        k = next(count)
+        poses.publish(pose(START + 10_000 * MS + k * 10 * MS))
+        speeds.publish(twist(START + 5_000 * MS + k * 10 * MS))
+        graph.spin_for(0.02)
+        return any('the stamps of velocity (/v) are 5.0 s behind those of pose (/p)'
+                   in message.status[0].message for message in diagnostics)
+
+    graph.spin_until(is_said, 'the clock to be named')
+
+
+def test_a_frame_that_says_ned_is_refused_as_in_a_bag(graph, mapping):
+    graph.start(Recorder, {'mapping': mapping})
+    publisher = graph.advertise(PoseStamped, '/mocap/cf', 1000)
+    message = pose(START)
+    message.header.frame_id = 'odom_ned'
+    publisher.publish(message)
+    graph.spin_until(lambda: 'odom_ned says NED' in graph.trigger('recorder/flush').message,
+                     'the frame to be refused')
 
 
 def test_odometry_and_imu_need_no_mapping(graph):

@@ -133,3 +133,20 @@ def test_the_twist_of_an_odometry_is_in_the_body():
         alone.samples('/o', ODOMETRY, 7, message)
     message.child_frame_id = 'map'
     assert velocity() == {'vx': 3.0, 'vy': 0.0, 'vz': 0.0}
+
+
+def test_topics_without_stamps_are_told_once():
+    topics = MappedTopics(mapping_from({'topics': {'commands': {'topic': '/c'}}}, 'm'), 'm')
+    for received in (NS, NS + 1):
+        [(_, stamp, _)] = topics.samples('/c', 'std_msgs/msg/Float64MultiArray', received,
+                                         Live(data=array('d', [1.0, 2.0, 3.0, 4.0])))
+        assert stamp == received
+    [note] = topics.info['notes']
+    assert '/c have no stamps' in note and topics.named(['commands']) == 'commands (/c)'
+
+
+def test_an_attitude_without_length_is_refused_in_words_of_a_live_topic():
+    topics = MappedTopics(known_mapping(['odometry']), 'the parameter')
+    message = Make(store())(ODOMETRY, header=header(NS))
+    with pytest.raises(InputError, match='length 1; publish a pose with an attitude'):
+        topics.samples('odometry', ODOMETRY, NS, message)
