@@ -6,7 +6,8 @@ Lag and delay of the motors of a Crazyflie by its accelerometer alone, beside th
 `.venv/bin/python -m docs.motor_lag FOLDER` writes the table into docs/real_flights.md; FOLDER has
 crazyflie_usd. The force of the rotors is 1, u, u^2 of signals u that follow the commands with a
 first-order lag, as in Eschmann et al. 2024 (arXiv 2404.07837); a delay before it, and the low pass
-of the accelerometer in the vehicle's firmware, are what the paper does not have.
+of the accelerometer in the vehicle's firmware, are what the paper does not have. Each lag is also
+one of the moments, and so gives an inertia about x and y.
 """
 
 from collections.abc import Callable
@@ -15,7 +16,7 @@ import sys
 
 import numpy as np
 from scipy.optimize import least_squares
-from scipy.signal import butter, lfilter
+from scipy.signal import butter, lfilter, sosfiltfilt
 
 from benchmarks.tables import keep, markdown
 from quad_ident_ros.data.load import load
@@ -26,6 +27,9 @@ SLICE = 35.0, 65.0      # s of the log's clock, the paper's slice for the thrust
 BLOCK = 3.0             # s over which errors may be alike
 ACCELEROMETER = 30.0    # Hz, second order: sensors_bmi088_bmp388.c of the firmware
 FULL = 65535.0          # of the duty
+ARM = 0.028             # m
+TURNING = 2.0, 15.0     # Hz: slower, the air turns the body too; faster, the gyro is noise
+SIDES = np.array([[-1, -1, 1, 1], [-1, 1, 1, -1]])      # moments about x and y of m1 to m4
 
 
 def main(folder: str) -> None:
@@ -46,26 +50,52 @@ def main(folder: str) -> None:
             return _terms(t, signals, parameters, cutoff)[used]
 
         found, std, rms, curve = _fitted(terms, force[used], t[used], delayed)
+        inertia, along = _inertia(_followed(t, signals, found), curve, record.stack('wx', 'wy'),
+                                  np.searchsorted(record.t, t), used)
         rows.append((title, f'{1e3 * found[0]:.1f} ± {1e3 * std[0]:.1f}',
                      f'{1e3 * found[1]:.1f} ± {1e3 * std[1]:.1f}' if delayed else '–',
-                     f'{1e3 * rms:.2f}', ', '.join(f'{value:.4f}' for value in curve)))
+                     f'{1e3 * rms:.2f}', ', '.join(f'{value:.4f}' for value in curve),
+                     *(f'{1e6 * value:.1f} ({share:.2f})'
+                       for value, share in zip(inertia, along, strict=True))))
     keep('real_flights.md', 'motor_lag', markdown(
         ('model', 'time constant, ms', 'delay, ms', 'rms of the force left, mN',
-         'thrust of a rotor, N: 1, u, u²'), rows))
+         'thrust of a rotor, N: 1, u, u²', 'Ixx, 1e-6 kg m² (correlation)', 'Iyy'), rows))
+
+
+def _inertia(u: np.ndarray, curve: np.ndarray, rates: np.ndarray, at: np.ndarray,
+             used: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """
+    Return the inertia about x and y, kg m^2, and how moments and accelerations correlate.
+
+    It is the ratio of their spread, as both are with errors. Args: u (N, 4) signals that the
+    rotors have reached; curve of the thrust; rates (M, 2), rad/s, and the sample at each time.
+    """
+    band = butter(2, np.array(TURNING) * 2.0 * STEP, 'bandpass', output='sos')
+    moments = ARM * (curve[0] + curve[1] * u + curve[2] * u ** 2) @ SIDES.T
+    turning = sosfiltfilt(band, np.gradient(rates[at], STEP, axis=0), axis=0)[used]
+    moments = sosfiltfilt(band, moments, axis=0)[used]
+    along = np.sum(moments * turning, axis=0)
+    spread = np.linalg.norm(moments, axis=0), np.linalg.norm(turning, axis=0)
+    return spread[0] / spread[1], along / (spread[0] * spread[1])
 
 
 def _terms(t: np.ndarray, signals: np.ndarray, parameters: np.ndarray,
            cutoff: float | None) -> np.ndarray:
     """Return the terms (N, 3) of the force, by time constant and delay (s) of the signals."""
-    lag, *delay = parameters
-    if delay:
-        signals = np.stack([np.interp(t - delay[0], t, one) for one in signals.T], axis=1)
-    kept = np.exp(-STEP / lag)
-    u = lfilter([1 - kept], [1, -kept], signals, axis=0, zi=kept * signals[:1])[0]
+    u = _followed(t, signals, parameters)
     terms = np.stack([np.full(len(u), 4.0), u.sum(axis=1), (u ** 2).sum(axis=1)], axis=1)
     if cutoff is None:
         return terms
     return lfilter(*butter(2, 2.0 * STEP * cutoff), terms, axis=0)
+
+
+def _followed(t: np.ndarray, signals: np.ndarray, parameters: np.ndarray) -> np.ndarray:
+    """Return the signals (N, 4) that the rotors have reached, by time constant and delay (s)."""
+    lag, *delay = parameters
+    if delay:
+        signals = np.stack([np.interp(t - delay[0], t, one) for one in signals.T], axis=1)
+    kept = np.exp(-STEP / lag)
+    return lfilter([1 - kept], [1, -kept], signals, axis=0, zi=kept * signals[:1])[0]
 
 
 def _fitted(terms: Callable[[np.ndarray], np.ndarray], force: np.ndarray, t: np.ndarray,
