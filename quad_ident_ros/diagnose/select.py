@@ -9,7 +9,7 @@ from scipy.linalg import block_diag
 
 from quad_ident_ros.diagnose.candidates import Candidate, nuisance_candidates
 from quad_ident_ros.diagnose.discrepancy import AXES, log_likelihood, scales
-from quad_ident_ros.diagnose.evidence import beam, Quadratic
+from quad_ident_ros.diagnose.evidence import beam, key_of, Quadratic
 from quad_ident_ros.diagnose.fitted import (
     distances_of,
     effects_in,
@@ -25,13 +25,14 @@ from quad_ident_ros.diagnose.promising import other_actuators, promising, REFITS
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.diagnose.selection import posteriors, Selection
 from quad_ident_ros.diagnose.standard_errors import standard_errors
+from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.greybox.errors import GROUPS
 from quad_ident_ros.greybox.estimate import Estimate, estimate
 from quad_ident_ros.greybox.flights import Flight, inertial
 from quad_ident_ros.greybox.linear import errors_along
 from quad_ident_ros.greybox.noise import quick_noise, whole_noise
 from quad_ident_ros.greybox.normal import scatter_of
-from quad_ident_ros.greybox.nuisances import Layout, NuisanceValues, trim_wrench
+from quad_ident_ros.greybox.nuisances import are_alike, Layout, NuisanceValues, trim_wrench
 from quad_ident_ros.greybox.parameters import limits, nominal, prior_sizes
 from quad_ident_ros.memory import give_back
 from quad_ident_ros.model.vehicle import Vehicle
@@ -304,6 +305,30 @@ class _Search:
             self.judged = {key: one for key, one in self.judged.items() if keeps(key)}
             self.ranked = [one for one in self.ranked if keeps is not _plain or _plain(one[1])]
             self.best = plain if keeps is _plain else told
+        self.share_alike()
+
+    def share_alike(self) -> None:
+        """
+        Add effects that the best set only has by flight although its flights have them alike.
+
+        What is alike in all flights is the vehicle's, and must not hide in nuisances.
+        """
+        assert self.best is not None
+        chosen, fit = self.best.chosen, self.best.estimate
+        ratios = {EFFECTS[cause.effect].ratio for cause in effects_in(chosen)} - {None}
+        usual = {cause.effect: cause for cause in self.all_causes if cause.usual}
+        for cause in chosen:
+            name = cause.nuisance.of_effect if cause.nuisance else ''
+            if not name or name in _names(self.best) or EFFECTS[name].ratio in ratios:
+                continue
+            places = [fit.nuisances.columns.index(column) for column in cause.columns]
+            values = fit.nuisances.values[:, places]
+            if name in usual and are_alike(values, self.rules.prior_odds):
+                start = fit.z.copy()
+                start[list(cause.columns)] += values.mean(axis=0)
+                whole = key_of((usual[name], *self.best.chosen))
+                self.fit(whole, start, fit.nuisances, fit.starts)
+                self.best = self.judge(whole)
 
     def shows(self, chosen: tuple) -> bool:
         """Return whether each parameter of the forms with more than usual differs from none."""

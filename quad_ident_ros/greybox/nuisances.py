@@ -13,6 +13,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.stats import t as student
 
 from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.greybox.flights import inertial, Track
@@ -29,7 +30,7 @@ RARE, LIKELY = 1e-4, 0.5    # odds of flights having one, before looking
 APART = 0.02        # s, how far clocks usually are apart where nothing shows it,
 REST = 0.001        # s, or
 REST_SHARE = 0.2    # periods, how far where they were put right
-MEAN_SHARE = 0.01   # of a spread, how far from zero the mean of what sums to zero may be
+MEAN_SHARE = 0.001  # of a spread, how far from zero the mean of what sums to zero may be
 
 
 @dataclass(frozen=True)
@@ -113,6 +114,21 @@ def trim_wrench(vehicle: Vehicle) -> np.ndarray:
     twist = weight * vehicle.torque_coefficient / vehicle.thrust_coefficient
     lever = weight * vehicle.arm_length
     return np.array([0.02 * weight] * 3 + [0.02 * lever, 0.02 * lever, 0.05 * twist])
+
+
+def are_alike(values: np.ndarray, chance: float) -> bool:
+    """
+    Return whether values (F, K) of flights share more than flights that differ by chance do.
+
+    By Student's t of each place: its mean over the flights by its scatter between them, as large
+    as in a share `chance` of such flights.
+    """
+    count = len(values)
+    if count < 2:
+        return False
+    error = values.std(axis=0, ddof=1) / np.sqrt(count)
+    return bool(np.any(np.abs(values.mean(axis=0))
+                       > student.ppf(1.0 - 0.5 * chance, count - 1) * error))
 
 
 @dataclass(frozen=True, eq=False)
