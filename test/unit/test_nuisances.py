@@ -17,7 +17,7 @@ from quad_ident_ros.experiment import fly, load_experiment
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import SENSORS
 from quad_ident_ros.greybox.flights import flight_of, track_of
-from quad_ident_ros.greybox.nuisances import nuisances, NuisanceValues
+from quad_ident_ros.greybox.nuisances import are_alike, nuisances, NuisanceValues
 from quad_ident_ros.model.attitude import rotation_matrix
 from quad_ident_ros.model.dynamics import STATES
 from quad_ident_ros.model.sensors import product, turn
@@ -157,6 +157,30 @@ def test_what_tilts_all_flights_alike_is_not_hidden_in_their_trims(dragged):
     trims = ((0.112, -0.108), (0.09, -0.112), (0.104, -0.086), (0.092, -0.094))
     data = diagnose(trimmed(dragged, trims), VEHICLE).as_data()
     assert set(data['verdict']) == {'rotor_drag', 'com_offset'}
+
+
+@pytest.mark.parametrize(('alike', 'values'), [
+    (True, [[2.58, 1.69], [2.51, 1.63], [2.46, 1.59]]),
+    (False, [[0.5, -0.4], [0.9, 0.3], [-0.2, 0.6]]),
+    (False, [[0.03], [0.01], [0.02]]), (True, [[0.03, 0.5], [0.031, -0.5], [0.0305, 0.1]]),
+    (False, [[2.5, 1.6]])])
+def test_flights_are_alike_where_chance_would_hardly_have_them_so(alike, values):
+    assert are_alike(np.array(values), 0.02) is alike
+
+
+def test_few_flights_that_differ_by_chance_are_alike():
+    values = np.random.default_rng(1).normal(size=(2000, 3, 1))
+    assert np.mean([are_alike(one, 0.02) for one in values]) == pytest.approx(0.02, abs=0.008)
+
+
+def test_a_wind_that_all_flights_have_nearly_alike_is_one():
+    vehicle = replace(VEHICLE, linear_drag=(0.3, 0.3, 0.3))
+    flights = [fly_closed_loop(vehicle, {'wind': {'x': x, 'y': y}}, 'lissajous', duration=12.0,
+                               seed=seed, noise=SENSORS['mocap_imu'])
+               for seed, (x, y) in enumerate(((2.2, 1.8), (2.5, 1.6), (2.8, 1.5), (2.4, 1.7)))]
+    data = diagnose(flights, vehicle).as_data()
+    assert data['verdict'] == ['wind']
+    assert 'wind_by_flight' in data['nuisances']
 
 
 def test_what_sums_to_zero_is_as_likely_as_independent_values_that_do():
