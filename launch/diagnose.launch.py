@@ -8,7 +8,7 @@ from quad_ident_ros.nodes.launching import describe
 NODES = ('simulator', 'recorder', 'diagnoser')
 ARGUMENTS = (
     *COMMON,
-    Argument('vehicle', 'Nominal vehicle without effects, by name or file.', str,
+    Argument('vehicle', 'Nominal vehicle, by name or file.', str,
              (('diagnoser', 'vehicle'),)),
     Argument('reality', 'Vehicle that the simulator flies, by name or file.', str,
              (('simulator', 'vehicle'),)),

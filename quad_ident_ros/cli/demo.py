@@ -9,7 +9,7 @@ from quad_ident_ros.cli.identify import progress_bar, show
 from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.identify.result import as_data
-from quad_ident_ros.model.vehicle import load_nominal
+from quad_ident_ros.model.vehicle import load_vehicle
 from quad_ident_ros.report.data import write_json
 from quad_ident_ros.report.diagnosis import closed_of
 from quad_ident_ros.report.diagnosis import show as show_diagnosis
@@ -93,7 +93,7 @@ def _reveal(options, outcome):
     """Show the diagnosis, and only then the truth."""
     found = outcome.diagnosis
     if options.json != '-':
-        typed = diagnosis_from(found, load_nominal(outcome.nominal))
+        typed = diagnosis_from(found, load_vehicle(outcome.nominal))
         show_diagnosis(typed, sys.stdout)
         units = {(effect.name, one.name): '' if one.unit == '1' else f' {one.unit}'
                  for effect in EFFECTS.values() for one in effect.parameters}

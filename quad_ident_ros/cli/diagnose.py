@@ -3,7 +3,6 @@
 """`quad_ident diagnose`: where the sim-to-real gap lies, what causes it, how far it shrinks."""
 
 import argparse
-from dataclasses import replace
 import sys
 
 from quad_ident_ros.cli.identify import progress_bar
@@ -45,7 +44,7 @@ def add(commands, said):
                         help='a table (CSV, Parquet), a bag (ROS 1 or 2), or a log of PX4, '
                              'ArduPilot, Crazyflie or Betaflight')
     parser.add_argument('--vehicle', help='vehicle name or file: the nominal one, which '
-                        'is needed; auto: the file beside a PX4 log, written from its parameters')
+                        'is needed, with the effects that your simulator has; auto: the file beside a PX4 log, written from its parameters')
     parser.add_argument('--hold-out', metavar='FLIGHT',
                         help='the flight on which the gap is told (default: the last one named)')
     parser.add_argument('--mapping', metavar='FILE', help='which topics and outputs of other '
@@ -72,7 +71,7 @@ def run(options):
     selection = selection_of(options)
     if options.vehicle is None:
         raise InputError(asking_for_vehicle(options.flights[0]))
-    vehicle = vehicle_from(options.vehicle, options.flights[0], options.mapping, nominal=True)
+    vehicle = vehicle_from(options.vehicle, options.flights[0], options.mapping)
     by_log = thrust_by_log(options.vehicle, options.flights[0])
     effects = ([name.strip() for name in options.effects.split(',')]
                if options.effects is not None else None)
@@ -94,5 +93,4 @@ def run(options):
         from quad_ident_ros.report import gap_page  # it draws: half a second to import
         gap_page.write(options.report, found)
     if options.out_vehicle:
-        write_vehicle(options.out_vehicle, replace(
-            vehicle, name=f'{vehicle.name}_diagnosed', effects=found.effects()))
+        write_vehicle(options.out_vehicle, found.corrected(vehicle))

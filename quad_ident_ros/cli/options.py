@@ -13,7 +13,7 @@ from quad_ident_ros.data.thrust_level import carried_by_log
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.experiment import check_noise
 from quad_ident_ros.memory import give_back
-from quad_ident_ros.model.vehicle import load_nominal, load_vehicle, Vehicle
+from quad_ident_ros.model.vehicle import load_vehicle, Vehicle
 
 AUTO = 'auto'
 
@@ -96,16 +96,14 @@ def thrust_by_log(option: str | None, path: str) -> bool:
     return not has_thrust(path)
 
 
-def vehicle_from(option: str, path: str, mapping: str | None = None,
-                 nominal: bool = False) -> Vehicle:
+def vehicle_from(option: str, path: str, mapping: str | None = None) -> Vehicle:
     """
     Return the Vehicle of --vehicle: of a name, a file, or `auto`, the file beside a PX4 log.
 
-    Args: path of the flight; mapping: file of --mapping, or None; nominal: refuse one with
-    effects. Raises InputError.
+    Args: path of the flight; mapping: file of --mapping, or None. Raises InputError.
     """
     if option != AUTO:
-        return load_nominal(option) if nominal else load_vehicle(option)
+        return load_vehicle(option)
     if reader_of(Path(path)).name != 'px4':
         raise InputError(f'{path}: --vehicle auto is for logs of PX4 (ULog), whose parameters '
                          'describe the vehicle; give a vehicle file')

@@ -4,6 +4,7 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+import math
 
 import numpy as np
 
@@ -15,6 +16,8 @@ from quad_ident_ros.model.vehicle import Vehicle
 
 WINDOW = 0.5    # s of a mean: longer than lags of motors, of which many fit into a flight
 FLYING = 0.4    # of what strong thrusts of the flight are: less is a landing, or the ground
+
+FACTORS = ('factor', 'at_hover', 'hover_factor')    # of thrust_scale, on the thrust at hover
 
 FULL_SPEED = 'full_speed'
 """Info of a record: speed in rad/s at full signal, where the weight tells it."""
@@ -38,7 +41,7 @@ def levelled(where: str, records: Sequence[FlightRecord], signals: Sequence[np.n
     Args: records of flights with the same motors; signals (N, n) of each; motors without a gain.
     Raises InputError where no thrust is to be seen.
     """
-    k, ratios, told = vehicle.thrust_coefficient, [], []
+    k, mass, ratios, told = vehicle.thrust_coefficient, _mass_to_carry(vehicle), [], []
     unit = replace(motors, gain=1.0)
     for record, values in zip(records, signals, strict=True):
         voltage = record.columns['vbat'] if motors.needs_voltage else None
@@ -49,7 +52,7 @@ def levelled(where: str, records: Sequence[FlightRecord], signals: Sequence[np.n
         given, lift = (np.bincount(window, column) / count for column in (given, lift))
         strong = np.quantile(given[given > 0], 0.9) if (given > 0).any() else np.inf
         flying = (given > FLYING * strong) & np.isfinite(lift)
-        ratios.append(vehicle.mass * lift[flying] / given[flying])
+        ratios.append(mass * lift[flying] / given[flying])
         told.append(how)
     ratio = float(np.median(np.concatenate(ratios))) if sum(map(len, ratios)) else 0.0
     if not ratio > 0.0:
@@ -58,6 +61,13 @@ def levelled(where: str, records: Sequence[FlightRecord], signals: Sequence[np.n
                          'speed_max (rad/s), or motors: with a gain')
     gain = ratio if motors.gives == 'thrust' else float(np.sqrt(ratio))
     return replace(motors, gain=gain), ' and '.join(dict.fromkeys(told))
+
+
+def _mass_to_carry(vehicle: Vehicle) -> float:
+    """Return the mass, kg, that the nominal thrust carries by a vehicle file with its effects."""
+    mass = vehicle.mass + vehicle.effects.get('mass_offset', {}).get('mass', 0.0)
+    scale = vehicle.effects.get('thrust_scale', {})
+    return mass / math.prod(scale.get(name, 1.0) for name in FACTORS)
 
 
 def full_speed(motors: Motors, thrust_coefficient: float) -> float:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from quad_ident_ros.diagnose.rules import Rules
+from quad_ident_ros.effects.base import Effect, Form
 from quad_ident_ros.effects.registry import EFFECTS, PLACES
 from quad_ident_ros.greybox.flights import Flight, inertial
 from quad_ident_ros.greybox.nuisances import Nuisance, nuisances
@@ -55,7 +56,8 @@ def candidates(flights: list, vehicle: Vehicle, rules: Rules,
     for name, effect in EFFECTS.items():
         if effects is not None and name not in effects:
             continue
-        forms = [form for form in effect.forms if (voltage or not form.needs_voltage)
+        forms = [form for form in _known_first(effect, vehicle)
+                 if (voltage or not form.needs_voltage)
                  and not (inertial(flights) and form.needs_reference)
                  and not (_without_height(flights) and form.needs_height)]
         for form in forms:
@@ -74,6 +76,13 @@ def candidates(flights: list, vehicle: Vehicle, rules: Rules,
                                        len(form.parameters) <= len(forms[0].parameters),
                                        _share(form is forms[0], len(forms), rules)))
     return tuple(found)
+
+
+def _known_first(effect: Effect, vehicle: Vehicle) -> list[Form]:
+    """Return the forms of an effect, first the law that the vehicle file has, else the usual."""
+    known = vehicle.effects.get(effect.name, {})
+    return sorted(effect.forms, key=lambda form: not any(parameter.name in known
+                                                         for parameter in form.parameters))
 
 
 def not_told(flights: Sequence[Flight]) -> tuple[str, ...]:

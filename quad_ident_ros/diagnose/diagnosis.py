@@ -31,7 +31,7 @@ def diagnose(records: Iterable[FlightRecord], vehicle: Vehicle, *,
              rules: Rules = RULES,
              on_progress: Callable[[float], None] = lambda share: None) -> Diagnosis:
     """
-    Return the Diagnosis of flight records against a nominal vehicle.
+    Return the Diagnosis of flight records against a nominal vehicle and the effects that it has.
 
     Args: hold_out: a record that takes no part in the fit or the choice, by default the last one
     (half of the blocks of a single one); effects: names that may be named, by default all; rules:
@@ -54,7 +54,7 @@ def diagnose(records: Iterable[FlightRecord], vehicle: Vehicle, *,
                          + '; name other effects')
     selection = select(intake.flights, vehicle, causes, rules,
                        lambda share: on_progress(0.7 * share))
-    prompt = late_controller(selection, intake.flights)
+    prompt = late_controller(selection, intake.flights, vehicle)
     if prompt:
         intake = intake.shifted(prompt)
         selection = select(intake.flights, vehicle, causes, rules,

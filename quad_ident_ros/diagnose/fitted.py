@@ -13,11 +13,12 @@ from quad_ident_ros.diagnose.discrepancy import fitted_sizes
 from quad_ident_ros.diagnose.evidence import key_of, occam, Quadratic
 from quad_ident_ros.diagnose.frame import blocks_at, Frame
 from quad_ident_ros.diagnose.rules import Rules
+from quad_ident_ros.effects.registry import NULL
 from quad_ident_ros.greybox.estimate import Estimate, estimate
 from quad_ident_ros.greybox.flights import Flight
 from quad_ident_ros.greybox.linear import Slopes
 from quad_ident_ros.greybox.nuisances import NuisanceValues
-from quad_ident_ros.greybox.parameters import limits, nominal, prior_sizes
+from quad_ident_ros.greybox.parameters import limits, nominal, prior_sizes, SPLIT
 from quad_ident_ros.model.vehicle import Vehicle
 
 FIT_STEPS = 5       # of Gauss and Newton, of the search: sets start near where they end
@@ -127,7 +128,10 @@ def columns_at_bounds(cause: Candidate, z: np.ndarray, vehicle: Vehicle, rules: 
                       ) -> list[int]:
     """Return the columns of an effect that are at a bound in z (Z,), but for that of no effect."""
     null, (lower, upper, size) = nominal(vehicle), limits(vehicle)
-    room = np.minimum(z - lower, upper - z)
+    # A vehicle file may have an effect that the vehicle has not: that is no bound of vehicles.
+    none = np.append(null[:SPLIT], NULL)
+    gone = (null != none) & (lower == none)
+    room = np.minimum(np.where(gone, np.inf, z - lower), upper - z)
     return [column for column in cause.columns
             if z[column] != null[column] and room[column] < rules.at_bound * size[column]]
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from quad_ident_ros.data.clocks import Clock, clocks_of, on_one_clock
 from quad_ident_ros.data.differentiated import with_motion
-from quad_ident_ros.data.inertial import is_inertial, reckoned, with_position
+from quad_ident_ros.data.inertial import is_inertial, POSITION, reckoned, with_position
 from quad_ident_ros.data.outputs import BY_MOTORS
 from quad_ident_ros.data.quality import cautions, refuse_errors, refuted
 from quad_ident_ros.data.quality.finding import as_caution, Finding
@@ -22,6 +22,7 @@ from quad_ident_ros.data.thrust_level import on_one_level
 from quad_ident_ros.diagnose.blocks import interleaved, spans_seen
 from quad_ident_ros.diagnose.result import BLOCKS
 from quad_ident_ros.diagnose.rules import Rules
+from quad_ident_ros.effects.registry import FORMS, mapping, NULL, PLACE, vector
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.greybox.flights import Flight, guided, highest_voltage, moved, Track, track_of
 from quad_ident_ros.greybox.near import near_flights
@@ -87,10 +88,12 @@ def take_in(records: Sequence[FlightRecord], vehicle: Vehicle, hold_out: FlightR
     every = on_one_level([with_commands(with_motion(record), vehicle)
                           for record in (*records, *held)])
     records, hold_out = (every, None) if hold_out is None else (every[:-1], every[-1])
+    findings: list[dict] = []
+    vehicle = _beside_records(vehicle, every, findings)
     if not all(record.info.get(BY_MOTORS) for record in every):
         vehicle = replace(vehicle, motors=None)     # its uncertainty is none of these commands'
     wrong = refuted([*records, *([] if hold_out is None else [hold_out])], vehicle)
-    findings = [*vehicles(every), *days(every)]
+    findings += [*vehicles(every), *days(every)]
     records = [_fit_for_use(record, vehicle, rules, wrong, findings) for record in records]
     if hold_out is not None:
         hold_out = _fit_for_use(hold_out, vehicle, rules, wrong, findings)
@@ -104,7 +107,7 @@ def take_in(records: Sequence[FlightRecord], vehicle: Vehicle, hold_out: FlightR
     learnt = every if alone else every[:-1]
     voltage = highest_voltage(learnt)
     clocks = clocks_of(answers[:len(learnt)], answers[len(learnt):])
-    ruled_out = _of_rotors(every, clocks, len(learnt), findings)
+    ruled_out = _of_rotors(every, vehicle, clocks, len(learnt), findings)
     tracks = [guided(track_of(record, vehicle, voltage, clock))
               for record, clock in zip(every, clocks, strict=True)]
     if alone:
@@ -115,8 +118,45 @@ def take_in(records: Sequence[FlightRecord], vehicle: Vehicle, hold_out: FlightR
                   tuple(clocks), findings, ruled_out)
 
 
-def _of_rotors(records: Sequence[FlightRecord], clocks: Sequence[Clock | None], learnt: int,
-               findings: list) -> tuple[str, ...]:
+def _beside_records(vehicle: Vehicle, records: Sequence[FlightRecord], findings: list) -> Vehicle:
+    """
+    Return the vehicle with those of its effects that act beside what is taken from the records.
+
+    Measured rotor speeds have gone through the motors; where accelerometer and gyro alone were
+    recorded the force of the air is among what they measured, and nothing is known of the place;
+    ground is felt only at a height that is known. The findings say what is left out. Raises
+    InputError where motors act on the commands of some records alone.
+    """
+    driven = [is_driven_by_speeds(record) for record in records]
+    motors = [name for name in OF_MOTORS if name in vehicle.effects]
+    if motors and any(driven) and not all(driven):
+        [with_commands, without] = (records[driven.index(kind)].info.get('source', 'a flight')
+                                    for kind in (False, True))
+        raise InputError(f'{without} has rotor speeds and no commands, and {with_commands} has: '
+                         f'with {motors[0]} in the vehicle file, diagnose them apart')
+    inertial = any(is_inertial(record) for record in records)
+    no_height = not all(record.has(*POSITION) for record in records)
+    gone = {PLACE[name, parameter.name] for name, form in FORMS for parameter in form.parameters
+            if name in OF_MOTORS and any(driven) or inertial and form.needs_reference
+            or no_height and form.needs_height}
+    theta = vector(vehicle.effects, vehicle)
+    known, theta[list(gone)] = mapping(theta), NULL[list(gone)]
+    kept = mapping(theta)
+    names = [name for name in known if kept.get(name) != known[name]]
+    if names:
+        findings.append({
+            'flight': 'all flights', 'code': 'left_out', 'severity': 'info',
+            'where': 'vehicle file',
+            'message': f'{", ".join(names)} of the vehicle file is left out of the nominal model: '
+                       'these records have what it makes in what they measured, or lack the '
+                       'height that it needs',
+            'remedy': 'nothing needs to be done; records with commands, position and velocity '
+                      'show it'})
+    return replace(vehicle, effects=kept)
+
+
+def _of_rotors(records: Sequence[FlightRecord], vehicle: Vehicle, clocks: Sequence[Clock | None],
+               learnt: int, findings: list) -> tuple[str, ...]:
     """
     Return the effects that measured rotor speeds of the first, learnt, records speak against.
 
@@ -130,8 +170,11 @@ def _of_rotors(records: Sequence[FlightRecord], clocks: Sequence[Clock | None], 
     # Commands of another clock than the states': whose clock the speeds have is not known.
     ruled_out = ruled_out_by([
         replace(answer, delay=(answer.delay[0], np.inf)) if answer and clock and clock.late
-        else answer for answer, clock in zip(told[:learnt], clocks, strict=False)])
-    so = f'; {" and ".join(ruled_out)} is ruled out by that' if ruled_out else ''
+        else answer for answer, clock in zip(told[:learnt], clocks, strict=False)],
+        vehicle.effects)
+    names = [f'another {name} than that of the vehicle file' if name in vehicle.effects else name
+             for name in ruled_out]
+    so = f'; {" and ".join(names)} is ruled out by that' if names else ''
     findings += [as_caution(Finding('rotor_answer', 'info', 'rotor1, rotor2, ...',
                                     answer.said() + so,
                                     'nothing needs to be done where this is right'), record)

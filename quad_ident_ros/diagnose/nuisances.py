@@ -21,6 +21,7 @@ from quad_ident_ros.greybox.nuisances import (
     NuisanceValues,
     put_right,
 )
+from quad_ident_ros.greybox.parameters import nominal
 from quad_ident_ros.model.vehicle import Vehicle
 
 WIDE = 1.64     # standard errors below which 95 % lie, of a bound that is only reported
@@ -50,10 +51,11 @@ def nuisances_of(track: Track, vehicle: Vehicle, z: np.ndarray, kinds: Sequence[
     return found.vectors[0] - z
 
 
-def late_controller(selection: Selection, flights: Sequence[Flight]) -> float:
+def late_controller(selection: Selection, flights: Sequence[Flight], vehicle: Vehicle) -> float:
     """
     Return the delay (s) that a Selection found where it may be the controller's own lag, or 0.
 
+    Beyond that of the vehicle file.
     Where clocks were put right by what commands answer, a controller that answers late looks like
     commands that act late. It is counted among the clocks where controllers may be that late.
     """
@@ -63,7 +65,7 @@ def late_controller(selection: Selection, flights: Sequence[Flight]) -> float:
         return 0.0
     [column] = columns
     error = selection.errors[best.estimate.columns.index(column)]
-    delay = best.estimate.z[column]
+    delay = best.estimate.z[column] - nominal(vehicle)[column]
     period = max(flight.clock.period for flight in flights if flight.clock is not None)
     return float(delay) if controllers_own(delay, error, period) else 0.0
 

@@ -2,14 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """A diagnosis as typed values, and as the data of the project's JSON (version 2)."""
 
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 
 import numpy as np
 
 from quad_ident_ros import __version__
 from quad_ident_ros.diagnose.gap import Ends
 from quad_ident_ros.diagnose.residual_wrench import ResidualWrench
-from quad_ident_ros.effects.registry import mapping
+from quad_ident_ros.effects.registry import mapping, vector
 from quad_ident_ros.greybox.parameters import SPLIT
 from quad_ident_ros.model.vehicle import Vehicle
 
@@ -20,11 +20,16 @@ BLOCKS = 'blocks'
 
 @dataclass(frozen=True)
 class Value:
-    """A parameter of an effect, with its standard error."""
+    """
+    A parameter of an effect, with its standard error.
+
+    change: from the value of the vehicle file, where that has the effect, in whichever form.
+    """
 
     value: float
     std: float
     unit: str
+    change: float | None = None
 
 
 @dataclass(frozen=True)
@@ -184,8 +189,18 @@ class Diagnosis:
     pictures: Pictures
 
     def effects(self) -> dict:
-        """Return {effect: {parameter: value}} of the effects named."""
+        """Return {effect: {parameter: value}} of the vehicle: the file's as the flights have it."""
         return mapping(self.z[SPLIT:])
+
+    def corrected(self, vehicle: Vehicle) -> Vehicle:
+        """
+        Return the vehicle of the file that flights were held against, with the effects named.
+
+        Of the effects that the file has, those that these flights cannot have shown stay.
+        """
+        given, used = (vector(each.effects, vehicle) for each in (vehicle, self.vehicle))
+        return replace(vehicle, name=f'{vehicle.name}_diagnosed',
+                       effects=mapping(np.where(given != used, given, self.z[SPLIT:])))
 
     def as_data(self) -> dict:
         """Return the JSON of the project as data."""

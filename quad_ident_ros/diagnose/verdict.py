@@ -96,7 +96,10 @@ def _ranking(bench: Bench, judged: Judgement, causes: tuple, total: dict,
             units = {one.name: one.unit for one in EFFECTS[cause.effect].parameters}
             for column in cause.columns:
                 name = NAMES[column].split('.')[1]
-                parameters[name] = Value(float(z[column]), float(errors[column]), units[name])
+                change = (float(z[column] - z0[column])
+                          if cause.effect in bench.vehicle.effects else None)
+                parameters[name] = Value(float(z[column]), float(errors[column]), units[name],
+                                         change)
             alone = z0.copy()
             alone[list(cause.columns)] = z[list(cause.columns)]
             gap_after = gaps.gap([gaps.ends(track, bench.vehicle, alone + nuisance,

@@ -24,7 +24,7 @@ from quad_ident_ros.greybox.identifiable import correlated, Freedom, freedoms
 from quad_ident_ros.greybox.near import near_flights
 from quad_ident_ros.greybox.noise import quick_noise
 from quad_ident_ros.greybox.normal import covariance_of, Normal, scatter_of
-from quad_ident_ros.greybox.parameters import as_described, FACTORS, INDEX, limits, SPLIT
+from quad_ident_ros.greybox.parameters import FACTORS, INDEX, limits, nominal, SPLIT
 from quad_ident_ros.greybox.rotor_answer import is_driven_by_speeds, NO_COMMANDS, OF_MOTORS
 from quad_ident_ros.model.vehicle import Vehicle
 
@@ -97,7 +97,7 @@ def fit(records: Sequence[FlightRecord], vehicle: Vehicle, names: Iterable[str],
                              'diagnose takes flights of accelerometer, gyro and commands alone')
     records = on_one_level([with_position(record) for record in records])
     voltage = highest_voltage(records)
-    start, sizes = as_described(vehicle), limits(vehicle)[2]
+    start, sizes = nominal(vehicle), limits(vehicle)[2]
     records, _, answers = zip(*on_one_clock(records), strict=True)
     flights = near_flights([track_of(record, vehicle, voltage, clock) for record, clock in
                             zip(records, clocks_of(answers), strict=True)], vehicle, start)

@@ -29,12 +29,12 @@ FACTORS = {
 
 
 def nominal(vehicle: Vehicle) -> np.ndarray:
-    """Return the vector (Z,) of the vehicle file alone, without effects."""
-    return np.concatenate([vehicle_vector(vehicle), registry.NULL])
+    """
+    Return the vector (Z,) of the vehicle file, with the effects that it has.
 
-
-def as_described(vehicle: Vehicle) -> np.ndarray:
-    """Return the vector (Z,) of the vehicle file with the effects that it names."""
+    A parameter that is there says nothing new of the vehicle, be that none of the effect or what
+    the file's own law is.
+    """
     return np.concatenate([vehicle_vector(vehicle), registry.vector(vehicle.effects, vehicle)])
 
 

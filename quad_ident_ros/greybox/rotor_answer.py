@@ -10,7 +10,7 @@ from scipy.optimize import minimize
 
 from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.record import FlightRecord
-from quad_ident_ros.effects.registry import EFFECTS, NULL
+from quad_ident_ros.effects.registry import EFFECTS, NULL, Values
 from quad_ident_ros.greybox.flights import BRIDGED, GAP, RATE
 from quad_ident_ros.greybox.normal import BLOCK
 from quad_ident_ros.model.actuators import actuated, DELAY, LAG
@@ -69,21 +69,29 @@ def is_driven_by_speeds(record: FlightRecord) -> bool:
     return bool(record.info.get(BY_SPEEDS))
 
 
-def ruled_out_by(answers: Iterable[RotorAnswer | None]) -> tuple[str, ...]:
+def ruled_out_by(answers: Iterable[RotorAnswer | None], effects: Values | None = None
+                 ) -> tuple[str, ...]:
     """
     Return the effects of the actuators that measured speeds of the flights speak against.
 
-    Those whose time may be none and is surely less than a diagnosis resolves, by all flights
-    together, and by none of them surely more.
+    Those whose time may be that of the vehicle file's effects, by default none, and surely differs
+    from it by less than a diagnosis resolves, by all flights together, and in none of them surely
+    by more. Speeds do not speak of a lag that the file has by another law than theirs.
     """
+    effects = effects or {}
     some = [answer for answer in answers if answer is not None]
     found = []
-    for name, pairs in (('motor_lag', [answer.lag for answer in some]),
-                        ('actuation_delay', [answer.delay for answer in some])):
+    for name, parameter, pairs in (
+            ('motor_lag', 'time_constant', [answer.lag for answer in some]),
+            ('actuation_delay', 'delay', [answer.delay for answer in some])):
+        known = effects.get(name, {})
+        if not set(known) <= {parameter}:
+            continue
         values, errors = np.array([pair for pair in pairs if np.isfinite(pair[1])]).reshape(
             -1, 2).T
         if not len(values):
             continue
+        values = values - known.get(parameter, 0.0)
         weights = 1.0 / np.maximum(errors, FINEST) ** 2
         mean = float(np.sum(weights * values) / weights.sum())
         error = SURE / float(np.sqrt(weights.sum()))

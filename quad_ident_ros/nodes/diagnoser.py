@@ -16,7 +16,7 @@ from quad_ident_ros.diagnose.rules import RULES
 from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.greybox.errors import UNITS
-from quad_ident_ros.model.vehicle import load_nominal
+from quad_ident_ros.model.vehicle import load_vehicle
 from quad_ident_ros.nodes import process
 from quad_ident_ros.nodes.messages import ERROR, OK, table_message, WARN
 from quad_ident_ros.nodes.parameters import help_text, ParameterSpec
@@ -32,7 +32,7 @@ STAGES = ('before', 'after', 'noise')
 
 SPECS = (
     ParameterSpec('vehicle', 'paper_quadrotor', 'Name of a shipped vehicle or path of a vehicle '
-                  'file: the nominal one, without effects.'),
+                  'file: the nominal one, with the effects that its simulator has.'),
     ParameterSpec('effects', (), 'Effects that may be named; empty: all.',
                   choices=tuple(EFFECTS)),
     ParameterSpec('mode', 'once', 'once: diagnose the first complete experiment, then only on '
@@ -102,7 +102,7 @@ class Diagnoser(RecordWorker):
         records = self._taken()
 
         def run():
-            vehicle = load_nominal(values['vehicle'])
+            vehicle = load_vehicle(values['vehicle'])
             flights = commanded([record.last(values['window']) if values['window'] else record
                                  for record in records], vehicle)
             found = diagnose(flights, vehicle,
@@ -142,7 +142,7 @@ class Diagnoser(RecordWorker):
 
 
 def _validate(values):
-    load_nominal(values['vehicle'])
+    load_vehicle(values['vehicle'])
     rules = rules_from(values['tolerance'], 'parameter tolerance')
     if 0.0 < values['window'] < rules.shortest:
         raise InputError(f'parameter window: {values["window"]:g} s are too short for a '

@@ -18,6 +18,7 @@ from quad_ident_ros.diagnose.result import (
     GapGivenAttitude,
     Ranked,
     Unexplained,
+    Value,
 )
 from quad_ident_ros.diagnose.rules import RULES
 
@@ -263,11 +264,16 @@ def next_row(one: dict) -> list[str]:
             f'{one["speed"]:.1f} m/s']
 
 
+def change_of(parameter: Value) -> str:
+    """Return what a parameter is more than in the vehicle file, where that has the effect."""
+    return '' if parameter.change is None else f' ({parameter.change:+.3g} to the file)'
+
+
 def _which(found: Diagnosis) -> Table:
     rows = []
     for row in shown_effects(found):
         values = ', '.join(f'{name} {one.value:.4g} ± {one.std:.2g} {one.unit}'.removesuffix(' 1')
-                           for name, one in row.parameters.items())
+                           + change_of(one) for name, one in row.parameters.items())
         rows.append([row.effect, form_of(row), f'{row.probability:.2f}', contribution_of(row),
                      values, without_it(found, row)])
     return _table(('effect', 'form, explains', 'probability', 'contribution', 'parameters',

@@ -9,6 +9,7 @@ from quad_ident_ros import __version__
 from quad_ident_ros.diagnose.result import Diagnosis
 from quad_ident_ros.report import gap_pictures
 from quad_ident_ros.report.diagnosis import (
+    change_of,
     contribution_of,
     FAR,
     far_line,
@@ -99,7 +100,7 @@ def _which(found: Diagnosis, pictures: dict) -> list:
                  without_it(found, row)]
         for name, one in row.parameters.items():
             spread = WIDE * one.std
-            rows.append([*first, name, f'{one.value:.4g}',
+            rows.append([*first, name, f'{one.value:.4g}{change_of(one)}',
                          f'{one.value - spread:.4g} to {one.value + spread:.4g}', one.unit])
             first = [''] * len(first)
         if not row.parameters:
