@@ -44,7 +44,8 @@ def add(commands, said):
                         help='a table (CSV, Parquet), a bag (ROS 1 or 2), or a log of PX4, '
                              'ArduPilot, Crazyflie or Betaflight')
     parser.add_argument('--vehicle', help='vehicle name or file: the nominal one, which '
-                        'is needed, with the effects that your simulator has; auto: the file beside a PX4 log, written from its parameters')
+                        'is needed, with the effects that your simulator has; auto: the file '
+                        'beside a PX4 log, written from its parameters')
     parser.add_argument('--hold-out', metavar='FLIGHT',
                         help='the flight on which the gap is told (default: the last one named)')
     parser.add_argument('--mapping', metavar='FILE', help='which topics and outputs of other '

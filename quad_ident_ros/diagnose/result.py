@@ -189,7 +189,7 @@ class Diagnosis:
     pictures: Pictures
 
     def effects(self) -> dict:
-        """Return {effect: {parameter: value}} of the vehicle: the file's as the flights have it."""
+        """Return {effect: {parameter: value}} of the vehicle, as flights and file have it."""
         return mapping(self.z[SPLIT:])
 
     def corrected(self, vehicle: Vehicle) -> Vehicle:

@@ -12,7 +12,7 @@ TURNS: dict[str, Axis] = {'x': 'roll', 'y': 'pitch', 'z': 'yaw'}
 
 @compiled(fused=True, inlined=True)
 def body(p: Table, k: int, s: Table) -> None:
-    """Scale the moments of inertia."""
+    """Scale the moments of inertia; products of inertia stay as they are."""
     for i in range(s.shape[1]):
         s[IX, i] *= p[k, i]
         s[IY, i] *= p[k + 1, i]
@@ -25,7 +25,7 @@ FORM = Form(
                                f'on the moment of inertia about body {axis}', null=1.0,
                                excited_by=turn)
                      for axis, turn in TURNS.items()),
-    source='inertia times factor, about each body axis',
+    source='moments of inertia times factor, about each body axis; products of inertia stay',
     acts_on='rotation', on_rotors=False,
     body=body)
 EFFECT = Effect(

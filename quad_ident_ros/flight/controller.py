@@ -24,7 +24,7 @@ STEEPEST = 2.0  # force across the vertical that is asked for, in weights
 LIGHTEST = 0.4  # force along it
 
 (MASS, IX, IY, IZ, GRAVITY, KP, KV, KI, TILT_P, TILT_V, TILT_I, YAW_P, YAW_V, YAW_I, MOST_PUSH,
- MOST_X, MOST_Y, MOST_Z, SQUARE_MIN, SQUARE_MAX, GAINS) = range(21)
+ MOST_X, MOST_Y, MOST_Z, SQUARE_MIN, SQUARE_MAX, IXY, IXZ, IYZ, GAINS) = range(24)
 
 
 def gains_of(vehicle):
@@ -44,6 +44,7 @@ def gains_of(vehicle):
     gains[MOST_PUSH] = 0.5 * vehicle.gravity
     gains[MOST_X:MOST_Z + 1] = (0.25 * vehicle.mass * vehicle.gravity * vehicle.arm_length
                                 / np.array(vehicle.inertia))
+    gains[IXY:IYZ + 1] = vehicle.products
     gains[[SQUARE_MIN, SQUARE_MAX]] = vehicle.speed_min ** 2, vehicle.speed_max ** 2
     return gains
 
@@ -106,14 +107,19 @@ def control(seen, wanted, dt, gains, mixer, memory, command):
     load = lift / (g[MASS] * g[GRAVITY])
     between = desired.T @ rotation
     aim = between.T @ swing         # the desired rate, in the body
-    turn = np.empty(3)
+    turn, asked = np.empty(3), np.empty(3)
     for i in range(3):
         j, k = (i + 1) % 3, (i + 2) % 3
         error = 0.5 * (between[k, j] - between[j, k])
         first = TILT_P if i < 2 else YAW_P
         memory[3 + i] = _clamp(memory[3 + i] + g[first + 2] * error * dt, g[MOST_X + i])
         turn[i] = -g[first] * error - g[first + 1] * (rate[i] - aim[i]) - load * memory[3 + i]
+        asked[i] = turn[i]
         turn[i] = g[IX + i] * turn[i] + (g[IX + k] - g[IX + j]) * rate[j] * rate[k]
+    if g[IXY] != 0.0 or g[IXZ] != 0.0 or g[IYZ] != 0.0:
+        products = np.array([[0.0, g[IXY], g[IXZ]], [g[IXY], 0.0, g[IYZ]],
+                             [g[IXZ], g[IYZ], 0.0]])
+        turn += products @ asked + np.cross(rate, products @ rate)
     _mix(lift, turn, g[SQUARE_MIN], g[SQUARE_MAX], mixer, command)
 
 

@@ -15,7 +15,7 @@ from quad_ident_ros.model.vehicle import Vehicle
 CONSTANTS = ('mass', 'inertia_x', 'inertia_y', 'inertia_z', 'gravity', 'thrust_coefficient',
              'torque_coefficient', 'rotor_radius', 'linear_drag_x', 'linear_drag_y',
              'linear_drag_z', 'rotational_drag_x', 'rotational_drag_y', 'rotational_drag_z',
-             'drag_in_world', 'hover_speeds')
+             'drag_in_world', 'hover_speeds', 'product_xy', 'product_xz', 'product_yz')
 NAMES = CONSTANTS + tuple(f'{effect}.{parameter.name}' for effect, parameter in
                           registry.PARAMETERS)
 INDEX = {name: k for k, name in enumerate(NAMES)}
@@ -39,7 +39,7 @@ def nominal(vehicle: Vehicle) -> np.ndarray:
 
 
 def constants_of(z: np.ndarray, vehicle: Vehicle) -> np.ndarray:
-    """Return the constants (..., 16) in vectors (..., Z), the hover speeds those of the others."""
+    """Return the constants (..., 19) in vectors (..., Z), the hover speeds those of the others."""
     constants = np.array(z[..., :SPLIT])
     mass, gravity, thrust = (constants[..., INDEX[name]] for name in
                              ('mass', 'gravity', 'thrust_coefficient'))
@@ -59,6 +59,7 @@ def limits(vehicle: Vehicle) -> np.ndarray:
     size[11:14] = np.maximum(size[11:14], 1e-3 * weight * arm)
     lower, upper = 0.05 * size, 20.0 * size
     lower[8:14] = 0.0
+    lower[16:] = -upper[16:]    # products of inertia have either sign
     table = np.array([lower, upper, 0.1 * size])
     whole = np.concatenate([table, registry.bounds(vehicle)], axis=1)
     whole.flags.writeable = False

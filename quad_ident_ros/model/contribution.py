@@ -27,7 +27,7 @@ def contribution(vehicle: Vehicle, theta: ArrayLike, course: Course, states: np.
                        zip(_accelerations(vehicle, theta, course, states),
                            _accelerations(vehicle, NULL, course, states), strict=True))
     body = np.einsum('nij,ni->nj', rotation_matrix(states[:, 6:10]), linear)
-    return vehicle.mass * body, vehicle.inertia * angular
+    return vehicle.mass * body, angular @ vehicle.inertia_matrix
 
 
 def _accelerations(vehicle: Vehicle, theta: np.ndarray, course: Course, states: np.ndarray

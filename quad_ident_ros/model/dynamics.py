@@ -134,7 +134,7 @@ def predict(vehicle: Vehicle, thetas: ArrayLike, course: Course, starts: np.ndar
 
     Args: thetas (T, P) parameter sets; starts (B, 13) recorded states at the samples first (B,);
     count: samples to go; which (B,) the set of each rollout, by default the first for all;
-    constants (T, 16) of rigid_body that replace the vehicle's; guide (N, 13): recorded states
+    constants (T, 19) of rigid_body that replace the vehicle's; guide (N, 13): recorded states
     whose attitude and rate are given to the motion of the centre of mass, so that errors of the
     predicted rotation do not enter it; by default it follows from the predicted ones.
     """

@@ -74,6 +74,12 @@ def _ranges(vehicle: Vehicle) -> Iterator[tuple[str, float, float, float, str, s
     for axis, moment in enumerate(vehicle.inertia):
         yield (f'inertia[{axis}]', moment, 0.0, FLAT * (sum(vehicle.inertia) - moment), 'kg m^2',
                'no body has one moment of inertia above the sum of the other two')
+    if any(vehicle.products):
+        moments = np.linalg.eigvalsh(vehicle.inertia_matrix).tolist()
+        for moment in moments:
+            yield ('inertia: principal moment', moment, GYRATION[0] ** 2 * per_gyration,
+                   min(GYRATION[1] ** 2 * per_gyration, FLAT * (sum(moments) - moment)), 'kg m^2',
+                   'the entries beside the diagonal are too large for those on it')
     yield ('rotor_inertia', vehicle.rotor_inertia, 0.0, vehicle.inertia[2], 'kg m^2',
            'it is a part of the inertia about z')
     weight = vehicle.mass * vehicle.gravity

@@ -3,9 +3,9 @@
 """
 The equations of motion of a multirotor with all effects, many rollouts side by side.
 
-Vehicle vector, (16,) or (16, LANES): mass, Ix, Iy, Iz, gravity, thrust and torque coefficient,
+Vehicle vector, (19,) or (19, LANES): mass, Ix, Iy, Iz, gravity, thrust and torque coefficient,
 rotor radius, linear drag (3), rotational drag (3), 1 where the linear drag acts along world axes,
-sum of the hover speeds.
+sum of the hover speeds, Ixy, Ixz, Iyz as they stand in the matrix of inertia.
 """
 
 
@@ -22,6 +22,7 @@ from quad_ident_ros.model.situation import (
     COM_X,
     COM_Y,
     COM_Z,
+    FULL,
     FX,
     FY,
     FZ,
@@ -45,6 +46,12 @@ from quad_ident_ros.model.situation import (
     PER_IY,
     PER_IZ,
     PER_MASS,
+    PER_XX,
+    PER_XY,
+    PER_XZ,
+    PER_YY,
+    PER_YZ,
+    PER_ZZ,
     PX,
     PZ,
     R00,
@@ -94,11 +101,11 @@ INPUT = 9
 
 
 def vehicle_vector(vehicle: Vehicle, drag_in_world: bool = False) -> np.ndarray:
-    """Return the constants of the equations of motion, (16,), in the order stated above."""
+    """Return the constants of the equations of motion, (19,), in the order stated above."""
     return np.array([vehicle.mass, *vehicle.inertia, vehicle.gravity, vehicle.thrust_coefficient,
                      vehicle.torque_coefficient, vehicle.rotor_radius, *vehicle.linear_drag,
                      *vehicle.rotational_drag, float(drag_in_world),
-                     len(vehicle.rotors) * vehicle.hover_speed])
+                     len(vehicle.rotors) * vehicle.hover_speed, *vehicle.products])
 
 
 def rotor_table(vehicle: Vehicle) -> np.ndarray:
@@ -122,11 +129,49 @@ def prepare(v: np.ndarray, places: np.ndarray, theta: np.ndarray, s: np.ndarray,
     for i in range(s.shape[1]):
         s[PER_MASS, i] = 1.0 / s[MASS, i]
         s[PER_IX, i], s[PER_IY, i], s[PER_IZ, i] = 1.0 / s[IX, i], 1.0 / s[IY, i], 1.0 / s[IZ, i]
+    full = 0.0
+    for i in range(s.shape[1]):
+        if v[16, i] != 0.0 or v[17, i] != 0.0 or v[18, i] != 0.0:
+            full = 1.0
+    for i in range(s.shape[1]):
+        s[FULL, i] = full
+    if full != 0.0:
+        _invert(v, s)
     for j in range(places.shape[0]):
         for i in range(s.shape[1]):
             rotors[j, RX, i] = s[ARMS_X, i] * places[j, 0] - s[COM_X, i]
             rotors[j, RY, i] = s[ARMS_Y, i] * places[j, 1] - s[COM_Y, i]
             rotors[j, RZ, i] = places[j, 2] - s[COM_Z, i]
+
+
+@compiled(fused=True, inlined=True)
+def _invert(v: np.ndarray, s: np.ndarray) -> None:
+    """Write the inverse of the matrix of inertia, its moments as they are in s."""
+    for i in range(s.shape[1]):
+        ix, iy, iz = s[IX, i], s[IY, i], s[IZ, i]
+        xy, xz, yz = v[16, i], v[17, i], v[18, i]
+        s[PER_XX, i], s[PER_XY, i] = iy * iz - yz * yz, xz * yz - xy * iz
+        s[PER_YY, i], s[PER_XZ, i] = ix * iz - xz * xz, xy * yz - xz * iy
+        s[PER_ZZ, i], s[PER_YZ, i] = ix * iy - xy * xy, xy * xz - yz * ix
+        per = 1.0 / (ix * s[PER_XX, i] + xy * s[PER_XY, i] + xz * s[PER_XZ, i])
+        for row in (PER_XX, PER_YY, PER_ZZ, PER_XY, PER_XZ, PER_YZ):
+            s[row, i] *= per
+
+
+@compiled(fused=True, inlined=True)
+def _turn_with_products(v: np.ndarray, s: np.ndarray, dx: np.ndarray) -> None:
+    """Write how the rate changes by I w' = M - w x I w where the inertia has products."""
+    for i in range(s.shape[1]):
+        wx, wy, wz = s[WX, i], s[WY, i], s[WZ, i]
+        hx = s[IX, i] * wx + v[16, i] * wy + v[17, i] * wz
+        hy = v[16, i] * wx + s[IY, i] * wy + v[18, i] * wz
+        hz = v[17, i] * wx + v[18, i] * wy + s[IZ, i] * wz
+        mx = s[MX, i] - (wy * hz - wz * hy)
+        my = s[MY, i] - (wz * hx - wx * hz)
+        mz = s[MZ, i] - (wx * hy - wy * hx)
+        dx[10, i] = s[PER_XX, i] * mx + s[PER_XY, i] * my + s[PER_XZ, i] * mz
+        dx[11, i] = s[PER_XY, i] * mx + s[PER_YY, i] * my + s[PER_YZ, i] * mz
+        dx[12, i] = s[PER_XZ, i] * mx + s[PER_YZ, i] * my + s[PER_ZZ, i] * mz
 
 
 @compiled(fused=True, inlined=True)
@@ -259,6 +304,8 @@ def derivative(x: np.ndarray, u: np.ndarray, v: np.ndarray, places: np.ndarray,
         dx[10, i] = (s[MX, i] + (iy - iz) * wy * wz) * s[PER_IX, i]
         dx[11, i] = (s[MY, i] + (iz - ix) * wz * wx) * s[PER_IY, i]
         dx[12, i] = (s[MZ, i] + (ix - iy) * wx * wy) * s[PER_IZ, i]
+    if s[FULL, 0] != 0.0:
+        _turn_with_products(v, s, dx)
 
 
 @compiled(fused=True)
@@ -268,7 +315,7 @@ def derivatives(v: np.ndarray, places: np.ndarray, theta: np.ndarray, t: np.ndar
     """
     Write the derivatives of given states, each by itself, into out (N, 13).
 
-    Args: v (16, 1), places: the vehicle; theta (P,); t (N,) s; states (N, 13) of the centre of
+    Args: v (19, 1), places: the vehicle; theta (P,); t (N,) s; states (N, 13) of the centre of
     mass; speeds (N, n) rad/s of the rotors and accelerations (N, n) rad/s^2; inputs (N, INPUT).
     """
     x, dx = np.empty((STATE, 1)), np.empty((STATE, 1))

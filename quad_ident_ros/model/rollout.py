@@ -12,10 +12,14 @@ from quad_ident_ros.effects.registry import ROWS_OF, SLICES, TABLE
 from quad_ident_ros.model.actuators import is_followed, shares
 from quad_ident_ros.model.rigid_body import derivative, INPUT, prepare, STATE
 from quad_ident_ros.model.situation import (
+    FULL,
     GUIDE,
     GUIDE_BEGIN,
     GUIDED,
     PER_IZ,
+    PER_XZ,
+    PER_YZ,
+    PER_ZZ,
     ROTOR_ROWS,
     SPEED,
     SPIN_UP,
@@ -66,7 +70,13 @@ def take_up(x: np.ndarray, speed: np.ndarray, command: np.ndarray, span: np.ndar
             if is_followed(theta[:, i]):
                 change[i] /= span[i]
             else:
-                x[12, i] += theta[GYRO, i] * change[i] * s[PER_IZ, i]
+                moment = theta[GYRO, i] * change[i]
+                if s[FULL, 0] != 0.0:
+                    x[10, i] += moment * s[PER_XZ, i]
+                    x[11, i] += moment * s[PER_YZ, i]
+                    x[12, i] += moment * s[PER_ZZ, i]
+                else:
+                    x[12, i] += moment * s[PER_IZ, i]
                 change[i] = 0.0
 
 
@@ -136,7 +146,7 @@ def _kernel(lanes: int) -> Callable[..., None]:
         """
         Integrate rollouts by Runge-Kutta and write their states into out (B, count + 1, 13).
 
-        Args: vehicles (T, 16), places: see rigid_body; thetas (T, P) parameter sets; which (B,)
+        Args: vehicles (T, 19), places: see rigid_body; thetas (T, P) parameter sets; which (B,)
         the set of each rollout; x0 (B, 13) states at the start; t (N,) s; followed, speeds
         (A, N, n), added (A, N, 3, n) to each step from a sample on, law (T,) of each parameter
         set: see actuators; inputs (N, INPUT), what else acts; first (B,) the sample at which a

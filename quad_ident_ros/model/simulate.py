@@ -180,6 +180,10 @@ def _printed(vehicle: Vehicle, inputs: np.ndarray, omega_r: np.ndarray, period: 
     if vehicle.effects:
         raise InputError(f'vehicle {vehicle.name}: the equations as printed know no effects; fly '
                          'the model newton_euler, or take the effects out of the vehicle file')
+    if any(vehicle.products):
+        raise InputError(f'vehicle {vehicle.name}: the equations as printed know moments of '
+                         'inertia alone; fly the model newton_euler, or give inertia: '
+                         '[Ixx, Iyy, Izz] in the vehicle file')
     x = np.zeros(equations.STATE)
     x[2] = altitude
     states = np.empty((len(inputs), equations.STATE))

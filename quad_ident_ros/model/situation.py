@@ -25,13 +25,15 @@ A lane is one rollout of the batch. `s` (ROWS, LANES) holds the vehicle, the row
  PER_IY, PER_IZ, PER_HOVER,
  # Factors on the rotors' arms along body x and y, and on their reaction torque.
  ARMS_X, ARMS_Y, TORQUE,
+ # 1 where a moment of inertia has products beside it, and then the inverse of the matrix.
+ FULL, PER_XX, PER_YY, PER_ZZ, PER_XY, PER_XZ, PER_YZ,
  # 1 where a record gives attitude and rate for the motion of the centre of mass, see
  # rollout.roll_out; how far the integration is in its step, 0 to 1.
- GUIDED, STAGE) = range(56)
+ GUIDED, STAGE) = range(63)
 
 # The quaternion and the rate that the record gives, at the begin and at the end of a step.
 GUIDE = 7
-GUIDE_BEGIN, GUIDE_END = 56, 56 + GUIDE
+GUIDE_BEGIN, GUIDE_END = 63, 63 + GUIDE
 ROWS = GUIDE_END + GUIDE
 
 # A rotor: speed; its velocity against the air, body; factor on its thrust; its force, body; its

@@ -23,6 +23,7 @@ Uncertainty: TypeAlias = float | tuple[float | None, ...]
 NUMBERS = {'mass': True, 'gravity': True, 'thrust_coefficient': True, 'torque_coefficient': True,
            'rotor_inertia': False, 'rotor_radius': False, 'speed_min': False, 'speed_max': False}
 TRIPLES = {'inertia': True, 'linear_drag': False, 'rotational_drag': False}
+SYMMETRIC = 1e-6    # of the largest moment of inertia: entries are printed with some digits
 LEAST_HOVER = 0.03  # of speed_max: the rotors would carry a thousand times the weight
 
 
@@ -39,7 +40,9 @@ class Vehicle:
     """
     A rigid multirotor; SI units, body frame x forward, y left, z up.
 
-    inertia (3,) kg m^2; thrust_coefficient N/(rad/s)^2; torque_coefficient N m/(rad/s)^2;
+    inertia (3,) kg m^2, Ixx, Iyy, Izz about the centre of mass, and products (3,), Ixy, Ixz, Iyz,
+    the entries beside the diagonal, with the sign that they have there;
+    thrust_coefficient N/(rad/s)^2; torque_coefficient N m/(rad/s)^2;
     linear_drag (3,) N/(m/s); rotational_drag (3,) N m/(rad/s)^2; speeds rad/s; effects that it
     has beside the nominal model, {effect: {parameter: value}}, see effects.registry; uncertainty:
     standard deviations of the constants that have one, in the constant's unit, by key (those of
@@ -63,11 +66,18 @@ class Vehicle:
     effects: registry.Values = field(default_factory=dict, hash=False)
     uncertainty: dict[str, Uncertainty] = field(default_factory=dict, hash=False)
     motors: Motors | None = None
+    products: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
     @property
     def arm_length(self) -> float:
         """Lever arm l in m: the mean distance of the rotors from the body's z axis."""
         return float(np.mean([np.hypot(r.position[0], r.position[1]) for r in self.rotors]))
+
+    @property
+    def inertia_matrix(self) -> np.ndarray:
+        """Matrix of inertia about the centre of mass, body axes, (3, 3) kg m^2."""
+        xy, xz, yz = self.products
+        return np.diag(self.inertia) + np.array([[0.0, xy, xz], [xy, 0.0, yz], [xz, yz, 0.0]])
 
     @property
     def hover_speed(self) -> float:
@@ -118,7 +128,8 @@ def load_nominal(name_or_path: str | Path) -> Vehicle:
 
 def vehicle_from_mapping(data: Any, where: str) -> Vehicle:
     """Return the vehicle that the mapping of a vehicle file describes; raises InputError."""
-    known = [field.name for field in fields(Vehicle) if field.name != 'uncertainty']
+    known = [field.name for field in fields(Vehicle)
+             if field.name not in ('uncertainty', 'products')]
     required = known[:7]
     schema.check_keys(where, data, known, required)
     values: dict[str, Any] = {'name': schema.name(f'{where}: name', data['name'])}
@@ -127,6 +138,7 @@ def vehicle_from_mapping(data: Any, where: str) -> Vehicle:
         if key in data:
             values[key], stds[key] = schema.uncertain(f'{where}: {key}', data[key], 0.0,
                                                       exclusive)
+    data, values['products'] = _without_products(where, data)
     for key, exclusive in TRIPLES.items():
         if key in data:
             values[key], stds[key] = schema.uncertain_numbers(
@@ -156,9 +168,12 @@ def vehicle_to_mapping(vehicle: Vehicle) -> dict[str, Any]:
     """Return the mapping of a vehicle file that describes the vehicle."""
     stds = vehicle.uncertainty
     data = {key: _with_std(value, stds.get(key)) for key, value in asdict(vehicle).items()
-            if key not in ('uncertainty', 'motors')}
+            if key not in ('uncertainty', 'motors', 'products')}
     data['rotors'] = [{'position': _with_std(rotor.position, stds.get(_place_of(i))),
                        'spin': rotor.spin} for i, rotor in enumerate(vehicle.rotors)]
+    if any(vehicle.products):
+        (x, y, z), (xy, xz, yz) = data['inertia'], vehicle.products
+        data['inertia'] = [[x, xy, xz], [xy, y, yz], [xz, yz, z]]
     if math.isinf(vehicle.speed_max):
         del data['speed_max']
     if vehicle.motors is not None:
@@ -182,6 +197,32 @@ def write_vehicle(path: str | Path, vehicle: Vehicle) -> None:
         write_whole(path, text)
     except OSError as error:
         raise InputError(f'{path}: cannot be written: {error.strerror}') from None
+
+
+def _without_products(where: str, data: dict[str, Any]
+                      ) -> tuple[dict[str, Any], tuple[float, float, float]]:
+    """Return the mapping with the diagonal of a matrix of inertia, and the products beside it."""
+    rows = data['inertia']
+    if not (isinstance(rows, list) and rows and any(isinstance(row, list) for row in rows)):
+        return data, (0.0, 0.0, 0.0)
+    where = f'{where}: inertia'
+    if not (len(rows) == 3 and all(isinstance(row, list) and len(row) == 3 for row in rows)):
+        raise InputError(f'{where}: expected [Ixx, Iyy, Izz] or 3 rows of 3 numbers, kg m^2')
+    known = [[schema.uncertain(f'{where}[{i}][{j}]', entry) for j, entry in enumerate(row)]
+             for i, row in enumerate(rows)]
+
+    def product(i: int, j: int) -> float:
+        (one, std), (other, other_std) = known[i][j], known[j][i]
+        if std is not None or other_std is not None:
+            raise InputError(f'{where}[{i}][{j}]: only moments of inertia, on the diagonal, may '
+                             'have a std')
+        if abs(one - other) > SYMMETRIC * max(abs(known[k][k][0]) for k in range(3)):
+            raise InputError(f'{where}: {one:g} in row {i + 1} and {other:g} in row {j + 1}: the '
+                             'matrix of inertia is not symmetric')
+        return 0.5 * (one + other)
+
+    return ({**data, 'inertia': [rows[k][k] for k in range(3)]},
+            (product(0, 1), product(0, 2), product(1, 2)))
 
 
 def _with_std(value: Any, std: Any) -> Any:

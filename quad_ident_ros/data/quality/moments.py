@@ -57,9 +57,9 @@ def _factor(record: FlightRecord, vehicle: Vehicle, names: tuple[str, ...]) -> f
     if grid is None or not record.has(*names, 'wx', 'wy', 'wz'):
         return None
     rate = grid.smooth(grid.signal('wx', 'wy', 'wz'))
-    inertia = np.array(vehicle.inertia)
+    inertia = vehicle.inertia_matrix
     # Fast turns, as after the paper's steps, are held up by the air.
-    turned = (inertia * np.gradient(rate, grid.period, axis=0) + np.cross(rate, inertia * rate)
+    turned = (np.gradient(rate, grid.period, axis=0) @ inertia + np.cross(rate, rate @ inertia)
               + np.array(vehicle.rotational_drag) * np.abs(rate) * rate)[:, :2]
     given = grid.smooth(grid.held(*names))
     # Fast parts know no trim and no drag; steps that a flight begins with have none.

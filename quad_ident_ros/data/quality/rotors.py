@@ -114,9 +114,9 @@ def _told(record, vehicle):
     if frames.quaternion(record, vehicle) or frames.world(record, vehicle):
         return None   # rates about other axes: that is to be mended first
     rate = grid.smooth(grid.signal('wx', 'wy', 'wz'))
-    inertia = np.array(vehicle.inertia)
-    moment = _fast(grid, inertia * np.gradient(rate, grid.period, axis=0)
-                   + np.cross(rate, inertia * rate))
+    inertia = vehicle.inertia_matrix
+    moment = _fast(grid, np.gradient(rate, grid.period, axis=0) @ inertia
+                   + np.cross(rate, rate @ inertia))
     squared = _fast(grid, grid.smooth(grid.held(*names) ** 2))
     position = np.array([rotor.position for rotor in vehicle.rotors])
     lag, scores = max((_scores(grid, moment, squared, position, shift) for shift in
