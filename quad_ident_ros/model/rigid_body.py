@@ -144,7 +144,7 @@ def prepare(v: np.ndarray, places: np.ndarray, theta: np.ndarray, s: np.ndarray,
             rotors[j, RZ, i] = places[j, 2] - s[COM_Z, i]
 
 
-@compiled(fused=True, inlined=True)
+@compiled(fused=True)
 def _invert(v: np.ndarray, s: np.ndarray) -> None:
     """Write the inverse of the matrix of inertia, its moments as they are in s."""
     for i in range(s.shape[1]):
@@ -158,7 +158,7 @@ def _invert(v: np.ndarray, s: np.ndarray) -> None:
             s[row, i] *= per
 
 
-@compiled(fused=True, inlined=True)
+@compiled(fused=True)
 def _turn_with_products(v: np.ndarray, s: np.ndarray, dx: np.ndarray) -> None:
     """Write how the rate changes by I w' = M - w x I w where the inertia has products."""
     for i in range(s.shape[1]):
