@@ -24,9 +24,10 @@ class Candidate:
     """
     An effect in one of its forms, or of one rotor, and its columns.
 
-    form: the name of the form; usual: whether it is the one that most know; plain: whether it has
-    no more parameters than that; share: its part of the effect's prior probability; nuisance: the
-    greybox.nuisances.Nuisance that it is instead of an effect, or None.
+    form: the name of the form; usual: whether it is that of the vehicle file, or else the one that
+    most know; plain: whether it has no more parameters than that; share: its part of the effect's
+    prior probability; nuisance: the greybox.nuisances.Nuisance that it is instead of an effect, or
+    None.
     """
 
     effect: str

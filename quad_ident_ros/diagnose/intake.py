@@ -132,8 +132,8 @@ def _beside_records(vehicle: Vehicle, records: Sequence[FlightRecord], findings:
     if motors and any(driven) and not all(driven):
         [with_commands, without] = (records[driven.index(kind)].info.get('source', 'a flight')
                                     for kind in (False, True))
-        raise InputError(f'{without} has rotor speeds and no commands, and {with_commands} has: '
-                         f'with {motors[0]} in the vehicle file, diagnose them apart')
+        raise InputError(f'{without} has measured rotor speeds alone, and {with_commands} has '
+                         f'commands: with {motors[0]} in the vehicle file, diagnose them apart')
     inertial = any(is_inertial(record) for record in records)
     no_height = not all(record.has(*POSITION) for record in records)
     gone = {PLACE[name, parameter.name] for name, form in FORMS for parameter in form.parameters
