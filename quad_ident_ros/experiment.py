@@ -23,7 +23,8 @@ from quad_ident_ros.model.simulate import (
     simulate,
     Simulation,
 )
-from quad_ident_ros.model.vehicle import load_vehicle, Vehicle
+from quad_ident_ros.model.vehicle import Vehicle
+from quad_ident_ros.vehicle_files.load import load_vehicle
 
 INPUTS = ('U1', 'U2', 'U3', 'U4')
 NOISE_UNITS = {'attitude': 'rad', 'altitude': 'm', 'position': 'm', 'velocity': 'm/s',

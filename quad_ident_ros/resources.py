@@ -77,7 +77,7 @@ def read_yaml(path):
     except OSError as error:
         raise InputError(f'{path}: cannot be read: {error.strerror}') from None
     except UnicodeDecodeError:
-        what = _kind_of(path)
+        what = kind_of(path)
         raise InputError(f'{path}: ' + (f'this is {what}; ' if what else 'is not text in UTF-8; ')
                          + 'expected a YAML file') from None
     except InputError:
@@ -116,7 +116,7 @@ def _text_of(path):
         raise InputError(f'{path}: this is a device; name a file')
     with open(path, 'rb') as file:
         data = file.read(MOST_BYTES + 1)
-    what = _kind_of(path) if len(data) > MOST_BYTES else ''
+    what = kind_of(path) if len(data) > MOST_BYTES else ''
     if what:
         raise InputError(f'{path}: this is {what}; expected a YAML file')
     if len(data) > MOST_BYTES:
@@ -125,7 +125,7 @@ def _text_of(path):
     return data.decode('utf-8')
 
 
-def _kind_of(path):
+def kind_of(path):
     """Return what a file is by its content, such as a picture or a log, or ''."""
     from quad_ident_ros.data.readers.others import START, title_of
     from quad_ident_ros.data.readers.registry import READERS

@@ -15,8 +15,8 @@ from quad_ident_ros.errors import InputError
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import SENSORS
 from quad_ident_ros.flight.trajectories import TRAJECTORIES
-from quad_ident_ros.model.vehicle import load_vehicle
 from quad_ident_ros.report.data import write_json
+from quad_ident_ros.vehicle_files.load import load_vehicle
 
 
 def _effects_text():

@@ -15,10 +15,10 @@ from quad_ident_ros.identify.identify import identify, Settings, with_budget
 from quad_ident_ros.identify.methods import METHODS
 from quad_ident_ros.identify.result import as_data
 from quad_ident_ros.identify.vp import COMPLEX_PENALTY
-from quad_ident_ros.model.vehicle import load_vehicle
 from quad_ident_ros.report.data import write_json
 from quad_ident_ros.report.picture import save_responses
 from quad_ident_ros.report.table import console, identification_table, legend, notes
+from quad_ident_ros.vehicle_files.load import load_vehicle
 
 
 def add(commands, said):

@@ -17,6 +17,7 @@ COMMANDS = {
     'identify': 'fit K/((s+a)(s+b)) to recorded flights',
     'fit': 'estimate mass, inertia, drag, motor lag, ... from flights',
     'diagnose': 'say where the sim-to-real gap lies, what causes it, how far it shrinks',
+    'vehicle': "read a vehicle from a simulator's file (MJCF, SDF, URDF, rotorpy, ...)",
     'info': 'say what is in a file or flight record, and what is wrong with it',
     'convert': 'write a flight record in another format',
     'paper': "reproduce the paper's tables and figures, and check its claims",
@@ -34,6 +35,7 @@ examples:
   quad_ident identify flights/*.csv --trim hover --initial-state rest
   quad_ident fit flight.csv --vehicle v.yaml --free inertia,thrust_coefficient,motor_lag
   quad_ident diagnose a.csv b.csv --vehicle v.yaml what the vehicle has beside its model
+  quad_ident vehicle x500/model.sdf -o v.yaml      the vehicle that a simulator flies
   quad_ident info flight.csv                       what is in a flight, and what is wrong
   quad_ident convert flight.csv flight.mcap        the same flight as a bag
   quad_ident paper                                 reproduce the paper and check its claims

@@ -13,7 +13,8 @@ from quad_ident_ros.data.thrust_level import carried_by_log
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.experiment import check_noise
 from quad_ident_ros.memory import give_back
-from quad_ident_ros.model.vehicle import load_vehicle, Vehicle
+from quad_ident_ros.model.vehicle import Vehicle
+from quad_ident_ros.vehicle_files.load import load_vehicle
 
 AUTO = 'auto'
 

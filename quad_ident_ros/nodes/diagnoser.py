@@ -16,7 +16,6 @@ from quad_ident_ros.diagnose.rules import RULES
 from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.greybox.errors import UNITS
-from quad_ident_ros.model.vehicle import load_vehicle
 from quad_ident_ros.nodes import process
 from quad_ident_ros.nodes.messages import ERROR, OK, table_message, WARN
 from quad_ident_ros.nodes.parameters import help_text, ParameterSpec
@@ -25,6 +24,7 @@ from quad_ident_ros.nodes.record_worker import RecordWorker, Words
 from quad_ident_ros.nodes.stamped import StampedGap
 from quad_ident_ros.report.diagnosis import closed_of, verdict_line
 from quad_ident_ros.tolerances import EXAMPLE, rules_from
+from quad_ident_ros.vehicle_files.load import load_vehicle
 from quad_ident_ros.warm_up import warm_up_diagnosis
 
 WORDS = Words('diagnose', 'diagnosis', 'diagnosing', 'diagnosed')

@@ -20,13 +20,13 @@ from quad_ident_ros.identify.result import as_data, error_table, parameter_table
 from quad_ident_ros.identify.search import SwarmSettings
 from quad_ident_ros.identify.signals import FEWEST, OUTPUTS
 from quad_ident_ros.identify.vp import COMPLEX_PENALTY
-from quad_ident_ros.model.vehicle import load_vehicle
 from quad_ident_ros.nodes import process
 from quad_ident_ros.nodes.messages import OK, parameter_message, WARN
 from quad_ident_ros.nodes.parameters import help_text, ParameterSpec
 from quad_ident_ros.nodes.qos import latched
 from quad_ident_ros.nodes.record_worker import RecordWorker, Words
 from quad_ident_ros.nodes.stamped import StampedParameters
+from quad_ident_ros.vehicle_files.load import load_vehicle
 from quad_ident_ros.warm_up import warm_up
 
 WORDS = Words('identify', 'fit', 'fitting', 'fitted')

@@ -1,0 +1,30 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The kinds of files that vehicles are read from, told by their content."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from quad_ident_ros.vehicle_files import rotorpy
+from quad_ident_ros.vehicle_files.reading import Draft
+from quad_ident_ros.vehicle_files.source import Source
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A kind of file: name, what it is called, whether a text is one, and its reader."""
+
+    name: str
+    title: str
+    tells: Callable[[str], bool]
+    read: Callable[[Source], Draft]
+
+
+KINDS = (
+    Kind('rotorpy', 'a dictionary of rotorpy', rotorpy.tells, rotorpy.read),
+)
+
+
+def kind_of(text: str) -> Kind | None:
+    """Return the kind of a text, or None."""
+    return next((kind for kind in KINDS if kind.tells(text)), None)

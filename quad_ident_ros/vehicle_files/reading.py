@@ -1,0 +1,233 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What was read of a vehicle in a simulator's file, from where, and what is missing."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+import math
+from typing import Any
+
+import numpy as np
+
+from quad_ident_ros import schema
+from quad_ident_ros.effects.registry import mapping, Values, vector
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.model.vehicle import Vehicle, vehicle_from_mapping
+from quad_ident_ros.vehicle_files.bodies import Body, check_body, principal_tilt
+
+NEEDED = ('mass', 'inertia', 'gravity', 'thrust_coefficient', 'torque_coefficient', 'rotors')
+"""Keys of the vehicle file without which there is no vehicle."""
+SPINS = 'spins'
+"""Stands for the spins of the rotors where their places are known."""
+SETTABLE = {
+    'mass': 'kg', 'inertia': '[Ixx, Iyy, Izz] in kg m2', 'gravity': 'm/s2',
+    'thrust_coefficient': 'N/(rad/s)^2', 'torque_coefficient': 'N m/(rad/s)^2',
+    'rotors': '[{position: [x, y, z], spin: 1}, ...] in m from the centre of mass',
+    SPINS: '[1, -1, ...], 1 where the reaction torque on the body is about +z',
+    'rotor_radius': 'm', 'speed_min': 'rad/s', 'speed_max': 'rad/s'}
+"""What may be supplied where a file does not have it, and how it is written."""
+FULL_SPEED = 1000.0     # rad/s at full thrust, where a file knows thrusts and no speeds
+NOTICED = 1e-3          # m of the centre of mass from the origin of the file
+FEW_PRODUCTS = 1e-6     # of the largest moment of inertia: less is rounding
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One thing that was read: key of the vehicle file, value, unit, and its place in the file."""
+
+    key: str
+    value: Any
+    unit: str
+    place: str
+
+
+@dataclass(frozen=True)
+class Reading:
+    """
+    What came of a file: the vehicle, None where something needed is missing.
+
+    kind: of what kind the file is; read: of Entry; missing: {key: what is missing and how to
+    supply it}; assumed: what was taken as given, and why.
+    """
+
+    path: str
+    kind: str
+    vehicle: Vehicle | None
+    read: tuple[Entry, ...]
+    missing: dict[str, str]
+    assumed: tuple[str, ...]
+
+
+@dataclass
+class Draft:
+    """
+    A vehicle on its way from a file: what the reader of a kind fills in.
+
+    data: as a vehicle file has it, rotors without a spin where it is not known; products: Ixy,
+    Ixz, Iyz, kg m^2; effects: those of the nominal vehicle, which their numbers may hang on.
+    """
+
+    where: str
+    name: str
+    data: dict[str, Any] = field(default_factory=dict)
+    read: list[Entry] = field(default_factory=list)
+    assumed: list[str] = field(default_factory=list)
+    reasons: dict[str, str] = field(default_factory=dict)
+    products: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    effects: Callable[[Vehicle], Values] = field(default=lambda _: {})
+
+    def take(self, key: str, value: Any, unit: str, place: str) -> None:
+        """Enter a value of the vehicle file and where it was read."""
+        self.data[key] = value
+        self.note(key, value, unit, place)
+
+    def note(self, key: str, value: Any, unit: str, place: str) -> None:
+        """Say that something was read that is no key of the vehicle file."""
+        self.read.append(Entry(key, value, unit, place))
+
+    def take_body(self, body: Body, place: str, inertia_place: str = '') -> None:
+        """Enter mass and inertia; rotors and other places count from the centre of mass."""
+        inertia_place = inertia_place or place
+        if body.mass <= 0.0:
+            raise InputError(f'{self.where}: {place}: the vehicle has no mass: no body of it has '
+                             'an inertial with a mass; give it one')
+        remark = check_body(f'{self.where}: {inertia_place}', body)
+        if remark:
+            self.assumed.append(f'{inertia_place}: {remark}')
+        self.take('mass', float(body.mass), 'kg', place)
+        self.take('inertia', [float(value) for value in np.diag(body.inertia)], 'kg m2',
+                  inertia_place)
+        products = body.inertia[[0, 0, 1], [1, 2, 2]]
+        if np.max(np.abs(products)) > FEW_PRODUCTS * np.max(np.diag(body.inertia)):
+            self.products = tuple(float(value) for value in products)   # type: ignore[assignment]
+            self.note('products of inertia', list(self.products), 'kg m2',
+                      inertia_place)
+        if np.linalg.norm(body.centre) > 0.0:
+            self.note('centre of mass', [round(float(value), 9) for value in body.centre], 'm',
+                      place)
+        if np.linalg.norm(body.centre) > NOTICED:
+            self.assumed.append(
+                'positions of records are taken as those of the centre of mass, which lies '
+                f'{1000 * np.linalg.norm(body.centre):.3g} mm from the origin of {place}')
+
+    def take_rotors(self, positions: Sequence[np.ndarray], spins: Sequence[int | None],
+                    place: str) -> None:
+        """Enter the rotors: places from the centre of mass, m, and spins, None where unknown."""
+        rotors = [{'position': [round(float(value), 12) + 0.0 for value in position],
+                   **({} if spin is None else {'spin': int(spin)})}
+                  for position, spin in zip(positions, spins, strict=True)]
+        self.take('rotors', rotors, 'm', place)
+
+
+def finished(draft: Draft, kind: str, supplied: Mapping[str, Any] | None = None) -> Reading:
+    """
+    Return the Reading of a Draft, with what the user supplied where the file has nothing.
+
+    Args: kind: what kind the file is; supplied: {key of SETTABLE: value}. Raises InputError for a
+    value that no vehicle can have, with its place in the file.
+    """
+    data, read = dict(draft.data), list(draft.read)
+    for key, value in (supplied or {}).items():
+        _supply(draft, data, read, key, value)
+    missing = {key: _asked(key, draft) for key in NEEDED if key not in data}
+    if 'rotors' in data and not all('spin' in rotor for rotor in data['rotors']):
+        missing[SPINS] = _asked(SPINS, draft)
+    assumed = [*draft.assumed, *_left_out(draft)]
+    if missing:
+        return Reading(draft.where, kind, None, tuple(read), missing, tuple(assumed))
+    try:
+        vehicle = vehicle_from_mapping({'name': draft.name, **data}, draft.where)
+        theta = vector(draft.effects(vehicle), vehicle, f'{draft.where}: effects')
+    except InputError as error:
+        raise InputError(f'{error}{_read_from(str(error), draft)}') from None
+    vehicle = replace(vehicle, effects=mapping(theta))
+    return Reading(draft.where, kind, vehicle, tuple(read), {}, tuple(assumed))
+
+
+def needed_vehicle(reading: Reading) -> Vehicle:
+    """Return the vehicle of a Reading; InputError that asks for what the file does not have."""
+    if reading.vehicle is None:
+        sets = ' '.join(f'--set {key}=...' for key in reading.missing)
+        raise InputError(f'{reading.path}: {reading.kind} without {", ".join(reading.missing)}; '
+                         f'run `quad_ident vehicle {reading.path} {sets} -o vehicle.yaml` and '
+                         'give that file')
+    return reading.vehicle
+
+
+def per_sum_of_speeds(coefficient: float, vehicle: Vehicle) -> float:
+    """Return, per air velocity at hover, what a coefficient per rotor speed makes, all rotors."""
+    return coefficient * len(vehicle.rotors) * vehicle.hover_speed
+
+
+def thrusts_as_commands(draft: Draft, highest: float, ratio: float | None, place: str,
+                        lowest: float = 0.0, signal: tuple[float, float] | None = None) -> None:
+    """
+    Enter the coefficients and `motors` of a simulator whose commands are thrusts, not speeds.
+
+    Args: lowest, highest: thrust of a rotor, N; ratio: torque over thrust, m, or None; signal:
+    commands at no and at full thrust, the thrusts themselves where None.
+    """
+    coefficient = highest / FULL_SPEED ** 2
+    draft.take('thrust_coefficient', coefficient, 'N/(rad/s)^2', place)
+    if ratio is not None:
+        draft.take('torque_coefficient', ratio * coefficient, 'N m/(rad/s)^2', place)
+    low, high = signal or (lowest, highest)
+    draft.data['speed_max'] = FULL_SPEED
+    draft.data['motors'] = {'kind': 'normalised', 'minimum': low, 'maximum': high,
+                            'thrust': {'offset': lowest, 'gain': highest - lowest,
+                                       'exponent': 1.0}}
+    draft.assumed.append(
+        f'a command is a thrust here and the file knows no speeds: {FULL_SPEED:g} rad/s stand for '
+        f'the most, {highest:.6g} N; `motors` has the map of commands from {low:g} to {high:g}')
+
+
+def _supply(draft: Draft, data: dict[str, Any], read: list[Entry], key: str, value: Any) -> None:
+    """Enter what the user supplies; InputError where the file has it, or nobody knows it."""
+    if key not in SETTABLE:
+        raise schema.unknown_key('--set', key, SETTABLE)
+    rotors = data.get('rotors')
+    has = (all('spin' in rotor for rotor in rotors or ({},)) if key == SPINS else
+           any(entry.key == key for entry in read))
+    if has:
+        place = next((entry.place for entry in read
+                      if entry.key == ('rotors' if key == SPINS else key)), draft.where)
+        raise InputError(f'--set {key}: the file has it, at {place}; change it there, or in the '
+                         'vehicle file that -o writes')
+    if key != SPINS:
+        data[key] = value
+    elif rotors is None:
+        raise InputError('--set spins: the file has no rotors; give --set rotors, places and '
+                         'spins together')
+    elif not isinstance(value, list) or len(value) != len(rotors):
+        raise InputError(f'--set spins: expected a list of {len(rotors)}, one a rotor, got '
+                         f'{schema.shown(value)}')
+    else:
+        data['rotors'] = [{**rotor, 'spin': spin}
+                          for rotor, spin in zip(rotors, value, strict=True)]
+    read.append(Entry(key, value, '', '--set'))
+
+
+def _asked(key: str, draft: Draft) -> str:
+    """Return what to say of something that is missing: why, and how to supply it."""
+    reason = draft.reasons.get(key, 'the file does not have it')
+    return f'{reason}; --set {key}={SETTABLE[key]}'
+
+
+def _left_out(draft: Draft) -> list[str]:
+    """Return what of a file the vehicle cannot hold: the products of inertia."""
+    if not any(draft.products):
+        return []
+    xx, yy, zz = draft.data['inertia']
+    xy, xz, yz = draft.products
+    inertia = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+    return [f'products of inertia Ixy {xy:.4g}, Ixz {xz:.4g}, Iyz {yz:.4g} kg m2 are left out: '
+            'the vehicle has a diagonal inertia; its principal axes are tilted by '
+            f'{math.degrees(principal_tilt(inertia)):.3g} deg']
+
+
+def _read_from(message: str, draft: Draft) -> str:
+    """Return the place in the file of the key that a message is about, or ''."""
+    rest = message.removeprefix(f'{draft.where}: ')
+    key = rest.partition(':')[0].partition('[')[0]
+    place = next((entry.place for entry in draft.read if entry.key == key), '')
+    return f'; it was read from {place}' if place and rest != message else ''
