@@ -26,7 +26,7 @@ def test_force_and_moment_are_those_of_rotorpy(name):
                              rate], axis=1)
     states[:, 2] = 100.0
     out = np.empty((count, 13))
-    theta = np.tile(vector(vehicle.effects, vehicle), (count, 1))
+    theta = vector(vehicle.effects, vehicle)
     derivatives(vehicle_vector(vehicle)[:, None], rotor_table(vehicle), theta, np.zeros(count),
                 states, speeds, np.zeros((count, 4)), np.zeros((count, INPUT)), out)
     for k in range(count):

@@ -1,0 +1,229 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""SDF models of Gazebo with motor plugins."""
+
+from collections.abc import Iterator
+import os
+from pathlib import Path
+
+import numpy as np
+
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.vehicle_files.bodies import Body, check_body, combined, spun, symmetric
+from quad_ident_ros.vehicle_files.gz_motors import (
+    check_numbers,
+    motor_plugins,
+    MotorPlugin,
+    take_motors,
+)
+from quad_ident_ros.vehicle_files.reading import Draft
+from quad_ident_ros.vehicle_files.rotor_axes import check_axis
+from quad_ident_ros.vehicle_files.sdf_frames import child_text, MODEL, pose_of, Tree, tree_of
+from quad_ident_ros.vehicle_files.source import one_of, Source
+from quad_ident_ros.vehicle_files.xml_tree import Element, parse, root_of
+
+GRAVITY = 9.8       # m/s^2, of SDF where a world does not say it
+MOST_BYTES = 2 ** 22
+PATHS = 'GZ_SIM_RESOURCE_PATH', 'GAZEBO_MODEL_PATH'
+"""Variables of the environment with the folders in which Gazebo looks for models."""
+
+
+def tells(text: str) -> bool:
+    """Whether a text is an SDF file."""
+    return root_of(text) == 'sdf'
+
+
+def read(source: Source) -> Draft:
+    """Return the Draft of an SDF model; raises InputError."""
+    root = parse(source.path, source.text)
+    gravity = GRAVITY, ''
+    trees: dict[str, tuple[Element, Tree]] = {}
+    for holder in (root, *root.all('world')):
+        for stated in holder.all('gravity'):
+            gravity = float(np.linalg.norm(stated.content(3))), stated.place()
+        for model in _models(holder, source):
+            tree = tree_of(model, _included)
+            if _plugins(tree):
+                trees[model.get('name')] = model, tree
+    if not trees and not source.wanted:
+        raise InputError(f'{source.path}: no model in it has a plugin MulticopterMotorModel; give '
+                         'the model.sdf that has the motors')
+    model, tree = one_of(source, trees, 'model with motors')
+    draft = Draft(source.path, model.get('name') or source.stem)
+    _take_tree(draft, model, tree)
+    draft.data['gravity'] = gravity[0]
+    if gravity[1]:
+        draft.note('gravity', gravity[0], 'm/s2', gravity[1])
+    else:
+        draft.assumed.append(f'gravity {GRAVITY:g} m/s2: that of SDF where no world says it')
+    return draft
+
+
+def _take_tree(draft: Draft, model: Element, tree: Tree) -> None:
+    """Enter the bodies, rotors and motors of a model."""
+    plugins = _plugins(tree)
+    check_numbers([plugin for plugin, _ in plugins])
+    joints = [_joint(tree, plugin, scope) for plugin, scope in plugins]
+    links = [_link(tree, scope + plugin.link, plugin.element) for plugin, scope in plugins]
+    base = _parent(tree, *joints[0])
+    frame = tree.place_of(base).inverse
+    spinning, bodies = [], []
+    for name, link in tree.links.items():
+        body, fixed = _body(draft, link), frame @ tree.place_of(name)
+        if name in links:
+            axis = _axis(tree, joints[links.index(name)], link)
+            spinning.append(float(axis @ body.inertia @ axis))
+            body = spun(body, axis)
+        if body.mass > 0.0:
+            draft.note(f'link {name}', body.mass, 'kg', _place(draft, link, 'inertial'))
+        bodies.append(body.placed(fixed))
+    if not sum(body.mass for body in bodies) > 0.0:
+        raise InputError(f'{model.where}: no link of it has a mass; add <inertial>')
+    whole = combined(bodies)
+    draft.take_body(whole, _place(draft, model, f'{len(bodies)} links, axes of {base}'))
+    places = []
+    for (plugin, _), name in zip(plugins, links, strict=True):
+        at = frame @ tree.place_of(name)
+        check_axis(draft, at.rotation[:, 2], plugin.element.where)
+        hub = at.position + at.rotation @ pose_of_inertial(tree.links[name])[0]
+        places.append(hub - whole.centre)
+    draft.take_rotors(places, [plugin.spin for plugin, _ in plugins],
+                      ', '.join(_place(draft, plugin.element) for plugin, _ in plugins[:1])
+                      + f' and {len(plugins) - 1} more')
+    draft.assumed.append('the inertia of a rotor is its mean over a turn')
+    moving = [name for name, (joint, _) in tree.joints.items()
+              if joint.get('type') != 'fixed' and name not in
+              [scope + plugin.joint for plugin, scope in plugins]]
+    if moving:
+        draft.assumed.append(f'joints that move and are no rotors ({", ".join(moving[:5])}) are '
+                             'taken as fixed where they start')
+    take_motors(draft, [plugin for plugin, _ in plugins], spinning,
+                lambda element, tag: _place(draft, element, tag))
+
+
+def pose_of_inertial(link: Element) -> tuple[np.ndarray, np.ndarray]:
+    """Return the centre of mass (3,) of a link in its frame, m, and the axes of its inertia."""
+    inertial = link.first('inertial')
+    if inertial is None:
+        return np.zeros(3), np.eye(3)
+    stated, _ = pose_of(inertial)
+    return stated.position, stated.rotation
+
+
+def _body(draft: Draft, link: Element) -> Body:
+    """Return the Body of a link, in its frame."""
+    inertial = link.first('inertial')
+    if inertial is None:
+        raise InputError(f'{link.where}: it has no <inertial>, for which Gazebo takes 1 kg and '
+                         '1 kg m2; state its mass and inertia')
+    if inertial.get('auto') in ('true', '1'):
+        raise InputError(f'{inertial.where}: auto="true" has Gazebo compute it from the shapes; '
+                         'write its mass and inertia as numbers')
+    matrix = inertial.first('inertia')
+    if matrix is None:
+        raise InputError(f'{inertial.where}: <inertia> is missing, for which Gazebo takes 1 kg '
+                         'm2; state it')
+    centre, rotation = pose_of_inertial(link)
+    moments = symmetric(*(matrix.value(tag, 1.0) for tag in ('ixx', 'iyy', 'izz')),
+                        *(matrix.value(tag, 0.0) for tag in ('ixy', 'ixz', 'iyz')))
+    body = Body(inertial.value('mass', 1.0), centre, rotation @ moments @ rotation.T)
+    remark = check_body(f'{inertial.where} of link {link.get("name")!r}', body)
+    if remark:
+        draft.assumed.append(f'{_place(draft, link, "inertial")}: {remark}')
+    return body
+
+
+def _plugins(tree: Tree) -> list[tuple[MotorPlugin, str]]:
+    """Return the motor plugins of a tree with the scope of the names in each, in their order."""
+    found = [(plugin, scope) for holder, scope in tree.holders for plugin in motor_plugins(holder)]
+    return sorted(found, key=lambda each: each[0].number)
+
+
+def _joint(tree: Tree, plugin: MotorPlugin, scope: str) -> tuple[Element, str]:
+    """Return the joint of a motor, with the scope of the names in it."""
+    if scope + plugin.joint not in tree.joints:
+        raise InputError(f'{plugin.element.where}: no joint {plugin.joint!r} is in the model; '
+                         'correct jointName, or give the file that has it')
+    return tree.joints[scope + plugin.joint]
+
+
+def _link(tree: Tree, name: str, element: Element) -> str:
+    if name not in tree.links:
+        raise InputError(f'{element.where}: no link {name!r} is in the model; correct the name')
+    return name
+
+
+def _parent(tree: Tree, joint: Element, scope: str) -> str:
+    """Return the full name of the link that a rotor's joint hangs on."""
+    return _link(tree, scope + child_text(joint, 'parent'), joint)
+
+
+def _axis(tree: Tree, joint: tuple[Element, str], link: Element) -> np.ndarray:
+    """Return the unit axis (3,) of a joint in the axes of its link."""
+    element, scope = joint
+    stated = element.first('axis')
+    vector = None if stated is None else stated.first('xyz')
+    axis = np.array([0.0, 0.0, 1.0]) if vector is None else vector.content(3)
+    if not np.linalg.norm(axis) > 0.0:
+        raise InputError(f'{element.where}: its axis is 0 0 0; correct it')
+    name = scope + element.get('name')
+    given = vector.get('expressed_in') if vector is not None else ''
+    at = name if not given else MODEL if given == MODEL else scope + given
+    if at != MODEL and at not in tree.frames:
+        raise InputError(f'{element.where}: expressed_in {given!r} is not in the model')
+    this = next(key for key, each in tree.links.items() if each is link)
+    rotation = tree.place_of(this).rotation.T @ tree.place_of(at).rotation
+    return rotation @ axis / np.linalg.norm(axis)
+
+
+def _models(holder: Element, source: Source) -> Iterator[Element]:
+    """Give the models of a world or a file; those that a world includes and that are there."""
+    yield from (model for model in holder.all('model')
+                if not (model.first('static') is not None
+                        and child_text(model, 'static') in ('true', '1')))
+    for include in holder.all('include'):
+        uri = child_text(include, 'uri')
+        if _found(source.path, uri) is not None:
+            yield _included(include)
+
+
+def _included(element: Element) -> Element:
+    """Return the <model> of the file that an <include> names; InputError."""
+    uri = child_text(element, 'uri')
+    found = _found(element.path, uri)
+    if found is None:
+        raise InputError(f'{element.where}: {uri[:100]} was not found beside the model or in '
+                         f'{PATHS[0]}; set that to the folder of the models, or give the whole '
+                         'model as `gz sdf -p` prints it')
+    with open(found, 'rb') as file:
+        text = file.read(MOST_BYTES + 1)
+    if len(text) > MOST_BYTES:
+        raise InputError(f'{found}: is larger than {MOST_BYTES // 2 ** 20} MB: no model is')
+    models = parse(str(found), text.decode('utf-8', 'replace')).all('model')
+    if len(models) != 1:
+        raise InputError(f'{found}: expected one <model>, got {len(models)}')
+    return models[0]
+
+
+def _found(path: str, uri: str) -> Path | None:
+    """Return the SDF file that a URI stands for in a file, or None."""
+    scheme, sign, name = uri.partition('://')
+    if sign and scheme not in ('model', 'file'):
+        return None
+    name = name if sign else uri
+    folders = [Path(path).resolve().parent.parent, Path(path).resolve().parent]
+    for variable in PATHS:
+        folders += [Path(each) for each in os.environ.get(variable, '').split(os.pathsep) if each]
+    for folder in folders:
+        place = folder / name
+        for file in (place, place / 'model.sdf'):
+            if file.is_file():
+                return file
+    return None
+
+
+def _place(draft: Draft, element: Element, what: str = '') -> str:
+    """Return the place of an element, with its file where it is another than that of the draft."""
+    other = '' if element.path == draft.where else (
+        os.path.relpath(element.path, Path(draft.where).parent) + ' ')
+    return other + element.place(what)
