@@ -133,7 +133,7 @@ def test_the_body_axes_are_those_of_the_link_that_carries_the_rotors():
 
 
 def test_poses_relative_to_frames_and_in_degrees_are_followed():
-    text = WHOLE.replace("<pose>0.2 -0.25 0.06 0.0 0 0</pose>",
+    text = WHOLE.replace('<pose>0.2 -0.25 0.06 0.0 0 0</pose>',
                          "<pose relative_to='arm' degrees='true'>0.1 0 0 0 0 90</pose>")
     assert text != WHOLE
     text = text.replace("<model name='quad'>", "<model name='quad'><frame name='arm'>"
@@ -159,7 +159,7 @@ def test_an_included_model_beside_it_is_read(tmp_path, merge):
 
 
 def test_an_include_that_is_not_there_is_named_with_how_to_mend_it():
-    said = refused(model("\n<include><uri>model://base</uri></include>", motors()))
+    said = refused(model('\n<include><uri>model://base</uri></include>', motors()))
     assert 'line 4: <include>: model://base was not found beside the model' in said
     assert '`gz sdf -p`' in said
 
@@ -167,7 +167,7 @@ def test_an_include_that_is_not_there_is_named_with_how_to_mend_it():
 def test_models_that_include_one_another_end(tmp_path):
     path = tmp_path / 'a' / 'model.sdf'
     path.parent.mkdir()
-    path.write_text(model("<include><uri>model://a</uri></include>", motors()))
+    path.write_text(model('<include><uri>model://a</uri></include>', motors()))
     with pytest.raises(InputError, match='include one another without end'):
         load_vehicle(path)
 
@@ -198,8 +198,8 @@ def test_seven_rotors_are_fine_and_tilted_ones_are_not():
     ('<mass>2.0</mass>', '<mass>two</mass>', "line 8: <mass>: expected a number, got 'two'"),
     ('<mass>2.0</mass>', '<mass>-2</mass>', 'a mass of -2 kg cannot be'),
     ('<izz>0.04</izz>', '<izz>0.4</izz>', "line 6: <inertial> of link 'base_link': no body"),
-    ("<jointName>rotor_1_joint", '<jointName>rotor_9_joint', "no joint 'rotor_9_joint' is in"),
-    ("<linkName>rotor_1<", '<linkName>prop<', "no link 'prop' is in the model"),
+    ('<jointName>rotor_1_joint', '<jointName>rotor_9_joint', "no joint 'rotor_9_joint' is in"),
+    ('<linkName>rotor_1<', '<linkName>prop<', "no link 'prop' is in the model"),
     ('<motorNumber>1<', '<motorNumber>0<', 'motorNumber 0 is that of the plugin in line'),
     ('<turningDirection>cw', '<turningDirection>right', "'right' is neither cw nor ccw"),
     ('<motorConstant>8e-06', '<motorConstant>0', 'motorConstant: 0 cannot be'),
