@@ -5,7 +5,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from quad_ident_ros.vehicle_files import rotorpy, sdf
+from quad_ident_ros.vehicle_files import mjcf, rotorpy, sdf, urdf
 from quad_ident_ros.vehicle_files.reading import Draft
 from quad_ident_ros.vehicle_files.source import Source
 
@@ -21,7 +21,9 @@ class Kind:
 
 
 KINDS = (
+    Kind('mjcf', 'an MJCF model of MuJoCo', mjcf.tells, mjcf.read),
     Kind('sdf', 'an SDF model of Gazebo', sdf.tells, sdf.read),
+    Kind('urdf', 'a URDF', urdf.tells, urdf.read),
     Kind('rotorpy', 'a dictionary of rotorpy', rotorpy.tells, rotorpy.read),
 )
 

@@ -15,14 +15,18 @@ from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.vehicle import Vehicle, vehicle_from_mapping
 from quad_ident_ros.vehicle_files.bodies import Body, check_body, principal_tilt
 
-NEEDED = ('mass', 'inertia', 'gravity', 'thrust_coefficient', 'torque_coefficient', 'rotors')
+TORQUE = 'torque_coefficient'
+NEEDED = ('mass', 'inertia', 'gravity', 'thrust_coefficient', TORQUE, 'rotors')
 """Keys of the vehicle file without which there is no vehicle."""
 SPINS = 'spins'
 """Stands for the spins of the rotors where their places are known."""
+RATIO = 'torque_over_thrust'
+"""Stands for the torque coefficient, where a thrust coefficient is known."""
 SETTABLE = {
     'mass': 'kg', 'inertia': '[Ixx, Iyy, Izz] in kg m2', 'gravity': 'm/s2',
     'thrust_coefficient': 'N/(rad/s)^2', 'torque_coefficient': 'N m/(rad/s)^2',
     'rotors': '[{position: [x, y, z], spin: 1}, ...] in m from the centre of mass',
+    RATIO: 'm, in the place of torque_coefficient',
     SPINS: '[1, -1, ...], 1 where the reaction torque on the body is about +z',
     'rotor_radius': 'm', 'speed_min': 'rad/s', 'speed_max': 'rad/s'}
 """What may be supplied where a file does not have it, and how it is written."""
@@ -129,6 +133,10 @@ def finished(draft: Draft, kind: str, supplied: Mapping[str, Any] | None = None)
     data, read = dict(draft.data), list(draft.read)
     for key, value in (supplied or {}).items():
         _supply(draft, data, read, key, value)
+    ratio = data.pop(RATIO, None)
+    if ratio is not None and 'thrust_coefficient' in data:
+        data['torque_coefficient'] = data['thrust_coefficient'] * schema.number(
+            f'--set {RATIO}', ratio, 0.0, exclusive=True)
     missing = {key: _asked(key, draft) for key in NEEDED if key not in data}
     if 'rotors' in data and not all('spin' in rotor for rotor in data['rotors']):
         missing[SPINS] = _asked(SPINS, draft)
@@ -187,10 +195,11 @@ def _supply(draft: Draft, data: dict[str, Any], read: list[Entry], key: str, val
         raise schema.unknown_key('--set', key, SETTABLE)
     rotors = data.get('rotors')
     has = (all('spin' in rotor for rotor in rotors or ({},)) if key == SPINS else
-           any(entry.key == key for entry in read))
+           any(entry.key == (TORQUE if key == RATIO else key) for entry in read))
     if has:
         place = next((entry.place for entry in read
-                      if entry.key == ('rotors' if key == SPINS else key)), draft.where)
+                      if entry.key == {SPINS: 'rotors', RATIO: TORQUE}.get(key, key)),
+                     draft.where)
         raise InputError(f'--set {key}: the file has it, at {place}; change it there, or in the '
                          'vehicle file that -o writes')
     if key != SPINS:
@@ -210,7 +219,8 @@ def _supply(draft: Draft, data: dict[str, Any], read: list[Entry], key: str, val
 def _asked(key: str, draft: Draft) -> str:
     """Return what to say of something that is missing: why, and how to supply it."""
     reason = draft.reasons.get(key, 'the file does not have it')
-    return f'{reason}; --set {key}={SETTABLE[key]}'
+    other = f', or {RATIO}, m' if key == TORQUE else ''
+    return f'{reason}; --set {key}={SETTABLE[key]}{other}'
 
 
 def _left_out(draft: Draft) -> list[str]:

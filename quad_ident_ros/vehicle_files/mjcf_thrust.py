@@ -1,0 +1,99 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Actuators of an MJCF model that push at a site: thrusts of rotors."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+import math
+
+import numpy as np
+
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.vehicle_files.bodies import Pose
+from quad_ident_ros.vehicle_files.mjcf_defaults import Model
+from quad_ident_ros.vehicle_files.xml_tree import Element
+
+_SAME = 1e-6        # relative: numbers of two rotors that are told apart
+
+
+@dataclass(frozen=True)
+class Push:
+    """
+    What an actuator does at a site, per unit of its control.
+
+    site: its name; force (3,) N, moment (3,) N m, axes of the vehicle's body; place (3,) m; limits
+    of the control, infinite where it has none; lag: time constant s of the force, 0 for none.
+    """
+
+    element: Element
+    site: str
+    force: np.ndarray
+    moment: np.ndarray
+    place: np.ndarray
+    limits: tuple[float, float]
+    lag: float
+
+    @property
+    def pushes(self) -> bool:
+        """Whether it is a force, not a moment alone."""
+        return float(np.linalg.norm(self.force)) > 0.0
+
+
+def pushes_of(model: Model, sites: dict[str, tuple[Pose, Element]]) -> list[Push]:
+    """Return what the actuators do at the sites (Pose in body axes) of a vehicle; InputError."""
+    found = []
+    for holder in model.root.all('actuator'):
+        for child in holder.children:
+            if child.get('site') in sites and child.tag in ('motor', 'general'):
+                element = model.whole(child, '')
+                found.append(_push(model, element, sites[child.get('site')][0]))
+    return found
+
+
+def common(pushes: Sequence[Push], values: Sequence[float], what: str) -> float:
+    """Return the value that all rotors share; InputError that names the first other one."""
+    for push, value in zip(pushes, values, strict=True):
+        if not math.isclose(value, values[0], rel_tol=_SAME, abs_tol=1e-12):
+            raise InputError(f'{push.element.where}: {what} is {value:.6g}, that of the one in '
+                             f'line {pushes[0].element.line} is {values[0]:.6g}; a vehicle has '
+                             'the same rotors everywhere')
+    return values[0]
+
+
+def _push(model: Model, element: Element, site: Pose) -> Push:
+    if 'refsite' in element.attributes:
+        raise InputError(f'{element.where}: refsite is not read; let it act in the axes of its '
+                         'site')
+    if (element.get('biastype', 'none') != 'none'
+            or element.get('gaintype', 'fixed') != 'fixed'):
+        raise InputError(f'{element.where}: its force hangs on more than its control (gaintype, '
+                         'biastype); rotors are read of actuators with a fixed gain')
+    gear = np.zeros(6)
+    words = element.get('gear', '1').split()
+    gear[:len(words)] = element.numbers('gear', len(words), (1.0,))[:6]
+    gain = float(element.numbers('gainprm', len(element.get('gainprm', '1').split()), (1.0,))[0])
+    kind = element.get('dyntype', 'none')
+    if kind not in ('none', 'filter', 'filterexact'):
+        raise InputError(f'{element.where}: dyntype {kind[:20]!r} is no lag; expected none or '
+                         'filter')
+    lag = 0.0 if kind == 'none' else float(element.numbers(
+        'dynprm', len(element.get('dynprm', '1').split()), (1.0,))[0])
+    return Push(element, element.get('site'), gain * site.rotation @ gear[:3],
+                gain * site.rotation @ gear[3:], site.position, _limits(model, element, gain),
+                lag)
+
+
+def _limits(model: Model, element: Element, gain: float) -> tuple[float, float]:
+    """Return the least and the most control, by its range and by that of the force."""
+    low, high = -math.inf, math.inf
+    for name, factor in (('ctrl', 1.0), ('force', gain)):
+        if f'{name}range' not in element.attributes:
+            continue
+        limited = element.get(f'{name}limited', 'auto')
+        if limited == 'false' or limited == 'auto' and model.compiler.get('autolimits') == 'false':
+            continue
+        if factor == 0.0:
+            raise InputError(f'{element.where}: a gain of 0 pushes nothing; correct gainprm')
+        ends = sorted(element.numbers(f'{name}range', 2) / factor)
+        low, high = max(low, ends[0]), min(high, ends[1])
+    return low, high

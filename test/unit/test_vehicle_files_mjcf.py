@@ -1,0 +1,228 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Vehicles in MJCF models, by hand and as MuJoCo itself has them."""
+
+import math
+
+import numpy as np
+import pytest
+
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.model.motors import rotor_speeds
+from quad_ident_ros.vehicle_files.kinds import kind_of
+from quad_ident_ros.vehicle_files.load import read_vehicle
+from quad_ident_ros.vehicle_files.source import Source
+
+ARMS = ((-0.14, -0.18), (-0.14, 0.18), (0.14, 0.18), (0.14, -0.18))
+SIGNS = (-1, 1, -1, 1)
+SITES = ''.join(f'<site name="thrust{k}" pos="{x} {y} 0.05"/>' for k, (x, y) in enumerate(ARMS))
+INERTIAL = '<inertial pos="0 0 0" mass="1.3" diaginertia="0.02 0.03 0.04"/>'
+
+
+def motors(gear='0 0 1 0 0 {}', extra='', tag='motor'):
+    return '<actuator>\n' + '\n'.join(
+        f'<{tag} class="quad" name="m{k}" site="thrust{k}" gear="'
+        + gear.format(f'{0.02 * sign:.17g}') + f'" {extra}/>' for k, sign in enumerate(SIGNS)
+    ) + '\n</actuator>'
+
+
+def model(body=INERTIAL, actuators=None, before='<compiler autolimits="true"/>', name='quad'):
+    return f"""<mujoco model="test">
+{before}
+<default><default class="quad"><motor ctrlrange="0 13"/>
+<geom mass="0"/></default></default>
+<worldbody>
+<light pos="0 0 2"/><geom type="plane" size="1 1 1"/>
+<body name="{name}" pos="0 0 0.1" childclass="quad">
+<freejoint/>
+{body}
+{SITES}
+</body>
+</worldbody>
+{motors() if actuators is None else actuators}
+</mujoco>
+"""
+
+
+def reading(text, wanted=''):
+    return read_vehicle(Source('quad.xml', text, wanted))
+
+
+def refused(text):
+    """Return the one line with which a text is refused."""
+    with pytest.raises(InputError) as error:
+        reading(text)
+    message = str(error.value)
+    assert message.startswith('quad.xml') and '\n' not in message and len(message) < 400
+    return message
+
+
+def test_the_numbers_are_those_of_the_file():
+    found = reading(model())
+    vehicle = found.vehicle
+    assert (vehicle.name, vehicle.mass, vehicle.gravity) == ('quad', 1.3, 9.81)
+    assert vehicle.inertia == (0.02, 0.03, 0.04)
+    assert [rotor.position for rotor in vehicle.rotors] == [(*arm, 0.05) for arm in ARMS]
+    assert [rotor.spin for rotor in vehicle.rotors] == list(SIGNS)
+    assert vehicle.torque_coefficient == pytest.approx(0.02 * vehicle.thrust_coefficient)
+    assert vehicle.effects == {}
+    lines = model().splitlines()
+    places = {entry.key: entry.place for entry in found.read}
+    first = int(places['rotors'].removeprefix('lines ').partition(',')[0])
+    assert 'name="m0"' in lines[first - 1]
+    assert '<body name="quad"' in lines[int(places['mass'].split()[1].strip(':')) - 1]
+
+
+def test_a_control_stands_for_its_thrust():
+    vehicle = reading(model()).vehicle
+    controls = np.array([[0.0, 1.0, 6.5, 13.0]])
+    speeds = rotor_speeds(vehicle.motors, controls, vehicle.thrust_coefficient)
+    np.testing.assert_allclose(vehicle.thrust_coefficient * speeds ** 2, controls, rtol=1e-12)
+    # Half the control, twice the gear: the same thrusts.
+    text = model(actuators=motors('0 0 2 0 0 {}').replace('0.02', '0.04')).replace('0 13', '0 6.5')
+    other = reading(text).vehicle
+    again = rotor_speeds(other.motors, controls / 2, other.thrust_coefficient)
+    np.testing.assert_allclose(again, speeds, rtol=1e-12)
+    assert other.torque_coefficient == pytest.approx(vehicle.torque_coefficient)
+
+
+def test_a_rotated_inertia_and_a_second_body_add_up_by_the_closed_form():
+    # A point of 0.1 kg at (0.3, 0, 0) beside 0.9 kg whose inertia is turned by 30 deg about z.
+    turned = '<inertial pos="0 0 0" mass="0.9" diaginertia="0.02 0.03 0.04" euler="0 0 30"/>'
+    point = ('<body name="point" pos="0.1 0 0"><inertial pos="0.2 0 0" mass="0.1" '
+             'diaginertia="1e-9 1e-9 1e-9"/></body>')
+    found = reading(model(turned + point))
+    c, s = math.cos(math.pi / 6), math.sin(math.pi / 6)
+    arm = 0.9 * 0.1 * 0.3 ** 2      # of the reduced mass
+    np.testing.assert_allclose(found.vehicle.inertia, (
+        0.02 * c * c + 0.03 * s * s, 0.02 * s * s + 0.03 * c * c + arm, 0.04 + arm), rtol=1e-6)
+    [products] = [entry.value for entry in found.read if entry.key == 'products of inertia']
+    np.testing.assert_allclose(products, ((0.02 - 0.03) * c * s, 0, 0), atol=1e-9)
+    np.testing.assert_allclose([rotor.position for rotor in found.vehicle.rotors],
+                               [(x - 0.03, y, 0.05) for x, y in ARMS], atol=1e-12)
+    assert any('30 mm from the origin' in text for text in found.assumed)
+
+
+def test_a_lag_of_the_thrust_becomes_a_lag_of_the_motors():
+    text = model(actuators=motors(extra='dyntype="filter" dynprm="0.04" ctrlrange="0 13"',
+                                  tag='general'))
+    assert reading(text).vehicle.effects == {'motor_lag': {'time_constant': 0.04}}
+
+
+def test_a_model_with_a_total_thrust_has_no_rotors():
+    total = """<actuator><motor site="thrust0" gear="0 0 1 0 0 0" ctrlrange="0 20"/>
+<motor site="thrust0" gear="0 0 0 1 0 0"/><motor site="thrust0" gear="0 0 0 0 1 0"/></actuator>"""
+    found = reading(model(actuators=total))
+    assert list(found.missing) == ['thrust_coefficient', 'torque_coefficient', 'rotors']
+    assert 'its controls are a thrust of all rotors and moments' in found.missing['rotors']
+
+
+def test_torques_that_are_controls_leave_spins_and_ratio_to_the_user():
+    apart = motors('0 0 1 0 0 0').replace('</actuator>', '') + ''.join(
+        f'<motor site="thrust{k}" gear="0 0 0 0 0 1" name="t{k}"/>' for k in range(4)
+    ) + '</actuator>'
+    found = reading(model(actuators=apart))
+    assert list(found.missing) == ['torque_coefficient', 'spins']
+    vehicle = read_vehicle(Source('quad.xml', model(actuators=apart)),
+                           {'torque_over_thrust': 0.02, 'spins': list(SIGNS)}).vehicle
+    assert vehicle == reading(model()).vehicle
+
+
+def test_of_two_vehicles_one_is_named():
+    text = model().replace('</worldbody>', '<body name="other"><freejoint/>' + INERTIAL
+                           + '<site name="s"/></body></worldbody>')
+    assert reading(text).vehicle.name == 'quad'     # nothing pushes the other
+    text = text.replace('</actuator>', '<motor site="s" gear="0 0 1" ctrlrange="0 9"/></actuator>')
+    assert 'several vehicles are in it (quad, other); name one: quad.xml:quad' in refused(text)
+    assert reading(text, 'quad').vehicle.mass == 1.3
+
+
+@pytest.mark.parametrize('old, new, said', [
+    ('mass="1.3"', 'mass="x"', "line 9: <inertial>: mass: expected a number, got 'x'"),
+    ('mass="1.3"', '', 'line 9: <inertial>: mass is missing; add it'),
+    ('0.02 0.03 0.04', '0.02 0.03 0.4', "line 7: <body name='quad'>: no body has this inertia"),
+    ('gear="0 0 1 0 0 -', 'gear="0 0.5 1 0 0 -', '26.6 deg off body z'),
+    ('gear="0 0 1 0 0 -0.02', 'gear="0 0 1 0 0 -0.03', 'torque over thrust is 0.02, that of the'),
+    ('class="quad" name="m0"', 'class="none" name="m0"', "no default class 'none' is in the"),
+    ('<light pos="0 0 2"/>', '<include file="x2.xml"/>', "<include>: 'x2.xml' is not followed"),
+    ('<light pos="0 0 2"/>', '<replicate count="2"/>', '<replicate>: it is not expanded here'),
+    (INERTIAL, '<geom type="mesh" mesh="frame" mass="1"/>', "the mesh 'frame', which is not read"),
+    (INERTIAL, '', "<body name='quad'>: it has no mass; give it an <inertial>"),
+    (INERTIAL, '<geom size="0.1" class="main" type="box"/>', 'size: a box has 3, got 1'),
+    ('</mujoco>', '', 'is no whole XML'),
+    ('<mujoco model="test">', '<!DOCTYPE a [<!ENTITY b "c">]><mujoco model="test">', '(DTD)'),
+    ('ctrlrange="0 13"', 'ctrlrange="0 0"', 'leave no thrust; correct ctrlrange'),
+])
+def test_a_bad_model_is_refused_with_its_line(old, new, said):
+    assert old in model()
+    assert said in refused(model().replace(old, new, 1))
+
+
+def test_it_is_told_by_its_content():
+    assert kind_of(model()).name == 'mjcf'
+
+
+GEOMS = """
+<geom class="main" type="box" size="0.06 0.03 0.02" pos="0.04 0 0.02" quat="1 0 0 1"/>
+<geom class="main" type="ellipsoid" size="0.13 0.1 0.01" pos="-0.14 -0.18 0.05" mass="0.25"/>
+<geom class="main" type="capsule" size="0.01" fromto="0 0 0 0.2 0.1 0.05" density="500"/>
+<geom class="main" type="cylinder" size="0.02 0.05" euler="20 30 40" mass="0.1"/>
+<geom class="main" type="sphere" size="0.03" pos="0.01 0.02 0.03"/>
+<geom class="main" type="box" size="0.02" fromto="0 0 0 0 0.2 0.1" group="4"/>
+<frame pos="0 0 0.1" euler="0 90 0"><geom class="main" size="0.04" pos="0.1 0 0"/>
+<body name="tail" pos="-0.2 0 0" axisangle="0 1 1 70">
+<geom class="main" type="cylinder" size="0.01" fromto="0 0 0 0 0 -0.3"/></body></frame>"""
+
+
+@pytest.mark.parametrize('before', [
+    '', '<compiler angle="radian" eulerseq="ZYX"/>', '<compiler inertiafromgeom="true"/>',
+    '<compiler eulerseq="zxz" inertiagrouprange="0 3"/>', '<compiler settotalmass="2.5"/>'])
+@pytest.mark.parametrize('body', [
+    GEOMS, INERTIAL + GEOMS,
+    '<inertial pos="0.01 0.02 0.03" mass="1" fullinertia="0.02 0.03 0.04 0.001 -0.002 0.003"/>',
+    '<inertial pos="0 0 0.1" mass="1" diaginertia="0.02 0.03 0.04" xyaxes="1 1 0 0 1 1"/>',
+    '<inertial pos="0 0 0.1" mass="1" diaginertia="0.02 0.03 0.04" zaxis="1 2 3"/>'])
+def test_mass_and_inertia_are_those_of_mujoco(before, body):
+    mujoco = pytest.importorskip('mujoco')
+    text = model(body, before=before)
+    theirs = mujoco.MjModel.from_xml_string(text)
+    data = mujoco.MjData(theirs)
+    mujoco.mj_forward(theirs, data)
+    found = reading(text)
+    root = theirs.body('quad').id
+    frame = data.xmat[root].reshape(3, 3)
+    centre = frame.T @ (data.subtree_com[root] - data.xpos[root])
+    assert found.vehicle.mass == pytest.approx(theirs.body_subtreemass[root], rel=1e-9)
+    inertia = np.zeros((3, 3))
+    for k in range(root, theirs.nbody):
+        turn = frame.T @ data.ximat[k].reshape(3, 3)
+        arm = frame.T @ (data.xipos[k] - data.subtree_com[root])
+        inertia += turn @ np.diag(theirs.body_inertia[k]) @ turn.T + theirs.body_mass[k] * (
+            arm @ arm * np.eye(3) - np.outer(arm, arm))
+    products = next((entry.value for entry in found.read if entry.key == 'products of inertia'),
+                    (0.0, 0.0, 0.0))
+    scale = np.max(np.abs(inertia))
+    np.testing.assert_allclose(found.vehicle.inertia, np.diag(inertia), atol=1e-8 * scale)
+    np.testing.assert_allclose(products, inertia[[0, 0, 1], [1, 2, 2]], atol=2e-6 * scale)
+    for k, rotor in enumerate(found.vehicle.rotors):
+        site = frame.T @ (data.site(f'thrust{k}').xpos - data.xpos[root])
+        np.testing.assert_allclose(rotor.position, site - centre, atol=1e-9)
+
+
+def test_a_wrench_is_that_of_mujoco():
+    mujoco = pytest.importorskip('mujoco')
+    text = model(actuators=motors('0 0 1.5 0 0 {}').replace('0.02', '0.03'))
+    theirs = mujoco.MjModel.from_xml_string(text)
+    data = mujoco.MjData(theirs)
+    controls = np.array([3.0, 4.0, 5.0, 6.0])
+    data.ctrl[:] = controls
+    mujoco.mj_forward(theirs, data)
+    vehicle = reading(text).vehicle
+    thrusts = vehicle.thrust_coefficient * rotor_speeds(
+        vehicle.motors, controls[None], vehicle.thrust_coefficient)[0] ** 2
+    places = np.array([rotor.position for rotor in vehicle.rotors])
+    moment = np.array([places[:, 1] @ thrusts, -places[:, 0] @ thrusts,
+                       vehicle.torque_coefficient / vehicle.thrust_coefficient
+                       * np.array([rotor.spin for rotor in vehicle.rotors]) @ thrusts])
+    np.testing.assert_allclose(data.qfrc_actuator[2], thrusts.sum(), rtol=1e-9)
+    np.testing.assert_allclose(data.qfrc_actuator[3:], moment, rtol=1e-9, atol=1e-12)
