@@ -5,7 +5,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from quad_ident_ros.vehicle_files import mjcf, rotorpy, sdf, urdf
+from quad_ident_ros.vehicle_files import drone_models, mjcf, px4_sih, rotorpy, sdf, urdf
 from quad_ident_ros.vehicle_files.reading import Draft
 from quad_ident_ros.vehicle_files.source import Source
 
@@ -25,6 +25,10 @@ KINDS = (
     Kind('sdf', 'an SDF model of Gazebo', sdf.tells, sdf.read),
     Kind('urdf', 'a URDF', urdf.tells, urdf.read),
     Kind('rotorpy', 'a dictionary of rotorpy', rotorpy.tells, rotorpy.read),
+    Kind('drone_models', 'parameters of drone-models, as crazyflow has them',
+         drone_models.tells, drone_models.read),
+    # Others' files may name parameters of PX4 in a comment.
+    Kind('px4_sih', "parameters of PX4's SIH", px4_sih.tells, px4_sih.read),
 )
 
 

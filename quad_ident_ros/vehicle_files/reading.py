@@ -103,7 +103,7 @@ class Draft:
                   inertia_place)
         products = body.inertia[[0, 0, 1], [1, 2, 2]]
         if np.max(np.abs(products)) > FEW_PRODUCTS * np.max(np.diag(body.inertia)):
-            self.products = tuple(float(value) for value in products)   # type: ignore[assignment]
+            self.products = tuple(float(value) + 0.0 for value in products)   # type: ignore[assignment]
             self.note('products of inertia', list(self.products), 'kg m2',
                       inertia_place)
         if np.linalg.norm(body.centre) > 0.0:

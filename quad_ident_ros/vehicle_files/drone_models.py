@@ -1,0 +1,195 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Parameters of drone-models, which crazyflow flies: a TOML file with a table for each drone."""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import Any
+
+import numpy as np
+
+from quad_ident_ros import schema
+from quad_ident_ros.effects.registry import Values
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.model.vehicle import Vehicle
+from quad_ident_ros.vehicle_files.bodies import Body
+from quad_ident_ros.vehicle_files.reading import Draft
+from quad_ident_ros.vehicle_files.source import one_of, Source
+
+KEYS = ('mass', 'L', 'J', 'rpm2thrust', 'rpm2torque', 'mixing_matrix')
+TO_SPEED = math.pi / 30.0       # rad/s per rpm
+NEAR = np.linspace(0.7, 1.3, 25)    # of the hover speed: what flights of it use
+_TELLING = tuple(re.compile(rf'^\s*{key}\s*=', re.MULTILINE)
+                 for key in ('rpm2thrust', 'mixing_matrix'))
+
+
+def tells(text: str) -> bool:
+    """Whether a text is a TOML file with a drone of drone-models."""
+    return all(pattern.search(text) for pattern in _TELLING)
+
+
+def read(source: Source) -> Draft:
+    """Return the Draft of a drone of drone-models; raises InputError."""
+    data = _parsed(source)
+    tables = {name: table for name, table in data.items()
+              if isinstance(table, dict) and 'rpm2thrust' in table}
+    if 'rpm2thrust' in data:
+        tables[source.stem] = data
+    name = one_of(source, {key: key for key in tables}, 'table with rpm2thrust')
+    return _Reader(source, name, tables[name]).draft()
+
+
+class _Reader:
+    """A table of a TOML file, its numbers checked, and the lines that they stand in."""
+
+    def __init__(self, source: Source, name: str, table: dict[str, Any]) -> None:
+        self.source, self.name, self.table = source, name, table
+        self.lines = _lines(source.text, name)
+        for key in KEYS:
+            if key not in table:
+                raise InputError(f'{source.path}: {name} has no {key}, which drone-models needs; '
+                                 'add it')
+
+    def place(self, *keys: str) -> str:
+        """Return the lines of keys."""
+        return ', '.join(f'line {self.lines.get(key, 0)}: {key}' for key in keys)
+
+    def numbers(self, key: str, count: int) -> np.ndarray:
+        """Return the numbers of a key, (count,); InputError."""
+        return np.array(schema.numbers(self._where(key), self.table[key], count))
+
+    def number(self, key: str) -> float:
+        """Return the number of a key, above 0; InputError."""
+        return schema.number(self._where(key), self.table[key], 0.0, exclusive=True)
+
+    def matrix(self, key: str, rows: int, columns: int) -> np.ndarray:
+        """Return the matrix (rows, columns) of a key; InputError."""
+        values, where = self.table[key], self._where(key)
+        if not isinstance(values, list) or len(values) != rows:
+            raise InputError(f'{where}: expected {rows} rows of {columns} numbers')
+        return np.array([schema.numbers(f'{where}[{k}]', row, columns)
+                         for k, row in enumerate(values)])
+
+    def _where(self, key: str) -> str:
+        return f'{self.source.path}, {self.place(key)}'
+
+    def draft(self) -> Draft:
+        """Return the Draft of the table."""
+        draft = Draft(self.source.path, self.name)
+        inertia = self.matrix('J', 3, 3)
+        if not np.allclose(inertia, inertia.T, rtol=1e-6, atol=0.0):
+            raise InputError(f'{self._where("J")}: an inertia matrix is symmetric; correct it')
+        draft.take_body(Body(self.number('mass'), np.zeros(3), inertia), self.place('mass'),
+                        self.place('J'))
+        gravity = 9.81
+        if 'gravity_vec' in self.table:
+            gravity = float(np.linalg.norm(self.numbers('gravity_vec', 3)))
+            draft.note('gravity', gravity, 'm/s2', self.place('gravity_vec'))
+        draft.data['gravity'] = gravity
+        arm, mixing = self.number('L'), self.matrix('mixing_matrix', 3, 4)
+        # Rows: the signs of the moments about x, y, z of a thrust or torque of each motor.
+        draft.take_rotors([np.array([-arm * column[1], arm * column[0], 0.0])
+                           for column in mixing.T],
+                          [schema.choice(f'{self._where("mixing_matrix")}[2]', int(sign), (1, -1))
+                           for sign in mixing[2]], self.place('L', 'mixing_matrix'))
+        self._take_curves(draft)
+        self._take_drag(draft)
+        for ours, theirs, unit in (('rotor_radius', 'prop_radius', 'm'),
+                                   ('rotor_inertia', 'prop_inertia', 'kg m2')):
+            if theirs in self.table:
+                draft.take(ours, self.number(theirs), unit, self.place(theirs))
+        if 'prop_inertia' in self.table:
+            draft.assumed.append('the angular momentum of the rotors is left out: drone-models '
+                                 'has its moment about x the other way than rotor_gyro')
+        return draft
+
+    def _take_curves(self, draft: Draft) -> None:
+        """Enter thrust and torque over speed, their limits, and the lag."""
+        thrust, torque = self.numbers('rpm2thrust', 3), self.numbers('rpm2torque', 3)
+        share = draft.data['mass'] * draft.data['gravity'] / 4.0
+        hover = self._rpm(thrust, share)
+        speed = hover * TO_SPEED
+        draft.take('thrust_coefficient', share / speed ** 2, 'N/(rad/s)^2',
+                   self.place('rpm2thrust'))
+        draft.take('torque_coefficient', float(np.polynomial.polynomial.polyval(hover, torque))
+                   / speed ** 2, 'N m/(rad/s)^2', self.place('rpm2torque'))
+        for ours, theirs in (('speed_min', 'thrust_min'), ('speed_max', 'thrust_max')):
+            if theirs in self.table:
+                draft.take(ours, self._rpm(thrust, self.number(theirs)) * TO_SPEED, 'rad/s',
+                           self.place(theirs, 'rpm2thrust'))
+        exponent = float((thrust[1] * hover + 2.0 * thrust[2] * hover ** 2) / share)
+        off = np.max(np.abs(NEAR ** exponent * share / np.polynomial.polynomial.polyval(
+            hover * NEAR, thrust) - 1.0))
+        draft.note('exponent of the thrust at hover', exponent, '1', self.place('rpm2thrust'))
+        draft.assumed.append(
+            f'thrust over speed is the power {exponent:.4g} that it is at hover, {speed:.4g} '
+            f'rad/s; from 0.7 to 1.3 of that it is off by up to {100 * off:.2g} % (rpm2thrust); '
+            'torque goes with the square (rpm2torque)')
+        rise = fall = 0.0
+        if 'rotor_dyn_coef' in self.table:
+            rates = self.numbers('rotor_dyn_coef', 4)
+            # d(rpm)/dt = a (command - rpm) + b (command^2 - rpm^2), up and down.
+            up, down = (float(a + 2.0 * b * hover) for a, b in (rates[:2], rates[2:]))
+            if not (up > 0.0 and down > 0.0):
+                raise InputError(f'{self._where("rotor_dyn_coef")}: no lag: rates of {up:.4g} and '
+                                 f'{down:.4g} 1/s at hover; expected them above 0')
+            rise, fall = 1.0 / up, 1.0 / down
+            draft.note('lag at hover, up and down', [rise, fall], 's',
+                       self.place('rotor_dyn_coef'))
+            draft.assumed.append('the lag is what it is for small changes at hover '
+                                 '(rotor_dyn_coef)')
+
+        def effects(_: Vehicle) -> Values:
+            return {'motor_lag': {'rise': rise, 'fall': fall}, 'thrust_scale': {
+                'exponent': exponent}}
+
+        draft.effects = effects
+
+    def _take_drag(self, draft: Draft) -> None:
+        """Enter the linear drag."""
+        if 'drag_matrix' not in self.table:
+            return
+        drag = -self.matrix('drag_matrix', 3, 3)
+        draft.take('linear_drag', [float(value) + 0.0 for value in np.diag(drag)], 'N/(m/s)',
+                   self.place('drag_matrix'))
+        across = float(np.max(np.abs(drag - np.diag(np.diag(drag)))))
+        if across > 0.0:
+            draft.assumed.append(f'entries of drag_matrix off its diagonal, up to {across:.3g}, '
+                                 'are left out')
+
+    def _rpm(self, thrust: np.ndarray, wanted: float) -> float:
+        """Return the speed, rpm, at which a rotor gives a thrust, N; InputError."""
+        roots = np.polynomial.polynomial.polyroots([thrust[0] - wanted, *thrust[1:]])
+        real = [float(root.real) for root in roots
+                if abs(root.imag) < 1e-9 * abs(root) and root.real > 0.0]
+        if not real or not thrust[1] + 2.0 * thrust[2] * max(real) > 0.0:
+            raise InputError(f'{self._where("rpm2thrust")}: no speed gives {wanted:.4g} N; '
+                             'correct the curve')
+        return max(real)
+
+
+def _parsed(source: Source) -> dict[str, Any]:
+    try:
+        import tomllib
+    except ModuleNotFoundError:
+        raise InputError(f'{source.path}: TOML is read from Python 3.11 on; run it there, and '
+                         'give the vehicle file that -o writes') from None
+    try:
+        return tomllib.loads(source.text)
+    except (tomllib.TOMLDecodeError, RecursionError) as error:
+        raise InputError(f'{source.path}: is not TOML: {str(error)[:100]}') from None
+
+
+def _lines(text: str, table: str) -> dict[str, int]:
+    """Return the line of each key of a table."""
+    lines, at = {}, ''
+    for number, line in enumerate(text.splitlines(), 1):
+        header = re.match(r'\[\s*"?([A-Za-z_][\w.-]*)"?\s*\]', line)
+        key = re.match(r'\s*([\w-]+)\s*=', line)
+        if header:
+            at = header[1]
+        elif key and at in (table, ''):
+            lines[key[1]] = number
+    return lines
