@@ -113,7 +113,8 @@ def check_body(where: str, body: Body) -> str:
     if moments[0] < -1e-9 * abs(moments[2]):
         raise InputError(f'{where}: no body has this inertia: about one axis it is '
                          f'{moments[0]:.4g} kg m2; correct its products')
-    beyond = moments[2] / (moments[0] + moments[1]) - 1.0 if moments[2] > 0.0 else 0.0
+    others = max(float(moments[0] + moments[1]), 1e-12 * float(moments[2]))
+    beyond = moments[2] / others - 1.0 if moments[2] > 0.0 else 0.0
     said = (f'a principal moment of {moments[2]:.4g} kg m2 is {100 * beyond:.2g} % more than the '
             f'other two together, {moments[0] + moments[1]:.4g}')
     if beyond > ROUNDED:

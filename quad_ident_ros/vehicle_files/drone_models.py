@@ -16,10 +16,11 @@ from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.vehicle import Vehicle
 from quad_ident_ros.vehicle_files.bodies import Body
 from quad_ident_ros.vehicle_files.reading import Draft
-from quad_ident_ros.vehicle_files.source import one_of, Source
+from quad_ident_ros.vehicle_files.source import MOST, one_of, Source
 
 KEYS = ('mass', 'L', 'J', 'rpm2thrust', 'rpm2torque', 'mixing_matrix')
 TO_SPEED = math.pi / 30.0       # rad/s per rpm
+POWERS = 1.0, 3.0       # of the speed that the thrust of a rotor goes with
 NEAR = np.linspace(0.7, 1.3, 25)    # of the hover speed: what flights of it use
 _TELLING = tuple(re.compile(rf'^\s*{key}\s*=', re.MULTILINE)
                  for key in ('rpm2thrust', 'mixing_matrix'))
@@ -58,19 +59,25 @@ class _Reader:
 
     def numbers(self, key: str, count: int) -> np.ndarray:
         """Return the numbers of a key, (count,); InputError."""
-        return np.array(schema.numbers(self._where(key), self.table[key], count))
+        return self._bounded(key, np.array(schema.numbers(self._where(key), self.table[key],
+                                                          count)))
 
     def number(self, key: str) -> float:
         """Return the number of a key, above 0; InputError."""
-        return schema.number(self._where(key), self.table[key], 0.0, exclusive=True)
+        return schema.number(self._where(key), self.table[key], 0.0, MOST, exclusive=True)
 
     def matrix(self, key: str, rows: int, columns: int) -> np.ndarray:
         """Return the matrix (rows, columns) of a key; InputError."""
         values, where = self.table[key], self._where(key)
         if not isinstance(values, list) or len(values) != rows:
             raise InputError(f'{where}: expected {rows} rows of {columns} numbers')
-        return np.array([schema.numbers(f'{where}[{k}]', row, columns)
-                         for k, row in enumerate(values)])
+        return self._bounded(key, np.array([schema.numbers(f'{where}[{k}]', row, columns)
+                                            for k, row in enumerate(values)]))
+
+    def _bounded(self, key: str, values: np.ndarray) -> np.ndarray:
+        if np.max(np.abs(values)) > MOST:
+            raise InputError(f'{self._where(key)}: a number of it is beyond {MOST:g}; correct it')
+        return values
 
     def _where(self, key: str) -> str:
         return f'{self.source.path}, {self.place(key)}'
@@ -86,7 +93,7 @@ class _Reader:
         gravity = 9.81
         if 'gravity_vec' in self.table:
             gravity = float(np.linalg.norm(self.numbers('gravity_vec', 3)))
-            draft.note('gravity', gravity, 'm/s2', self.place('gravity_vec'))
+            draft.take_gravity(gravity, self.place('gravity_vec'))
         draft.data['gravity'] = gravity
         arm, mixing = self.number('L'), self.matrix('mixing_matrix', 3, 4)
         # Rows: the signs of the moments about x, y, z of a thrust or torque of each motor.
@@ -120,6 +127,9 @@ class _Reader:
                 draft.take(ours, self._rpm(thrust, self.number(theirs)) * TO_SPEED, 'rad/s',
                            self.place(theirs, 'rpm2thrust'))
         exponent = float((thrust[1] * hover + 2.0 * thrust[2] * hover ** 2) / share)
+        if not POWERS[0] <= exponent <= POWERS[1]:
+            raise InputError(f'{self._where("rpm2thrust")}: about hover thrust goes with the power '
+                             f'{exponent:.4g} of the speed; no rotor does')
         off = np.max(np.abs(NEAR ** exponent * share / np.polynomial.polynomial.polyval(
             hover * NEAR, thrust) - 1.0))
         draft.note('exponent of the thrust at hover', exponent, '1', self.place('rpm2thrust'))

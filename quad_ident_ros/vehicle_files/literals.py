@@ -3,7 +3,7 @@
 """Dictionaries of numbers in a Python file, read without running it."""
 
 import ast
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 import math
 import operator
@@ -13,14 +13,17 @@ import numpy as np
 
 from quad_ident_ros.errors import InputError
 
-_BINARY = {ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul,
-           ast.Div: operator.truediv, ast.Pow: operator.pow}
-_SIGNS = {ast.UAdd: operator.pos, ast.USub: operator.neg}
+_BINARY: dict[type[ast.operator], Callable[..., Any]] = {
+    ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul,
+    ast.Div: operator.truediv, ast.Pow: operator.pow}
+_SIGNS: dict[type[ast.unaryop], Callable[..., Any]] = {
+    ast.UAdd: operator.pos, ast.USub: operator.neg}
 _CONSTANTS = {'pi': math.pi, 'e': math.e}
-_FUNCTIONS = {'array': lambda *values: np.array(values[0], float), 'sqrt': np.sqrt,
-              'sin': np.sin, 'cos': np.cos, 'tan': np.tan, 'deg2rad': np.deg2rad,
-              'radians': np.deg2rad, 'float': float, 'dict': dict, 'zeros': np.zeros,
-              'diag': np.diag}
+_FUNCTIONS: dict[str, Callable[..., Any]] = {
+    'array': lambda *values: np.array(values[0], float), 'sqrt': np.sqrt,
+    'sin': np.sin, 'cos': np.cos, 'tan': np.tan, 'deg2rad': np.deg2rad,
+    'radians': np.deg2rad, 'float': float, 'dict': dict, 'zeros': np.zeros,
+    'diag': np.diag}
 _LIBRARIES = ('np', 'numpy', 'math')
 _MOST = 1e12        # of a power: what takes longer is no parameter
 
@@ -62,7 +65,8 @@ def tables_of(path: str, text: str, keys: tuple[str, ...]) -> list[Table]:
                    [statement.target])
         name = targets[0].id if isinstance(targets[0], ast.Name) else ''
         try:
-            value = _value(statement.value, names)
+            with np.errstate(all='ignore'):
+                value = _value(statement.value, names)
         except (_Unreadable, ArithmeticError, TypeError, ValueError, LookupError,
                 RecursionError) as error:
             if _keys_of(statement.value) >= set(keys):
@@ -90,7 +94,7 @@ def _lines_of(node: ast.expr, usual: int, value: Mapping[str, Any]) -> dict[str,
     lines = dict.fromkeys(value, usual)
     if isinstance(node, ast.Dict):
         lines.update({key.value: key.lineno for key in node.keys
-                      if isinstance(key, ast.Constant)})
+                      if isinstance(key, ast.Constant) and isinstance(key.value, str)})
     return lines
 
 

@@ -90,7 +90,7 @@ def _take_gravity(draft: Draft, model: Model) -> None:
     for option in model.root.all('option'):
         if 'gravity' in option.attributes:
             gravity, place = option.numbers('gravity', 3), option.place('gravity')
-    draft.take('gravity', float(np.linalg.norm(gravity)), 'm/s2', place)
+    draft.take_gravity(float(np.linalg.norm(gravity)), place)
 
 
 def _take_rotors(draft: Draft, model: Model, parts: Sequence[Part], pushes: Sequence[Push],

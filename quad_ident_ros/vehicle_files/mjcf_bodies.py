@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 import math
 
@@ -140,13 +140,13 @@ def _shape(model: Model, geom: Element) -> Body:
         if kind == 'sphere' or not length > 0.0:
             raise InputError(f'{geom.where}: fromto: no {kind} lies between these points')
         frame = pose((ends[:3] + ends[3:]) / 2.0, onto(along / length))
-        across = geom.numbers('size', len(geom.get('size').split()))
+        across = geom.numbers('size', max(len(geom.get('size').split()), 1))
         size = np.array([*across[:1], *(across[:1] if count == 3 else ()), length / 2.0])
     else:
         words = geom.get('size').split()[:count]
-        size = geom.numbers('size', len(geom.get('size').split()))[:count]
         if len(words) < count:
             raise InputError(f'{geom.where}: size: a {kind} has {count}, got {len(words)}')
+        size = geom.numbers('size', len(geom.get('size').split()))[:count]
     if not (size > 0.0).all():
         raise InputError(f'{geom.where}: size: expected numbers above 0')
     mass = (geom.number('mass') if geom.get('mass') else
@@ -164,7 +164,7 @@ def _capsule(r: float, half: float) -> tuple[float, float, float]:
 
 
 # Sizes that a shape has, its volume, its moments per mass about x, y and z; halves and radii, m.
-_SHAPES = {
+_SHAPES: dict[str, tuple[int, Callable[..., float], Callable[..., tuple[float, ...]]]] = {
     'sphere': (1, lambda r: 4.0 / 3.0 * math.pi * r ** 3, lambda r: (0.4 * r * r,) * 3),
     'capsule': (2, lambda r, h: math.pi * r * r * (2.0 * h + 4.0 / 3.0 * r), _capsule),
     'cylinder': (2, lambda r, h: math.pi * r * r * 2.0 * h,

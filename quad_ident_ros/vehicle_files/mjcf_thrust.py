@@ -71,16 +71,21 @@ def _push(model: Model, element: Element, site: Pose) -> Push:
     gear = np.zeros(6)
     words = element.get('gear', '1').split()
     gear[:len(words)] = element.numbers('gear', len(words), (1.0,))[:6]
-    gain = float(element.numbers('gainprm', len(element.get('gainprm', '1').split()), (1.0,))[0])
+    gain = _first(element, 'gainprm')
     kind = element.get('dyntype', 'none')
     if kind not in ('none', 'filter', 'filterexact'):
         raise InputError(f'{element.where}: dyntype {kind[:20]!r} is no lag; expected none or '
                          'filter')
-    lag = 0.0 if kind == 'none' else float(element.numbers(
-        'dynprm', len(element.get('dynprm', '1').split()), (1.0,))[0])
+    lag = 0.0 if kind == 'none' else _first(element, 'dynprm')
     return Push(element, element.get('site'), gain * site.rotation @ gear[:3],
                 gain * site.rotation @ gear[3:], site.position, _limits(model, element, gain),
                 lag)
+
+
+def _first(element: Element, attribute: str) -> float:
+    """Return the first number of an attribute, of which MuJoCo has 1 where it is not stated."""
+    return float(element.numbers(attribute, max(len(element.get(attribute, '1').split()), 1),
+                                 (1.0,))[0])
 
 
 def _limits(model: Model, element: Element, gain: float) -> tuple[float, float]:

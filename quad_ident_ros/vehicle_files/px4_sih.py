@@ -13,7 +13,7 @@ from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.vehicle import Vehicle
 from quad_ident_ros.vehicle_files.bodies import Body, symmetric
 from quad_ident_ros.vehicle_files.reading import Draft, thrusts_as_commands
-from quad_ident_ros.vehicle_files.source import Source
+from quad_ident_ros.vehicle_files.source import MOST, Source
 
 GRAVITY = 9.80665   # m/s^2, standard
 # What PX4 has where nobody sets it.
@@ -24,10 +24,11 @@ USUAL = {'SIH_MASS': 1.0, 'SIH_IXX': 0.025, 'SIH_IYY': 0.025, 'SIH_IZZ': 0.03, '
 _AXES = {'XX': 1, 'YY': 1, 'ZZ': 1, 'XY': -1, 'XZ': -1, 'YZ': 1}
 _HALF = math.sqrt(3.0) / 2.0
 # By SIH_VEHICLE_TYPE: per rotor its place in arms of pitch and roll (forward, left), and its spin.
-LAYOUTS = {0: ((1, -1, -1), (-1, 1, -1), (1, 1, 1), (-1, -1, 1)),
-           4: ((_HALF, -0.5, -1), (0, -1, 1), (-_HALF, -0.5, -1), (-_HALF, 0.5, 1), (0, 1, -1),
-               (_HALF, 0.5, 1))}
-OTHERS = {1: 'a fixed wing', 2: 'a tailsitter', 3: 'a VTOL', 5: 'a rover'}
+LAYOUTS: dict[float, tuple[tuple[float, float, int], ...]] = {
+    0: ((1, -1, -1), (-1, 1, -1), (1, 1, 1), (-1, -1, 1)),
+    4: ((_HALF, -0.5, -1), (0, -1, 1), (-_HALF, -0.5, -1), (-_HALF, 0.5, 1), (0, 1, -1),
+        (_HALF, 0.5, 1))}
+OTHERS: dict[float, str] = {1: 'a fixed wing', 2: 'a tailsitter', 3: 'a VTOL', 5: 'a rover'}
 _LINE = re.compile(r'\b(SIH_[A-Z0-9_]+)\b(?:[ \t]*\[[^\]\n]*\])?[ \t,:=]*'
                    r'([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)')
 
@@ -40,10 +41,10 @@ def tells(text: str) -> bool:
 def read(source: Source) -> Draft:
     """Return the Draft of parameters of PX4's SIH; raises InputError."""
     values, lines = _parameters(source.text)
-    kind = int(values.get('SIH_VEHICLE_TYPE', 0))
+    kind = values.get('SIH_VEHICLE_TYPE', 0.0)
     if kind not in LAYOUTS:
         raise InputError(f'{source.path}, line {lines["SIH_VEHICLE_TYPE"]}: SIH_VEHICLE_TYPE '
-                         f'{kind} is {OTHERS.get(kind, "none that is known")}; expected 0 '
+                         f'{kind:g} is {OTHERS.get(kind, "none that is known")}; expected 0 '
                          '(quadrotor) or 4 (hexarotor)')
     draft = Draft(source.path, source.stem)
 
@@ -53,7 +54,7 @@ def read(source: Source) -> Draft:
 
     def number(key: str, least: float = -math.inf) -> float:
         where = f'{source.path}, {place(key)}'
-        return schema.number(where, values.get(key, USUAL[key]), least)
+        return schema.number(where, values.get(key, USUAL[key]), least, MOST)
 
     # PX4's axes y and z point right and down.
     moments = symmetric(*(sign * number(f'SIH_I{axes}') + 0.0 for axes, sign in _AXES.items()))

@@ -89,6 +89,13 @@ class Draft:
         """Say that something was read that is no key of the vehicle file."""
         self.read.append(Entry(key, value, unit, place))
 
+    def take_gravity(self, value: float, place: str) -> None:
+        """Enter the gravity, m/s^2; InputError where it is none."""
+        if not value > 0.0:
+            raise InputError(f'{self.where}: {place}: without gravity no flight is in balance; '
+                             'state that of the Earth')
+        self.take('gravity', value, 'm/s2', place)
+
     def take_body(self, body: Body, place: str, inertia_place: str = '') -> None:
         """Enter mass and inertia; rotors and other places count from the centre of mass."""
         inertia_place = inertia_place or place
@@ -117,9 +124,10 @@ class Draft:
     def take_rotors(self, positions: Sequence[np.ndarray], spins: Sequence[int | None],
                     place: str) -> None:
         """Enter the rotors: places from the centre of mass, m, and spins, None where unknown."""
-        rotors = [{'position': [round(float(value), 12) + 0.0 for value in position],
-                   **({} if spin is None else {'spin': int(spin)})}
-                  for position, spin in zip(positions, spins, strict=True)]
+        rotors: list[dict[str, Any]] = [
+            {'position': [round(float(value), 12) + 0.0 for value in position],
+             **({} if spin is None else {'spin': int(spin)})}
+            for position, spin in zip(positions, spins, strict=True)]
         self.take('rotors', rotors, 'm', place)
 
 
@@ -138,7 +146,7 @@ def finished(draft: Draft, kind: str, supplied: Mapping[str, Any] | None = None)
         data['torque_coefficient'] = data['thrust_coefficient'] * schema.number(
             f'--set {RATIO}', ratio, 0.0, exclusive=True)
     missing = {key: _asked(key, draft) for key in NEEDED if key not in data}
-    if 'rotors' in data and not all('spin' in rotor for rotor in data['rotors']):
+    if _without_spins(data.get('rotors')):
         missing[SPINS] = _asked(SPINS, draft)
     assumed = [*draft.assumed, *_left_out(draft)]
     if missing:
@@ -180,7 +188,7 @@ def thrusts_as_commands(draft: Draft, highest: float, ratio: float | None, place
     if ratio is not None:
         draft.take('torque_coefficient', ratio * coefficient, 'N m/(rad/s)^2', place)
     low, high = signal or (lowest, highest)
-    draft.data['speed_max'] = FULL_SPEED
+    draft.take('speed_max', FULL_SPEED, 'rad/s', 'see below')
     draft.data['motors'] = {'kind': 'normalised', 'minimum': low, 'maximum': high,
                             'thrust': {'offset': lowest, 'gain': highest - lowest,
                                        'exponent': 1.0}}
@@ -194,7 +202,7 @@ def _supply(draft: Draft, data: dict[str, Any], read: list[Entry], key: str, val
     if key not in SETTABLE:
         raise schema.unknown_key('--set', key, SETTABLE)
     rotors = data.get('rotors')
-    has = (all('spin' in rotor for rotor in rotors or ({},)) if key == SPINS else
+    has = (rotors is not None and not _without_spins(rotors) if key == SPINS else
            any(entry.key == (TORQUE if key == RATIO else key) for entry in read))
     if has:
         place = next((entry.place for entry in read
@@ -214,6 +222,12 @@ def _supply(draft: Draft, data: dict[str, Any], read: list[Entry], key: str, val
         data['rotors'] = [{**rotor, 'spin': spin}
                           for rotor, spin in zip(rotors, value, strict=True)]
     read.append(Entry(key, value, '', '--set'))
+
+
+def _without_spins(rotors: Any) -> bool:
+    """Whether the places of the rotors are known and a spin is not."""
+    return isinstance(rotors, list) and any(
+        isinstance(rotor, dict) and 'spin' not in rotor for rotor in rotors)
 
 
 def _asked(key: str, draft: Draft) -> str:

@@ -13,7 +13,7 @@ from quad_ident_ros.model.vehicle import Vehicle
 from quad_ident_ros.vehicle_files.bodies import Body, symmetric
 from quad_ident_ros.vehicle_files.literals import Table, tables_of
 from quad_ident_ros.vehicle_files.reading import Draft, per_sum_of_speeds
-from quad_ident_ros.vehicle_files.source import one_of, Source
+from quad_ident_ros.vehicle_files.source import MOST, one_of, Source
 
 KEYS = ('mass', 'Ixx', 'k_eta', 'rotor_pos')
 USUAL = 'quad_params'
@@ -47,7 +47,7 @@ def read(source: Source) -> Draft:
             raise InputError(f'{source.path}, line {min(table.lines.values())}: {table.name} has '
                              f'no {key}, which rotorpy needs; add it')
         return schema.number(f'{source.path}, {place(key)}: {key}', _plain(table.values[key]),
-                             least)
+                             least, MOST)
 
     draft.take_body(Body(number('mass', 0.0), np.zeros(3), symmetric(
         *(number(key, usual=None if key in _MOMENTS[:3] else 0.0) for key in _MOMENTS))),

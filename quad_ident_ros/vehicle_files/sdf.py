@@ -20,7 +20,7 @@ from quad_ident_ros.vehicle_files.reading import Draft
 from quad_ident_ros.vehicle_files.rotor_axes import check_axis
 from quad_ident_ros.vehicle_files.sdf_frames import child_text, MODEL, pose_of, Tree, tree_of
 from quad_ident_ros.vehicle_files.source import one_of, Source
-from quad_ident_ros.vehicle_files.xml_tree import Element, parse, root_of
+from quad_ident_ros.vehicle_files.xml_tree import Element, parse, root_of, SHOWN
 
 GRAVITY = 9.8       # m/s^2, of SDF where a world does not say it
 MOST_BYTES = 2 ** 22
@@ -51,10 +51,10 @@ def read(source: Source) -> Draft:
     model, tree = one_of(source, trees, 'model with motors')
     draft = Draft(source.path, model.get('name') or source.stem)
     _take_tree(draft, model, tree)
-    draft.data['gravity'] = gravity[0]
     if gravity[1]:
-        draft.note('gravity', gravity[0], 'm/s2', gravity[1])
+        draft.take_gravity(*gravity)
     else:
+        draft.data['gravity'] = GRAVITY
         draft.assumed.append(f'gravity {GRAVITY:g} m/s2: that of SDF where no world says it')
     return draft
 
@@ -142,14 +142,15 @@ def _plugins(tree: Tree) -> list[tuple[MotorPlugin, str]]:
 def _joint(tree: Tree, plugin: MotorPlugin, scope: str) -> tuple[Element, str]:
     """Return the joint of a motor, with the scope of the names in it."""
     if scope + plugin.joint not in tree.joints:
-        raise InputError(f'{plugin.element.where}: no joint {plugin.joint!r} is in the model; '
-                         'correct jointName, or give the file that has it')
+        raise InputError(f'{plugin.element.where}: no joint {plugin.joint[:SHOWN]!r} is in the '
+                         'model; correct jointName, or give the file that has it')
     return tree.joints[scope + plugin.joint]
 
 
 def _link(tree: Tree, name: str, element: Element) -> str:
     if name not in tree.links:
-        raise InputError(f'{element.where}: no link {name!r} is in the model; correct the name')
+        raise InputError(f'{element.where}: no link {name[:SHOWN]!r} is in the model; correct '
+                         'the name')
     return name
 
 
@@ -170,7 +171,7 @@ def _axis(tree: Tree, joint: tuple[Element, str], link: Element) -> np.ndarray:
     given = vector.get('expressed_in') if vector is not None else ''
     at = name if not given else MODEL if given == MODEL else scope + given
     if at != MODEL and at not in tree.frames:
-        raise InputError(f'{element.where}: expressed_in {given!r} is not in the model')
+        raise InputError(f'{element.where}: expressed_in {given[:SHOWN]!r} is not in the model')
     this = next(key for key, each in tree.links.items() if each is link)
     rotation = tree.place_of(this).rotation.T @ tree.place_of(at).rotation
     return rotation @ axis / np.linalg.norm(axis)

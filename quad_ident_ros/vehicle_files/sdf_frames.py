@@ -10,7 +10,7 @@ import math
 
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.vehicle_files.bodies import fixed_axes, Pose, pose, turned
-from quad_ident_ros.vehicle_files.xml_tree import Element
+from quad_ident_ros.vehicle_files.xml_tree import Element, SHOWN
 
 MODEL = '__model__'
 DEEPEST = 10        # models in one another
@@ -43,12 +43,14 @@ class Tree:
 
     def place_of(self, name: str) -> Pose:
         """Return the Pose of a frame in that of the whole model; InputError for a circle."""
-        result, seen, at = pose(), [], name
+        result, at = pose(), name
+        seen: list[str] = []
         while at != MODEL:
             frame = self.frames[at]
             if at in seen:
+                circle = ' -> '.join(name[:SHOWN] for name in seen[:3])
                 raise InputError(f'{frame.element.where}: its pose is relative to itself by '
-                                 f'{" -> ".join(seen[:5])}; name another frame')
+                                 f'{circle}; name another frame')
             seen.append(at)
             result, at = frame.pose @ result, frame.parent
         return result
@@ -60,8 +62,8 @@ def tree_of(model: Element, include: Include) -> Tree:
     _gather(tree, model, '', MODEL, include, 0)
     for frame in tree.frames.values():
         if frame.parent != MODEL and frame.parent not in tree.frames:
-            raise InputError(f'{frame.element.where}: relative to {frame.parent!r}, which is not '
-                             'in the model; name a link, joint or frame of it')
+            raise InputError(f'{frame.element.where}: relative to {frame.parent[:SHOWN]!r}, which '
+                             'is not in the model; name a link, joint or frame of it')
     return tree
 
 
@@ -134,6 +136,6 @@ def _nest(tree: Tree, element: Element, scope: str, full: Callable[[str], str],
     merged = element.get('merge') in ('true', '1')
     frame = f'{scope}_merged__{name}__model__' if merged else f'{scope}{name}'
     if frame in tree.frames:
-        raise InputError(f'{element.where}: a model {name!r} is there twice; name each')
+        raise InputError(f'{element.where}: a model {name[:SHOWN]!r} is there twice; name each')
     tree.frames[frame] = Frame(element, stated, full(parent))
     _gather(tree, inner, scope if merged else f'{scope}{name}::', frame, include, depth)

@@ -10,6 +10,7 @@ from typing import TypeVar
 from quad_ident_ros.errors import InputError
 
 Thing = TypeVar('Thing')
+MOST = 1e9      # of a number: in SI units nothing of a vehicle is larger
 
 
 @dataclass(frozen=True)

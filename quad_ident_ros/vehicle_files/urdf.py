@@ -168,6 +168,8 @@ def _take_properties(draft: Draft, properties: Element, rotors: Sequence[Link], 
                          + (', the other way in racer.urdf' if turn < 0 else ''))
     for key, theirs, unit in (('thrust_coefficient', 'kf', 'N/(rad/s)^2'),
                               ('torque_coefficient', 'km', 'N m/(rad/s)^2')):
+        if not properties.number(theirs) > 0.0:
+            raise InputError(f'{properties.where}: {theirs}: expected a number above 0')
         draft.take(key, properties.number(theirs) * PER_RPM, unit,
                    properties.place(f'{theirs}, per rpm^2'))
     if 'thrust2weight' in properties.attributes:

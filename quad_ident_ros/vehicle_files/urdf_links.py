@@ -41,8 +41,11 @@ class Link:
     def axis(self) -> np.ndarray:
         """The axis (3,) of its joint, in its frame."""
         stated = None if self.joint is None else self.joint.first('axis')
-        return (np.array([1.0, 0.0, 0.0]) if stated is None else
+        axis = (np.array([1.0, 0.0, 0.0]) if stated is None else
                 stated.numbers('xyz', 3, (1.0, 0.0, 0.0)))
+        if stated is not None and not axis.any():
+            raise InputError(f'{stated.where}: zeros are no axis; correct it')
+        return axis
 
 
 def trees_of(root: Element) -> dict[str, dict[str, Link]]:

@@ -12,9 +12,11 @@ import numpy as np
 
 from quad_ident_ros import schema
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.vehicle_files.source import MOST
 
 DEEPEST = 100           # levels of elements: models have about ten
 MOST_ELEMENTS = 100_000
+SHOWN = 60      # letters of a name in a message
 
 
 @dataclass
@@ -31,15 +33,17 @@ class Element:
     @property
     def where(self) -> str:
         """File, line and tag, with which a message begins."""
-        name = self.attributes.get('name')
-        return (f'{self.path}, line {self.line}: <{self.tag}'
-                + (f' name={name!r}>' if name else '>'))
+        return f'{self.path}, line {self.line}: <{self.tag[:SHOWN]}{self._named}>'
 
     def place(self, attribute: str = '') -> str:
         """Return the line and the element, for the table of what was read."""
+        said = f' {attribute}' if attribute else ''
+        return f'line {self.line}: <{self.tag[:SHOWN]}{self._named}>{said}'
+
+    @property
+    def _named(self) -> str:
         name = self.attributes.get('name')
-        said = f' name={name!r}' if name else ''
-        return f'line {self.line}: <{self.tag}{said}>{" " * bool(attribute)}{attribute}'
+        return f' name={name[:SHOWN]!r}' if name else ''
 
     def get(self, attribute: str, usual: str = '') -> str:
         """Return an attribute's text."""
@@ -92,7 +96,7 @@ class Element:
             plural = 's' * (count != 1)
             raise InputError(f'{said}: expected {count} number{plural}, got '
                              f'{schema.shown(text.strip())}')
-        return np.array([schema.number(said, word) for word in words])
+        return np.array([schema.number(said, word, -MOST, MOST) for word in words])
 
 
 def root_of(text: str) -> str:

@@ -4,11 +4,13 @@
 
 import json
 import math
+from pathlib import Path
+import re
 
 import numpy as np
 import pytest
 
-from quad_ident_ros.cli.main import main
+from quad_ident_ros.cli.main import main, parser
 from quad_ident_ros.effects.registry import mapping, vector
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.vehicle import load_vehicle as load_ours
@@ -268,3 +270,11 @@ def test_kinds_are_told_by_content():
     for text in ('', 'mass: 1.0', '{"a": 1}', '<html></html>', 'x = 1', '[a]\nb = 1\n'):
         assert kind_of(text) is None
     assert len({kind.name for kind in KINDS}) == len(KINDS)
+
+
+def test_the_page_names_every_kind_and_its_commands_are_ones():
+    page = (Path(__file__).parents[2] / 'docs' / 'vehicles.md').read_text(encoding='utf-8')
+    assert all(kind.title in page for kind in KINDS)
+    for call in re.findall(r'^    \./run ([^#\n]+)', page, flags=re.MULTILINE):
+        words = call.split()
+        parser(words[:1]).parse_args(words)
