@@ -128,8 +128,8 @@ class _Reader:
                            self.place(theirs, 'rpm2thrust'))
         exponent = float((thrust[1] * hover + 2.0 * thrust[2] * hover ** 2) / share)
         if not POWERS[0] <= exponent <= POWERS[1]:
-            raise InputError(f'{self._where("rpm2thrust")}: about hover thrust goes with the power '
-                             f'{exponent:.4g} of the speed; no rotor does')
+            raise InputError(f'{self._where("rpm2thrust")}: about hover thrust goes with the '
+                             f'power {exponent:.4g} of the speed; no rotor does')
         off = np.max(np.abs(NEAR ** exponent * share / np.polynomial.polynomial.polyval(
             hover * NEAR, thrust) - 1.0))
         draft.note('exponent of the thrust at hover', exponent, '1', self.place('rpm2thrust'))
