@@ -32,7 +32,7 @@ class Pose:
 
     @property
     def inverse(self) -> Pose:
-        """The pose of the parent in this frame."""
+        """Return the pose of the parent in this frame."""
         return Pose(self.rotation.T, -self.rotation.T @ self.position)
 
 

@@ -67,7 +67,7 @@ class _Reader:
         return schema.number(self._where(key), self.table[key], 0.0, MOST, exclusive=True)
 
     def matrix(self, key: str, rows: int, columns: int) -> np.ndarray:
-        """Return the matrix (rows, columns) of a key; InputError."""
+        """Return the numbers of a key with rows, (rows, columns); InputError."""
         values, where = self.table[key], self._where(key)
         if not isinstance(values, list) or len(values) != rows:
             raise InputError(f'{where}: expected {rows} rows of {columns} numbers')
@@ -173,7 +173,7 @@ class _Reader:
         """Return the speed, rpm, at which a rotor gives a thrust, N; InputError."""
         roots = np.polynomial.polynomial.polyroots([thrust[0] - wanted, *thrust[1:]])
         real = [float(root.real) for root in roots
-                if abs(root.imag) < 1e-9 * abs(root) and root.real > 0.0]
+                if abs(root.imag) < 1e-9 * abs(root) and 0.0 < root.real < MOST]
         if not real or not thrust[1] + 2.0 * thrust[2] * max(real) > 0.0:
             raise InputError(f'{self._where("rpm2thrust")}: no speed gives {wanted:.4g} N; '
                              'correct the curve')

@@ -22,8 +22,7 @@ _CONSTANTS = {'pi': math.pi, 'e': math.e}
 _FUNCTIONS: dict[str, Callable[..., Any]] = {
     'array': lambda *values: np.array(values[0], float), 'sqrt': np.sqrt,
     'sin': np.sin, 'cos': np.cos, 'tan': np.tan, 'deg2rad': np.deg2rad,
-    'radians': np.deg2rad, 'float': float, 'dict': dict, 'zeros': np.zeros,
-    'diag': np.diag}
+    'radians': np.deg2rad, 'float': float, 'dict': dict, 'zeros': np.zeros}
 _LIBRARIES = ('np', 'numpy', 'math')
 _MOST = 1e12        # of a power: what takes longer is no parameter
 

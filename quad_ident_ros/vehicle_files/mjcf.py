@@ -61,7 +61,10 @@ def _take_bodies(draft: Draft, model: Model, parts: Sequence[Part], pushed: set[
             draft.assumed.append(f'{where}: {part.remark}')
         moving = [joint for joint in part.joints if part is not parts[0]]
         if moving and moving[0].get('type', 'hinge') == 'hinge' and pushed & part.sites.keys():
-            axis = part.pose.rotation @ moving[0].numbers('axis', 3, (0.0, 0.0, 1.0))
+            stated = moving[0].numbers('axis', 3, (0.0, 0.0, 1.0))
+            if not np.linalg.norm(stated) > 1e-9:
+                raise InputError(f'{moving[0].where}: zeros are no axis; correct it')
+            axis = part.pose.rotation @ stated
             body = spun(body, axis)
             draft.assumed.append(f'{where}: its inertia is the mean over a turn')
         elif moving:

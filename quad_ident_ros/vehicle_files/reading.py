@@ -108,11 +108,10 @@ class Draft:
         self.take('mass', float(body.mass), 'kg', place)
         self.take('inertia', [float(value) for value in np.diag(body.inertia)], 'kg m2',
                   inertia_place)
-        products = body.inertia[[0, 0, 1], [1, 2, 2]]
-        if np.max(np.abs(products)) > FEW_PRODUCTS * np.max(np.diag(body.inertia)):
-            self.products = tuple(float(value) + 0.0 for value in products)   # type: ignore[assignment]
-            self.note('products of inertia', list(self.products), 'kg m2',
-                      inertia_place)
+        xy, xz, yz = (float(value) + 0.0 for value in body.inertia[[0, 0, 1], [1, 2, 2]])
+        if max(abs(xy), abs(xz), abs(yz)) > FEW_PRODUCTS * np.max(np.diag(body.inertia)):
+            self.products = xy, xz, yz
+            self.note('products of inertia', [xy, xz, yz], 'kg m2', inertia_place)
         if np.linalg.norm(body.centre) > 0.0:
             self.note('centre of mass', [round(float(value), 9) for value in body.centre], 'm',
                       place)

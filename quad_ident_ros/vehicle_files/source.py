@@ -23,7 +23,7 @@ class Source:
 
     @property
     def stem(self) -> str:
-        """The name of the file without its ending."""
+        """Return the name of the file without its ending."""
         return Path(self.path).stem
 
 

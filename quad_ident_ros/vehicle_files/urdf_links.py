@@ -12,6 +12,8 @@ from quad_ident_ros.errors import InputError
 from quad_ident_ros.vehicle_files.bodies import Body, fixed_axes, Pose, pose, symmetric
 from quad_ident_ros.vehicle_files.xml_tree import Element
 
+SHORTEST = 1e-9      # of an axis: less is none
+
 
 @dataclass(frozen=True)
 class Link:
@@ -39,11 +41,11 @@ class Link:
 
     @property
     def axis(self) -> np.ndarray:
-        """The axis (3,) of its joint, in its frame."""
+        """Return what its joint turns about, (3,), in its frame."""
         stated = None if self.joint is None else self.joint.first('axis')
         axis = (np.array([1.0, 0.0, 0.0]) if stated is None else
                 stated.numbers('xyz', 3, (1.0, 0.0, 0.0)))
-        if stated is not None and not axis.any():
+        if stated is not None and not np.linalg.norm(axis) > SHORTEST:
             raise InputError(f'{stated.where}: zeros are no axis; correct it')
         return axis
 

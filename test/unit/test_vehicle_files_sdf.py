@@ -137,7 +137,7 @@ def test_poses_relative_to_frames_and_in_degrees_are_followed():
                          "<pose relative_to='arm' degrees='true'>0.1 0 0 0 0 90</pose>")
     assert text != WHOLE
     text = text.replace("<model name='quad'>", "<model name='quad'><frame name='arm'>"
-                        f"<pose>0.2 -0.35 0.06 0 0 {math.pi / 2}</pose></frame>")
+                        f'<pose>0.2 -0.35 0.06 0 0 {math.pi / 2}</pose></frame>')
     np.testing.assert_allclose(reading(text).vehicle.rotors[0].position,
                                reading(WHOLE).vehicle.rotors[0].position, atol=1e-12)
 
