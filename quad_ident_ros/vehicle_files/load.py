@@ -3,6 +3,7 @@
 """Vehicles of a name, of our vehicle file or of a simulator's file."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 import stat
 from typing import Any
@@ -51,7 +52,8 @@ def read_vehicle(source: Source, supplied: Mapping[str, Any] | None = None) -> R
     if kind is None:
         raise InputError(f'{source.path}: is of no kind of vehicle file that is known; give '
                          f'{", ".join(each.title for each in KINDS)}, or our own (.yaml)')
-    return finished(kind.read(source), kind.title, supplied)
+    reading = finished(kind.read(source), kind.title, supplied)
+    return replace(reading, path=f'{source.path}:{source.wanted}') if source.wanted else reading
 
 
 def source_of(name_or_path: str | Path) -> Source | None:

@@ -187,7 +187,7 @@ def thrusts_as_commands(draft: Draft, highest: float, ratio: float | None, place
     if ratio is not None:
         draft.take('torque_coefficient', ratio * coefficient, 'N m/(rad/s)^2', place)
     low, high = signal or (lowest, highest)
-    draft.take('speed_max', FULL_SPEED, 'rad/s', 'see below')
+    draft.take('speed_max', FULL_SPEED, 'rad/s', f'taken for {place}')
     draft.data['motors'] = {'kind': 'normalised', 'minimum': low, 'maximum': high,
                             'thrust': {'offset': lowest, 'gain': highest - lowest,
                                        'exponent': 1.0}}

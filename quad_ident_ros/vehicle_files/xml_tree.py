@@ -105,9 +105,11 @@ def root_of(text: str) -> str:
     parser = expat.ParserCreate()
 
     def begin(tag: str, _: dict[str, str]) -> None:
-        found.append(tag)
+        found.insert(0, tag)
         raise StopIteration
 
+    # A document type names the element that is to come, also where its entities have no end.
+    parser.StartDoctypeDeclHandler = lambda name, *_: found.append(name)
     parser.StartElementHandler = begin
     try:
         parser.Parse(text.encode('utf-8'), True)

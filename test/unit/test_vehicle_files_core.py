@@ -265,6 +265,14 @@ def test_files_of_ours_are_loaded_as_before(tmp_path):
         load_vehicle(picture)
 
 
+def test_entities_that_stand_for_gigabytes_are_refused_at_once(tmp_path):
+    levels = ''.join(f'<!ENTITY a{k} "{f"&a{k - 1};" * 10}">' for k in range(1, 12))
+    text = (f'<!DOCTYPE robot [<!ENTITY a0 "ha">{levels}<!ATTLIST robot name CDATA "&a11;">]>\n'
+            '<robot>&a11;</robot>')
+    with pytest.raises(InputError, match='line 1: a document type .DTD. is not read'):
+        load_vehicle(written(tmp_path, text, 'bomb.urdf'))
+
+
 def test_kinds_are_told_by_content():
     assert kind_of(PARAMETERS).name == 'rotorpy'
     for text in ('', 'mass: 1.0', '{"a": 1}', '<html></html>', 'x = 1', '[a]\nb = 1\n'):

@@ -10,7 +10,7 @@ import pytest
 
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.vehicle_files.kinds import kind_of
-from quad_ident_ros.vehicle_files.load import read_vehicle
+from quad_ident_ros.vehicle_files.load import load_vehicle, read_vehicle
 from quad_ident_ros.vehicle_files.source import Source
 
 ARMS = ((0.2, -0.2), (-0.2, 0.2), (0.2, 0.2), (-0.2, -0.2))
@@ -100,6 +100,16 @@ def test_a_plain_urdf_has_mass_and_places_and_asks_for_the_rest():
     assert list(named.missing) == ['thrust_coefficient', 'torque_coefficient']
     # A rotor whose joint turns about -z pushes upwards all the same.
     assert reading(drone(axis=-1)).missing == found.missing
+
+
+def test_a_command_that_needs_the_rest_says_how_to_supply_it(tmp_path):
+    path = tmp_path / 'drone.urdf'
+    path.write_text(drone())
+    with pytest.raises(InputError) as error:
+        load_vehicle(path)
+    said = str(error.value)
+    assert 'a URDF without thrust_coefficient, torque_coefficient, spins; run `quad_ident' in said
+    assert '--set spins=... -o vehicle.yaml` and give that file' in said
 
 
 def test_plugins_of_gazebo_in_a_urdf_are_read():
