@@ -47,7 +47,8 @@ def add(commands, said):
           'The very first flight takes up to a minute, in which the model is compiled.')
     parser.add_argument('trajectory', help='name of a trajectory, see below')
     parser.add_argument('--vehicle', required=True, metavar='V',
-                        help='name of a shipped vehicle, or a file; quad_ident vehicle tells of which kinds')
+                        help='name of a shipped vehicle, or a file of a kind that `quad_ident '
+                        'vehicle --help` names')
     parser.add_argument('--effect', action='append', default=[],
                         metavar='NAME:PARAMETER=VALUE',
                         help='what the flown vehicle has besides, in SI units; may be repeated; '

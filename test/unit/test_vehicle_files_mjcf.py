@@ -182,7 +182,8 @@ GEOMS = """
     '<inertial pos="0.01 0.02 0.03" mass="1" fullinertia="0.02 0.03 0.04 0.001 -0.002 0.003"/>',
     '<inertial pos="0 0 0.1" mass="1" diaginertia="0.02 0.03 0.04" xyaxes="1 1 0 0 1 1"/>',
     '<inertial pos="0 0 0.1" mass="1" diaginertia="0.02 0.03 0.04" zaxis="1 2 3"/>'])
-def test_mass_and_inertia_are_those_of_mujoco(before, body):
+def test_mass_and_inertia_are_those_of_mujoco(before, body, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)     # where MuJoCo puts its log
     mujoco = pytest.importorskip('mujoco')
     text = model(body, before=before)
     theirs = mujoco.MjModel.from_xml_string(text)
