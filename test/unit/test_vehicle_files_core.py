@@ -9,6 +9,7 @@ import re
 
 import numpy as np
 import pytest
+from refusing import refused
 
 from quad_ident_ros.cli.main import main, parser
 from quad_ident_ros.effects.registry import mapping, vector
@@ -53,15 +54,6 @@ def written(folder, text, name='params.py'):
     path = folder / name
     path.write_text(text, encoding='utf-8')
     return path
-
-
-def refused(text, name='params.py', folder=None):
-    """Return the one line with which a text is refused."""
-    with pytest.raises(InputError) as error:
-        read_vehicle(Source(name, text))
-    message = str(error.value)
-    assert message.startswith(name) and '\n' not in message and len(message) < 400
-    return message
 
 
 def test_a_dumbbell_has_the_inertia_of_its_points():
@@ -179,7 +171,7 @@ def test_products_of_inertia_are_read_and_said_to_be_left_out():
 ])
 def test_a_bad_dictionary_is_refused_with_its_line(old, new, said):
     assert old in PARAMETERS
-    assert said in refused(PARAMETERS.replace(old, new))
+    assert said in refused(PARAMETERS.replace(old, new), 'params.py')
 
 
 def test_a_python_file_is_not_run(tmp_path):
@@ -192,7 +184,7 @@ def test_a_python_file_is_not_run(tmp_path):
 def test_of_several_vehicles_one_is_named(tmp_path):
     text = PARAMETERS + PARAMETERS.partition('d = 0.2\n')[2].replace(
         'quad_params', 'heavy').replace('1.0 / 2', '2.0')
-    said = refused(text)
+    said = refused(text, 'params.py')
     assert 'several vehicles are in it (quad_params, heavy); name one: params.py:quad_p' in said
     path = written(tmp_path, text)
     assert load_vehicle(f'{path}:heavy').mass == 2.0

@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 import pytest
+from refusing import refused
 
-from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.motors import rotor_speeds
 from quad_ident_ros.vehicle_files.kinds import kind_of
 from quad_ident_ros.vehicle_files.load import read_vehicle
@@ -46,15 +46,6 @@ def model(body=INERTIAL, actuators=None, before='<compiler autolimits="true"/>',
 
 def reading(text, wanted=''):
     return read_vehicle(Source('quad.xml', text, wanted))
-
-
-def refused(text):
-    """Return the one line with which a text is refused."""
-    with pytest.raises(InputError) as error:
-        reading(text)
-    message = str(error.value)
-    assert message.startswith('quad.xml') and '\n' not in message and len(message) < 400
-    return message
 
 
 def test_the_numbers_are_those_of_the_file():
@@ -133,7 +124,8 @@ def test_of_two_vehicles_one_is_named():
                            + '<site name="s"/></body></worldbody>')
     assert reading(text).vehicle.name == 'quad'     # nothing pushes the other
     text = text.replace('</actuator>', '<motor site="s" gear="0 0 1" ctrlrange="0 9"/></actuator>')
-    assert 'several vehicles are in it (quad, other); name one: quad.xml:quad' in refused(text)
+    assert 'several vehicles are in it (quad, other); name one: quad.xml:quad' in refused(
+        text, 'quad.xml')
     assert reading(text, 'quad').vehicle.mass == 1.3
 
 
@@ -155,7 +147,7 @@ def test_of_two_vehicles_one_is_named():
 ])
 def test_a_bad_model_is_refused_with_its_line(old, new, said):
     assert old in model()
-    assert said in refused(model().replace(old, new, 1))
+    assert said in refused(model().replace(old, new, 1), 'quad.xml')
 
 
 def test_it_is_told_by_its_content():

@@ -9,6 +9,7 @@ import sys
 
 import numpy as np
 import pytest
+from refusing import refused
 
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.motors import rotor_speeds
@@ -60,15 +61,6 @@ param set SIH_VEHICLE_TYPE 0
 
 def reading(text, name='file', wanted=''):
     return read_vehicle(Source(name, text, wanted))
-
-
-def refused(text):
-    """Return the one line with which a text is refused."""
-    with pytest.raises(InputError) as error:
-        reading(text)
-    message = str(error.value)
-    assert message.startswith('file') and '\n' not in message and len(message) < 400
-    return message
 
 
 @TOML
@@ -146,7 +138,7 @@ def test_the_wrench_is_that_of_drone_models():
 ])
 def test_a_bad_table_is_refused_with_its_line(old, new, said):
     assert old in DRONE
-    assert said in refused(DRONE.replace(old, new, 1))
+    assert said in refused(DRONE.replace(old, new, 1), 'file')
 
 
 def test_parameters_of_px4_s_sih_fly_as_its_equations_say():
@@ -195,7 +187,7 @@ def test_lists_of_parameters_in_other_forms_are_read(line):
     ('SIH_T_MAX 4.5', 'SIH_T_MAX 0', 'line 7: SIH_T_MAX: a rotor that gives no thrust'),
 ])
 def test_bad_parameters_are_refused_with_their_line(old, new, said):
-    assert said in refused(SCRIPT.replace(old, new, 1))
+    assert said in refused(SCRIPT.replace(old, new, 1), 'file')
 
 
 def test_they_are_told_by_their_content():

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from refusing import refused
 
 from quad_ident_ros.effects.registry import mapping, vector
 from quad_ident_ros.errors import InputError
@@ -66,15 +67,6 @@ WHOLE = model(bodies(), motors())
 
 def reading(text, name='model.sdf'):
     return read_vehicle(Source(name, text))
-
-
-def refused(text):
-    """Return the one line with which a text is refused."""
-    with pytest.raises(InputError) as error:
-        reading(text)
-    message = str(error.value)
-    assert message.startswith('model.sdf') and '\n' not in message and len(message) < 400
-    return message
 
 
 def test_mass_inertia_and_places_are_those_of_the_closed_form():
@@ -159,7 +151,7 @@ def test_an_included_model_beside_it_is_read(tmp_path, merge):
 
 
 def test_an_include_that_is_not_there_is_named_with_how_to_mend_it():
-    said = refused(model('\n<include><uri>model://base</uri></include>', motors()))
+    said = refused(model('\n<include><uri>model://base</uri></include>', motors()), 'model.sdf')
     assert 'line 4: <include>: model://base was not found beside the model' in said
     assert '`gz sdf -p`' in said
 
@@ -178,7 +170,7 @@ def test_of_two_vehicles_in_a_world_one_is_named():
     text = ("<sdf version='1.9'><world name='w'><gravity>0 0 -3.7</gravity>" + ground
             + '{}</world></sdf>')
     assert 'several vehicles are in it (one, two); name one: model.sdf:one' in refused(
-        text.format(''.join(inner)))
+        text.format(''.join(inner)), 'model.sdf')
     alone = reading(text.format(inner[1])).vehicle
     assert alone.name == 'two' and alone.gravity == 3.7
     assert read_vehicle(Source('model.sdf', text.format(''.join(inner)), 'two')).vehicle == alone
@@ -189,7 +181,7 @@ def test_seven_rotors_are_fine_and_tilted_ones_are_not():
             for angle in np.linspace(0, 2 * math.pi, 7, endpoint=False)]
     turns = ('cw', 'ccw', 'cw', 'ccw', 'cw', 'ccw', 'cw')
     assert len(reading(model(bodies(arms=arms), motors(turns))).vehicle.rotors) == 7
-    assert '45 deg off body z' in refused(model(bodies(tilt=math.pi / 4), motors()))
+    assert '45 deg off body z' in refused(model(bodies(tilt=math.pi / 4), motors()), 'model.sdf')
     assert any('3 deg off body z, is taken along it' in text for text in reading(
         model(bodies(tilt=math.radians(3)), motors())).assumed)
 
@@ -214,12 +206,12 @@ def test_a_bad_model_is_refused_with_its_line(old, new, said):
     text = WHOLE.replace(old, new, 1)
     if old.startswith('gz-sim'):
         text = WHOLE.replace(old, new).replace('MulticopterMotorModel', 'y')
-    assert said in refused(text)
+    assert said in refused(text, 'model.sdf')
 
 
 def test_a_link_without_inertial_is_refused():
     assert "<link name='bare'>: it has no <inertial>, for which Gazebo takes 1 kg" in refused(
-        WHOLE.replace('</model>', "<link name='bare'/></model>"))
+        WHOLE.replace('</model>', "<link name='bare'/></model>"), 'model.sdf')
 
 
 def test_it_is_told_by_its_content():

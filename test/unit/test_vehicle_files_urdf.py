@@ -7,6 +7,7 @@ import math
 
 import numpy as np
 import pytest
+from refusing import refused
 
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.vehicle_files.kinds import kind_of
@@ -60,15 +61,6 @@ SMALL = """<robot name="small">
 
 def reading(text, name='drone.urdf', supplied=None):
     return read_vehicle(Source(name, text), supplied)
-
-
-def refused(text):
-    """Return the one line with which a text is refused."""
-    with pytest.raises(InputError) as error:
-        reading(text)
-    message = str(error.value)
-    assert message.startswith('drone.urdf') and '\n' not in message and len(message) < 400
-    return message
 
 
 def test_properties_of_gym_pybullet_drones_are_per_rpm():
@@ -182,26 +174,28 @@ def test_links_stand_where_yourdfpy_has_them():
 ])
 def test_a_bad_robot_is_refused_with_its_line(old, new, said):
     assert old in drone()
-    assert said in refused(drone().replace(old, new, 1))
+    assert said in refused(drone().replace(old, new, 1), 'drone.urdf')
 
 
 def test_one_with_shapes_alone_is_refused():
     text = ('<robot name="shell">\n<link name="base"><visual><geometry><mesh filename="a.dae"/>'
             '</geometry></visual></link></robot>')
-    assert "<robot name='shell'>: no link of it has an <inertial> with a mass" in refused(text)
+    assert "<robot name='shell'>: no link of it has an <inertial> with a mass" in refused(
+        text, 'drone.urdf')
 
 
 def test_two_robots_in_a_file_and_circles_are_told():
     text = drone().replace('<joint name="mount" type="fixed">', '<!--').replace(
         '<parent link="base_link"/><child link="camera"/></joint>', '-->', 1)
-    assert 'several vehicles are in it (base_link, camera)' in refused(text)
+    assert 'several vehicles are in it (base_link, camera)' in refused(text, 'drone.urdf')
     circle = drone().replace('</robot>', '<joint name="back" type="fixed"><parent link="camera"/>'
                              '<child link="base_link"/></joint></robot>')
-    assert 'hang on one another in a circle' in refused(circle)
+    assert 'hang on one another in a circle' in refused(circle, 'drone.urdf')
 
 
 def test_a_rotor_across_is_refused():
-    assert 'off body z' in refused(drone().replace('<axis xyz="0 0 1"/>', '<axis xyz="0 1 1"/>'))
+    text = drone().replace('<axis xyz="0 0 1"/>', '<axis xyz="0 1 1"/>')
+    assert 'off body z' in refused(text, 'drone.urdf')
 
 
 def test_it_is_told_by_its_content():
