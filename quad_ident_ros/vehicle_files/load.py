@@ -33,19 +33,6 @@ def load_vehicle(name_or_path: str | Path) -> Vehicle:
     return needed_vehicle(read_vehicle(source))
 
 
-def load_nominal(name_or_path: str | Path) -> Vehicle:
-    """Return the vehicle as load_vehicle does; InputError where it has effects."""
-    source = source_of(name_or_path)
-    if source is None:
-        return model.load_nominal(name_or_path)
-    vehicle = needed_vehicle(read_vehicle(source))
-    if vehicle.effects:
-        raise InputError(f'{name_or_path}: its simulator has effects ({", ".join(vehicle.effects)}'
-                         '), which a nominal vehicle has not; write it by `quad_ident vehicle '
-                         f'{name_or_path} -o v.yaml` and take the section effects out')
-    return vehicle
-
-
 def read_vehicle(source: Source, supplied: Mapping[str, Any] | None = None) -> Reading:
     """Return the Reading of a file of a simulator; see reading.finished. Raises InputError."""
     kind = kind_of(source.text)

@@ -4,7 +4,6 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-import math
 from typing import Any
 
 import numpy as np
@@ -23,7 +22,7 @@ SPINS = 'spins'
 RATIO = 'torque_over_thrust'
 """Stands for the torque coefficient, where a thrust coefficient is known."""
 SETTABLE = {
-    'mass': 'kg', 'inertia': '[Ixx, Iyy, Izz] in kg m2', 'gravity': 'm/s2',
+    'mass': 'kg', 'inertia': '[Ixx, Iyy, Izz] or 3 rows of 3, kg m2', 'gravity': 'm/s2',
     'thrust_coefficient': 'N/(rad/s)^2', 'torque_coefficient': 'N m/(rad/s)^2',
     'rotors': '[{position: [x, y, z], spin: 1}, ...] in m from the centre of mass',
     RATIO: 'm, in the place of torque_coefficient',
@@ -67,8 +66,8 @@ class Draft:
     """
     A vehicle on its way from a file: what the reader of a kind fills in.
 
-    data: as a vehicle file has it, rotors without a spin where it is not known; products: Ixy,
-    Ixz, Iyz, kg m^2; effects: those of the nominal vehicle, which their numbers may hang on.
+    data: as a vehicle file has it, rotors without a spin where it is not known; effects: those of
+    the nominal vehicle, which their numbers may hang on.
     """
 
     where: str
@@ -77,7 +76,6 @@ class Draft:
     read: list[Entry] = field(default_factory=list)
     assumed: list[str] = field(default_factory=list)
     reasons: dict[str, str] = field(default_factory=dict)
-    products: tuple[float, float, float] = (0.0, 0.0, 0.0)
     effects: Callable[[Vehicle], Values] = field(default=lambda _: {})
 
     def take(self, key: str, value: Any, unit: str, place: str) -> None:
@@ -110,8 +108,11 @@ class Draft:
                   inertia_place)
         xy, xz, yz = (float(value) + 0.0 for value in body.inertia[[0, 0, 1], [1, 2, 2]])
         if max(abs(xy), abs(xz), abs(yz)) > FEW_PRODUCTS * np.max(np.diag(body.inertia)):
-            self.products = xy, xz, yz
+            xx, yy, zz = self.data['inertia']
+            self.data['inertia'] = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]
             self.note('products of inertia', [xy, xz, yz], 'kg m2', inertia_place)
+            self.note('tilt of the principal axes', principal_tilt(body.inertia), 'rad',
+                      inertia_place)
         if np.linalg.norm(body.centre) > 0.0:
             self.note('centre of mass', [round(float(value), 9) for value in body.centre], 'm',
                       place)
@@ -147,16 +148,15 @@ def finished(draft: Draft, kind: str, supplied: Mapping[str, Any] | None = None)
     missing = {key: _asked(key, draft) for key in NEEDED if key not in data}
     if _without_spins(data.get('rotors')):
         missing[SPINS] = _asked(SPINS, draft)
-    assumed = [*draft.assumed, *_left_out(draft)]
     if missing:
-        return Reading(draft.where, kind, None, tuple(read), missing, tuple(assumed))
+        return Reading(draft.where, kind, None, tuple(read), missing, tuple(draft.assumed))
     try:
         vehicle = vehicle_from_mapping({'name': draft.name, **data}, draft.where)
         theta = vector(draft.effects(vehicle), vehicle, f'{draft.where}: effects')
     except InputError as error:
         raise InputError(f'{error}{_read_from(str(error), draft)}') from None
     vehicle = replace(vehicle, effects=mapping(theta))
-    return Reading(draft.where, kind, vehicle, tuple(read), {}, tuple(assumed))
+    return Reading(draft.where, kind, vehicle, tuple(read), {}, tuple(draft.assumed))
 
 
 def needed_vehicle(reading: Reading) -> Vehicle:
@@ -234,18 +234,6 @@ def _asked(key: str, draft: Draft) -> str:
     reason = draft.reasons.get(key, 'the file does not have it')
     other = f', or {RATIO}, m' if key == TORQUE else ''
     return f'{reason}; --set {key}={SETTABLE[key]}{other}'
-
-
-def _left_out(draft: Draft) -> list[str]:
-    """Return what of a file the vehicle cannot hold: the products of inertia."""
-    if not any(draft.products):
-        return []
-    xx, yy, zz = draft.data['inertia']
-    xy, xz, yz = draft.products
-    inertia = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
-    return [f'products of inertia Ixy {xy:.4g}, Ixz {xz:.4g}, Iyz {yz:.4g} kg m2 are left out: '
-            'the vehicle has a diagonal inertia; its principal axes are tilted by '
-            f'{math.degrees(principal_tilt(inertia)):.3g} deg']
 
 
 def _read_from(message: str, draft: Draft) -> str:

@@ -145,15 +145,16 @@ def test_every_entry_names_its_line():
         assert word in lines[number - 1]
 
 
-def test_products_of_inertia_are_read_and_said_to_be_left_out():
-    text = PARAMETERS.replace("'Ixz': 0.0", "'Ixz': 1e-4")
-    reading = read_vehicle(Source('params.py', text))
-    [products] = [entry for entry in reading.read if entry.key == 'products of inertia']
-    assert products.value == [0.0, 1e-4, 0.0] and products.unit == 'kg m2'
+def test_products_of_inertia_are_those_of_the_vehicle(tmp_path):
+    path = written(tmp_path, PARAMETERS.replace("'Ixz': 0.0", "'Ixz': 1e-4"))
+    vehicle, out = load_vehicle(path), tmp_path / 'v.yaml'
+    assert vehicle.inertia == (3e-3, 4e-3, 5e-3) and vehicle.products == (0.0, 1e-4, 0.0)
+    assert main(['vehicle', str(path), '-o', str(out)]) == 0
+    assert load_ours(out) == vehicle
+    found = {entry.key: entry.value for entry in read_vehicle(source_of(path)).read}
+    assert found['products of inertia'] == [0.0, 1e-4, 0.0]
     # tan(2 angle) = 2 Ixz / (Izz - Ixx).
-    tilt = math.degrees(0.5 * math.atan2(2e-4, 2e-3))
-    [said] = [text for text in reading.assumed if 'products of inertia' in text]
-    assert 'Ixz 0.0001' in said and f'{tilt:.3g} deg' in said
+    assert found['tilt of the principal axes'] == pytest.approx(0.5 * math.atan2(2e-4, 2e-3))
 
 
 @pytest.mark.parametrize('old, new, said', [
