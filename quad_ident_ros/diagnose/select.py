@@ -315,15 +315,17 @@ class _Search:
         """
         assert self.best is not None
         chosen, fit = self.best.chosen, self.best.estimate
-        ratios = {EFFECTS[cause.effect].ratio for cause in effects_in(chosen)} - {None}
         usual = {cause.effect: cause for cause in self.all_causes if cause.usual}
         for cause in chosen:
             name = cause.nuisance.of_effect if cause.nuisance else ''
-            if not name or name in _names(self.best) or EFFECTS[name].ratio in ratios:
+            if name not in usual or name in _names(self.best):
+                continue
+            ratio = EFFECTS[name].ratio
+            if ratio and ratio in {EFFECTS[one].ratio for one in _names(self.best)}:
                 continue
             places = [fit.nuisances.columns.index(column) for column in cause.columns]
             values = fit.nuisances.values[:, places]
-            if name in usual and are_alike(values, self.rules.prior_odds):
+            if are_alike(values, self.rules.prior_odds):
                 start = fit.z.copy()
                 start[list(cause.columns)] += values.mean(axis=0)
                 whole = key_of((usual[name], *self.best.chosen))

@@ -21,7 +21,7 @@ FOLLOWED = [RISE, FALL, SLEW, MEAN_LAG]
 CLOSE = 1e-9    # of a step, within which a command changes at a sample
 PIECES = 8      # of a mean lag, over each of which a response of the second order is its mean
 MOST_PIECES = 64
-NO_LAG = 1e-9   # s, of the torque, in place of none
+NO_LAG = 1e-9   # s, below which there is no mean lag, and of the torque in place of none
 
 
 class Actuation(NamedTuple):
@@ -262,7 +262,7 @@ def _follow(speed: np.ndarray, inner: np.ndarray, command: np.ndarray, length: f
     A response of the second order is exact at the end of each of its pieces, and stands still at
     its mean in it for what follows: lags, and the integrals.
     """
-    if mean_lag == 0.0:
+    if mean_lag < NO_LAG:
         _follow_lags(speed, command, length, left, up, down, slew, sums)
         return
     pieces = min(max(int(np.ceil(PIECES * length / mean_lag)), 1), MOST_PIECES)

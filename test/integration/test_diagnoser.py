@@ -211,10 +211,10 @@ def test_it_ends_while_it_diagnoses(graph, draggy):
 
 
 def test_a_vehicle_that_cannot_be_used_is_refused_in_one_line(processes, tmp_path):
-    path = tmp_path / 'with_effects.yaml'
-    write_vehicle(path, replace(load_vehicle(NOMINAL), effects=DRAG))
+    path = tmp_path / 'drone.urdf'
+    path.write_text('<robot name="empty"/>')
     for vehicle, said in (('hummingbrd', "'hummingbrd' is not among the vehicles"),
-                          (str(path), 'give the nominal vehicle')):
+                          (str(path), 'drone.urdf')):
         process = processes.start('diagnoser', {'vehicle': vehicle})
         assert process.wait(PATIENCE) == 2
         [line] = process.errors().splitlines()

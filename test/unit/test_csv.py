@@ -365,13 +365,14 @@ def test_columns_without_any_number_are_named_together(tmp_path):
     refused(tmp_path, f'{head}\n{rows[0]}\n', '1 sample makes no flight')
 
 
-@pytest.mark.parametrize('option', ['--vehicle', '--mapping'])
-def test_a_picture_or_a_log_is_told_where_a_yaml_file_belongs(tmp_path, capsys, monkeypatch,
-                                                              option):
+@pytest.mark.parametrize(('option', 'wanted'), [('--vehicle', 'a vehicle file'),
+                                                ('--mapping', 'a YAML file')])
+def test_a_picture_or_a_log_is_told_where_another_file_belongs(tmp_path, capsys, monkeypatch,
+                                                               option, wanted):
     write_csv(tmp_path / 'f.csv', SMALL)
     (tmp_path / 'pic.png').write_bytes(b'\x89PNG\r\n\x1a\n' + bytes(range(256)))
     (tmp_path / 'log.ulg').write_bytes(b'ULog\x01\x12\x35\x01' + bytes(range(256)) * 2000)
     monkeypatch.chdir(tmp_path)
     for name, what in (('pic.png', 'a picture (PNG)'), ('log.ulg', 'a log of PX4 (ULog)')):
         assert main(['info', 'f.csv', option, name]) == 2
-        assert f'{name}: this is {what}; expected a YAML file' in capsys.readouterr().err
+        assert f'{name}: this is {what}; expected {wanted}' in capsys.readouterr().err
