@@ -189,5 +189,10 @@ def needed_from(runs, now):
 
 
 def run_at(runs, stamp):
-    """Return the notice of the run that a stamp (ns) belongs to, or None."""
-    return next((run for run in runs if run.start_ns <= stamp <= run.stop_ns), None)
+    """
+    Return the notice of the run that a stamp (ns) belongs to, or None.
+
+    A run that begins within another has cut it short: its simulator was killed, and started again.
+    """
+    there = (run for run in runs if run.start_ns <= stamp <= run.stop_ns)
+    return max(there, key=lambda run: run.start_ns, default=None)

@@ -155,6 +155,17 @@ def test_another_run_at_the_same_time_does_not_take_the_rows_of_the_first():
     assert (record.info['name'], len(record), record.info['dropped']) == ('new', 51, 0)
 
 
+def test_a_run_that_begins_within_another_cuts_it_short():
+    """The simulator was killed, and started again before the first flight would have ended."""
+    window = buffer()
+    window.add_run(notice(0, 1000, name='killed'))
+    window.add_rows(rows(0, 400))
+    window.add_run(notice(700, 1700, name='again'))
+    cut, whole = window.add_rows(rows(700, 1710))
+    assert (cut.info['name'], len(cut), cut.info['dropped']) == ('killed', 40, 61)
+    assert (whole.info['name'], len(whole), whole.info['dropped']) == ('again', 101, 0)
+
+
 def test_missing_samples_are_counted_without_a_notice():
     window = buffer()
     window.add_rows(rows(0, 1000, without=(100, 110, 500)))
