@@ -18,6 +18,7 @@ COMMANDS = {
     'fit': 'estimate mass, inertia, drag, motor lag, ... from flights',
     'diagnose': 'say where the sim-to-real gap lies, what causes it, how far it shrinks',
     'vehicle': "read a vehicle from a simulator's file (MJCF, SDF, URDF, rotorpy, ...)",
+    'export': "write a vehicle into a simulator's own file (SDF, MJCF, URDF)",
     'info': 'say what is in a file or flight record, and what is wrong with it',
     'convert': 'write a flight record in another format',
     'paper': "reproduce the paper's tables and figures, and check its claims",
@@ -36,6 +37,7 @@ examples:
   quad_ident fit flight.csv --vehicle v.yaml --free inertia,thrust_coefficient,motor_lag
   quad_ident diagnose a.csv b.csv --vehicle v.yaml what the vehicle has beside its model
   quad_ident vehicle x500/model.sdf -o v.yaml      the vehicle that a simulator flies
+  quad_ident export v.yaml --to gazebo --base model.sdf -o like_real.sdf
   quad_ident info flight.csv                       what is in a flight, and what is wrong
   quad_ident convert flight.csv flight.mcap        the same flight as a bag
   quad_ident paper                                 reproduce the paper and check its claims

@@ -7,7 +7,7 @@ from pathlib import Path
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.vehicle import check_ending
 
-INPUTS = ('flight', 'flights', 'hold_out', 'mapping', 'vehicle', 'experiment')
+INPUTS = ('flight', 'flights', 'hold_out', 'mapping', 'vehicle', 'experiment', 'base')
 OUTPUTS = ('out', 'output', 'out_vehicle', 'json', 'report', 'picture', 'write_mapping')
 FILES = ('out_vehicle', 'json', 'report', 'picture', 'write_mapping')
 """Names of the options, of any command, that name files read, written, and never folders."""

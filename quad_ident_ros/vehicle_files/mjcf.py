@@ -30,10 +30,7 @@ def tells(text: str) -> bool:
 def read(source: Source) -> Draft:
     """Return the Draft of an MJCF model; raises InputError."""
     model = model_of(parse(source.path, source.text))
-    bodies = vehicles_of(model)
-    free = {name: found for name, found in bodies.items() if is_free(found[0])} or bodies
-    pushed = {name: found for name, found in free.items() if _pushes(model, found)} or free
-    body, inherited = one_of(source, pushed, 'body that flies')
+    body, inherited = flying_body(source, model)
     draft = Draft(source.path, body.get('name') or model.root.get('model') or source.stem)
     parts = list(parts_of(model, body, inherited))
     sites = {name: site for part in parts for name, site in part.sites.items()}
@@ -45,6 +42,14 @@ def read(source: Source) -> Draft:
     return draft
 
 
+def flying_body(source: Source, model: Model) -> tuple[Element, str]:
+    """Return the <body> of a model that flies, with the childclass that holds there."""
+    bodies = vehicles_of(model)
+    free = {name: found for name, found in bodies.items() if is_free(found[0])} or bodies
+    pushed = {name: found for name, found in free.items() if _pushes(model, found)} or free
+    return one_of(source, pushed, 'body that flies')
+
+
 def _pushes(model: Model, found: tuple[Element, str]) -> bool:
     """Whether an actuator acts at a site of a body."""
     names = {site.get('name') for site in found[0].walk() if site.tag == 'site'}
@@ -52,8 +57,8 @@ def _pushes(model: Model, found: tuple[Element, str]) -> bool:
                for child in holder.children)
 
 
-def _take_bodies(draft: Draft, model: Model, parts: Sequence[Part], pushed: set[str]) -> Body:
-    """Enter mass and inertia of all bodies of a vehicle, and return them as one."""
+def bodies_of(draft: Draft, parts: Sequence[Part], pushed: set[str]) -> list[Body]:
+    """Return the Body of each part, of a rotor as it is over a turn; pushed: sites of rotors."""
     bodies = []
     for part in parts:
         body, where = part.body, part.element.place()
@@ -74,6 +79,12 @@ def _take_bodies(draft: Draft, model: Model, parts: Sequence[Part], pushed: set[
             draft.note(f'body {part.element.get("name") or part.element.line}', body.mass, 'kg',
                        f'{where}, {part.source}')
         bodies.append(body)
+    return bodies
+
+
+def _take_bodies(draft: Draft, model: Model, parts: Sequence[Part], pushed: set[str]) -> Body:
+    """Enter mass and inertia of all bodies of a vehicle, and return them as one."""
+    bodies = bodies_of(draft, parts, pushed)
     if not sum(body.mass for body in bodies) > 0.0:
         raise InputError(f'{parts[0].element.where}: it has no mass; give it an <inertial>')
     whole = combined(bodies)

@@ -3,6 +3,7 @@
 """SDF models of Gazebo with motor plugins."""
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 import os
 from pathlib import Path
 
@@ -37,18 +38,10 @@ def read(source: Source) -> Draft:
     """Return the Draft of an SDF model; raises InputError."""
     root = parse(source.path, source.text)
     gravity = GRAVITY, ''
-    trees: dict[str, tuple[Element, Tree]] = {}
     for holder in (root, *root.all('world')):
         for stated in holder.all('gravity'):
             gravity = float(np.linalg.norm(stated.content(3))), stated.place()
-        for model in _models(holder, source):
-            tree = tree_of(model, _included)
-            if _plugins(tree):
-                trees[model.get('name')] = model, tree
-    if not trees and not source.wanted:
-        raise InputError(f'{source.path}: no model in it has a plugin MulticopterMotorModel; give '
-                         'the model.sdf that has the motors')
-    model, tree = one_of(source, trees, 'model with motors')
+    model, tree = flying_model(source, root)
     draft = Draft(source.path, model.get('name') or source.stem)
     _take_tree(draft, model, tree)
     if gravity[1]:
@@ -59,15 +52,46 @@ def read(source: Source) -> Draft:
     return draft
 
 
-def _take_tree(draft: Draft, model: Element, tree: Tree) -> None:
-    """Enter the bodies, rotors and motors of a model."""
+@dataclass(frozen=True)
+class Layout:
+    """
+    A model by its parts: its motor plugins with the scope of the names in each, and its bodies.
+
+    links: full names of the rotors; base: that of the link which carries them; bodies: of all
+    links by full name, in the axes of the base; spinning: of the rotors about their axes, kg m^2.
+    """
+
+    plugins: list[tuple[MotorPlugin, str]]
+    links: list[str]
+    base: str
+    bodies: dict[str, Body]
+    spinning: list[float]
+
+
+def flying_model(source: Source, root: Element) -> tuple[Element, Tree]:
+    """Return the <model> of a file that has motors, and its Tree; InputError."""
+    trees: dict[str, tuple[Element, Tree]] = {}
+    for holder in (root, *root.all('world')):
+        for model in _models(holder, source):
+            tree = tree_of(model, _included)
+            if _plugins(tree):
+                trees[model.get('name')] = model, tree
+    if not trees and not source.wanted:
+        raise InputError(f'{source.path}: no model in it has a plugin MulticopterMotorModel; give '
+                         'the model.sdf that has the motors')
+    return one_of(source, trees, 'model with motors')
+
+
+def layout_of(draft: Draft, tree: Tree) -> Layout:
+    """Return the Layout of a model; what is to be said of its links goes into the Draft."""
     plugins = _plugins(tree)
     check_numbers([plugin for plugin, _ in plugins])
     joints = [_joint(tree, plugin, scope) for plugin, scope in plugins]
     links = [_link(tree, scope + plugin.link, plugin.element) for plugin, scope in plugins]
     base = _parent(tree, *joints[0])
     frame = tree.place_of(base).inverse
-    spinning, bodies = [], []
+    spinning: list[float] = []
+    bodies: dict[str, Body] = {}
     for name, link in tree.links.items():
         body, fixed = _body(draft, link), frame @ tree.place_of(name)
         if name in links:
@@ -76,13 +100,21 @@ def _take_tree(draft: Draft, model: Element, tree: Tree) -> None:
             body = spun(body, axis)
         if body.mass > 0.0:
             draft.note(f'link {name}', body.mass, 'kg', _place(draft, link, 'inertial'))
-        bodies.append(body.placed(fixed))
+        bodies[name] = body.placed(fixed)
+    return Layout(plugins, links, base, bodies, spinning)
+
+
+def _take_tree(draft: Draft, model: Element, tree: Tree) -> None:
+    """Enter the bodies, rotors and motors of a model."""
+    layout = layout_of(draft, tree)
+    plugins, base, bodies = layout.plugins, layout.base, layout.bodies.values()
     if not sum(body.mass for body in bodies) > 0.0:
         raise InputError(f'{model.where}: no link of it has a mass; add <inertial>')
-    whole = combined(bodies)
+    whole = combined(list(bodies))
+    frame = tree.place_of(base).inverse
     draft.take_body(whole, _place(draft, model, f'{len(bodies)} links, axes of {base}'))
     places = []
-    for (plugin, _), name in zip(plugins, links, strict=True):
+    for (plugin, _), name in zip(plugins, layout.links, strict=True):
         at = frame @ tree.place_of(name)
         check_axis(draft, at.rotation[:, 2], plugin.element.where)
         hub = at.position + at.rotation @ pose_of_inertial(tree.links[name])[0]
@@ -97,7 +129,7 @@ def _take_tree(draft: Draft, model: Element, tree: Tree) -> None:
     if moving:
         draft.assumed.append(f'joints that move and are no rotors ({", ".join(moving[:5])}) are '
                              'taken as fixed where they start')
-    take_motors(draft, [plugin for plugin, _ in plugins], spinning,
+    take_motors(draft, [plugin for plugin, _ in plugins], layout.spinning,
                 lambda element, tag: _place(draft, element, tag))
 
 

@@ -41,18 +41,10 @@ def tells(text: str) -> bool:
 def read(source: Source) -> Draft:
     """Return the Draft of a URDF; raises InputError."""
     root = parse(source.path, source.text)
-    links = one_of(source, _heavy(root, trees_of(root)), 'tree of links')
+    links = links_of(source, root)
     draft = Draft(source.path, root.get('name') or source.stem)
-    plugins = sorted((plugin for holder in root.all('gazebo')
-                      for plugin in motor_plugins(holder)), key=lambda each: each.number)
+    plugins, rotors = plugins_of(root), rotors_of(root, links)
     properties = root.first('properties')
-    if plugins:
-        check_numbers(plugins)
-        rotors = [_known(links, plugin.link, plugin.element) for plugin in plugins]
-    elif properties is not None and set(PROPS) <= links.keys():
-        rotors = [links[name] for name in PROPS]
-    else:
-        rotors = _by_name(links)
     whole = _take_bodies(draft, links, rotors)
     for rotor in rotors:
         axis = rotor.axis if rotor.moves and not plugins else np.array([0.0, 0.0, 1.0])
@@ -70,6 +62,28 @@ def read(source: Source) -> Draft:
     else:
         _take_names(draft, rotors, whole)
     return draft
+
+
+def links_of(source: Source, root: Element) -> dict[str, Link]:
+    """Return the links of the vehicle in a <robot>, by name; InputError."""
+    return one_of(source, _heavy(root, trees_of(root)), 'tree of links')
+
+
+def plugins_of(root: Element) -> list[MotorPlugin]:
+    """Return the motor plugins of Gazebo in a <robot>, by their numbers."""
+    return sorted((plugin for holder in root.all('gazebo')
+                   for plugin in motor_plugins(holder)), key=lambda each: each.number)
+
+
+def rotors_of(root: Element, links: dict[str, Link]) -> list[Link]:
+    """Return the links that are rotors, by plugins, properties or names."""
+    plugins = plugins_of(root)
+    if plugins:
+        check_numbers(plugins)
+        return [_known(links, plugin.link, plugin.element) for plugin in plugins]
+    if root.first('properties') is not None and set(PROPS) <= links.keys():
+        return [links[name] for name in PROPS]
+    return _by_name(links)
 
 
 def _heavy(root: Element, trees: dict[str, dict[str, Link]]) -> dict[str, dict[str, Link]]:
@@ -92,9 +106,10 @@ def _by_name(links: dict[str, Link]) -> list[Link]:
     return turning or named
 
 
-def _take_bodies(draft: Draft, links: dict[str, Link], rotors: Sequence[Link]) -> Body:
-    """Enter mass and inertia of all links, and return them as one."""
-    bodies, bare, moving = [], [], []
+def bodies_of(draft: Draft, links: dict[str, Link], rotors: Sequence[Link]) -> dict[str, Body]:
+    """Return the bodies of the links that have a mass, by name, in the axes of the root."""
+    bodies: dict[str, Body] = {}
+    bare, moving = [], []
     for name, link in links.items():
         if link.body is None:
             if link.element.all('visual', 'collision'):
@@ -110,7 +125,7 @@ def _take_bodies(draft: Draft, links: dict[str, Link], rotors: Sequence[Link]) -
             moving.append(name)
         if body.mass > 0.0:
             draft.note(f'link {name}', body.mass, 'kg', link.element.place('inertial'))
-            bodies.append(body.placed(link.pose))
+            bodies[name] = body.placed(link.pose)
     for names, said in ((bare, 'links with shapes and no <inertial> are taken without mass'),
                         (moving, 'links that move and are no rotors are taken as fixed where '
                          'they start')):
@@ -118,7 +133,12 @@ def _take_bodies(draft: Draft, links: dict[str, Link], rotors: Sequence[Link]) -
             draft.assumed.append(f'{said}: {", ".join(names[:5])}')
     if any(rotor.moves and rotor.body is not None and rotor.body.mass > 0 for rotor in rotors):
         draft.assumed.append('the inertia of a rotor is its mean over a turn')
-    whole = combined(bodies)
+    return bodies
+
+
+def _take_bodies(draft: Draft, links: dict[str, Link], rotors: Sequence[Link]) -> Body:
+    """Enter mass and inertia of all links, and return them as one."""
+    whole = combined(list(bodies_of(draft, links, rotors).values()))
     base = next(link for link in links.values() if link.joint is None)
     draft.take_body(whole, f'{base.element.place()} with all that hangs on it')
     return whole

@@ -21,7 +21,11 @@ SHOWN = 60      # letters of a name in a message
 
 @dataclass
 class Element:
-    """An element: tag, attributes, text, children, its line and the file that it stands in."""
+    """
+    An element: tag, attributes, text, children, its line and the file that it stands in.
+
+    start: where in the file it begins, in bytes of UTF-8.
+    """
 
     path: str
     tag: str
@@ -29,6 +33,7 @@ class Element:
     attributes: dict[str, str]
     children: list[Element] = field(default_factory=list)
     text: str = ''
+    start: int = 0
 
     @property
     def where(self) -> str:
@@ -143,7 +148,8 @@ def parse(path: str, text: str) -> Element:
         if tag.startswith('xacro:'):
             raise refuse(f'<{tag}> is not expanded; run `xacro FILE -o vehicle.urdf` and give '
                          'that file')
-        element = Element(path, tag, parser.CurrentLineNumber, attributes)
+        element = Element(path, tag, parser.CurrentLineNumber, attributes,
+                          start=parser.CurrentByteIndex)
         (stack[-1].children if stack else roots).append(element)
         stack.append(element)
 

@@ -1,0 +1,123 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""`quad_ident export`: a vehicle with its effects into a simulator's own file."""
+
+import argparse
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from rich import box
+from rich.table import Table
+
+from quad_ident_ros import resources
+from quad_ident_ros.cli.options import flights_from
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.model.vehicle import load_vehicle
+from quad_ident_ros.report.data import write_json
+from quad_ident_ros.report.table import console
+from quad_ident_ros.vehicle_files.export import Export, export, mean_left, TARGETS
+from quad_ident_ros.vehicle_files.load import source_of
+from quad_ident_ros.whole_file import write_whole
+
+BOM = b'\xef\xbb\xbf'
+
+
+def add(commands: Any, said: str) -> None:
+    """Add the command to the parser; said: what it does."""
+    parser = commands.add_parser(
+        'export', help=said, formatter_class=argparse.RawDescriptionHelpFormatter,
+        description='Change the numbers of a simulator\'s own file to those of a vehicle file, as '
+                    '`diagnose\n--out-vehicle` writes it. All else in the file stays as it is, '
+                    'byte for byte. What changes is\nlisted, and which effects the file carries '
+                    'as they are, by the nearest, or not at all.',
+        epilog='  quad_ident diagnose *.csv --vehicle model.sdf --out-vehicle real.yaml\n'
+               '  quad_ident export real.yaml --to gazebo --base model.sdf -o like_real.sdf\n\n'
+               'docs/vehicles.md says what each target carries.')
+    parser.add_argument('vehicle', metavar='V.yaml', help='the vehicle file')
+    parser.add_argument('--to', required=True, choices=list(TARGETS), help='the simulator')
+    parser.add_argument('--base', required=True, metavar='FILE',
+                        help='its file that the numbers go into; FILE:NAME for one of several '
+                             'vehicles in it')
+    parser.add_argument('--flight', nargs='+', metavar='FLIGHT',
+                        help='flights over which a sag of the battery becomes a mean factor')
+    parser.add_argument('-o', '--output', required=True, metavar='OUT', help='the file to write')
+    parser.add_argument('--json', metavar='FILE', help='write what changes as data; - prints it')
+    parser.set_defaults(run=run)
+
+
+def run(options: argparse.Namespace) -> None:
+    """Write the file and show what changes in it."""
+    target = TARGETS[options.to]
+    if Path(options.output).suffix not in target.endings:
+        raise InputError(f'{options.output}: a file for {options.to} ends in '
+                         f'{", ".join(target.endings)}; name one')
+    vehicle = load_vehicle(_file_of_ours(options.vehicle))
+    source = source_of(options.base)
+    if source is None:
+        raise InputError(f'{options.base}: expected a file of a simulator as --base')
+    if Path(options.output).resolve() == Path(source.path).resolve():
+        raise InputError(f'{options.output}: this would write over the base file; give another '
+                         'name')
+    records = [record for path in options.flight or [] for record in
+               flights_from(path, None, vehicle)]
+    found = export(vehicle, options.to, source, mean_left(vehicle, records) if records else None)
+    with open(source.path, 'rb') as file:
+        mark = '\ufeff' if file.read(len(BOM)) == BOM else ''
+    try:
+        write_whole(options.output, mark + found.text)
+    except OSError as error:
+        raise InputError(f'{options.output}: cannot be written: {error.strerror}') from None
+    if options.json != '-':
+        show(found, options.output)
+    if options.json:
+        write_json(options.json, as_data(found, options))
+
+
+def as_data(found: Export, options: argparse.Namespace) -> dict[str, Any]:
+    """Return an Export as data."""
+    return {'schema': 'quad_ident/export/1', 'vehicle': options.vehicle, 'to': options.to,
+            'base': options.base, 'output': options.output,
+            'changes': [asdict(change) for change in found.changes],
+            'remarks': list(found.remarks),
+            **{key: [asdict(fate) for fate in getattr(found.fates, key)]
+               for key in ('carried', 'nearest', 'not_carried')}}
+
+
+def show(found: Export, path: str) -> None:
+    """Print what changes, and what becomes of each effect."""
+    screen = console()
+
+    def say(text: str) -> None:
+        screen.print(text, markup=False, highlight=False, soft_wrap=True)
+
+    if found.changes:
+        table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1), header_style='bold')
+        for title in ('place', 'old', 'new', 'std', 'unit', 'from'):
+            table.add_column(title, overflow='fold',
+                             justify='right' if title in ('old', 'new', 'std') else 'left')
+        for change in found.changes:
+            table.add_row(change.place, _shown(change.old), _shown(change.new),
+                          _shown(change.std), change.unit, change.source)
+        screen.print(table)
+    for text in found.remarks:
+        say(f'note: {text}')
+    for key, said in (('carried', 'carried'), ('nearest', 'by the nearest'),
+                      ('not_carried', 'not carried')):
+        for fate in getattr(found.fates, key):
+            form = f' ({fate.form})' if fate.form else ''
+            say(f'{said}: {fate.name}{form}: {fate.reason}')
+    count = len(found.changes)
+    say(f'{path}: {count or "no"} number{"s" * (count != 1)} changed')
+
+
+def _file_of_ours(path: str) -> Path:
+    """Return the vehicle file of a path or of a shipped name; InputError for another kind."""
+    if source_of(path) is not None:
+        raise InputError(f'{path}: expected a vehicle file (.yaml), as `quad_ident vehicle {path} '
+                         '-o v.yaml` writes it')
+    return resources.find('vehicles', path)
+
+
+def _shown(value: float | None) -> str:
+    return '' if value is None else f'{value:.6g}'

@@ -1,0 +1,63 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The body of a simulator's file that makes the whole vehicle as heavy as it is to be."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.vehicle_files.bodies import Body, check_body, combined
+from quad_ident_ros.vehicle_files.edit_xml import differs, SAME
+
+if TYPE_CHECKING:
+    from quad_ident_ros.vehicle_files.out_base import Base
+
+MOMENTS = (0, 0), (1, 1), (2, 2)
+PRODUCTS = (0, 1), (0, 2), (1, 2)
+
+
+def body_for(base: Base, where: str, main: Body, rest: Sequence[Body]) -> Body:
+    """
+    Return what the body that carries the rotors is to be, all in the same axes.
+
+    The other bodies stay, and all together have the mass, the centre of mass and the inertia about
+    it that are wanted. Returns main itself where nothing changes. Raises InputError where no body
+    can do that; where: file and place of it.
+    """
+    wanted, whole = base.wanted, combined([main, *rest])
+    mass = wanted.mass if differs(base.mass, wanted.mass) else whole.mass
+    moved = wanted.inertia - base.inertia
+    size = float(np.max(np.abs(base.inertia)))
+    moved[np.abs(moved) <= SAME * size] = 0.0
+    if mass == whole.mass and not moved.any() and not wanted.centre.any():
+        return main
+    centre, left = whole.centre + wanted.centre, mass - sum(body.mass for body in rest)
+    if not left > 0.0:
+        raise InputError(f'{where}: the other bodies weigh {mass - left:.6g} kg, the whole vehicle '
+                         f'is to weigh {mass:.6g} kg; correct their masses')
+    others = sum((body.mass * body.centre for body in rest), np.zeros(3))
+    place = (mass * centre - others) / left
+    # What the body has about the common centre is what the others leave of the whole.
+    about = whole.inertia + moved
+    for body in (*rest, Body(left, place, np.zeros((3, 3)))):
+        arm = body.centre - centre
+        about = about - body.inertia - body.mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
+    if not rest:
+        about, place = whole.inertia + moved, centre
+    body = Body(left, place, about)
+    check_body(f'{where}: what the other bodies leave for it', body)
+    return body
+
+
+def spread(rotation: np.ndarray, stds: Sequence[float]) -> list[float | None]:
+    """
+    Return standard errors of moments of inertia in the axes of a rotation (3, 3), None where 0.
+
+    Args: stds: those of Ixx, Iyy and Izz, kg m^2, independent of one another.
+    """
+    turned = np.sqrt((rotation.T ** 4) @ np.square(stds))
+    return [float(std) or None for std in turned]

@@ -1,0 +1,156 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Vehicles back into MJCF models of MuJoCo."""
+
+from itertools import permutations
+import math
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.vehicle_files.bodies import Body
+from quad_ident_ros.vehicle_files.edit_xml import Edited, SAME, shown
+from quad_ident_ros.vehicle_files.mjcf import bodies_of, flying_body
+from quad_ident_ros.vehicle_files.mjcf_bodies import Part, parts_of
+from quad_ident_ros.vehicle_files.mjcf_defaults import Model, model_of
+from quad_ident_ros.vehicle_files.mjcf_thrust import Push, pushes_of
+from quad_ident_ros.vehicle_files.out_base import Base
+from quad_ident_ros.vehicle_files.out_body import body_for, MOMENTS, PRODUCTS, spread
+from quad_ident_ros.vehicle_files.reading import Draft
+from quad_ident_ros.vehicle_files.xml_tree import Element, parse
+
+OTHER_TURNS = 'euler', 'axisangle', 'xyaxes', 'zaxis'
+
+
+def write(edited: Edited, base: Base) -> dict[str, str]:
+    """Have an MJCF model hold what is wanted; return {key of Wanted: why it is lacking}."""
+    model = model_of(parse(base.source.path, base.source.text))
+    element, inherited = flying_body(base.source, model)
+    parts = list(parts_of(model, element, inherited))
+    sites = {name: site for part in parts for name, site in part.sites.items()}
+    pushes = pushes_of(model, sites)
+    thrusts = [push for push in pushes if push.pushes]
+    bodies = bodies_of(Draft(base.source.path, ''), parts, {push.site for push in thrusts})
+    body = body_for(base, element.where, bodies[0], bodies[1:])
+    if body is not bodies[0]:
+        if 'settotalmass' in model.compiler:
+            raise InputError(f'{base.source.path}: settotalmass of <compiler> scales every mass; '
+                             'take it out and state the masses themselves')
+        _write_body(edited, base, model, parts[0], body)
+        edited.say_several(element, len(bodies))
+    lacking = {'rotor_drag': 'MuJoCo has no drag of rotors; it takes a callback',
+               'speed_max': 'a command is a thrust here, and speeds are not of the file'}
+    return lacking | _write_thrusts(edited, base, thrusts) | _write_lags(edited, base, thrusts)
+
+
+def _write_thrusts(edited: Edited, base: Base, thrusts: list[Push]) -> dict[str, str]:
+    """Have the gears of the rotors hold thrust and torque."""
+    wanted = base.wanted
+    if base.thrust is None:
+        return dict.fromkeys(('thrust', 'torque'), 'the file has no thrust of single rotors')
+    force = wanted.thrust / base.thrust
+    moment = 1.0 if base.torque is None else wanted.torque / base.torque
+    for push in thrusts:
+        words = push.element.get('gear', '1').split()
+        stated = push.element.numbers('gear', len(words), (1.0,))
+        factors = np.array([force] * 3 + [moment] * 3)[:len(words)]
+        relative = [wanted.stds.get('thrust', (0.0,))[0]] * 3 + [
+            wanted.stds.get('torque', (0.0,))[0]] * 3
+        sources = {wanted.sources[key] for key, factor in (('thrust', force), ('torque', moment))
+                   if factor != 1.0}
+        edited.attribute(push.element, 'gear', stated * factors, '1 or m', ', '.join(
+            sorted(sources)), [abs(float(value)) * each or None for value, each in
+                               zip(stated * factors, relative, strict=False)], usual=(1.0,))
+    return {} if base.torque is not None else {
+        'torque': 'the torque of a rotor is a control of its own in the file'}
+
+
+def _write_lags(edited: Edited, base: Base, thrusts: list[Push]) -> dict[str, str]:
+    """Have the dynamics of the actuators hold the lag."""
+    lag = 0.5 * (base.wanted.rise + base.wanted.fall)
+    reason = ''
+    if not thrusts or thrusts[0].lag == 0.0:
+        reason = ('its actuators have no lag; give them dyntype="filterexact" and '
+                  f'dynprm="{lag:.6g}"')
+    elif lag == 0.0:
+        reason = 'a filter of MuJoCo needs a time constant above 0; take out its dyntype'
+    if reason:
+        return dict.fromkeys(('rise', 'fall'), reason)
+    for push in thrusts:
+        stated = push.element.get('dynprm', '1').split()
+        edited.attribute(push.element, 'dynprm', [lag, *map(float, stated[1:])], 's',
+                         base.wanted.sources['rise'], usual=(1.0,))
+    return {}
+
+
+def _write_body(edited: Edited, base: Base, model: Model, part: Part, body: Body) -> None:
+    """Have a <body> hold a Body that is given in its axes."""
+    wanted = base.wanted
+    six = [float(body.inertia[at]) for at in (*MOMENTS, *PRODUCTS)]
+    mass_std = wanted.stds.get('mass', (None,))[0]
+    moments = wanted.stds.get('inertia', (0.0, 0.0, 0.0))
+    if part.source != 'inertial':
+        if model.compiler.get('inertiafromgeom') == 'true':
+            raise InputError(f'{part.element.where}: inertiafromgeom="true" takes its mass from '
+                             'its shapes; take that out of <compiler>')
+        _insert(edited, base, part, body, six)
+        return
+    inertial = part.element.first('inertial')
+    assert inertial is not None
+    edited.attribute(inertial, 'mass', [body.mass], 'kg', wanted.sources['mass'], [mass_std])
+    edited.attribute(inertial, 'pos', body.centre, 'm', wanted.sources['centre'],
+                     usual=(0.0, 0.0, 0.0), size=1.0)
+    rotation = model.rotation_of(inertial)
+    turned = rotation.T @ body.inertia @ rotation
+    size = float(np.max(np.abs(turned)))
+    stds = spread(rotation, moments)
+    if 'fullinertia' in inertial.attributes:
+        edited.attribute(inertial, 'fullinertia',
+                         [turned[at] for at in (*MOMENTS, *PRODUCTS)], 'kg m2',
+                         wanted.sources['inertia'], [*stds, None, None, None], size=size)
+    elif max(abs(turned[at]) for at in PRODUCTS) <= SAME * size:
+        edited.attribute(inertial, 'diaginertia', np.diag(turned), 'kg m2',
+                         wanted.sources['inertia'], stds, size=size)
+    elif 'quat' in inertial.attributes:
+        axes, diagonal = _principal(turned)
+        x, y, z, w = Rotation.from_matrix(rotation @ axes).as_quat()
+        edited.attribute(inertial, 'quat', [w, x, y, z], '1',
+                         wanted.sources['inertia'], size=1.0)
+        edited.attribute(inertial, 'diaginertia', diagonal, 'kg m2', wanted.sources['inertia'],
+                         spread(rotation @ axes, moments), size=size)
+    elif any(turn in inertial.attributes for turn in OTHER_TURNS):
+        raise InputError(f'{inertial.where}: its principal axes turn, which is written to quat '
+                         'alone; state its orientation as quat')
+    else:
+        edited.renamed(inertial, 'diaginertia', 'fullinertia', six, 'kg m2',
+                       wanted.sources['inertia'], [*stds, None, None, None])
+
+
+def _insert(edited: Edited, base: Base, part: Part, body: Body, six: list[float]) -> None:
+    """Put an <inertial> into a <body> whose mass is that of its shapes."""
+    wanted, where = base.wanted, part.element.place('inertial')
+    edited.child(part.element, f'<inertial pos="{shown(body.centre)}" mass="{shown([body.mass])}" '
+                               f'fullinertia="{shown(six)}"/>')
+    edited.note(f'{where} mass', part.body.mass, body.mass, 'kg', wanted.sources['mass'],
+                wanted.stds.get('mass', (None,))[0])
+    for k, axis in enumerate('xyz'):
+        edited.note(f'{where} pos {axis}', float(part.body.centre[k]), float(body.centre[k]), 'm',
+                    wanted.sources['centre'])
+    stds = [*spread(np.eye(3), wanted.stds.get('inertia', (0.0, 0.0, 0.0))), None, None, None]
+    for at, value, std in zip((*MOMENTS, *PRODUCTS), six, stds, strict=True):
+        edited.note(f'{where} fullinertia {"xyz"[at[0]]}{"xyz"[at[1]]}',
+                    float(part.body.inertia[at]), value, 'kg m2', wanted.sources['inertia'], std)
+
+
+def _principal(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the principal axes (3, 3), a rotation that is the smallest, and moments (3,)."""
+    moments, axes = np.linalg.eigh(matrix)
+    order = list(max(permutations(range(3)),
+                     key=lambda each: sum(abs(axes[k, each[k]]) for k in range(3))))
+    axes, moments = axes[:, order], moments[order]
+    axes = axes * np.sign(np.where(np.diag(axes) == 0.0, 1.0, np.diag(axes)))
+    if np.linalg.det(axes) < 0.0:
+        axes[:, int(np.argmin(np.abs(np.diag(axes))))] *= -1.0
+    assert math.isclose(float(np.linalg.det(axes)), 1.0, rel_tol=1e-9)
+    return axes, moments

@@ -1,0 +1,107 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Vehicles back into URDF files."""
+
+from collections.abc import Sequence
+import math
+
+import numpy as np
+
+from quad_ident_ros.vehicle_files.bodies import Body
+from quad_ident_ros.vehicle_files.edit_xml import Edited
+from quad_ident_ros.vehicle_files.out_base import Base
+from quad_ident_ros.vehicle_files.out_body import body_for, MOMENTS, PRODUCTS, spread
+from quad_ident_ros.vehicle_files.out_motors import write_motors
+from quad_ident_ros.vehicle_files.reading import Draft
+from quad_ident_ros.vehicle_files.urdf import (
+    bodies_of,
+    links_of,
+    PER_RPM,
+    plugins_of,
+    PROPS,
+    PYBULLET_GRAVITY,
+    rotors_of,
+)
+from quad_ident_ros.vehicle_files.urdf_links import Link, origin_of
+from quad_ident_ros.vehicle_files.xml_tree import Element, parse
+
+MOMENT_NAMES, PRODUCT_NAMES = ('ixx', 'iyy', 'izz'), ('ixy', 'ixz', 'iyz')
+
+
+def write(edited: Edited, base: Base) -> dict[str, str]:
+    """Have a URDF hold what is wanted; return {key of Wanted: why it is lacking}."""
+    root = parse(base.source.path, base.source.text)
+    links = links_of(base.source, root)
+    rotors = rotors_of(root, links)
+    bodies = bodies_of(Draft(base.source.path, ''), links, rotors)
+    name = _carrier(bodies, links, rotors)
+    rest = [body for other, body in bodies.items() if other != name]
+    body = body_for(base, links[name].element.where, bodies[name], rest)
+    if body is not bodies[name]:
+        _write_body(edited, base, links[name], body.placed(links[name].pose.inverse))
+        edited.say_several(links[name].element, len(bodies))
+    plugins, properties = plugins_of(root), root.first('properties')
+    if plugins:
+        return write_motors(edited, base, plugins)
+    lacking = dict.fromkeys(('rise', 'fall', 'rotor_drag'), 'a URDF without motor plugins of '
+                            'Gazebo has no motors')
+    if properties is None or not set(PROPS) <= links.keys():
+        return lacking | dict.fromkeys(('thrust', 'torque', 'speed_max'),
+                                       'a URDF says nothing of thrust')
+    return lacking | _write_properties(edited, base, properties)
+
+
+def _carrier(bodies: dict[str, Body], links: dict[str, Link], rotors: Sequence[Link]) -> str:
+    """Return the name of the link that carries the rotors, the heaviest where that has no mass."""
+    joints = [rotor.joint for rotor in rotors if rotor.joint is not None]
+    parent = joints[0].first('parent') if joints else None
+    if parent is not None and parent.get('link') in bodies:
+        return parent.get('link')
+    others = [name for name in bodies if not any(links[name] is rotor for rotor in rotors)]
+    return max(others or bodies, key=lambda name: bodies[name].mass)
+
+
+def _write_properties(edited: Edited, base: Base, properties: Element) -> dict[str, str]:
+    """Have the properties of gym-pybullet-drones hold thrust, torque and limit."""
+    wanted = base.wanted
+    for name, value, key in (('kf', wanted.thrust, 'thrust'), ('km', wanted.torque, 'torque')):
+        std = wanted.stds.get(key, (0.0,))[0]
+        edited.attribute(properties, name, [value / PER_RPM], 'per rpm^2', wanted.sources[key],
+                         [std * value / PER_RPM or None])
+    if 'thrust2weight' not in properties.attributes:
+        return {'speed_max': 'the file has no thrust2weight'}
+    if math.isinf(wanted.speed_max):
+        return {'speed_max': 'the file needs a limit; its own stays'}
+    # It stands for the highest speed, which stays as it is where thrust or mass change.
+    ratio = 4.0 * wanted.thrust * wanted.speed_max ** 2 / (wanted.mass * PYBULLET_GRAVITY)
+    edited.attribute(properties, 'thrust2weight', [ratio], '1',
+                     'speed_max, with thrust and mass as above')
+    return {}
+
+
+def _write_body(edited: Edited, base: Base, link: Link, body: Body) -> None:
+    """Have the <inertial> of a link hold a Body that is given in its axes."""
+    wanted, inertial = base.wanted, link.element.first('inertial')
+    assert inertial is not None
+    mass, moments = inertial.first('mass'), inertial.first('inertia')
+    assert mass is not None and moments is not None
+    edited.attribute(mass, 'value', [body.mass], 'kg', wanted.sources['mass'],
+                     [wanted.stds.get('mass', (None,))[0]])
+    origin, frame = inertial.first('origin'), origin_of(inertial)
+    if origin is not None:
+        edited.attribute(origin, 'xyz', body.centre, 'm', wanted.sources['centre'],
+                         usual=(0.0, 0.0, 0.0), size=1.0)
+    elif np.linalg.norm(body.centre) > 1e-9:
+        x, y, z = (float(value) for value in body.centre)
+        edited.child(inertial, f'<origin xyz="{x:.12g} {y:.12g} {z:.12g}"/>')
+        for axis, value in zip('xyz', (x, y, z), strict=True):
+            edited.note(inertial.place(f'origin {axis}'), 0.0, value, 'm',
+                        wanted.sources['centre'])
+    turned = frame.rotation.T @ body.inertia @ frame.rotation
+    size = float(np.max(np.abs(turned)))
+    stds = spread(link.pose.rotation @ frame.rotation,
+                  wanted.stds.get('inertia', (0.0, 0.0, 0.0)))
+    for name, at, std in (*zip(MOMENT_NAMES, MOMENTS, stds, strict=True),
+                          *zip(PRODUCT_NAMES, PRODUCTS, [None] * 3, strict=True)):
+        edited.attribute(moments, name, [turned[at]], 'kg m2', wanted.sources['inertia'], [std],
+                         usual=(0.0,), size=size)

@@ -1,0 +1,261 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Vehicles back into the files of simulators."""
+
+from dataclasses import replace
+import difflib
+import json
+import re
+
+import numpy as np
+import pytest
+import test_vehicle_files_mjcf as mjcf
+import test_vehicle_files_sdf as sdf
+import test_vehicle_files_urdf as urdf
+
+from quad_ident_ros.cli.main import main
+from quad_ident_ros.data.record import FlightRecord
+from quad_ident_ros.effects.registry import EFFECTS, FORMS, NULL, PARAMETERS
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.model.vehicle import write_vehicle
+from quad_ident_ros.vehicle_files.export import export, mean_left, TARGETS
+from quad_ident_ros.vehicle_files.load import read_vehicle
+from quad_ident_ros.vehicle_files.source import Source
+from quad_ident_ros.vehicle_files.wanted import NEEDS, WAYS
+
+# Comments, sensors and odd spaces stand among the numbers, and lines end in two ways.
+SDF = sdf.WHOLE.replace('<mass>2.0</mass>', '<!-- kg --><mass> <!-- as weighed -->2.0 </mass>\r').replace(
+    '\n</link>', "\n<sensor name='imu'  type='imu'><update_rate>250</update_rate></sensor>\n</link>", 1)
+LAGGED = mjcf.motors(extra='dyntype="filterexact" dynprm="0.03"', tag='general').replace(
+    'class="quad" ', 'ctrlrange="0 13" ')
+MJCF = mjcf.model(body='<!-- as weighed -->\n' + mjcf.INERTIAL
+                  + "\n<geom type='box' size='1 1 1'/><camera name='front'/>", actuators=LAGGED)
+URDF = urdf.SMALL.replace('<mass value="0.027"/>', "<mass  value = '0.027' /><!-- a comment -->")
+BASES = {'gazebo': (SDF, 'model.sdf'), 'mujoco': (MJCF, 'quad.xml'), 'urdf': (URDF, 'small.urdf')}
+
+
+def base(to):
+    text, name = BASES[to]
+    return Source(name, text), read_vehicle(Source(name, text)).vehicle
+
+
+def again(source, found):
+    return read_vehicle(replace(source, text=found.text)).vehicle
+
+
+def changed_lines(old, new):
+    return [line for line in difflib.ndiff(old.split('\n'), new.split('\n')) if line[0] == '+']
+
+
+@pytest.mark.parametrize('to', TARGETS)
+def test_a_vehicle_as_the_file_has_it_changes_no_byte(to, tmp_path):
+    source, vehicle = base(to)
+    write_vehicle(tmp_path / 'v.yaml', vehicle)
+    found = export(vehicle, to, source)
+    assert found.text == source.text
+    assert found.changes == () and found.fates.not_carried == ()
+    # The same by the command, with the mark at the begin that some editors write.
+    path = tmp_path / source.path
+    path.write_bytes(b'\xef\xbb\xbf' + source.text.encode())
+    out = tmp_path / f'out_{source.path}'
+    assert main(['export', str(tmp_path / 'v.yaml'), '--to', to, '--base', str(path), '-o',
+                 str(out)]) == 0
+    assert out.read_bytes() == path.read_bytes()
+
+
+@pytest.mark.parametrize('to', TARGETS)
+def test_constants_are_those_of_the_vehicle_when_the_file_is_read_again(to):
+    source, vehicle = base(to)
+    size = vehicle.inertia[0]
+    wanted = replace(vehicle, mass=1.1 * vehicle.mass, products=(0.02 * size, -0.01 * size, 0.0),
+                     inertia=tuple(np.array(vehicle.inertia) * [1.05, 1.1, 1.02]),
+                     thrust_coefficient=1.2 * vehicle.thrust_coefficient,
+                     torque_coefficient=0.9 * vehicle.torque_coefficient)
+    found = export(wanted, to, source)
+    read = again(source, found)
+    for key in ('mass', 'thrust_coefficient', 'torque_coefficient', 'speed_max'):
+        assert getattr(read, key) == pytest.approx(getattr(wanted, key), rel=1e-9), key
+    assert read.inertia_matrix == pytest.approx(wanted.inertia_matrix, rel=1e-9, abs=1e-9 * size)
+    assert [rotor.position for rotor in read.rotors] == [
+        pytest.approx(rotor.position, abs=1e-9) for rotor in wanted.rotors]
+    assert found.fates.not_carried == ()
+    assert {change.source for change in found.changes} >= {'mass', 'inertia'}
+    # All but the numbers stays: with the numbers taken out, both texts are the same but for what
+    # products of inertia need beside a diagonal.
+    for kept in ('<!--', 'sensor', 'camera', 'update_rate>250', 'as weighed', '\r'):
+        assert found.text.count(kept) == source.text.count(kept), kept
+
+
+@pytest.mark.parametrize(('to', 'count'), [('gazebo', 1), ('mujoco', 1), ('urdf', 2)])
+def test_a_payload_changes_just_the_lines_of_the_mass(to, count):
+    source, vehicle = base(to)
+    if to == 'gazebo':      # one body alone, so that no other has to make up for it
+        text = re.sub(r'<mass>0.01</mass>\n.*', '<mass>0</mass><inertia><ixx>0</ixx><iyy>0</iyy>'
+                      '<izz>0</izz></inertia>', source.text)
+        source = replace(source, text=text)
+        vehicle = read_vehicle(source).vehicle
+    loaded = replace(vehicle, effects={**vehicle.effects,
+                                       'mass_offset': {'mass': 0.1 * vehicle.mass}})
+    found = export(loaded, to, source)
+    lines = changed_lines(source.text, found.text)
+    # gym-pybullet-drones states its limit as thrust to weight, which the weight changes.
+    assert len(lines) == count and all(re.search('mass|thrust2weight', line) for line in lines)
+    assert again(source, found).mass == pytest.approx(1.1 * vehicle.mass, rel=1e-9)
+    assert [fate.name for fate in found.fates.nearest] == ['mass_offset']
+    assert found.changes[0].source == 'mass, mass_offset'
+
+
+def test_lag_drag_and_thrust_go_into_the_motors_of_gazebo():
+    source, vehicle = base('gazebo')
+    wanted = replace(vehicle, uncertainty={'thrust_coefficient': 1e-7}, effects={
+        **vehicle.effects, 'motor_lag': {'rise': 0.02, 'fall': 0.04},
+        'rotor_drag': {'coefficient': 0.3}, 'thrust_scale': {'factor': 0.9},
+        'wind': {'x': 1.0}})
+    found = export(wanted, 'gazebo', source)
+    read = again(source, found)
+    assert read.effects['motor_lag'] == pytest.approx({'rise': 0.02, 'fall': 0.04}, rel=1e-9)
+    assert read.thrust_coefficient == pytest.approx(0.9 * vehicle.thrust_coefficient, rel=1e-9)
+    # The reaction torque at a speed is the same with less thrust.
+    assert read.torque_coefficient == pytest.approx(vehicle.torque_coefficient, rel=1e-9)
+    # Force per speed of a rotor and velocity: at their hover, which the weaker thrust moves.
+    assert (read.effects['rotor_drag']['coefficient'] / read.hover_speed
+            == pytest.approx(0.3 / wanted.hover_speed, rel=1e-9))
+    assert {fate.name for fate in found.fates.carried} == {'motor_lag', 'rotor_drag', 'rotor_gyro'}
+    assert [fate.name for fate in found.fates.not_carried] == ['wind']
+    stds = {change.place.split('<')[1]: change.std for change in found.changes}
+    assert stds['motorConstant>'] == pytest.approx(0.9e-7)
+    assert stds['timeConstantUp>'] is None
+    assert len(changed_lines(source.text, found.text)) == 4 * 3
+
+
+def test_a_lag_that_the_vehicle_does_not_have_is_taken_out():
+    source, vehicle = base('gazebo')
+    found = export(replace(vehicle, effects={'rotor_gyro': vehicle.effects['rotor_gyro']}),
+                   'gazebo', source)
+    assert set(again(source, found).effects) == {'rotor_gyro'}
+    source, vehicle = base('mujoco')
+    found = export(replace(vehicle, effects={}), 'mujoco', source)
+    assert found.text == source.text
+    assert 'that of the file stays' in found.fates.not_carried[0].reason
+
+
+def test_a_lag_of_mujoco_is_one_time_constant():
+    source, vehicle = base('mujoco')
+    found = export(replace(vehicle, effects={'motor_lag': {'rise': 0.04, 'fall': 0.06}}),
+                   'mujoco', source)
+    assert again(source, found).effects == {'motor_lag': {'time_constant': pytest.approx(0.05)}}
+    assert [fate.form for fate in found.fates.nearest] == ['rise_fall']
+
+
+@pytest.mark.parametrize('to', TARGETS)
+def test_the_centre_of_mass_moves_under_the_rotors(to):
+    source, vehicle = base(to)
+    shift = 0.1 * vehicle.arm_length
+    found = export(replace(vehicle, effects={**vehicle.effects, 'com_offset': {
+        'x': shift, 'z': -shift}}), to, source)
+    read = again(source, found)
+    assert read.inertia == pytest.approx(vehicle.inertia, rel=1e-9)
+    for rotor, other in zip(vehicle.rotors, read.rotors, strict=True):
+        assert np.subtract(rotor.position, other.position) == pytest.approx([shift, 0, -shift],
+                                                                            abs=1e-9)
+
+
+def test_principal_axes_of_mujoco_turn_with_the_inertia():
+    tilted = mjcf.INERTIAL.replace('mass', 'quat="0.9 0.1 0.2 0.3" mass')
+    source = Source('quad.xml', mjcf.model(body=tilted))
+    vehicle = read_vehicle(source).vehicle
+    wanted = replace(vehicle, inertia=tuple(1.1 * value for value in vehicle.inertia))
+    assert again(source, export(wanted, 'mujoco', source)).inertia_matrix == pytest.approx(
+        wanted.inertia_matrix, rel=1e-9, abs=1e-12)
+
+
+def test_shapes_of_mujoco_get_an_inertial_beside_them():
+    source = Source('quad.xml', mjcf.model(body='<geom type="box" size=".1 .1 .05" mass="1.2"/>'))
+    vehicle = read_vehicle(source).vehicle
+    wanted = replace(vehicle, mass=1.5)
+    found = export(wanted, 'mujoco', source)
+    assert len(changed_lines(source.text, found.text)) == 1
+    read = again(source, found)
+    assert read.mass == 1.5 and read.inertia == pytest.approx(vehicle.inertia, rel=1e-9)
+
+
+@pytest.mark.parametrize('to', TARGETS)
+def test_every_form_of_every_effect_ends_in_one_class(to):
+    source, vehicle = base(to)
+    for effect, form in FORMS:
+        if effect not in EFFECTS:
+            continue
+        values = {parameter.name: (parameter.null or 0.0) + 0.1 * parameter.scale(vehicle)
+                  for parameter in form.parameters[:1 if effect == 'rotor_fault' else None]}
+        effects = {**{name: value for name, value in vehicle.effects.items() if name != effect},
+                   effect: values}
+        fates = export(replace(vehicle, effects=effects), to, source).fates
+        ends = [(fate.name, fate.form) for fate in (*fates.carried, *fates.nearest,
+                                                    *fates.not_carried)]
+        assert ends.count((effect, form.name)) == 1, (effect, form.name, fates)
+        assert all(fate.reason for fate in (*fates.carried, *fates.nearest, *fates.not_carried))
+    assert all(effect in NEEDS or (effect, form.name) in WAYS for effect, form in FORMS
+               if effect in EFFECTS)
+    assert len(NULL) == len(PARAMETERS)
+
+
+def test_a_sag_is_its_mean_over_a_flight():
+    source, vehicle = base('gazebo')
+    wanted = replace(vehicle, effects={**vehicle.effects, 'battery_sag': {'per_second': 0.002}})
+    assert [fate.name for fate in export(wanted, 'gazebo', source).fates.not_carried] == [
+        'battery_sag']
+    t = np.linspace(5.0, 65.0, 601)
+    left = mean_left(wanted, [FlightRecord('flight', {'t': t})])
+    assert left == pytest.approx(1.0 - 0.002 * 30.0)
+    found = export(wanted, 'gazebo', source, left)
+    assert again(source, found).thrust_coefficient == pytest.approx(
+        left * vehicle.thrust_coefficient, rel=1e-9)
+    assert [fate.name for fate in found.fates.nearest] == ['battery_sag']
+    by_voltage = replace(vehicle, effects={'battery_sag': {'per_volt': 0.05}})
+    with pytest.raises(InputError, match='vbat'):
+        mean_left(by_voltage, [FlightRecord('flight', {'t': t})])
+
+
+def test_what_other_bodies_weigh_is_not_undercut():
+    source, vehicle = base('gazebo')
+    with pytest.raises(InputError, match='other bodies weigh 0.04 kg') as error:
+        export(replace(vehicle, mass=0.03), 'gazebo', source)
+    assert str(error.value).startswith('model.sdf, line ')
+    with pytest.raises(InputError, match='4 rotors, the vehicle has 3'):
+        export(replace(vehicle, rotors=vehicle.rotors[:3]), 'gazebo', source)
+
+
+def test_the_command_says_what_it_does(tmp_path, capsys):
+    source, vehicle = base('gazebo')
+    model, ours, out = (tmp_path / name for name in ('model.sdf', 'v.yaml', 'real.sdf'))
+    model.write_text(source.text, newline='')
+    write_vehicle(ours, replace(vehicle, mass=2.2, uncertainty={'mass': 0.01}, effects={
+        **vehicle.effects, 'gyro_bias': {'x': 0.01}}))
+    call = ['export', str(ours), '--to', 'gazebo', '--base', str(model), '-o', str(out)]
+    assert main(call) == 0
+    said = capsys.readouterr().out
+    assert '2.16' in said and '0.01' in said and 'the file has 5 bodies' in said
+    assert 'not carried: gyro_bias (constant): ' in said and 'carried: motor_lag' in said
+    assert main([*call, '--json', '-']) == 0
+    data = json.loads(capsys.readouterr().out)
+    assert data['changes'][0]['std'] == 0.01 and data['changes'][0]['source'] == 'mass'
+    assert [fate['name'] for fate in data['not_carried']] == ['gyro_bias']
+    assert read_vehicle(Source('real.sdf', out.read_text())).vehicle.mass == pytest.approx(2.2)
+
+
+@pytest.mark.parametrize(('change', 'said'), [
+    ({'-o': 'model.sdf'}, 'would write over'), ({'-o': 'real.txt'}, 'ends in .sdf'),
+    ({'-o': 'none/real.sdf'}, 'cannot be written'), ({'--to': 'mujoco', '-o': 'a.xml'}, 'MJCF'),
+    ({'--base': 'v.yaml'}, 'file of a simulator'), ({'--base': 'nothing.sdf'}, 'simulator'),
+    ({'V': 'model.sdf'}, 'expected a vehicle file'), ({'V': 'none.yaml'}, 'none.yaml')])
+def test_bad_input_is_said_in_one_line(change, said, tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    source, vehicle = base('gazebo')
+    (tmp_path / 'model.sdf').write_text(source.text, newline='')
+    write_vehicle(tmp_path / 'v.yaml', vehicle)
+    given = {'V': 'v.yaml', '--to': 'gazebo', '--base': 'model.sdf', '-o': 'real.sdf', **change}
+    words = ['export', given.pop('V')] + [word for pair in given.items() for word in pair]
+    assert main(words) == 2
+    message = capsys.readouterr().err.strip()
+    assert said in message and '\n' not in message
+    assert not (tmp_path / 'real.sdf').exists()
