@@ -27,7 +27,7 @@ def add(commands: Any, said: str) -> None:
     """Add the command to the parser; said: what it does."""
     parser = commands.add_parser(
         'export', help=said, formatter_class=argparse.RawDescriptionHelpFormatter,
-        description='Change the numbers of a simulator\'s own file to those of a vehicle file, as '
+        description="Change the numbers of a simulator's own file to those of a vehicle file, as "
                     '`diagnose\n--out-vehicle` writes it. All else in the file stays as it is, '
                     'byte for byte. What changes is\nlisted, and which effects the file carries '
                     'as they are, by the nearest, or not at all.',

@@ -17,7 +17,7 @@ from quad_ident_ros.errors import InputError
 from quad_ident_ros.greybox.flights import highest_voltage
 from quad_ident_ros.model.vehicle import Vehicle
 from quad_ident_ros.vehicle_files import out_mjcf, out_sdf, out_urdf
-from quad_ident_ros.vehicle_files.edit_xml import Change, differs, Edited
+from quad_ident_ros.vehicle_files.edit_xml import Change, differs, Edited, SAME
 from quad_ident_ros.vehicle_files.kinds import kind_of, KINDS
 from quad_ident_ros.vehicle_files.out_base import Base
 from quad_ident_ros.vehicle_files.reading import Draft, finished
@@ -131,8 +131,9 @@ def _constants(vehicle: Vehicle, draft: Draft, lacking: dict[str, str]) -> list[
         value = getattr(vehicle, name)
         old = data.get(name, math.inf if key == 'speed_max' else None)
         if key == 'inertia':
-            changed = bool(np.max(np.abs(vehicle.inertia_matrix - _matrix(old)))
-                           > 1e-9 * np.max(np.abs(vehicle.inertia_matrix)))
+            matrix = vehicle.inertia_matrix
+            changed = bool(np.max(np.abs(matrix - _matrix(data[name])))
+                           > SAME * np.max(np.abs(matrix)))
         else:
             changed = value != old and differs(old, value)
         if key in lacking and changed:

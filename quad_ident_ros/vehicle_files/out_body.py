@@ -37,8 +37,8 @@ def body_for(base: Base, where: str, main: Body, rest: Sequence[Body]) -> Body:
         return main
     centre, left = whole.centre + wanted.centre, mass - sum(body.mass for body in rest)
     if not left > 0.0:
-        raise InputError(f'{where}: the other bodies weigh {mass - left:.6g} kg, the whole vehicle '
-                         f'is to weigh {mass:.6g} kg; correct their masses')
+        raise InputError(f'{where}: the other bodies weigh {mass - left:.6g} kg, the whole '
+                         f'vehicle is to weigh {mass:.6g} kg; correct their masses')
     others = sum((body.mass * body.centre for body in rest), np.zeros(3))
     place = (mass * centre - others) / left
     # What the body has about the common centre is what the others leave of the whole.

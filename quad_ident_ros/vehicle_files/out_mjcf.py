@@ -18,7 +18,7 @@ from quad_ident_ros.vehicle_files.mjcf_thrust import Push, pushes_of
 from quad_ident_ros.vehicle_files.out_base import Base
 from quad_ident_ros.vehicle_files.out_body import body_for, MOMENTS, PRODUCTS, spread
 from quad_ident_ros.vehicle_files.reading import Draft
-from quad_ident_ros.vehicle_files.xml_tree import Element, parse
+from quad_ident_ros.vehicle_files.xml_tree import parse
 
 OTHER_TURNS = 'euler', 'axisangle', 'xyaxes', 'zaxis'
 
@@ -146,8 +146,8 @@ def _insert(edited: Edited, base: Base, part: Part, body: Body, six: list[float]
 def _principal(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the principal axes (3, 3), a rotation that is the smallest, and moments (3,)."""
     moments, axes = np.linalg.eigh(matrix)
-    order = list(max(permutations(range(3)),
-                     key=lambda each: sum(abs(axes[k, each[k]]) for k in range(3))))
+    order = list(max(permutations((0, 1, 2)),
+                     key=lambda each: sum(abs(float(axes[k, each[k]])) for k in range(3))))
     axes, moments = axes[:, order], moments[order]
     axes = axes * np.sign(np.where(np.diag(axes) == 0.0, 1.0, np.diag(axes)))
     if np.linalg.det(axes) < 0.0:

@@ -67,8 +67,8 @@ WAYS: dict[tuple[str, str], Way] = {
     ('battery_sag', 'time'): Way(('thrust',), _MEAN),
     ('battery_sag', 'voltage_power'): Way(('thrust',), _MEAN),
     ('battery_sag', 'time_and_load'): Way(('thrust',), _MEAN),
-    ('thrust_scale', 'factor'): Way(('thrust',), 'a factor on the thrust coefficient, which is the '
-                                    'same motion'),
+    ('thrust_scale', 'factor'): Way(('thrust',), 'a factor on the thrust coefficient, which is '
+                                    'the same motion'),
     ('thrust_scale', 'exponent'): Way(('thrust',), _AT_HOVER),
     ('thrust_scale', 'offset'): Way(('thrust',), _AT_HOVER),
     ('mass_offset', 'at_centre'): Way(('mass',), 'a part of the mass, which is the same motion'),
@@ -211,7 +211,9 @@ def fates_of(vehicle: Vehicle, base_effects: Values, lacking: Mapping[str, str],
     Args: base_effects: what the file has by itself; lacking: {key of Wanted, or an effect: why
     this file cannot have it}; one_lag: whether it has one time constant for up and down.
     """
-    carried, nearest, not_carried = [], [], []
+    carried: list[Fate] = []
+    nearest: list[Fate] = []
+    not_carried: list[Fate] = []
     lags = [form for effect, form, _ in forms_of(vehicle.effects)
             if effect == 'motor_lag' and (effect, form) in WAYS]
     for effect, form, values in forms_of(vehicle.effects):

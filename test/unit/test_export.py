@@ -24,8 +24,9 @@ from quad_ident_ros.vehicle_files.source import Source
 from quad_ident_ros.vehicle_files.wanted import NEEDS, WAYS
 
 # Comments, sensors and odd spaces stand among the numbers, and lines end in two ways.
-SDF = sdf.WHOLE.replace('<mass>2.0</mass>', '<!-- kg --><mass> <!-- as weighed -->2.0 </mass>\r').replace(
-    '\n</link>', "\n<sensor name='imu'  type='imu'><update_rate>250</update_rate></sensor>\n</link>", 1)
+SENSOR = "\n<sensor name='imu'  type='imu'><update_rate>250</update_rate></sensor>\n</link>"
+SDF = sdf.WHOLE.replace('<mass>2.0</mass>', '<!-- kg --><mass> <!-- as weighed -->2.0 </mass>\r'
+                        ).replace('\n</link>', SENSOR, 1)
 LAGGED = mjcf.motors(extra='dyntype="filterexact" dynprm="0.03"', tag='general').replace(
     'class="quad" ', 'ctrlrange="0 13" ')
 MJCF = mjcf.model(body='<!-- as weighed -->\n' + mjcf.INERTIAL
@@ -205,7 +206,7 @@ def test_a_sag_is_its_mean_over_a_flight():
     assert [fate.name for fate in export(wanted, 'gazebo', source).fates.not_carried] == [
         'battery_sag']
     t = np.linspace(5.0, 65.0, 601)
-    left = mean_left(wanted, [FlightRecord('flight', {'t': t})])
+    left = mean_left(wanted, [FlightRecord(t, {'z': 0.0 * t})])
     assert left == pytest.approx(1.0 - 0.002 * 30.0)
     found = export(wanted, 'gazebo', source, left)
     assert again(source, found).thrust_coefficient == pytest.approx(
@@ -213,7 +214,7 @@ def test_a_sag_is_its_mean_over_a_flight():
     assert [fate.name for fate in found.fates.nearest] == ['battery_sag']
     by_voltage = replace(vehicle, effects={'battery_sag': {'per_volt': 0.05}})
     with pytest.raises(InputError, match='vbat'):
-        mean_left(by_voltage, [FlightRecord('flight', {'t': t})])
+        mean_left(by_voltage, [FlightRecord(t, {'z': 0.0 * t})])
 
 
 def test_what_other_bodies_weigh_is_not_undercut():
