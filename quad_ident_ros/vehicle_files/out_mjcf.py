@@ -146,8 +146,8 @@ def _insert(edited: Edited, base: Base, part: Part, body: Body, six: list[float]
 def _principal(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the principal axes (3, 3), a rotation that is the smallest, and moments (3,)."""
     moments, axes = np.linalg.eigh(matrix)
-    order = list(max(permutations((0, 1, 2)),
-                     key=lambda each: sum(abs(float(axes[k, each[k]])) for k in range(3))))
+    orders = np.array(list(permutations(range(3))))
+    order = orders[np.argmax(np.abs(axes)[np.arange(3), orders].sum(axis=1))]
     axes, moments = axes[:, order], moments[order]
     axes = axes * np.sign(np.where(np.diag(axes) == 0.0, 1.0, np.diag(axes)))
     if np.linalg.det(axes) < 0.0:

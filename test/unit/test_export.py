@@ -170,6 +170,25 @@ def test_principal_axes_of_mujoco_turn_with_the_inertia():
         wanted.inertia_matrix, rel=1e-9, abs=1e-12)
 
 
+@pytest.mark.parametrize('body', [
+    mjcf.INERTIAL, mjcf.INERTIAL.replace('mass', 'quat="0.9 0.1 0.2 0.3" mass'),
+    '<geom type="box" size=".1 .1 .05" mass="1.2"/>'])
+def test_mujoco_itself_has_the_mass_and_the_inertia(body):
+    mujoco = pytest.importorskip('mujoco')
+    source = Source('quad.xml', mjcf.model(body=body))
+    vehicle = read_vehicle(source).vehicle
+    wanted = replace(vehicle, mass=1.1 * vehicle.mass, products=(
+        vehicle.products[0] + 0.001, *vehicle.products[1:]))
+    compiled = mujoco.MjModel.from_xml_string(export(wanted, 'mujoco', source).text)
+    place = compiled.body('quad').id
+    axes = np.zeros(9)
+    mujoco.mju_quat2Mat(axes, compiled.body_iquat[place])
+    axes = axes.reshape(3, 3)
+    assert compiled.body_mass[place] == pytest.approx(wanted.mass, rel=1e-9)
+    assert axes @ np.diag(compiled.body_inertia[place]) @ axes.T == pytest.approx(
+        wanted.inertia_matrix, rel=1e-9, abs=1e-10)
+
+
 def test_shapes_of_mujoco_get_an_inertial_beside_them():
     source = Source('quad.xml', mjcf.model(body='<geom type="box" size=".1 .1 .05" mass="1.2"/>'))
     vehicle = read_vehicle(source).vehicle
