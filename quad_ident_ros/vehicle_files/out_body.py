@@ -49,15 +49,17 @@ def body_for(base: Base, where: str, main: Body, rest: Sequence[Body]) -> Body:
     if not rest:
         about, place = whole.inertia + moved, centre
     body = Body(left, place, about)
-    check_body(f'{where}: what the other bodies leave for it', body)
+    said = ', less the other bodies' if rest else ''
+    check_body(f'{where}: as the vehicle has it{said}', body)
     return body
 
 
 def spread(rotation: np.ndarray, stds: Sequence[float]) -> list[float | None]:
     """
-    Return standard errors of moments of inertia in the axes of a rotation (3, 3), None where 0.
+    Return standard errors of moments of inertia in the axes of a rotation (3, 3), None where none.
 
     Args: stds: those of Ixx, Iyy and Izz, kg m^2, independent of one another.
     """
     turned = np.sqrt((rotation.T ** 4) @ np.square(stds))
-    return [float(std) or None for std in turned]
+    # What a right angle that is rounded lets through is no standard error.
+    return [float(std) if std > SAME * max(stds) else None for std in turned]

@@ -34,6 +34,8 @@ def write_motors(edited: Edited, base: Base, plugins: Sequence[MotorPlugin]) -> 
             source = wanted.sources[key]
             if tag == 'momentConstant':
                 source = f'{source} over {wanted.sources["thrust"]}'
+            if tag == 'rotorDragCoefficient':
+                source = f'{source} over the hover speeds'
             edited.content(plugin.element, tag, [value], unit, source, [std or None],
                            usual=[plugin.numbers[tag]])
     return lacking

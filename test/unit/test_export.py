@@ -245,6 +245,26 @@ def test_what_other_bodies_weigh_is_not_undercut():
         export(replace(vehicle, rotors=vehicle.rotors[:3]), 'gazebo', source)
 
 
+def test_what_stands_in_an_included_file_stays_and_is_said(tmp_path):
+    for name, text in (('frame', sdf.model(sdf.bodies(), name='frame')), ('quad', sdf.model(
+            "<include merge='true'><uri>model://frame</uri></include>", sdf.motors()))):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / 'model.sdf').write_text(text)
+    path = tmp_path / 'quad' / 'model.sdf'
+    source = Source(str(path), path.read_text())
+    vehicle = read_vehicle(source).vehicle
+    wanted = replace(vehicle, mass=1.1 * vehicle.mass, effects={
+        **vehicle.effects, 'motor_lag': {'time_constant': 0.04}})
+    found = export(wanted, 'gazebo', source)
+    # The drag is stated at hover, which the vehicle with more mass has at a higher speed.
+    assert {change.source for change in found.changes} == {
+        'motor_lag', 'rotor_drag over the hover speeds'}
+    (stays,) = found.fates.not_carried
+    assert stays.name == 'mass' and 'frame' in stays.reason and 'gz sdf -p' in stays.reason
+    read = again(source, found)
+    assert (read.mass, read.effects['motor_lag']) == (vehicle.mass, {'time_constant': 0.04})
+
+
 def test_the_command_says_what_it_does(tmp_path, capsys):
     source, vehicle = base('gazebo')
     model, ours, out = (tmp_path / name for name in ('model.sdf', 'v.yaml', 'real.sdf'))
