@@ -209,7 +209,7 @@ def test_a_disk_that_fills_up_ends_the_recording_only(fast_graph, processes, tmp
     statistics = graph.listen(String, 'recorder/statistics', latched())
     records = graph.listen(Float64MultiArray, 'record', latched(16))
     await_recorder(graph)
-    graph.start(Simulator, {'experiment': path, 'real_time_factor': 5.0})
+    graph.start(Simulator, {'experiment': path, 'real_time_factor': 2.0})
     graph.spin_until(lambda: records, 'the record')
     [record] = records.records()
     assert len(record) == 3001 and record.info['dropped'] == 0
