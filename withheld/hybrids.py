@@ -178,7 +178,9 @@ def make_hybrids(part, folder, rng, source=FOLDER, share=1.0):
     flights are not there: they are no part of the package.
     """
     if not source.is_dir():
-        raise FileNotFoundError(f'{source}: the real flights that hybrids are made of')
+        # The report is kept: it names no folders of a machine.
+        raise FileNotFoundError(f'{"/".join(source.parts[-3:])}, beside the repository: the real '
+                                'flights that hybrids are made of are not there')
     flights = [read_flight(source / f'{name}.csv.gz') for name in FLIGHTS[part]]
     vehicle = yaml.safe_load((source / 'vehicle.yaml').read_text(encoding='utf-8'))
     vehicle['speed_max'] *= HEADROOM
