@@ -126,8 +126,8 @@ def principal_tilt(inertia: np.ndarray) -> float:
     """
     Return how far the principal axes lie from the body axes, rad.
 
-    It is the angle of the smallest rotation from the axes to their nearest principal ones, of an
-    inertia (3, 3). Axes with equal moments are no axes: a turn within their plane counts nothing.
+    It is the largest angle between a principal axis and the body axis nearest to it, of an inertia
+    (3, 3). Axes with equal moments are no axes: a turn within their plane counts nothing.
     """
     best = 0.0
     moments, axes = np.linalg.eigh(inertia)

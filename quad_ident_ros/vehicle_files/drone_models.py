@@ -99,7 +99,8 @@ class _Reader:
         # Rows: the signs of the moments about x, y, z of a thrust or torque of each motor.
         draft.take_rotors([np.array([-arm * column[1], arm * column[0], 0.0])
                            for column in mixing.T],
-                          [schema.choice(f'{self._where("mixing_matrix")}[2]', int(sign), (1, -1))
+                          [schema.choice(f'{self._where("mixing_matrix")}[2]', float(sign),
+                                         (1, -1))
                            for sign in mixing[2]], self.place('L', 'mixing_matrix'))
         self._take_curves(draft)
         self._take_drag(draft)

@@ -20,11 +20,13 @@ _SIGNS: dict[type[ast.unaryop], Callable[..., Any]] = {
     ast.UAdd: operator.pos, ast.USub: operator.neg}
 _CONSTANTS = {'pi': math.pi, 'e': math.e}
 _FUNCTIONS: dict[str, Callable[..., Any]] = {
-    'array': lambda *values: np.array(values[0], float), 'sqrt': np.sqrt,
+    'array': lambda *values: _array(values[0]), 'sqrt': np.sqrt,
     'sin': np.sin, 'cos': np.cos, 'tan': np.tan, 'deg2rad': np.deg2rad,
     'radians': np.deg2rad, 'float': float, 'dict': dict, 'zeros': np.zeros}
 _LIBRARIES = ('np', 'numpy', 'math')
-_MOST = 1e12        # of a power: what takes longer is no parameter
+_CHANGING = ('update', 'setdefault', 'pop', 'popitem', 'clear')    # methods of a dictionary
+_MOST = 1e12        # of a power or a whole number: what takes longer is no parameter
+_ENTRIES = 10_000   # of an array: a vehicle has some ten rotors with three places each
 
 
 @dataclass(frozen=True)
@@ -56,27 +58,60 @@ def tables_of(path: str, text: str, keys: tuple[str, ...]) -> list[Table]:
         line = f', line {error.lineno}' if isinstance(error, SyntaxError) else ''
         raise InputError(f'{path}{line}: is no Python that can be parsed') from None
     names: dict[str, Any] = {}
-    found = []
+    found: dict[str, Table] = {}
     for statement in tree.body:
-        if not isinstance(statement, ast.Assign | ast.AnnAssign) or statement.value is None:
-            continue
-        targets = (statement.targets if isinstance(statement, ast.Assign) else
-                   [statement.target])
-        name = targets[0].id if isinstance(targets[0], ast.Name) else ''
-        try:
-            with np.errstate(all='ignore'):
-                value = _value(statement.value, names)
-        except (_Unreadable, ArithmeticError, TypeError, ValueError, LookupError,
-                RecursionError) as error:
-            if _keys_of(statement.value) >= set(keys):
-                line, said = (error.args if isinstance(error, _Unreadable) else
-                              (statement.lineno, 'a value'))
-                raise InputError(f'{path}, line {line}: {said} is no number that can be read '
-                                 'without running the file; write it as one') from None
-            continue
-        names[name] = value
+        name = _name_given_by(statement)
+        value = _value_given_by(statement, names, path, keys) if name else None
+        for other in _changed_by(statement):
+            names.pop(other, None)
+            if found.pop(other, None) and other != name:
+                raise InputError(f'{path}, line {statement.lineno}: {other} is changed here, '
+                                 'which is not followed; write its numbers where it begins')
+        if value is not None:
+            names[name] = value
         if isinstance(value, dict) and value.keys() >= set(keys):
-            found.append(Table(name, value, _lines_of(statement.value, statement.lineno, value)))
+            found[name] = Table(name, value, _lines_of(statement, value))
+    return list(found.values())
+
+
+def _value_given_by(statement: Any, names: Mapping[str, Any], path: str, keys: tuple[str, ...]
+                    ) -> Any:
+    """Return the value of a statement that gives it a name, None where that is no number."""
+    try:
+        with np.errstate(all='ignore'):
+            return _value(statement.value, names)
+    except (_Unreadable, ArithmeticError, TypeError, ValueError, LookupError,
+            RecursionError) as error:
+        if _keys_of(statement.value) >= set(keys):
+            line, said = (error.args if isinstance(error, _Unreadable) else
+                          (statement.lineno, 'a value'))
+            raise InputError(f'{path}, line {line}: {said} is no number that can be read '
+                             'without running the file; write it as one') from None
+        return None
+
+
+def _name_given_by(statement: ast.stmt) -> str:
+    """Return the one name that a statement gives to a value, or ''."""
+    if isinstance(statement, ast.AnnAssign) and statement.value is not None:
+        targets = [statement.target]
+    else:
+        targets = statement.targets if isinstance(statement, ast.Assign) else []
+    return targets[0].id if len(targets) == 1 and isinstance(targets[0], ast.Name) else ''
+
+
+def _changed_by(statement: ast.stmt) -> set[str]:
+    """Return the names whose values a statement replaces or changes."""
+    if isinstance(statement, ast.FunctionDef | ast.ClassDef):
+        return {statement.name}     # what it does to others when it is called is its user's
+    found = set()
+    for node in ast.walk(statement):
+        holder = node
+        while isinstance(holder, ast.Subscript | ast.Attribute):
+            holder = holder.value
+        if isinstance(holder, ast.Name) and (
+                not isinstance(getattr(node, 'ctx', ast.Load()), ast.Load)
+                or isinstance(node, ast.Attribute) and node.attr in _CHANGING):
+            found.add(holder.id)
     return found
 
 
@@ -89,8 +124,8 @@ def _keys_of(node: ast.expr) -> set[str]:
     return set()
 
 
-def _lines_of(node: ast.expr, usual: int, value: Mapping[str, Any]) -> dict[str, int]:
-    lines = dict.fromkeys(value, usual)
+def _lines_of(statement: Any, value: Mapping[str, Any]) -> dict[str, int]:
+    lines, node = dict.fromkeys(value, statement.lineno), statement.value
     if isinstance(node, ast.Dict):
         lines.update({key.value: key.lineno for key in node.keys
                       if isinstance(key, ast.Constant) and isinstance(key.value, str)})
@@ -115,7 +150,10 @@ def _value(node: ast.expr, names: Mapping[str, Any]) -> Any:
         if isinstance(node.op, ast.Pow) and np.max(np.abs(other)) * math.log10(
                 max(float(np.max(np.abs(one))), 10.0)) > math.log10(_MOST):
             raise _Unreadable(node)
-        return _BINARY[type(node.op)](one, other)
+        result = _BINARY[type(node.op)](one, other)
+        if isinstance(result, int) and abs(result) > _MOST:
+            raise _Unreadable(node)
+        return result
     if isinstance(node, ast.Attribute) and _library(node.value) and node.attr in _CONSTANTS:
         return _CONSTANTS[node.attr]
     if isinstance(node, ast.Subscript):
@@ -133,8 +171,22 @@ def _called(node: ast.Call, names: Mapping[str, Any]) -> Any:
     if name not in _FUNCTIONS or (name == 'zeros' and _value(node.args[0], names) not in (3, 4)):
         raise _Unreadable(node)
     if name == 'dict':
+        if node.args or not all(keyword.arg for keyword in node.keywords):
+            raise _Unreadable(node)
         return {keyword.arg: _value(keyword.value, names) for keyword in node.keywords}
     return _FUNCTIONS[name](*(_value(each, names) for each in node.args))
+
+
+def _array(values: Any) -> np.ndarray:
+    """Return numbers in lists as an array; ValueError where lists in lists make too many."""
+    waiting, count = [values], 0
+    while waiting:
+        one = waiting.pop()
+        count += one.size if isinstance(one, np.ndarray) else 1
+        if count > _ENTRIES or isinstance(one, list) and len(one) > _ENTRIES:
+            raise ValueError
+        waiting += one if isinstance(one, list) else []
+    return np.array(values, float)
 
 
 def _number(node: ast.expr, names: Mapping[str, Any]) -> Any:

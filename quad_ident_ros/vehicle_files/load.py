@@ -4,19 +4,17 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
+import os
 from pathlib import Path
-import stat
 from typing import Any
 
-from quad_ident_ros import resources
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model import vehicle as model
 from quad_ident_ros.model.vehicle import Vehicle
 from quad_ident_ros.vehicle_files.kinds import kind_of, KINDS
 from quad_ident_ros.vehicle_files.reading import finished, needed_vehicle, Reading
-from quad_ident_ros.vehicle_files.source import Source
+from quad_ident_ros.vehicle_files.source import is_file, Source, text_of
 
-MOST_BYTES = 2 ** 22    # of a file, ten times a large model without its meshes
 YAML_ENDINGS = ('.yaml', '.yml')
 
 
@@ -45,41 +43,13 @@ def read_vehicle(source: Source, supplied: Mapping[str, Any] | None = None) -> R
 
 def source_of(name_or_path: str | Path) -> Source | None:
     """Return the file of a simulator, or None for a name or a file of ours; InputError."""
-    text = str(name_or_path)
+    text = os.path.expanduser(name_or_path)
     path, wanted = text, ''
-    if not _is_file(path) and ':' in text:
+    if not is_file(path) and ':' in text:
         path, _, wanted = text.rpartition(':')
-    if not _is_file(path) or path.endswith(YAML_ENDINGS):
+    if not is_file(path) or path.endswith(YAML_ENDINGS):
         return None
-    content = _content(path)
+    content = text_of(path)
     if kind_of(content) is None and not wanted and not Path(path).suffix:
         return None     # a vehicle file of ours may have no ending
     return Source(path, content, wanted)
-
-
-def _is_file(path: str) -> bool:
-    try:
-        return Path(path).expanduser().is_file()
-    except (OSError, RuntimeError, ValueError):
-        return False
-
-
-def _content(path: str) -> str:
-    """Return the text of a file; InputError for what is none."""
-    try:
-        mode = Path(path).expanduser().stat().st_mode
-        if not stat.S_ISREG(mode):
-            raise InputError(f'{path}: this is no file; name one')
-        with open(Path(path).expanduser(), 'rb') as file:
-            data = file.read(MOST_BYTES + 1)
-    except OSError as error:
-        raise InputError(f'{path}: cannot be read: {error.strerror}') from None
-    if len(data) > MOST_BYTES:
-        raise InputError(f'{path}: is larger than {MOST_BYTES // 2 ** 20} MB: no vehicle file is; '
-                         'name another')
-    try:
-        return data.decode('utf-8-sig')
-    except UnicodeDecodeError:
-        what = resources.kind_of(path)
-        raise InputError(f'{path}: ' + (f'this is {what}' if what else 'is not text in UTF-8')
-                         + '; expected a vehicle file') from None

@@ -52,7 +52,7 @@ def flying_body(source: Source, model: Model) -> tuple[Element, str]:
 
 def _pushes(model: Model, found: tuple[Element, str]) -> bool:
     """Whether an actuator acts at a site of a body."""
-    names = {site.get('name') for site in found[0].walk() if site.tag == 'site'}
+    names = {site.get('name') for site in found[0].walk() if site.tag == 'site'} - {''}
     return any(child.get('site') in names for holder in model.root.all('actuator')
                for child in holder.children)
 
@@ -88,11 +88,10 @@ def _take_bodies(draft: Draft, model: Model, parts: Sequence[Part], pushed: set[
     if not sum(body.mass for body in bodies) > 0.0:
         raise InputError(f'{parts[0].element.where}: it has no mass; give it an <inertial>')
     whole = combined(bodies)
-    total = model.compiler.get('settotalmass')
-    if total is not None and float(total) > 0.0:
-        factor = float(total) / whole.mass
-        whole = replace(whole, mass=float(total), inertia=factor * whole.inertia)
-        draft.assumed.append(f'mass and inertia are scaled to settotalmass, {total} kg, as if '
+    [total] = model.setting('settotalmass', (-1.0,))
+    if total > 0.0:
+        whole = replace(whole, mass=total, inertia=total / whole.mass * whole.inertia)
+        draft.assumed.append(f'mass and inertia are scaled to settotalmass, {total:g} kg, as if '
                              'nothing else in the model had a mass')
     said = f' with {len(parts) - 1} bodies in it' if len(parts) > 1 else ''
     draft.take_body(whole, parts[0].element.place() + said)

@@ -80,8 +80,8 @@ def _parts(model: Model, element: Element, place: Pose, inherited: str) -> Itera
             geoms.append((frame, model.whole(child, held)))
         elif child.tag == 'site':
             site = model.whole(child, held)
-            if 'fromto' in site.attributes:
-                continue    # a line, on which nothing acts
+            if 'fromto' in site.attributes or not child.get('name'):
+                continue    # a line, or one that no actuator can name: nothing acts there
             sites[child.get('name')] = place @ frame @ model.pose_of(site), child
         elif child.tag == 'body':
             below.append((frame, child, held))
@@ -98,7 +98,7 @@ def _inertia(model: Model, element: Element, geoms: list[tuple[Pose, Element]]
     stated, how = element.first('inertial'), model.compiler.get('inertiafromgeom', 'auto')
     if how == 'false' or how == 'auto' and stated is not None:
         return (NOTHING, '') if stated is None else (_stated(model, stated), 'inertial')
-    low, high = (int(word) for word in model.compiler.get('inertiagrouprange', '0 5').split())
+    low, high = model.setting('inertiagrouprange', (0.0, 5.0))
     shapes = [_shape(model, geom).placed(frame) for frame, geom in geoms
               if low <= geom.number('group', 0.0) <= high]
     shapes = [shape for shape in shapes if shape.mass > 0.0]

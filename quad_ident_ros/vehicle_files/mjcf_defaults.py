@@ -10,6 +10,7 @@ import math
 
 import numpy as np
 
+from quad_ident_ros import schema
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.vehicle_files.bodies import about, Pose, pose, turned
 from quad_ident_ros.vehicle_files.xml_tree import Element
@@ -38,6 +39,12 @@ class Model:
     def to_radians(self) -> float:
         """Factor from the angles of the model to rad."""
         return 1.0 if self.compiler.get('angle') == 'radian' else math.pi / 180.0
+
+    def setting(self, name: str, usual: tuple[float, ...]) -> tuple[float, ...]:
+        """Return numbers of the <compiler>, as many as the usual ones; InputError."""
+        where = f'{self.root.path}: <compiler>: {name}'
+        return usual if name not in self.compiler else schema.numbers(
+            where, self.compiler[name].split(), len(usual))
 
     def whole(self, element: Element, inherited: str) -> Element:
         """

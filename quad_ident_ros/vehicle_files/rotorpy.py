@@ -89,7 +89,7 @@ def _take_rotors(draft: Draft, source: Source, table: Table) -> None:
                          'rotor_directions, the signs of the torques; add it')
     where = f'{source.path}, line {lines["rotor_directions"]}: rotor_directions'
     signs = schema.numbers(where, _plain(spins), len(positions))
-    draft.take_rotors(positions, [schema.choice(where, int(sign), (1, -1)) for sign in signs],
+    draft.take_rotors(positions, [schema.choice(where, sign, (1, -1)) for sign in signs],
                       f'lines {lines["rotor_pos"]}, {lines["rotor_directions"]}')
 
 

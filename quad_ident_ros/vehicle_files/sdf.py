@@ -20,11 +20,10 @@ from quad_ident_ros.vehicle_files.gz_motors import (
 from quad_ident_ros.vehicle_files.reading import Draft
 from quad_ident_ros.vehicle_files.rotor_axes import check_axis
 from quad_ident_ros.vehicle_files.sdf_frames import child_text, MODEL, pose_of, Tree, tree_of
-from quad_ident_ros.vehicle_files.source import one_of, Source
+from quad_ident_ros.vehicle_files.source import is_file, one_of, Source, text_of
 from quad_ident_ros.vehicle_files.xml_tree import Element, parse, root_of, SHOWN
 
 GRAVITY = 9.8       # m/s^2, of SDF where a world does not say it
-MOST_BYTES = 2 ** 22
 PATHS = 'GZ_SIM_RESOURCE_PATH', 'GAZEBO_MODEL_PATH'
 """Variables of the environment with the folders in which Gazebo looks for models."""
 
@@ -228,11 +227,7 @@ def _included(element: Element) -> Element:
         raise InputError(f'{element.where}: {uri[:100]} was not found beside the model or in '
                          f'{PATHS[0]}; set that to the folder of the models, or give the whole '
                          'model as `gz sdf -p` prints it')
-    with open(found, 'rb') as file:
-        text = file.read(MOST_BYTES + 1)
-    if len(text) > MOST_BYTES:
-        raise InputError(f'{found}: is larger than {MOST_BYTES // 2 ** 20} MB: no model is')
-    models = parse(str(found), text.decode('utf-8', 'replace')).all('model')
+    models = parse(str(found), text_of(found)).all('model')
     if len(models) != 1:
         raise InputError(f'{found}: expected one <model>, got {len(models)}')
     return models[0]
@@ -250,7 +245,7 @@ def _found(path: str, uri: str) -> Path | None:
     for folder in folders:
         place = folder / name
         for file in (place, place / 'model.sdf'):
-            if file.is_file():
+            if is_file(file):
                 return file
     return None
 

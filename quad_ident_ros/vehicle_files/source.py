@@ -5,11 +5,14 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+import stat
 from typing import TypeVar
 
+from quad_ident_ros import resources
 from quad_ident_ros.errors import InputError
 
 Thing = TypeVar('Thing')
+MOST_BYTES = 2 ** 22    # of a file, ten times a large model without its meshes
 MOST = 1e9      # of a number: in SI units nothing of a vehicle is larger
 
 
@@ -25,6 +28,34 @@ class Source:
     def stem(self) -> str:
         """Return the name of the file without its ending."""
         return Path(self.path).stem
+
+
+def is_file(path: str | Path) -> bool:
+    """Whether a file is there; what cannot be a path is none."""
+    try:
+        return Path(path).is_file()
+    except (OSError, ValueError):
+        return False
+
+
+def text_of(path: str | Path) -> str:
+    """Return the text of a file; InputError for what is none."""
+    try:
+        if not stat.S_ISREG(Path(path).stat().st_mode):
+            raise InputError(f'{path}: this is no file; name one')
+        with open(path, 'rb') as file:
+            data = file.read(MOST_BYTES + 1)
+    except OSError as error:
+        raise InputError(f'{path}: cannot be read: {error.strerror}') from None
+    if len(data) > MOST_BYTES:
+        raise InputError(f'{path}: is larger than {MOST_BYTES // 2 ** 20} MB: no vehicle file is; '
+                         'name another')
+    try:
+        return data.decode('utf-8-sig')
+    except UnicodeDecodeError:
+        what = resources.kind_of(path)
+        raise InputError(f'{path}: ' + (f'this is {what}' if what else 'is not text in UTF-8')
+                         + '; expected a vehicle file') from None
 
 
 def one_of(source: Source, known: Mapping[str, Thing], what: str) -> Thing:

@@ -107,7 +107,7 @@ class Element:
 def root_of(text: str) -> str:
     """Return the tag of the first element of a text, or '' where it is no XML."""
     found: list[str] = []
-    parser = expat.ParserCreate()
+    parser = _parser()
 
     def begin(tag: str, _: dict[str, str]) -> None:
         found.insert(0, tag)
@@ -123,6 +123,11 @@ def root_of(text: str) -> str:
     return found[0] if found else ''
 
 
+def _parser() -> expat.XMLParserType:
+    """Return a parser of UTF-8, which a text is given in whatever its first line says."""
+    return expat.ParserCreate('utf-8')
+
+
 def parse(path: str, text: str) -> Element:
     """
     Return the tree of a file in XML.
@@ -130,7 +135,7 @@ def parse(path: str, text: str) -> Element:
     Raises InputError with the line for what is no XML, and for a DTD: its entities may stand for
     any amount of text, and no model needs one.
     """
-    parser = expat.ParserCreate()
+    parser = _parser()
     parser.buffer_text = True
     stack: list[Element] = []
     roots: list[Element] = []

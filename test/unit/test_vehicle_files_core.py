@@ -165,7 +165,9 @@ def test_products_of_inertia_are_those_of_the_vehicle(tmp_path):
     ("'Izz': 5e-3", "'Izz': 9e-3", 'line 5: no body has this inertia'),
     ("'Iyy': 4e-3", "'Iyy': 'a'", "line 5: Iyy: expected a number, got 'a'"),
     ('[1, -1, 1, -1]', '[1, -1, 1]', 'rotor_directions: expected a list of 4'),
-    ('[1, -1, 1, -1]', '[1, -1, 1, 2]', 'rotor_directions: 2 is not one of 1, -1'),
+    ('[1, -1, 1, -1]', '[1, -1, 1, 2]', 'rotor_directions: 2.0 is not one of 1, -1'),
+    ('[1, -1, 1, -1]', '[1, -1, 1, -1.5]', 'rotor_directions: -1.5 is not one of 1, -1'),
+    ("'mass': 1.0 / 2", "'mass': 10 ** 9 * 10 ** 9", 'line 4: 10 ** 9 * 10 ** 9 is no number'),
     ("'tau_m': 0.02", "'tau_m': 3.0", 'motor_lag: time_constant: 3 is out of range'),
     ("'k_eta': 5e-6", "'k_eta': 5.0", 'thrust_coefficient: 5 N/(rad/s)^2 cannot be'),
     ('quad_params = {', 'quad_params = {{', 'line 3: is no Python that can be parsed'),
@@ -173,6 +175,42 @@ def test_products_of_inertia_are_those_of_the_vehicle(tmp_path):
 def test_a_bad_dictionary_is_refused_with_its_line(old, new, said):
     assert old in PARAMETERS
     assert said in refused(PARAMETERS.replace(old, new), 'params.py')
+
+
+@pytest.mark.parametrize(('first', 'value'), [
+    ('a = 10 ** 12\n' + 'a = a * a\n' * 60, 'a'),
+    ('a = [1.0, 1.0]\n' + 'a = [a, a]\n' * 60, 'np.array(a)')])
+def test_a_python_file_that_grows_without_end_is_refused_at_once(first, value):
+    text = first + PARAMETERS.replace("'mass': 1.0 / 2", f"'mass': {value}")
+    assert 'is no number that can be read without running the file' in refused(text, 'params.py')
+
+
+@pytest.mark.parametrize('change', ['d *= 2', 'd = measured()', 'for d in (1, 2): pass'])
+def test_a_name_that_is_changed_on_the_way_has_no_old_value(change):
+    text = PARAMETERS.replace('d = 0.2', f'd = 0.2\n{change}')
+    assert ': d is no number that can be read' in refused(text, 'params.py')
+
+
+@pytest.mark.parametrize('change', ["quad_params['mass'] = 0.6", "quad_params.update({'mass': 1})",
+                                    "if d:\n    del quad_params['mass']"])
+def test_a_dictionary_that_is_changed_later_is_refused(change):
+    line = PARAMETERS.count('\n') + 1
+    said = refused(PARAMETERS + change + '\n', 'params.py')
+    assert f'line {line}: quad_params is changed here' in said
+
+
+def test_what_stands_beside_a_dictionary_does_not_change_it():
+    assert read_vehicle(Source('params.py', PARAMETERS.replace('d = 0.2', 'd = 0.1\nd = 2 * d')
+                               )).vehicle == read_vehicle(Source('params.py', PARAMETERS)).vehicle
+    assert read_vehicle(Source('params.py', PARAMETERS + 'def m(): return quad_params["mass"]\n'
+                               'print(quad_params["mass"])\n')).vehicle.mass == 0.5
+
+
+def test_a_file_in_the_home_folder_is_found_by_its_sign(tmp_path, monkeypatch):
+    monkeypatch.setenv('HOME', str(tmp_path))
+    path = written(tmp_path, PARAMETERS)
+    assert load_vehicle('~/params.py') == load_vehicle(path)
+    assert source_of('~/params.py:heavy').path == str(path)
 
 
 def test_a_python_file_is_not_run(tmp_path):

@@ -144,10 +144,26 @@ def test_of_two_vehicles_one_is_named():
     ('</mujoco>', '', 'is no whole XML'),
     ('<mujoco model="test">', '<!DOCTYPE a [<!ENTITY b "c">]><mujoco model="test">', '(DTD)'),
     ('ctrlrange="0 13"', 'ctrlrange="0 0"', 'leave no thrust; correct ctrlrange'),
+    ('autolimits="true"', 'settotalmass="abc"', "settotalmass[0]: expected a number, got 'abc'"),
 ])
 def test_a_bad_model_is_refused_with_its_line(old, new, said):
     assert old in model()
     assert said in refused(model().replace(old, new, 1), 'quad.xml')
+
+
+@pytest.mark.parametrize(('groups', 'said'), [('0', 'expected a list of 2'),
+                                              ('a b', "expected a number, got 'a'")])
+def test_bad_groups_of_shapes_are_refused(groups, said):
+    text = model('<geom class="main" size="0.1"/>',
+                 before=f'<compiler inertiagrouprange="{groups}"/>')
+    assert 'quad.xml: <compiler>: inertiagrouprange' in refused(text, 'quad.xml')
+    assert said in refused(text, 'quad.xml')
+
+
+def test_a_motor_without_a_site_does_not_act_at_one_without_a_name():
+    turns = '<motor joint="j" gear="1"/></actuator>'
+    unnamed = model(INERTIAL + '<site pos="0 0 0.1"/>').replace('</actuator>', turns)
+    assert reading(unnamed).vehicle == reading(model()).vehicle
 
 
 def test_it_is_told_by_its_content():

@@ -133,7 +133,7 @@ def test_the_wrench_is_that_of_drone_models():
     ('[0.0, 2e-5, 0.0]', '[1e-6, 2e-5, 0.0]', 'an inertia matrix is symmetric'),
     ('3e-10]', '-3e-10]', 'no speed gives 0.1 N; correct the curve'),
     ('[6.0, 1e-4, 0.0, 2e-4]', '[0.0, 0.0, 0.0, 2e-4]', 'no lag: rates of 0 and'),
-    ('[-1.0,  1.0, -1.0,  1.0]', '[-1.0,  1.0, -1.0,  0.0]', 'mixing_matrix[2]: 0 is not one'),
+    ('[-1.0,  1.0, -1.0,  1.0]', '[-1.0,  1.0, -1.0,  0.0]', 'mixing_matrix[2]: 0.0 is not one'),
     ('mass = 0.04', 'mass = = 0.04', 'is not TOML'),
 ])
 def test_a_bad_table_is_refused_with_its_line(old, new, said):

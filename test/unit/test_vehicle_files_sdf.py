@@ -156,6 +156,28 @@ def test_an_include_that_is_not_there_is_named_with_how_to_mend_it():
     assert '`gz sdf -p`' in said
 
 
+@pytest.mark.parametrize('uri', ['a' * 5000, 'model://' + 'a' * 300])
+def test_an_include_that_no_file_can_have_is_not_found(uri):
+    said = refused(model(f'<include><uri>{uri}</uri></include>', motors()), 'model.sdf')
+    assert 'was not found beside the model' in said
+
+
+def test_what_an_included_file_is_instead_of_a_model_is_said(tmp_path):
+    (tmp_path / 'base').mkdir()
+    (tmp_path / 'base' / 'model.sdf').write_bytes(b'\x89PNG\r\n\x1a\n' + bytes(range(128, 256)))
+    top = tmp_path / 'quad' / 'model.sdf'
+    top.parent.mkdir()
+    top.write_text(model('<include><uri>model://base</uri></include>', motors()))
+    with pytest.raises(InputError, match='base/model.sdf: this is a picture'):
+        load_vehicle(top)
+
+
+@pytest.mark.parametrize('encoding', ['UTF-16', 'latin-1', 'nobody-knows'])
+def test_what_is_utf_8_is_read_whatever_its_first_line_says(encoding):
+    text = WHOLE.replace("version='1.0'", f"version='1.0' encoding='{encoding}'")
+    assert text != WHOLE and reading(text).vehicle == reading(WHOLE).vehicle
+
+
 def test_models_that_include_one_another_end(tmp_path):
     path = tmp_path / 'a' / 'model.sdf'
     path.parent.mkdir()
