@@ -13,7 +13,7 @@ from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.effects.registry import bounds, EFFECTS, SLICES
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import SENSORS
-from quad_ident_ros.model.vehicle import load_nominal, load_vehicle
+from quad_ident_ros.model.vehicle import load_vehicle
 
 TRAJECTORIES = ('lissajous', 'steps', 'low_passes', 'circle')
 DURATION, RATE = 30.0, 100.0    # s, Hz
@@ -62,7 +62,7 @@ def on_real_flights(folder: Path | None, names: tuple[str, ...]) -> tuple:
     if folder is None:
         return what, most, f'not there: {PLACE}', None
     flights = [read_csv(folder / f'{name}.csv.gz') for name in names]
-    _, spent = timed(diagnose, flights, load_nominal(folder / 'vehicle.yaml'))
+    _, spent = timed(diagnose, flights, load_vehicle(folder / 'vehicle.yaml'))
     return what, most, f'{number(spent)} s', spent <= MOST_REAL
 
 

@@ -24,7 +24,7 @@ from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.diagnose.result import Diagnosis, Ranked
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.model.vehicle import load_nominal, Vehicle
+from quad_ident_ros.model.vehicle import load_vehicle, Vehicle
 from quad_ident_ros.report import gap_page
 from quad_ident_ros.report.diagnosis import contribution_of, WORTH
 
@@ -58,7 +58,7 @@ def main(folder: str, *sources: str) -> None:
 def single(source: str, folder: Path) -> None:
     """Diagnose the one flight of a source, and write the verdict and its parameters."""
     name, described = SINGLE[source]
-    vehicle, begin = load_nominal(VEHICLES / described), time.perf_counter()
+    vehicle, begin = load_vehicle(VEHICLES / described), time.perf_counter()
     told = diagnose(load_all(folder / name, None, vehicle), vehicle)
     taken = time.perf_counter() - begin
     after, before = told.gap.after['velocity'], told.gap.before['velocity']
@@ -93,7 +93,7 @@ def logs_table(folder: Path) -> str:
 
 def nanobench(folder: Path) -> None:
     """Diagnose the flights of NanoBench as they are and tampered with."""
-    vehicle = load_nominal(folder / 'vehicle.yaml')
+    vehicle = load_vehicle(folder / 'vehicle.yaml')
     flights = {name: load(folder / f'{name}.csv.gz') for name in (*TRAINING, *HELD_OUT)}
     cases = {**{f'as flown, held out: {name}': (same, name) for name in HELD_OUT},
              'without `vbat`': (without_voltage, HELD_OUT[0]),

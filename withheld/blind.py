@@ -11,7 +11,7 @@ import time
 from quad_ident_ros.data.csv import read_csv
 from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.model.vehicle import load_nominal
+from quad_ident_ros.model.vehicle import load_vehicle
 
 
 def diagnosis_of(folder):
@@ -20,7 +20,7 @@ def diagnosis_of(folder):
 
     All that the check knows of the library: the very function that the command line calls.
     """
-    vehicle = load_nominal(str(folder / 'vehicle.yaml'))
+    vehicle = load_vehicle(str(folder / 'vehicle.yaml'))
     records = [read_csv(path) for path in sorted(folder.glob('flight_*.csv'))]
     return diagnose(records, vehicle).as_data()
 

@@ -203,12 +203,12 @@ class TopicPart:
         self._stamps.frombytes(np.maximum(stamps_of(message, self._type, count), 0).tobytes())
         self.received.frombytes(received.tobytes())
 
-    def samples(self, received, message, kind, mapping):
+    def samples(self, message, kind, mapping):
         """
         Return [(stamp in ns, columns -> numbers)] in a message, of which nothing is kept.
 
-        Args: received: its time of receipt, ns, where it has no stamp; kind its type; mapping
-        Mapping. Raises InputError where it does not hold this.
+        The stamp is 0 where it has none. Args: kind its type; mapping Mapping. Raises InputError
+        where it does not hold this.
         """
         found = []
         for stamp, values in self._read(message, kind):
@@ -217,8 +217,7 @@ class TopicPart:
                 raise InputError(f'{self._here()}: the quaternion has not the length 1; publish a '
                                  f'{self.role} with an attitude')
             columns = self._columns(np.array([values]), mapping)
-            found.append((stamp or received,
-                          {name: float(column[0]) for name, column in columns.items()}))
+            found.append((stamp, {name: float(column[0]) for name, column in columns.items()}))
         self._one_child()
         return found
 

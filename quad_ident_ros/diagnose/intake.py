@@ -107,7 +107,7 @@ def take_in(records: Sequence[FlightRecord], vehicle: Vehicle, hold_out: FlightR
     learnt = every if alone else every[:-1]
     voltage = highest_voltage(learnt)
     clocks = clocks_of(answers[:len(learnt)], answers[len(learnt):])
-    ruled_out = _of_rotors(every, vehicle, clocks, len(learnt), findings)
+    ruled_out = _of_rotors(every, vehicle, clocks, len(learnt), rules, findings)
     tracks = [guided(track_of(record, vehicle, voltage, clock))
               for record, clock in zip(every, clocks, strict=True)]
     if alone:
@@ -156,7 +156,7 @@ def _beside_records(vehicle: Vehicle, records: Sequence[FlightRecord], findings:
 
 
 def _of_rotors(records: Sequence[FlightRecord], vehicle: Vehicle, clocks: Sequence[Clock | None],
-               learnt: int, findings: list) -> tuple[str, ...]:
+               learnt: int, rules: Rules, findings: list) -> tuple[str, ...]:
     """
     Return the effects that measured rotor speeds of the first, learnt, records speak against.
 
@@ -166,12 +166,13 @@ def _of_rotors(records: Sequence[FlightRecord], vehicle: Vehicle, clocks: Sequen
     if measured:
         findings += [as_caution(NO_COMMANDS, record) for record in measured]
         return OF_MOTORS
-    told = [rotor_answer(record) for record in records]
+    told = [answer if answer and answer.explained >= rules.follows else None
+            for answer in map(rotor_answer, records)]
     # Commands of another clock than the states': whose clock the speeds have is not known.
     ruled_out = ruled_out_by([
         replace(answer, delay=(answer.delay[0], np.inf)) if answer and clock and clock.late
         else answer for answer, clock in zip(told[:learnt], clocks, strict=False)],
-        vehicle.effects)
+        rules.shown, vehicle.effects)
     names = [f'another {name} than that of the vehicle file' if name in vehicle.effects else name
              for name in ruled_out]
     so = f'; {" and ".join(names)} is ruled out by that' if names else ''

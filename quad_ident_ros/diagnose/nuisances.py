@@ -55,9 +55,9 @@ def late_controller(selection: Selection, flights: Sequence[Flight], vehicle: Ve
     """
     Return the delay (s) that a Selection found where it may be the controller's own lag, or 0.
 
-    Beyond that of the vehicle file.
-    Where clocks were put right by what commands answer, a controller that answers late looks like
-    commands that act late. It is counted among the clocks where controllers may be that late.
+    It counts from the delay that the vehicle file has. Where clocks were put right by what
+    commands answer, a controller that answers late looks like commands that act late. It is
+    counted among the clocks where controllers may be that late.
     """
     best = selection.best
     [columns] = [cause.columns for cause in best.causes if cause.effect == DELAY] or [()]

@@ -15,6 +15,8 @@ class Rules:
         for each half; whether that tells anything is a matter of information, see `not_shown`.
       held_block: s of a block of a single flight, of which half are held out: room for a few
         rollouts, and longer than the errors of a formula hang together.
+      follows: share of the spread of measured rotor speeds that the commands must explain for the
+        speeds to tell anything of the motors: with less, most of it comes from something else.
     Candidates:
       voltage: V that a recorded voltage must change for it to tell anything of the battery: what
         the coarsest loggers resolve. at_bound: usual sizes from a bound that are at it.
@@ -73,7 +75,8 @@ class Rules:
     Advice:
       hidden, shown: standard errors from no effect below which an effect of usual size is not
         seen, and from which on it is, and so is a parameter that shapes a form. Noise needs no
-        proof: that of moments between the samples counts from `hidden` on.
+        proof: that of moments between the samples counts from `hidden` on. Measured rotor speeds
+        rule a lag or a delay out by `shown`.
     Tolerance (a gap that matters, by group of outputs, at 0.5 s):
       visible: of the noise's gap: of what can be closed below it, shares mean nothing.
       noise_share: of the noise's gap: what remains below it is hard to see in a prediction, and
@@ -93,6 +96,7 @@ class Rules:
 
     shortest: float = 4.0
     held_block: float = 3.0
+    follows: float = 0.5
     voltage: float = 0.02
     at_bound: float = 1e-3
     coloured: float = 2.0

@@ -315,10 +315,12 @@ class _Search:
         """
         assert self.best is not None
         chosen, fit = self.best.chosen, self.best.estimate
-        usual = {cause.effect: cause for cause in self.all_causes if cause.usual}
         for cause in chosen:
             name = cause.nuisance.of_effect if cause.nuisance else ''
-            if name not in usual or name in _names(self.best):
+            # The law of a vehicle file may be another than that whose parameters these are.
+            laws = [one for one in self.all_causes
+                    if one.effect == name and set(cause.columns) <= set(one.columns)]
+            if not laws or name in _names(self.best):
                 continue
             ratio = EFFECTS[name].ratio
             if ratio and ratio in {EFFECTS[one].ratio for one in _names(self.best)}:
@@ -328,7 +330,7 @@ class _Search:
             if are_alike(values, self.rules.prior_odds):
                 start = fit.z.copy()
                 start[list(cause.columns)] += values.mean(axis=0)
-                whole = key_of((usual[name], *self.best.chosen))
+                whole = key_of((laws[0], *self.best.chosen))
                 self.fit(whole, start, fit.nuisances, fit.starts)
                 self.best = self.judge(whole)
 

@@ -120,15 +120,15 @@ def are_alike(values: np.ndarray, chance: float) -> bool:
     """
     Return whether values (F, K) of flights share more than flights that differ by chance do.
 
-    By Student's t of each place: its mean over the flights by its scatter between them, as large
-    as in a share `chance` of such flights.
+    By Student's t of each place: its mean over the flights by its scatter between them. In any of
+    the places it is as large in a share `chance` of such flights at most (Bonferroni's bound).
     """
-    count = len(values)
+    count, places = values.shape
     if count < 2:
         return False
     error = values.std(axis=0, ddof=1) / np.sqrt(count)
     return bool(np.any(np.abs(values.mean(axis=0))
-                       > student.ppf(1.0 - 0.5 * chance, count - 1) * error))
+                       > student.ppf(1.0 - 0.5 * chance / places, count - 1) * error))
 
 
 @dataclass(frozen=True, eq=False)

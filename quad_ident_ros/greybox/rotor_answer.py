@@ -18,12 +18,10 @@ from quad_ident_ros.model.mixing import BY_SPEEDS
 
 MOST = 20_000           # samples, from the middle of a stretch: more tell nothing new
 LEAST_RATE = 40.0       # Hz of measured speeds; slower ones do not show lags
-FOLLOWS = 0.5           # of the spread of the speeds that commands explain, at least
 COPY, COPIED = 1e-9, 1e-4   # of the variance, and s: what is left, and how late, by a copy of
                             # the commands, which no sensor measures
 DELAYS, LAGS = np.arange(-0.02, 0.121, 0.01), np.array([0.0, 0.01, 0.02, 0.04, 0.08, 0.16])
 SMALL = 0.5 / RATE      # s: half a sample of what a diagnosis looks at
-SURE = 3.0              # standard errors
 FINEST = 1e-5           # s: no clock tells more
 
 OF_MOTORS = tuple(name for name, effect in EFFECTS.items() if effect.actuator)
@@ -69,14 +67,15 @@ def is_driven_by_speeds(record: FlightRecord) -> bool:
     return bool(record.info.get(BY_SPEEDS))
 
 
-def ruled_out_by(answers: Iterable[RotorAnswer | None], effects: Values | None = None
-                 ) -> tuple[str, ...]:
+def ruled_out_by(answers: Iterable[RotorAnswer | None], sure: float,
+                 effects: Values | None = None) -> tuple[str, ...]:
     """
     Return the effects of the actuators that measured speeds of the flights speak against.
 
     Those whose time may be that of the vehicle file's effects, by default none, and surely differs
     from it by less than a diagnosis resolves, by all flights together, and in none of them surely
     by more. Speeds do not speak of a lag that the file has by another law than theirs.
+    Args: sure: standard errors that make it so.
     """
     effects = effects or {}
     some = [answer for answer in answers if answer is not None]
@@ -94,9 +93,9 @@ def ruled_out_by(answers: Iterable[RotorAnswer | None], effects: Values | None =
         values = values - known.get(parameter, 0.0)
         weights = 1.0 / np.maximum(errors, FINEST) ** 2
         mean = float(np.sum(weights * values) / weights.sum())
-        error = SURE / float(np.sqrt(weights.sum()))
+        error = sure / float(np.sqrt(weights.sum()))
         if (abs(mean) < error and abs(mean) + error < SMALL
-                and (np.abs(values) - SURE * errors < SMALL).all()):
+                and (np.abs(values) - sure * errors < SMALL).all()):
             found.append(name)
     return tuple(found)
 
@@ -105,8 +104,8 @@ def rotor_answer(record: FlightRecord) -> RotorAnswer | None:
     """
     Return the RotorAnswer of a record, None where its measured speeds do not tell.
 
-    Where they are missing, slow, a copy of the commands, or of something else than these. Of a
-    record with gaps it is the longest stretch without one: lags do not reach across them.
+    Where they are missing, slow, or a copy of the commands. Of a record with gaps it is the
+    longest stretch without one: lags do not reach across them.
     """
     names, measured = record.numbered('cmd'), record.numbered('rotor')
     if not names or len(names) != len(measured):
@@ -140,8 +139,7 @@ def rotor_answer(record: FlightRecord) -> RotorAnswer | None:
     rest, values = _apart(speeds, there)
     spread = float(np.sum((speeds - speeds.mean(axis=0)) ** 2))
     explained = 1.0 - float(np.sum(rest ** 2)) / max(spread, 1e-300)
-    copied = 1.0 - explained < COPY and max(abs(delay), lag) < COPIED
-    if explained < FOLLOWS or copied:
+    if 1.0 - explained < COPY and max(abs(delay), lag) < COPIED:
         return None
     # Samples do not show what happens between them: slopes are those over half a period.
     step = 0.5 * float(np.median(np.diff(t)))

@@ -117,15 +117,6 @@ def load_vehicle(name_or_path: str | Path) -> Vehicle:
     return vehicle_from_mapping(resources.read_yaml(path), str(path))
 
 
-def load_nominal(name_or_path: str | Path) -> Vehicle:
-    """Return the vehicle of a name or file as load_vehicle; InputError where it has effects."""
-    vehicle = load_vehicle(name_or_path)
-    if vehicle.effects:
-        raise InputError(f'{name_or_path}: it has effects; give the nominal vehicle, without the '
-                         'section effects')
-    return vehicle
-
-
 def vehicle_from_mapping(data: Any, where: str) -> Vehicle:
     """Return the vehicle that the mapping of a vehicle file describes; raises InputError."""
     known = [field.name for field in fields(Vehicle)

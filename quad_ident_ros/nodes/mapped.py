@@ -83,16 +83,17 @@ class MappedTopics:
         """
         found = [(role, stamp, values) for role, part in self._parts.items()
                  if part.source.topic == topic
-                 for stamp, values in part.samples(received_ns, message, kind, self._mapping)]
+                 for stamp, values in part.samples(message, kind, self._mapping)]
         if not (self._parts.keys() & {'pose', 'attitude'}) and any(
                 BODY_VELOCITY[0] in values for _, _, values in found):
             raise InputError(f'topic {topic}: a velocity in body axes needs an attitude; map a '
                              'pose, or say frame: world')
-        if found and found[0][1] == received_ns and topic not in self.without_stamps:
+        # A simulator stamps its messages with the very time that its clock says.
+        if found and not found[0][1] and topic not in self.without_stamps:
             self.without_stamps.append(topic)
         if found and not self.by_receipt:
-            self._compare(topic, received_ns, found[0][1])
-        return [(role, received_ns if self.by_receipt else stamp, values)
+            self._compare(topic, received_ns, found[0][1] or received_ns)
+        return [(role, received_ns if self.by_receipt else stamp or received_ns, values)
                 for role, stamp, values in found]
 
     def _compare(self, topic, received_ns, stamp):

@@ -3,6 +3,7 @@
 """Node recorder: joining, counting, windows; what it writes is in test_recording.py."""
 
 import math
+import signal
 import time
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
@@ -288,6 +289,25 @@ def test_a_recorder_that_is_told_to_end_in_a_flood_accounts_for_all(graph, proce
     account = statistics.data()[-1]
     assert account['joined'] + account['lost'] + account['unread'] == sent
     assert account['missing'] == account['lost']
+
+
+def test_what_is_lost_while_a_recorder_hangs_is_counted_when_it_is_told_to_end(graph, processes):
+    """It stands still, whatever the machine does, while a publisher goes beyond what it keeps."""
+    process = processes.start('recorder', {'topics': ['altitude']})
+    _, statistics = listen(graph)
+    vehicle = Vehicle(graph, ('altitude',), overrun(100))
+    vehicle.send(SECOND)
+    graph.spin_until(lambda: statistics and statistics.data()[-1]['received']['altitude'],
+                     'the first message')
+    process.send(signal.SIGSTOP)
+    sent = 40_001
+    vehicle.fly(sent - 1, first=SECOND + PERIOD)
+    process.send(signal.SIGCONT)
+    assert process.stop() == 0
+    graph.spin_for(0.5)
+    account = statistics.data()[-1]
+    assert account['joined'] + account['lost'] + account['unread'] == sent
+    assert account['missing'] == account['lost'] > 0
 
 
 def test_a_flush_in_flight_loses_no_sample(graph):

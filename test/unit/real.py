@@ -8,7 +8,7 @@ import pytest
 
 from quad_ident_ros.data.load import load
 from quad_ident_ros.data.record import FlightRecord
-from quad_ident_ros.model.vehicle import load_nominal, Vehicle
+from quad_ident_ros.model.vehicle import load_vehicle, Vehicle
 
 PLACE = Path('shared') / 'flights' / 'nanobench'
 NANOBENCH = next((folder / PLACE for folder in Path(__file__).resolve().parents
@@ -23,7 +23,7 @@ LENGTH = 800                                    # samples of a cut, 8 s
 
 def real_vehicle() -> Vehicle:
     """Return the nominal vehicle of the real flights."""
-    return load_nominal(NANOBENCH / 'vehicle.yaml')
+    return load_vehicle(NANOBENCH / 'vehicle.yaml')
 
 
 def real_flight(name: str) -> FlightRecord:

@@ -145,6 +145,13 @@ def test_topics_without_stamps_are_told_once():
     assert '/c have no stamps' in note and topics.named(['commands']) == 'commands (/c)'
 
 
+def test_stamps_that_are_the_time_of_receipt_are_stamps():
+    """In simulated time the clock of a node stands still from one step to the next."""
+    topics = MappedTopics(known_mapping(['imu']), 'the parameter')
+    found = topics.samples('imu', IMU, NS, Make(store())(IMU, header=header(NS)))
+    assert {stamp for _, stamp, _ in found} == {NS} and topics.info == {}
+
+
 def test_an_attitude_without_length_is_refused_in_words_of_a_live_topic():
     topics = MappedTopics(known_mapping(['odometry']), 'the parameter')
     message = Make(store())(ODOMETRY, header=header(NS))

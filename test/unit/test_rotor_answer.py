@@ -13,6 +13,7 @@ from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import MOCAP_IMU
+from quad_ident_ros.diagnose.rules import RULES
 from quad_ident_ros.greybox.rotor_answer import rotor_answer, RotorAnswer, ruled_out_by
 from quad_ident_ros.model.mixing import with_commands
 from quad_ident_ros.model.vehicle import load_vehicle
@@ -45,7 +46,7 @@ def test_delay_and_lag_are_told_apart_with_their_errors(truth, without):
     answer = rotor_answer(measured(*truth))
     for (value, error), true in zip((answer.delay, answer.lag), truth, strict=True):
         assert error < 5e-3 and abs(value - true) < 4 * error + 1e-4
-    assert set(ruled_out_by([answer])) == set(without)
+    assert set(ruled_out_by([answer], RULES.shown)) == set(without)
 
 
 def test_a_map_that_is_off_and_a_sag_of_speed_are_told_beside():
@@ -84,7 +85,8 @@ def test_what_is_no_measurement_tells_nothing():
     assert rotor_answer(replace(record, columns=bare)) is None
     other = {f'rotor{k}': np.random.default_rng(k).normal(900.0, 40.0, len(FLIGHT))
              for k in range(1, 5)}
-    assert rotor_answer(replace(record, columns={**record.columns, **other})) is None
+    answer = rotor_answer(replace(record, columns={**record.columns, **other}))
+    assert answer.explained < RULES.follows
     # Ten measurements a second, interpolated, do not show a lag.
     slow = {f'rotor{k}': np.interp(FLIGHT.t, FLIGHT.t[::10], record.columns[f'rotor{k}'][::10])
             for k in range(1, 5)}
@@ -96,8 +98,8 @@ def test_effects_are_ruled_out_by_all_flights_together():
     vague = replace(sure, delay=(0.001, 0.01))
     against = replace(sure, delay=(0.02, 1e-3))
     for nothing in ([], [None], [vague], [sure, against]):
-        assert ruled_out_by(nothing) == ()
-    assert ruled_out_by([sure, vague, None]) == ('actuation_delay',)
+        assert ruled_out_by(nothing, RULES.shown) == ()
+    assert ruled_out_by([sure, vague, None], RULES.shown) == ('actuation_delay',)
 
 
 def test_measured_speeds_take_the_place_of_commands_that_are_missing():

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from quad_ident_ros.model.vehicle import load_nominal
+from quad_ident_ros.model.vehicle import load_vehicle
 from withheld import lists
 
 if find_spec('rotorpy') is None:
@@ -60,7 +60,7 @@ def test_the_vehicles_of_the_evaluation_differ_in_mass_and_geometry():
 def test_the_library_reads_their_files(name, tmp_path):
     params = params_of(name)
     (tmp_path / 'vehicle.yaml').write_text(vehicles.nominal_file(params, name))
-    vehicle = load_nominal(str(tmp_path / 'vehicle.yaml'))
+    vehicle = load_vehicle(str(tmp_path / 'vehicle.yaml'))
     assert len(vehicle.rotors) == params['num_rotors']
     assert vehicle.hover_speed == pytest.approx(constants.hover_speed(params))
 
