@@ -33,7 +33,8 @@ def flights(tmp_path_factory):
 def test_help_of_every_command_names_it(capsys):
     assert main([]) == 0
     assert 'identify' in capsys.readouterr().out
-    for command in COMMANDS:
+    for command in ('demo', 'simulate', 'fly', 'identify', 'fit', 'diagnose', 'vehicle', 'export',
+                    'info', 'convert', 'paper', 'node'):
         with pytest.raises(SystemExit) as end:
             main([command, '--help'])
         assert end.value.code == 0

@@ -126,7 +126,8 @@ def test_measured_speeds_speak_against_another_lag_than_that_of_the_file():
     answer = RotorAnswer((0.0, 1e-4), (0.03, 1e-4), (1.0, 0.0), None, 0.99)
     assert ruled_out_by([answer], RULES.shown, {'motor_lag': {'time_constant': 0.03}}) == (
         'motor_lag', 'actuation_delay')
-    assert ruled_out_by([answer], RULES.shown, {'motor_lag': {'time_constant': 0.05}}) == ('actuation_delay',)
+    assert ruled_out_by([answer], RULES.shown, {'motor_lag': {'time_constant': 0.05}}) == (
+        'actuation_delay',)
     assert ruled_out_by([answer], RULES.shown, {'actuation_delay': {'delay': 0.02}}) == ()
     assert 'motor_lag' not in ruled_out_by([replace(answer, lag=(0.0, 1e-4))], RULES.shown,
                                            {'motor_lag': {'rise': 0.03}})

@@ -2,13 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Which sets are tried, and standard errors over those that differ in nuisances alone."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from quad_ident_ros.diagnose import select as selecting
-from quad_ident_ros.diagnose.candidates import Candidate, candidates
+from quad_ident_ros.diagnose.candidates import Candidate, candidates, nuisance_candidates
 from quad_ident_ros.diagnose.fitted import Fitted, refitted
 from quad_ident_ros.diagnose.promising import other_actuators
 from quad_ident_ros.diagnose.rules import RULES
@@ -18,7 +19,7 @@ from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import SENSORS
 from quad_ident_ros.greybox.flights import flight_of, track_of
 from quad_ident_ros.greybox.nuisances import Nuisance, NuisanceValues, RARE
-from quad_ident_ros.greybox.parameters import nominal
+from quad_ident_ros.greybox.parameters import INDEX, nominal
 from quad_ident_ros.model.vehicle import load_vehicle
 
 EFFECT, OTHER = Candidate('a', 'a', (0,)), Candidate('b', 'b', (1,))
@@ -134,6 +135,26 @@ def test_an_effect_beside_the_simplest_of_sets_that_are_alike_is_as_rare_as_befo
     found = posteriors(sets, [], (one, other), set(), RULES)
     assert found[one] == pytest.approx(1.0)
     assert found[other] == pytest.approx(RULES.prior_odds * np.exp(2.0) / (1.0 + np.exp(2.0)))
+
+
+def test_what_flights_have_alike_is_an_effect_by_the_law_whose_parameter_it_is():
+    """A vehicle file may have the thrust by another law, which is then the usual one."""
+    vehicle = replace(load_vehicle('hummingbird'), effects={'thrust_scale': {'exponent': 1.9}})
+    record = fly_closed_loop(vehicle, {}, 'hover', duration=5.0, seed=0)
+    [by_flight] = [one for one in nuisance_candidates(vehicle, 3 * [track_of(record, vehicle)])
+                   if one.nuisance.name == 'thrust_scale_by_flight']
+    values = replace(NuisanceValues.of([by_flight.nuisance], 3),
+                     values=np.array([[-0.09], [-0.1], [-0.11]]))
+    fits = []
+    best = SimpleNamespace(chosen=(by_flight,), causes=(), estimate=SimpleNamespace(
+        z=nominal(vehicle), nuisances=values, starts=[]))
+    search = SimpleNamespace(all_causes=candidates([], vehicle, RULES, ['thrust_scale']),
+                             rules=RULES, best=best, judge=lambda chosen: best,
+                             fit=lambda chosen, start, *_: fits.append((chosen, start)))
+    _Search.share_alike(search)
+    [(chosen, start)] = fits
+    free = {column for cause in chosen if cause.nuisance is None for column in cause.columns}
+    assert set(np.flatnonzero(start != nominal(vehicle))) == free == {INDEX['thrust_scale.factor']}
 
 
 def test_from_a_delay_that_does_the_work_of_a_lag_the_lag_is_found():
