@@ -11,7 +11,6 @@ import geometry_msgs.msg
 from rclpy._rclpy_pybind11 import RCLError
 from rclpy.clock import Clock, ClockType
 from rclpy.duration import Duration
-from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.serialization import deserialize_message
 from std_msgs.msg import String, UInt64
 from std_srvs.srv import Trigger
@@ -29,7 +28,6 @@ from quad_ident_ros.data.topics import (
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.nodes import process
 from quad_ident_ros.nodes.health import Health
-from quad_ident_ros.nodes.losses import Losses
 from quad_ident_ros.nodes.mapped import message_class
 from quad_ident_ros.nodes.messages import diagnostics_message
 from quad_ident_ros.nodes.node import PackageNode
@@ -37,9 +35,9 @@ from quad_ident_ros.nodes.on_disk import FLUSH_PERIOD, OnDisk
 from quad_ident_ros.nodes.other_types import one_topic_for_two, other_type
 from quad_ident_ros.nodes.outlets import outlets_of
 from quad_ident_ros.nodes.parameters import help_text, NodeParameters
-from quad_ident_ros.nodes.qos import BEST_EFFORT, latched, LOSSLESS
+from quad_ident_ros.nodes.qos import latched
 from quad_ident_ros.nodes.recorder_parameters import mapped_topics, SPECS, validate
-from quad_ident_ros.nodes.waiting import take_waiting
+from quad_ident_ros.nodes.subscriptions import Subscriptions
 
 QUIET = 0.5          # s after the last message when the middleware is asked what it lost
 ACKNOWLEDGED = 10    # rows after which the publishers are told how far the joining is
@@ -111,13 +109,11 @@ class Recorder(PackageNode):
         self._joined = self.create_publisher(UInt64, JOINED_TOPIC, 10)
         self._unacknowledged = 0
         self._diagnostics = self.create_publisher(DiagnosticArray, '/diagnostics', 10)
-        self._subscriptions_by_topic = {}
-        self._losses = {}
-        self._refused = []
+        self._inputs = Subscriptions(self)
         self._types = {}
         if self._mapped is None:
             for name in self._topics:
-                self._subscribe(name, LOSSLESS)
+                self._subscribe(name)
         self._runs = self.create_subscription(String, RUN_TOPIC, self._on_run, latched(32),
                                               raw=True)
         if self._mapped is not None:
@@ -141,7 +137,7 @@ class Recorder(PackageNode):
 
     def close(self):
         """Finish the files on disk and publish the last account."""
-        self.counts.unread += take_waiting(self._subscriptions_by_topic.values(), ENDING)
+        self.counts.unread += self._inputs.take_waiting(ENDING)
         # There is room for messages again: none is lost just now, which Losses asks for.
         self._count_lost()
         self._keep(self._joiner.drain())
@@ -153,14 +149,11 @@ class Recorder(PackageNode):
         if problems := self.counts.problems():
             self.get_logger().warning('ends; of what came: ' + ', '.join(
                 f'{count} {name}' for name, count in problems.items()))
-        for losses in self._losses.values():
-            losses.close()
+        self._inputs.close()
 
     def _open_recording(self):
-        names = {name: subscription.topic_name
-                 for name, subscription in self._subscriptions_by_topic.items()}
-        names[RUN_TOPIC] = self._runs.topic_name
-        self._disk.open(names, self._types or None)
+        self._disk.open({**self._inputs.topics, RUN_TOPIC: self._runs.topic_name},
+                        self._types or None)
 
     def _check_names(self):
         """Raise InputError for a name in the mapping that no topic can have."""
@@ -191,11 +184,11 @@ class Recorder(PackageNode):
                     self.get_logger().error(f'{name}: {error}', throttle_duration_sec=10.0)
                     continue
                 self._types[name] = kinds[0]
-                self._subscribe(name, LOSSLESS)
+                self._subscribe(name)
         if self._config['output'] and len(self._types) == len(self._mapped.topics):
             self._open_recording()
 
-    def _subscribe(self, name, quality):
+    def _subscribe(self, name):
         if self._mapped is None:
             topic = FLIGHT_TOPICS[name]
             kind = getattr(geometry_msgs.msg, topic.type.rsplit('/', 1)[1])
@@ -208,25 +201,12 @@ class Recorder(PackageNode):
             def on_message(raw):
                 self._on_mapped(name, kind, raw)
 
-        refused = 0
-
-        def on_incompatible(event):
-            # total_count_change lacks what was before the executor knew the subscription.
-            nonlocal refused
-            self.counts.incompatible_qos += event.total_count - refused
-            refused = event.total_count
-            self._refused.append(name)
-
         try:
-            subscription = self.create_subscription(
-                kind, name, on_message, quality, raw=True,
-                event_callbacks=SubscriptionEventCallbacks(incompatible_qos=on_incompatible))
+            self._inputs.add(name, kind, on_message)
         except RCLError:
             if self._mapped is not None:
                 raise
             raise InputError(one_topic_for_two(self, name, self._topics)) from None
-        self._subscriptions_by_topic[name] = subscription
-        self._losses[name] = Losses(subscription)
 
     def _on_message(self, topic, kind, raw):
         now = self._last_message = self._now()
@@ -338,7 +318,7 @@ class Recorder(PackageNode):
             if self._buffer.run_name:
                 self._publish(lambda buffer: buffer.complete(run_over=True))
         self._disk.flush()
-        self._adapt()
+        self.counts.incompatible_qos += self._inputs.adapt()
         if self._mapped is not None:
             self._look_for_topics()
 
@@ -350,24 +330,13 @@ class Recorder(PackageNode):
         return 0.0 if self._last_message is None else self._now() - self._last_message
 
     def _count_lost(self):
-        self.counts.lost += sum(losses.count_new() for losses in self._losses.values())
+        self.counts.lost += self._inputs.count_lost()
 
     def _patience(self):
         if self._announced is not None and self._joiner.has_reached(self._announced):
             return GONE
-        alive = any(self.count_publishers(subscription.topic_name)
-                    for subscription in self._subscriptions_by_topic.values())
+        alive = any(map(self.count_publishers, self._inputs.topics.values()))
         return IDLE if alive else GONE
-
-    def _adapt(self):
-        """Take what is offered where a publisher offers best effort only."""
-        while self._refused:
-            name = self._refused.pop()
-            self._losses[name].close()
-            self.destroy_subscription(self._subscriptions_by_topic[name])
-            self._subscribe(name, BEST_EFFORT)
-            self.get_logger().warning(f'{name} is offered as best effort: messages may be lost, '
-                                      'and are counted')
 
     def _silent(self, names):
         """Say that nothing comes on some of the topics, and what to do."""

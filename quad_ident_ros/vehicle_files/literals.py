@@ -92,10 +92,11 @@ def _value_given_by(statement: Any, names: Mapping[str, Any], path: str, keys: t
 
 def _name_given_by(statement: ast.stmt) -> str:
     """Return the one name that a statement gives to a value, or ''."""
+    targets: list[ast.expr] = []
     if isinstance(statement, ast.AnnAssign) and statement.value is not None:
         targets = [statement.target]
-    else:
-        targets = statement.targets if isinstance(statement, ast.Assign) else []
+    elif isinstance(statement, ast.Assign):
+        targets = statement.targets
     return targets[0].id if len(targets) == 1 and isinstance(targets[0], ast.Name) else ''
 
 

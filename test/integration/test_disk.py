@@ -116,7 +116,7 @@ def test_a_recorder_that_is_behind_flushes_all_the_same(fast_graph, tmp_path, mo
     for k in range(30):
         for name in STREAMS:
             message = sample(name, SECOND + k * 10 ** 7)
-            recorder._subscriptions_by_topic[name].callback(serialize_message(message))
+            recorder._inputs._all[name].callback(serialize_message(message))
     [flight] = read_bag(tmp_path / 'recording_1/bag')
     assert len(flight) == len(read_csv(tmp_path / 'recording_1/flight_1.csv')) == 30
 
