@@ -98,7 +98,8 @@ def run(options):
           ) as simulator, progress_bar() as bar:
         task = bar.add_task('comparing sets of effects', total=1.0)
         found = diagnose(records, vehicle, hold_out=held, effects=effects, rules=rules,
-                         simulator=simulator, on_progress=lambda share: bar.update(task, completed=share))
+                         simulator=simulator,
+                         on_progress=lambda share: bar.update(task, completed=share))
     if options.json != '-':
         show(found, sys.stdout)
     if options.json:

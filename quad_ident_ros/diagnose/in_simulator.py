@@ -5,8 +5,6 @@
 from collections.abc import Callable
 from dataclasses import replace
 
-import numpy as np
-
 from quad_ident_ros.diagnose import gap as gaps
 from quad_ident_ros.diagnose.judgement import Bench, Judgement
 from quad_ident_ros.diagnose.measure import channels

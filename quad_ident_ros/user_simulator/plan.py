@@ -23,7 +23,7 @@ from quad_ident_ros.model.actuators import (
 )
 from quad_ident_ros.model.contribution import accelerations_of
 from quad_ident_ros.model.dynamics import Course, finer, steps_within
-from quad_ident_ros.model.sensors import product, TURNED, turn, underlying
+from quad_ident_ros.model.sensors import product, turn, TURNED, underlying
 from quad_ident_ros.model.vehicle import Vehicle
 
 

@@ -18,7 +18,7 @@ from quad_ident_ros.model.dynamics import STATES
 from quad_ident_ros.model.rigid_body import STATE
 
 WRENCH = ('force', 'moment')
-UNIT = 1e-3         # by which the length of a quaternion may differ from 1, that of float32 and more
+UNIT = 1e-3         # by which the length of a quaternion may differ from 1: float32 is far below
 LONGEST = 160       # characters of an error that is not ours
 
 INTERFACE = """\

@@ -18,7 +18,7 @@ from quad_ident_ros.model.dynamics import steps_within
 from quad_ident_ros.model.sensors import recorded
 from quad_ident_ros.model.vehicle import Vehicle
 from quad_ident_ros.user_simulator.fly import fly
-from quad_ident_ros.user_simulator.plan import plan_of, Plan, sensors_alone
+from quad_ident_ros.user_simulator.plan import Plan, plan_of, sensors_alone
 from quad_ident_ros.user_simulator.program import Program
 
 WORTH = 2.0     # s of flying from which on further processes are worth their start
