@@ -15,7 +15,7 @@ from quad_ident_ros.effects.registry import EFFECTS, vector
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import SENSORS
-from quad_ident_ros.greybox.flights import track_of
+from quad_ident_ros.greybox.flights import highest_voltage, track_of
 from quad_ident_ros.greybox.parameters import nominal, SPLIT
 from quad_ident_ros.model.vehicle import load_vehicle
 from quad_ident_ros.user_simulator import simulator as processes
@@ -32,9 +32,9 @@ REALITY = {'rotor_drag': {'coefficient': 0.3}, 'motor_lag': {'time_constant': 0.
 @pytest.fixture(scope='module')
 def track():
     """A flight of a vehicle that has what no simulator here has."""
-    record = fly_closed_loop(BARE, REALITY, 'figure8', duration=6.0, seed=1,
+    record = fly_closed_loop(BARE, REALITY, 'low_passes', duration=8.0, seed=1,
                              noise=SENSORS['mocap_imu'])
-    return track_of(record, BARE)
+    return track_of(record, BARE, highest_voltage([record]))
 
 
 def simulator(name, vehicle=BARE):
@@ -61,7 +61,7 @@ def test_a_simulator_of_the_nominal_vehicle_has_the_gap_of_our_model(track, name
         assert value < 1e-3 * ours[group]
 
 
-# What has no effect in this flight: no wind without a drag, no fall of the voltage, no ground.
+# Without a drag no wind is felt.
 ALONG = {'wind': {'rotor_drag': {'coefficient': 0.3}}}
 
 
@@ -80,10 +80,11 @@ def test_each_effect_around_a_simulator_does_what_it_does_in_our_model(track, ef
     assert max(change.values()) > 1e-4
 
 
-@pytest.mark.parametrize('name', ['ManyLagged', 'OneLagged'])
-@pytest.mark.parametrize('motors', [
-    {'time_constant': 0.05}, {'rise': 0.02, 'fall': 0.05}, {'slew': 1e-5, 'time_constant': 0.04},
-    {'mean_lag': 0.03, 'inner_lag': 0.02}, {'time_constant': 0.02}])
+@pytest.mark.parametrize('motors, name', [
+    ({'time_constant': 0.05}, 'OneLagged'), ({'time_constant': 0.05}, 'ManyLagged'),
+    ({'rise': 0.02, 'fall': 0.05}, 'ManyLagged'), ({'time_constant': 0.02}, 'ManyLagged'),
+    ({'slew': 1e-5, 'time_constant': 0.04}, 'ManyLagged'), ({}, 'ManyLagged'),
+    ({'mean_lag': 0.03, 'inner_lag': 0.02}, 'ManyLagged')])
 def test_motors_of_another_law_take_the_place_of_the_simulator_s(track, motors, name):
     effects = {'motor_lag': motors, 'rotor_drag': {'coefficient': 0.2}}
     z = with_effects(LAGGED, effects)
@@ -111,7 +112,7 @@ def test_where_the_gap_lies_is_told_as_of_our_model(track):
     ours = residual_wrench(track, BARE, nominal(BARE), noise)
     with simulator('Many') as flown:
         theirs = residual_wrench(track, BARE, nominal(BARE), noise, flown)
-    np.testing.assert_allclose(theirs.values, ours.values, atol=0.02 * ours.errors.min(axis=0))
+    assert np.max(np.abs(theirs.values - ours.values) / ours.errors) < 0.02
     assert (theirs.t == ours.t).all()
 
 
