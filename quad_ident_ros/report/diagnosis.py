@@ -37,8 +37,8 @@ WHERE = ('channel', 'share', 'rms', 'noise alone', 'where most of it is', 'Hz')
 FAR = ('', 'nominal', 'with nuisances', 'after', 'noise', 'unit')
 """What far_rows say of a group of outputs."""
 
-IN_SIMULATOR = ('', 'as it is', 'with nuisances', 'with the effects', 'model after', 'noise',
-                'from nominal', 'unit')
+IN_SIMULATOR = ('', 'as it is', 'with nuisances', 'with the effects', 'our model after', 'noise',
+                'off the nominal vehicle', 'unit')
 """What simulator_rows say of a group of outputs in a simulator of the user."""
 
 NEXT = ('manoeuvre', 'to', 'standard errors now', 'with it', 'size', 'height', 'speed up to')
@@ -210,10 +210,9 @@ def simulator_rows(found: Diagnosis) -> list[list[str]]:
     """Return the cells of every group of outputs in a simulator of the user."""
     one = found.in_simulator
     assert one is not None
-    return [[name, _between(one.before, one.before_interval, name), f'{one.before_own[name]:.3g}',
-             _between(one.after, one.after_interval, name), f'{found.gap.after[name]:.3g}',
-             f'{one.noise[name]:.3g}', f'{one.from_nominal[name]:.2g}', unit]
-            for name, unit in found.gap.units.items()]
+    return [[name, *(f'{stage[name]:.3g}' for stage in (
+        one.before, one.before_own, one.after, found.gap.after, one.noise, one.from_nominal)),
+        unit] for name, unit in found.gap.units.items()]
 
 
 def _between(gap: dict, interval: dict, name: str) -> str:
