@@ -37,8 +37,8 @@ WHERE = ('channel', 'share', 'rms', 'noise alone', 'where most of it is', 'Hz')
 FAR = ('', 'nominal', 'with nuisances', 'after', 'noise', 'unit')
 """What far_rows say of a group of outputs."""
 
-IN_SIMULATOR = ('', 'as it is', 'with nuisances', 'with the effects', 'our model after', 'noise',
-                'off the nominal vehicle', 'unit')
+IN_SIMULATOR = ('', 'as it is', 'with nuisances', 'with the effects', 'our model after',
+                'noise', 'off nominal', 'unit')
 """What simulator_rows say of a group of outputs in a simulator of the user."""
 
 NEXT = ('manoeuvre', 'to', 'standard errors now', 'with it', 'size', 'height', 'speed up to')
