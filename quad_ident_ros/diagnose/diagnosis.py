@@ -44,6 +44,7 @@ def diagnose(records: Iterable[FlightRecord], vehicle: Vehicle, *,
     for name in effects or ():
         if name not in EFFECTS:
             raise InputError(f'{name!r} is not among the effects: {", ".join(EFFECTS)}')
+
     def told(share: float) -> None:     # flying in a simulator of the user takes as long
         on_progress(share if simulator is None else 0.5 * share)
 

@@ -79,14 +79,12 @@ class Simulator:
                              'itself to see why') from None
 
 
+_HERE: list[Program] = []     # the simulator of a process that flies nothing else
+
+
 def _load(spec: str) -> None:
-    """Load the simulator of a process that flies nothing else."""
-    global _here
-    _here = Program(spec)
+    _HERE.append(Program(spec))
 
 
 def _fly_here(plan: Plan) -> np.ndarray:
-    return fly(_here, plan)
-
-
-_here: Program
+    return fly(_HERE[0], plan)

@@ -60,6 +60,8 @@ class Many:
 
 
 class ManyLagged(Many):
+    """With motors that lag."""
+
     lag = LAG
 
 
@@ -82,6 +84,8 @@ class One(Many):
 
 
 class OneLagged(One):
+    """With motors that lag, whose speeds are told."""
+
     lag = LAG
 
     def step(self, commands, dt):

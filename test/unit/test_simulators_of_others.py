@@ -45,7 +45,7 @@ def drone_models():
 @pytest.fixture(scope='module', params=[rotorpy, mujoco, drone_models],
                 ids=lambda one: one.__name__)
 def flown(request):
-    """The vehicle of a simulator's file, the simulator, and flights of a vehicle with more."""
+    """Read a vehicle of a simulator's file, and fly one that has more."""
     file, spec = request.param()
     vehicle = load_vehicle(file)
     truth = {name: dict(values) for name, values in vehicle.effects.items()}

@@ -31,7 +31,7 @@ REALITY = {'rotor_drag': {'coefficient': 0.3}, 'motor_lag': {'time_constant': 0.
 
 @pytest.fixture(scope='module')
 def track():
-    """A flight of a vehicle that has what no simulator here has."""
+    """Fly a vehicle that has what no simulator here has."""
     record = fly_closed_loop(BARE, REALITY, 'low_passes', duration=8.0, seed=1,
                              noise=SENSORS['mocap_imu'])
     return track_of(record, BARE, highest_voltage([record]))
@@ -147,7 +147,7 @@ BEGIN = 'import numpy as np\nclass Sim:\n    def reset(self, state):\n        se
 
 @pytest.mark.parametrize('text, said', [
     ('x = (1\n', 'line 1: reading it of Sim raises SyntaxError'),
-    ('\nimport no_such_library\n', "line 2: reading it of Sim raises ModuleNotFoundError: No "
+    ('\nimport no_such_library\n', 'line 2: reading it of Sim raises ModuleNotFoundError: No '
      "module named 'no_such_library'"),
     ('import sys\nsys.exit(3)\n', 'line 2: reading it of Sim raises SystemExit: 3'),
     ('class Other:\n    pass\n', 'it has no class Sim'),
