@@ -66,6 +66,8 @@ class ManyLagged(Many):
 
 
 class ManyPushed(Many):
+    """Takes force and moment."""
+
     def step_many(self, states, commands, dt, force, moment):
         return self.advance(states, commands, dt, force, moment)
 
@@ -94,6 +96,8 @@ class OneLagged(One):
 
 
 class OnePushed(One):
+    """Takes force and moment."""
+
     def step(self, commands, dt, force, moment):
         self.state = self.advance(self.state, commands[None], np.array([dt]), force, moment)
         return self.state[0, :13]
