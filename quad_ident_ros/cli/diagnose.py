@@ -3,7 +3,9 @@
 """`quad_ident diagnose`: where the sim-to-real gap lies, what causes it, how far it shrinks."""
 
 import argparse
+from contextlib import nullcontext
 import sys
+import textwrap
 
 from quad_ident_ros.cli.identify import progress_bar
 from quad_ident_ros.cli.options import (
@@ -24,6 +26,8 @@ from quad_ident_ros.model.vehicle import write_vehicle
 from quad_ident_ros.report.data import write_json
 from quad_ident_ros.report.diagnosis import show
 from quad_ident_ros.tolerances import EXAMPLE, rules_from
+from quad_ident_ros.user_simulator.program import INTERFACE
+from quad_ident_ros.user_simulator.simulator import Simulator
 
 
 def add(commands, said):
@@ -35,11 +39,15 @@ def add(commands, said):
                     'flight named is held\nout: the effects are not fitted to it. It counts where '
                     'contributions are judged, and the\ngap is told on it.',
         epilog='effects: ' + ', '.join(EFFECTS) + '\n\n'
+               'a simulator for --simulator, whose file is run:\n'
+               + textwrap.indent(INTERFACE, '  ') + '\n\n'
                '  quad_ident diagnose monday_*.csv.gz --vehicle quad.yaml\n'
                '  quad_ident diagnose a.csv b.csv --hold-out c.csv --vehicle quad.yaml \\\n'
                '      --json diagnosis.json --out-vehicle like_real.yaml\n'
-               '  quad_ident diagnose log_12.ulg --vehicle auto --segment 2 --from 35 --to 95\n\n'
-               'docs/diagnosis.md explains every line of the answer.')
+               '  quad_ident diagnose log_12.ulg --vehicle auto --segment 2 --from 35 --to 95\n'
+               '  quad_ident diagnose a.csv b.csv --vehicle quad.xml --simulator mine.py:Quad\n\n'
+               'docs/diagnosis.md explains every line of the answer, docs/simulators.md has '
+               'simulators.')
     parser.add_argument('flights', nargs='+', metavar='FLIGHT',
                         help='a table (CSV, Parquet), a bag (ROS 1 or 2), or a log of PX4, '
                              'ArduPilot, Crazyflie or Betaflight')
@@ -56,6 +64,10 @@ def add(commands, said):
                         help='gap beyond the noise that does not matter half a second ahead, for '
                              f'example {EXAMPLE}; never less than {100 * RULES.noise_share:.0f} '
                              f'%% of what the noise makes (default: {usual})')
+    parser.add_argument('--simulator', metavar='FILE.py:NAME',
+                        help='a class of yours that flies the nominal vehicle: its gap, where it '
+                             'lies, and how far it shrinks with the effects named around it; '
+                             'see below')
     parser.add_argument('--json', metavar='FILE', help='write it as data; - prints it')
     parser.add_argument('--report', metavar='FILE.html',
                         help='write a page for a browser: the verdict, pictures, all numbers')
@@ -82,9 +94,11 @@ def run(options):
                                           by_log))
     held = (joined(flights_from(options.hold_out, options.mapping, vehicle, selection, by_log))[-1]
             if options.hold_out else None)
-    with progress_bar() as bar:
+    with (Simulator(options.simulator, vehicle) if options.simulator else nullcontext()
+          ) as simulator, progress_bar() as bar:
         task = bar.add_task('comparing sets of effects', total=1.0)
         found = diagnose(records, vehicle, hold_out=held, effects=effects, rules=rules,
+                         simulator=simulator,
                          on_progress=lambda share: bar.update(task, completed=share))
     if options.json != '-':
         show(found, sys.stdout)

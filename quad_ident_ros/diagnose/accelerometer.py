@@ -10,12 +10,13 @@ from quad_ident_ros.greybox.flights import Flight
 from quad_ident_ros.greybox.linear import errors_along
 from quad_ident_ros.greybox.noise import MAD
 from quad_ident_ros.greybox.parameters import INDEX
+from quad_ident_ros.greybox.predictor import by_model, Predictor
 from quad_ident_ros.model.attitude import rotation_matrix
 from quad_ident_ros.model.vehicle import Vehicle
 
 
-def residual_force(flight: Flight, vehicle: Vehicle, z: np.ndarray
-                   ) -> tuple[np.ndarray, np.ndarray] | None:
+def residual_force(flight: Flight, vehicle: Vehicle, z: np.ndarray,
+                   predictor: Predictor = by_model) -> tuple[np.ndarray, np.ndarray] | None:
     """
     Return the mean force (B, 3) N, body, beyond a model's in each rollout, and its error (B, 3).
 
@@ -30,7 +31,8 @@ def residual_force(flight: Flight, vehicle: Vehicle, z: np.ndarray
     steps = replace(flight, first=rows.ravel(), count=1)
     now, after = flight.states[steps.first], flight.states[steps.first + 1]
     period = flight.course.t[steps.first + 1] - flight.course.t[steps.first]
-    change = after[:, 3:6] - now[:, 3:6] - errors_along(steps, vehicle, z, now)[:, 1, 3:6]
+    change = after[:, 3:6] - now[:, 3:6] - errors_along(
+        steps, vehicle, z, now, predictor)[:, 1, 3:6]
     model = change / period[:, None] + [0.0, 0.0, vehicle.gravity]
     body = np.einsum('bji,bj->bi', rotation_matrix(now[:, 6:10]), model)
     measured = 0.5 * (flight.force[steps.first] + flight.force[steps.first + 1])

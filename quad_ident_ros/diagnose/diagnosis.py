@@ -9,6 +9,7 @@ import numpy as np
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.diagnose import advice, measure
 from quad_ident_ros.diagnose.candidates import candidates
+from quad_ident_ros.diagnose.in_simulator import gap_in_simulator, refuse_inertial
 from quad_ident_ros.diagnose.intake import take_in
 from quad_ident_ros.diagnose.judgement import Bench, judge, pooled
 from quad_ident_ros.diagnose.noise import noise_of
@@ -24,25 +25,33 @@ from quad_ident_ros.greybox.noise import whole_noise
 from quad_ident_ros.greybox.parameters import nominal
 from quad_ident_ros.memory import give_back
 from quad_ident_ros.model.vehicle import Vehicle
+from quad_ident_ros.user_simulator.simulator import Simulator
 
 
 def diagnose(records: Iterable[FlightRecord], vehicle: Vehicle, *,
              hold_out: FlightRecord | None = None, effects: list[str] | None = None,
-             rules: Rules = RULES,
+             rules: Rules = RULES, simulator: Simulator | None = None,
              on_progress: Callable[[float], None] = lambda share: None) -> Diagnosis:
     """
     Return the Diagnosis of flight records against a nominal vehicle and the effects that it has.
 
     Args: hold_out: a record that takes no part in the fit or the choice, by default the last one
     (half of the blocks of a single one); effects: names that may be named, by default all; rules:
-    thresholds of the verdict; on_progress is called with the share done.
+    thresholds of the verdict; simulator: of the user, in which the flights are predicted, too;
+    on_progress is called with the share done.
     Raises InputError where the records cannot bear a verdict.
     """
     for name in effects or ():
         if name not in EFFECTS:
             raise InputError(f'{name!r} is not among the effects: {", ".join(EFFECTS)}')
+
+    def told(share: float) -> None:     # flying in a simulator of the user takes as long
+        on_progress(share if simulator is None else 0.5 * share)
+
     intake = take_in(list(records), vehicle, hold_out, rules)
     give_back()
+    if simulator is not None:
+        refuse_inertial(intake.flights)
     vehicle = intake.vehicle
     every = candidates(intake.flights, vehicle, rules, effects)
     causes = tuple(cause for cause in every if cause.effect not in intake.refuted)
@@ -53,17 +62,17 @@ def diagnose(records: Iterable[FlightRecord], vehicle: Vehicle, *,
                             if ruled_out else 'what they lack is in docs/diagnosis.md')
                          + '; name other effects')
     selection = select(intake.flights, vehicle, causes, rules,
-                       lambda share: on_progress(0.7 * share))
+                       lambda share: told(0.7 * share))
     prompt = late_controller(selection, intake.flights, vehicle)
     if prompt:
         intake = intake.shifted(prompt)
         selection = select(intake.flights, vehicle, causes, rules,
-                           lambda share: on_progress(0.7 + 0.05 * share))
+                           lambda share: told(0.7 + 0.05 * share))
     noise = noise_of(selection, intake, rules)
     bench = Bench(intake.flights, (*intake.tracks, intake.held_out), vehicle, selection, noise,
                   rules)
     judged = judge(bench)
-    on_progress(0.85)
+    told(0.85)
     verdict = verdict_of(bench, judged, causes, ruled_out)
     z0, model = nominal(vehicle), judged.model
     whole = np.median([whole_noise(raw, 1.0 - 1.0 / raw.shape[1])
@@ -71,7 +80,9 @@ def diagnose(records: Iterable[FlightRecord], vehicle: Vehicle, *,
     before = measure.residual_wrenches(bench, [z0 + z - model.z for z in model.vectors],
                                        noise.deviation)
     after = measure.residual_wrenches(bench, model.vectors, whole)
-    on_progress(0.95)
+    told(0.95)
+    in_simulator = None if simulator is None else gap_in_simulator(
+        simulator, bench, judged, lambda share: on_progress(0.5 + 0.5 * share))
     unseen = advice.not_shown(selection, causes, verdict, rules)
     return Diagnosis(
         vehicle=vehicle, verdict=verdict.names, minor=verdict.minor, ranking=verdict.ranking,
@@ -91,4 +102,4 @@ def diagnose(records: Iterable[FlightRecord], vehicle: Vehicle, *,
         flights=intake.names[:-1], held_out=intake.names[-1],
         flight_checks=verdict.flight_checks,
         findings=(*intake.findings, *advice.at_bounds(judged, vehicle, rules)), z=model.z,
-        pictures=measure.pictures(bench, judged, before, after))
+        pictures=measure.pictures(bench, judged, before, after), in_simulator=in_simulator)

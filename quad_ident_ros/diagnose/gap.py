@@ -16,8 +16,7 @@ from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.greybox.errors import difference, ERRORS, GROUPS, moved
 from quad_ident_ros.greybox.flights import flight_of, inertial, Track
 from quad_ident_ros.greybox.linear import STATE_STEP
-from quad_ident_ros.greybox.parameters import constants_of, SPLIT
-from quad_ident_ros.model.dynamics import predict
+from quad_ident_ros.greybox.predictor import by_model, Predictor
 from quad_ident_ros.model.vehicle import Vehicle
 
 # How finely the gap is sampled, and what is shown of it; no verdict is a matter of these.
@@ -60,7 +59,8 @@ class Ends:
     t: np.ndarray
 
 
-def ends(track: Track, vehicle: Vehicle, z: np.ndarray, horizon: float) -> Ends:
+def ends(track: Track, vehicle: Vehicle, z: np.ndarray, horizon: float,
+         predictor: Predictor = by_model) -> Ends:
     """
     Return the Ends of predictions along a Track with a parameter vector z (Z,).
 
@@ -68,9 +68,8 @@ def ends(track: Track, vehicle: Vehicle, z: np.ndarray, horizon: float) -> Ends:
     """
     flight = flight_of(track, horizon, EVERY)
     first = flight.first[flight.seen[flight.first + flight.count].all(axis=1)]
-    predicted = [predict(vehicle, z[SPLIT:], flight.course, flight.states[part], part,
-                         flight.count, constants=constants_of(z[None], vehicle),
-                         guide=flight.guide)[:, -1].copy()
+    predicted = [predictor(flight, vehicle, z, flight.states[part], part,
+                           flight.count)[:, -1].copy()
                  for part in np.split(first, range(AT_ONCE, len(first), AT_ONCE))]
     return Ends(difference(flight.states[first + flight.count], np.concatenate(predicted)),
                 flight.course.t[first])
@@ -112,9 +111,8 @@ def noise_gap(track: Track, vehicle: Vehicle, z: np.ndarray, noise: Noise, horiz
     chosen = flight.first[np.linspace(0, len(flight.first) - 1, NOISE_STARTS).astype(int)]
     starts = flight.states[chosen]
     everything = np.concatenate([starts, *(moved(starts, move) for move in np.diag(STATE_STEP))])
-    out = predict(vehicle, z[SPLIT:], flight.course, everything, np.tile(chosen, 1 + ERRORS),
-                  flight.count, constants=constants_of(z[None], vehicle),
-                  guide=flight.guide)[:, -1]
+    out = by_model(flight, vehicle, z, everything, np.tile(chosen, 1 + ERRORS),
+                   flight.count)[:, -1]
     out = out.reshape(1 + ERRORS, len(chosen), -1)
     carried = (difference(out[1:], out[0]) / STATE_STEP[:, None, None]
                * deviation[:, None, None])

@@ -22,6 +22,7 @@ from quad_ident_ros.greybox.linear import (
     WRENCH,
 )
 from quad_ident_ros.greybox.parameters import limits, SPLIT
+from quad_ident_ros.greybox.predictor import by_model, Predictor
 from quad_ident_ros.model.attitude import rotation_matrix
 from quad_ident_ros.model.vehicle import Vehicle
 
@@ -52,8 +53,8 @@ class ResidualWrench:
     stretch: np.ndarray
 
 
-def residual_wrench(track: Track, vehicle: Vehicle, z: np.ndarray, noise: np.ndarray
-                    ) -> ResidualWrench:
+def residual_wrench(track: Track, vehicle: Vehicle, z: np.ndarray, noise: np.ndarray,
+                    predictor: Predictor = by_model) -> ResidualWrench:
     """Return the ResidualWrench of a Track with a parameter vector z (Z,) and noise (12,)."""
     flight = flight_of(track, WINDOW, EVERY)
     # A window whose end is not seen, at the end of a block, tells nothing.
@@ -61,10 +62,10 @@ def residual_wrench(track: Track, vehicle: Vehicle, z: np.ndarray, noise: np.nda
         flight.seen[flight.first + flight.count].all(axis=1)])
     first, stretch = _stretches(flight)
     flight = replace(flight, first=first)
-    parts = [_by_motion(replace(flight, first=part), vehicle, z, noise)
+    parts = [_by_motion(replace(flight, first=part), vehicle, z, noise, predictor)
              for part in np.array_split(first, -(-len(first) // AT_ONCE))]
     values, errors = (np.concatenate(each) for each in zip(*parts, strict=True))
-    felt = residual_force(flight, vehicle, z)
+    felt = residual_force(flight, vehicle, z, predictor)
     if felt is not None:
         values[:, :3], errors[:, :3] = _combined(values[:, :3], errors[:, :3], *felt)
     middle = flight.first + flight.count // 2
@@ -72,17 +73,17 @@ def residual_wrench(track: Track, vehicle: Vehicle, z: np.ndarray, noise: np.nda
                           _features(flight, middle, vehicle, z), stretch)
 
 
-def _by_motion(flight: Flight, vehicle: Vehicle, z: np.ndarray, noise: np.ndarray
-               ) -> tuple[np.ndarray, np.ndarray]:
+def _by_motion(flight: Flight, vehicle: Vehicle, z: np.ndarray, noise: np.ndarray,
+               predictor: Predictor) -> tuple[np.ndarray, np.ndarray]:
     """Return force and moment in the windows of a Flight and their errors, both (B, 6)."""
     starts = flight.states[flight.first]
     tangent = tangent_of(flight, vehicle, z, starts, WRENCH,
                          STEP * limits(vehicle)[2, list(WRENCH)])
     initial = replace(tangent, kept=[*range(ERRORS), -1])
-    settled = linear_of(initial, errors_along(flight, vehicle, z, starts),
+    settled = linear_of(initial, errors_along(flight, vehicle, z, starts, predictor),
                         seen_along(flight) / noise, False)
     # Within the noise of the states, by which these move, the slopes stay the same.
-    raw = errors_along(flight, vehicle, z, new_starts(settled, starts, np.zeros(0)))
+    raw = errors_along(flight, vehicle, z, new_starts(settled, starts, np.zeros(0)), predictor)
     linear = linear_of(tangent, raw, weights_of(raw, noise, flight) / noise, False)
     across = linear.slope.transpose(0, 2, 1)
     inverse = np.linalg.inv(across @ linear.slope)

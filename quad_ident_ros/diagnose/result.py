@@ -120,6 +120,29 @@ class GapGivenAttitude:
 
 
 @dataclass(frozen=True)
+class GapInSimulator:
+    """
+    The gap of a user's simulator, FILE.py:NAME, on the flight held out, {group: ...}.
+
+    As in Gap, before: the simulator as it is; after: with the effects named around it.
+    from_nominal: how far its predictions are from those of the nominal vehicle; where: force and
+    moment that the simulator does not explain.
+    """
+
+    simulator: str
+    horizon: float
+    before: dict
+    before_own: dict
+    after: dict
+    noise: dict
+    before_interval: dict
+    after_interval: dict
+    closed: float
+    from_nominal: dict
+    where: tuple[Channel, ...]
+
+
+@dataclass(frozen=True)
 class Unexplained:
     """What no effect explains: its channel, the regime in which it lies, its size in unit."""
 
@@ -187,6 +210,7 @@ class Diagnosis:
     findings: tuple
     z: np.ndarray
     pictures: Pictures
+    in_simulator: GapInSimulator | None = None
 
     def effects(self) -> dict:
         """Return {effect: {parameter: value}} of the vehicle, as flights and file have it."""
@@ -220,4 +244,5 @@ class Diagnosis:
             'nuisances': self.nuisances, 'flights': list(self.flights),
             'held_out': self.held_out,
             'flight_checks': [asdict(one) for one in self.flight_checks],
-            'findings': list(self.findings)}
+            'findings': list(self.findings),
+            'in_simulator': self.in_simulator and asdict(self.in_simulator)}

@@ -11,6 +11,7 @@ from quad_ident_ros.effects import registry
 from quad_ident_ros.greybox.errors import difference, ERRORS, GROUPS, moved, slopes
 from quad_ident_ros.greybox.flights import Flight
 from quad_ident_ros.greybox.parameters import constants_of, limits, SPLIT
+from quad_ident_ros.greybox.predictor import by_model, Predictor
 from quad_ident_ros.model.dynamics import predict, rows_needed
 from quad_ident_ros.model.vehicle import Vehicle
 
@@ -122,11 +123,10 @@ def seen_along(flight: Flight) -> np.ndarray:
     return seen
 
 
-def errors_along(flight: Flight, vehicle: Vehicle, z: np.ndarray, starts: np.ndarray
-                 ) -> np.ndarray:
+def errors_along(flight: Flight, vehicle: Vehicle, z: np.ndarray, starts: np.ndarray,
+                 predictor: Predictor = by_model) -> np.ndarray:
     """Return recorded minus predicted along the rollouts, (B, count + 1, 12)."""
-    predicted = predict(vehicle, z[SPLIT:], flight.course, starts, flight.first, flight.count,
-                        constants=constants_of(z[None], vehicle), guide=flight.guide)
+    predicted = predictor(flight, vehicle, z, starts, flight.first, flight.count)
     return difference(recorded_along(flight), predicted)
 
 

@@ -12,12 +12,14 @@ from typing import NamedTuple
 import numpy as np
 
 from quad_ident_ros.compiled import compiled
-from quad_ident_ros.effects.registry import PLACE, SLICES
+from quad_ident_ros.effects.registry import EFFECTS, PLACE, PLACES, SLICES
 
 DELAY, LAG = SLICES['actuation_delay'].start, SLICES['motor_lag'].start
 RISE, FALL, SLEW, MEAN_LAG, INNER_LAG = (
     PLACE['motor_lag', name] for name in ('rise', 'fall', 'slew', 'mean_lag', 'inner_lag'))
 FOLLOWED = [RISE, FALL, SLEW, MEAN_LAG]
+LAW = [PLACES['motor_lag', form.name].start + k for form in EFFECTS['motor_lag'].forms
+       for k in range(len(form.parameters))]
 CLOSE = 1e-9    # of a step, within which a command changes at a sample
 PIECES = 8      # of a mean lag, over each of which a response of the second order is its mean
 MOST_PIECES = 64

@@ -24,21 +24,33 @@ def contribution(vehicle: Vehicle, theta: ArrayLike, course: Course, states: np.
     """
     theta = np.asarray(theta, float)
     linear, angular = (with_effects - nominal for with_effects, nominal in
-                       zip(_accelerations(vehicle, theta, course, states),
-                           _accelerations(vehicle, NULL, course, states), strict=True))
+                       zip(_along(vehicle, theta, course, states),
+                           _along(vehicle, NULL, course, states), strict=True))
     body = np.einsum('nij,ni->nj', rotation_matrix(states[:, 6:10]), linear)
     return vehicle.mass * body, angular @ vehicle.inertia_matrix
 
 
-def _accelerations(vehicle: Vehicle, theta: np.ndarray, course: Course, states: np.ndarray
-                   ) -> tuple[np.ndarray, np.ndarray]:
-    """Return those of the body origin, world, and those of the rate, body, (N, 3) each."""
-    states = np.ascontiguousarray(underlying(theta, states))
+def _along(vehicle: Vehicle, theta: np.ndarray, course: Course, states: np.ndarray
+           ) -> tuple[np.ndarray, np.ndarray]:
+    """Return the accelerations of a body with effects along a course, (N, 3) each."""
     acted = actuated(course.t, course.stamps, course.commands, theta[None])
     (speeds,), (rising,) = acted.speeds, accelerations(course.t, acted, theta[None])
+    return accelerations_of(vehicle, theta, course.t, states, speeds, rising, course.inputs())
+
+
+def accelerations_of(vehicle: Vehicle, theta: np.ndarray, t: np.ndarray, states: np.ndarray,
+                     speeds: np.ndarray, rising: np.ndarray, inputs: np.ndarray
+                     ) -> tuple[np.ndarray, np.ndarray]:
+    """
+    Return those of the body origin, m/s^2, world, and of the rate, rad/s^2, body, (N, 3) each.
+
+    Args: theta (P,); t (N,) s; states (N, 13) recorded; speeds (N, n) rad/s of the rotors, and
+    rising (N, n), their rates of change; inputs (N, INPUT) of rigid_body.
+    """
+    states = np.ascontiguousarray(underlying(theta, states))
     change = np.empty_like(states)
-    derivatives(vehicle_vector(vehicle)[:, None], rotor_table(vehicle), theta, course.t, states,
-                speeds, rising, course.inputs(), change)
+    derivatives(vehicle_vector(vehicle)[:, None], rotor_table(vehicle), theta, t, states, speeds,
+                rising, inputs, change)
     arm = -theta[SLICES['com_offset']]
     rate, turning = states[:, 10:], change[:, 10:]
     swing = np.cross(turning, arm) + np.cross(rate, np.cross(rate, arm))

@@ -146,9 +146,8 @@ def predict(vehicle: Vehicle, thetas: ArrayLike, course: Course, starts: np.ndar
                          across=None if course.across is None else course.across[rows])
     thetas = np.atleast_2d(np.asarray(thetas, float))
     which = np.zeros(len(starts), np.int64) if which is None else np.asarray(which, np.int64)
-    # Records that are slower than that are rolled out along a finer grid.
-    steps = max(1, int(np.ceil(np.median(np.diff(course.t)) / LONGEST_STEP - 1e-6)))
-    t, first = _finer(course.t, steps), steps * np.asarray(first, np.int64)
+    steps = steps_within(course.t)
+    t, first = finer(course.t, steps), steps * np.asarray(first, np.int64)
     acted = actuated(t, course.stamps, course.commands, thetas)
     inputs = course.inputs(np.arange(len(t)) // steps)
     sensors = sensors_of(thetas)
@@ -208,7 +207,12 @@ def _guides(thetas: np.ndarray, sensors: Sensors, guide: np.ndarray, t: np.ndarr
     return leads, which
 
 
-def _finer(t: np.ndarray, steps: int) -> np.ndarray:
+def steps_within(t: np.ndarray) -> int:
+    """Return how many steps of the integration lie between two samples at times t (N,) s."""
+    return max(1, int(np.ceil(np.median(np.diff(t)) / LONGEST_STEP - 1e-6)))
+
+
+def finer(t: np.ndarray, steps: int) -> np.ndarray:
     """Return times with so many steps between two of t (N,)."""
     if steps == 1:
         return t

@@ -3,6 +3,7 @@
 """A diagnosis as a table that a person reads in ten seconds."""
 
 from collections import Counter
+from collections.abc import Iterable
 import re
 from typing import TextIO
 
@@ -16,6 +17,7 @@ from quad_ident_ros.diagnose.result import (
     Diagnosis,
     Gap,
     GapGivenAttitude,
+    GapInSimulator,
     Ranked,
     Unexplained,
     Value,
@@ -35,6 +37,10 @@ WHERE = ('channel', 'share', 'rms', 'noise alone', 'where most of it is', 'Hz')
 FAR = ('', 'nominal', 'with nuisances', 'after', 'noise', 'unit')
 """What far_rows say of a group of outputs."""
 
+IN_SIMULATOR = ('', 'as it is', 'with nuisances', 'with the effects', 'our model after',
+                'noise', 'off nominal', 'unit')
+"""What simulator_rows say of a group of outputs in a simulator of the user."""
+
 NEXT = ('manoeuvre', 'to', 'standard errors now', 'with it', 'size', 'height', 'speed up to')
 """What next_row says of a manoeuvre."""
 
@@ -50,7 +56,7 @@ def show(found: Diagnosis, stream: TextIO) -> None:
     say(size_line(found))
     say('')
     say('where: force and moment that the nominal vehicle does not explain')
-    screen.print(_table(WHERE, [where_row(row) for row in shown_channels(found)]))
+    screen.print(_table(WHERE, [where_row(row) for row in shown(found.where)]))
     say('which')
     screen.print(_which(found))
     for line in (*minor_lines(found), *one_finding_lines(found)):
@@ -58,6 +64,11 @@ def show(found: Diagnosis, stream: TextIO) -> None:
     say('')
     say(far_line(found))
     screen.print(_table(FAR, far_rows(found)))
+    if found.in_simulator:
+        say(simulator_line(found.in_simulator, found))
+        screen.print(_table(IN_SIMULATOR, simulator_rows(found)))
+        say('where: force and moment that the simulator does not explain')
+        screen.print(_table(WHERE, [where_row(row) for row in shown(found.in_simulator.where)]))
     for line in (*open_lines(found), *nuisance_lines(found)):
         say(line)
     if found.fly_next:
@@ -94,20 +105,20 @@ def size_line(found: Diagnosis) -> str:
         f'{said} {100 * gap.closed:.0f} % of the gap above the noise is closed.')
 
 
-def above_noise(gap: Gap | GapGivenAttitude) -> bool:
+def above_noise(gap: Gap | GapGivenAttitude | GapInSimulator) -> bool:
     """Whether the nominal vehicle, nuisances taken out, is farther off than the noise is."""
     return gap.before_own['velocity'] > gap.noise['velocity']
 
 
-def closed_of(gap: Gap | GapGivenAttitude) -> str:
+def closed_of(gap: Gap | GapGivenAttitude | GapInSimulator) -> str:
     """Return how much of a velocity gap is closed, in words."""
     return (f'{100 * gap.closed:.0f} % of the velocity gap above the noise is closed'
             if above_noise(gap) else NOTHING_TO_CLOSE)
 
 
-def shown_channels(found: Diagnosis) -> list[Channel]:
+def shown(channels: Iterable[Channel]) -> list[Channel]:
     """Return the Channels that have a share worth a row."""
-    return [row for row in found.where if row.share >= WORTH]
+    return [row for row in channels if row.share >= WORTH]
 
 
 def where_row(row: Channel) -> list[str]:
@@ -189,6 +200,21 @@ def far_rows(found: Diagnosis) -> list[list[str]]:
                     gap.units[name]] for name in given.before]
 
 
+def simulator_line(one: GapInSimulator, found: Diagnosis) -> str:
+    """Return how much of the velocity gap of a simulator the effects close around it."""
+    return (f'in {one.simulator}, on {found.held_out} (held out), {one.horizon:g} s ahead, with '
+            f'the effects added around it: {closed_of(one)}')
+
+
+def simulator_rows(found: Diagnosis) -> list[list[str]]:
+    """Return the cells of every group of outputs in a simulator of the user."""
+    one = found.in_simulator
+    assert one is not None
+    return [[name, *(f'{stage[name]:.3g}' for stage in (
+        one.before, one.before_own, one.after, found.gap.after, one.noise, one.from_nominal)),
+        unit] for name, unit in found.gap.units.items()]
+
+
 def _between(gap: dict, interval: dict, name: str) -> str:
     low, high = interval[name]
     return f'{gap[name]:.3g} ({low:.3g} to {high:.3g})'
@@ -249,7 +275,18 @@ def caution_lines(found: Diagnosis) -> list[str]:
     lines = [f'{"" if first.get("severity") == "info" else "be wary of "}{first["flight"]}'
              + (f' ({", ".join(one["flight"] for one in others)} alike)' if others else '')
              + f': {first["where"]}: {first["message"]}' for first, *others in alike.values()]
-    return [*(farther if found.gap.closed < 0.0 else []), *lines]
+    return [*(farther if found.gap.closed < 0.0 else []), *_of_simulator(found), *lines]
+
+
+def _of_simulator(found: Diagnosis) -> list[str]:
+    """Return that a simulator flies otherwise than the vehicle file says, where that matters."""
+    one = found.in_simulator
+    far = [] if one is None else [
+        f'{name} by {value:.3g} {found.gap.units[name]}'
+        for name, value in one.from_nominal.items() if value > found.tolerance[name]]
+    return [f'be wary of {one.simulator}: {one.horizon:g} s ahead it is apart from the nominal '
+            f'vehicle ({", ".join(far)}), to which the effects were fitted: make the vehicle file '
+            'that of the simulator'] if one and far else []
 
 
 def next_row(one: dict) -> list[str]:

@@ -15,14 +15,17 @@ from quad_ident_ros.report.diagnosis import (
     far_line,
     far_rows,
     form_of,
+    IN_SIMULATOR,
     minor_lines,
     NEXT,
     next_row,
     nuisance_lines,
     one_finding_lines,
     open_lines,
-    shown_channels,
+    shown,
     shown_effects,
+    simulator_line,
+    simulator_rows,
     size_line,
     verdict_line,
     WHERE,
@@ -42,7 +45,7 @@ def write(path: str | Path, found: Diagnosis) -> None:
         pictures = {name: figure(Path(folder) / f'{name}.png', caption)
                     for name, caption in captions.items()}
         body = [*_verdict(found), *_where(found, pictures), *_which(found, pictures),
-                *_far(found, pictures), *_open(found), *_provenance(found)]
+                *_far(found, pictures), *_in_simulator(found), *_open(found), *_provenance(found)]
     write_page(path, f'Sim-to-real gap of {found.vehicle.name}', join(body))
 
 
@@ -88,7 +91,7 @@ def _sentence(text: str) -> str:
 
 
 def _where(found: Diagnosis, pictures: dict) -> list:
-    rows = [where_row(row) for row in shown_channels(found)]
+    rows = [where_row(row) for row in shown(found.where)]
     return [tag('h2', 'Where'), pictures['map'],
             table(WHERE, rows, kinds=('text', '', '', '', 'text', ''))]
 
@@ -118,6 +121,17 @@ def _far(found: Diagnosis, pictures: dict) -> list:
     return [tag('h2', 'How far'), tag('p', _sentence(far_line(found))),
             table(FAR, far_rows(found), kinds=('text', '', '', '', '', 'text')),
             pictures['horizons'], pictures['predictions']]
+
+
+def _in_simulator(found: Diagnosis) -> list:
+    one = found.in_simulator
+    if one is None:
+        return []
+    rows = [where_row(row) for row in shown(one.where)]
+    return [tag('h2', 'In the simulator'), tag('p', _sentence(simulator_line(one, found))),
+            table(IN_SIMULATOR, simulator_rows(found), kinds=('text', *[''] * 6, 'text')),
+            tag('p', 'Force and moment that the simulator does not explain:'),
+            table(WHERE, rows, kinds=('text', '', '', '', 'text', ''))]
 
 
 def _open(found: Diagnosis) -> list:

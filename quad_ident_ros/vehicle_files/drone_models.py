@@ -109,8 +109,9 @@ class _Reader:
             if theirs in self.table:
                 draft.take(ours, self.number(theirs), unit, self.place(theirs))
         if 'prop_inertia' in self.table:
-            draft.assumed.append('the angular momentum of the rotors is left out: drone-models '
-                                 'has its moment about x the other way than rotor_gyro')
+            draft.assumed.append('the angular momentum of the rotors is rotor_gyro, whose moment '
+                                 'about x is the other way than that of drone-models; it is small '
+                                 'where the rotors turn about equally fast')
         return draft
 
     def _take_curves(self, draft: Draft) -> None:
@@ -139,6 +140,7 @@ class _Reader:
             f'rad/s; from 0.7 to 1.3 of that it is off by up to {100 * off:.2g} % (rpm2thrust); '
             'torque goes with the square (rpm2torque)')
         rise = fall = 0.0
+        spun = self.number('prop_inertia') if 'prop_inertia' in self.table else 0.0
         if 'rotor_dyn_coef' in self.table:
             rates = self.numbers('rotor_dyn_coef', 4)
             # d(rpm)/dt = a (command - rpm) + b (command^2 - rpm^2), up and down.
@@ -153,8 +155,9 @@ class _Reader:
                                  '(rotor_dyn_coef)')
 
         def effects(_: Vehicle) -> Values:
-            return {'motor_lag': {'rise': rise, 'fall': fall}, 'thrust_scale': {
-                'exponent': exponent}}
+            return {'motor_lag': {'rise': rise, 'fall': fall},
+                    'thrust_scale': {'exponent': exponent},
+                    'rotor_gyro': {'rotor_inertia': spun}}
 
         draft.effects = effects
 

@@ -1,0 +1,151 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""A simulator that is a class in a user's Python file: loaded, called, and its errors told."""
+
+from collections.abc import Callable
+import importlib.util
+import inspect
+from pathlib import Path
+import sys
+import traceback
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.model.dynamics import STATES
+from quad_ident_ros.model.rigid_body import STATE
+
+WRENCH = ('force', 'moment')
+UNIT = 1e-3         # by which the length of a quaternion may differ from 1: float32 is far below
+LONGEST = 160       # characters of an error that is not ours
+
+INTERFACE = """\
+class Name:                                # made without arguments
+    def reset(self, state): ...            # begin at a state (13 + n,), n rotors:
+        # px py pz m, vx vy vz m/s, world, z up; qw qx qy qz, body to world;
+        # wx wy wz rad/s, body, x forward, y left; rotor1 ... rotorn rad/s
+    def step(self, commands, dt): ...      # hold cmd1 ... cmdn (n,) rad/s for dt s; return
+        # the state then, (13 + n,), or (13,) where it does not know its rotors' speeds
+    # instead of (commands, dt): (commands, dt, force, moment), which act on the body's
+    # origin, (3,) N and (3,) N m, body axes; else effects push between two steps, by reset
+    # instead of both, for many states (B, 13 + n) at once, dt (B,):
+    # def step_many(self, states, commands, dt[, force, moment])"""
+
+
+class Program:
+    """
+    An instance of the class that FILE.py:NAME names.
+
+    at_once: whether it has step_many; takes_wrench: whether it takes force and moment. Raises
+    InputError for all that is wrong with the file, in one line that says where.
+    """
+
+    def __init__(self, spec: str) -> None:
+        path, _, self.name = spec.rpartition(':')
+        if not path.endswith('.py') or not self.name.isidentifier():
+            raise InputError(f'--simulator {spec}: expected FILE.py:NAME, a class in a Python '
+                             'file')
+        self.spec, self.path = spec, Path(path).expanduser()
+        if not self.path.is_file():
+            raise InputError(f'{path}: there is no such file; give that with the simulator')
+        self.path = self.path.resolve()
+        made = getattr(self._module(), self.name, None)
+        if not isinstance(made, type):
+            raise InputError(f'{path}: it has no class {self.name}; give FILE.py:NAME')
+        self._device = self._call('making it', made)
+        self.at_once = callable(getattr(self._device, 'step_many', None))
+        for name in ('step_many',) if self.at_once else ('reset', 'step'):
+            if not callable(getattr(self._device, name, None)):
+                raise InputError(f'{path}, line {_line(made)}: {self.name} has no method {name}; '
+                                 'it needs reset(state) and step(commands, dt)')
+        self._step: Callable = self._device.step_many if self.at_once else self._device.step
+        self.takes_wrench = set(WRENCH) <= set(inspect.signature(self._step).parameters)
+
+    def reset(self, state: np.ndarray) -> None:
+        """Begin at a state (13 + n,)."""
+        self._call('reset', self._device.reset, state.copy())
+
+    def step(self, states: np.ndarray, commands: np.ndarray, dt: np.ndarray, *wrench: np.ndarray
+             ) -> np.ndarray:
+        """
+        Return the states (B, 13) or (B, 13 + n) after a step.
+
+        Args: states (B, 13 + n) before it, which a simulator that steps one at a time has by
+        itself; commands (B, n) rad/s; dt (B,) s; wrench: force (B, 3) N and moment (B, 3) N m,
+        body, or nothing. B is 1 where it is not at_once.
+        """
+        wrench = wrench or (np.zeros((len(dt), 3)),) * 2
+        pushes = wrench if self.takes_wrench else ()
+        if self.at_once:
+            made = self._call('step_many', self._step, states.copy(), commands.copy(), dt.copy(),
+                              *pushes)
+        else:
+            made = self._call('step', self._step, commands[0].copy(), float(dt[0]),
+                              *(push[0] for push in pushes))
+        return self._checked(made, states)
+
+    def _module(self) -> ModuleType:
+        """Return what the file defines, run as Python runs a file: beside its neighbours."""
+        made = importlib.util.spec_from_file_location(f'user_simulator_{self.path.stem}',
+                                                      self.path)
+        assert made is not None and made.loader is not None
+        module = importlib.util.module_from_spec(made)
+        sys.modules[module.__name__] = module
+        if str(self.path.parent) not in sys.path:
+            sys.path.insert(0, str(self.path.parent))
+        self._call('reading it', made.loader.exec_module, module)
+        return module
+
+    def _call(self, what: str, function: Callable, *args: Any) -> Any:
+        """Return what a function of the user's file returns; InputError for what it raises."""
+        try:
+            return function(*args)
+        except (Exception, SystemExit) as error:
+            lines = [entry.lineno for entry in traceback.extract_tb(error.__traceback__)
+                     if Path(entry.filename) == self.path]
+            if isinstance(error, SyntaxError) and error.filename == str(self.path):
+                lines = [error.lineno]
+            where = f'{self.path}, line {lines[-1]}' if lines else str(self.path)
+            text = ' '.join(str(error).split())[:LONGEST]
+            raise InputError(f'{where}: {what} of {self.name} raises {type(error).__name__}'
+                             + (f': {text}' if text else '')) from None
+
+    def _checked(self, made: Any, states: np.ndarray) -> np.ndarray:
+        """Return what a step returned as states of (B, 13) or (B, 13 + n); InputError."""
+        where = (f'{self.path}, line {_line(self._step)}: {self._step.__name__} of {self.name} '
+                 'returns')
+        shapes = [(*(states.shape[:1] if self.at_once else ()), width)
+                  for width in (STATE, states.shape[1])]
+        try:
+            found = np.asarray(made, float)
+        except (TypeError, ValueError):
+            raise InputError(f'{where} {type(made).__name__}; expected an array of '
+                             f'{shapes[0]} or {shapes[1]} numbers') from None
+        if found.shape not in shapes:
+            raise InputError(f'{where} an array of shape {found.shape}; expected {shapes[0]} or '
+                             f'{shapes[1]}: {" ".join(STATES)}, and the speeds of the rotors')
+        found = np.array(found.reshape(len(states), -1))
+        bad = ~np.isfinite(found).all(axis=0)
+        if bad.any():
+            names = [*STATES, *(f'rotor{k + 1}' for k in range(states.shape[1] - STATE))]
+            one = int(np.argmax(~np.isfinite(found).all(axis=1)))
+            raise InputError(f'{where} {names[int(np.argmax(bad))]} = '
+                             f'{found[one, int(np.argmax(bad))]:g} after a step from '
+                             + ' '.join(f'{name} {value:.4g}' for name, value
+                                        in zip(names, states[one], strict=True)))
+        length = np.linalg.norm(found[:, 6:10], axis=1, keepdims=True)
+        if np.max(np.abs(length - 1.0)) > UNIT:
+            raise InputError(f'{where} a quaternion qw qx qy qz of length '
+                             f'{length.flat[np.argmax(np.abs(length - 1.0))]:.4g}; expected 1')
+        found[:, 6:10] /= length
+        return found
+
+
+def _line(thing: Any) -> int:
+    """Return the line at which a class or function is defined, or 1 where none is known."""
+    try:
+        return inspect.getsourcelines(thing)[1]
+    except (OSError, TypeError):
+        return 1
