@@ -9,6 +9,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from quad_ident_ros.vehicle_files.ways import LAGS
+
 SAME = 1e-9     # relative: numbers that differ by less stay as they are written
 DIGITS = 12     # of a number that is written, where these are all that it has
 ROUNDING = 1e-15    # relative: what a product of a few numbers of double precision is off
@@ -88,6 +90,11 @@ class Edits:
     def lack(self, keys: Iterable[str], reason: str) -> None:
         """Say why the file cannot have what some keys of Wanted stand for."""
         self.lacking |= dict.fromkeys(keys, reason)
+
+    def one_lag(self) -> None:
+        """Say that rise and fall of a lag are one in the file."""
+        self.nearest |= dict.fromkeys(LAGS, 'the mean of both as the one time constant that the '
+                                      'file has')
 
 
 def differs(old: float | None, new: float, size: float = 0.0) -> bool:

@@ -136,7 +136,7 @@ def _constants(vehicle: Vehicle, base: Base, target: Target, edits: Edits) -> li
         if key in lacking and changed:
             found.append(Fate(name, '', lacking[key]))
     for name, reason in (('gravity', 'it is of the world; set it there'),
-                         ('speed_min', 'the file has no lowest speed of a rotor'),
+                         ('speed_min', 'the lowest speed of a rotor is not changed'),
                          ('rotor_inertia', NEEDS['rotor_gyro']),
                          ('rotor_radius', 'only what flies near the ground hangs on it')):
         if differs(data.get(name, 0.0), getattr(vehicle, name)):
@@ -149,8 +149,9 @@ def _constants(vehicle: Vehicle, base: Base, target: Target, edits: Edits) -> li
             math.dist(rotor['position'], other.position) > PLACES
             or rotor.get('spin', other.spin) != other.spin
             for rotor, other in zip(data['rotors'], vehicle.rotors, strict=True)):
-        found.append(Fate('rotors', '', 'places and spins of rotors are not changed; give the '
-                          'file that the vehicle was read from'))
+        found.append(Fate('rotors', '', lacking.get(
+            'rotors', 'places and spins of rotors are not changed; give the file that the vehicle '
+            'was read from')))
     return found
 
 

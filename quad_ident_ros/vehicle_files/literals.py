@@ -29,11 +29,12 @@ _MOST = 1e12        # of a power: what takes longer is no parameter
 
 @dataclass(frozen=True)
 class Table:
-    """A dictionary of a Python file: its name, values and the line of each key."""
+    """A dictionary of a Python file: its name, values, the line of each key, its expression."""
 
     name: str
     values: Mapping[str, Any]
     lines: Mapping[str, int]
+    node: ast.expr
 
 
 class _Unreadable(Exception):
@@ -76,7 +77,8 @@ def tables_of(path: str, text: str, keys: tuple[str, ...]) -> list[Table]:
             continue
         names[name] = value
         if isinstance(value, dict) and value.keys() >= set(keys):
-            found.append(Table(name, value, _lines_of(statement.value, statement.lineno, value)))
+            found.append(Table(name, value, _lines_of(statement.value, statement.lineno, value),
+                               statement.value))
     return found
 
 

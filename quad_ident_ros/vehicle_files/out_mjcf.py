@@ -84,8 +84,7 @@ def _write_lags(edited: EditedXml, base: Base, thrusts: list[Push]) -> None:
     """Have the dynamics of the actuators hold the lag."""
     lag = 0.5 * (base.wanted.rise + base.wanted.fall)
     if base.wanted.rise != base.wanted.fall:
-        edited.nearest |= dict.fromkeys(LAGS, 'the mean of both as the one time constant that the '
-                                        'file has')
+        edited.one_lag()
     now = thrusts[0].lag if thrusts else 0.0
     if lag == 0.0 and now > 0.0:
         edited.lack(LAGS, 'a filter of MuJoCo needs a time constant above 0; take out its dyntype')

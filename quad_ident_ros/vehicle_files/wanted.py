@@ -23,12 +23,13 @@ class Wanted:
     Numbers that a file may have, with the effects in them.
 
     mass kg; centre (3,) m, of mass, from that of the file; inertia (3, 3) kg m^2 about the centre
-    of mass; thrust N/(rad/s)^2, at hover; exponent: of the rotor speed that the thrust goes with;
-    losses (n,): share of the thrust that each rotor lacks; torque N m/(rad/s)^2; speed_max rad/s;
-    rise, fall s, time constants; rotor_drag kg/rad, force per speed of a rotor and air velocity
-    across its axis; linear_drag (3,) N/(m/s); body_drag (3,) kg/m; inflow: kg/rad, thrust of a
-    rotor lost per its speed and air velocity along its axis, and kg/m, won per square of that
-    across it; flapping kg m/rad, moment per speed of a rotor and air velocity; wind (3,) m/s.
+    of mass; thrust N/(rad/s)^2, at hover, rad/s, and exponent: of the rotor speed that the thrust
+    goes with; losses (n,): share of the thrust that each rotor lacks; torque N m/(rad/s)^2;
+    speed_max rad/s; rise, fall s, time constants; rotor_drag kg/rad, force per speed of a rotor
+    and air velocity across its axis; linear_drag (3,) N/(m/s); body_drag (3,) kg/m; inflow:
+    kg/rad, thrust of a rotor lost per its speed and air velocity along its axis, and kg/m, won
+    per square of that across it; flapping kg m/rad, moment per speed of a rotor and air velocity;
+    wind (3,) m/s.
     stds: relative standard errors of thrust and torque, standard errors of mass and of the moments
     of inertia, by key; sources: what each comes from.
     """
@@ -37,6 +38,7 @@ class Wanted:
     centre: np.ndarray
     inertia: np.ndarray
     thrust: float
+    hover: float
     exponent: float
     losses: np.ndarray
     torque: float
@@ -81,7 +83,8 @@ def wanted_of(vehicle: Vehicle, sag: float | None, holds: Collection[Key]) -> Wa
         mass=vehicle.mass + effects.get('mass_offset', {}).get('mass', 0.0),
         centre=np.array([shift.get(axis, 0.0) for axis in 'xyz']),
         inertia=replace(vehicle, inertia=tuple(moments)).inertia_matrix,
-        thrust=factor * vehicle.thrust_coefficient, exponent=exponent,
+        thrust=factor * vehicle.thrust_coefficient, hover=vehicle.hover_speed,
+        exponent=exponent,
         losses=np.array([fault.get(f'loss_{j + 1}', 0.0) for j in range(len(vehicle.rotors))]),
         torque=vehicle.torque_coefficient, speed_max=vehicle.speed_max, rise=rise, fall=fall,
         rotor_drag=float(by_speed[:2].mean()) / speeds, linear_drag=linear,

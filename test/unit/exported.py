@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import pytest
 import test_vehicle_files_mjcf as mjcf
+import test_vehicle_files_parameters as parameters
 import test_vehicle_files_sdf as sdf
 import test_vehicle_files_urdf as urdf
 
@@ -22,7 +23,30 @@ LAGGED = mjcf.motors(extra='dyntype="filterexact" dynprm="0.03"', tag='general')
 MJCF = mjcf.model(body='<!-- as weighed -->\n' + mjcf.INERTIAL
                   + "\n<geom type='box' size='1 1 1'/><camera name='front'/>", actuators=LAGGED)
 URDF = urdf.SMALL.replace('<mass value="0.027"/>', "<mass  value = '0.027' /><!-- a comment -->")
-BASES = {'gazebo': (SDF, 'model.sdf'), 'mujoco': (MJCF, 'quad.xml'), 'urdf': (URDF, 'small.urdf')}
+ROTORPY = """# as weighed <!-- µ -->
+import numpy as np
+
+arm = 0.2 * np.sqrt(0.5)
+quad_params = {
+    'mass': 0.5 + 0.1,  # kg, with the camera
+    "Ixx": 3.65e-3, 'Iyy':3.68e-3,
+    'Izz': 2 * 3.5e-3,
+    'num_rotors': 4, 'sensor': 'imu',
+    'rotor_radius': 0.1,
+    'rotor_pos': {'r1': arm*np.array([1, 1, 0.1]), 'r2': arm*np.array([1, -1, 0.1]),
+                  'r3': [-arm, -arm, 0.1 * arm], 'r4': arm*np.array([-1, 1, 0.1])},
+    'rotor_directions': np.array([1, -1, 1, -1]),
+    'k_eta': 5.57e-06, 'k_m': 1.36e-07,
+    'k_d': 1.19e-04, 'k_z': 2.32e-04, 'k_h': 3.39e-3,
+    'c_Dx': 0.5e-2, 'c_Dy': 0.6e-2, 'c_Dz': 1e-2,
+    'tau_m': 0.005, 'rotor_speed_min': 0, 'rotor_speed_max': 1500,
+}
+"""
+TOML = parameters.DRONE.replace('mass = 0.04', '# as weighed\r\nmass   = 0.04 # kg')
+SIH = parameters.SCRIPT + 'set SENSOR imu # as weighed\r\n'
+BASES = {'gazebo': (SDF, 'model.sdf'), 'mujoco': (MJCF, 'quad.xml'), 'urdf': (URDF, 'small.urdf'),
+         'rotorpy': (ROTORPY, 'quad_params.py'), 'crazyflow': (TOML, 'params.toml'),
+         'px4_sih': (SIH, '10040_quad')}
 
 
 def base(to):

@@ -55,7 +55,9 @@ def test_constants_are_those_of_the_vehicle_when_the_file_is_read_again(to):
                      torque_coefficient=0.9 * vehicle.torque_coefficient)
     found = export(wanted, to, source)
     read = again(source, found)
-    for key in ('mass', 'thrust_coefficient', 'torque_coefficient', 'speed_max'):
+    # A curve over the speed stays one, which is read at another hover: see its own test.
+    for key in ('mass', *(('thrust_coefficient', 'torque_coefficient', 'speed_max')
+                          if to != 'crazyflow' else ())):
         assert getattr(read, key) == pytest.approx(getattr(wanted, key), rel=1e-9), key
     assert read.inertia_matrix == pytest.approx(wanted.inertia_matrix, rel=1e-9, abs=1e-9 * size)
     assert [rotor.position for rotor in read.rotors] == [
@@ -129,7 +131,7 @@ def test_a_lag_of_mujoco_is_one_time_constant():
     assert [fate.form for fate in found.fates.nearest] == ['rise_fall']
 
 
-@pytest.mark.parametrize('to', TARGETS)
+@pytest.mark.parametrize('to', [to for to in TARGETS if 'centre' in TARGETS[to].holds])
 def test_the_centre_of_mass_moves_under_the_rotors(to):
     source, vehicle = base(to)
     shift = 0.1 * vehicle.arm_length
