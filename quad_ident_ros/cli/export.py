@@ -16,8 +16,10 @@ from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.vehicle import load_vehicle
 from quad_ident_ros.report.data import write_json
 from quad_ident_ros.report.table import console
-from quad_ident_ros.vehicle_files.export import Export, export, mean_left, TARGETS
+from quad_ident_ros.vehicle_files.export import Export, export, mean_left
 from quad_ident_ros.vehicle_files.load import source_of
+from quad_ident_ros.vehicle_files.source import Source
+from quad_ident_ros.vehicle_files.targets import TARGETS
 from quad_ident_ros.whole_file import write_whole
 
 BOM = b'\xef\xbb\xbf'
@@ -27,18 +29,20 @@ def add(commands: Any, said: str) -> None:
     """Add the command to the parser; said: what it does."""
     parser = commands.add_parser(
         'export', help=said, formatter_class=argparse.RawDescriptionHelpFormatter,
-        description="Change the numbers of a simulator's own file to those of a vehicle file, as "
-                    '`diagnose\n--out-vehicle` writes it. All else in the file stays as it is, '
-                    'byte for byte. What changes is\nlisted, and which effects the file carries '
-                    'as they are, by the nearest, or not at all.',
-        epilog='  quad_ident diagnose *.csv --vehicle model.sdf --out-vehicle real.yaml\n'
+        description='Write a vehicle file, as `diagnose --out-vehicle` writes it, as the own file '
+                    'of a simulator: a\nnew one, or with --base yours, in which just the numbers '
+                    'change and all else stays byte for\nbyte. What the effects change is '
+                    'listed, and which of them the file carries as they are, by the\nnearest, or '
+                    'not at all.',
+        epilog='  quad_ident export real.yaml --to rotorpy -o real_params.py\n'
+               '  quad_ident diagnose *.csv --vehicle model.sdf --out-vehicle real.yaml\n'
                '  quad_ident export real.yaml --to gazebo --base model.sdf -o like_real.sdf\n\n'
                'docs/vehicles.md says what each target carries.')
     parser.add_argument('vehicle', metavar='V.yaml', help='the vehicle file')
     parser.add_argument('--to', required=True, choices=list(TARGETS), help='the simulator')
-    parser.add_argument('--base', required=True, metavar='FILE',
-                        help='its file that the numbers go into; FILE:NAME for one of several '
-                             'vehicles in it')
+    parser.add_argument('--base', metavar='FILE',
+                        help='your file that the numbers go into; FILE:NAME for one of several '
+                             'vehicles in it (default: a new file)')
     parser.add_argument('--flight', nargs='+', metavar='FLIGHT',
                         help='flights over which a sag of the battery becomes a mean factor')
     parser.add_argument('-o', '--output', required=True, metavar='OUT', help='the file to write')
@@ -53,25 +57,39 @@ def run(options: argparse.Namespace) -> None:
         raise InputError(f'{options.output}: a file for {options.to} ends in '
                          f'{", ".join(target.endings)}; name one')
     vehicle = load_vehicle(_file_of_ours(options.vehicle))
+    source = _base(options)
+    records = [record for path in options.flight or [] for record in
+               flights_from(path, None, vehicle)]
+    found = export(vehicle, options.to, source, mean_left(vehicle, records) if records else None)
+    try:
+        write_whole(options.output, _mark(source) + found.text)
+    except OSError as error:
+        raise InputError(f'{options.output}: cannot be written: {error.strerror}') from None
+    if options.json != '-':
+        show(found, options.output, source is None)
+    if options.json:
+        write_json(options.json, as_data(found, options))
+
+
+def _base(options: argparse.Namespace) -> Source | None:
+    """Return the file of --base, or None; InputError where it is none, or would be lost."""
+    if options.base is None:
+        return None
     source = source_of(options.base)
     if source is None:
         raise InputError(f'{options.base}: expected a file of a simulator as --base')
     if Path(options.output).resolve() == Path(source.path).resolve():
         raise InputError(f'{options.output}: this would write over the base file; give another '
                          'name')
-    records = [record for path in options.flight or [] for record in
-               flights_from(path, None, vehicle)]
-    found = export(vehicle, options.to, source, mean_left(vehicle, records) if records else None)
+    return source
+
+
+def _mark(source: Source | None) -> str:
+    """Return the mark with which some editors begin a file, where a base file has it."""
+    if source is None:
+        return ''
     with open(source.path, 'rb') as file:
-        mark = '\ufeff' if file.read(len(BOM)) == BOM else ''
-    try:
-        write_whole(options.output, mark + found.text)
-    except OSError as error:
-        raise InputError(f'{options.output}: cannot be written: {error.strerror}') from None
-    if options.json != '-':
-        show(found, options.output)
-    if options.json:
-        write_json(options.json, as_data(found, options))
+        return '\ufeff' if file.read(len(BOM)) == BOM else ''
 
 
 def as_data(found: Export, options: argparse.Namespace) -> dict[str, Any]:
@@ -84,8 +102,8 @@ def as_data(found: Export, options: argparse.Namespace) -> dict[str, Any]:
                for key in ('carried', 'nearest', 'not_carried')}}
 
 
-def show(found: Export, path: str) -> None:
-    """Print what changes, and what becomes of each effect."""
+def show(found: Export, path: str, new: bool) -> None:
+    """Print what changes, and what becomes of each effect; new: whether the file is."""
     screen = console()
 
     def say(text: str) -> None:
@@ -108,7 +126,8 @@ def show(found: Export, path: str) -> None:
             form = f' ({fate.form})' if fate.form else ''
             say(f'{said}: {fate.name}{form}: {fate.reason}')
     count = len(found.changes)
-    say(f'{path}: {count or "no"} number{"s" * (count != 1)} changed')
+    say(f'{path}: {"new, " if new else ""}{count or "no"} number{"s" * (count != 1)} changed'
+        + (' by the effects' if new else ''))
 
 
 def _file_of_ours(path: str) -> Path:

@@ -122,6 +122,15 @@ def check_body(where: str, body: Body) -> str:
     return f'{said}; it was taken as it is' if beyond > 1e-6 else ''
 
 
+def is_body(body: Body) -> bool:
+    """Whether there may be a body of this mass and inertia."""
+    try:
+        check_body('', body)
+    except InputError:
+        return False
+    return body.mass > 0.0
+
+
 def principal_tilt(inertia: np.ndarray) -> float:
     """
     Return how far the principal axes lie from the body axes, rad.

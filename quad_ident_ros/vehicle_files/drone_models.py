@@ -17,6 +17,7 @@ from quad_ident_ros.model.vehicle import Vehicle
 from quad_ident_ros.vehicle_files.bodies import Body
 from quad_ident_ros.vehicle_files.reading import Draft
 from quad_ident_ros.vehicle_files.source import MOST, one_of, Source
+from quad_ident_ros.vehicle_files.toml_places import places_of
 
 KEYS = ('mass', 'L', 'J', 'rpm2thrust', 'rpm2torque', 'mixing_matrix')
 TO_SPEED = math.pi / 30.0       # rad/s per rpm
@@ -33,29 +34,39 @@ def tells(text: str) -> bool:
 
 def read(source: Source) -> Draft:
     """Return the Draft of a drone of drone-models; raises InputError."""
+    return drone_of(source).draft()
+
+
+def drone_of(source: Source) -> Drone:
+    """Return the Drone of a file, or the one that is wanted; raises InputError."""
     data = _parsed(source)
-    tables = {name: table for name, table in data.items()
+    tables = {name: (name, table) for name, table in data.items()
               if isinstance(table, dict) and 'rpm2thrust' in table}
     if 'rpm2thrust' in data:
-        tables[source.stem] = data
-    name = one_of(source, {key: key for key in tables}, 'table with rpm2thrust')
-    return _Reader(source, name, tables[name]).draft()
+        tables[source.stem] = '', data
+    return Drone(source, *one_of(source, tables, 'table with rpm2thrust'))
 
 
-class _Reader:
-    """A table of a TOML file, its numbers checked, and the lines that they stand in."""
+class Drone:
+    """
+    A table of a TOML file, its numbers checked, and the places where they stand.
 
-    def __init__(self, source: Source, name: str, table: dict[str, Any]) -> None:
-        self.source, self.name, self.table = source, name, table
-        self.lines = _lines(source.text, name)
+    header: its name in the file, '' where the file is one table.
+    """
+
+    def __init__(self, source: Source, header: str, table: dict[str, Any]) -> None:
+        self.source, self.header, self.table = source, header, table
+        self.name = header or source.stem
+        self.places = places_of(source.text, header)
         for key in KEYS:
             if key not in table:
-                raise InputError(f'{source.path}: {name} has no {key}, which drone-models needs; '
-                                 'add it')
+                raise InputError(f'{source.path}: {self.name} has no {key}, which drone-models '
+                                 'needs; add it')
 
     def place(self, *keys: str) -> str:
         """Return the lines of keys."""
-        return ', '.join(f'line {self.lines.get(key, 0)}: {key}' for key in keys)
+        return ', '.join(f'line {self.places[key].line if key in self.places else 0}: {key}'
+                         for key in keys)
 
     def numbers(self, key: str, count: int) -> np.ndarray:
         """Return the numbers of a key, (count,); InputError."""
@@ -118,7 +129,7 @@ class _Reader:
         """Enter thrust and torque over speed, their limits, and the lag."""
         thrust, torque = self.numbers('rpm2thrust', 3), self.numbers('rpm2torque', 3)
         share = draft.data['mass'] * draft.data['gravity'] / 4.0
-        hover = self._rpm(thrust, share)
+        hover = self.rpm(thrust, share)
         speed = hover * TO_SPEED
         draft.take('thrust_coefficient', share / speed ** 2, 'N/(rad/s)^2',
                    self.place('rpm2thrust'))
@@ -126,7 +137,7 @@ class _Reader:
                    / speed ** 2, 'N m/(rad/s)^2', self.place('rpm2torque'))
         for ours, theirs in (('speed_min', 'thrust_min'), ('speed_max', 'thrust_max')):
             if theirs in self.table:
-                draft.take(ours, self._rpm(thrust, self.number(theirs)) * TO_SPEED, 'rad/s',
+                draft.take(ours, self.rpm(thrust, self.number(theirs)) * TO_SPEED, 'rad/s',
                            self.place(theirs, 'rpm2thrust'))
         exponent = float((thrust[1] * hover + 2.0 * thrust[2] * hover ** 2) / share)
         if not POWERS[0] <= exponent <= POWERS[1]:
@@ -173,7 +184,7 @@ class _Reader:
             draft.assumed.append(f'entries of drag_matrix off its diagonal, up to {across:.3g}, '
                                  'are left out')
 
-    def _rpm(self, thrust: np.ndarray, wanted: float) -> float:
+    def rpm(self, thrust: np.ndarray, wanted: float) -> float:
         """Return the speed, rpm, at which a rotor gives a thrust, N; InputError."""
         roots = np.polynomial.polynomial.polyroots([thrust[0] - wanted, *thrust[1:]])
         real = [float(root.real) for root in roots
@@ -194,16 +205,3 @@ def _parsed(source: Source) -> dict[str, Any]:
         return tomllib.loads(source.text)
     except (tomllib.TOMLDecodeError, RecursionError) as error:
         raise InputError(f'{source.path}: is not TOML: {str(error)[:100]}') from None
-
-
-def _lines(text: str, table: str) -> dict[str, int]:
-    """Return the line of each key of a table."""
-    lines, at = {}, ''
-    for number, line in enumerate(text.splitlines(), 1):
-        header = re.match(r'\[\s*"?([A-Za-z_][\w.-]*)"?\s*\]', line)
-        key = re.match(r'\s*([\w-]+)\s*=', line)
-        if header:
-            at = header[1]
-        elif key and at in (table, ''):
-            lines[key[1]] = number
-    return lines

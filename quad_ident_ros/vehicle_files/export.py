@@ -4,10 +4,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 import math
-from typing import Any
 
 import numpy as np
 
@@ -16,73 +15,78 @@ from quad_ident_ros.effects.registry import Values
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.greybox.flights import highest_voltage
 from quad_ident_ros.model.vehicle import Vehicle
-from quad_ident_ros.vehicle_files import out_mjcf, out_sdf, out_urdf
-from quad_ident_ros.vehicle_files.edit_xml import Change, differs, Edited, SAME
-from quad_ident_ros.vehicle_files.kinds import kind_of, KINDS
+from quad_ident_ros.vehicle_files.edits import Change, differs, Edits, SAME
+from quad_ident_ros.vehicle_files.kinds import Kind, kind_of, KINDS
 from quad_ident_ros.vehicle_files.out_base import Base
-from quad_ident_ros.vehicle_files.reading import Draft, finished
+from quad_ident_ros.vehicle_files.reading import finished
 from quad_ident_ros.vehicle_files.source import Source
-from quad_ident_ros.vehicle_files.wanted import Fate, Fates, fates_of, NEEDS, wanted_of, WAYS
+from quad_ident_ros.vehicle_files.speed_unit import counted, unit_of
+from quad_ident_ros.vehicle_files.target import Target
+from quad_ident_ros.vehicle_files.targets import TARGETS
+from quad_ident_ros.vehicle_files.wanted import wanted_of
+from quad_ident_ros.vehicle_files.ways import Fate, Fates, fates_of, NEEDS, WAYS
 
 PLACES = 1e-6       # m between places of rotors that are told apart: files round them
 
 
 @dataclass(frozen=True)
-class Target:
-    """A simulator to write for: the kind of its files, their endings, and what writes them."""
-
-    kind: str
-    endings: tuple[str, ...]
-    write: Callable[[Edited, Base], dict[str, str]]
-    one_lag: bool = False
-
-
-TARGETS = {'gazebo': Target('sdf', ('.sdf', '.world', '.xml'), out_sdf.write),
-           'mujoco': Target('mjcf', ('.xml', '.mjcf'), out_mjcf.write, one_lag=True),
-           'urdf': Target('urdf', ('.urdf', '.xml'), out_urdf.write)}
-
-
-@dataclass(frozen=True)
 class Export:
-    """What comes of an export: the text of the file, its changes, remarks on them, and fates."""
+    """
+    What comes of an export: the text of the file, its changes, remarks on them, and fates.
+
+    base: what they change, the user's own file or a new one with the constants of the vehicle;
+    unit: what 1 rad/s of the vehicle is in the file.
+    """
 
     text: str
     changes: tuple[Change, ...]
     remarks: tuple[str, ...]
     fates: Fates
+    base: Source
+    unit: float
 
 
-def export(vehicle: Vehicle, to: str, source: Source, sag: float | None = None) -> Export:
+def export(vehicle: Vehicle, to: str, source: Source | None = None, sag: float | None = None
+           ) -> Export:
     """
-    Return a base file with the numbers of a vehicle, and what becomes of each effect.
+    Return a file of a simulator with the numbers of a vehicle, and what becomes of each effect.
 
-    Args: to: of TARGETS; source: the base file; sag: mean share of the thrust that battery_sag
-    leaves, None where it is not known. Raises InputError in one line.
+    Args: to: of TARGETS; source: the file whose numbers change, None for a new one; sag: mean
+    share of the thrust that battery_sag leaves, None where it is not known. Raises InputError in
+    one line.
     """
-    target, kind = TARGETS[to], kind_of(source.text)
+    target = TARGETS[to]
+    if source is None:
+        source = Source(f'new {to} file', target.new(vehicle))
+    kind = _kind(target, to, source)
+    draft = kind.read(source)
+    given = finished(draft, kind.title).vehicle
+    rotors = draft.data.get('rotors')
+    if rotors is not None and len(rotors) != len(vehicle.rotors):
+        raise InputError(f'{source.path}: it has {len(rotors)} rotors, the vehicle has '
+                         f'{len(vehicle.rotors)}; give the file that it was read from')
+    unit = unit_of(draft, vehicle)
+    vehicle = counted(vehicle, unit)
+    effects = given.effects if given else draft.effects(vehicle)
+    base = Base(source, draft, effects, wanted_of(vehicle, sag, target.holds))
+    edits = target.write(base)
+    fates = fates_of(vehicle.effects, effects, target.holds, edits.lacking, edits.nearest, sag)
+    more, near = _constants(vehicle, base, target, edits), _nearest(vehicle, edits, target)
+    return Export(edits.result(), tuple(edits.changes), tuple(edits.remarks),
+                  replace(fates, nearest=(*fates.nearest, *near), not_carried=(
+                      *fates.not_carried, *more, *_remaining(vehicle, effects, target, edits))),
+                  source, unit)
+
+
+def _kind(target: Target, to: str, source: Source) -> Kind:
+    """Return the kind of a base file; InputError where it is none for a target."""
+    kind = kind_of(source.text)
     expected = next(each for each in KINDS if each.name == target.kind)
     if kind is not expected:
         what = kind.title if kind else 'of no kind that is known'
         raise InputError(f'{source.path}: this is {what}; --to {to} takes {expected.title} as '
                          '--base')
-    draft = kind.read(source)
-    reading = finished(draft, kind.title)
-    given = reading.vehicle
-    rotors = draft.data.get('rotors')
-    if rotors is not None and len(rotors) != len(vehicle.rotors):
-        raise InputError(f'{source.path}: it has {len(rotors)} rotors, the vehicle has '
-                         f'{len(vehicle.rotors)}; give the file that it was read from')
-    effects = given.effects if given else draft.effects(vehicle)
-    wanted = wanted_of(vehicle, sag)
-    base = Base(source, draft.data['mass'], _matrix(draft.data['inertia']),
-                draft.data.get('thrust_coefficient'), draft.data.get('torque_coefficient'),
-                draft.data.get('speed_max'), effects, wanted)
-    edited = Edited(source.text)
-    lacking = target.write(edited, base)
-    fates = fates_of(vehicle, effects, lacking, target.one_lag, sag)
-    more = (*_constants(vehicle, draft, lacking), *_remaining(vehicle, effects, lacking))
-    return Export(edited.result(), tuple(edited.changes), tuple(edited.remarks),
-                  replace(fates, not_carried=(*fates.not_carried, *more)))
+    return kind
 
 
 def mean_left(vehicle: Vehicle, records: Iterable[FlightRecord]) -> float | None:
@@ -117,51 +121,60 @@ def mean_left(vehicle: Vehicle, records: Iterable[FlightRecord]) -> float | None
     return mean
 
 
-def _matrix(inertia: list[Any]) -> np.ndarray:
-    """Return the inertia (3, 3) of a mapping, moments or rows."""
-    values = np.array(inertia, float)
-    return np.diag(values) if values.ndim == 1 else values
-
-
-def _constants(vehicle: Vehicle, draft: Draft, lacking: dict[str, str]) -> list[Fate]:
+def _constants(vehicle: Vehicle, base: Base, target: Target, edits: Edits) -> list[Fate]:
     """Return the constants that are others than those of the file, and that it cannot have."""
-    data, found = draft.data, []
+    data, lacking, found = base.draft.data, edits.lacking, []
     for key, name in (('mass', 'mass'), ('inertia', 'inertia'), ('thrust', 'thrust_coefficient'),
                       ('torque', 'torque_coefficient'), ('speed_max', 'speed_max')):
         value = getattr(vehicle, name)
         old = data.get(name, math.inf if key == 'speed_max' else None)
         if key == 'inertia':
             matrix = vehicle.inertia_matrix
-            changed = bool(np.max(np.abs(matrix - _matrix(data[name])))
-                           > SAME * np.max(np.abs(matrix)))
+            changed = bool(np.max(np.abs(matrix - base.inertia)) > SAME * np.max(np.abs(matrix)))
         else:
             changed = value != old and differs(old, value)
         if key in lacking and changed:
             found.append(Fate(name, '', lacking[key]))
     for name, reason in (('gravity', 'it is of the world; set it there'),
-                         ('speed_min', 'the file has no lowest speed of a rotor'),
+                         ('speed_min', 'the lowest speed of a rotor is not changed'),
                          ('rotor_inertia', NEEDS['rotor_gyro']),
                          ('rotor_radius', 'only what flies near the ground hangs on it')):
         if differs(data.get(name, 0.0), getattr(vehicle, name)):
             found.append(Fate(name, '', reason))
-    for name in ('linear_drag', 'rotational_drag'):
-        if any(getattr(vehicle, name)):
-            found.append(Fate(name, '', 'the format has no such drag'))
+    if any(vehicle.linear_drag) and not {'linear_drag', 'rotor_drag'} & target.holds:
+        found.append(Fate('linear_drag', '', 'the format has no such drag'))
+    if any(vehicle.rotational_drag):
+        found.append(Fate('rotational_drag', '', 'the format has no such drag'))
     if 'rotors' in data and any(
             math.dist(rotor['position'], other.position) > PLACES
             or rotor.get('spin', other.spin) != other.spin
             for rotor, other in zip(data['rotors'], vehicle.rotors, strict=True)):
-        found.append(Fate('rotors', '', 'places and spins of rotors are not changed; give the '
-                          'file that the vehicle was read from'))
+        found.append(Fate('rotors', '', lacking.get(
+            'rotors', 'places and spins of rotors are not changed; give the file that the vehicle '
+            'was read from')))
     return found
 
 
-def _remaining(vehicle: Vehicle, effects: Values, lacking: dict[str, str]) -> list[Fate]:
+def _nearest(vehicle: Vehicle, edits: Edits, target: Target) -> list[Fate]:
+    """Return the constants that the file has the nearest of."""
+    if not any(vehicle.linear_drag):
+        return []
+    if 'linear_drag' in target.holds:
+        lost = edits.nearest.get('linear_drag')
+        return [Fate('linear_drag', '', lost)] if lost else []
+    if 'rotor_drag' in target.holds and 'rotor_drag' not in edits.lacking:
+        return [Fate('linear_drag', '', 'as a drag of the rotors: the mean of x and y, scaled by '
+                     'rotor speed; along z nothing')]
+    return []
+
+
+def _remaining(vehicle: Vehicle, effects: Values, target: Target, edits: Edits) -> list[Fate]:
     """Return the effects that a file has by itself, the vehicle has not, and that stay in it."""
     found = []
     for effect in effects:
-        keys = {key for (name, _), way in WAYS.items() if name == effect for key in way.keys}
-        reason = next((lacking[key] for key in keys if key in lacking), '')
+        keys = {key for (name, _), ways in WAYS.items() if name == effect
+                for way in ways if set(way.keys) <= target.holds for key in way.keys}
+        reason = next((edits.lacking[key] for key in keys if key in edits.lacking), '')
         if effect not in vehicle.effects and (reason or not keys):
             found.append(Fate(effect, '', 'the vehicle has none, that of the file stays: '
                               + (reason or NEEDS[effect])))

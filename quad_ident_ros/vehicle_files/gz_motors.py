@@ -3,7 +3,7 @@
 """Motor plugins of Gazebo: MulticopterMotorModel, and the one of Gazebo Classic before it."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 import math
 
 import numpy as np
@@ -12,10 +12,10 @@ from quad_ident_ros.effects.registry import Values
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.vehicle import Vehicle
 from quad_ident_ros.vehicle_files.reading import Draft, per_sum_of_speeds
+from quad_ident_ros.vehicle_files.weak_rotors import faults, losses_of, SAME
 from quad_ident_ros.vehicle_files.xml_tree import Element
 
 _PLUGINS = ('multicopter-motor-model', 'multicoptermotormodel', 'gazebo_motor_model')
-_SAME = 1e-6        # relative: numbers of two rotors that are told apart
 TURNS = {'cw': 1, 'ccw': -1}
 """Signs of the reaction torque by the direction in which a rotor turns, seen from above."""
 # Tag, what it is where the tag is missing (in the code of the plugin), unit.
@@ -65,6 +65,15 @@ def take_motors(draft: Draft, plugins: Sequence[MotorPlugin], spinning: Sequence
     Args: spinning: moments of inertia of the rotors about their axes, kg m^2; place: of an element
     and a tag in it.
     """
+    constants = [plugin.numbers['motorConstant'] for plugin in plugins]
+    losses = losses_of(constants, [plugin.numbers['motorConstant']
+                                   * plugin.numbers['momentConstant'] for plugin in plugins])
+    if any(losses):     # the strongest one stands for all
+        best = plugins[constants.index(max(constants))]
+        plugins = [replace(plugin, numbers={**plugin.numbers, **{
+            tag: best.numbers[tag] for tag in ('motorConstant', 'momentConstant')}})
+            for plugin in plugins]
+        draft.note('thrust lost by rotor', losses, '1', place(best.element, 'motorConstant'))
     values = {tag: _common(plugins, tag) for tag in _NUMBERS}
     first = plugins[0].element
     constant, ratio = values['motorConstant'], values['momentConstant']
@@ -97,7 +106,8 @@ def take_motors(draft: Draft, plugins: Sequence[MotorPlugin], spinning: Sequence
         drag = per_sum_of_speeds(values['rotorDragCoefficient'], vehicle)
         return {'motor_lag': ({'time_constant': rise} if rise == fall else
                               {'rise': rise, 'fall': fall}),
-                'rotor_drag': {'coefficient': drag}, 'rotor_gyro': {'rotor_inertia': inertia}}
+                'rotor_drag': {'coefficient': drag}, 'rotor_gyro': {'rotor_inertia': inertia},
+                **faults(losses)}
 
     draft.effects = effects
 
@@ -134,7 +144,7 @@ def _common(plugins: Sequence[MotorPlugin], tag: str) -> float:
     """Return the number that all plugins share; InputError where two differ."""
     first = plugins[0].numbers[tag]
     for plugin in plugins[1:]:
-        if not math.isclose(plugin.numbers[tag], first, rel_tol=_SAME):
+        if not math.isclose(plugin.numbers[tag], first, rel_tol=SAME):
             raise InputError(f'{plugin.element.where}: {tag} is {plugin.numbers[tag]:g}, that of '
                              f'the plugin in line {plugins[0].element.line} is {first:g}; a '
                              'vehicle has the same rotors everywhere')

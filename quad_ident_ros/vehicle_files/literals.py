@@ -31,11 +31,12 @@ _ENTRIES = 10_000   # of an array: a vehicle has some ten rotors with three plac
 
 @dataclass(frozen=True)
 class Table:
-    """A dictionary of a Python file: its name, values and the line of each key."""
+    """A dictionary of a Python file: its name, values, the line of each key, its expression."""
 
     name: str
     values: Mapping[str, Any]
     lines: Mapping[str, int]
+    node: ast.expr
 
 
 class _Unreadable(Exception):
@@ -70,7 +71,9 @@ def tables_of(path: str, text: str, keys: tuple[str, ...]) -> list[Table]:
         if value is not None:
             names[name] = value
         if isinstance(value, dict) and value.keys() >= set(keys):
-            found[name] = Table(name, value, _lines_of(statement, value))
+            given: Any = statement
+            found[name] = Table(name, value, _lines_of(given.value, given.lineno, value),
+                                given.value)
     return list(found.values())
 
 
@@ -125,8 +128,8 @@ def _keys_of(node: ast.expr) -> set[str]:
     return set()
 
 
-def _lines_of(statement: Any, value: Mapping[str, Any]) -> dict[str, int]:
-    lines, node = dict.fromkeys(value, statement.lineno), statement.value
+def _lines_of(node: ast.expr, usual: int, value: Mapping[str, Any]) -> dict[str, int]:
+    lines = dict.fromkeys(value, usual)
     if isinstance(node, ast.Dict):
         lines.update({key.value: key.lineno for key in node.keys
                       if isinstance(key, ast.Constant) and isinstance(key.value, str)})

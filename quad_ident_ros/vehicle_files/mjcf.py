@@ -13,13 +13,13 @@ from quad_ident_ros.vehicle_files.bodies import Body, combined, spun
 from quad_ident_ros.vehicle_files.mjcf_bodies import is_free, Part, parts_of, vehicles_of
 from quad_ident_ros.vehicle_files.mjcf_defaults import Model, model_of
 from quad_ident_ros.vehicle_files.mjcf_thrust import common, Push, pushes_of
-from quad_ident_ros.vehicle_files.reading import Draft, thrusts_as_commands
+from quad_ident_ros.vehicle_files.reading import Draft, thrusts_as_commands, UNLIMITED
 from quad_ident_ros.vehicle_files.rotor_axes import check_axis
 from quad_ident_ros.vehicle_files.source import one_of, Source
+from quad_ident_ros.vehicle_files.weak_rotors import faults, losses_of
 from quad_ident_ros.vehicle_files.xml_tree import Element, parse, root_of
 
 GRAVITY = (0.0, 0.0, -9.81)     # m/s^2, of MuJoCo
-UNLIMITED = 10.0    # times the thrust at hover that stand for no limit: no flight gets there
 
 
 def tells(text: str) -> bool:
@@ -120,18 +120,23 @@ def _take_rotors(draft: Draft, model: Model, parts: Sequence[Part], pushes: Sequ
             draft.reasons[key] = reason
         return
     where = f'lines {", ".join(str(push.element.line) for push in thrusts)}: <actuator>'
-    ratios = []
+    turning = []
     for push in thrusts:
-        force = float(np.linalg.norm(push.force))
-        axis = push.force / force
+        axis = push.force / np.linalg.norm(push.force)
         check_axis(draft, axis, push.element.where)
-        ratios.append(float(axis @ push.moment) / force)
-        beside = push.moment - axis * (axis @ push.moment)
-        if np.linalg.norm(beside) > 1e-9 * force:
+        turning.append(float(axis @ push.moment))
+        beside = push.moment - axis * turning[-1]
+        if np.linalg.norm(beside) > 1e-9 * np.linalg.norm(push.force):
             draft.assumed.append(f'{push.element.place("gear")}: its moment across the thrust is '
                                  'left out')
-    size = common(thrusts, [abs(ratio) for ratio in ratios], 'torque over thrust')
-    spins = [int(math.copysign(1, ratio)) if size > 0.0 else None for ratio in ratios]
+    forces = [float(np.linalg.norm(push.force)) for push in thrusts]
+    losses = losses_of(forces, [abs(torque) for torque in turning])
+    if any(losses):
+        draft.note('thrust lost by rotor', losses, '1', f'{where} gear')
+        forces = [max(forces)] * len(forces)
+    size = common(thrusts, [abs(torque) / force for torque, force in
+                            zip(turning, forces, strict=True)], 'torque over thrust')
+    spins = [int(math.copysign(1, torque)) if size > 0.0 else None for torque in turning]
     draft.take_rotors([push.place - whole.centre for push in thrusts], spins, where)
     if size > 0.0:
         draft.note('torque over thrust', size, 'm', f'{where} gear')
@@ -139,20 +144,19 @@ def _take_rotors(draft: Draft, model: Model, parts: Sequence[Part], pushes: Sequ
         draft.reasons['torque_coefficient'] = draft.reasons['spins'] = (
             f'the torque of a rotor is a control of its own ({moments[0].element.place()})'
             if moments else 'the gear of the thrusts has no moment about z')
-    _take_limits(draft, thrusts, whole, size or None, where)
+    _take_limits(draft, thrusts, common(thrusts, forces, 'thrust per control'), whole,
+                 size or None, where)
     lag = common(thrusts, [push.lag for push in thrusts], 'time constant')
     if lag > 0.0:
         draft.note('time constant of the thrust', lag, 's', f'{where} dynprm')
         draft.assumed.append(f'the lag of {lag:g} s is one of the thrust; it is taken as that of '
                              'the speed, which is the same for small changes')
-        draft.effects = lambda _: {'motor_lag': {'time_constant': lag}}
+    draft.effects = lambda _: {'motor_lag': {'time_constant': lag}, **faults(losses)}
 
 
-def _take_limits(draft: Draft, thrusts: Sequence[Push], whole: Body, ratio: float | None,
-                 where: str) -> None:
-    """Enter what the controls stand for."""
-    per_control = common(thrusts, [float(np.linalg.norm(push.force)) for push in thrusts],
-                         'thrust per control')
+def _take_limits(draft: Draft, thrusts: Sequence[Push], per_control: float, whole: Body,
+                 ratio: float | None, where: str) -> None:
+    """Enter what the controls stand for; per_control: N of a rotor."""
     low = common(thrusts, [max(push.limits[0], 0.0) for push in thrusts], 'least control')
     highs = [push.limits[1] for push in thrusts]
     if not all(map(math.isfinite, highs)):

@@ -11,9 +11,8 @@ import numpy as np
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.vehicle_files.bodies import Pose
 from quad_ident_ros.vehicle_files.mjcf_defaults import Model
+from quad_ident_ros.vehicle_files.weak_rotors import SAME
 from quad_ident_ros.vehicle_files.xml_tree import Element
-
-_SAME = 1e-6        # relative: numbers of two rotors that are told apart
 
 
 @dataclass(frozen=True)
@@ -53,7 +52,7 @@ def pushes_of(model: Model, sites: dict[str, tuple[Pose, Element]]) -> list[Push
 def common(pushes: Sequence[Push], values: Sequence[float], what: str) -> float:
     """Return the value that all rotors share; InputError that names the first other one."""
     for push, value in zip(pushes, values, strict=True):
-        if not math.isclose(value, values[0], rel_tol=_SAME, abs_tol=1e-12):
+        if not math.isclose(value, values[0], rel_tol=SAME, abs_tol=1e-12):
             raise InputError(f'{push.element.where}: {what} is {value:.6g}, that of the one in '
                              f'line {pushes[0].element.line} is {values[0]:.6g}; a vehicle has '
                              'the same rotors everywhere')

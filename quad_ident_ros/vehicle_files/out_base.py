@@ -1,30 +1,44 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""The file that a vehicle goes back into: what it says now, and what it is to say."""
+"""The file that a vehicle goes into: what it says now, and what it is to say."""
+
+from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from quad_ident_ros.effects.registry import Values
+from quad_ident_ros.vehicle_files.reading import Draft
 from quad_ident_ros.vehicle_files.source import Source
 from quad_ident_ros.vehicle_files.wanted import Wanted
 
 
 @dataclass(frozen=True)
 class Base:
-    """
-    A base file: its Source, what was read of it, and what is Wanted of it.
-
-    mass kg; inertia (3, 3) kg m^2; thrust N/(rad/s)^2, torque N m/(rad/s)^2, speed_max rad/s, None
-    where the file has none; effects: those that it has by itself.
-    """
+    """A base file: its Source, the Draft and the effects that were read of it, what is Wanted."""
 
     source: Source
-    mass: float
-    inertia: np.ndarray
-    thrust: float | None
-    torque: float | None
-    speed_max: float | None
+    draft: Draft
     effects: Values
     wanted: Wanted
+
+    @property
+    def mass(self) -> float:
+        """The mass of the file, kg."""
+        return float(self.draft.data['mass'])
+
+    @property
+    def inertia(self) -> np.ndarray:
+        """The inertia (3, 3) of the file, kg m^2."""
+        values = np.array(self.draft.data['inertia'], float)
+        return np.diag(values) if values.ndim == 1 else values
+
+    def constant(self, key: str) -> Any:
+        """Return what the file has of a key of the vehicle file, or None."""
+        return self.draft.data.get(key)
+
+    def effect(self, name: str, parameter: str) -> float:
+        """Return a parameter of an effect that the file has by itself, 0 where it has none."""
+        return self.effects.get(name, {}).get(parameter, 0.0)

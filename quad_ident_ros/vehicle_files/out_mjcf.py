@@ -10,21 +10,26 @@ from scipy.spatial.transform import Rotation
 
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.vehicle_files.bodies import Body
-from quad_ident_ros.vehicle_files.edit_xml import Edited, SAME, shown
+from quad_ident_ros.vehicle_files.edit_xml import EditedXml
+from quad_ident_ros.vehicle_files.edits import differs, SAME, shown
 from quad_ident_ros.vehicle_files.mjcf import bodies_of, flying_body
 from quad_ident_ros.vehicle_files.mjcf_bodies import Part, parts_of
 from quad_ident_ros.vehicle_files.mjcf_defaults import Model, model_of
 from quad_ident_ros.vehicle_files.mjcf_thrust import Push, pushes_of
+from quad_ident_ros.vehicle_files.new_mjcf import new
 from quad_ident_ros.vehicle_files.out_base import Base
 from quad_ident_ros.vehicle_files.out_body import body_for, MOMENTS, PRODUCTS, spread
 from quad_ident_ros.vehicle_files.reading import Draft
+from quad_ident_ros.vehicle_files.target import Target
+from quad_ident_ros.vehicle_files.ways import BODY, LAGS
 from quad_ident_ros.vehicle_files.xml_tree import parse
 
 OTHER_TURNS = 'euler', 'axisangle', 'xyaxes', 'zaxis'
 
 
-def write(edited: Edited, base: Base) -> dict[str, str]:
-    """Have an MJCF model hold what is wanted; return {key of Wanted: why it is lacking}."""
+def write(base: Base) -> EditedXml:
+    """Return the Edits by which an MJCF model holds what is wanted; raises InputError."""
+    edited = EditedXml(base.source.text)
     model = model_of(parse(base.source.path, base.source.text))
     element, inherited = flying_body(base.source, model)
     parts = list(parts_of(model, element, inherited))
@@ -39,52 +44,64 @@ def write(edited: Edited, base: Base) -> dict[str, str]:
                              'take it out and state the masses themselves')
         _write_body(edited, base, model, parts[0], body)
         edited.say_several(element, len(bodies))
-    lacking = {'rotor_drag': 'MuJoCo has no drag of rotors; it takes a callback',
-               'speed_max': 'a command is a thrust here, and speeds are not of the file'}
-    return lacking | _write_thrusts(edited, base, thrusts) | _write_lags(edited, base, thrusts)
+    edited.lack(['speed_max'], 'a command is a thrust here, and speeds are not of the file')
+    _write_thrusts(edited, base, thrusts)
+    _write_lags(edited, base, thrusts)
+    return edited
 
 
-def _write_thrusts(edited: Edited, base: Base, thrusts: list[Push]) -> dict[str, str]:
+def _write_thrusts(edited: EditedXml, base: Base, thrusts: list[Push]) -> None:
     """Have the gears of the rotors hold thrust and torque."""
     wanted = base.wanted
-    if base.thrust is None:
-        return dict.fromkeys(('thrust', 'torque'), 'the file has no thrust of single rotors')
-    force = wanted.thrust / base.thrust
-    moment = 1.0 if base.torque is None else wanted.torque / base.torque
-    for push in thrusts:
+    thrust, torque = (base.constant(key) for key in ('thrust_coefficient', 'torque_coefficient'))
+    if thrust is None:
+        edited.lack(('thrust', 'losses', 'torque'), 'the file has no thrust of single rotors')
+        return
+    if torque is None:
+        edited.lack(['torque'], 'the torque of a rotor is a control of its own in the file')
+    losses = wanted.losses
+    if np.max(losses) >= 1.0:
+        losses = np.zeros(len(losses))
+        edited.lack(['losses'], 'a rotor without any thrust is none; take its actuator out')
+    moment = 1.0 if torque is None else wanted.torque / torque
+    for j, (push, loss) in enumerate(zip(thrusts, losses, strict=True), 1):
+        before = base.effect('rotor_fault', f'loss_{j}')
+        force = wanted.thrust * (1.0 - loss) / (thrust * (1.0 - before))
         words = push.element.get('gear', '1').split()
         stated = push.element.numbers('gear', len(words), (1.0,))
         factors = np.array([force] * 3 + [moment] * 3)[:len(words)]
         relative = [wanted.stds.get('thrust', (0.0,))[0]] * 3 + [
             wanted.stds.get('torque', (0.0,))[0]] * 3
-        sources = {wanted.sources[key] for key, factor in (('thrust', force), ('torque', moment))
-                   if factor != 1.0}
+        sources = {wanted.sources[key] for key, changed in (
+            ('thrust', differs(thrust, wanted.thrust)), ('losses', differs(before, loss, 1.0)),
+            ('torque', moment != 1.0)) if changed}
         edited.attribute(push.element, 'gear', stated * factors, '1 or m', ', '.join(
             sorted(sources)), [abs(float(value)) * each or None for value, each in
                                zip(stated * factors, relative, strict=False)], usual=(1.0,))
-    return {} if base.torque is not None else {
-        'torque': 'the torque of a rotor is a control of its own in the file'}
 
 
-def _write_lags(edited: Edited, base: Base, thrusts: list[Push]) -> dict[str, str]:
+def _write_lags(edited: EditedXml, base: Base, thrusts: list[Push]) -> None:
     """Have the dynamics of the actuators hold the lag."""
     lag = 0.5 * (base.wanted.rise + base.wanted.fall)
-    reason = ''
-    if not thrusts or thrusts[0].lag == 0.0:
-        reason = ('its actuators have no lag; give them dyntype="filterexact" and '
-                  f'dynprm="{lag:.6g}"')
-    elif lag == 0.0:
-        reason = 'a filter of MuJoCo needs a time constant above 0; take out its dyntype'
-    if reason:
-        return dict.fromkeys(('rise', 'fall'), reason)
-    for push in thrusts:
-        stated = push.element.get('dynprm', '1').split()
-        edited.attribute(push.element, 'dynprm', [lag, *map(float, stated[1:])], 's',
-                         base.wanted.sources['rise'], usual=(1.0,))
-    return {}
+    if base.wanted.rise != base.wanted.fall:
+        edited.one_lag()
+    now = thrusts[0].lag if thrusts else 0.0
+    if lag == 0.0 and now > 0.0:
+        edited.lack(LAGS, 'a filter of MuJoCo needs a time constant above 0; take out its dyntype')
+    elif lag > 0.0 and (not thrusts or any(push.lag == 0.0 and push.element.tag != 'general'
+                                           for push in thrusts)):
+        edited.lack(LAGS, 'its actuators have no lag; make them <general> with '
+                    f'dyntype="filterexact" and dynprm="{lag:.6g}"')
+    elif lag > 0.0:
+        for push in thrusts:
+            stated = push.element.get('dynprm', '1').split() if push.lag else ['']
+            edited.attribute(push.element, 'dynprm', [lag, *map(float, stated[1:])], 's',
+                             base.wanted.sources['rise'], usual=(1.0,))
+            if not push.lag:
+                edited.word(push.element, 'dyntype', 'filterexact')
 
 
-def _write_body(edited: Edited, base: Base, model: Model, part: Part, body: Body) -> None:
+def _write_body(edited: EditedXml, base: Base, model: Model, part: Part, body: Body) -> None:
     """Have a <body> hold a Body that is given in its axes."""
     wanted = base.wanted
     six = [float(body.inertia[at]) for at in (*MOMENTS, *PRODUCTS)]
@@ -127,7 +144,7 @@ def _write_body(edited: Edited, base: Base, model: Model, part: Part, body: Body
                        wanted.sources['inertia'], [*stds, None, None, None])
 
 
-def _insert(edited: Edited, base: Base, part: Part, body: Body, six: list[float]) -> None:
+def _insert(edited: EditedXml, base: Base, part: Part, body: Body, six: list[float]) -> None:
     """Put an <inertial> into a <body> whose mass is that of its shapes."""
     wanted, where = base.wanted, part.element.place('inertial')
     edited.child(part.element, f'<inertial pos="{shown(body.centre)}" mass="{shown([body.mass])}" '
@@ -154,3 +171,7 @@ def _principal(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         axes[:, int(np.argmin(np.abs(np.diag(axes))))] *= -1.0
     assert math.isclose(float(np.linalg.det(axes)), 1.0, rel_tol=1e-9)
     return axes, moments
+
+
+TARGET = Target('mjcf', ('.xml', '.mjcf'),
+                frozenset((*BODY, *LAGS, 'thrust', 'losses', 'torque')), write, new)

@@ -5,37 +5,49 @@
 from collections.abc import Sequence
 import math
 
-from quad_ident_ros.vehicle_files.edit_xml import Edited
+import numpy as np
+
+from quad_ident_ros.vehicle_files.edit_xml import EditedXml
 from quad_ident_ros.vehicle_files.gz_motors import MotorPlugin
 from quad_ident_ros.vehicle_files.out_base import Base
+from quad_ident_ros.vehicle_files.ways import Keys, LAGS
+
+HOLDS: Keys = ('thrust', 'losses', 'torque', 'speed_max', *LAGS, 'rotor_drag')
 
 
-def write_motors(edited: Edited, base: Base, plugins: Sequence[MotorPlugin]) -> dict[str, str]:
-    """Have motor plugins hold what is wanted; return {key of Wanted: why it is lacking}."""
-    wanted, lacking = base.wanted, {}
-    thrust, torque = wanted.stds.get('thrust', (0.0,))[0], wanted.stds.get('torque', (0.0,))[0]
-    ratio = wanted.torque / wanted.thrust
+def write_motors(edited: EditedXml, base: Base, plugins: Sequence[MotorPlugin]) -> None:
+    """Have motor plugins hold what is wanted."""
+    wanted, stds = base.wanted, base.wanted.stds
+    thrust, torque = stds.get('thrust', (0.0,))[0], stds.get('torque', (0.0,))[0]
+    losses = wanted.losses
+    if np.max(losses) >= 1.0:
+        losses = np.zeros(len(losses))
+        edited.lack(['losses'], 'the plugin needs a motorConstant above 0; take it out')
     # Tag, value, unit, standard error, the key of Wanted that says what it comes from.
-    rows = [('motorConstant', wanted.thrust, 'N/(rad/s)^2', thrust * wanted.thrust, 'thrust'),
-            ('momentConstant', ratio, 'm', math.hypot(thrust, torque) * ratio, 'torque'),
-            ('timeConstantUp', wanted.rise, 's', 0.0, 'rise'),
+    rows = [('timeConstantUp', wanted.rise, 's', 0.0, 'rise'),
             ('timeConstantDown', wanted.fall, 's', 0.0, 'fall')]
     if wanted.rotor_drag < 0.0:
-        lacking['rotor_drag'] = 'the plugin has no drag below 0'
+        edited.lack(['rotor_drag'], 'the plugin has no drag below 0')
     else:
         rows.append(('rotorDragCoefficient', wanted.rotor_drag, 'kg/rad', 0.0, 'rotor_drag'))
     if math.isinf(wanted.speed_max):
-        lacking['speed_max'] = 'the plugin needs a limit; that of the file stays'
+        edited.lack(['speed_max'], 'the plugin needs a limit; that of the file stays')
     else:
         rows.append(('maxRotVelocity', wanted.speed_max, 'rad/s',
-                     wanted.stds.get('speed_max', (0.0,))[0], 'speed_max'))
-    for plugin in plugins:
-        for tag, value, unit, std, key in rows:
-            source = wanted.sources[key]
+                     stds.get('speed_max', (0.0,))[0], 'speed_max'))
+    for j, (plugin, loss) in enumerate(zip(plugins, losses, strict=True), 1):
+        constant = wanted.thrust * (1.0 - loss)
+        ratio = wanted.torque / constant
+        faulty = f'loss_{j}' in base.effects.get('rotor_fault', {}) or loss
+        more = f', {wanted.sources["losses"]}' if faulty else ''
+        for tag, value, unit, std, key in (
+                ('motorConstant', constant, 'N/(rad/s)^2', thrust * constant, 'thrust'),
+                ('momentConstant', ratio, 'm', math.hypot(thrust, torque) * ratio, 'torque'),
+                *rows):
+            source = wanted.sources[key] + (more if key == 'thrust' else '')
             if tag == 'momentConstant':
-                source = f'{source} over {wanted.sources["thrust"]}'
+                source = f'{source} over {wanted.sources["thrust"]}{more}'
             if tag == 'rotorDragCoefficient':
                 source = f'{source} over the hover speeds'
             edited.content(plugin.element, tag, [value], unit, source, [std or None],
                            usual=[plugin.numbers[tag]])
-    return lacking

@@ -5,43 +5,43 @@
 import numpy as np
 
 from quad_ident_ros.vehicle_files.bodies import Body
-from quad_ident_ros.vehicle_files.edit_xml import Edited
+from quad_ident_ros.vehicle_files.edit_xml import EditedXml
+from quad_ident_ros.vehicle_files.new_sdf import new
 from quad_ident_ros.vehicle_files.out_base import Base
-from quad_ident_ros.vehicle_files.out_body import body_for, MOMENTS, PRODUCTS, spread
-from quad_ident_ros.vehicle_files.out_motors import write_motors
+from quad_ident_ros.vehicle_files.out_body import body_for, ENTRIES, MOMENTS, spread
+from quad_ident_ros.vehicle_files.out_motors import HOLDS, write_motors
 from quad_ident_ros.vehicle_files.reading import Draft
 from quad_ident_ros.vehicle_files.sdf import flying_model, layout_of, pose_of_inertial
+from quad_ident_ros.vehicle_files.target import Target
+from quad_ident_ros.vehicle_files.ways import BODY
 from quad_ident_ros.vehicle_files.xml_tree import Element, parse
 
-MOMENT_TAGS, PRODUCT_TAGS = ('ixx', 'iyy', 'izz'), ('ixy', 'ixz', 'iyz')
 
-
-def write(edited: Edited, base: Base) -> dict[str, str]:
-    """Have an SDF model hold what is wanted; return {key of Wanted: why it is lacking}."""
-    path = base.source.path
+def write(base: Base) -> EditedXml:
+    """Return the Edits by which an SDF model holds what is wanted; raises InputError."""
+    path, edited = base.source.path, EditedXml(base.source.text)
     _, tree = flying_model(base.source, parse(path, base.source.text))
     layout = layout_of(Draft(path, ''), tree)
     link = tree.links[layout.base]
     rest = [body for name, body in layout.bodies.items() if name != layout.base]
     main = layout.bodies[layout.base]
     body = body_for(base, link.where, main, rest)
-    lacking: dict[str, str] = {}
     if link.path != path:
-        elsewhere = (f'it stands in {link.path}; give the whole model as `gz sdf -p` prints it')
-        lacking |= dict.fromkeys(('mass', 'centre', 'inertia'), elsewhere)
+        edited.lack(BODY, f'it stands in {link.path}; give the whole model as `gz sdf -p` prints '
+                    'it')
     elif body is not main:
         _write_body(edited, base, link, body)
         edited.say_several(link, len(layout.bodies))
     plugins = [plugin for plugin, _ in layout.plugins]
     if any(plugin.element.path != path for plugin in plugins):
-        elsewhere = (f'the motors stand in {plugins[0].element.path}; give the whole model as '
-                     '`gz sdf -p` prints it')
-        return lacking | dict.fromkeys(('thrust', 'torque', 'rise', 'fall', 'rotor_drag',
-                                        'speed_max'), elsewhere)
-    return lacking | write_motors(edited, base, plugins)
+        edited.lack(HOLDS, f'the motors stand in {plugins[0].element.path}; give the whole model '
+                    'as `gz sdf -p` prints it')
+    else:
+        write_motors(edited, base, plugins)
+    return edited
 
 
-def _write_body(edited: Edited, base: Base, link: Element, body: Body) -> None:
+def _write_body(edited: EditedXml, base: Base, link: Element, body: Body) -> None:
     """Have the <inertial> of a link hold a Body that is given in the axes of the link."""
     wanted, inertial = base.wanted, link.first('inertial')
     assert inertial is not None
@@ -61,7 +61,9 @@ def _write_body(edited: Edited, base: Base, link: Element, body: Body) -> None:
     turned = rotation.T @ body.inertia @ rotation
     size = float(np.max(np.abs(turned)))
     stds = spread(rotation, wanted.stds.get('inertia', (0.0, 0.0, 0.0)))
-    for tag, at, std in (*zip(MOMENT_TAGS, MOMENTS, stds, strict=True),
-                         *zip(PRODUCT_TAGS, PRODUCTS, [None] * 3, strict=True)):
+    for (tag, at), std in zip(ENTRIES.items(), [*stds, None, None, None], strict=True):
         edited.content(matrix, tag, [turned[at]], 'kg m2', wanted.sources['inertia'], [std],
-                       usual=[1.0 if tag in MOMENT_TAGS else 0.0], size=size)
+                       usual=[1.0 if at in MOMENTS else 0.0], size=size)
+
+
+TARGET = Target('sdf', ('.sdf', '.world', '.xml'), frozenset((*BODY, *HOLDS)), write, new)

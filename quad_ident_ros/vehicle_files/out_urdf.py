@@ -8,11 +8,13 @@ import math
 import numpy as np
 
 from quad_ident_ros.vehicle_files.bodies import Body
-from quad_ident_ros.vehicle_files.edit_xml import Edited
+from quad_ident_ros.vehicle_files.edit_xml import EditedXml
+from quad_ident_ros.vehicle_files.new_urdf import new
 from quad_ident_ros.vehicle_files.out_base import Base
-from quad_ident_ros.vehicle_files.out_body import body_for, MOMENTS, PRODUCTS, spread
-from quad_ident_ros.vehicle_files.out_motors import write_motors
+from quad_ident_ros.vehicle_files.out_body import body_for, ENTRIES, spread
+from quad_ident_ros.vehicle_files.out_motors import HOLDS, write_motors
 from quad_ident_ros.vehicle_files.reading import Draft
+from quad_ident_ros.vehicle_files.target import Target
 from quad_ident_ros.vehicle_files.urdf import (
     bodies_of,
     links_of,
@@ -23,14 +25,13 @@ from quad_ident_ros.vehicle_files.urdf import (
     rotors_of,
 )
 from quad_ident_ros.vehicle_files.urdf_links import Link, origin_of
+from quad_ident_ros.vehicle_files.ways import BODY, LAGS
 from quad_ident_ros.vehicle_files.xml_tree import Element, parse
 
-MOMENT_NAMES, PRODUCT_NAMES = ('ixx', 'iyy', 'izz'), ('ixy', 'ixz', 'iyz')
 
-
-def write(edited: Edited, base: Base) -> dict[str, str]:
-    """Have a URDF hold what is wanted; return {key of Wanted: why it is lacking}."""
-    root = parse(base.source.path, base.source.text)
+def write(base: Base) -> EditedXml:
+    """Return the Edits by which a URDF holds what is wanted; raises InputError."""
+    root, edited = parse(base.source.path, base.source.text), EditedXml(base.source.text)
     links = links_of(base.source, root)
     rotors = rotors_of(root, links)
     bodies = bodies_of(Draft(base.source.path, ''), links, rotors)
@@ -42,13 +43,15 @@ def write(edited: Edited, base: Base) -> dict[str, str]:
         edited.say_several(links[name].element, len(bodies))
     plugins, properties = plugins_of(root), root.first('properties')
     if plugins:
-        return write_motors(edited, base, plugins)
-    lacking = dict.fromkeys(('rise', 'fall', 'rotor_drag'), 'a URDF without motor plugins of '
-                            'Gazebo has no motors')
+        write_motors(edited, base, plugins)
+        return edited
+    edited.lack(('losses', *LAGS, 'rotor_drag'), 'a URDF without motor plugins of Gazebo has no '
+                'motors')
     if properties is None or not set(PROPS) <= links.keys():
-        return lacking | dict.fromkeys(('thrust', 'torque', 'speed_max'),
-                                       'a URDF says nothing of thrust')
-    return lacking | _write_properties(edited, base, properties)
+        edited.lack(('thrust', 'torque', 'speed_max'), 'a URDF says nothing of thrust')
+    else:
+        _write_properties(edited, base, properties)
+    return edited
 
 
 def _carrier(bodies: dict[str, Body], links: dict[str, Link], rotors: Sequence[Link]) -> str:
@@ -61,7 +64,7 @@ def _carrier(bodies: dict[str, Body], links: dict[str, Link], rotors: Sequence[L
     return max(others or bodies, key=lambda name: bodies[name].mass)
 
 
-def _write_properties(edited: Edited, base: Base, properties: Element) -> dict[str, str]:
+def _write_properties(edited: EditedXml, base: Base, properties: Element) -> None:
     """Have the properties of gym-pybullet-drones hold thrust, torque and limit."""
     wanted = base.wanted
     for name, value, key in (('kf', wanted.thrust, 'thrust'), ('km', wanted.torque, 'torque')):
@@ -69,17 +72,18 @@ def _write_properties(edited: Edited, base: Base, properties: Element) -> dict[s
         edited.attribute(properties, name, [value / PER_RPM], 'per rpm^2', wanted.sources[key],
                          [std * value / PER_RPM or None])
     if 'thrust2weight' not in properties.attributes:
-        return {'speed_max': 'the file has no thrust2weight'}
+        edited.lack(['speed_max'], 'the file has no thrust2weight')
+        return
     if math.isinf(wanted.speed_max):
-        return {'speed_max': 'the file needs a limit; its own stays'}
+        edited.lack(['speed_max'], 'the file needs a limit; the one that it has stays')
+        return
     # It stands for the highest speed, which stays as it is where thrust or mass change.
     ratio = 4.0 * wanted.thrust * wanted.speed_max ** 2 / (wanted.mass * PYBULLET_GRAVITY)
     edited.attribute(properties, 'thrust2weight', [ratio], '1',
                      'speed_max, with thrust and mass as above')
-    return {}
 
 
-def _write_body(edited: Edited, base: Base, link: Link, body: Body) -> None:
+def _write_body(edited: EditedXml, base: Base, link: Link, body: Body) -> None:
     """Have the <inertial> of a link hold a Body that is given in its axes."""
     wanted, inertial = base.wanted, link.element.first('inertial')
     assert inertial is not None
@@ -101,7 +105,9 @@ def _write_body(edited: Edited, base: Base, link: Link, body: Body) -> None:
     size = float(np.max(np.abs(turned)))
     stds = spread(link.pose.rotation @ frame.rotation,
                   wanted.stds.get('inertia', (0.0, 0.0, 0.0)))
-    for name, at, std in (*zip(MOMENT_NAMES, MOMENTS, stds, strict=True),
-                          *zip(PRODUCT_NAMES, PRODUCTS, [None] * 3, strict=True)):
+    for (name, at), std in zip(ENTRIES.items(), [*stds, None, None, None], strict=True):
         edited.attribute(moments, name, [turned[at]], 'kg m2', wanted.sources['inertia'], [std],
                          usual=(0.0,), size=size)
+
+
+TARGET = Target('urdf', ('.urdf', '.xml'), frozenset((*BODY, *HOLDS)), write, new)

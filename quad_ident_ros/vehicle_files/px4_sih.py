@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Parameters of PX4's simulator in hardware (SIH), of an airframe script or a list of them."""
 
+from dataclasses import dataclass
 import math
 import re
 
@@ -21,7 +22,7 @@ USUAL = {'SIH_MASS': 1.0, 'SIH_IXX': 0.025, 'SIH_IYY': 0.025, 'SIH_IZZ': 0.03, '
          'SIH_IXZ': 0.0, 'SIH_IYZ': 0.0, 'SIH_T_MAX': 5.0, 'SIH_Q_MAX': 0.1, 'SIH_L_ROLL': 0.2,
          'SIH_L_PITCH': 0.2, 'SIH_KDV': 1.0, 'SIH_KDW': 0.025, 'SIH_T_TAU': 0.05,
          'SIH_WIND_N': 0.0, 'SIH_WIND_E': 0.0, 'SIH_VEHICLE_TYPE': 0.0}
-_AXES = {'XX': 1, 'YY': 1, 'ZZ': 1, 'XY': -1, 'XZ': -1, 'YZ': 1}
+AXES = {'XX': 1, 'YY': 1, 'ZZ': 1, 'XY': -1, 'XZ': -1, 'YZ': 1}
 _HALF = math.sqrt(3.0) / 2.0
 # By SIH_VEHICLE_TYPE: per rotor its place in arms of pitch and roll (forward, left), and its spin.
 LAYOUTS: dict[float, tuple[tuple[float, float, int], ...]] = {
@@ -33,6 +34,15 @@ _LINE = re.compile(r'\b(SIH_[A-Z0-9_]+)\b(?:[ \t]*\[[^\]\n]*\])?[ \t,:=]*'
                    r'([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)')
 
 
+@dataclass(frozen=True)
+class Parameter:
+    """A parameter that is set: its value, line, and from where to where that stands, in bytes."""
+
+    value: float
+    line: int
+    span: tuple[int, int]
+
+
 def tells(text: str) -> bool:
     """Whether a text sets parameters of PX4's SIH."""
     return _LINE.search(text) is not None
@@ -40,26 +50,27 @@ def tells(text: str) -> bool:
 
 def read(source: Source) -> Draft:
     """Return the Draft of parameters of PX4's SIH; raises InputError."""
-    values, lines = _parameters(source.text)
+    known = parameters_of(source.text)
+    values = {key: one.value for key, one in known.items()}
     kind = values.get('SIH_VEHICLE_TYPE', 0.0)
     if kind not in LAYOUTS:
-        raise InputError(f'{source.path}, line {lines["SIH_VEHICLE_TYPE"]}: SIH_VEHICLE_TYPE '
+        raise InputError(f'{source.path}, line {known["SIH_VEHICLE_TYPE"].line}: SIH_VEHICLE_TYPE '
                          f'{kind:g} is {OTHERS.get(kind, "none that is known")}; expected 0 '
                          '(quadrotor) or 4 (hexarotor)')
     draft = Draft(source.path, source.stem)
 
     def place(*keys: str) -> str:
-        known = [f'line {lines[key]}: {key}' for key in keys if key in lines]
-        return ', '.join(known) or f'usual {keys[0]} of PX4'
+        found = [f'line {known[key].line}: {key}' for key in keys if key in known]
+        return ', '.join(found) or f'usual {keys[0]} of PX4'
 
     def number(key: str, least: float = -math.inf) -> float:
         where = f'{source.path}, {place(key)}'
         return schema.number(where, values.get(key, USUAL[key]), least, MOST)
 
     # PX4's axes y and z point right and down.
-    moments = symmetric(*(sign * number(f'SIH_I{axes}') + 0.0 for axes, sign in _AXES.items()))
+    moments = symmetric(*(sign * number(f'SIH_I{axes}') + 0.0 for axes, sign in AXES.items()))
     draft.take_body(Body(number('SIH_MASS', 0.0), np.zeros(3), moments), place('SIH_MASS'),
-                    place(*(f'SIH_I{axes}' for axes in _AXES)))
+                    place(*(f'SIH_I{axes}' for axes in AXES)))
     draft.data['gravity'] = GRAVITY
     draft.assumed.append(f'gravity {GRAVITY:g} m/s2; newer versions of PX4 have that of the '
                          'latitude, 0.3 % off at most')
@@ -95,13 +106,13 @@ def read(source: Source) -> Draft:
     return draft
 
 
-def _parameters(text: str) -> tuple[dict[str, float], dict[str, int]]:
-    """Return the values of parameters, the last that is set of each, and their lines."""
-    values, lines = {}, {}
-    for number, line in enumerate(text.splitlines(), 1):
-        if line.lstrip().startswith('#'):
-            continue
-        for name, value in _LINE.findall(line):
-            if name in USUAL:
-                values[name], lines[name] = float(value), number
-    return values, lines
+def parameters_of(text: str) -> dict[str, Parameter]:
+    """Return the parameters of SIH in a text, of each that which is set last."""
+    found, begin = {}, 0
+    for number, line in enumerate(text.splitlines(keepends=True), 1):
+        for match in () if line.lstrip().startswith('#') else _LINE.finditer(line):
+            if match[1] in USUAL:
+                first, last = (begin + len(line[:at].encode('utf-8')) for at in match.span(2))
+                found[match[1]] = Parameter(float(match[2]), number, (first, last))
+        begin += len(line.encode('utf-8'))
+    return found

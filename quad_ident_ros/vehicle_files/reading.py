@@ -4,6 +4,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+import math
 from typing import Any
 
 import numpy as np
@@ -30,6 +31,7 @@ SETTABLE = {
     'rotor_radius': 'm', 'speed_min': 'rad/s', 'speed_max': 'rad/s'}
 """What may be supplied where a file does not have it, and how it is written."""
 FULL_SPEED = 1000.0     # rad/s at full thrust, where a file knows thrusts and no speeds
+UNLIMITED = 10.0    # times the thrust at hover that stand for no limit: no flight gets there
 NOTICED = 1e-3          # m of the centre of mass from the origin of the file
 FEW_PRODUCTS = 1e-6     # of the largest moment of inertia: less is rounding
 
@@ -172,6 +174,13 @@ def needed_vehicle(reading: Reading) -> Vehicle:
 def per_sum_of_speeds(coefficient: float, vehicle: Vehicle) -> float:
     """Return, per air velocity at hover, what a coefficient per rotor speed makes, all rotors."""
     return coefficient * len(vehicle.rotors) * vehicle.hover_speed
+
+
+def most_speed(vehicle: Vehicle) -> float:
+    """Return the highest speed of a rotor, rad/s, one that no flight reaches where none is set."""
+    if math.isfinite(vehicle.speed_max):
+        return vehicle.speed_max
+    return math.sqrt(UNLIMITED) * vehicle.hover_speed
 
 
 def thrusts_as_commands(draft: Draft, highest: float, ratio: float | None, place: str,

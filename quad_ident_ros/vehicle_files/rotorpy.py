@@ -31,9 +31,7 @@ def tells(text: str) -> bool:
 
 def read(source: Source) -> Draft:
     """Return the Draft of a dictionary of rotorpy; raises InputError."""
-    table = one_of(source, {table.name: table
-                            for table in tables_of(source.path, source.text, KEYS)},
-                   f'dictionary with {", ".join(KEYS)}')
+    table = table_of(source)
     name = source.stem.removesuffix('_params') if table.name == USUAL else table.name
     draft = Draft(source.path, name)
 
@@ -72,6 +70,13 @@ def read(source: Source) -> Draft:
         draft.assumed.append(f'{_NOISE} ({place(_NOISE)}) is left out: noise of the rotor speeds '
                              'is no effect')
     return draft
+
+
+def table_of(source: Source) -> Table:
+    """Return the dictionary of rotorpy of a file, or the one that is wanted; InputError."""
+    return one_of(source, {table.name: table
+                           for table in tables_of(source.path, source.text, KEYS)},
+                  f'dictionary with {", ".join(KEYS)}')
 
 
 def _take_rotors(draft: Draft, source: Source, table: Table) -> None:

@@ -1,23 +1,20 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What a simulator's file is to say of a vehicle, and which of its effects are in that."""
+"""What a simulator's file is to say of a vehicle with its effects."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection
 from dataclasses import dataclass, replace
 import math
-from typing import Literal
 
 import numpy as np
 
-from quad_ident_ros.effects.registry import FORMS, Values
+from quad_ident_ros.effects.registry import Values
 from quad_ident_ros.model.vehicle import Vehicle
+from quad_ident_ros.vehicle_files.ways import forms_of, Key, way_of
 
-Key = Literal['mass', 'centre', 'inertia', 'thrust', 'torque', 'speed_max', 'rise', 'fall',
-              'rotor_drag']
-Keys = tuple[Key, ...]
-LAGS: Keys = ('rise', 'fall')
+SQUARE = 2.0    # of the rotor speed: the nominal thrust
 
 
 @dataclass(frozen=True)
@@ -26,116 +23,92 @@ class Wanted:
     Numbers that a file may have, with the effects in them.
 
     mass kg; centre (3,) m, of mass, from that of the file; inertia (3, 3) kg m^2 about the centre
-    of mass; thrust N/(rad/s)^2; torque N m/(rad/s)^2; speed_max rad/s; rise, fall s, time
-    constants; rotor_drag kg/rad, force per speed of a rotor and air velocity; stds: relative
-    standard errors of thrust and torque, standard errors of mass and of the moments of inertia,
-    by key; sources: what each comes from.
+    of mass; thrust N/(rad/s)^2, at hover, rad/s, and exponent: of the rotor speed that the thrust
+    goes with; losses (n,): share of the thrust that each rotor lacks; torque N m/(rad/s)^2;
+    speed_max rad/s; rise, fall s, time constants; rotor_drag kg/rad, force per speed of a rotor
+    and air velocity across its axis; linear_drag (3,) N/(m/s); body_drag (3,) kg/m; inflow:
+    kg/rad, thrust of a rotor lost per its speed and air velocity along its axis, and kg/m, won
+    per square of that across it; flapping kg m/rad, moment per speed of a rotor and air velocity;
+    wind (3,) m/s.
+    stds: relative standard errors of thrust and torque, standard errors of mass and of the moments
+    of inertia, by key; sources: what each comes from.
     """
 
     mass: float
     centre: np.ndarray
     inertia: np.ndarray
     thrust: float
+    hover: float
+    exponent: float
+    losses: np.ndarray
     torque: float
     speed_max: float
     rise: float
     fall: float
     rotor_drag: float
+    linear_drag: np.ndarray
+    body_drag: np.ndarray
+    inflow: tuple[float, float]
+    flapping: float
+    wind: np.ndarray
     stds: dict[str, tuple[float, ...]]
     sources: dict[str, str]
 
 
-@dataclass(frozen=True)
-class Way:
-    """How a form goes into numbers: which, and what is lost, '' where nothing is."""
-
-    keys: Keys
-    lost: str = ''
-
-
-_MEAN = 'its mean factor on the thrust coefficient, the same at all times'
-_AT_HOVER = 'its factor at hover on the thrust coefficient, the same at all speeds'
-_PLANE = 'the mean of x and y, scaled by rotor speed; along z nothing'
-WAYS: dict[tuple[str, str], Way] = {
-    ('motor_lag', 'first_order'): Way(LAGS),
-    ('motor_lag', 'rise_fall'): Way(LAGS),
-    ('motor_lag', 'second_order'): Way(LAGS, 'its mean lag as a time constant'),
-    ('rotor_drag', 'by_speed'): Way(('rotor_drag',)),
-    ('rotor_drag', 'axes'): Way(('rotor_drag',), _PLANE),
-    ('rotor_drag', 'axes_by_speed'): Way(('rotor_drag',), _PLANE),
-    ('battery_sag', 'voltage'): Way(('thrust',), _MEAN),
-    ('battery_sag', 'time'): Way(('thrust',), _MEAN),
-    ('battery_sag', 'voltage_power'): Way(('thrust',), _MEAN),
-    ('battery_sag', 'time_and_load'): Way(('thrust',), _MEAN),
-    ('thrust_scale', 'factor'): Way(('thrust',), 'a factor on the thrust coefficient, which is '
-                                    'the same motion'),
-    ('thrust_scale', 'exponent'): Way(('thrust',), _AT_HOVER),
-    ('thrust_scale', 'offset'): Way(('thrust',), _AT_HOVER),
-    ('mass_offset', 'at_centre'): Way(('mass',), 'a part of the mass, which is the same motion'),
-    ('inertia_mismatch', 'factors'): Way(('inertia',), 'a part of the inertia, which is the same '
-                                         'motion'),
-    ('inertia_mismatch', 'moments'): Way(('inertia',), 'the inertia over the factors, which '
-                                         'differs in the gyroscopic moment'),
-    ('com_offset', 'fixed'): Way(('centre',), 'the place of the centre of mass, which is the same '
-                                 'motion'),
-}
-"""Of effects that a file of numbers can have; what is exact has nothing lost."""
-
-NEEDS: dict[str, str] = {
-    'actuation_delay': 'the format has no delay of commands; delay them in what sends them',
-    'body_drag': 'the format has no drag with the square of the velocity of the air',
-    'wind': 'a wind is of the world, not of the vehicle; state it there',
-    'inflow': 'the format has no loss of thrust with the velocity of the air',
-    'ground_effect': 'the format has no thrust that hangs on the height',
-    'rotor_fault': 'one weak rotor needs a constant of its own, which is not written yet',
-    'rotor_gyro': 'it comes from the inertia of rotor bodies, which is not changed',
-    'blade_flapping': 'the format has no moment of the hubs across the velocity of the air',
-    'attitude_misalignment': 'it is one of the sensors: turn that of the attitude or the IMU',
-    'gyro_bias': 'it is one of the sensors: set it as the bias of the IMU',
-    'motor_lag': 'the format has no limit to the rate of the rotor speed'}
-"""Why an effect without a way is not carried."""
-
-
-def wanted_of(vehicle: Vehicle, sag: float | None) -> Wanted:
+def wanted_of(vehicle: Vehicle, sag: float | None, holds: Collection[Key]) -> Wanted:
     """
     Return what a file is to say of a vehicle with its effects.
 
-    Args: sag: mean share of the thrust that battery_sag leaves, None where it is not known.
+    Args: sag: mean share of the thrust that battery_sag leaves, None where it is not known;
+    holds: what files of the kind have.
     """
     effects = vehicle.effects
     scale = effects.get('thrust_scale', {})
     factor = math.prod(scale.get(key, 1.0) for key in ('factor', 'hover_factor', 'at_hover'))
     if sag is not None:
         factor *= sag
+    # About hover the curve with an offset goes with this power.
+    exponent = scale.get('exponent', SQUARE / (1.0 + scale.get('offset', 0.0)))
     mismatch = effects.get('inertia_mismatch', {})
     moments = np.array(vehicle.inertia) * [
         mismatch.get(f'factor_{axis}', 1.0) / mismatch.get(moment, 1.0)
         for axis, moment in zip('xyz', ('arms_y', 'arms_x', 'torque'), strict=True)]
     rise, fall = _lags(effects)
-    drag = effects.get('rotor_drag', {})
-    per_speed = drag.get('coefficient', 0.0) + sum(
-        0.5 * drag.get(key, 0.0) for key in ('x', 'y', 'x_by_speed', 'y_by_speed'))
-    shift = effects.get('com_offset', {})
+    speeds = len(vehicle.rotors) * vehicle.hover_speed
+    linear, by_speed = _drags(vehicle, holds)
+    body, inflow = effects.get('body_drag', {}), effects.get('inflow', {})
+    shift, wind = effects.get('com_offset', {}), effects.get('wind', {})
+    fault = effects.get('rotor_fault', {})
     return Wanted(
         mass=vehicle.mass + effects.get('mass_offset', {}).get('mass', 0.0),
         centre=np.array([shift.get(axis, 0.0) for axis in 'xyz']),
         inertia=replace(vehicle, inertia=tuple(moments)).inertia_matrix,
-        thrust=factor * vehicle.thrust_coefficient, torque=vehicle.torque_coefficient,
-        speed_max=vehicle.speed_max, rise=rise, fall=fall,
-        rotor_drag=per_speed / (len(vehicle.rotors) * vehicle.hover_speed),
-        stds=_stds(vehicle, moments), sources=_sources(vehicle, sag))
+        thrust=factor * vehicle.thrust_coefficient, hover=vehicle.hover_speed,
+        exponent=exponent,
+        losses=np.array([fault.get(f'loss_{j + 1}', 0.0) for j in range(len(vehicle.rotors))]),
+        torque=vehicle.torque_coefficient, speed_max=vehicle.speed_max, rise=rise, fall=fall,
+        rotor_drag=float(by_speed[:2].mean()) / speeds, linear_drag=linear,
+        body_drag=np.array([body.get(axis, 0.0) + body.get(kind, 0.0) for axis, kind in
+                            zip('xyz', ('horizontal', 'horizontal', 'vertical'), strict=True)]),
+        inflow=(inflow.get('axial', 0.0) / speeds,
+                inflow.get('translational', 0.0) / len(vehicle.rotors)),
+        flapping=effects.get('blade_flapping', {}).get('coefficient', 0.0) / speeds,
+        wind=np.array([wind.get(axis, 0.0) for axis in 'xyz']),
+        stds=_stds(vehicle, moments), sources=_sources(vehicle, sag, holds))
 
 
-def forms_of(effects: Values) -> list[tuple[str, str, dict[str, float]]]:
-    """Return (effect, form, its values) of all forms that act."""
-    found = []
-    for effect, form in FORMS:
-        values = effects.get(effect, {})
-        inside = {parameter.name: values[parameter.name] for parameter in form.parameters
-                  if parameter.name in values}
-        if inside:
-            found.append((effect, form.name, inside))
-    return found
+def _drags(vehicle: Vehicle, holds: Collection[Key]) -> tuple[np.ndarray, np.ndarray]:
+    """Return drags (3,) N/(m/s) whatever the rotor speeds, and scaled by them, at hover."""
+    drag = vehicle.effects.get('rotor_drag', {})
+    linear = np.array(vehicle.linear_drag) + [drag.get(axis, 0.0) for axis in 'xyz']
+    by_speed = np.array([drag.get(f'{axis}_by_speed', 0.0) for axis in 'xyz'])
+    by_speed[:2] += drag.get('coefficient', 0.0)
+    # What a file does not have goes into the other, as it is at hover.
+    if 'linear_drag' not in holds:
+        return np.zeros(3), linear + by_speed
+    if 'rotor_drag' not in holds:
+        return linear + by_speed, np.zeros(3)
+    return linear, by_speed
 
 
 def _lags(effects: Values) -> tuple[float, float]:
@@ -167,85 +140,23 @@ def _stds(vehicle: Vehicle, moments: np.ndarray) -> dict[str, tuple[float, ...]]
     return found
 
 
-def _sources(vehicle: Vehicle, sag: float | None) -> dict[str, str]:
+def _sources(vehicle: Vehicle, sag: float | None, holds: Collection[Key]) -> dict[str, str]:
     """Return the constant and the effects that each number comes from."""
-    names: dict[str, list[str]] = {
+    names: dict[Key, list[str]] = {
         'mass': ['mass'], 'centre': [], 'inertia': ['inertia'], 'thrust': ['thrust_coefficient'],
         'torque': ['torque_coefficient'], 'speed_max': ['speed_max'], 'rise': [], 'fall': [],
-        'rotor_drag': []}
+        'rotor_drag': [], 'exponent': [], 'losses': [], 'linear_drag': ['linear_drag'],
+        'body_drag': [], 'inflow': [], 'flapping': [], 'wind': []}
+    if any(vehicle.linear_drag) and 'linear_drag' not in holds:
+        names['rotor_drag'].append('linear_drag')
     for effect, form, _ in forms_of(vehicle.effects):
-        way = WAYS.get((effect, form))
+        way = way_of(effect, form, holds)
         if way is not None and (effect != 'battery_sag' or sag is not None):
             for key in way.keys:
                 if effect not in names[key]:
                     names[key].append(effect)
     names['centre'] = names['centre'] or names['mass']
-    usual = {'rise': 'motor_lag', 'fall': 'motor_lag',
-             'rotor_drag': 'rotor_drag'}
+    usual = {'rise': 'motor_lag', 'fall': 'motor_lag', 'rotor_drag': 'rotor_drag',
+             'exponent': 'thrust_scale', 'losses': 'rotor_fault', 'body_drag': 'body_drag',
+             'inflow': 'inflow', 'flapping': 'blade_flapping', 'wind': 'wind'}
     return {key: ', '.join(found) or f'no {usual[key]}' for key, found in names.items()}
-
-
-@dataclass(frozen=True)
-class Fate:
-    """What becomes of an effect or a constant: its name, its form or '', and why."""
-
-    name: str
-    form: str
-    reason: str
-
-
-@dataclass(frozen=True)
-class Fates:
-    """All effects, and the constants that changed, by what becomes of them."""
-
-    carried: tuple[Fate, ...]
-    nearest: tuple[Fate, ...]
-    not_carried: tuple[Fate, ...]
-
-
-def fates_of(vehicle: Vehicle, base_effects: Values, lacking: Mapping[str, str],
-             one_lag: bool, sag: float | None) -> Fates:
-    """
-    Return what becomes of each form of each effect of a vehicle: one of three.
-
-    Args: base_effects: what the file has by itself; lacking: {key of Wanted, or an effect: why
-    this file cannot have it}; one_lag: whether it has one time constant for up and down.
-    """
-    carried: list[Fate] = []
-    nearest: list[Fate] = []
-    not_carried: list[Fate] = []
-    lags = [form for effect, form, _ in forms_of(vehicle.effects)
-            if effect == 'motor_lag' and (effect, form) in WAYS]
-    for effect, form, values in forms_of(vehicle.effects):
-        way = WAYS.get((effect, form))
-        reason = next((lacking[key] for key in (effect, *(way.keys if way else ()))
-                       if key in lacking), '')
-        if way is None and _alike(values, base_effects.get(effect, {})):
-            carried.append(Fate(effect, form, 'the file has it already'))
-        elif way is None:
-            not_carried.append(Fate(effect, form, reason or NEEDS[effect]))
-        elif reason:
-            not_carried.append(Fate(effect, form, reason))
-        elif effect == 'battery_sag' and sag is None:
-            not_carried.append(Fate(effect, form, 'its mean hangs on the flight; name one by '
-                                    '--flight'))
-        elif effect == 'motor_lag' and form != _first_lag(lags):
-            not_carried.append(Fate(effect, form, f'the file has one lag, that of the form '
-                                    f'{_first_lag(lags)}'))
-        else:
-            lost = way.lost
-            if one_lag and form == 'rise_fall' and values.get('rise') != values.get('fall'):
-                lost = 'the mean of both as the one time constant that the file has'
-            (nearest if lost else carried).append(Fate(effect, form, lost or 'as it is'))
-    return Fates(tuple(carried), tuple(nearest), tuple(not_carried))
-
-
-def _first_lag(lags: list[str]) -> str:
-    """Return the form of the lag that _lags takes."""
-    return next(form for form in ('first_order', 'rise_fall', 'second_order') if form in lags)
-
-
-def _alike(values: Mapping[str, float], others: Mapping[str, float]) -> bool:
-    """Whether all values are those of others."""
-    return all(key in others and math.isclose(value, others[key], rel_tol=1e-9)
-               for key, value in values.items())

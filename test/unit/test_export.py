@@ -7,41 +7,22 @@ import difflib
 import json
 import re
 
+from exported import again, base
 import numpy as np
 import pytest
 import test_vehicle_files_mjcf as mjcf
 import test_vehicle_files_sdf as sdf
-import test_vehicle_files_urdf as urdf
 
 from quad_ident_ros.cli.main import main
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.effects.registry import EFFECTS, FORMS, NULL, PARAMETERS
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.vehicle import write_vehicle
-from quad_ident_ros.vehicle_files.export import export, mean_left, TARGETS
+from quad_ident_ros.vehicle_files.export import export, mean_left
 from quad_ident_ros.vehicle_files.load import read_vehicle
 from quad_ident_ros.vehicle_files.source import Source
-from quad_ident_ros.vehicle_files.wanted import NEEDS, WAYS
-
-# Comments, sensors and odd spaces stand among the numbers, and lines end in two ways.
-SENSOR = "\n<sensor name='imu'  type='imu'><update_rate>250</update_rate></sensor>\n</link>"
-SDF = sdf.WHOLE.replace('<mass>2.0</mass>', '<!-- kg --><mass> <!-- as weighed -->2.0 </mass>\r'
-                        ).replace('\n</link>', SENSOR, 1)
-LAGGED = mjcf.motors(extra='dyntype="filterexact" dynprm="0.03"', tag='general').replace(
-    'class="quad" ', 'ctrlrange="0 13" ')
-MJCF = mjcf.model(body='<!-- as weighed -->\n' + mjcf.INERTIAL
-                  + "\n<geom type='box' size='1 1 1'/><camera name='front'/>", actuators=LAGGED)
-URDF = urdf.SMALL.replace('<mass value="0.027"/>', "<mass  value = '0.027' /><!-- a comment -->")
-BASES = {'gazebo': (SDF, 'model.sdf'), 'mujoco': (MJCF, 'quad.xml'), 'urdf': (URDF, 'small.urdf')}
-
-
-def base(to):
-    text, name = BASES[to]
-    return Source(name, text), read_vehicle(Source(name, text)).vehicle
-
-
-def again(source, found):
-    return read_vehicle(replace(source, text=found.text)).vehicle
+from quad_ident_ros.vehicle_files.targets import TARGETS
+from quad_ident_ros.vehicle_files.ways import NEEDS, WAYS
 
 
 def changed_lines(old, new):
@@ -74,7 +55,9 @@ def test_constants_are_those_of_the_vehicle_when_the_file_is_read_again(to):
                      torque_coefficient=0.9 * vehicle.torque_coefficient)
     found = export(wanted, to, source)
     read = again(source, found)
-    for key in ('mass', 'thrust_coefficient', 'torque_coefficient', 'speed_max'):
+    # A curve over the speed stays one, which is read at another hover: see its own test.
+    for key in ('mass', *(('thrust_coefficient', 'torque_coefficient', 'speed_max')
+                          if to != 'crazyflow' else ())):
         assert getattr(read, key) == pytest.approx(getattr(wanted, key), rel=1e-9), key
     assert read.inertia_matrix == pytest.approx(wanted.inertia_matrix, rel=1e-9, abs=1e-9 * size)
     assert [rotor.position for rotor in read.rotors] == [
@@ -148,7 +131,7 @@ def test_a_lag_of_mujoco_is_one_time_constant():
     assert [fate.form for fate in found.fates.nearest] == ['rise_fall']
 
 
-@pytest.mark.parametrize('to', TARGETS)
+@pytest.mark.parametrize('to', [to for to in TARGETS if 'centre' in TARGETS[to].holds])
 def test_the_centre_of_mass_moves_under_the_rotors(to):
     source, vehicle = base(to)
     shift = 0.1 * vehicle.arm_length

@@ -1,0 +1,155 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Vehicles back into parameters of drone-models, which crazyflow flies."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+import math
+
+import numpy as np
+
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.vehicle_files.bodies import Body, check_body
+from quad_ident_ros.vehicle_files.drone_models import Drone, drone_of, TO_SPEED
+from quad_ident_ros.vehicle_files.edits import differs, Edits, shown
+from quad_ident_ros.vehicle_files.new_drone_models import new
+from quad_ident_ros.vehicle_files.out_base import Base
+from quad_ident_ros.vehicle_files.target import Target
+from quad_ident_ros.vehicle_files.toml_places import after_header
+from quad_ident_ros.vehicle_files.wanted import SQUARE
+from quad_ident_ros.vehicle_files.ways import LAGS
+
+polyval = np.polynomial.polynomial.polyval
+ROTORS = 4
+OTHER_MODELS = ('thrust2torque', 'rotor_dyn_coef_simple', 'thrust_dyn_coef')
+"""Keys that say again, for simpler models of drone-models, what the others say."""
+
+
+def write(base: Base) -> Edits:
+    """Return the Edits by which a table of drone-models holds what is wanted; InputError."""
+    wanted, stds = base.wanted, base.wanted.stds
+    drone = drone_of(base.source)
+    edited = _EditedDrone(drone)
+    check_body(f'{base.source.path}, {drone.place("J")}: as the vehicle has it',
+               Body(wanted.mass, np.zeros(3), wanted.inertia))
+    edited.key('mass', [wanted.mass], 'kg', wanted.sources['mass'], [*stds.get('mass', (None,))])
+    moments: list[float | None] = [None] * 9
+    moments[::4] = [std or None for std in stds.get('inertia', (0.0, 0.0, 0.0))]
+    edited.key('J', wanted.inertia.ravel(), 'kg m2', wanted.sources['inertia'], moments,
+               size=float(np.max(np.abs(wanted.inertia))))
+    curve = _write_curves(edited, base, drone)
+    _write_lags(edited, base, drone, curve)
+    drag = -drone.matrix('drag_matrix', 3, 3) if 'drag_matrix' in drone.table else np.zeros((3, 3))
+    np.fill_diagonal(drag, wanted.linear_drag)
+    edited.key('drag_matrix', -drag.ravel(), 'N/(m/s)', wanted.sources['linear_drag'])
+    edited.lack(['rotors'], 'the rotors of drone-models lie in the plane of the centre of mass')
+    others = [key for key in OTHER_MODELS if key in drone.table]
+    if others and edited.changes:
+        edited.remarks.append(f'{", ".join(others)} stay as they are: they are of other models '
+                              'than first_principles')
+    return edited
+
+
+class _EditedDrone(Edits):
+    """The text of a TOML file, with the numbers of one of its tables."""
+
+    def __init__(self, drone: Drone) -> None:
+        super().__init__(drone.source.text)
+        self.drone = drone
+
+    def key(self, key: str, new: Sequence[float] | np.ndarray, unit: str, source: str,
+            stds: Sequence[float | None] | None = None, size: float = 0.0) -> None:
+        """Have a key hold other numbers; one that is missing stands for zeros."""
+        found = self.drone.places.get(key)
+        stated = np.ravel(self.drone.table.get(key, np.zeros(len(new)))).astype(float)
+        if key in self.drone.table and (found is None or len(found.numbers) != len(new)):
+            raise InputError(f'{self.drone.source.path}: {key} of {self.drone.name} is written in '
+                             f'another way than {key} = ... on a line of its own; write it so')
+        place = self.drone.place(key) if found else f'{self.drone.name}: {key}'
+        moved = self.enter(place, list(stated), new, unit, source, stds, size)
+        if found is None and any(moved):
+            begin = after_header(self.text, self.drone.header)
+            self.replace(begin, begin, f'{key} = {_written(new)}\n')
+        for k, changed in enumerate(moved if found else ()):
+            if changed:
+                self.replace(*found.numbers[k], shown([new[k]]))
+
+
+def _write_curves(edited: _EditedDrone, base: Base, drone: Drone) -> np.ndarray:
+    """Have the curves over the speed hold thrust and torque; return that of the thrust (3,)."""
+    wanted, thrust = base.wanted, drone.numbers('rpm2thrust', 3)
+    constant, torque = base.constant('thrust_coefficient'), base.constant('torque_coefficient')
+    exponent = base.effects.get('thrust_scale', {}).get('exponent', SQUARE)
+    speed = math.sqrt(base.mass * base.constant('gravity') / (ROTORS * constant))
+    lift = wanted.thrust * wanted.hover ** 2 * (speed / wanted.hover) ** wanted.exponent
+    curve, stds = thrust, wanted.stds
+    if differs(exponent, wanted.exponent):
+        # A quadratic that has the level and the slope of the power at hover.
+        share = wanted.mass * base.constant('gravity') / ROTORS
+        rpm = wanted.hover / TO_SPEED * (share / (wanted.thrust * wanted.hover ** 2)) ** (
+            1.0 / wanted.exponent)
+        curve = np.array([0.0, (2.0 - wanted.exponent) * share / rpm,
+                          (wanted.exponent - 1.0) * share / rpm ** 2])
+    elif differs(constant * speed ** 2, lift):
+        curve = thrust * lift / (constant * speed ** 2)
+    std = stds.get('thrust', (0.0,))[0]
+    edited.key('rpm2thrust', curve, 'N per power of rpm', wanted.sources['thrust'],
+               [abs(float(value)) * std or None for value in curve])
+    if differs(torque, wanted.torque):
+        std = stds.get('torque', (0.0,))[0]
+        other = drone.numbers('rpm2torque', 3) * wanted.torque / torque
+        edited.key('rpm2torque', other, 'N m per power of rpm', wanted.sources['torque'],
+                   [abs(float(value)) * std or None for value in other])
+    _write_limits(edited, base, drone, curve)
+    return curve
+
+
+def _write_limits(edited: _EditedDrone, base: Base, drone: Drone, curve: np.ndarray) -> None:
+    """Have the limits, which are thrusts, stand for the speeds that they are to be."""
+    for key, speed in (('thrust_min', base.constant('speed_min')),
+                       ('thrust_max', base.wanted.speed_max)):
+        limited = key in drone.table
+        if key == 'thrust_max' and limited == math.isinf(speed):
+            edited.lack(['speed_max'], 'the file needs a limit; the one that it has stays'
+                        if limited else 'the file has no thrust_max')
+        elif limited:
+            lift = float(polyval(speed / TO_SPEED, curve))
+            if lift > 0.0:
+                edited.key(key, [lift], 'N', f'{key.replace("thrust", "speed")}, with the curve '
+                           'as above')
+
+
+def _write_lags(edited: _EditedDrone, base: Base, drone: Drone, curve: np.ndarray) -> None:
+    """Have the rates of the motors hold the lags at hover."""
+    wanted, key = base.wanted, 'rotor_dyn_coef'
+    lags = np.array([wanted.rise, wanted.fall])
+    now = np.array([base.effect('motor_lag', name) for name in ('rise', 'fall')])
+    if not any(differs(*pair) for pair in zip(now, lags, strict=True)):
+        return
+    if not lags.all():
+        edited.lack(LAGS, f'a lag of 0 has no rate; take {key} out')
+        return
+    rates = np.array([1.0 / wanted.rise, 0.0, 1.0 / wanted.fall, 0.0])
+    if key in drone.table:
+        share = wanted.mass * base.constant('gravity') / ROTORS
+        hover = drone.rpm(curve, share)
+        stated = drone.numbers(key, 4)
+        there = stated[[0, 2]] + 2.0 * stated[[1, 3]] * hover
+        rates = stated * np.repeat(1.0 / (there * lags), 2)
+    edited.key(key, rates, '1/s and 1/(s rpm)', wanted.sources['rise'])
+
+
+def _written(values: Sequence[float] | np.ndarray) -> str:
+    """Return numbers as the value of a key: one, a list, or a matrix of three rows."""
+    numbers = [shown([value]) for value in values]
+    if len(numbers) == 1:
+        return numbers[0]
+    rows = [numbers] if len(numbers) != 9 else [numbers[k:k + 3] for k in (0, 3, 6)]
+    lists = [f'[{", ".join(row)}]' for row in rows]
+    return lists[0] if len(lists) == 1 else f'[{", ".join(lists)}]'
+
+
+TARGET = Target('drone_models', ('.toml',), frozenset((
+    'mass', 'inertia', 'thrust', 'exponent', 'torque', 'speed_max', *LAGS, 'linear_drag')), write,
+    new)

@@ -1,0 +1,90 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Vehicles back into parameters of PX4's SIH."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from quad_ident_ros.vehicle_files.bodies import Body, check_body
+from quad_ident_ros.vehicle_files.edits import Edits, shown
+from quad_ident_ros.vehicle_files.new_px4_sih import new
+from quad_ident_ros.vehicle_files.out_base import Base
+from quad_ident_ros.vehicle_files.px4_sih import AXES, parameters_of, USUAL
+from quad_ident_ros.vehicle_files.reading import FULL_SPEED
+from quad_ident_ros.vehicle_files.source import Source
+from quad_ident_ros.vehicle_files.target import Target
+from quad_ident_ros.vehicle_files.ways import LAGS
+
+
+def write(base: Base) -> Edits:
+    """Return the Edits by which parameters of PX4's SIH hold what is wanted; InputError."""
+    wanted, stds = base.wanted, base.wanted.stds
+    edited = _EditedParameters(base.source)
+    check_body(f'{base.source.path}: SIH_IXX: as the vehicle has it',
+               Body(wanted.mass, np.zeros(3), wanted.inertia))
+    edited.set('SIH_MASS', wanted.mass, 'kg', wanted.sources['mass'], *stds.get('mass', ()))
+    size = float(np.max(np.abs(wanted.inertia)))
+    moments = [*stds.get('inertia', (None,) * 3), None, None, None]
+    for (axes, sign), std in zip(AXES.items(), moments, strict=True):
+        at = 'XYZ'.index(axes[0]), 'XYZ'.index(axes[1])
+        edited.set(f'SIH_I{axes}', sign * float(wanted.inertia[at]), 'kg m2',
+                   wanted.sources['inertia'], std or None, size)
+    for name, key, value, unit in (('SIH_T_MAX', 'thrust', wanted.thrust, 'N'),
+                                   ('SIH_Q_MAX', 'torque', wanted.torque, 'N m')):
+        full = value * FULL_SPEED ** 2
+        edited.set(name, full, unit, wanted.sources[key],
+                   stds.get(key, (0.0,))[0] * full or None)
+    edited.lack(['speed_max'], 'a command is a share of SIH_T_MAX, and speeds are not of the file')
+    lag = 0.5 * (wanted.rise + wanted.fall)
+    if lag > 0.0:
+        edited.set('SIH_T_TAU', lag, 's', wanted.sources['rise'])
+    else:
+        edited.lack(LAGS, 'PX4 divides by SIH_T_TAU, which needs to be above 0')
+    if wanted.rise != wanted.fall:
+        edited.one_lag()
+    drag = wanted.linear_drag
+    edited.set('SIH_KDV', float(drag.mean()), 'N/(m/s)', wanted.sources['linear_drag'])
+    if np.ptp(drag) > 0.0:
+        edited.nearest['linear_drag'] = 'its mean over the axes, the same along each'
+    # PX4 names the wind by where it comes from.
+    for name, value in (('SIH_WIND_E', -wanted.wind[0]), ('SIH_WIND_N', -wanted.wind[1])):
+        edited.set(name, float(value), 'm/s', wanted.sources['wind'])
+    if wanted.wind[2] != 0.0:
+        edited.nearest['wind'] = 'its part along the ground'
+    edited.lack(['rotors'], "PX4's SIH has its rotors in one plane, at SIH_L_ROLL and SIH_L_PITCH")
+    return edited
+
+
+class _EditedParameters(Edits):
+    """The text of a list of parameters."""
+
+    def __init__(self, source: Source) -> None:
+        super().__init__(source.text)
+        self.parameters = parameters_of(source.text)
+
+    def set(self, name: str, new: float, unit: str, source: str, std: float | None = None,
+            size: float = 0.0) -> None:
+        """Have a parameter hold another number; one that is not set has the usual one of PX4."""
+        known = self.parameters.get(name)
+        if known is not None:
+            self.number(known.span, f'line {known.line}: {name}', known.value, new, unit, source,
+                        std, size)
+        elif any(self.enter(f'usual {name} of PX4', [USUAL[name]], [new], unit, source, [std],
+                            size)):
+            self._add(name, new)
+
+    def _add(self, name: str, new: float) -> None:
+        """Put a line behind that of another parameter, in the form of that."""
+        key, other = max(self.parameters.items(), key=lambda each: (
+            each[0] != 'SIH_VEHICLE_TYPE', each[1].line))
+        begin = self.data.rfind(b'\n', 0, other.span[0]) + 1
+        end = self.data.find(b'\n', other.span[0])
+        line = self.data[begin:len(self.data) if end < 0 else end]
+        before, after = line[:other.span[0] - begin], line[other.span[1] - begin:]
+        text = (before.replace(key.encode(), name.encode()) + shown([new]).encode() + after)
+        self.replace(begin, begin, text.decode() + '\n')
+
+
+TARGET = Target('px4_sih', ('', '.params', '.txt', '.sh', '.post'), frozenset((
+    'mass', 'inertia', 'thrust', 'torque', *LAGS, 'linear_drag', 'wind')), write, new)

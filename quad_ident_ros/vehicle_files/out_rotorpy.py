@@ -1,0 +1,72 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Vehicles back into dictionaries of rotorpy."""
+
+import math
+
+import numpy as np
+
+from quad_ident_ros.vehicle_files.bodies import Body, check_body
+from quad_ident_ros.vehicle_files.edit_literals import EditedTable
+from quad_ident_ros.vehicle_files.new_rotorpy import new
+from quad_ident_ros.vehicle_files.out_base import Base
+from quad_ident_ros.vehicle_files.out_body import ENTRIES
+from quad_ident_ros.vehicle_files.rotorpy import table_of
+from quad_ident_ros.vehicle_files.target import Target
+from quad_ident_ros.vehicle_files.ways import BODY, LAGS
+
+
+def write(base: Base) -> EditedTable:
+    """Return the Edits by which a dictionary of rotorpy holds what is wanted; InputError."""
+    wanted, stds = base.wanted, base.wanted.stds
+    edited = EditedTable(base.source, table_of(base.source))
+    place = f'{base.source.path}, line {edited.table.lines["Ixx"]}: Ixx: as the vehicle has it'
+    check_body(place, Body(wanted.mass, np.zeros(3), wanted.inertia))
+    edited.entry('mass', wanted.mass, 'kg', wanted.sources['mass'], *stds.get('mass', ()))
+    size = float(np.max(np.abs(wanted.inertia)))
+    moments = [*stds.get('inertia', (None,) * 3), None, None, None]
+    for (name, at), std in zip(ENTRIES.items(), moments, strict=True):
+        edited.entry(f'I{name[1:]}', float(wanted.inertia[at]), 'kg m2',
+                     wanted.sources['inertia'], std or None, size)
+    if wanted.centre.any() and not edited.vectors(
+            'rotor_pos', [np.array(rotor['position']) - wanted.centre
+                          for rotor in base.constant('rotors')], 'm', wanted.sources['centre']):
+        edited.lack(['centre'], 'rotor_pos is not written as a list or a dictionary of places')
+    for name, key, value, unit in (
+            ('k_eta', 'thrust', wanted.thrust, 'N/(rad/s)^2'),
+            ('k_m', 'torque', wanted.torque, 'N m/(rad/s)^2')):
+        std = stds.get(key, (0.0,))[0] * value
+        edited.entry(name, value, unit, wanted.sources[key], std or None)
+    _write_motors(edited, base)
+    for name, key, value, unit in (
+            ('k_d', 'rotor_drag', wanted.rotor_drag, 'kg/rad'),
+            ('k_z', 'inflow', wanted.inflow[0], 'kg/rad'),
+            ('k_h', 'inflow', wanted.inflow[1], 'kg/m'),
+            ('k_flap', 'flapping', wanted.flapping, 'kg m/rad'),
+            *((f'c_D{axis}', 'body_drag', float(value), 'kg/m')
+              for axis, value in zip('xyz', wanted.body_drag, strict=True))):
+        over = ' over the hover speeds' if unit.endswith('/rad') else ''
+        edited.entry(name, value, unit, wanted.sources[key] + over)
+    return edited
+
+
+def _write_motors(edited: EditedTable, base: Base) -> None:
+    """Have the dictionary hold the lag and the highest speed."""
+    wanted = base.wanted
+    lag = 0.5 * (wanted.rise + wanted.fall)
+    if lag > 0.0:
+        edited.entry('tau_m', lag, 's', wanted.sources['rise'])
+    else:
+        edited.lack(LAGS, 'rotorpy divides by tau_m, which needs to be above 0')
+    if wanted.rise != wanted.fall:
+        edited.one_lag()
+    if math.isinf(wanted.speed_max):
+        edited.lack(['speed_max'], 'rotorpy needs a limit; that of the file stays')
+    else:
+        edited.entry('rotor_speed_max', wanted.speed_max, 'rad/s', wanted.sources['speed_max'],
+                     *wanted.stds.get('speed_max', ()))
+
+
+TARGET = Target('rotorpy', ('.py',), frozenset((
+    *BODY, *LAGS, 'thrust', 'torque', 'speed_max', 'rotor_drag', 'body_drag', 'inflow',
+    'flapping')), write, new)

@@ -1,0 +1,29 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What a simulator to write for is."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from quad_ident_ros.model.vehicle import Vehicle
+from quad_ident_ros.vehicle_files.edits import Edits
+from quad_ident_ros.vehicle_files.out_base import Base
+from quad_ident_ros.vehicle_files.ways import Key
+
+
+@dataclass(frozen=True)
+class Target:
+    """
+    A simulator to write for.
+
+    kind: of its files; endings: of their names; holds: what files of the kind have; write: returns
+    the Edits by which a base file has what is wanted of it; new: returns the text of a file of its
+    own with the constants of a vehicle, in which there is room for its effects. Both raise
+    InputError.
+    """
+
+    kind: str
+    endings: tuple[str, ...]
+    holds: frozenset[Key]
+    write: Callable[[Base], Edits]
+    new: Callable[[Vehicle], str]

@@ -1,0 +1,103 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Vehicles into new files of simulators, with no file of the user to go into."""
+
+from dataclasses import replace
+
+from exported import again, assert_same, base
+import numpy as np
+import pytest
+
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.model.vehicle import load_vehicle
+from quad_ident_ros.vehicle_files.export import export
+from quad_ident_ros.vehicle_files.speed_unit import counted
+from quad_ident_ros.vehicle_files.targets import TARGETS
+
+# What no file of a kind has, and what its new files have in another way.
+UNLIKE = {'urdf': ('gravity', 'rotor_radius', 'rotor_inertia', 'effects')}
+
+
+@pytest.mark.parametrize('to', TARGETS)
+def test_what_is_read_is_written_and_read_again_as_it_was(to):
+    source, vehicle = base(to)
+    found = export(vehicle, to)
+    assert_same(again(source, found), vehicle, but=UNLIKE.get(to, ()))
+    # A file that we wrote ourselves is as any other.
+    once = again(source, found)
+    assert_same(again(source, export(once, to)), once)
+    assert export(once, to, replace(source, text=found.text)).text == found.text
+
+
+@pytest.mark.parametrize('to', TARGETS)
+@pytest.mark.parametrize('name', ['paper_quadrotor', 'hummingbird'])
+def test_a_vehicle_of_a_vehicle_file_goes_into_every_simulator(to, name):
+    vehicle = replace(load_vehicle(name), products=(1e-5, 0.0, -2e-5))
+    if to == 'px4_sih':
+        with pytest.raises(InputError, match="order and the spins of PX4's SIH"):
+            export(vehicle, to)
+        return
+    found = export(vehicle, to)
+    read = counted(again(base(to)[0], found), 1.0 / found.unit)
+    assert to == 'rotorpy' or read.name == vehicle.name    # there it is that of the file
+    for key in ('mass', 'thrust_coefficient', 'torque_coefficient'):
+        assert getattr(read, key) == pytest.approx(getattr(vehicle, key), rel=1e-12), key
+    np.testing.assert_allclose(read.inertia_matrix, vehicle.inertia_matrix, atol=1e-15)
+    assert [rotor.spin for rotor in read.rotors] == [rotor.spin for rotor in vehicle.rotors]
+    np.testing.assert_allclose([rotor.position for rotor in read.rotors],
+                               [rotor.position for rotor in vehicle.rotors], atol=1e-12)
+
+
+@pytest.mark.parametrize('to', TARGETS)
+def test_effects_are_in_a_new_file_as_in_one_of_the_user(to):
+    source, vehicle = base(to)
+    loaded = replace(vehicle, mass=1.2 * vehicle.mass, effects={
+        **vehicle.effects, 'motor_lag': {'time_constant': 0.04},
+        'mass_offset': {'mass': 0.1 * vehicle.mass}, 'thrust_scale': {'factor': 1.1}})
+    assert_same(again(source, export(loaded, to)), again(source, export(loaded, to, source)),
+                rel=1e-9, but=UNLIKE.get(to, ()))
+
+
+@pytest.mark.parametrize('to', ['gazebo', 'mujoco'])
+def test_a_weak_rotor_is_one_when_the_file_is_read_again(to):
+    source, vehicle = base(to)
+    weak = replace(vehicle, effects={**vehicle.effects, 'rotor_fault': {'loss_3': 0.15}})
+    for file in (None, source):
+        found = export(weak, to, file)
+        assert ('rotor_fault', 'thrust') in [(fate.name, fate.form)
+                                             for fate in found.fates.carried]
+        read = again(source, found)
+        assert_same(read, weak, rel=1e-9)
+    # Mended, it is the file that it was.
+    mended = export(vehicle, to, replace(source, text=found.text))
+    assert_same(again(source, mended), vehicle, rel=1e-9)
+
+
+def test_mujoco_itself_pushes_as_a_new_file_says():
+    mujoco = pytest.importorskip('mujoco')
+    vehicle = replace(load_vehicle('hummingbird'), effects={'rotor_fault': {'loss_2': 0.2}})
+    model = mujoco.MjModel.from_xml_string(export(vehicle, 'mujoco').text)
+    data = mujoco.MjData(model)
+    thrusts = np.array([1.0, 1.2, 1.4, 1.6])
+    data.ctrl[:] = thrusts
+    mujoco.mj_forward(model, data)
+    places = np.array([rotor.position for rotor in vehicle.rotors])
+    spins = np.array([rotor.spin for rotor in vehicle.rotors])
+    ratio = vehicle.torque_coefficient / vehicle.thrust_coefficient
+    weak = thrusts * [1.0, 0.8, 1.0, 1.0]
+    assert model.body_mass.sum() == pytest.approx(vehicle.mass)
+    np.testing.assert_allclose(data.qfrc_actuator[2:], [
+        weak.sum(), places[:, 1] @ weak, -places[:, 0] @ weak, ratio * spins @ thrusts],
+        rtol=1e-9, atol=1e-12)
+
+
+def test_yourdfpy_reads_a_new_urdf():
+    yourdfpy = pytest.importorskip('yourdfpy')
+    import io
+    vehicle = load_vehicle('hummingbird')
+    robot = yourdfpy.URDF.load(io.StringIO(export(vehicle, 'urdf').text), load_meshes=False,
+                               build_scene_graph=False)
+    assert robot.validate()
+    links = robot.link_map
+    assert sum(link.inertial.mass for link in links.values()) == pytest.approx(vehicle.mass)
+    assert len(robot.actuated_joints) == 4
