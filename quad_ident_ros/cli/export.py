@@ -3,7 +3,8 @@
 """`quad_ident export`: a vehicle with its effects into a simulator's own file."""
 
 import argparse
-from dataclasses import asdict
+from collections.abc import Sequence
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
@@ -12,17 +13,22 @@ from rich.table import Table
 
 from quad_ident_ros import resources
 from quad_ident_ros.cli.options import flights_from
+from quad_ident_ros.data.record import FlightRecord
+from quad_ident_ros.diagnose.carried import Carried, carried
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.model.vehicle import load_vehicle
+from quad_ident_ros.model.vehicle import load_vehicle, Vehicle
 from quad_ident_ros.report.data import write_json
 from quad_ident_ros.report.table import console
 from quad_ident_ros.vehicle_files.export import Export, export, mean_left
 from quad_ident_ros.vehicle_files.load import source_of
 from quad_ident_ros.vehicle_files.source import Source
 from quad_ident_ros.vehicle_files.targets import TARGETS
+from quad_ident_ros.vehicle_files.written import read_back
 from quad_ident_ros.whole_file import write_whole
 
 BOM = b'\xef\xbb\xbf'
+FILE = 'file'
+ROWS = {'nominal': 'the base', 'vehicle': 'the vehicle file', FILE: 'the written file'}
 
 
 def add(commands: Any, said: str) -> None:
@@ -44,7 +50,9 @@ def add(commands: Any, said: str) -> None:
                         help='your file that the numbers go into; FILE:NAME for one of several '
                              'vehicles in it (default: a new file)')
     parser.add_argument('--flight', nargs='+', metavar='FLIGHT',
-                        help='flights over which a sag of the battery becomes a mean factor')
+                        help='flights, best those that the diagnosis held out, on which the gap '
+                             'is told that the file closes, and over which a sag of the battery '
+                             'becomes a mean factor')
     parser.add_argument('-o', '--output', required=True, metavar='OUT', help='the file to write')
     parser.add_argument('--json', metavar='FILE', help='write what changes as data; - prints it')
     parser.set_defaults(run=run)
@@ -61,14 +69,25 @@ def run(options: argparse.Namespace) -> None:
     records = [record for path in options.flight or [] for record in
                flights_from(path, None, vehicle)]
     found = export(vehicle, options.to, source, mean_left(vehicle, records) if records else None)
+    cost = cost_of(found, vehicle, records, options.output) if records else None
     try:
         write_whole(options.output, _mark(source) + found.text)
     except OSError as error:
         raise InputError(f'{options.output}: cannot be written: {error.strerror}') from None
     if options.json != '-':
         show(found, options.output, source is None)
+        if cost is not None:
+            show_cost(cost)
     if options.json:
-        write_json(options.json, as_data(found, options))
+        write_json(options.json, as_data(found, cost, options))
+
+
+def cost_of(found: Export, vehicle: Vehicle, records: Sequence[FlightRecord], path: str
+            ) -> Carried:
+    """Return what of the gap on flights the written file closes; raises InputError."""
+    written = replace(found.base, path=path, text=found.text)
+    before, after = (read_back(found, source, vehicle) for source in (found.base, written))
+    return carried(records, before, vehicle, {FILE: after})
 
 
 def _base(options: argparse.Namespace) -> Source | None:
@@ -92,14 +111,15 @@ def _mark(source: Source | None) -> str:
         return '\ufeff' if file.read(len(BOM)) == BOM else ''
 
 
-def as_data(found: Export, options: argparse.Namespace) -> dict[str, Any]:
-    """Return an Export as data."""
+def as_data(found: Export, cost: Carried | None, options: argparse.Namespace) -> dict[str, Any]:
+    """Return an Export as data, and its cost, None where no flight was named."""
     return {'schema': 'quad_ident/export/1', 'vehicle': options.vehicle, 'to': options.to,
             'base': options.base, 'output': options.output,
             'changes': [asdict(change) for change in found.changes],
             'remarks': list(found.remarks),
             **{key: [asdict(fate) for fate in getattr(found.fates, key)]
-               for key in ('carried', 'nearest', 'not_carried')}}
+               for key in ('carried', 'nearest', 'not_carried')},
+            'gap': None if cost is None else asdict(cost)}
 
 
 def show(found: Export, path: str, new: bool) -> None:
@@ -128,6 +148,24 @@ def show(found: Export, path: str, new: bool) -> None:
     count = len(found.changes)
     say(f'{path}: {"new, " if new else ""}{count or "no"} number{"s" * (count != 1)} changed'
         + (' by the effects' if new else ''))
+
+
+def show_cost(cost: Carried) -> None:
+    """Print the gaps on the flights, and what of them the file closes."""
+    screen = console()
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1), header_style='bold')
+    table.add_column(f'gap {cost.horizon:g} s ahead')
+    for group, unit in cost.units.items():
+        table.add_column(f'{group}, {unit}', justify='right')
+    for name, values in cost.gaps.items():
+        table.add_row(ROWS[name], *(f'{values[group]:.3g}' for group in cost.units))
+    screen.print(table)
+    for name, share in cost.shares.items():
+        screen.print(f'{ROWS[name]} closes {100 * share:.3g} % of what the vehicle file closes of '
+                     'the velocity gap', markup=False, highlight=False, soft_wrap=True)
+    if not cost.shares:
+        screen.print('the vehicle file closes nothing of the velocity gap on these flights',
+                     markup=False, highlight=False, soft_wrap=True)
 
 
 def _file_of_ours(path: str) -> Path:

@@ -4,6 +4,7 @@
 
 from dataclasses import replace
 import difflib
+import re
 import sys
 
 from exported import again, assert_same, base
@@ -49,9 +50,20 @@ def test_just_the_numbers_of_a_dictionary_change():
     # The expression of the mass gives way to a number; what was not there comes to the begin.
     assert added[1] == "    'mass': 0.7,  # kg, with the camera"
     assert added[0].startswith("    'k_flap': ") and len(added) == 2
-    call = source.text.replace('quad_params = {', 'quad_params = dict(').replace(
-        "'mass': 0.5 + 0.1", 'mass=0.5 + 0.1')
-    assert 'dict(' in call
+
+
+def test_a_dictionary_in_a_call_stays_one():
+    source, vehicle = base('rotorpy')
+    text = source.text.replace('params = {', 'params = dict(').replace('1500,\n}', '1500)')
+    inside, end = text.index('dict('), text.index("'rotor_pos': {")
+    head = re.sub(r"""['"](\w+)['"] *:""", r'\1=', text[inside:end])
+    text = text[:inside] + head + re.sub(r"'(rotor_pos|rotor_directions|k_\w+|c_\w+|tau_m|"
+                                         r"rotor_speed_\w+)':", r'\1=', text[end:])
+    call = replace(source, text=text)
+    assert_same(again(call, export(vehicle, 'rotorpy', call)), vehicle)
+    found = export(with_effects(vehicle, blade_flapping={'coefficient': 0.004}), 'rotorpy', call)
+    assert 'dict(\n    k_flap=' in found.text
+    assert again(call, found).effects['blade_flapping']['coefficient'] == pytest.approx(0.004)
 
 
 def test_a_centre_of_mass_moves_the_rotors_of_rotorpy():
