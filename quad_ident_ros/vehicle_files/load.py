@@ -43,6 +43,8 @@ def read_vehicle(source: Source, supplied: Mapping[str, Any] | None = None) -> R
 
 def source_of(name_or_path: str | Path) -> Source | None:
     """Return the file of a simulator, or None for a name or a file of ours; InputError."""
+    if not isinstance(name_or_path, (str, os.PathLike)):
+        return None     # a value of a YAML file, which model.load_vehicle refuses by name
     text = os.path.expanduser(name_or_path)
     path, wanted = text, ''
     if not is_file(path) and ':' in text:

@@ -71,9 +71,10 @@ class _EditedDrone(Edits):
         if found is None and any(moved):
             begin = after_header(self.text, self.drone.header)
             self.replace(begin, begin, f'{key} = {_written(new)}\n')
-        for k, changed in enumerate(moved if found else ()):
-            if changed:
-                self.replace(*found.numbers[k], shown([new[k]]))
+        elif found is not None:
+            for (first, last), value, changed in zip(found.numbers, new, moved, strict=True):
+                if changed:
+                    self.replace(first, last, shown([value]))
 
 
 def _write_curves(edited: _EditedDrone, base: Base, drone: Drone) -> np.ndarray:

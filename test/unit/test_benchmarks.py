@@ -163,7 +163,8 @@ def test_a_target_is_met_or_not_or_nothing_was_measured():
                                                                                '–']
 
 
-def test_without_real_flights_their_target_says_so(tmp_path):
+def test_without_real_flights_their_target_says_so(monkeypatch, tmp_path):
+    monkeypatch.setattr(diagnosis, 'PLACE', Path('shared') / 'flights' / 'of-nobody')
     assert diagnosis.found_beside(tmp_path / 'file') is None
     what, _, measured, met = diagnosis.on_real_flights(None, diagnosis.REAL)
     assert what == 'CPU time, 7 real flights' and met is None
