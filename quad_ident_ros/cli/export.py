@@ -23,12 +23,13 @@ from quad_ident_ros.vehicle_files.export import Export, export, mean_left
 from quad_ident_ros.vehicle_files.load import source_of
 from quad_ident_ros.vehicle_files.source import Source
 from quad_ident_ros.vehicle_files.targets import TARGETS
-from quad_ident_ros.vehicle_files.written import read_back
+from quad_ident_ros.vehicle_files.written import read_back, with_code
 from quad_ident_ros.whole_file import write_whole
 
 BOM = b'\xef\xbb\xbf'
-FILE = 'file'
-ROWS = {'nominal': 'the base', 'vehicle': 'the vehicle file', FILE: 'the written file'}
+FILE, CODE = 'file', 'file_and_code'
+ROWS = {'nominal': 'the base', 'vehicle': 'the vehicle file', FILE: 'the written file',
+        CODE: 'the written file with its code'}
 
 
 def add(commands: Any, said: str) -> None:
@@ -68,12 +69,12 @@ def run(options: argparse.Namespace) -> None:
     source = _base(options)
     records = [record for path in options.flight or [] for record in
                flights_from(path, None, vehicle)]
-    found = export(vehicle, options.to, source, mean_left(vehicle, records) if records else None)
+    found = export(vehicle, options.to, source, mean_left(vehicle, records) if records else None,
+                   Path(options.output).name)
     cost = cost_of(found, vehicle, records, options.output) if records else None
-    try:
-        write_whole(options.output, _mark(source) + found.text)
-    except OSError as error:
-        raise InputError(f'{options.output}: cannot be written: {error.strerror}') from None
+    _write(options.output, _mark(source) + found.text)
+    if found.code is not None:
+        _write(_beside(options.output), found.code.text)
     if options.json != '-':
         show(found, options.output, source is None)
         if cost is not None:
@@ -87,7 +88,10 @@ def cost_of(found: Export, vehicle: Vehicle, records: Sequence[FlightRecord], pa
     """Return what of the gap on flights the written file closes; raises InputError."""
     written = replace(found.base, path=path, text=found.text)
     before, after = (read_back(found, source, vehicle) for source in (found.base, written))
-    return carried(records, before, vehicle, {FILE: after})
+    parts = {FILE: after}
+    if found.code is not None:
+        parts[CODE] = with_code(found, after, vehicle)
+    return carried(records, before, vehicle, parts)
 
 
 def _base(options: argparse.Namespace) -> Source | None:
@@ -101,6 +105,18 @@ def _base(options: argparse.Namespace) -> Source | None:
         raise InputError(f'{options.output}: this would write over the base file; give another '
                          'name')
     return source
+
+
+def _beside(path: str) -> Path:
+    """Return the path of the code beside a file."""
+    return Path(path).with_suffix('.py')
+
+
+def _write(path: str | Path, text: str) -> None:
+    try:
+        write_whole(path, text)
+    except OSError as error:
+        raise InputError(f'{path}: cannot be written: {error.strerror}') from None
 
 
 def _mark(source: Source | None) -> str:
@@ -118,7 +134,8 @@ def as_data(found: Export, cost: Carried | None, options: argparse.Namespace) ->
             'changes': [asdict(change) for change in found.changes],
             'remarks': list(found.remarks),
             **{key: [asdict(fate) for fate in getattr(found.fates, key)]
-               for key in ('carried', 'nearest', 'not_carried')},
+               for key in ('carried', 'by_code', 'nearest', 'not_carried')},
+            'code': None if found.code is None else str(_beside(options.output)),
             'gap': None if cost is None else asdict(cost)}
 
 
@@ -140,14 +157,17 @@ def show(found: Export, path: str, new: bool) -> None:
         screen.print(table)
     for text in found.remarks:
         say(f'note: {text}')
-    for key, said in (('carried', 'carried'), ('nearest', 'by the nearest'),
-                      ('not_carried', 'not carried')):
+    for key, said in (('carried', 'carried'), ('by_code', 'carried'),
+                      ('nearest', 'by the nearest'), ('not_carried', 'not carried')):
         for fate in getattr(found.fates, key):
             form = f' ({fate.form})' if fate.form else ''
             say(f'{said}: {fate.name}{form}: {fate.reason}')
     count = len(found.changes)
     say(f'{path}: {"new, " if new else ""}{count or "no"} number{"s" * (count != 1)} changed'
         + (' by the effects' if new else ''))
+    if found.code is not None:
+        say(f'{_beside(path)}: code for what the file has no number for; its first lines say how '
+            'to use it')
 
 
 def show_cost(cost: Carried) -> None:

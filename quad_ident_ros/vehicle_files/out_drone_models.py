@@ -71,9 +71,10 @@ class _EditedDrone(Edits):
         if found is None and any(moved):
             begin = after_header(self.text, self.drone.header)
             self.replace(begin, begin, f'{key} = {_written(new)}\n')
-        for k, changed in enumerate(moved if found else ()):
+        for value, changed, (first, last) in zip(new, moved, found.numbers if found else (),
+                                                 strict=found is not None):
             if changed:
-                self.replace(*found.numbers[k], shown([new[k]]))
+                self.replace(first, last, shown([value]))
 
 
 def _write_curves(edited: _EditedDrone, base: Base, drone: Drone) -> np.ndarray:
