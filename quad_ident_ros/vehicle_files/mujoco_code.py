@@ -48,8 +48,9 @@ LINES: dict[tuple[str, str], Callable[[Values, int, float], str]] = {
     ('blade_flapping', 'drag_centre'): lambda p, n, r: (
         'across = force[:2] + push[:, :2].sum(axis=0)\n'
         f'moment += {_one(p["arm"])} * np.array([-across[1], across[0], 0.0])')}
+SAYS = 'has no number for'
 TEXT = '''"""
-What {model} has no number for: {names}.
+What {model} ''' + SAYS + ''': {names}.
 
 It stands beside the model, needs MuJoCo and NumPy, and acts once a process says:
     install(model)      # an mjModel of {model}; compile all models before this

@@ -97,7 +97,7 @@ def _write_thrusts(edited: EditedXml, base: Base, thrusts: list[Push]) -> None:
 
 def _write_lags(edited: EditedXml, base: Base, thrusts: list[Push]) -> None:
     """Have the dynamics of the actuators hold the lag."""
-    lag = 0.5 * (base.wanted.rise + base.wanted.fall)
+    lag = base.wanted.lag
     if base.wanted.rise != base.wanted.fall:
         edited.one_lag()
     now = thrusts[0].lag if thrusts else 0.0

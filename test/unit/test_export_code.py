@@ -154,3 +154,10 @@ def test_the_command_writes_it_beside_the_model(tmp_path, capsys):
     said = capsys.readouterr().out
     assert 'carried: rotor_drag (by_speed): by the code beside the file' in said
     assert 'like_real.py: code for what the file has no number for' in said
+    # It is not written over what somebody else wrote.
+    (tmp_path / 'mine.py').write_text('print(1)')
+    assert main(['export', str(tmp_path / 'v.yaml'), '--to', 'mujoco', '-o',
+                 str(tmp_path / 'mine.xml')]) == 2
+    said = capsys.readouterr().err.strip()
+    assert 'mine.py: the code beside the file would be written over this' in said
+    assert '\n' not in said and not (tmp_path / 'mine.xml').exists()
