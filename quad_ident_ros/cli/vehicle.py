@@ -100,7 +100,8 @@ def _show_vehicle(reading: Reading, screen: Any) -> None:
     say(screen, f'vehicle: {vehicle.name}, {vehicle.mass:.6g} kg, {len(vehicle.rotors)} rotors, '
                 f'hovers at {vehicle.hover_speed:.4g} rad/s{most}')
     for name, values in vehicle.effects.items():
-        say(screen, f'effect: {name} ' + ', '.join(f'{key} = {value:.6g}' for key, value in values.items()))
+        numbers = ', '.join(f'{key} = {value:.6g}' for key, value in values.items())
+        say(screen, f'effect: {name} {numbers}')
     if not vehicle.effects:
         say(screen, 'effects: none')
 

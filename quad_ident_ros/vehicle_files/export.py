@@ -144,7 +144,8 @@ def _constants(vehicle: Vehicle, base: Base, target: Target, edits: Edits) -> li
                          ('speed_min', 'the lowest speed of a rotor is not changed'),
                          ('rotor_inertia', NEEDS['rotor_gyro']),
                          ('rotor_radius', 'only what flies near the ground hangs on it')):
-        if differs(data.get(name, 0.0), getattr(vehicle, name)):
+        value = getattr(vehicle, name)
+        if value and differs(data.get(name, 0.0), value):
             found.append(Fate(name, '', reason))
     if any(vehicle.linear_drag) and not {'linear_drag', 'rotor_drag'} & target.holds:
         found.append(Fate('linear_drag', '', 'the format has no such drag'))
