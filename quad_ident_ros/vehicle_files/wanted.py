@@ -56,7 +56,7 @@ class Wanted:
 
     @property
     def lag(self) -> float:
-        """The mean of both time constants, s."""
+        """Return the mean of both time constants, s."""
         return 0.5 * (self.rise + self.fall)
 
 

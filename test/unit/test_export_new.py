@@ -34,7 +34,7 @@ def test_what_is_read_is_written_and_read_again_as_it_was(to):
 def test_a_vehicle_of_a_vehicle_file_goes_into_every_simulator(to, name):
     vehicle = replace(load_vehicle(name), products=(1e-5, 0.0, -2e-5))
     if to == 'px4_sih':
-        with pytest.raises(InputError, match="order and the spins of PX4's SIH"):
+        with pytest.raises(InputError, match='order and the spins that SIH of PX4 has'):
             export(vehicle, to)
         return
     found = export(vehicle, to)
