@@ -18,7 +18,7 @@ COMMANDS = {
     'fit': 'estimate mass, inertia, drag, motor lag, ... from flights',
     'diagnose': 'say where the sim-to-real gap lies, what causes it, how far it shrinks',
     'vehicle': "read a vehicle from a simulator's file (MJCF, SDF, URDF, rotorpy, ...)",
-    'export': "write a vehicle into a simulator's own file (SDF, MJCF, URDF)",
+    'export': "write a vehicle into a simulator's own file (SDF, MJCF, rotorpy, ...)",
     'info': 'say what is in a file or flight record, and what is wrong with it',
     'convert': 'write a flight record in another format',
     'paper': "reproduce the paper's tables and figures, and check its claims",

@@ -6,15 +6,13 @@ import argparse
 from dataclasses import asdict
 from typing import Any
 
-from rich import box
-from rich.table import Table
 import yaml
 
 from quad_ident_ros import schema
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.vehicle import load_vehicle, vehicle_to_mapping, write_vehicle
 from quad_ident_ros.report.data import write_json
-from quad_ident_ros.report.table import console
+from quad_ident_ros.report.table import console, say, table_of
 from quad_ident_ros.vehicle_files.kinds import KINDS
 from quad_ident_ros.vehicle_files.load import read_vehicle, source_of
 from quad_ident_ros.vehicle_files.reading import needed_vehicle, Reading, SETTABLE
@@ -82,38 +80,30 @@ def as_data(reading: Reading) -> dict[str, Any]:
 def show(reading: Reading) -> None:
     """Print what was read, what became of it, what is missing and what was assumed."""
     screen = console()
-
-    def say(text: str) -> None:
-        screen.print(text, markup=False, highlight=False, soft_wrap=True)
-
-    say(f'{reading.path}: {reading.kind}')
+    say(screen, f'{reading.path}: {reading.kind}')
     if reading.read:
-        table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1), header_style='bold')
-        for title in ('read', 'value', 'unit', 'place'):
-            table.add_column(title, overflow='fold')
-        for entry in reading.read:
-            table.add_row(entry.key, _shown(entry.value), entry.unit, entry.place)
-        screen.print(table)
+        screen.print(table_of(('read', 'value', 'unit', 'place'), [
+            (entry.key, _shown(entry.value), entry.unit, entry.place) for entry in reading.read]))
     if reading.vehicle is not None:
-        _show_vehicle(reading, say)
+        _show_vehicle(reading, screen)
     for key, text in reading.missing.items():
-        say(f'missing: {key}: {text}')
+        say(screen, f'missing: {key}: {text}')
     for text in reading.assumed:
-        say(f'assumed: {text}')
+        say(screen, f'assumed: {text}')
 
 
-def _show_vehicle(reading: Reading, say: Any) -> None:
+def _show_vehicle(reading: Reading, screen: Any) -> None:
     vehicle = reading.vehicle
     assert vehicle is not None
     most = ('' if vehicle.speed_max == float('inf') else
             f', {100 * vehicle.hover_speed / vehicle.speed_max:.3g} % of its most')
-    say(f'vehicle: {vehicle.name}, {vehicle.mass:.6g} kg, {len(vehicle.rotors)} rotors, hovers at '
-        f'{vehicle.hover_speed:.4g} rad/s{most}')
+    say(screen, f'vehicle: {vehicle.name}, {vehicle.mass:.6g} kg, {len(vehicle.rotors)} rotors, '
+                f'hovers at {vehicle.hover_speed:.4g} rad/s{most}')
     for name, values in vehicle.effects.items():
-        say(f'effect: {name} ' + ', '.join(f'{key} = {value:.6g}'
-                                           for key, value in values.items()))
+        numbers = ', '.join(f'{key} = {value:.6g}' for key, value in values.items())
+        say(screen, f'effect: {name} {numbers}')
     if not vehicle.effects:
-        say('effects: none')
+        say(screen, 'effects: none')
 
 
 def _entry(text: str) -> tuple[str, Any]:

@@ -15,6 +15,7 @@ from quad_ident_ros.greybox.flights import Track
 from quad_ident_ros.greybox.parameters import nominal
 from quad_ident_ros.model.vehicle import Vehicle
 
+NOMINAL, WHOLE = 'nominal', 'vehicle'
 LEAST = 1e-3    # of the gap before: what a vehicle closes less of is nothing to have a share of
 
 
@@ -47,10 +48,10 @@ def carried(records: Sequence[FlightRecord], before: Vehicle, whole: Vehicle,
     gone = {(name, key) for name, values in whole.effects.items() for key in values
             if key not in intake.vehicle.effects.get(name, {})}
     found = {name: _gap(tracks, replace(vehicle, effects=_without(vehicle.effects, gone)), horizon)
-             for name, vehicle in {'nominal': before, 'vehicle': whole, **parts}.items()}
-    room = found['nominal']['velocity'] - found['vehicle']['velocity']
-    shares = {name: (found['nominal']['velocity'] - found[name]['velocity']) / room
-              for name in parts} if room > LEAST * found['nominal']['velocity'] else {}
+             for name, vehicle in {NOMINAL: before, WHOLE: whole, **parts}.items()}
+    room = found[NOMINAL]['velocity'] - found[WHOLE]['velocity']
+    shares = {name: (found[NOMINAL]['velocity'] - found[name]['velocity']) / room
+              for name in parts} if room > LEAST * found[NOMINAL]['velocity'] else {}
     return Carried(horizon, dict(UNITS), found, shares)
 
 

@@ -23,6 +23,21 @@ def console():
     return Console(width=max(Console().width, WIDTH), markup=False, emoji=False)
 
 
+def say(screen, text):
+    """Print a line on a console as it is, however long."""
+    screen.print(text, markup=False, highlight=False, soft_wrap=True)
+
+
+def table_of(titles, rows, numbers=()):
+    """Return a rich Table of rows of text; numbers: titles of the columns on the right."""
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1), header_style='bold')
+    for title in titles:
+        table.add_column(title, overflow='fold', justify='right' if title in numbers else 'left')
+    for row in rows:
+        table.add_row(*row)
+    return table
+
+
 def identification_table(identification):
     """Return a rich Table: K, a, b with standard errors and the errors of each fit."""
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1), header_style='bold')

@@ -139,7 +139,9 @@ class Drone:
             if theirs in self.table:
                 draft.take(ours, self.rpm(thrust, self.number(theirs)) * TO_SPEED, 'rad/s',
                            self.place(theirs, 'rpm2thrust'))
-        exponent = float((thrust[1] * hover + 2.0 * thrust[2] * hover ** 2) / share)
+        # Over the curve itself, not the share of the weight: a square has 2, without rounding.
+        exponent = float((thrust[1] * hover + 2.0 * thrust[2] * hover ** 2)
+                         / (thrust[0] + thrust[1] * hover + thrust[2] * hover ** 2))
         if not POWERS[0] <= exponent <= POWERS[1]:
             raise InputError(f'{self._where("rpm2thrust")}: about hover thrust goes with the '
                              f'power {exponent:.4g} of the speed; no rotor does')

@@ -21,7 +21,7 @@ from quad_ident_ros.vehicle_files.out_base import Base
 from quad_ident_ros.vehicle_files.reading import finished
 from quad_ident_ros.vehicle_files.source import Source
 from quad_ident_ros.vehicle_files.speed_unit import counted, unit_of
-from quad_ident_ros.vehicle_files.target import Target
+from quad_ident_ros.vehicle_files.target import Code, Target
 from quad_ident_ros.vehicle_files.targets import TARGETS
 from quad_ident_ros.vehicle_files.wanted import wanted_of
 from quad_ident_ros.vehicle_files.ways import Fate, Fates, fates_of, NEEDS, WAYS
@@ -35,7 +35,7 @@ class Export:
     What comes of an export: the text of the file, its changes, remarks on them, and fates.
 
     base: what they change, the user's own file or a new one with the constants of the vehicle;
-    unit: what 1 rad/s of the vehicle is in the file.
+    unit: what 1 rad/s of the vehicle is in the file; code: the Code beside it, or None.
     """
 
     text: str
@@ -44,16 +44,17 @@ class Export:
     fates: Fates
     base: Source
     unit: float
+    code: Code | None
 
 
-def export(vehicle: Vehicle, to: str, source: Source | None = None, sag: float | None = None
-           ) -> Export:
+def export(vehicle: Vehicle, to: str, source: Source | None = None, sag: float | None = None,
+           name: str = 'the model') -> Export:
     """
     Return a file of a simulator with the numbers of a vehicle, and what becomes of each effect.
 
     Args: to: of TARGETS; source: the file whose numbers change, None for a new one; sag: mean
-    share of the thrust that battery_sag leaves, None where it is not known. Raises InputError in
-    one line.
+    share of the thrust that battery_sag leaves, None where it is not known; name: of the file that
+    is written, for the code beside it. Raises InputError in one line.
     """
     target = TARGETS[to]
     if source is None:
@@ -72,10 +73,14 @@ def export(vehicle: Vehicle, to: str, source: Source | None = None, sag: float |
     edits = target.write(base)
     fates = fates_of(vehicle.effects, effects, target.holds, edits.lacking, edits.nearest, sag)
     more, near = _constants(vehicle, base, target, edits), _nearest(vehicle, edits, target)
-    return Export(edits.result(), tuple(edits.changes), tuple(edits.remarks),
-                  replace(fates, nearest=(*fates.nearest, *near), not_carried=(
-                      *fates.not_carried, *more, *_remaining(vehicle, effects, target, edits))),
-                  source, unit)
+    fates = replace(fates, nearest=(*fates.nearest, *near), not_carried=(
+        *fates.not_carried, *more, *_remaining(vehicle, effects, target, edits)))
+    code = target.code(vehicle, base, name) if target.code else None
+    if code is not None:
+        fates = fates.with_code([*code.forms, *((each, '') for each in code.constants)],
+                                'by the code beside the file')
+    return Export(edits.result(), tuple(edits.changes), tuple(edits.remarks), fates, source, unit,
+                  code)
 
 
 def _kind(target: Target, to: str, source: Source) -> Kind:
@@ -139,7 +144,8 @@ def _constants(vehicle: Vehicle, base: Base, target: Target, edits: Edits) -> li
                          ('speed_min', 'the lowest speed of a rotor is not changed'),
                          ('rotor_inertia', NEEDS['rotor_gyro']),
                          ('rotor_radius', 'only what flies near the ground hangs on it')):
-        if differs(data.get(name, 0.0), getattr(vehicle, name)):
+        value = getattr(vehicle, name)
+        if value and differs(data.get(name, 0.0), value):
             found.append(Fate(name, '', reason))
     if any(vehicle.linear_drag) and not {'linear_drag', 'rotor_drag'} & target.holds:
         found.append(Fate('linear_drag', '', 'the format has no such drag'))

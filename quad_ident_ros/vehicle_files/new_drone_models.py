@@ -11,6 +11,7 @@ from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.vehicle import Vehicle
 from quad_ident_ros.vehicle_files.drone_models import TO_SPEED
 from quad_ident_ros.vehicle_files.edits import shown
+from quad_ident_ros.vehicle_files.new_rotors import rotor_inertia
 
 ROTORS = 4
 
@@ -36,7 +37,7 @@ def new(vehicle: Vehicle) -> str:
         if 0.0 < speed < math.inf:
             rows[key] = _number(vehicle.thrust_coefficient * speed ** 2)
     for key, value in (('prop_radius', vehicle.rotor_radius),
-                       ('prop_inertia', vehicle.rotor_inertia)):
+                       ('prop_inertia', rotor_inertia(vehicle))):
         if value > 0.0:
             rows[key] = _number(value)
     return f'[{json.dumps(vehicle.name)}]\n' + ''.join(

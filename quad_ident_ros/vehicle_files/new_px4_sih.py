@@ -53,6 +53,6 @@ def _layout(vehicle: Vehicle) -> tuple[float, float, float]:
                 math.dist(place[:2], (x * pitch, y * roll)) < 0.5 * vehicle.arm_length
                 for place, x, y in zip(places, forward, left, strict=True)):
             return kind, roll, pitch
-    raise InputError(f"{vehicle.name}: its rotors are not in the places, the order and the spins "
-                     "of PX4's SIH: front right and back left with spin -1, front left and back "
-                     'right with spin 1, or six; order them so in vehicle file and records')
+    raise InputError(f'{vehicle.name}: its rotors are not in the places, the order and the spins '
+                     'that SIH of PX4 has: front right and back left with spin -1, front left and '
+                     'back right with spin 1, or six; order them so in vehicle file and records')

@@ -54,10 +54,14 @@ class Layout:
     slow: float
 
 
+def rotor_inertia(vehicle: Vehicle) -> float:
+    """Return the moment of inertia of a rotor about its axis that acts, or is known, kg m^2."""
+    return vehicle.effects.get('rotor_gyro', {}).get('rotor_inertia', vehicle.rotor_inertia)
+
+
 def layout(vehicle: Vehicle) -> Layout:
     """Return the Layout of a vehicle without its effects, but for the inertia of its rotors."""
-    inertia = vehicle.effects.get('rotor_gyro', {}).get('rotor_inertia', vehicle.rotor_inertia)
-    inertia = inertia or ROTOR_INERTIA * max(vehicle.inertia)
+    inertia = rotor_inertia(vehicle) or ROTOR_INERTIA * max(vehicle.inertia)
     whole = Body(vehicle.mass, np.zeros(3), vehicle.inertia_matrix)
     mass = ROTOR_MASS * vehicle.mass
     for slow in SLOWDOWNS:

@@ -26,12 +26,12 @@ class Base:
 
     @property
     def mass(self) -> float:
-        """The mass of the file, kg."""
+        """Return the mass of the file, kg."""
         return float(self.draft.data['mass'])
 
     @property
     def inertia(self) -> np.ndarray:
-        """The inertia (3, 3) of the file, kg m^2."""
+        """Return the matrix of inertia of the file, (3, 3) kg m^2."""
         values = np.array(self.draft.data['inertia'], float)
         return np.diag(values) if values.ndim == 1 else values
 

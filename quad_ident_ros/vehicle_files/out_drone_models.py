@@ -71,10 +71,10 @@ class _EditedDrone(Edits):
         if found is None and any(moved):
             begin = after_header(self.text, self.drone.header)
             self.replace(begin, begin, f'{key} = {_written(new)}\n')
-        elif found is not None:
-            for (first, last), value, changed in zip(found.numbers, new, moved, strict=True):
-                if changed:
-                    self.replace(first, last, shown([value]))
+        for value, changed, (first, last) in zip(new, moved, found.numbers if found else (),
+                                                 strict=found is not None):
+            if changed:
+                self.replace(first, last, shown([value]))
 
 
 def _write_curves(edited: _EditedDrone, base: Base, drone: Drone) -> np.ndarray:

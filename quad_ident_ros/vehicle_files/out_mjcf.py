@@ -9,6 +9,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.model.vehicle import Vehicle
 from quad_ident_ros.vehicle_files.bodies import Body
 from quad_ident_ros.vehicle_files.edit_xml import EditedXml
 from quad_ident_ros.vehicle_files.edits import differs, SAME, shown
@@ -16,11 +17,13 @@ from quad_ident_ros.vehicle_files.mjcf import bodies_of, flying_body
 from quad_ident_ros.vehicle_files.mjcf_bodies import Part, parts_of
 from quad_ident_ros.vehicle_files.mjcf_defaults import Model, model_of
 from quad_ident_ros.vehicle_files.mjcf_thrust import Push, pushes_of
+from quad_ident_ros.vehicle_files.mujoco_code import code as program
+from quad_ident_ros.vehicle_files.mujoco_code import Rotors
 from quad_ident_ros.vehicle_files.new_mjcf import new
 from quad_ident_ros.vehicle_files.out_base import Base
 from quad_ident_ros.vehicle_files.out_body import body_for, MOMENTS, PRODUCTS, spread
 from quad_ident_ros.vehicle_files.reading import Draft
-from quad_ident_ros.vehicle_files.target import Target
+from quad_ident_ros.vehicle_files.target import Code, Target
 from quad_ident_ros.vehicle_files.ways import BODY, LAGS
 from quad_ident_ros.vehicle_files.xml_tree import parse
 
@@ -48,6 +51,18 @@ def write(base: Base) -> EditedXml:
     _write_thrusts(edited, base, thrusts)
     _write_lags(edited, base, thrusts)
     return edited
+
+
+def code(vehicle: Vehicle, base: Base, name: str) -> Code | None:
+    """Return the Code beside a model; see Target. None where it has no single rotors."""
+    if base.constant('thrust_coefficient') is None:
+        return None
+    model = model_of(parse(base.source.path, base.source.text))
+    parts = parts_of(model, *flying_body(base.source, model))
+    pushes = pushes_of(model, {name: site for part in parts for name, site in part.sites.items()})
+    places = [child.start for holder in model.root.all('actuator') for child in holder.children]
+    return program(vehicle, base.wanted, Rotors.of([push for push in pushes if push.pushes],
+                                                   places), name)
 
 
 def _write_thrusts(edited: EditedXml, base: Base, thrusts: list[Push]) -> None:
@@ -82,7 +97,7 @@ def _write_thrusts(edited: EditedXml, base: Base, thrusts: list[Push]) -> None:
 
 def _write_lags(edited: EditedXml, base: Base, thrusts: list[Push]) -> None:
     """Have the dynamics of the actuators hold the lag."""
-    lag = 0.5 * (base.wanted.rise + base.wanted.fall)
+    lag = base.wanted.lag
     if base.wanted.rise != base.wanted.fall:
         edited.one_lag()
     now = thrusts[0].lag if thrusts else 0.0
@@ -174,4 +189,4 @@ def _principal(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 TARGET = Target('mjcf', ('.xml', '.mjcf'),
-                frozenset((*BODY, *LAGS, 'thrust', 'losses', 'torque')), write, new)
+                frozenset((*BODY, *LAGS, 'thrust', 'losses', 'torque')), write, new, code)

@@ -36,9 +36,8 @@ def write(base: Base) -> Edits:
         edited.set(name, full, unit, wanted.sources[key],
                    stds.get(key, (0.0,))[0] * full or None)
     edited.lack(['speed_max'], 'a command is a share of SIH_T_MAX, and speeds are not of the file')
-    lag = 0.5 * (wanted.rise + wanted.fall)
-    if lag > 0.0:
-        edited.set('SIH_T_TAU', lag, 's', wanted.sources['rise'])
+    if wanted.lag > 0.0:
+        edited.set('SIH_T_TAU', wanted.lag, 's', wanted.sources['rise'])
     else:
         edited.lack(LAGS, 'PX4 divides by SIH_T_TAU, which needs to be above 0')
     if wanted.rise != wanted.fall:

@@ -53,9 +53,8 @@ def write(base: Base) -> EditedTable:
 def _write_motors(edited: EditedTable, base: Base) -> None:
     """Have the dictionary hold the lag and the highest speed."""
     wanted = base.wanted
-    lag = 0.5 * (wanted.rise + wanted.fall)
-    if lag > 0.0:
-        edited.entry('tau_m', lag, 's', wanted.sources['rise'])
+    if wanted.lag > 0.0:
+        edited.entry('tau_m', wanted.lag, 's', wanted.sources['rise'])
     else:
         edited.lack(LAGS, 'rotorpy divides by tau_m, which needs to be above 0')
     if wanted.rise != wanted.fall:

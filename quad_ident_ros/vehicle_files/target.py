@@ -12,14 +12,28 @@ from quad_ident_ros.vehicle_files.ways import Key
 
 
 @dataclass(frozen=True)
+class Code:
+    """
+    A program beside a file: its text, and what it does that the file has no number for.
+
+    forms: (effect, form) of effects; constants: of the vehicle file.
+    """
+
+    text: str
+    forms: tuple[tuple[str, str], ...]
+    constants: tuple[str, ...]
+
+
+@dataclass(frozen=True)
 class Target:
     """
     A simulator to write for.
 
     kind: of its files; endings: of their names; holds: what files of the kind have; write: returns
     the Edits by which a base file has what is wanted of it; new: returns the text of a file of its
-    own with the constants of a vehicle, in which there is room for its effects. Both raise
-    InputError.
+    own with the constants of a vehicle, in which there is room for its effects; code: returns the
+    Code beside a base file for a vehicle, its speeds in the unit of the file, and the name of the
+    written file, or None where it is to do nothing. All raise InputError.
     """
 
     kind: str
@@ -27,3 +41,4 @@ class Target:
     holds: frozenset[Key]
     write: Callable[[Base], Edits]
     new: Callable[[Vehicle], str]
+    code: Callable[[Vehicle, Base, str], Code | None] | None = None

@@ -54,6 +54,11 @@ class Wanted:
     stds: dict[str, tuple[float, ...]]
     sources: dict[str, str]
 
+    @property
+    def lag(self) -> float:
+        """Return the mean of both time constants, s."""
+        return 0.5 * (self.rise + self.fall)
+
 
 def wanted_of(vehicle: Vehicle, sag: float | None, holds: Collection[Key]) -> Wanted:
     """

@@ -94,11 +94,20 @@ class Fate:
 
 @dataclass(frozen=True)
 class Fates:
-    """All effects, and the constants that changed, by what becomes of them."""
+    """All effects, and constants that changed, by what becomes of them; by_code: beside it."""
 
     carried: tuple[Fate, ...]
+    by_code: tuple[Fate, ...]
     nearest: tuple[Fate, ...]
     not_carried: tuple[Fate, ...]
+
+    def with_code(self, names: Collection[tuple[str, str]], said: str) -> Fates:
+        """Return them with those of some (name, form) carried by the code beside the file."""
+        def others(fates: tuple[Fate, ...]) -> tuple[Fate, ...]:
+            return tuple(fate for fate in fates if (fate.name, fate.form) not in names)
+
+        return Fates(others(self.carried), tuple(Fate(*name, said) for name in names),
+                     others(self.nearest), others(self.not_carried))
 
 
 def way_of(effect: str, form: str, holds: Collection[Key]) -> Way | None:
@@ -121,7 +130,7 @@ def forms_of(effects: Values) -> list[tuple[str, str, dict[str, float]]]:
 def fates_of(effects: Values, base_effects: Values, holds: Collection[Key],
              lacking: Mapping[str, str], nearest: Mapping[str, str], sag: float | None) -> Fates:
     """
-    Return what becomes of each form of each effect of a vehicle: one of three.
+    Return what becomes of each form of each effect by the numbers of a file.
 
     Args: base_effects: what the file has by itself; holds: what files of its kind have; lacking
     and nearest: as of Edits, of this file; sag: as of wanted_of.
@@ -148,7 +157,7 @@ def fates_of(effects: Values, base_effects: Values, holds: Collection[Key],
         else:
             lost = next((nearest[key] for key in keys if key in nearest), way.lost)
             (near if lost else carried).append(Fate(effect, form, lost or 'as it is'))
-    return Fates(tuple(carried), tuple(near), tuple(not_carried))
+    return Fates(tuple(carried), (), tuple(near), tuple(not_carried))
 
 
 def _alike(values: Mapping[str, float], others: Mapping[str, float]) -> bool:

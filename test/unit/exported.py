@@ -3,6 +3,7 @@
 """A file for each simulator that vehicles are written for, and what is read of them again."""
 
 from dataclasses import replace
+import sys
 
 import pytest
 import test_vehicle_files_mjcf as mjcf
@@ -51,6 +52,8 @@ BASES = {'gazebo': (SDF, 'model.sdf'), 'mujoco': (MJCF, 'quad.xml'), 'urdf': (UR
 
 def base(to):
     """Return the file of a target, and the vehicle that it describes."""
+    if to == 'crazyflow' and sys.version_info < (3, 11):
+        pytest.skip('TOML is read from Python 3.11 on')
     text, name = BASES[to]
     return Source(name, text), read_vehicle(Source(name, text)).vehicle
 

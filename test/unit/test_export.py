@@ -193,8 +193,8 @@ def test_every_form_of_every_effect_ends_in_one_class(to):
         effects = {**{name: value for name, value in vehicle.effects.items() if name != effect},
                    effect: values}
         fates = export(replace(vehicle, effects=effects), to, source).fates
-        ends = [(fate.name, fate.form) for fate in (*fates.carried, *fates.nearest,
-                                                    *fates.not_carried)]
+        ends = [(fate.name, fate.form) for fate in (*fates.carried, *fates.by_code,
+                                                    *fates.nearest, *fates.not_carried)]
         assert ends.count((effect, form.name)) == 1, (effect, form.name, fates)
         assert all(fate.reason for fate in (*fates.carried, *fates.nearest, *fates.not_carried))
     assert all(effect in NEEDS or (effect, form.name) in WAYS for effect, form in FORMS

@@ -51,6 +51,11 @@ def test_what_a_format_does_not_have_is_what_its_file_leaves(flown):
     assert 0.3 < shares['mujoco'] < shares['gazebo'] < 0.999
 
 
+def test_code_beside_the_file_closes_what_its_numbers_leave(flown):
+    shares = exported(flown, 'mujoco', 'b.xml')['gap']['shares']
+    assert shares['file'] < 0.9 < 0.999 < shares['file_and_code'] <= 1.0 + 1e-9
+
+
 def test_the_base_is_the_nominal_vehicle(flown):
     nominal = flown / 'nominal_params.py'
     write_vehicle(flown / 'nominal.yaml', load_vehicle('hummingbird'))

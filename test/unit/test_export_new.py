@@ -32,13 +32,14 @@ def test_what_is_read_is_written_and_read_again_as_it_was(to):
 @pytest.mark.parametrize('to', TARGETS)
 @pytest.mark.parametrize('name', ['paper_quadrotor', 'hummingbird'])
 def test_a_vehicle_of_a_vehicle_file_goes_into_every_simulator(to, name):
+    source, _ = base(to)
     vehicle = replace(load_vehicle(name), products=(1e-5, 0.0, -2e-5))
     if to == 'px4_sih':
-        with pytest.raises(InputError, match="order and the spins of PX4's SIH"):
+        with pytest.raises(InputError, match='order and the spins that SIH of PX4 has'):
             export(vehicle, to)
         return
     found = export(vehicle, to)
-    read = counted(again(base(to)[0], found), 1.0 / found.unit)
+    read = counted(again(source, found), 1.0 / found.unit)
     assert to == 'rotorpy' or read.name == vehicle.name    # there it is that of the file
     for key in ('mass', 'thrust_coefficient', 'torque_coefficient'):
         assert getattr(read, key) == pytest.approx(getattr(vehicle, key), rel=1e-12), key

@@ -143,6 +143,15 @@ def test_lag_and_drag_of_drone_models_are_those_when_read_again():
                                                             [0.01, 0.02, 0.03]), rtol=1e-9)
 
 
+@TOML
+def test_the_inertia_of_the_rotors_goes_into_a_new_file_of_drone_models():
+    vehicle = with_effects(load_vehicle('hummingbird'), rotor_gyro={'rotor_inertia': 4e-5})
+    found = export(vehicle, 'crazyflow')
+    read = read_vehicle(Source('params.toml', found.text)).vehicle
+    assert read.effects == {'rotor_gyro': {'rotor_inertia': pytest.approx(4e-5)}}
+    assert [fate.name for fate in found.fates.carried] == ['rotor_gyro']
+
+
 def test_sih_has_a_drag_of_all_axes_and_a_wind():
     source, vehicle = base('px4_sih')
     wanted = with_effects(vehicle, wind={'x': 1.0, 'y': -2.0}, rotor_drag={'x': 0.3, 'z': 0.3},

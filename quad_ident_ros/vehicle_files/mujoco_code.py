@@ -1,0 +1,178 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""A program beside an MJCF model: forces of effects that MuJoCo has no number for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from textwrap import indent
+
+from quad_ident_ros.model.vehicle import Vehicle
+from quad_ident_ros.vehicle_files.edits import shown
+from quad_ident_ros.vehicle_files.mjcf_thrust import Push
+from quad_ident_ros.vehicle_files.target import Code
+from quad_ident_ros.vehicle_files.wanted import Wanted
+from quad_ident_ros.vehicle_files.ways import forms_of
+
+Values = Mapping[str, float]
+# Of each form the lines that add to `gain` (n,) on the thrusts, `push` (n, 3) of the rotors, or
+# `force` and `moment` (3,) on the body, in the order in which they act. `air` (3,) and `u` (n, 3)
+# are velocities of the centre of mass and of the rotors against the air, `w` (n,) the speeds of
+# the rotors over those at hover, all in body axes.
+LINES: dict[tuple[str, str], Callable[[Values, int, float], str]] = {
+    ('thrust_scale', 'exponent'): lambda p, n, r: (
+        f'gain *= np.maximum(w, 0.05) ** {_one(p["exponent"] - 2.0)}'),
+    ('thrust_scale', 'offset'): lambda p, n, r: (
+        'least = np.maximum(w, 0.05)\n'
+        f'gain *= (np.maximum(least + {_one(p["offset"])}, 0.0) '
+        f'/ ({_one(1.0 + p["offset"])} * least)) ** 2'),
+    ('ground_effect', 'cheeseman_bennett'): lambda p, n, r: (
+        f'square = 16.0 * np.maximum(height, {_one(0.5 * r)}) ** 2\n'
+        f'gain *= square / (square - np.minimum({_one(p["strength"] * r * r)}, 0.75 * square))'),
+    ('rotor_drag', 'by_speed'): lambda p, n, r: (
+        f'push[:, :2] -= {_one(p["coefficient"] / n)} * w[:, None] * u[:, :2]'),
+    ('rotor_drag', 'axes'): lambda p, n, r: f'force -= {_row(p, "xyz")} * air',
+    ('rotor_drag', 'axes_by_speed'): lambda p, n, r: (
+        f'push -= {_row(p, ("x_by_speed", "y_by_speed", "z_by_speed"), n)} * w[:, None] * u'),
+    ('body_drag', 'planar'): lambda p, n, r: (
+        f'force -= {_row(p, ("horizontal", "horizontal", "vertical"))} '
+        '* np.linalg.norm(air) * air'),
+    ('body_drag', 'axes'): lambda p, n, r: (
+        f'force -= {_row(p, "xyz")} * np.linalg.norm(air) * air'),
+    ('inflow', 'linear'): lambda p, n, r: (
+        f'push[:, 2] += {_one(p.get("translational", 0.0) / n)} * (u[:, :2] ** 2).sum(axis=1)\n'
+        f'push[:, 2] -= {_one(p.get("axial", 0.0) / n)} * w * u[:, 2]'),
+    ('blade_flapping', 'hub_moment'): lambda p, n, r: (
+        f'moment += {_one(p["coefficient"] / n)} * np.array([-w @ u[:, 1], w @ u[:, 0], 0.0])'),
+    ('blade_flapping', 'drag_centre'): lambda p, n, r: (
+        'across = force[:2] + push[:, :2].sum(axis=0)\n'
+        f'moment += {_one(p["arm"])} * np.array([-across[1], across[0], 0.0])')}
+SAYS = 'has no number for'
+TEXT = '''"""
+What {model} ''' + SAYS + ''': {names}.
+
+It stands beside the model, needs MuJoCo and NumPy, and acts once a process says:
+    install(model)      # an mjModel of {model}; compile all models before this
+{delay_said}"""
+
+import mujoco
+import numpy as np
+
+SITES = {sites}
+ACTUATORS = np.array({actuators})
+LIFT = np.array({lifts})    # N, thrust of each rotor at its speed at hover
+WIND = np.array({wind})    # m/s, velocity of the air, world axes
+
+
+def install(model):
+    """Have MuJoCo call forces(model, data) in every step of the integration of this model."""
+    own = model.nbody, model.nu, model.nq
+    mujoco.set_mjcb_passive(lambda each, data: forces(each, data)
+                            if (each.nbody, each.nu, each.nq) == own else None)
+
+
+def thrusts(model, data):
+    """Return the thrusts (n,) of the rotors as the actuators give them, N."""
+    act = model.actuator_actadr[ACTUATORS]
+    limits = np.where(model.actuator_ctrllimited[ACTUATORS, None],
+                      model.actuator_ctrlrange[ACTUATORS], [-np.inf, np.inf])
+    signal = np.clip(data.ctrl[ACTUATORS], *limits.T)
+    for k in np.flatnonzero(act >= 0):
+        signal[k] = data.act[act[k]]
+    gear = np.linalg.norm(model.actuator_gear[ACTUATORS, :3], axis=1)
+    return np.maximum(gear * model.actuator_gainprm[ACTUATORS, 0] * signal, 0.0)
+
+
+def forces(model, data):
+    """Add the forces and moments on the vehicle to data.qfrc_passive."""
+    sites = [model.site(name).id for name in SITES]
+    body = model.body_rootid[model.site_bodyid[sites[0]]]
+    axes, centre = data.xmat[body].reshape(3, 3), data.subtree_com[body]
+    spin = np.zeros(6)    # rate and velocity of the body's origin, world axes
+    mujoco.mj_objectVelocity(model, data, mujoco.mjtObj.mjOBJ_XBODY, body, spin, 0)
+    rate = axes.T @ spin[:3]
+    air = axes.T @ (spin[3:] + np.cross(spin[:3], centre - data.xpos[body]) - WIND)
+    arms, height = (data.site_xpos[sites] - centre) @ axes, data.site_xpos[sites, 2]
+    u = air + np.cross(rate, arms)
+    lift = thrusts(model, data)
+    w = np.sqrt(lift / LIFT)
+    gain, push, force, moment = np.ones(len(sites)), np.zeros((len(sites), 3)), np.zeros(3), 0.0
+{lines}
+    push[:, 2] += (gain - 1.0) * lift
+    force = axes @ (force + push.sum(axis=0))
+    moment = axes @ (moment + np.cross(arms, push).sum(axis=0))
+    mujoco.mj_applyFT(model, data, force, moment, centre, body, data.qfrc_passive)
+'''
+DELAY = '''
+
+class Delayed:
+    """Commands that act {delay} s after they are given: one for each mjData."""
+
+    def __init__(self):
+        self.waiting = []
+
+    def command(self, data, controls):
+        """Give controls (n,), and let those act whose time has come; call it before mj_step."""
+        self.waiting.append((data.time + {delay}, np.array(controls)))
+        while self.waiting and self.waiting[0][0] <= data.time + 1e-9:
+            data.ctrl[ACTUATORS] = self.waiting.pop(0)[1]
+'''
+
+
+@dataclass(frozen=True)
+class Rotors:
+    """The rotors of a model: sites, and where their actuators stand among all of it."""
+
+    sites: tuple[str, ...]
+    actuators: tuple[int, ...]
+
+    @classmethod
+    def of(cls, pushes: Sequence[Push], actuators: Sequence[int]) -> Rotors:
+        """Return the Rotors of the lines in which the actuators of a model begin."""
+        return cls(tuple(push.site for push in pushes),
+                   tuple(list(actuators).index(push.element.start) for push in pushes))
+
+
+def code(vehicle: Vehicle, wanted: Wanted, rotors: Rotors, model: str) -> Code | None:
+    """
+    Return the program beside a model, or None where it is to do nothing.
+
+    Args: vehicle: with its effects, its speeds in the unit of the file; wanted: what the file
+    holds of it; model: the name of the file.
+    """
+    count, radius = len(vehicle.rotors), vehicle.rotor_radius
+    acting = {(effect, form): values for effect, form, values in forms_of(vehicle.effects)}
+    lines = [f'{part} -= {_row(dict(zip("xyz", drag, strict=True)), "xyz")} * {speed}'
+             for part, drag, speed in (('force', vehicle.linear_drag, 'air'),
+                                       ('moment', vehicle.rotational_drag, 'rate * np.abs(rate)'))
+             if any(drag)]
+    forms = [key for key in LINES if key in acting]
+    lines += [LINES[key](acting[key], count, radius) for key in forms]
+    if ('wind', 'steady') in acting and lines:
+        forms.append(('wind', 'steady'))
+    delay = acting.get(('actuation_delay', 'pure_delay'), {}).get('delay', 0.0)
+    if delay:
+        forms.append(('actuation_delay', 'pure_delay'))
+    constants = tuple(name for name in ('linear_drag', 'rotational_drag')
+                      if any(getattr(vehicle, name)))
+    if not forms and not constants:
+        return None
+    losses = wanted.losses if wanted.losses.max() < 1.0 else 0.0 * wanted.losses
+    lifts = wanted.thrust * (1.0 - losses) * wanted.hover ** 2
+    text = TEXT.format(
+        model=model, names=', '.join(dict.fromkeys([*constants, *(name for name, _ in forms)])),
+        delay_said='and gives its commands by Delayed.command.\n' if delay else '',
+        sites=list(rotors.sites), actuators=list(rotors.actuators),
+        lifts=f'[{", ".join(map(_one, lifts))}]', wind=f'[{", ".join(map(_one, wanted.wind))}]',
+        lines=indent('\n'.join(lines), '    '))
+    return Code(text + (DELAY.format(delay=_one(delay)) if delay else ''), tuple(forms), constants)
+
+
+def _one(value: float) -> str:
+    return shown([value])
+
+
+def _row(values: Values, keys: Sequence[str], count: int = 1) -> str:
+    """Return numbers by key as an array; count: what each is divided by."""
+    return ('np.array([' + ', '.join(_one(values.get(key, 0.0) / count) for key in keys) + '])')
