@@ -4,7 +4,6 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-import math
 
 import numpy as np
 
@@ -43,7 +42,8 @@ class Quadratic:
 def occam(information: np.ndarray, prior: np.ndarray, scatter: float,
           causes: Sequence[Candidate], rules: Rules) -> float:
     """Return the log-evidence that free columns of a prior (C, C) and causes cost."""
-    return float(_volume(information, prior, scatter)) + _odds(causes, rules)
+    return float(_volume(information, prior, scatter)
+                 + _odds(np.ones((1, len(causes)), bool), causes, rules)[0])
 
 
 def _volume(information: np.ndarray, prior: np.ndarray, scatter: float) -> np.ndarray:
@@ -54,15 +54,17 @@ def _volume(information: np.ndarray, prior: np.ndarray, scatter: float) -> np.nd
                   - np.linalg.slogdet((prior + information / scatter) * size)[1])
 
 
-def _odds(causes: Sequence[Candidate], rules: Rules) -> float:
-    nuisances = [cause.nuisance for cause in causes if cause.nuisance is not None]
+def _odds(member: np.ndarray, causes: Sequence[Candidate], rules: Rules) -> np.ndarray:
+    """Return the log-odds (N,) before looking of sets; member (N, K): which causes each has."""
+    shares = np.array([cause.nuisance.odds if cause.nuisance else rules.prior_odds * cause.share
+                       for cause in causes])
     # A sensor with one bias may have others. Clocks, thrust and wind have nothing to do with them.
-    apart = [kind for kind in nuisances if kind.name in (CLOCK, LEVEL) or kind.of_effect]
-    biases = [kind.odds if k == 0 else LIKELY for k, kind in
-              enumerate(kind for kind in nuisances if kind not in apart)]
-    effects = [rules.prior_odds * cause.share for cause in causes if cause.nuisance is None]
-    shares = effects + [kind.odds for kind in apart] + biases
-    return sum(math.log(share / (1.0 - share)) for share in shares)
+    biases = [k for k, cause in enumerate(causes) if cause.nuisance is not None
+              and cause.nuisance.name not in (CLOCK, LEVEL) and not cause.nuisance.of_effect]
+    further = np.zeros(member.shape, bool)
+    further[:, biases] = member[:, biases] & (np.cumsum(member[:, biases], axis=1) > 1)
+    shares = np.where(further, LIKELY, shares)
+    return np.sum(np.log(shares / (1.0 - shares)), axis=1, where=member)
 
 
 def linear_evidence(quadratic: Quadratic, sets: Sequence[tuple], rows: dict, rules: Rules
@@ -73,16 +75,19 @@ def linear_evidence(quadratic: Quadratic, sets: Sequence[tuple], rows: dict, rul
     Args: sets: N tuples of causes; rows {cause: rows of the quadratic}. A row that would leave its
     bounds is held there. -inf where all rows of a cause are held at no effect.
     """
-    number = {cause: k for k, cause in enumerate(rows)}
-    member = np.zeros((len(sets), len(rows)))
-    for mine, chosen in zip(member, sets, strict=True):
-        mine[[number[cause] for cause in chosen]] = 1.0
+    member = np.array([[cause in chosen for cause in rows] for chosen in sets], bool)
+    return _evidence(quadratic, member.reshape(len(sets), len(rows)), rows, rules)
+
+
+def _evidence(quadratic: Quadratic, member: np.ndarray, rows: dict, rules: Rules
+              ) -> tuple[np.ndarray, np.ndarray]:
+    """Return linear_evidence of sets; member (N, K): which of the K causes each has."""
     freed = np.zeros((len(rows), len(quadratic.now)))
     for mine, places in zip(freed, rows.values(), strict=True):
         mine[places] = 1.0
     free = member @ freed > 0.0
     found = np.zeros(free.shape)
-    going = np.arange(len(sets))
+    going = np.arange(len(member))
     while len(going):
         for which, places in _by_size(free, going):
             found[which[:, None], places] = _solved(quadratic, found[which], places)
@@ -98,13 +103,13 @@ def linear_evidence(quadratic: Quadratic, sets: Sequence[tuple], rows: dict, rul
     distance = np.where(free, found, 0.0)
     value = -0.5 * (cost / quadratic.scatter
                     + np.sum(distance @ quadratic.prior * distance, axis=1))
-    for which, places in _by_size(free, np.arange(len(sets))):
+    for which, places in _by_size(free, np.arange(len(member))):
         blocks = places[:, :, None], places[:, None, :]
         value[which] += _volume(quadratic.information[blocks], quadratic.prior[blocks],
                                 quadratic.scatter)
     still = (found != 0.0) @ freed.T == 0.0
-    value += [_odds(chosen, rules) for chosen in sets]
-    value[np.any(still & (member > 0.0), axis=1)] = -np.inf
+    value += _odds(member, tuple(rows), rules)
+    value[np.any(still & member, axis=1)] = -np.inf
     return value, found
 
 
@@ -136,27 +141,40 @@ def beam(quadratic: Quadratic, causes: dict, rules: Rules
     Args: causes: {cause: rows of the quadratic}. Sets grow by one cause at a time from each of the
     best of a size; of two causes that exclude one another only one is in a set.
     """
-    def entries(sets: list[tuple]) -> dict:
-        values, distances = linear_evidence(quadratic, sets, causes, rules)
-        return dict(zip(sets, zip(values, sets, distances, strict=True), strict=True))
+    rows = {cause: causes[cause] for cause in key_of(tuple(causes))}
+    names = list(rows)
+    apart = np.array([[excludes(one, other) for other in names] for one in names], bool)
+    effects = np.array([cause.nuisance is None for cause in names], bool)
+    level = np.zeros((1, len(names)), bool)
+    found = []
+    most = -np.inf
+    while len(level):
+        values, distances = _evidence(quadratic, level, rows, rules)
+        found.append((values, level, distances))
+        most = max(most, values.max())
+        order = np.argsort(-values, kind='stable')[:BEAM]
+        level = _grown(level[order[values[order] > most - BEHIND]], apart, effects)
+    values, member, distances = (np.concatenate(part) for part in zip(*found, strict=True))
+    sets = [tuple(names[k] for k in np.flatnonzero(mine)) for mine in member]
+    return [(float(values[k]), sets[k], distances[k])
+            for k in np.argsort(-values, kind='stable')]
 
-    apart = {cause: {other for other in causes if excludes(cause, other)} for cause in causes}
-    seen = entries([()])
-    level = list(seen.values())
-    while level:
-        grown: dict = {}      # in the order in which they come up
-        for _, chosen, _ in level:
-            full = sum(cause.nuisance is None for cause in chosen) >= MOST
-            for cause in causes:
-                if full and cause.nuisance is None or not apart[cause].isdisjoint(chosen):
-                    continue
-                grown[key_of((*chosen, cause))] = None
-        grown = entries(list(grown))
-        seen.update(grown)
-        best = max(value for value, _, _ in seen.values())
-        level = sorted(grown.values(), key=lambda one: -one[0])[:BEAM]
-        level = [one for one in level if one[0] > best - BEHIND]
-    return sorted(seen.values(), key=lambda one: -one[0])
+
+def _grown(level: np.ndarray, apart: np.ndarray, effects: np.ndarray) -> np.ndarray:
+    """
+    Return the sets (M, K) with one cause more than those of a level (N, K).
+
+    Args: apart (K, K): which causes exclude one another, themselves, too; effects (K,): which of
+    them are effects.
+    """
+    full = (level & effects).sum(axis=1) >= MOST
+    allowed = ~(level @ apart | full[:, None] & effects)
+    which, cause = np.nonzero(allowed)
+    grown = level[which]
+    grown[np.arange(len(grown)), cause] = True
+    # Each once, in the order in which they come up.
+    first = np.unique(np.packbits(grown, axis=1), axis=0, return_index=True)[1]
+    return grown[np.sort(first)]
 
 
 def excludes(cause: Candidate, other: Candidate) -> bool:

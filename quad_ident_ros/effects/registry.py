@@ -9,6 +9,7 @@ The order of EFFECTS is the order in which they act, form by form.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -76,9 +77,16 @@ TABLE = ROWS + len(ROWS_OF)
 OWNERS = np.array([ROWS_OF[name, form.name] for name, form in FORMS for _ in form.parameters])
 
 
+@lru_cache(maxsize=8)
 def bounds(vehicle: Vehicle) -> Table:
-    """Return the lower and upper bounds and the usual sizes of all parameters, (3, P), SI."""
-    return np.array([parameter.bounds(vehicle) for _, parameter in PARAMETERS]).T
+    """
+    Return the lower and upper bounds and the usual sizes of all parameters, (3, P), SI.
+
+    Not to be written to.
+    """
+    table = np.array([parameter.bounds(vehicle) for _, parameter in PARAMETERS]).T
+    table.flags.writeable = False
+    return table
 
 
 def vector(effects: Mapping[str, Mapping[str, float]], vehicle: Vehicle,
