@@ -85,9 +85,8 @@ def _by_motion(flight: Flight, vehicle: Vehicle, z: np.ndarray, noise: np.ndarra
     # Within the noise of the states, by which these move, the slopes stay the same.
     raw = errors_along(flight, vehicle, z, new_starts(settled, starts, np.zeros(0)), predictor)
     linear = linear_of(tangent, raw, weights_of(raw, noise, flight) / noise, False)
-    across = linear.slope.transpose(0, 2, 1)
-    inverse = np.linalg.inv(across @ linear.slope)
-    values = inverse @ (across @ linear.error[..., None])
+    inverse = np.linalg.inv(linear.products)
+    values = inverse @ linear.cross[..., None]
     return values[..., 0], np.sqrt(np.einsum('bcc->bc', inverse))
 
 

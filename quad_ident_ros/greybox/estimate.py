@@ -137,7 +137,6 @@ def _descend(flights: Sequence[Flight], vehicle: Vehicle, z: np.ndarray, columns
             for flight, vector, start in zip(flights, nuisances.vectors(z), starts, strict=True)]
     noise = known or [quick_noise(raw) for raw in raws]
     tangents, at, converged = None, z, False
-    linears: list[Linear] = []
     if slopes:
         tangents, at = slopes.of(layout.wanted, slow is not None), slopes.at
     made = 0
@@ -145,7 +144,6 @@ def _descend(flights: Sequence[Flight], vehicle: Vehicle, z: np.ndarray, columns
         fresh = tangents is None
         if fresh and made == iterations:
             break
-        linears = []    # large: those of the last step go before new ones are made
         if tangents is None:
             made += 1
             tangents = slopes_at(
@@ -287,6 +285,5 @@ def settled(flights: Sequence[Flight], vehicle: Vehicle, vectors: Sequence[np.nd
 
 def _clock(linear: Linear, move: np.ndarray) -> float:
     """Return the offset of a flight's clock (s) that goes with a step of its parameters."""
-    drift = linear.slope[..., -1]
-    residuals = linear.error - linear.slope[..., :-1] @ move
-    return float(np.sum(drift * residuals) / max(np.sum(drift * drift), 1e-300))
+    ties, size = linear.products[:, -1].sum(axis=0), linear.products[:, -1, -1].sum()
+    return float((linear.cross[:, -1].sum() - ties[:-1] @ move) / max(size, 1e-300))

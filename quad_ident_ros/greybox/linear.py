@@ -85,18 +85,19 @@ class Linear:
     """
     A flight's errors around a parameter vector, in units of the noise.
 
-    error (B, M); slope (B, M, C) of the prediction in the C columns; both with what the initial
-    states explain taken out; raw (B, count + 1, 12) recorded minus predicted, SI; back: what gives
-    the change of the initial states (B, 12) for errors and slopes: (whitened basis, triangle).
+    With what the initial states explain taken out: products (B, C, C) of the slopes of the
+    prediction in the C columns with one another, cross (B, C) of these with the errors, power
+    (B,), the sum of the errors squared. Initial states do basis (B, M, 12), orthonormal, times
+    triangle (B, 12, 12); slope_along (B, 12, C) and error_along (B, 12) are along that basis.
     """
 
-    error: np.ndarray
-    slope: np.ndarray
-    raw: np.ndarray
+    products: np.ndarray
+    cross: np.ndarray
+    power: np.ndarray
     basis: np.ndarray
     triangle: np.ndarray
-    whole_error: np.ndarray
-    whole_slope: np.ndarray
+    slope_along: np.ndarray
+    error_along: np.ndarray
 
     @property
     def freedom(self) -> np.ndarray:
@@ -281,15 +282,16 @@ def linear_of(tangent: Tangent, raw: np.ndarray, scale: np.ndarray, clock: bool 
     lower = np.linalg.cholesky(starts @ starts.transpose(0, 2, 1))
     basis = np.linalg.inv(lower) @ starts
     across = basis.transpose(0, 2, 1)
-    free = error - (across @ (basis @ error[..., None]))[..., 0]
-    rest = (slope @ across) @ basis
-    np.subtract(slope, rest, out=rest)
-    return Linear(free, rest.transpose(0, 2, 1), raw, across, lower.transpose(0, 2, 1), error,
-                  slope.transpose(0, 2, 1))
+    along, shown = slope @ across, (basis @ error[..., None])[..., 0]
+    # Products of what is left are differences of products: the slopes themselves are large.
+    products = slope @ slope.transpose(0, 2, 1) - along @ along.transpose(0, 2, 1)
+    cross = (slope @ error[..., None] - along @ shown[..., None])[..., 0]
+    power = np.sum(error ** 2, axis=1) - np.sum(shown ** 2, axis=1)
+    return Linear(products, cross, power, across, lower.transpose(0, 2, 1),
+                  along.transpose(0, 2, 1), shown)
 
 
 def new_starts(linear: Linear, starts: np.ndarray, step: np.ndarray) -> np.ndarray:
     """Return the initial states (B, 13) that fit best after a step (C,) of the parameters."""
-    residuals = linear.whole_error - linear.whole_slope @ step
-    side = (linear.basis.transpose(0, 2, 1) @ residuals[..., None])
+    side = (linear.error_along - linear.slope_along @ step)[..., None]
     return moved(starts, np.linalg.solve(linear.triangle, side)[..., 0])

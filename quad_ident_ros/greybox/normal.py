@@ -42,10 +42,8 @@ def normal_of(linears: Iterable[Linear], flights: Iterable[Flight], layout: Layo
     information = np.zeros((layout.size, layout.size))
     gradient, cost, scores = np.zeros(layout.size), 0.0, []
     for number, (linear, flight) in enumerate(zip(linears, flights, strict=True)):
-        across = linear.slope.transpose(0, 2, 1)
-        products = across @ linear.slope
-        each = (across @ linear.error[..., None])[..., 0]
-        cost += float(np.sum(linear.error ** 2))
+        products, each = linear.products, linear.cross
+        cost += float(np.sum(linear.power))
         if clock:
             # The column of the clock is taken out of the others and of the errors.
             drift, size = products[:, :-1, -1], max(products[:, -1, -1].sum(), 1e-300)

@@ -18,13 +18,13 @@ from quad_ident_ros.errors import InputError
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import Noise, Sensors
 from quad_ident_ros.greybox.cautions import cautions
-from quad_ident_ros.greybox.errors import difference, moved
+from quad_ident_ros.greybox.errors import difference, ERRORS, moved
 from quad_ident_ros.greybox.fit import as_data, fit, fitted_vehicle
 from quad_ident_ros.greybox.flights import flight_of, track_of
 from quad_ident_ros.greybox.identifiable import freedoms
-from quad_ident_ros.greybox.linear import errors_along, linearise
+from quad_ident_ros.greybox.linear import errors_along, linear_of, STEP, tangent_of
 from quad_ident_ros.greybox.normal import CHANCE, Normal, scatter_of
-from quad_ident_ros.greybox.parameters import INDEX, nominal
+from quad_ident_ros.greybox.parameters import INDEX, limits, nominal
 from quad_ident_ros.model.dynamics import course_of, STATES, states_of
 from quad_ident_ros.model.mixing import with_commands
 from quad_ident_ros.model.vehicle import load_vehicle, write_vehicle
@@ -160,18 +160,35 @@ def test_the_slopes_are_differences_of_the_errors(problem):
     flight = flight_of(track_of(problem.clean, VEHICLE))
     z, starts = nominal(VEHICLE), flight.states[flight.first]
     columns = [INDEX[name] for name in (*NAMES, 'motor_lag.time_constant', 'wind.x')]
-    linear = linearise(flight, VEHICLE, z, starts, columns, NOISE, clock=False)
+    tangent = tangent_of(flight, VEHICLE, z, starts, columns, STEP * limits(VEHICLE)[2, columns])
     for k, column in enumerate(columns):
         step = np.zeros(len(z))
         step[column] = 1e-3 * abs(z[column]) or 1e-4
         change = (errors_along(flight, VEHICLE, z, starts)
                   - errors_along(flight, VEHICLE, z + step, starts)) / step[column]
         expected = (change / NOISE).reshape(len(starts), -1)
-        size = np.abs(expected).max()
-        np.testing.assert_allclose(linear.whole_slope[..., k], expected, atol=0.01 * size)
-    # The initial states explain nothing of what is left.
-    across = linear.basis.transpose(0, 2, 1) @ linear.slope
-    assert np.abs(across).max() < 1e-9 * np.abs(linear.whole_slope).max()
+        found = tangent.table[:, ERRORS + k] / np.tile(NOISE, flight.count + 1)
+        np.testing.assert_allclose(found, expected, atol=0.01 * np.abs(expected).max())
+
+
+def test_what_initial_states_explain_is_taken_out_of_slopes_and_errors(problem):
+    flight = flight_of(track_of(problem.clean, VEHICLE))
+    z, starts = nominal(VEHICLE), flight.states[flight.first]
+    columns = [INDEX[name] for name in (*NAMES, 'motor_lag.time_constant', 'wind.x')]
+    tangent = tangent_of(flight, VEHICLE, z, starts, columns, STEP * limits(VEHICLE)[2, columns])
+    raw = errors_along(flight, VEHICLE, z, starts)
+    linear = linear_of(tangent, raw, 1.0 / NOISE)
+    scale = np.tile(NOISE, flight.count + 1)
+    for k in range(len(starts)):
+        table, error = tangent.table[k] / scale, raw[k].ravel() / scale
+        whole = np.vstack([table[ERRORS:], error]).T
+        explained = table[:ERRORS].T @ np.linalg.lstsq(table[:ERRORS].T, whole, rcond=None)[0]
+        rest = whole - explained
+        size = np.linalg.norm(rest, axis=0)
+        found = np.block([[linear.products[k], linear.cross[k][:, None]],
+                          [linear.cross[k], linear.power[k]]])
+        size = np.outer(size, size)
+        np.testing.assert_allclose(found / size, rest.T @ rest / size, atol=1e-6)
 
 
 def test_moved_undoes_difference():
