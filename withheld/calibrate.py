@@ -21,7 +21,7 @@ Array = NDArray[np.float64]
 # Of a row of the ranking, as the library takes them (diagnose/probability.py), in its order.
 FEATURES: dict[str, Callable[[float], float]] = {
     'contribution': lambda value: float(np.sqrt(np.clip(value, 0.0, 1.0))),
-    'explained': float, 'companions': float}
+    'distance': lambda value: float(np.log1p(value)), 'companions': float}
 # Effects that act alike: where one is there, it is no error of a probability to name the other.
 ALIKE = ({'thrust_scale', 'mass_offset'}, {'actuation_delay', 'motor_lag'})
 RIDGE = 0.01        # on the weights, in units of log likelihood: keeps what a few rows say finite

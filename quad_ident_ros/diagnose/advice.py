@@ -18,6 +18,7 @@ from quad_ident_ros.greybox.flights import Flight, inertial
 from quad_ident_ros.greybox.parameters import NAMES
 from quad_ident_ros.model.vehicle import Vehicle
 
+AT_THE_RATE = 'log commands at the rate of the controller, and measure the constant'
 ASKS = (('none',), ('undetermined',))   # verdicts that ask for another flight
 
 
@@ -63,7 +64,26 @@ def at_bounds(judged: Judgement, vehicle: Vehicle, rules: Rules) -> tuple[dict, 
                            'flights ask for more: something else may do the work of this effect, '
                            'such as commands that are logged more slowly than they are given'
                            f'{so}',
-                'remedy': 'log commands at the rate of the controller, and measure the constant'})
+                'remedy': AT_THE_RATE})
+    return tuple(rows)
+
+
+def by_input_errors(judged: Judgement) -> tuple[dict, ...]:
+    """Return what errors of the commands may have made, as data of findings."""
+    rows = []
+    for cause in judged.model.effects:
+        ranges = [f'{NAMES[column].split(".")[1]} {least:.2g} to {most:.2g}'
+                  for column, (least, most) in judged.untold.items() if column in cause.columns]
+        so = '; it stands for that in the model and is not named'
+        if ranges:
+            rows.append({
+                'flight': 'all flights', 'code': 'input_errors', 'severity': 'warning',
+                'where': cause.effect,
+                'message': f'{", ".join(ranges)} is what these flights allow, no difference '
+                           'included: a vehicle seems to answer less than it does where commands '
+                           'have errors, as in a log that is slower than the controller'
+                           f'{so if cause in judged.stand_ins else ""}',
+                'remedy': AT_THE_RATE})
     return tuple(rows)
 
 

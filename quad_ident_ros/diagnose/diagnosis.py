@@ -101,5 +101,6 @@ def diagnose(records: Iterable[FlightRecord], vehicle: Vehicle, *,
             [z - model.z for z in model.vectors], intake.late, intake.clocks, prompt),
         flights=intake.names[:-1], held_out=intake.names[-1],
         flight_checks=verdict.flight_checks,
-        findings=(*intake.findings, *advice.at_bounds(judged, vehicle, rules)), z=model.z,
+        findings=(*intake.findings, *advice.at_bounds(judged, vehicle, rules),
+                  *advice.by_input_errors(judged)), z=model.z,
         pictures=measure.pictures(bench, judged, before, after), in_simulator=in_simulator)

@@ -2,12 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """What each effect contributes, which effects matter, and whether something unknown remains."""
 
+from collections.abc import Collection
 from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
 
 from quad_ident_ros.diagnose import gap as gaps
+from quad_ident_ros.diagnose import input_errors
 from quad_ident_ros.diagnose.candidates import Candidate
 from quad_ident_ros.diagnose.fitted import (
     columns_at_bounds,
@@ -167,6 +169,45 @@ class Bench:
             found.append(gaps.ends(self.tracks[k], self.vehicle, refit.z + here, self.horizon))
         return (*found, model.ends[-1])
 
+    def untold(self, model: Model) -> dict[int, tuple[float, float]]:
+        """Return {column: (least, most)} of what errors of the commands alone may have made."""
+        if not input_errors.gains(model.estimate.columns):
+            return {}
+        found = input_errors.ranges(model.estimate, self.slopes(model), self.noise)
+        null = nominal(self.vehicle)
+        clear = {column for cause in model.effects for column in self.clear_columns(model, cause)}
+        return {column: (least, most) for column, (least, most) in found.items()
+                if column in clear and least <= null[column] <= most}
+
+    def stands_in(self, model: Model, cause: Candidate, untold: Collection[int]) -> bool:
+        """Return whether most of what an effect clearly changes is at bounds or untold."""
+        clear = self.clear_columns(model, cause)
+        held = columns_at_bounds(cause, model.z, self.vehicle, self.rules)
+        return len(clear & {*untold, *held}) > self.rules.stand_in * len(clear)
+
+    def clear_columns(self, model: Model, cause: Candidate) -> set[int]:
+        """Return the columns of an effect that clearly differ from none."""
+        return {column for column, distance in self.distances(model, cause).items()
+                if distance >= self.rules.shown}
+
+    def distances(self, model: Model, cause: Candidate) -> dict[int, float]:
+        """
+        Return {column: standard errors from none} of an effect.
+
+        In the best set where that has the column: where others are taken out, it does their work.
+        """
+        best, null = self.selection.best.estimate, nominal(self.vehicle)
+        errors = self.errors(model)
+        z = np.where(np.isin(np.arange(len(null)), best.columns), best.z, model.z)
+        return {column: float(abs(z[column] - null[column]) / max(errors[column], 1e-300))
+                for column in cause.columns}
+
+    def errors(self, model: Model) -> dict[int, float]:
+        """Return {column: standard error}: of the best set where it has the column."""
+        best = self.selection.best.estimate
+        return (dict(zip(model.estimate.columns, model.estimate.errors, strict=True))
+                | dict(zip(best.columns, self.selection.errors, strict=True)))
+
     def _nuisances(self, flight: int, z: np.ndarray, chosen: tuple,
                    fixed: np.ndarray | None = None) -> np.ndarray:
         """Return the nuisances (Z,) of a flight beside a vector that it took no part in."""
@@ -182,7 +223,8 @@ class Judgement:
     What was judged of a Selection.
 
     model: all effects that are there; material: those of them that matter; stand_ins: those that
-    would, but have most of their parameters at bounds; weights {candidate: Weight} and
+    would, but have most of their parameters at bounds or untold; untold {column: (least, most)}:
+    what errors of the commands may have made; weights {candidate: Weight} and
     probability {effect: of being present}; without {candidate: Model without it};
     before: the Ends of the nominal vehicle with the nuisances of each flight; left_out: those of
     each flight by the model fitted to the others; noise: {group: gap} of each flight;
@@ -192,6 +234,7 @@ class Judgement:
     model: Model
     material: tuple
     stand_ins: tuple
+    untold: dict[int, tuple[float, float]]
     weights: dict
     probability: dict
     without: dict
@@ -223,7 +266,8 @@ def judge(bench: Bench) -> Judgement:
         alone = {removed[0]: one for removed, one in smaller.items() if len(removed) == 1}
         without |= alone
         for cause, weight in with_companions(
-                {cause: _weight(model, one, before, noise, rules)
+                {cause: _weight(model, one, before, noise,
+                                max(bench.distances(model, cause).values()), rules)
                  for cause, one in alone.items()}, rules).items():
             # Beside effects that do not matter it may show more clearly, or less.
             weights[cause] = max(weights.get(cause, weight), weight,
@@ -243,9 +287,9 @@ def judge(bench: Bench) -> Judgement:
     present = probabilities(bench.selection.posterior, weights, rules)
     absent = tuple(cause for cause in there.values() if present[cause.effect] < rules.present)
     # What needs values that no vehicle has does the work of something else, which it stands for.
-    stand_ins = tuple(cause for cause in model.effects if cause not in absent and len(
-        columns_at_bounds(cause, model.z, bench.vehicle, rules))
-        > rules.stand_in * len(cause.columns))
+    untold = bench.untold(model)
+    stand_ins = tuple(cause for cause in model.effects
+                      if cause not in absent and bench.stands_in(model, cause, untold))
     present |= {cause.effect: rules.prior_odds for cause in stand_ins}
     material = tuple(cause for cause in model.effects if cause not in {*absent, *stand_ins})
     if set(model.effects) <= set(full.effects):
@@ -253,7 +297,7 @@ def judge(bench: Bench) -> Judgement:
     else:
         improbable = tuple(cause for cause in model.effects if cause in absent)
         final = bench.without(model, improbable) if improbable else model
-    return Judgement(final, material, stand_ins, weights, present, without, ends,
+    return Judgement(final, material, stand_ins, untold, weights, present, without, ends,
                      bench.left_out(final), noises,
                      unexplained(final.gap, before, noise, bool(material), rules))
 
@@ -267,15 +311,16 @@ def _columns_alike(name: str) -> list[int]:
             for place in range(part.start, part.stop)]
 
 
-def _weight(model: Model, without: Model, before: dict, noise: dict, rules: Rules) -> Weight:
-    """Return the Weight of what a Model has more than another."""
+def _weight(model: Model, without: Model, before: dict, noise: dict, distance: float,
+            rules: Rules) -> Weight:
+    """Return the Weight of what a Model has more than another, so far from no effect."""
     shares = lost_shares(model.gap, without.gap, before, noise, rules)
     explained = {name: _explained(model.gap[name], without.gap[name], noise[name],
                                   rules.least(name, noise[name])) for name in shares}
     # Where it does most: a small share of one group may be all that is explained in another.
     name = max(shares, key=lambda group: shares[group] * explained[group])
     return Weight(max(shares.values()), stability(model.ends, without.ends, noise, rules),
-                  explained[name], without.gap)
+                  explained[name], without.gap, distance)
 
 
 def _explained(after: float, without: float, noise: float, least: float) -> float:
@@ -340,13 +385,12 @@ def matters(after: dict, without: dict, before: dict, noise: dict, rules: Rules,
 
 def clear(weight: Weight, rules: Rules) -> bool:
     """
-    Return whether an effect is probable and clearly contributes.
+    Return whether an effect is probable and clearly differs from none.
 
-    How much of the gap the errors of form of others may be is then no matter: it explains more of
-    what is there without it than they do.
+    How much of the gap the errors of form of others may be is then no matter: its standard errors
+    have these in them.
     """
-    return (weight.contribution >= rules.companion[0]
-            and presence(weight, rules) >= rules.present)
+    return weight.distance >= rules.shown and presence(weight, rules) >= rules.present
 
 
 def unexplained(gap: dict, before: dict, noise: dict, named: bool, rules: Rules) -> dict:

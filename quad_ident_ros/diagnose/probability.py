@@ -16,13 +16,16 @@ class Weight:
 
     contribution: the share of the closable gap that is lost; stability: how steadily it helps,
     see judgement.stability; explained: the share of what it is there for that its form explains;
-    gap {group: ...}: without it; companions: how many other effects clearly contribute beside it.
+    gap {group: ...}: without it; distance: by how many of its standard errors the clearest of its
+    parameters differs from no effect; companions: how many other effects clearly contribute
+    beside it.
     """
 
     contribution: float
     stability: float
     explained: float
     gap: dict
+    distance: float
     companions: int = 0
 
 
@@ -44,9 +47,9 @@ def probabilities(posterior: dict, weights: dict, rules: Rules) -> dict[str, flo
     """
     Return {effect: probability of being present}.
 
-    Of those of the best set by a logistic regression on what they contribute, on how much of what
-    they are there for their form explains and on their companions; of the others by the posterior
-    of all sets that have them, in whichever form.
+    Of those of the best set by a logistic regression on what they contribute, on how many standard
+    errors they are from no effect and on their companions; of the others by the posterior of all
+    sets that have them, in whichever form.
     Args: posterior {candidate: ...} of the Selection; weights {candidate: Weight}.
     """
     there = {cause.effect: presence(weight, rules) for cause, weight in weights.items()}
@@ -66,9 +69,10 @@ def presence(weight: Weight, rules: Rules) -> float:
     Return the probability that an effect of the best set is present.
 
     The root of its contribution is as its size: a gap grows with the square of what is small
-    beside the rest of it.
+    beside the rest of it. Of standard errors the logarithm counts: ten more tell little where
+    there are thirty, for what formulas are wrong by is not known well.
     """
-    base, share, form, beside = rules.calibration
+    base, share, far, beside = rules.calibration
     value = (base + share * np.sqrt(np.clip(weight.contribution, 0.0, 1.0))
-             + form * weight.explained + beside * weight.companions)
+             + far * np.log1p(weight.distance) + beside * weight.companions)
     return float(1.0 / (1.0 + np.exp(-value)))

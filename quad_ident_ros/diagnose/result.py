@@ -40,7 +40,8 @@ class Ranked:
     probability that it is present; form: the law by which it was fitted, and explained: the share
     of its contribution that this law explains, or None; contribution: the share of the closable
     gap that is lost without it, everything else refitted, and without {group: gap} then;
-    stability: how steadily it helps, and companions: how many others clearly contribute beside it;
+    stability: how steadily it helps; distance: by how many standard errors the clearest of its
+    parameters differs from no effect; companions: how many others clearly contribute beside it;
     gap_after {group: gap} on the flight held out with this effect alone.
     """
 
@@ -50,6 +51,7 @@ class Ranked:
     explained: float | None
     contribution: float | None
     stability: float | None
+    distance: float | None
     companions: int | None
     parameters: dict
     gap_after: dict

@@ -50,9 +50,10 @@ class Rules:
         one another by 10 to 30 % over the range in which they are used.
       form_time: s over which that error stays the same: that of a turn or a stop of a flight.
     Probability:
-      calibration: constant, and weights of the root of the contribution, of the share explained
-        and of the companions in the log odds of being present, fitted to the flights of
-        development of the withheld check: docs/method.md has the command.
+      calibration: constant, and weights of the root of the contribution, of the logarithm of one
+        plus the standard errors from no effect and of the companions in the log odds of being
+        present, fitted to the flights of development of the withheld check: docs/method.md has
+        the command.
       companion: contribution and stability (standard errors) from which on another effect clearly
         contributes.
     Gap (see gap.py):
@@ -69,12 +70,14 @@ class Rules:
         below what a change of the weather or of a battery does.
       lost: share of the floor of the tolerance that must be lost, too: as much as a material share
         of `smallest` is, so that it only counts where a user has set wider floors.
-      stand_in: share of its parameters beyond which, at bounds, an effect does the work of
-        something else: one at a bound may be one that the flights do not tell.
+      stand_in: share of its parameters that clearly differ from none beyond which, at bounds or
+        not told for errors of the commands, an effect does the work of something else: one at a
+        bound may be one that the flights do not tell.
       tied: correlation of two effects' parameters from which on they are taken out together, too.
     Advice:
       hidden, shown: standard errors from no effect below which an effect of usual size is not
-        seen, and from which on it is, and so is a parameter that shapes a form. Noise needs no
+        seen, and from which on it is, so is a parameter that shapes a form, and what differs from
+        none is no error of the form of others. Noise needs no
         proof: that of moments between the samples counts from `hidden` on. Measured rotor speeds
         rule a lag or a delay out by `shown`.
     Tolerance (a gap that matters, by group of outputs, at 0.5 s):
@@ -119,7 +122,7 @@ class Rules:
     present: float = 0.5
     doubt: float = 0.12
     instead: float = 2.0
-    calibration: tuple[float, float, float, float] = (-3.2, 4.1, 2.6, 0.46)
+    calibration: tuple[float, float, float, float] = (-5.07, 3.73, 1.44, 0.417)
     companion: tuple[float, float] = (0.1, 3.0)
     stand_in: float = 0.5
     tied: float = 0.9

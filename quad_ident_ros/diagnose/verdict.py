@@ -80,8 +80,7 @@ def _ranking(bench: Bench, judged: Judgement, causes: tuple, total: dict,
              ruled_out: Sequence[str]) -> tuple[Ranked, ...]:
     """Return every effect, the named ones by contribution, then the most probable first."""
     z0, model, best = nominal(bench.vehicle), judged.model, bench.selection.best
-    errors = dict(zip(model.estimate.columns, model.estimate.errors, strict=True))
-    errors |= dict(zip(best.estimate.columns, bench.selection.errors, strict=True))
+    errors = bench.errors(model)
     track = bench.tracks[-1]
     nuisance = model.vectors[-1] - model.z
     before = gaps.gap([gaps.ends(track, bench.vehicle, z0 + nuisance, bench.horizon)])
@@ -107,10 +106,10 @@ def _ranking(bench: Bench, judged: Judgement, causes: tuple, total: dict,
         rows[cause.effect] = Ranked(
             cause.effect, total[cause.effect], weight and cause.form, weight and weight.explained,
             weight and weight.contribution, weight and weight.stability,
-            weight and weight.companions, parameters, gap_after,
+            weight and weight.distance, weight and weight.companions, parameters, gap_after,
             weight and weight.gap)
     for name in ruled_out:
-        rows[name] = Ranked(name, 0.0, None, None, None, None, None, {}, before, None)
+        rows[name] = Ranked(name, 0.0, None, None, None, None, None, None, {}, before, None)
     named = {cause.effect for cause in judged.material}
     return tuple(sorted(rows.values(), key=lambda row: (
         row.effect not in named, -(row.contribution or 0.0) if row.effect in named

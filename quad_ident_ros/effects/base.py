@@ -30,7 +30,8 @@ class Parameter:
     Bounds and size (what the parameter is usually about) are in units of the vehicle's own scale
     where the unit has mass or length in it, so that they hold for 30 g and for 3 kg: see scale.
     excited_by: the axis without whose motion no flight shows it, or None. A parameter that only
-    shapes a form (a length, an exponent) has no effect while the form's strength is null. beside:
+    shapes a form (a length, an exponent) has no effect while the form's strength is null. gain:
+    the power of it by which the answer to commands about the axis of excited_by grows. beside:
     the vector of the vehicle file and the axis that it adds to: their sum is not negative.
     """
 
@@ -42,6 +43,7 @@ class Parameter:
     description: str
     null: float = 0.0
     excited_by: Axis | None = None
+    gain: Literal[-1, 0, 1] = 0
     beside: tuple[Literal['linear_drag'], int] | None = None
 
     def scale(self, vehicle: Vehicle) -> float:

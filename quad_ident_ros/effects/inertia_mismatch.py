@@ -23,7 +23,7 @@ FORM = Form(
     name='factors', title='a factor about each axis',
     parameters=tuple(Parameter(f'factor_{axis}', '1', 0.2, 5.0, 0.1,
                                f'on the moment of inertia about body {axis}', null=1.0,
-                               excited_by=turn)
+                               excited_by=turn, gain=-1)
                      for axis, turn in TURNS.items()),
     source='moments of inertia times factor, about each body axis; products of inertia stay',
     acts_on='rotation', on_rotors=False,

@@ -24,7 +24,7 @@ FACTORS: tuple[tuple[str, str, Axis], ...] = (
 FORM = Form(
     name='moments', title='other arms or torque coefficient',
     parameters=tuple(Parameter(name, '1', 0.2, 5.0, 0.1, f'on {what}', null=1.0,
-                               excited_by=turn)
+                               excited_by=turn, gain=1)
                      for name, what, turn in FACTORS),
     source='moments of the rotors times a factor, about each body axis; apart from the reciprocal '
            'of a factor on the inertia it differs in the gyroscopic moment alone',

@@ -284,10 +284,13 @@ def test_a_recorder_that_is_told_to_end_in_a_flood_accounts_for_all(graph, proce
     sent = 40_001
     vehicle.fly(sent - 1, first=SECOND + PERIOD)
     assert process.stop() == 0
-    # The last account, which was published while the process ended.
-    graph.spin_for(0.5)
+
+    def whole():
+        account = statistics.data()[-1]
+        return account['joined'] + account['lost'] + account['unread'] == sent
+
+    graph.spin_until(whole, 'the last account, which was published while the process ended')
     account = statistics.data()[-1]
-    assert account['joined'] + account['lost'] + account['unread'] == sent
     assert account['missing'] == account['lost']
 
 

@@ -90,10 +90,11 @@ def test_what_is_known_apart_matters_whatever_the_error_of_form_of_others():
     assert not matters(of(), without, before, NOISE, mild, apart=True)
 
 
-@pytest.mark.parametrize(('contribution', 'explained', 'expected'), [
-    (0.12, 0.8, True), (0.12, 0.1, False), (0.08, 1.0, False)])
-def test_what_is_probable_and_contributes_a_tenth_is_clear(contribution, explained, expected):
-    assert clear(Weight(contribution, 5.0, explained, {}), RULES) is expected
+@pytest.mark.parametrize(('contribution', 'distance', 'expected'), [
+    (0.08, 30.0, True), (0.08, 6.0, False), (1.0, 0.95 * RULES.shown, False)])
+def test_what_is_probable_and_some_standard_errors_from_none_is_clear(
+        contribution, distance, expected):
+    assert clear(Weight(contribution, 5.0, 0.9, {}, distance), RULES) is expected
 
 
 def test_an_effect_explains_what_it_does_in_the_group_where_it_does_most():
@@ -102,7 +103,8 @@ def test_an_effect_explains_what_it_does_in_the_group_where_it_does_most():
     one, other = (SimpleNamespace(gap=each, ends=ends) for each in (
         of(position=0.0099), of(position=0.0105, rate=0.6)))
     before = of(position=0.0105, rate=0.66)
-    weight = _weight(one, other, before, NOISE, RULES)
+    weight = _weight(one, other, before, NOISE, 7.0, RULES)
+    assert weight.distance == 7.0
     assert weight.explained == pytest.approx(1.0, abs=0.01)
     assert weight.contribution == pytest.approx(max(lost_shares(
         one.gap, other.gap, before, NOISE, RULES).values()))

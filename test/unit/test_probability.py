@@ -15,23 +15,23 @@ Named = namedtuple('Named', 'effect form')
 RULE = replace(RULES, calibration=(-1.0, 1.5, 2.0, 0.3))
 
 
-def of(contribution, explained, companions=0, stability=5.0):
-    return Weight(contribution, stability, explained, {}, companions)
+def of(contribution, distance, companions=0, stability=5.0):
+    return Weight(contribution, stability, 0.9, {}, distance, companions)
 
 
-@pytest.mark.parametrize(('contribution', 'explained', 'companions'),
-                         [(1.0, 0.0, 0), (0.1, 1.0, 3), (0.01, 0.4, 1)])
-def test_it_is_the_logistic_function_of_a_weighted_sum(contribution, explained, companions):
-    value = -1.0 + 1.5 * np.sqrt(contribution) + 2.0 * explained + 0.3 * companions
-    assert presence(of(contribution, explained, companions), RULE) == pytest.approx(
+@pytest.mark.parametrize(('contribution', 'distance', 'companions'),
+                         [(1.0, 0.0, 0), (0.1, 1.0, 3), (0.01, 40.0, 1)])
+def test_it_is_the_logistic_function_of_a_weighted_sum(contribution, distance, companions):
+    value = -1.0 + 1.5 * np.sqrt(contribution) + 2.0 * np.log(1.0 + distance) + 0.3 * companions
+    assert presence(of(contribution, distance, companions), RULE) == pytest.approx(
         1.0 / (1.0 + np.exp(-value)))
 
 
 def test_more_of_anything_that_speaks_for_it_makes_it_more_probable():
-    base = presence(of(0.1, 0.5), RULES)
-    assert presence(of(0.5, 0.5), RULES) > base
-    assert presence(of(0.1, 0.9), RULES) > base
-    assert presence(of(0.1, 0.5, 1), RULES) > base
+    base = presence(of(0.1, 5.0), RULES)
+    assert presence(of(0.5, 5.0), RULES) > base
+    assert presence(of(0.1, 9.0), RULES) > base
+    assert presence(of(0.1, 5.0, 1), RULES) > base
 
 
 def test_companions_are_the_others_that_clearly_contribute():
@@ -42,10 +42,10 @@ def test_companions_are_the_others_that_clearly_contribute():
 
 
 @pytest.mark.parametrize('contribution', [-1.0, 0.0, 1e6])
-@pytest.mark.parametrize('explained', [0.0, 1.0])
+@pytest.mark.parametrize('distance', [0.0, 1e3])
 @pytest.mark.parametrize('companions', [0, 7])
-def test_nothing_is_certain(contribution, explained, companions):
-    assert 0.0 < presence(of(contribution, explained, companions), RULES) < 1.0
+def test_nothing_is_certain(contribution, distance, companions):
+    assert 0.0 < presence(of(contribution, distance, companions), RULES) < 1.0
 
 
 def test_what_is_not_in_the_best_set_keeps_its_posterior_summed_over_its_forms():

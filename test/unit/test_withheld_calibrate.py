@@ -22,8 +22,8 @@ def drawn(weights, constant, count=20000, seed=1):
 
 
 @pytest.mark.parametrize('weights', [
-    {'contribution': 2.0, 'explained': 0.3},
-    {'contribution': 1.7, 'explained': -0.8, 'companions': 0.1}])
+    {'contribution': 2.0, 'distance': 0.3},
+    {'contribution': 1.7, 'distance': -0.8, 'companions': 0.1}])
 def test_known_weights_come_out(weights):
     made = calibrate.fit(drawn(weights, -0.7))
     for (value, error), true in zip([made.constant, *made.weights.values()],
@@ -34,7 +34,7 @@ def test_known_weights_come_out(weights):
 
 
 def test_probabilities_are_frequencies_in_every_group():
-    made = calibrate.fit(drawn({'explained': 0.5, 'contribution': 1.0}, -1.0))
+    made = calibrate.fit(drawn({'distance': 0.5, 'contribution': 1.0}, -1.0))
     assert set(made.tables) == {'all', 'ours', 'faulty'}
     for table in made.tables.values():
         for row in table:
@@ -44,7 +44,7 @@ def test_probabilities_are_frequencies_in_every_group():
 
 
 def test_effects_that_tell_themselves_apart_have_finite_weights():
-    rows = calibrate.Rows(('explained',), np.array([[-2.0], [-1.0], [1.0], [2.0]]),
+    rows = calibrate.Rows(('distance',), np.array([[-2.0], [-1.0], [1.0], [2.0]]),
                           np.array([0.0, 0.0, 1.0, 1.0]), ('ours',) * 4)
     (value, _), = calibrate.fit(rows).weights.values()
     assert 1.0 < value < 20.0
@@ -52,7 +52,7 @@ def test_effects_that_tell_themselves_apart_have_finite_weights():
 
 def test_nothing_can_be_fitted_where_all_is_there():
     with pytest.raises(ValueError, match='nothing to fit'):
-        calibrate.fit(calibrate.Rows(('explained',), np.ones((3, 1)), np.ones(3), ('ours',) * 3))
+        calibrate.fit(calibrate.Rows(('distance',), np.ones((3, 1)), np.ones(3), ('ours',) * 3))
 
 
 def label(*effects, **options):
@@ -61,15 +61,15 @@ def label(*effects, **options):
 
 def ranked(*effects, contribution=0.5):
     return {'ranking': [{'effect': name, 'contribution': contribution,
-                         'explained': 0.9, 'companions': 2} for name in effects]}
+                         'distance': 9.0, 'companions': 2} for name in effects]}
 
 
 def test_rows_are_those_of_the_best_set_with_the_librarys_limits():
     found = ranked('wind', 'inflow')
     found['ranking'].append({'effect': 'body_drag', 'contribution': None})
     rows = calibrate.rows_of([(label('wind'), found)])
-    assert rows.names == ('contribution', 'explained', 'companions')
-    assert rows.x == pytest.approx(np.tile([np.sqrt(0.5), 0.9, 2.0], (2, 1)))
+    assert rows.names == ('contribution', 'distance', 'companions')
+    assert rows.x == pytest.approx(np.tile([np.sqrt(0.5), np.log(10.0), 2.0], (2, 1)))
     assert rows.present.tolist() == [1.0, 0.0] and rows.groups == ('ours', 'ours')
 
 
@@ -81,27 +81,28 @@ def test_what_is_neither_there_nor_not_is_left_out(truth, named):
 
 
 def test_another_feature_is_another_line():
-    features = {'contribution': float, 'explained': lambda value: value ** 2}
+    features = {'contribution': float, 'distance': lambda value: value ** 2}
     rows = calibrate.rows_of([(label('wind'), ranked('wind'))], features)
-    assert rows.names == ('contribution', 'explained')
-    assert rows.x[0] == pytest.approx([0.5, 0.81])
+    assert rows.names == ('contribution', 'distance')
+    assert rows.x[0] == pytest.approx([0.5, 81.0])
 
 
 def kept(folder, name, rows, part='development'):
     (folder / 'found').mkdir(parents=True)
     labels = {}
-    for k, (there, explained, contribution) in enumerate(rows):
+    for k, (there, distance, contribution) in enumerate(rows):
         labels[f'{name}{k}'] = label('wind' if there else 'inflow')
         found = {'ranking': [{'effect': 'wind', 'contribution': contribution,
-                              'explained': explained}]}
+                              'distance': distance}]}
         (folder / 'found' / f'{name}{k}.json').write_text(json.dumps(found))
     (folder / 'labels.json').write_text(json.dumps({'set': part, 'labels': labels}))
 
 
 def test_the_command_reads_kept_runs_and_prints_the_weights(tmp_path, capsys):
     rng = np.random.default_rng(4)
-    stable = rng.normal(2.0, 2.0, 200)
-    kept(tmp_path / 'a', 'a', [(bool(x + rng.normal() > 2.0), x, 0.3) for x in stable])
+    logs = np.abs(rng.normal(2.0, 2.0, 200))
+    kept(tmp_path / 'a', 'a', [(bool(x + rng.normal() > 2.0), float(np.expm1(x)), 0.3)
+                               for x in logs])
     assert main(['calibrate', str(tmp_path / 'a')]) == 0
     said = capsys.readouterr().out
     assert 'calibration = (' in said and 'forms as ours:' in said and '200 effects' in said
