@@ -11,6 +11,7 @@ from quad_ident_ros.diagnose.gap import Ends
 from quad_ident_ros.diagnose.residual_wrench import ResidualWrench
 from quad_ident_ros.effects.registry import mapping, vector
 from quad_ident_ros.greybox.parameters import SPLIT
+from quad_ident_ros.model.covariance import Covariance, covariance_to_mapping
 from quad_ident_ros.model.vehicle import Vehicle
 
 SCHEMA = 'quad_ident/diagnosis/2'
@@ -186,7 +187,9 @@ class Diagnosis:
     The verdict on flights of a vehicle, and what it rests on.
 
     verdict: what matters, the largest contribution first, or none, unknown, undetermined; minor:
-    what is there and does not matter; z (Z,): the parameter vector with the effects named.
+    what is there and does not matter; z (Z,): the parameter vector with the effects named;
+    covariance: how well their parameters are known together, with the constants whose deviations
+    the vehicle file states, or None where there are none.
     """
 
     vehicle: Vehicle
@@ -210,6 +213,7 @@ class Diagnosis:
     findings: tuple
     z: np.ndarray
     pictures: Pictures
+    covariance: Covariance | None
     in_simulator: GapInSimulator | None = None
 
     def effects(self) -> dict:
@@ -224,7 +228,8 @@ class Diagnosis:
         """
         given, used = (vector(each.effects, vehicle) for each in (vehicle, self.vehicle))
         return replace(vehicle, name=f'{vehicle.name}_diagnosed',
-                       effects=mapping(np.where(given != used, given, self.z[SPLIT:])))
+                       effects=mapping(np.where(given != used, given, self.z[SPLIT:])),
+                       covariance=self.covariance)
 
     def as_data(self) -> dict:
         """Return the JSON of the project as data."""
@@ -245,4 +250,6 @@ class Diagnosis:
             'held_out': self.held_out,
             'flight_checks': [asdict(one) for one in self.flight_checks],
             'findings': list(self.findings),
+            'covariance': self.covariance and covariance_to_mapping(self.covariance,
+                                                                    len(self.vehicle.rotors)),
             'in_simulator': self.in_simulator and asdict(self.in_simulator)}

@@ -11,6 +11,7 @@ from quad_ident_ros.diagnose import gap as gaps
 from quad_ident_ros.diagnose.doubts import doubts_of
 from quad_ident_ros.diagnose.judgement import Bench, beyond, Judgement, unexplained
 from quad_ident_ros.diagnose.result import FlightCheck, Minor, Ranked, Value
+from quad_ident_ros.diagnose.together import errors_of
 from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.greybox.parameters import NAMES, nominal
 
@@ -80,8 +81,7 @@ def _ranking(bench: Bench, judged: Judgement, causes: tuple, total: dict,
              ruled_out: Sequence[str]) -> tuple[Ranked, ...]:
     """Return every effect, the named ones by contribution, then the most probable first."""
     z0, model, best = nominal(bench.vehicle), judged.model, bench.selection.best
-    errors = dict(zip(model.estimate.columns, model.estimate.errors, strict=True))
-    errors |= dict(zip(best.estimate.columns, bench.selection.errors, strict=True))
+    errors = errors_of(bench, model)
     track = bench.tracks[-1]
     nuisance = model.vectors[-1] - model.z
     before = gaps.gap([gaps.ends(track, bench.vehicle, z0 + nuisance, bench.horizon)])
