@@ -18,6 +18,7 @@ from quad_ident_ros.diagnose.nuisances import late_controller
 from quad_ident_ros.diagnose.result import Diagnosis
 from quad_ident_ros.diagnose.rules import RULES, Rules
 from quad_ident_ros.diagnose.select import select
+from quad_ident_ros.diagnose.together import known_together
 from quad_ident_ros.diagnose.verdict import verdict_of
 from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.errors import InputError
@@ -103,4 +104,5 @@ def diagnose(records: Iterable[FlightRecord], vehicle: Vehicle, *,
         flight_checks=verdict.flight_checks,
         findings=(*intake.findings, *advice.at_bounds(judged, vehicle, rules),
                   *advice.by_input_errors(judged)), z=model.z,
-        pictures=measure.pictures(bench, judged, before, after), in_simulator=in_simulator)
+        pictures=measure.pictures(bench, judged, before, after),
+        covariance=known_together(bench, model), in_simulator=in_simulator)

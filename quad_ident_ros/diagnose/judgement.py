@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
+from scipy.special import chdtrc, ndtri
 
 from quad_ident_ros.diagnose import gap as gaps
 from quad_ident_ros.diagnose import input_errors
@@ -190,11 +191,25 @@ class Bench:
         return {column for column, distance in self.distances(model, cause).items()
                 if distance >= self.rules.shown}
 
+    def distance(self, model: Model, cause: Candidate) -> float:
+        """
+        Return by how many standard errors an effect's parameters together differ from none.
+
+        In the best set where that has the effect: where others are taken out, it does their work.
+        """
+        best, columns = self.selection.best.estimate, list(cause.columns)
+        kept = set(columns) <= set(best.columns)
+        fit, covariance = ((best, self.selection.covariance) if kept
+                           else (model.estimate, model.estimate.covariance))
+        places = [fit.columns.index(column) for column in columns]
+        return standard_errors_from_none((fit.z - nominal(self.vehicle))[columns],
+                                         covariance[np.ix_(places, places)])
+
     def distances(self, model: Model, cause: Candidate) -> dict[int, float]:
         """
-        Return {column: standard errors from none} of an effect.
+        Return {column: standard errors from none} of an effect, each parameter by itself.
 
-        In the best set where that has the column: where others are taken out, it does their work.
+        In the best set where that has the column, as the distance.
         """
         best, null = self.selection.best.estimate, nominal(self.vehicle)
         errors = self.errors(model)
@@ -266,8 +281,7 @@ def judge(bench: Bench) -> Judgement:
         alone = {removed[0]: one for removed, one in smaller.items() if len(removed) == 1}
         without |= alone
         for cause, weight in with_companions(
-                {cause: _weight(model, one, before, noise,
-                                max(bench.distances(model, cause).values()), rules)
+                {cause: _weight(model, one, before, noise, bench.distance(model, cause), rules)
                  for cause, one in alone.items()}, rules).items():
             # Beside effects that do not matter it may show more clearly, or less.
             weights[cause] = max(weights.get(cause, weight), weight,
@@ -300,6 +314,22 @@ def judge(bench: Bench) -> Judgement:
     return Judgement(final, material, stand_ins, untold, weights, present, without, ends,
                      bench.left_out(final), noises,
                      unexplained(final.gap, before, noise, bool(material), rules))
+
+
+def standard_errors_from_none(off: np.ndarray, covariance: np.ndarray) -> float:
+    """
+    Return how far K parameters together are from none, in standard errors of a single one.
+
+    As many as have the probability of Wald's statistic, a chi-square with K degrees of freedom.
+    Args: off (K,): distance from none; covariance (K, K).
+    """
+    errors = np.sqrt(np.maximum(np.diag(covariance), 1e-300))
+    values, vectors = np.linalg.eigh(covariance / np.outer(errors, errors))
+    along = vectors.T @ (off / errors)
+    square = float(np.sum(along ** 2 / np.maximum(values, 1e-12)))
+    chance = float(chdtrc(len(off), square))
+    # Of what is less probable than a float can tell, the root is as good.
+    return float(-ndtri(0.5 * chance)) if chance > 1e-300 else float(np.sqrt(square))
 
 
 def _columns_alike(name: str) -> list[int]:

@@ -11,6 +11,7 @@ from quad_ident_ros.diagnose.gap import Ends
 from quad_ident_ros.diagnose.residual_wrench import ResidualWrench
 from quad_ident_ros.effects.registry import mapping, vector
 from quad_ident_ros.greybox.parameters import SPLIT
+from quad_ident_ros.model.covariance import Covariance, covariance_to_mapping
 from quad_ident_ros.model.vehicle import Vehicle
 
 SCHEMA = 'quad_ident/diagnosis/2'
@@ -40,8 +41,8 @@ class Ranked:
     probability that it is present; form: the law by which it was fitted, and explained: the share
     of its contribution that this law explains, or None; contribution: the share of the closable
     gap that is lost without it, everything else refitted, and without {group: gap} then;
-    stability: how steadily it helps; distance: by how many standard errors the clearest of its
-    parameters differs from no effect; companions: how many others clearly contribute beside it;
+    stability: how steadily it helps; distance: by how many standard errors its parameters together
+    differ from no effect; companions: how many others clearly contribute beside it;
     gap_after {group: gap} on the flight held out with this effect alone.
     """
 
@@ -188,7 +189,9 @@ class Diagnosis:
     The verdict on flights of a vehicle, and what it rests on.
 
     verdict: what matters, the largest contribution first, or none, unknown, undetermined; minor:
-    what is there and does not matter; z (Z,): the parameter vector with the effects named.
+    what is there and does not matter; z (Z,): the parameter vector with the effects named;
+    covariance: how well their parameters are known together, with the constants whose deviations
+    the vehicle file states, or None where there are none.
     """
 
     vehicle: Vehicle
@@ -212,6 +215,7 @@ class Diagnosis:
     findings: tuple
     z: np.ndarray
     pictures: Pictures
+    covariance: Covariance | None
     in_simulator: GapInSimulator | None = None
 
     def effects(self) -> dict:
@@ -226,7 +230,8 @@ class Diagnosis:
         """
         given, used = (vector(each.effects, vehicle) for each in (vehicle, self.vehicle))
         return replace(vehicle, name=f'{vehicle.name}_diagnosed',
-                       effects=mapping(np.where(given != used, given, self.z[SPLIT:])))
+                       effects=mapping(np.where(given != used, given, self.z[SPLIT:])),
+                       covariance=self.covariance)
 
     def as_data(self) -> dict:
         """Return the JSON of the project as data."""
@@ -247,4 +252,6 @@ class Diagnosis:
             'held_out': self.held_out,
             'flight_checks': [asdict(one) for one in self.flight_checks],
             'findings': list(self.findings),
+            'covariance': self.covariance and covariance_to_mapping(self.covariance,
+                                                                    len(self.vehicle.rotors)),
             'in_simulator': self.in_simulator and asdict(self.in_simulator)}

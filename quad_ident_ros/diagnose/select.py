@@ -24,7 +24,7 @@ from quad_ident_ros.diagnose.frame import blocks_at, Frame, frame_at, normal_at
 from quad_ident_ros.diagnose.promising import other_actuators, promising, REFITS
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.diagnose.selection import posteriors, Selection
-from quad_ident_ros.diagnose.standard_errors import standard_errors
+from quad_ident_ros.diagnose.standard_errors import joint_of
 from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.greybox.errors import GROUPS
 from quad_ident_ros.greybox.estimate import Estimate, estimate
@@ -349,8 +349,8 @@ class _Search:
                          posteriors(fitted, self.ranked, self.all_causes, set(self.tried),
                                     self.rules),
                          self.quadratic, self.rows, self.noise,
-                         standard_errors(self.best, self.frame, self.vehicle, self.grids,
-                                         self.quadratic.scatter, self.rules), self.slow)
+                         joint_of(self.best, self.flights, self.frame, self.vehicle, self.grids,
+                                  self.quadratic.scatter, self.rules), self.slow)
 
 
 def _plain(chosen: tuple) -> bool:

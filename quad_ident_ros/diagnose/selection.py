@@ -11,6 +11,7 @@ from quad_ident_ros.diagnose.candidates import Candidate
 from quad_ident_ros.diagnose.evidence import Quadratic
 from quad_ident_ros.diagnose.fitted import effects_in, Fitted
 from quad_ident_ros.diagnose.rules import Rules
+from quad_ident_ros.diagnose.standard_errors import Joint
 
 
 @dataclass(frozen=True, eq=False)
@@ -20,9 +21,9 @@ class Selection:
 
     best: the simplest Fitted of those with about the most evidence; fitted: it and the others
     that were refitted; posterior: probability of each candidate effect; quadratic, rows: the cost
-    around the best, with all candidates free; noise: per flight (12,); least: the standard_errors
-    (C,) of the columns of the best; slow (6,): the force and moment that nothing explains, by
-    which errors that hang together counted less in the fits, or None.
+    around the best, with all candidates free; noise: per flight (12,); joint: the Joint of the
+    columns of the best; slow (6,): the force and moment that nothing explains, by which errors
+    that hang together counted less in the fits, or None.
     """
 
     best: Fitted
@@ -31,7 +32,7 @@ class Selection:
     quadratic: Quadratic
     rows: dict
     noise: list
-    least: np.ndarray
+    joint: Joint
     slow: np.ndarray | None = None
 
     @property
@@ -40,7 +41,7 @@ class Selection:
         Return the standard errors, (C,), of the best set's columns.
 
         How far flights usually differ is not known either: of all sets with the same effects, by
-        their evidence. Formulas may be wrong: at least the standard_errors of the best set.
+        their evidence. Formulas may be wrong: at least the errors of the Joint.
         """
         same = [one for one in self.fitted if one.causes == self.best.causes]
         evidences = np.array([one.evidence for one in same])
@@ -48,7 +49,14 @@ class Selection:
         squares = [one.estimate.errors ** 2
                    + (one.estimate.z - self.best.estimate.z)[one.estimate.columns] ** 2
                    for one in same]
-        return np.maximum(np.sqrt(np.average(squares, axis=0, weights=shares)), self.least)
+        return np.maximum(np.sqrt(np.average(squares, axis=0, weights=shares)), self.joint.errors)
+
+    @property
+    def covariance(self) -> np.ndarray:
+        """Return the covariance (C, C) of the best set's columns: the errors, tied as by the Joint."""
+        wider = np.where(self.joint.errors > 0.0,
+                         self.errors / np.maximum(self.joint.errors, 1e-300), 1.0)
+        return self.joint.covariance * np.outer(wider, wider)
 
 
 def posteriors(fitted: Sequence[Fitted], ranked: list, causes: Sequence[Candidate],

@@ -3,31 +3,55 @@
 """Standard errors of a fitted set: by noise, and by how wrong flights show its formulas to be."""
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.linalg import block_diag
 
 from quad_ident_ros.diagnose.discrepancy import log_likelihood, scales
 from quad_ident_ros.diagnose.fitted import distances_of, Fitted
-from quad_ident_ros.diagnose.frame import blocks_at, Frame, normal_at
+from quad_ident_ros.diagnose.frame import blocks_at, Frame, frame_at, normal_at
 from quad_ident_ros.diagnose.rules import Rules
-from quad_ident_ros.greybox.normal import covariance_of, marginal
+from quad_ident_ros.greybox.flights import Flight
+from quad_ident_ros.greybox.normal import covariance_of, marginal, Normal, scatter_of
 from quad_ident_ros.greybox.nuisances import Layout
-from quad_ident_ros.greybox.parameters import limits
+from quad_ident_ros.greybox.parameters import FACTORS, INDEX, limits, OFFSETS
+from quad_ident_ros.model.quantities import stated
 from quad_ident_ros.model.vehicle import Vehicle
 
 # Relative errors of formulas that are tried, the likeliest of which is taken.
 FORM_ERRORS = (0.0, *(0.02 * 2.0 ** (0.5 * k) for k in range(10)))
 
 
-def standard_errors(fitted: Fitted, frame: Frame, vehicle: Vehicle, grids: Sequence[np.ndarray],
-                    scatter: float, rules: Rules) -> np.ndarray:
+@dataclass(frozen=True, eq=False)
+class Joint:
     """
-    Return the standard errors (C,) of a set's columns with the discrepancy marginalised out.
+    What of a set's columns is known together, the discrepancy marginalised out.
 
-    Its sizes, that of the relative error of formulas among them, are the likeliest ones: where
-    the formulas are exact this is the error that the noise makes. Otherwise as rules say.
+    covariance (C, C): the constants of the vehicle file taken as exact; constants: names of those
+    that it states a deviation of, and stated (C + K, C + K): the covariance with these, as far as
+    flights and deviations leave them.
+    """
+
+    covariance: np.ndarray
+    constants: tuple[str, ...]
+    stated: np.ndarray
+
+    @property
+    def errors(self) -> np.ndarray:
+        """Return the standard errors (C,) of the columns."""
+        return np.sqrt(np.maximum(np.diag(self.covariance), 0.0))
+
+
+def joint_of(fitted: Fitted, flights: Sequence[Flight], frame: Frame, vehicle: Vehicle,
+             grids: Sequence[np.ndarray], scatter: float, rules: Rules) -> Joint:
+    """
+    Return the Joint of a set's columns.
+
+    The sizes of the discrepancy, that of the relative error of formulas among them, are the
+    likeliest ones: where the formulas are exact this is the error that the noise makes. Otherwise
+    as rules say. Where flights would rather have other constants than the file's, their
+    distance counts as an error: the vehicle that is named has those of the file.
     Args: frame: around the set; grids: sizes of force and moment that Fitted.sizes are places in;
     scatter: what differences of the cost are divided by.
     """
@@ -37,12 +61,43 @@ def standard_errors(fitted: Fitted, frame: Frame, vehicle: Vehicle, grids: Seque
     force, moment = (float(grid[k]) for grid, k in zip(grids, fitted.sizes, strict=True))
     form_error = max(FORM_ERRORS, key=lambda size: log_likelihood(
         blocks, scales(force, moment, size, blocks.gram.shape[1]), scatter))
-    count = len(fit.nuisances.values)
-    layout = Layout(fit.columns, fit.nuisances.columns, count)
+    constants = uncertain_constants(vehicle, fit.columns)
+    columns = [*fit.columns, *(INDEX[name] for name in constants)]
+    layout = Layout(columns, fit.nuisances.columns, len(fit.nuisances.values))
+    if constants:
+        frame = frame_at(list(flights), vehicle, fit, layout.wanted, rules)
     normal = normal_at(frame, fit, layout, distances, (force, moment),
                        replace(rules, form_error=form_error))
-    precision = block_diag(np.zeros((len(fit.columns), len(fit.columns))),
-                           fit.nuisances.precision)
-    covariance = covariance_of(marginal(normal, len(fit.columns), precision),
-                               limits(vehicle)[2, fit.columns])
-    return np.sqrt(np.maximum(np.diag(covariance), 0.0))
+    shared = marginal(normal, len(columns), block_diag(np.zeros((len(columns), len(columns))),
+                                                       fit.nuisances.precision))
+    size, count = limits(vehicle)[2, columns], len(fit.columns)
+    exact = covariance_of(_first(shared, count), size[:count])
+    if not constants:
+        return Joint(exact, (), exact)
+    # One scatter for all, the largest: what scales the whole motion stays in proportion.
+    widest = float(scatter_of(shared).max())
+    information, gradient = shared.information / widest, shared.gradient / widest
+    known = np.append(np.zeros(count), np.array(list(constants.values())) ** -2.0)
+    white = Normal(information, gradient, shared.cost, shared.scores[:0])
+    whole = covariance_of(replace(white, information=information + np.diag(known)), size)
+    shift = whole @ gradient
+    shift[:count] -= covariance_of(_first(white, count), size[:count]) @ gradient[:count]
+    return Joint(exact, tuple(constants), whole + np.outer(shift, shift))
+
+
+def uncertain_constants(vehicle: Vehicle, columns: Sequence[int]) -> dict[str, float]:
+    """
+    Return {constant: stated deviation} of those that an estimate is to know of.
+
+    Where a column is the same physical number, such as an offset of the mass, flights tell it.
+    """
+    same = {constant for constant, parameters in (*FACTORS.items(), *OFFSETS.items())
+            if {INDEX[name] for name in parameters} & set(columns)}
+    return {name: std for name, std in stated(vehicle).items()
+            if name in INDEX and name not in same}
+
+
+def _first(normal: Normal, count: int) -> Normal:
+    """Return what is said of the first columns, the others held."""
+    return replace(normal, information=normal.information[:count, :count],
+                   gradient=normal.gradient[:count], scores=normal.scores[:, :count])

@@ -19,13 +19,14 @@ from quad_ident_ros.errors import InputError
 from quad_ident_ros.greybox.errors import GROUPS, UNITS
 from quad_ident_ros.greybox.estimate import Estimate, estimate
 from quad_ident_ros.greybox.flights import Flight, highest_voltage, track_of
-from quad_ident_ros.greybox.free import columns_of_names, excitation_of, unit_of
+from quad_ident_ros.greybox.free import columns_of_names, excitation_of
 from quad_ident_ros.greybox.identifiable import correlated, Freedom, freedoms
 from quad_ident_ros.greybox.near import near_flights
 from quad_ident_ros.greybox.noise import quick_noise
 from quad_ident_ros.greybox.normal import covariance_of, Normal, scatter_of
 from quad_ident_ros.greybox.parameters import FACTORS, INDEX, limits, nominal, SPLIT
 from quad_ident_ros.greybox.rotor_answer import is_driven_by_speeds, NO_COMMANDS, OF_MOTORS
+from quad_ident_ros.model.quantities import unit_of
 from quad_ident_ros.model.vehicle import Vehicle
 
 SCHEMA = 'quad_ident/fit/1'
@@ -175,7 +176,8 @@ def fitted_vehicle(fit: Fit) -> Vehicle:
     """
     Return the vehicle as it was found; what is undetermined as far as it is given.
 
-    How well its file knows a constant that was fitted is said of the file's value, and left out.
+    How well its file knows a constant that was fitted is said of the file's value, and left out;
+    so is a covariance, which is that of an earlier diagnosis.
     """
     z = fit.estimate.z
 
@@ -185,7 +187,7 @@ def fitted_vehicle(fit: Fit) -> Vehicle:
     freed = {parameter.name for parameter in fit.parameters}
     known = {key: std for key, std in fit.vehicle.uncertainty.items()
              if not freed & {key, *(f'{key}_{axis}' for axis in 'xyz')}}
-    return replace(fit.vehicle, uncertainty=known, effects=mapping(z[SPLIT:]),
+    return replace(fit.vehicle, uncertainty=known, covariance=None, effects=mapping(z[SPLIT:]),
                    mass=float(z[INDEX['mass']]),
                    thrust_coefficient=float(z[INDEX['thrust_coefficient']]),
                    torque_coefficient=float(z[INDEX['torque_coefficient']]),

@@ -14,19 +14,14 @@ from quad_ident_ros.model.vehicle import Vehicle
 Names: TypeAlias = dict[str, dict[str, int]]
 """{name that can be given: {full name: place in the parameter vector}}."""
 
-UNITS = {'mass': 'kg', 'inertia': 'kg m^2', 'thrust_coefficient': 'N/(rad/s)^2',
-         'torque_coefficient': 'N m/(rad/s)^2', 'linear_drag': 'N/(m/s)',
-         'rotational_drag': 'N m/(rad/s)^2'}
-"""Unit of each constant of the vehicle file that can be freed."""
-
 EXCITATION = {'mass': 'any flight', 'inertia': 'fast turns about each axis',
               'thrust_coefficient': 'any flight', 'torque_coefficient': 'turns in yaw',
               'linear_drag': 'flight at different speeds along each axis',
               'rotational_drag': 'very fast turns about each axis'}
-"""What a flight must do to show a constant; for effects see the registry."""
+"""What a flight must do to show each constant that can be freed; of effects: the registry."""
 
-_KNOWN = (f'known are {", ".join(UNITS)}, the names of effects, and single parameters such as '
-          'inertia_x and motor_lag.time_constant')
+_KNOWN = (f'known are {", ".join(EXCITATION)}, the names of effects, and single parameters '
+          'such as inertia_x and motor_lag.time_constant')
 
 SAME = {'mass': 'mass_offset.mass', 'thrust_coefficient': 'thrust_scale.factor',
         **{f'inertia_{axis}': f'inertia_mismatch.factor_{axis}' for axis in 'xyz'}}
@@ -62,15 +57,6 @@ def _unknown(name: str, table: Names) -> InputError:
     return InputError(f'--free: {schema.shown(name)} cannot be freed; {_KNOWN}')
 
 
-def unit_of(name: str) -> str:
-    """Return the unit of a full name."""
-    effect, dot, parameter = name.partition('.')
-    if not dot:
-        return UNITS[_key(name)]
-    return next(known.unit for known in registry.EFFECTS[effect].parameters
-                if known.name == parameter)
-
-
 def excitation_of(name: str) -> str:
     """Return what a flight must do to show a full name."""
     effect, dot, _ = name.partition('.')
@@ -79,13 +65,13 @@ def excitation_of(name: str) -> str:
 
 def _key(name: str) -> str:
     """Return the key of the vehicle file that a constant belongs to."""
-    return name if name in UNITS else name[:-2]
+    return name if name in EXCITATION else name[:-2]
 
 
 def _table(vehicle: Vehicle) -> Names:
     """Return every name that can be given, with the full names and places it stands for."""
     table: Names = {}
-    for key in UNITS:
+    for key in EXCITATION:
         parts = [name for name in (key, *(f'{key}_{axis}' for axis in 'xyz')) if name in INDEX]
         table[key] = {name: INDEX[name] for name in parts}
         table |= {name: {name: INDEX[name]} for name in parts}

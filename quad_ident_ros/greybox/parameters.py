@@ -9,6 +9,7 @@ import numpy as np
 
 from quad_ident_ros.effects import registry
 from quad_ident_ros.model.motors import spread
+from quad_ident_ros.model.quantities import stated
 from quad_ident_ros.model.rigid_body import vehicle_vector
 from quad_ident_ros.model.vehicle import Vehicle
 
@@ -26,6 +27,8 @@ FACTORS = {
     'torque_coefficient': ('inertia_mismatch.torque',),
     **{f'inertia_{axis}': (f'inertia_mismatch.factor_{axis}',) for axis in 'xyz'}}
 """Parameters of effects that are a factor on a constant, by constant."""
+OFFSETS = {'mass': ('mass_offset.mass',)}
+"""Parameters of effects that are added to a constant, by constant."""
 
 
 def nominal(vehicle: Vehicle) -> np.ndarray:
@@ -75,17 +78,14 @@ def prior_sizes(vehicle: Vehicle, width: float) -> np.ndarray:
     A drag that is well known says nothing of the effects of drag, which are forces beside it.
     """
     sizes, constants = width * limits(vehicle)[2], vehicle_vector(vehicle)
-    for key, std in vehicle.uncertainty.items():
-        entries = ({f'{key}_{axis}': one for axis, one in zip('xyz', std, strict=True)}
-                   if isinstance(std, tuple) else {key: std})
-        for name, one in entries.items():
-            if one is None or name not in INDEX:    # of places and limits of speed no column is
-                continue
-            sizes[INDEX[name]] = one
-            for factor in FACTORS.get(name, ()):
-                sizes[INDEX[factor]] = one / constants[INDEX[name]]
-    if 'mass' in vehicle.uncertainty:
-        sizes[INDEX['mass_offset.mass']] = vehicle.uncertainty['mass']
+    for name, one in stated(vehicle).items():
+        if name not in INDEX:   # of places and limits of speed no column is
+            continue
+        sizes[INDEX[name]] = one
+        for factor in FACTORS.get(name, ()):
+            sizes[INDEX[factor]] = one / constants[INDEX[name]]
+        for offset in OFFSETS.get(name, ()):
+            sizes[INDEX[offset]] = one
     _put_in_map(sizes, vehicle)
     return sizes
 

@@ -13,6 +13,11 @@ import yaml
 from quad_ident_ros import resources, schema
 from quad_ident_ros.effects import registry
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.model.covariance import (
+    Covariance,
+    covariance_from,
+    covariance_to_mapping,
+)
 from quad_ident_ros.model.motors import Motors, motors_from, motors_to_mapping
 from quad_ident_ros.model.plausible import refuse_absurd
 from quad_ident_ros.whole_file import write_whole
@@ -47,7 +52,8 @@ class Vehicle:
     has beside the nominal model, {effect: {parameter: value}}, see effects.registry; uncertainty:
     standard deviations of the constants that have one, in the constant's unit, by key (those of
     places by 'rotors[0].position'); those of lists are tuples, None where an entry has none;
-    motors: what the signals of its records are, or None.
+    motors: what the signals of its records are, or None; covariance: how well flights, and what
+    was stated before, tell numbers of it together, or None.
     """
 
     name: str
@@ -67,6 +73,7 @@ class Vehicle:
     uncertainty: dict[str, Uncertainty] = field(default_factory=dict, hash=False)
     motors: Motors | None = None
     products: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    covariance: Covariance | None = field(default=None, hash=False)
 
     @property
     def arm_length(self) -> float:
@@ -152,6 +159,9 @@ def vehicle_from_mapping(data: Any, where: str) -> Vehicle:
     if 'effects' in data:
         theta = registry.vector(data['effects'], vehicle, f'{where}: effects')
         vehicle = replace(vehicle, effects=registry.mapping(theta))
+    if 'covariance' in data:
+        vehicle = replace(vehicle, covariance=covariance_from(
+            f'{where}: covariance', data['covariance'], len(vehicle.rotors)))
     return vehicle
 
 
@@ -159,7 +169,7 @@ def vehicle_to_mapping(vehicle: Vehicle) -> dict[str, Any]:
     """Return the mapping of a vehicle file that describes the vehicle."""
     stds = vehicle.uncertainty
     data = {key: _with_std(value, stds.get(key)) for key, value in asdict(vehicle).items()
-            if key not in ('uncertainty', 'motors', 'products')}
+            if key not in ('uncertainty', 'motors', 'products', 'covariance')}
     data['rotors'] = [{'position': _with_std(rotor.position, stds.get(_place_of(i))),
                        'spin': rotor.spin} for i, rotor in enumerate(vehicle.rotors)]
     if any(vehicle.products):
@@ -171,6 +181,8 @@ def vehicle_to_mapping(vehicle: Vehicle) -> dict[str, Any]:
         data['motors'] = motors_to_mapping(vehicle.motors)
     if not vehicle.effects:
         del data['effects']
+    if vehicle.covariance is not None:
+        data['covariance'] = covariance_to_mapping(vehicle.covariance, len(vehicle.rotors))
     return data
 
 

@@ -11,7 +11,7 @@ from quad_ident_ros.diagnose.candidates import Candidate
 from quad_ident_ros.diagnose.fitted import Fitted, size_grids
 from quad_ident_ros.diagnose.frame import Frame, WRENCH
 from quad_ident_ros.diagnose.rules import RULES
-from quad_ident_ros.diagnose.standard_errors import standard_errors
+from quad_ident_ros.diagnose.standard_errors import joint_of
 from quad_ident_ros.greybox.linear import Slopes, Tangent
 from quad_ident_ros.greybox.nuisances import NuisanceValues
 from quad_ident_ros.greybox.parameters import INDEX, nominal
@@ -49,8 +49,8 @@ def estimated(form_error, seed):
     frame = Frame(wanted, [np.ones((BLOCKS, length))], [np.zeros((BLOCKS, length, NULLS))],
                   [np.arange(BLOCKS)], Slopes(z, wanted, [], [Tangent(table)]))
     grids = size_grids(VEHICLE, [np.ones(NULLS)], RULES)
-    return value, standard_errors(Fitted((DRAG,), fit, 0.0, (0, 0)), frame, VEHICLE, grids, 1.0,
-                                  RULES)[0]
+    return value, joint_of(Fitted((DRAG,), fit, 0.0, (0, 0)), [], frame, VEHICLE, grids, 1.0,
+                           RULES).errors[0]
 
 
 @pytest.mark.slow

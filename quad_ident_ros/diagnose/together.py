@@ -1,0 +1,39 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""How well the parameters that a diagnosis estimated are known together."""
+
+import numpy as np
+from scipy.linalg import block_diag
+
+from quad_ident_ros.diagnose.judgement import Bench, Model
+from quad_ident_ros.greybox.parameters import NAMES
+from quad_ident_ros.model.covariance import Covariance, covariance_of_matrix
+
+
+def known_together(bench: Bench, model: Model) -> Covariance | None:
+    """
+    Return the Covariance of a Model's columns, and of constants whose file states a deviation.
+
+    None where there is neither. The correlation is that of the Joint of the best set, or that by
+    the noise of a model which has other forms; deviations are the standard errors that are told,
+    widened by what the constants leave open.
+    """
+    best, joint = bench.selection.best.estimate, bench.selection.joint
+    columns, constants = model.estimate.columns, joint.constants
+    if not columns and not constants:
+        return None
+    errors = bench.errors(model)
+    if set(columns) <= set(best.columns):
+        count = len(best.columns)
+        whole = joint.stated.copy()
+        whole[:count, :count] += bench.selection.covariance - joint.covariance
+        places = [*(best.columns.index(column) for column in columns),
+                  *range(count, count + len(constants))]
+        whole = whole[np.ix_(places, places)]
+    else:
+        told = np.array([errors[column] for column in columns])
+        scale = told / np.maximum(model.estimate.errors, 1e-300)
+        first = len(best.columns)
+        whole = block_diag(model.estimate.covariance * np.outer(scale, scale),
+                           joint.stated[first:, first:])
+    return covariance_of_matrix((*(NAMES[column] for column in columns), *constants), whole)
