@@ -122,7 +122,7 @@ class Rules:
     present: float = 0.5
     doubt: float = 0.12
     instead: float = 2.0
-    calibration: tuple[float, float, float, float] = (-5.07, 3.73, 1.44, 0.417)
+    calibration: tuple[float, float, float, float] = (-4.85, 3.62, 1.39, 0.408)
     companion: tuple[float, float] = (0.1, 3.0)
     stand_in: float = 0.5
     tied: float = 0.9

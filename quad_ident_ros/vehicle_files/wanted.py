@@ -75,8 +75,10 @@ def wanted_of(vehicle: Vehicle, sag: float | None, holds: Collection[Key]) -> Wa
     # About hover the curve with an offset goes with this power.
     exponent = scale.get('exponent', SQUARE / (1.0 + scale.get('offset', 0.0)))
     mismatch = effects.get('inertia_mismatch', {})
+    # Where the rotors' moments differ, the inertia that answers them alike.
     moments = np.array(vehicle.inertia) * [
-        mismatch.get(f'factor_{axis}', 1.0) / mismatch.get(moment, 1.0)
+        mismatch.get(f'factor_{axis}', 1.0) * mismatch.get(f'inertia_{axis}', 1.0)
+        / (mismatch.get(moment, 1.0) * mismatch.get(f'moment_{axis}', 1.0))
         for axis, moment in zip('xyz', ('arms_y', 'arms_x', 'torque'), strict=True)]
     rise, fall = _lags(effects)
     speeds = len(vehicle.rotors) * vehicle.hover_speed

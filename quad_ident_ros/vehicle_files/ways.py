@@ -61,6 +61,9 @@ WAYS: dict[tuple[str, str], tuple[Way, ...]] = {
                                           'motion'),),
     ('inertia_mismatch', 'moments'): (Way(('inertia',), 'the inertia over the factors, which '
                                           'differs in the gyroscopic moment'),),
+    ('inertia_mismatch', 'moments_and_inertia'): (
+        Way(('inertia',), 'the inertia over the factors on the moments, which differs in the '
+                          'gyroscopic moment'),),
     ('com_offset', 'fixed'): (Way(('centre',), 'the place of the centre of mass, which is the '
                                   'same motion'),),
 }

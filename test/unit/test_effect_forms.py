@@ -46,6 +46,8 @@ OTHERS = {
     ('thrust_scale', 'offset'): {'at_hover': 1.02, 'offset': 0.2},
     ('thrust_scale', 'exponent'): {'hover_factor': 1.02, 'exponent': 1.7},
     ('inertia_mismatch', 'moments'): {'arms_y': 1.1, 'arms_x': 0.9, 'torque': 1.2},
+    ('inertia_mismatch', 'moments_and_inertia'): {
+        'moment_x': 1.1, 'moment_y': 0.9, 'moment_z': 1.2, 'inertia_y': 1.1, 'inertia_z': 0.9},
     ('blade_flapping', 'drag_centre'): {'arm': 0.05},
     ('inflow', 'momentum'): {'through': 0.5}}
 EACH = [pytest.param(name, form, id=f'{name} {form}') for name, form in OTHERS]
@@ -362,6 +364,17 @@ def test_axes_that_are_alike_are_the_usual_form(name, form, usual):
     course = steps(VEHICLE)
     one, other = (roll(VEHICLE, each, course, START) for each in ({name: form}, usual))
     assert np.abs(one - other).max() < 1e-10
+
+
+def test_factors_on_the_inertia_are_moments_over_the_first_and_proportions_to_it():
+    x, y, z = 1.3, 0.8, 1.1
+    vehicle = replace(VEHICLE, rotational_drag=(0.0, 0.0, 0.0), rotor_inertia=0.0)
+    course = steps(vehicle)
+    one, other = (roll(vehicle, {'inertia_mismatch': each}, course, START) for each in (
+        {'factor_x': x, 'factor_y': y, 'factor_z': z},
+        {'moment_x': 1 / x, 'moment_y': 1 / x, 'moment_z': 1 / x,
+         'inertia_y': y / x, 'inertia_z': z / x}))
+    assert np.abs(one - other).max() < 1e-9
 
 
 def moment_at(velocity, effects, vehicle):

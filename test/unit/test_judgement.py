@@ -20,6 +20,7 @@ from quad_ident_ros.diagnose.judgement import (
     matters,
     pooled,
     stability,
+    standard_errors_from_none,
     unexplained,
 )
 from quad_ident_ros.diagnose.noise import noise_of
@@ -256,3 +257,24 @@ def test_what_a_flight_has_by_itself_stays_when_effects_are_taken_out_and_flight
     columns = less.estimate.columns
     assert begun.z[columns] == pytest.approx(less.z[columns], abs=0.5 * less.estimate.errors.min())
     assert begun.gap == pytest.approx(less.gap, rel=0.01)
+
+
+@pytest.mark.parametrize('off', [0.5, 3.0, 60.0])
+def test_one_parameter_is_as_far_as_its_standard_errors(off):
+    far = standard_errors_from_none(np.array([-2.0 * off]), np.array([[4.0]]))
+    assert far == pytest.approx(off, rel=1e-6)
+
+
+def test_parameters_that_are_tied_count_together():
+    """Two of which only the sum is known: each by itself is within its error, both are not."""
+    covariance = np.array([[1.0, -0.999], [-0.999, 1.0]])
+    assert standard_errors_from_none(np.array([1.0, 1.0]), covariance) > 30.0
+    assert standard_errors_from_none(np.array([1.0, -1.0]), covariance) < 1.0
+
+
+def test_of_more_parameters_without_an_effect_one_is_no_further_off_by_chance():
+    rng = np.random.default_rng(8)
+    for count in (1, 3, 6):
+        far = [standard_errors_from_none(rng.normal(size=count), np.eye(count))
+               for _ in range(2000)]
+        assert np.mean(np.array(far) > 2.0) == pytest.approx(0.0455, abs=0.02)
