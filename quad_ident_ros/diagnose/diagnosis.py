@@ -8,10 +8,11 @@ import numpy as np
 
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.diagnose import advice, measure
+from quad_ident_ros.diagnose.bench import Bench
 from quad_ident_ros.diagnose.candidates import candidates
 from quad_ident_ros.diagnose.in_simulator import gap_in_simulator, refuse_inertial
 from quad_ident_ros.diagnose.intake import take_in
-from quad_ident_ros.diagnose.judgement import Bench, judge, pooled
+from quad_ident_ros.diagnose.judgement import judge, pooled
 from quad_ident_ros.diagnose.noise import noise_of
 from quad_ident_ros.diagnose.nuisances import as_data as nuisances_as_data
 from quad_ident_ros.diagnose.nuisances import late_controller

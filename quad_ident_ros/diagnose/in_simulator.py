@@ -6,7 +6,8 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from quad_ident_ros.diagnose import gap as gaps
-from quad_ident_ros.diagnose.judgement import Bench, Judgement
+from quad_ident_ros.diagnose.bench import Bench
+from quad_ident_ros.diagnose.judgement import Judgement
 from quad_ident_ros.diagnose.measure import channels
 from quad_ident_ros.diagnose.residual_wrench import residual_wrench
 from quad_ident_ros.diagnose.result import GapInSimulator

@@ -9,7 +9,8 @@ import numpy as np
 
 from quad_ident_ros.diagnose import gap as gaps
 from quad_ident_ros.diagnose import residual_wrench as wrenches
-from quad_ident_ros.diagnose.judgement import Bench, Judgement
+from quad_ident_ros.diagnose.bench import Bench
+from quad_ident_ros.diagnose.judgement import Judgement
 from quad_ident_ros.diagnose.residual_wrench import ResidualWrench
 from quad_ident_ros.diagnose.result import (
     Channel,

@@ -17,7 +17,7 @@ class Weight:
     contribution: the share of the closable gap that is lost; stability: how steadily it helps,
     see judgement.stability; explained: the share of what it is there for that its form explains;
     gap {group: ...}: without it; distance: by how many standard errors its parameters together
-    differ from no effect, see judgement.standard_errors_from_none; companions: how many other
+    differ from no effect, see bench.standard_errors_from_none; companions: how many other
     effects clearly contribute beside it.
     """
 

@@ -5,7 +5,7 @@
 import numpy as np
 from scipy.linalg import block_diag
 
-from quad_ident_ros.diagnose.judgement import Bench, Model
+from quad_ident_ros.diagnose.bench import Bench, Model
 from quad_ident_ros.greybox.parameters import NAMES
 from quad_ident_ros.model.covariance import Covariance, covariance_of_matrix
 

@@ -8,8 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from quad_ident_ros.diagnose import gap as gaps
+from quad_ident_ros.diagnose.bench import Bench
 from quad_ident_ros.diagnose.doubts import doubts_of
-from quad_ident_ros.diagnose.judgement import Bench, beyond, Judgement, unexplained
+from quad_ident_ros.diagnose.judgement import beyond, Judgement, unexplained
 from quad_ident_ros.diagnose.result import FlightCheck, Minor, Ranked, Value
 from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.greybox.parameters import NAMES, nominal

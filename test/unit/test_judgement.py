@@ -8,19 +8,18 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from quad_ident_ros.diagnose.bench import Bench, standard_errors_from_none
 from quad_ident_ros.diagnose.candidates import candidates
 from quad_ident_ros.diagnose.gap import Ends, gap
 from quad_ident_ros.diagnose.intake import take_in
 from quad_ident_ros.diagnose.judgement import (
     _weight,
-    Bench,
     beyond,
     clear,
     lost_shares,
     matters,
     pooled,
     stability,
-    standard_errors_from_none,
     unexplained,
 )
 from quad_ident_ros.diagnose.noise import noise_of

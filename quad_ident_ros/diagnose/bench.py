@@ -1,0 +1,254 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Models of sets of effects, refitted with some of them taken out, and the gap that they leave."""
+
+from collections.abc import Collection
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.special import chdtrc, ndtri
+
+from quad_ident_ros.diagnose import gap as gaps
+from quad_ident_ros.diagnose import input_errors
+from quad_ident_ros.diagnose.candidates import Candidate
+from quad_ident_ros.diagnose.fitted import (
+    columns_at_bounds,
+    effects_in,
+    refitted,
+    within_bounds,
+)
+from quad_ident_ros.diagnose.gap import Noise
+from quad_ident_ros.diagnose.nuisances import nuisances_of
+from quad_ident_ros.diagnose.rules import Rules
+from quad_ident_ros.diagnose.selection import Selection
+from quad_ident_ros.effects.registry import EFFECTS, PLACES
+from quad_ident_ros.greybox.estimate import Estimate
+from quad_ident_ros.greybox.linear import Slopes, slopes_at, WRENCH
+from quad_ident_ros.greybox.parameters import nominal, SPLIT
+from quad_ident_ros.model.vehicle import Vehicle
+
+
+@dataclass(frozen=True, eq=False)
+class Model:
+    """
+    A set of effects fitted to all flights but the one held out, and the gap that it leaves.
+
+    z (Z,): with the effects; vectors: z with each flight's nuisances, that of the flight held out
+    last; ends: the Ends of predictions along each, position and velocity given the recorded
+    attitude.
+    """
+
+    chosen: tuple
+    estimate: Estimate
+    vectors: tuple
+    ends: tuple
+
+    @property
+    def gap(self) -> dict:
+        """Return {group: gap} of all flights."""
+        return gaps.gap(self.ends)
+
+    @property
+    def z(self) -> np.ndarray:
+        """Return the vector (Z,) that the flights share."""
+        return self.estimate.z
+
+    @property
+    def effects(self) -> tuple:
+        """Return the candidates that are effects."""
+        return effects_in(self.chosen)
+
+
+@dataclass(frozen=True, eq=False)
+class Bench:
+    """
+    Flights on which models are refitted and measured.
+
+    flights: those learnt from, cut into rollouts; tracks: these and, last, the one held out;
+    noise of the measurement.
+    """
+
+    flights: list
+    tracks: tuple
+    vehicle: Vehicle
+    selection: Selection
+    noise: Noise
+    rules: Rules
+
+    @property
+    def horizon(self) -> float:
+        """Return the time (s) ahead at which effects are judged."""
+        return gaps.horizon_of(self.flights, self.rules)
+
+    def model(self, chosen: tuple, estimate: Estimate, fixed: np.ndarray | None = None) -> Model:
+        """
+        Return the Model of a set and its Estimate.
+
+        fixed (Z,): nuisances that are not free in the flight that was held out.
+        """
+        held_out = self._nuisances(-1, estimate.z, chosen, fixed)
+        vectors = (*estimate.vectors, estimate.z + held_out)
+        return Model(chosen, estimate, vectors, self.ends(vectors))
+
+    def ends(self, vectors: tuple) -> tuple:
+        """Return the Ends of all flights with a vector (Z,) each."""
+        return tuple(gaps.ends(track, self.vehicle, z, self.horizon)
+                     for track, z in zip(self.tracks, vectors, strict=True))
+
+    def noise_gaps(self, model: Model) -> list:
+        """Return {group: the gap that the noise makes} of each flight."""
+        return [gaps.noise_gap(track, self.vehicle, z, self.noise, self.horizon)
+                for track, z in zip(self.tracks, model.vectors, strict=True)]
+
+    def slopes(self, model: Model) -> Slopes:
+        """Return the Slopes of the flights learnt from at a Model, in all that it has free."""
+        fit = model.estimate
+        wanted = {*fit.columns, *fit.nuisances.columns,
+                  *(WRENCH if self.selection.slow is not None else ())}
+        return slopes_at(self.flights, self.vehicle, fit.z, fit.vectors, fit.starts,
+                         sorted(wanted))
+
+    def without(self, model: Model, removed: tuple, slopes: Slopes | None = None) -> Model:
+        """
+        Return a Model with some of its effects taken out and everything else refitted.
+
+        slopes: those at the model, by which fits begin that are only for comparison.
+
+        What is alike in all flights must not hide in nuisances: those that do what an effect does
+        that is taken out may only differ between flights, as they do beside it.
+        """
+        fit, z = model.estimate, model.z.copy()
+        columns = [column for cause in removed for column in cause.columns]
+        z[columns] = nominal(self.vehicle)[columns]
+        fixed = np.stack(model.vectors) - model.z
+        alike = {column for cause in removed for column in _columns_alike(cause.effect)}
+        shared = [column for column in sorted(alike) if fixed[:, column].any()]
+        # Thrust, wind and moment of a flight do what many effects do: they stay as they are.
+        held = {cause for cause in model.chosen
+                if cause.nuisance is not None and (cause.nuisance.of_effect
+                                                   or any(cause.nuisance.sum_to_zero)
+                                                   or set(cause.nuisance.columns) & set(shared))}
+        free = [column for cause in model.chosen
+                if cause.nuisance is not None and cause not in held
+                for column in cause.nuisance.columns]
+        fixed[:, free] = 0.0
+        fixed[:, shared] -= fixed[:-1, shared].mean(axis=0)
+        chosen = tuple(cause for cause in model.chosen if cause not in {*removed, *held})
+        noise, scatter = self.selection.noise, self.selection.quadratic.scatter
+        slow = self.selection.slow
+        estimate = refitted(self.flights, self.vehicle, z, chosen, noise, fit.nuisances,
+                            fit.starts, slopes, scatter, fixed[:-1], slow)
+        usual = {cause.effect: cause for cause in self.selection.posterior if cause.usual}
+        chosen, estimate = within_bounds(chosen, estimate, usual, self.flights, self.vehicle,
+                                         noise, self.rules, scatter, fixed[:-1], slow)
+        return self.model(chosen, estimate, fixed[-1])
+
+    def left_out(self, model: Model) -> tuple:
+        """
+        Return the Ends of each flight by a Model's set refitted to the others, held-out one last.
+
+        A flight that is the only one to learn from is predicted by the model as it is.
+        """
+        count, found = len(self.flights), []
+        if count == 1 or not model.chosen:
+            return model.ends
+        slopes = self.slopes(model)
+        for k in range(count):
+            kept = [n for n in range(count) if n != k]
+            fit, flights = model.estimate, [self.flights[n] for n in kept]
+            nuisances = replace(fit.nuisances, values=fit.nuisances.values[kept])
+            fixed = fit.nuisances.fixed
+            refit = refitted(flights, self.vehicle, fit.z, model.chosen,
+                             [self.selection.noise[n] for n in kept], nuisances,
+                             [fit.starts[n] for n in kept], slopes.of_flights(kept),
+                             self.selection.quadratic.scatter,
+                             None if fixed is None else fixed[kept], self.selection.slow)
+            here = self._nuisances(k, refit.z, model.chosen, None if fixed is None else fixed[k])
+            found.append(gaps.ends(self.tracks[k], self.vehicle, refit.z + here, self.horizon))
+        return (*found, model.ends[-1])
+
+    def untold(self, model: Model) -> dict[int, tuple[float, float]]:
+        """Return {column: (least, most)} of what errors of the commands alone may have made."""
+        if not input_errors.gains(model.estimate.columns):
+            return {}
+        found = input_errors.ranges(model.estimate, self.slopes(model), self.noise)
+        null = nominal(self.vehicle)
+        clear = {column for cause in model.effects for column in self.clear_columns(model, cause)}
+        return {column: (least, most) for column, (least, most) in found.items()
+                if column in clear and least <= null[column] <= most}
+
+    def stands_in(self, model: Model, cause: Candidate, untold: Collection[int]) -> bool:
+        """Return whether most of what an effect clearly changes is at bounds or untold."""
+        clear = self.clear_columns(model, cause)
+        held = columns_at_bounds(cause, model.z, self.vehicle, self.rules)
+        return len(clear & {*untold, *held}) > self.rules.stand_in * len(clear)
+
+    def clear_columns(self, model: Model, cause: Candidate) -> set[int]:
+        """Return the columns of an effect that clearly differ from none."""
+        return {column for column, distance in self.distances(model, cause).items()
+                if distance >= self.rules.shown}
+
+    def distance(self, model: Model, cause: Candidate) -> float:
+        """
+        Return by how many standard errors an effect's parameters together differ from none.
+
+        In the best set where that has the effect: where others are taken out, it does their work.
+        """
+        best, columns = self.selection.best.estimate, list(cause.columns)
+        kept = set(columns) <= set(best.columns)
+        fit, covariance = ((best, self.selection.covariance) if kept
+                           else (model.estimate, model.estimate.covariance))
+        places = [fit.columns.index(column) for column in columns]
+        return standard_errors_from_none((fit.z - nominal(self.vehicle))[columns],
+                                         covariance[np.ix_(places, places)])
+
+    def distances(self, model: Model, cause: Candidate) -> dict[int, float]:
+        """
+        Return {column: standard errors from none} of an effect, each parameter by itself.
+
+        In the best set where that has the column, as the distance.
+        """
+        best, null = self.selection.best.estimate, nominal(self.vehicle)
+        errors = self.errors(model)
+        z = np.where(np.isin(np.arange(len(null)), best.columns), best.z, model.z)
+        return {column: float(abs(z[column] - null[column]) / max(errors[column], 1e-300))
+                for column in cause.columns}
+
+    def errors(self, model: Model) -> dict[int, float]:
+        """Return {column: standard error}: of the best set where it has the column."""
+        best = self.selection.best.estimate
+        return (dict(zip(model.estimate.columns, model.estimate.errors, strict=True))
+                | dict(zip(best.columns, self.selection.errors, strict=True)))
+
+    def _nuisances(self, flight: int, z: np.ndarray, chosen: tuple,
+                   fixed: np.ndarray | None = None) -> np.ndarray:
+        """Return the nuisances (Z,) of a flight beside a vector that it took no part in."""
+        return nuisances_of(self.tracks[flight], self.vehicle, z,
+                            tuple(cause.nuisance for cause in chosen if cause.nuisance),
+                            self.noise.deviation, self.flights[0].segment, fixed,
+                            self.selection.slow)
+
+
+def standard_errors_from_none(off: np.ndarray, covariance: np.ndarray) -> float:
+    """
+    Return how far K parameters together are from none, in standard errors of a single one.
+
+    As many as have the probability of Wald's statistic, a chi-square with K degrees of freedom.
+    Args: off (K,): distance from none; covariance (K, K).
+    """
+    errors = np.sqrt(np.maximum(np.diag(covariance), 1e-300))
+    values, vectors = np.linalg.eigh(covariance / np.outer(errors, errors))
+    along = vectors.T @ (off / errors)
+    square = float(np.sum(along ** 2 / np.maximum(values, 1e-12)))
+    chance = float(chdtrc(len(off), square))
+    # Of what is less probable than a float can tell, the root is as good.
+    return float(-ndtri(0.5 * chance)) if chance > 1e-300 else float(np.sqrt(square))
+
+
+def _columns_alike(name: str) -> list[int]:
+    """Return the columns of an effect in all its forms, and of those with the same ratio."""
+    ratio = EFFECTS[name].ratio
+    names = {name, *(other for other, effect in EFFECTS.items()
+                     if ratio is not None and effect.ratio == ratio)}
+    return [SPLIT + place for (effect, _), part in PLACES.items() if effect in names
+            for place in range(part.start, part.stop)]
