@@ -188,13 +188,14 @@ class Bench:
         return {column for column, distance in self.distances(model, cause).items()
                 if distance >= self.rules.shown}
 
-    def distance(self, model: Model, cause: Candidate) -> float:
+    def distance(self, model: Model, causes: tuple) -> float:
         """
-        Return by how many standard errors an effect's parameters together differ from none.
+        Return by how many standard errors the parameters of effects together differ from none.
 
-        In the best set where that has the effect: where others are taken out, it does their work.
+        In the best set where that has them: where others are taken out, they do their work.
         """
-        best, columns = self.selection.best.estimate, list(cause.columns)
+        best = self.selection.best.estimate
+        columns = [column for cause in causes for column in cause.columns]
         kept = set(columns) <= set(best.columns)
         fit, covariance = ((best, self.selection.covariance) if kept
                            else (model.estimate, model.estimate.covariance))

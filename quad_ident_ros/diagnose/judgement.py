@@ -67,14 +67,15 @@ def judge(bench: Bench) -> Judgement:
         alone = {removed[0]: one for removed, one in smaller.items() if len(removed) == 1}
         without |= alone
         for cause, weight in with_companions(
-                {cause: _weight(model, one, before, noise, bench.distance(model, cause), rules)
+                {cause: _weight(model, one, before, noise, bench.distance(model, (cause,)), rules)
                  for cause, one in alone.items()}, rules).items():
             # Beside effects that do not matter it may show more clearly, or less.
             weights[cause] = max(weights.get(cause, weight), weight,
                                  key=lambda each: presence(each, rules))
         idle = [removed for removed, one in smaller.items()
                 if not matters(model.gap, one.gap, before, noise, rules,
-                               len(removed) == 1 and clear(weights[removed[0]], rules))]
+                               clear([weights[cause] for cause in removed],
+                                     bench.distance(model, removed), rules))]
         if not idle:
             break
         # Where either of two does and their gaps hardly differ, the likelihood tells them apart.
@@ -174,14 +175,15 @@ def matters(after: dict, without: dict, before: dict, noise: dict, rules: Rules,
                for name, share in shares.items())
 
 
-def clear(weight: Weight, rules: Rules) -> bool:
+def clear(weights: list[Weight], distance: float, rules: Rules) -> bool:
     """
-    Return whether an effect is probable and clearly differs from none.
+    Return whether effects, of which one at least is probable, together clearly differ from none.
 
-    How much of the gap the errors of form of others may be is then no matter: its standard errors
-    have these in them.
+    How much of the gap the errors of form of others may be is then no matter: the standard errors
+    have these in them. Effects that cancel one another are together near none.
     """
-    return weight.distance >= rules.shown and presence(weight, rules) >= rules.present
+    return distance >= rules.shown and any(presence(weight, rules) >= rules.present
+                                           for weight in weights)
 
 
 def unexplained(gap: dict, before: dict, noise: dict, named: bool, rules: Rules) -> dict:

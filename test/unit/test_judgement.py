@@ -94,7 +94,13 @@ def test_what_is_known_apart_matters_whatever_the_error_of_form_of_others():
     (0.08, 30.0, True), (0.08, 6.0, False), (1.0, 0.95 * RULES.shown, False)])
 def test_what_is_probable_and_some_standard_errors_from_none_is_clear(
         contribution, distance, expected):
-    assert clear(Weight(contribution, 5.0, 0.9, {}, distance), RULES) is expected
+    weight = Weight(contribution, 5.0, 0.9, {}, distance)
+    assert clear([weight], distance, RULES) is expected
+
+
+def test_effects_that_cancel_are_not_clear_together():
+    weight = Weight(1.0, 5.0, 0.9, {}, 50.0)
+    assert clear([weight], 50.0, RULES) and not clear([weight, weight], 1.0, RULES)
 
 
 def test_an_effect_explains_what_it_does_in_the_group_where_it_does_most():
