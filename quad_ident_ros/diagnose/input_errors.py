@@ -45,7 +45,7 @@ def ranges(fit: Estimate, slopes: Slopes, noise: Noise) -> dict[int, tuple[float
             _centred(tangent.table[:, row].reshape(len(tangent.table), -1, ERRORS)[..., axis])
             for tangent in slopes.tangents]) * value
         left = np.concatenate([_centred(one[..., axis]) for one in fit.residuals])
-        size = np.mean(answer ** 2)
+        size = float(np.mean(answer ** 2))
         errors = max(float(np.mean(left ** 2)) - float(noise.deviation[axis]) ** 2, 0.0)
         other = value * (1.0 + errors / max(size, 1e-300)) ** parameter.gain
         found[column] = (min(value, other), max(value, other))
