@@ -49,8 +49,8 @@ def stated(vehicle: Vehicle) -> dict[str, float]:
     """Return {name: standard deviation} of the constants whose vehicle file states one."""
     found = {}
     for key, std in vehicle.uncertainty.items():
-        several = isinstance(std, tuple)
-        for name, one in zip(_names(key, several), std if several else (std,), strict=True):
+        each = std if isinstance(std, tuple) else (std,)
+        for name, one in zip(_names(key, isinstance(std, tuple)), each, strict=True):
             if one is not None:
                 found[name] = float(one)
     return found
