@@ -22,7 +22,7 @@ from quad_ident_ros.nodes.parameters import help_text, ParameterSpec
 from quad_ident_ros.nodes.qos import latched
 from quad_ident_ros.nodes.record_worker import RecordWorker, Words
 from quad_ident_ros.nodes.stamped import StampedGap
-from quad_ident_ros.report.diagnosis import closed_of, verdict_line
+from quad_ident_ros.report.verdict import closed_of, verdict_line
 from quad_ident_ros.tolerances import EXAMPLE, rules_from
 from quad_ident_ros.vehicle_files.load import load_vehicle
 from quad_ident_ros.warm_up import warm_up_diagnosis
