@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Node `diagnoser`: says which effects a vehicle has beside its nominal description."""
+"""Node `diagnoser`: says which effects a vehicle has in addition to its nominal description."""
 
 from datetime import datetime, timezone
 import json
@@ -46,7 +46,7 @@ SPECS = (
                   + '; empty: the usual ones.'),
 )
 
-HELP = f"""diagnoser: says which effects a vehicle has beside its nominal description.
+HELP = f"""diagnoser: says which effects a vehicle has in addition to its nominal description.
 
   ros2 run quad_ident_ros diagnoser --ros-args -p vehicle:=hummingbird
   ros2 topic echo /diagnosis --once --full-length --field data
