@@ -6,15 +6,15 @@ import secrets
 import sys
 
 from quad_ident_ros.cli.identify import progress_bar, show
-from quad_ident_ros.effects.registry import EFFECTS
+from quad_ident_ros.effects.registry import EFFECTS, titled
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.identify.result import as_data
 from quad_ident_ros.model.vehicle import load_vehicle
 from quad_ident_ros.report.data import write_json
-from quad_ident_ros.report.diagnosis import closed_of
 from quad_ident_ros.report.diagnosis import show as show_diagnosis
 from quad_ident_ros.report.picture import save_responses
 from quad_ident_ros.report.received import diagnosis_from
+from quad_ident_ros.report.verdict import closed_of
 
 PICTURE = 'responses.png'
 HIDDEN = 1.2    # times the noise's gap, below which an effect does not show
@@ -26,16 +26,16 @@ def add(commands, said):
         'demo', help=said,
         description='Start simulator, recorder and identifier as three processes on a ROS domain '
                     'of their own, fly an experiment, and show what was identified. Writes a '
-                    'picture, the bag, CSV files and logs. With --gap the vehicle has an effect '
-                    'that its description does not have, drawn at random and told to the '
-                    'simulator alone: a diagnoser looks for it, and only then it is revealed.')
+                    'picture, the bag, CSV files and logs. With --gap the vehicle has a hidden '
+                    'effect, drawn at random and known only to the simulator: a diagnoser looks '
+                    'for it, and only then is the truth printed.')
     parser.add_argument('--gap', action='store_true',
-                        help='diagnose a vehicle with a secret instead')
+                        help='diagnose a vehicle with a hidden effect instead')
     parser.add_argument('--experiment', help='name of a shipped experiment, or path of a .yaml '
                         '(default: hover_single_axis; with --gap: closed_loop)')
     parser.add_argument('--seed', type=int,
-                        help='seed of noise and searches (default 0), with --gap of the secret '
-                             'too (default: another one each time)')
+                        help='seed of noise and searches (default 0), with --gap of the hidden '
+                             'effect too (default: a new one each time)')
     parser.add_argument('--real-time-factor', type=float, default=0.0, metavar='X',
                         help='simulated seconds per second; 0 (default): as fast as it goes')
     parser.add_argument('-o', '--output', default='quad_ident_demo', metavar='FOLDER',
@@ -51,7 +51,7 @@ def run(options):
         from quad_ident_ros.nodes.demo import run_demo
         from quad_ident_ros.nodes.gap_demo import run_gap_demo
     except ImportError as error:
-        raise InputError(f'ROS 2 is not there ({error}): source a ROS 2 Jazzy, or start this as '
+        raise InputError(f'ROS 2 is not installed ({error}): source ROS 2 Jazzy, or start this as '
                          '`./run demo`, which installs it') from None
     if options.seed is None:
         options.seed = secrets.randbelow(10 ** 6) if options.gap else 0
@@ -97,15 +97,15 @@ def _reveal(options, outcome):
         show_diagnosis(typed, sys.stdout)
         units = {(effect.name, one.name): '' if one.unit == '1' else f' {one.unit}'
                  for effect in EFFECTS.values() for one in effect.parameters}
-        truth = '; '.join(f'{name} ' + ', '.join(
-            f'{key} {value:.4g}{units[name, key]}' for key, value in values.items())
+        truth = '; '.join(', '.join([titled(name), *(
+            f'{key} {value:.4g}{units[name, key]}' for key, value in values.items())])
             for name, values in outcome.effects.items())
-        print(f'\nrevealed: {truth}')
+        print(f'\n   truth: {truth}')
         gap = found['gap']
         hidden = all(gap['before'][name] < HIDDEN * gap['noise'][name] for name in gap['noise'])
-        said = ('found' if outcome.found else 'not found: what it does is within the noise'
-                if hidden else 'not what was found')
-        print(f'          {said}; {closed_of(typed.gap)}; the same again: --seed {options.seed}')
+        said = ('the verdict is right' if outcome.found else 'not in the verdict: its effect is '
+                'within the noise' if hidden else 'the verdict is wrong')
+        print(f'          {said}; {closed_of(typed.gap)}; to repeat: --seed {options.seed}')
         _say_where(options, outcome)
         print(f'pictures: ./run diagnose {outcome.recording}/flight_*.csv '
               f'--vehicle {outcome.nominal} --report diagnosis.html')

@@ -35,10 +35,11 @@ def add(commands, said):
     parser = commands.add_parser(
         'diagnose', help=said,
         formatter_class=argparse.RawDescriptionHelpFormatter,
-        description='Hold flights of a real vehicle against its nominal description. The last '
-                    'flight named is held\nout: the effects are not fitted to it. It counts where '
-                    'contributions are judged, and the\ngap is told on it.',
-        epilog='effects: ' + ', '.join(EFFECTS) + '\n\n'
+        description='Compare flights of a real vehicle with its nominal description. The last '
+                    'flight named is held\nout: the effects are not fitted to it. Contributions '
+                    'are judged on all flights, and the gap\nis measured on this one.',
+        epilog='effects:\n' + ''.join(f'  {name}: {effect.title}\n' for name, effect
+                                       in EFFECTS.items()) + '\n'
                'a simulator for --simulator, whose file is run:\n'
                + textwrap.indent(INTERFACE, '  ') + '\n\n'
                '  quad_ident diagnose monday_*.csv.gz --vehicle quad.yaml\n'
@@ -55,7 +56,8 @@ def add(commands, said):
                         'is needed, with the effects that your simulator has; auto: the file '
                         'beside a PX4 log, written from its parameters')
     parser.add_argument('--hold-out', metavar='FLIGHT',
-                        help='the flight on which the gap is told (default: the last one named)')
+                        help='the flight on which the gap is measured (default: the last '
+                        'one named)')
     parser.add_argument('--mapping', metavar='FILE', help='which topics and outputs of other '
                         "people's records mean what (YAML)")
     parser.add_argument('--effects', metavar='A,B', help='only these may be named (default: all)')

@@ -31,10 +31,10 @@ def add(commands: Any, said: str) -> None:
     """Add the command to the parser; said: what it does."""
     parser = commands.add_parser(
         'export', help=said, formatter_class=argparse.RawDescriptionHelpFormatter,
-        description='Write a vehicle file, as `diagnose --out-vehicle` writes it, as the own file '
-                    'of a simulator: a\nnew one, or with --base yours, in which just the numbers '
-                    'change and all else stays byte for\nbyte. What the effects change is '
-                    'listed, and which of them the file carries as they are, by the\nnearest, or '
+        description='Write a vehicle file, as `diagnose --out-vehicle` writes it, as a file of a '
+                    'simulator: a new\none, or with --base yours, in which only numbers change '
+                    'and everything else stays byte for byte.\nLists what the effects change, '
+                    'and which of them the file carries exactly, by the nearest\nequivalent, or '
                     'not at all.',
         epilog='  quad_ident export real.yaml --to rotorpy -o real_params.py\n'
                '  quad_ident diagnose *.csv --vehicle model.sdf --out-vehicle real.yaml\n'
@@ -46,9 +46,9 @@ def add(commands: Any, said: str) -> None:
                         help='your file that the numbers go into; FILE:NAME for one of several '
                              'vehicles in it (default: a new file)')
     parser.add_argument('--flight', nargs='+', metavar='FLIGHT',
-                        help='flights, best those that the diagnosis held out, on which the gap '
-                             'is told that the file closes, and over which a sag of the battery '
-                             'becomes a mean factor')
+                        help='flights, preferably those that the diagnosis held out, on which the '
+                             'gap that the file closes is measured, and over which a sag of the '
+                             'battery becomes a mean factor')
     parser.add_argument('-o', '--output', required=True, metavar='OUT', help='the file to write')
     parser.add_argument('--json', metavar='FILE', help='write what changes as data; - prints it')
     parser.set_defaults(run=run)

@@ -47,11 +47,12 @@ def add(commands, said):
                              'ArduPilot, Crazyflie or Betaflight')
     parser.add_argument('--mapping', metavar='FILE', help='which topics and outputs of other '
                         "people's records mean what (YAML)")
-    parser.add_argument('--vehicle', required=True, help='vehicle name or file: the start, and '
-                        'what holds for all that is not freed; auto: the file beside a PX4 log')
+    parser.add_argument('--vehicle', required=True, help='vehicle name or file: the start values, '
+                        'and the values of everything that is not freed; auto: the file beside a '
+                        'PX4 log')
     parser.add_argument('--free', required=True, metavar='NAME,...', help='what to estimate')
     parser.add_argument('--out-vehicle', metavar='FILE',
-                        help='write the vehicle file with what was found')
+                        help='write the vehicle file with the estimated constants')
     parser.add_argument('--json', metavar='FILE', help='write the results as data; - prints them')
     add_selection(parser)
     parser.set_defaults(run=run)

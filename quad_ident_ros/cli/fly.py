@@ -20,8 +20,8 @@ from quad_ident_ros.vehicle_files.load import load_vehicle
 
 
 def _effects_text():
-    """Return a line for each effect: its name and its parameters with their units."""
-    return ''.join(f'  {effect.name:22}' + ', '.join(
+    """Return the name, title and parameters, with their units, of each effect."""
+    return ''.join(f'  {effect.name}: {effect.title}\n      ' + ', '.join(
         f'{parameter.name} ({parameter.unit})' if parameter.unit != '1' else parameter.name
         for parameter in effect.parameters) + '\n' for effect in EFFECTS.values())
 
@@ -32,10 +32,10 @@ def add(commands, said):
         'fly', help=said,
         formatter_class=argparse.RawDescriptionHelpFormatter,
         description='Fly a trajectory in simulation under a geometric controller and write the '
-                    'flight record.\nThe controller knows the vehicle of the file; what flies '
-                    'has the effects besides, and only\nthese: so a diagnosis can be held '
-                    'against the truth.',
-        epilog='trajectories, their size and speed by the vehicle, the rest by the seed:\n  '
+                    'flight record.\nThe controller knows the vehicle of the file; the vehicle '
+                    'that flies also has the effects. A\ndiagnosis of the record can be '
+                    'compared with this truth.',
+        epilog='trajectories; the vehicle sets their size and speed, the seed the rest:\n  '
         + ', '.join(TRAJECTORIES)
         + '\n\neffects and their parameters:\n'
         + _effects_text()
@@ -51,8 +51,8 @@ def add(commands, said):
                         'vehicle --help` names')
     parser.add_argument('--effect', action='append', default=[],
                         metavar='NAME:PARAMETER=VALUE',
-                        help='what the flown vehicle has besides, in SI units; may be repeated; '
-                             'goes over the effects of the vehicle file')
+                        help='an effect of the flown vehicle, in SI units; may be repeated; '
+                             'overrides that of the vehicle file')
     parser.add_argument('--seed', type=int, default=0,
                         help='seed of the trajectory and of the noise (default 0)')
     parser.add_argument('--duration', type=float, default=30.0, metavar='S',
@@ -61,8 +61,8 @@ def add(commands, said):
                         help='samples and commands per second (default 100)')
     parser.add_argument('--noise', default='clean', metavar='SENSORS',
                         help='clean: none (default); mocap_imu: usual white and coloured noise; '
-                             'faulty: besides, the motion capture is late and slow, velocity is '
-                             'differentiated, packets are lost, attitude jumps')
+                             'faulty: in addition, the motion capture is late and slow, velocity '
+                             'is differentiated, packets are lost, attitude jumps')
     parser.add_argument('-o', '--output', required=True, metavar='FILE',
                         help='the flight record, .csv or .csv.gz')
     parser.add_argument('--json', metavar='FILE', help='write the truth as data; - prints it')

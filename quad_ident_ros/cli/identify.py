@@ -48,8 +48,8 @@ def add(commands, said):
                         help='free estimates the state at the first sample; auto (default) takes '
                              'rest where the record says so')
     parser.add_argument('--poles', choices=tuple(COMPLEX_PENALTY), default='auto',
-                        help='complex pairs: real never, auto (default) where they lessen '
-                             'the error by more than noise does, any where they are better at all')
+                        help='complex pairs: real never, auto (default) if they reduce the error '
+                             'by more than noise does, any if they are better at all')
     parser.add_argument('--search', choices=('per_output', 'joint'), default='per_output',
                         help="joint is the paper's literal 12-dimensional search")
     parser.add_argument('--box', choices=('scaled', 'literal'), default='scaled')

@@ -42,13 +42,13 @@ def add(commands, said):
         description='Say what is in a file: its streams, their rates and spans, and what they '
                     'could be read for; and of\nthe flight in it: columns, rates, gaps, ranges, '
                     'how much each axis is moved, the offset between\nthe clocks of its streams, '
-                    'and what is wrong with it and how to mend that: units, frames, stale\n'
-                    'samples, saturation, order and spin of the rotors.',
+                    'and what is wrong with it and how to correct it: units, frames, '
+                    'stale\nsamples, saturation, order and spin of the rotors.',
         epilog='  quad_ident info flight.csv.gz --vehicle quad.yaml\n'
                '  quad_ident info log_12.ulg --mapping px4.yaml --vehicle quad.yaml --json -\n\n'
                '  quad_ident info others_bag --write-mapping map.yaml\n'
                '  quad_ident info log_12.ulg --segment 2 --from 35 --to 95\n\n'
-               'Without --vehicle nothing is said of saturation and rotors. docs/records.md '
+               'Without --vehicle, saturation and rotors are not checked. docs/records.md '
                'explains the findings.\n\n'
                'exit code: 0; 2 for a file that cannot be read; 3 where a finding is an error, as '
                'where a file\nis no flight record without a mapping.')

@@ -30,7 +30,7 @@ COMMANDS = {
 EPILOG = """\
 examples:
   quad_ident demo                                  simulate, record and identify on ROS 2
-  quad_ident demo --gap                            diagnose a vehicle with a secret on ROS 2
+  quad_ident demo --gap                            diagnose a vehicle with a hidden effect
   quad_ident simulate hover_single_axis -o flights make flight records without ROS
   quad_ident fly circle --vehicle iris -o a.csv    make a closed-loop flight with known truth
   quad_ident identify flights/*.csv --trim hover --initial-state rest

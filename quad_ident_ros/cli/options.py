@@ -37,9 +37,9 @@ def add_selection(parser: argparse.ArgumentParser) -> None:
         'flight named. For one\nof several, write that part as a record first: quad_ident '
         'convert IN OUT --from 3.2 --to 18.4')
     group.add_argument('--from', dest='begin', type=float, metavar='SECONDS',
-                       help='leave out what is before (default: the begin)')
+                       help='first time that is used (default: the beginning)')
     group.add_argument('--to', dest='end', type=float, metavar='SECONDS',
-                       help='leave out what is after (default: the end)')
+                       help='last time that is used (default: the end)')
     group.add_argument('--segment', type=int, metavar='N',
                        help='of a file that holds several flights or pieces of one, the one of '
                             'this number in the list of `quad_ident info`')
@@ -86,7 +86,7 @@ def asking_for_vehicle(path: str) -> str:
                 '--vehicle FILE')
     return (f'{path}: --vehicle is missing: give --vehicle FILE with the mass, inertia, rotors '
             'and thrust coefficient of the nominal vehicle, as those in config/vehicles; only '
-            'logs of PX4 know a part of it')
+            'logs of PX4 contain part of it')
 
 
 def thrust_by_log(option: str | None, path: str) -> bool:

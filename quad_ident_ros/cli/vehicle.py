@@ -24,13 +24,13 @@ def add(commands: Any, said: str) -> None:
     """Add the command to the parser; said: what it does."""
     parser = commands.add_parser(
         'vehicle', help=said, formatter_class=argparse.RawDescriptionHelpFormatter,
-        description='Show what a file says of a vehicle: each number with its unit and its place '
+        description='Show what a file says about a vehicle: each number with its unit and place '
                     'in the file, what\nis missing, and what was assumed. Lags, drags and the '
-                    'like become effects of the nominal\nvehicle, so that a gap is that to this '
+                    'like become effects of the nominal\nvehicle, so that the gap is that of this '
                     'simulator.',
-        epilog='kinds, told by their content:\n'
+        epilog='kinds, recognised by their content:\n'
         + ''.join(f'  {kind.title}\n' for kind in KINDS)
-        + '\nwhat --set may supply, where the file does not have it:\n'
+        + '\nwhat --set may supply if the file does not have it:\n'
         + ''.join(f'  {key}: {unit}\n' for key, unit in SETTABLE.items())
         + '\n  quad_ident vehicle models/x500/model.sdf\n'
           '  quad_ident vehicle x2.xml -o x2.yaml\n'
@@ -96,7 +96,7 @@ def _show_vehicle(reading: Reading, screen: Any) -> None:
     vehicle = reading.vehicle
     assert vehicle is not None
     most = ('' if vehicle.speed_max == float('inf') else
-            f', {100 * vehicle.hover_speed / vehicle.speed_max:.3g} % of its most')
+            f', {100 * vehicle.hover_speed / vehicle.speed_max:.3g} % of its maximum')
     say(screen, f'vehicle: {vehicle.name}, {vehicle.mass:.6g} kg, {len(vehicle.rotors)} rotors, '
                 f'hovers at {vehicle.hover_speed:.4g} rad/s{most}')
     for name, values in vehicle.effects.items():

@@ -313,7 +313,7 @@ def _outputs(path, messages, channels, actuators, notes):
     if not order:
         order = [channel for channel, name in sorted(by_channel.items())
                  if messages.rows[name].any()] or [min(by_channel)]
-        notes.append('no parameter SERVOn_FUNCTION tells which outputs are motors: all outputs '
+        notes.append('no parameter SERVOn_FUNCTION says which outputs are motors: all outputs '
                      'that are used are kept, as they come')
     values = _stack(messages, [by_channel[channel] for channel in order])
     return outputs_stream('message RCOU', messages.rows['TimeUS'].astype(np.int64) * 1000, values)

@@ -97,7 +97,7 @@ class BagWriter:
         names = [name for name, _ in topics]
         types = _typestore().fielddefs
         if path.exists():
-            raise InputError(f'{path}: there is something already; name a folder that is not')
+            raise InputError(f'{path}: it exists already; name a new folder')
         if len(set(names)) != len(names):
             raise InputError(f'{path}: the topics {names} repeat one; name each once')
         for name, msgtype in topics:

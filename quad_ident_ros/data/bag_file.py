@@ -213,7 +213,7 @@ class BagFile:
         except InputError:
             raise
         except Exception as error:
-            how = ('rosbag info FILE, mend it with: rosbag reindex FILE' if self.kind == '.bag'
+            how = ('rosbag info FILE, repair it with: rosbag reindex FILE' if self.kind == '.bag'
                    else 'ros2 bag info FOLDER')
             raise InputError(f'{self.path}: this bag cannot be read '
                              f'({reason_of(error, self.path)}); check it with: {how}, or record '

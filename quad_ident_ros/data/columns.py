@@ -47,7 +47,8 @@ def record_of(path: Path, table: Table, mapping: Mapping, notes: Sequence[str]) 
     late = np.abs(t - origin) > CLOCK
     if late.any():
         raise InputError(f'{path}, column {time.names[0][:40]!r}: {t[late][0]:g} s is far from '
-                         f'the others, from {origin:g} s; give its unit in a mapping, or mend it')
+                         f'the others, from {origin:g} s; give its unit in a mapping, or correct '
+                         'it')
     known = np.isfinite(t)
     stamps = np.where(known, np.round((np.where(known, t, origin) - origin) * 1e9), 0).astype(
         np.int64)

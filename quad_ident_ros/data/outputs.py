@@ -87,8 +87,8 @@ def _with_commands(records: list[FlightRecord], vehicle: Vehicle | None,
     made = _map_of(where, records[0].info.get('motors', {}), np.concatenate(signals), vehicle,
                    actuators)
     if made is None:
-        note = (f'the motors stand: outputs stay as output1..{signals[0].shape[1]}, of which the '
-                'values do not tell the kind')
+        note = (f'the motors stand: outputs stay as output1..{signals[0].shape[1]}, whose values '
+                'do not show the kind')
         return [_noted(record, note) for record in records]
     motors, said = made.motors, made.said
     info: dict[str, Any] = {BY_MOTORS: True} if made.motors.uncertainty else {}

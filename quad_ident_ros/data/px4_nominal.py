@@ -21,7 +21,7 @@ STATUS = 'vehicle_status'
 USUAL_RATIO = 0.05  # m, the KM that PX4 has where nobody set one
 
 _HEAD = """\
-# Nominal vehicle, as far as {log} tells it. Fill in what is empty.
+# Nominal vehicle, as far as {log} describes it. Fill in what is empty.
 name: {name}
 mass:                           # kg
 inertia: [null, null, null]     # kg m2: Ixx, Iyy, Izz

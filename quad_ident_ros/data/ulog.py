@@ -167,7 +167,7 @@ def _slow(streams: list[Stream]) -> list[str]:
                 slow.append(f'{stream.source.removeprefix("topic ")} at {1 / period:.0f} Hz')
     if not slow:
         return []
-    return [f'{", ".join(slow)}: below {1 / COARSE:.0f} Hz lags and delays cannot be told; '
+    return [f'{", ".join(slow)}: below {1 / COARSE:.0f} Hz lags and delays are not visible; '
             f'{PROFILE}']
 
 

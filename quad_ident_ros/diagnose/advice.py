@@ -54,16 +54,15 @@ def at_bounds(judged: Judgement, vehicle: Vehicle, rules: Rules) -> tuple[dict, 
     for cause in judged.model.effects:
         names = [f'{NAMES[column].split(".")[1]} {z[column]:.3g}'
                  for column in columns_at_bounds(cause, z, vehicle, rules)]
-        so = ('; it stands for that in the model and is not named'
+        so = ('; it stays in the model in its place and is not named'
               if cause in judged.stand_ins else '')
         if names:
             rows.append({
                 'flight': 'all flights', 'code': 'at_bound', 'severity': 'warning',
                 'where': cause.effect,
-                'message': f'{", ".join(names)} is the bound of what vehicles have, and the '
-                           'flights ask for more: something else may do the work of this effect, '
-                           'such as commands that are logged more slowly than they are given'
-                           f'{so}',
+                'message': f'{", ".join(names)} is the bound of what vehicles have, and the best '
+                           'value lies beyond it: the effect may stand in for another cause, such '
+                           f'as commands that are logged more slowly than they are given{so}',
                 'remedy': AT_THE_RATE})
     return tuple(rows)
 
@@ -74,14 +73,14 @@ def by_input_errors(judged: Judgement) -> tuple[dict, ...]:
     for cause in judged.model.effects:
         ranges = [f'{NAMES[column].split(".")[1]} {least:.2g} to {most:.2g}'
                   for column, (least, most) in judged.untold.items() if column in cause.columns]
-        so = '; it stands for that in the model and is not named'
+        so = '; it stays in the model in its place and is not named'
         if ranges:
             rows.append({
                 'flight': 'all flights', 'code': 'input_errors', 'severity': 'warning',
                 'where': cause.effect,
-                'message': f'{", ".join(ranges)} is what these flights allow, no difference '
-                           'included: a vehicle seems to answer less than it does where commands '
-                           'have errors, as in a log that is slower than the controller'
+                'message': f'these flights allow {", ".join(ranges)}, which includes no difference: '
+                           'a vehicle seems to answer less than it does if the commands have '
+                           'errors, as in a log that is slower than the controller'
                            f'{so if cause in judged.stand_ins else ""}',
                 'remedy': AT_THE_RATE})
     return tuple(rows)

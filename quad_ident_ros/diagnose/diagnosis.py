@@ -59,9 +59,9 @@ def diagnose(records: Iterable[FlightRecord], vehicle: Vehicle, *,
     causes = tuple(cause for cause in every if cause.effect not in intake.refuted)
     ruled_out = tuple(dict.fromkeys(cause.effect for cause in every if cause not in causes))
     if not causes:
-        raise InputError(f'these flights tell nothing of {", ".join(effects or EFFECTS)}: '
+        raise InputError(f'these flights say nothing about {", ".join(effects or EFFECTS)}: '
                          + (f'{", ".join(ruled_out)} is ruled out by measured rotor speeds'
-                            if ruled_out else 'what they lack is in docs/diagnosis.md')
+                            if ruled_out else 'docs/diagnosis.md says what they would need')
                          + '; name other effects')
     selection = select(intake.flights, vehicle, causes, rules,
                        lambda share: told(0.7 * share))

@@ -98,8 +98,8 @@ def take_in(records: Sequence[FlightRecord], vehicle: Vehicle, hold_out: FlightR
     if hold_out is not None:
         hold_out = _fit_for_use(hold_out, vehicle, rules, wrong, findings)
     if not records:
-        raise InputError('no flight to learn from: name at least one flight record beside the one '
-                         'that is held out')
+        raise InputError('no flight to fit: name at least one flight record in addition to the '
+                         'one that is held out')
     alone = hold_out is None and len(records) == 1
     every = [*records, *([] if hold_out is None else [hold_out])]
     every, vehicle = _with_states(every, vehicle, findings)
@@ -147,11 +147,10 @@ def _beside_records(vehicle: Vehicle, records: Sequence[FlightRecord], findings:
         findings.append({
             'flight': 'all flights', 'code': 'left_out', 'severity': 'info',
             'where': 'vehicle file',
-            'message': f'{", ".join(names)} of the vehicle file is left out of the nominal model: '
-                       'these records have what it makes in what they measured, or lack the '
-                       'height that it needs',
-            'remedy': 'nothing needs to be done; records with commands, position and velocity '
-                      'show it'})
+            'message': f'{", ".join(names)} of the vehicle file is omitted from the nominal '
+                       'model: the measurements of these records contain its action already, or '
+                       'the height that it needs is missing',
+            'remedy': 'nothing to do; records with commands, position and velocity show it'})
     return replace(vehicle, effects=kept)
 
 
@@ -178,7 +177,7 @@ def _of_rotors(records: Sequence[FlightRecord], vehicle: Vehicle, clocks: Sequen
     so = f'; {" and ".join(names)} is ruled out by that' if names else ''
     findings += [as_caution(Finding('rotor_answer', 'info', 'rotor1, rotor2, ...',
                                     answer.said() + so,
-                                    'nothing needs to be done where this is right'), record)
+                                    'nothing to do if this is right'), record)
                  for answer, record in zip(told, records, strict=True) if answer is not None]
     return ruled_out
 
@@ -205,8 +204,8 @@ def _with_states(records: list[FlightRecord], vehicle: Vehicle, findings: list
         'where': 'accelerometer and gyro alone',
         'message': 'position, velocity and attitude are integrated from them, which holds for a '
                    'tenth of a second; the force across the thrust is taken from the record, so '
-                   'drag, wind, tilts and biases of sensors, and heights cannot be told, but for '
-                   'the bias of the gyro where the vehicle stands',
+                   'drag, wind, tilts and biases of sensors, and heights are not visible, except '
+                   'for the bias of the gyro while the vehicle is on the ground',
         'remedy': 'log position and velocity, of an estimator or of motion capture'})
     return ([reckoned(record, vehicle.gravity) for record in records],
             replace(vehicle, linear_drag=(0.0, 0.0, 0.0)))
@@ -233,7 +232,7 @@ def _cut(record: FlightRecord) -> Finding:
     resets = record.info.get('resets')
     why = f'; it was split where the estimator was reset: {resets}' if resets else ''
     return Finding('kept', 'info', used, f'this part of the recording is used{why}',
-                   'nothing needs to be done; --segment, --from and --to choose another part')
+                   'nothing to do; --segment, --from and --to choose another part')
 
 
 def _halves(held_out: Track, record: FlightRecord, rules: Rules) -> dict:
@@ -242,9 +241,9 @@ def _halves(held_out: Track, record: FlightRecord, rules: Rules) -> dict:
     shown = ', '.join(f'{begin:.2f} to {end:.2f}' for begin, end in spans[:MOST_SHOWN])
     more = f' s and {len(spans) - MOST_SHOWN} more' if len(spans) > MOST_SHOWN else ' s'
     finding = Finding(BLOCKS, 'info', f't = {shown}{more}',
-                      'held out: of each two blocks that follow one another the one by which both '
-                      'halves of the flight move alike',
-                      'nothing needs to be done; --hold-out FLIGHT holds out another flight')
+                      'held out: of each two consecutive blocks one, chosen so that both halves '
+                      'of the flight move alike',
+                      'nothing to do; --hold-out FLIGHT holds out another flight')
     return {**as_caution(finding, record), 'spans': [list(span) for span in spans]}
 
 

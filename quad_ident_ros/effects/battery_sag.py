@@ -24,7 +24,7 @@ FORM = Form(
            'voltage, thrust about to its square, linear over a flight',
     thrust=thrust, needs_voltage=True)
 EFFECT = Effect(
-    name='battery_sag', title='sag of the battery',
+    name='battery_sag', title='voltage sag of the battery',
     forms=(FORM, battery_sag_time.FORM, battery_sag_power.FORM, battery_sag_load.FORM),
     excitation='a flight long enough for the voltage to fall',
     confused_with=('thrust_scale', 'mass_offset'))

@@ -28,7 +28,7 @@ FORM = Form(
     acts_on='rotation',
     wrench=wrench, needs_reference=True)
 EFFECT = Effect(
-    name='blade_flapping', title='flapping of the blades',
+    name='blade_flapping', title='blade flapping',
     forms=(FORM, blade_flapping_drag_centre.FORM),
     excitation='horizontal flight at different speeds',
     confused_with=('com_offset', 'rotor_drag'))

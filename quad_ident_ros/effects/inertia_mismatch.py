@@ -29,7 +29,7 @@ FORM = Form(
     acts_on='rotation', on_rotors=False,
     body=body)
 EFFECT = Effect(
-    name='inertia_mismatch', title='mismatch of the inertia',
+    name='inertia_mismatch', title='error in inertia',
     forms=(FORM, inertia_mismatch_moments.FORM, inertia_mismatch_both.FORM),
     excitation='fast turns about each axis',
     confused_with=('motor_lag', 'thrust_scale'),

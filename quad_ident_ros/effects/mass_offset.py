@@ -21,7 +21,7 @@ FORM = Form(
     acts_on='translation', on_rotors=False,
     body=body)
 EFFECT = Effect(
-    name='mass_offset', title='offset of the mass', forms=(FORM,),
+    name='mass_offset', title='error in mass', forms=(FORM,),
     excitation='any flight, with roll or pitch manoeuvres to tell it from thrust',
     confused_with=('thrust_scale',),
     scale_group=True, ratio='thrust per mass',

@@ -77,6 +77,11 @@ TABLE = ROWS + len(ROWS_OF)
 OWNERS = np.array([ROWS_OF[name, form.name] for name, form in FORMS for _ in form.parameters])
 
 
+def titled(name: str) -> str:
+    """Return an effect as a person reads it: its title, then its name."""
+    return f'{EFFECTS[name].title} ({name})'
+
+
 @lru_cache(maxsize=8)
 def bounds(vehicle: Vehicle) -> Table:
     """

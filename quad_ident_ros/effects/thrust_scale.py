@@ -22,7 +22,7 @@ FORM = Form(
     source='thrust = factor thrust_coefficient speed^2',
     thrust=thrust)
 EFFECT = Effect(
-    name='thrust_scale', title='scale of the thrust',
+    name='thrust_scale', title='error in thrust',
     forms=(FORM, thrust_scale_offset.FORM, thrust_scale_exponent.FORM),
     excitation='any flight, with roll or pitch manoeuvres to tell it from mass',
     confused_with=('mass_offset', 'battery_sag', 'inflow'),

@@ -151,9 +151,9 @@ def _refuse_level(records: Iterable[FlightRecord], free: Iterable[str]) -> None:
             where = record.info.get('source') or record.info.get('name', 'the flight record')
             raise InputError(
                 f'{where}: the rotor speed at full signal is not known, and commands were scaled '
-                f'by the weight of the vehicle file, so that no flight tells '
-                f'{", ".join(scales)}; leave that out of --free, or give the vehicle file '
-                'speed_max (rad/s) or motors: with a gain')
+                f'by the weight of the vehicle file, so no flight determines {", ".join(scales)}; '
+                'leave that out of --free, or give the vehicle file speed_max (rad/s) or motors: '
+                'with a gain')
 
 
 def _refuse_motors(records: Iterable[FlightRecord], free: Iterable[str]) -> None:
@@ -236,15 +236,15 @@ def _said(freedom: Freedom, names: Sequence[str], values: np.ndarray) -> str:
     held = names[freedom.held]
     value = _with_unit(values[freedom.held], held)
     if freedom.scale:
-        return (f'{", ".join(members)} are undetermined: multiplied by one factor they fly the '
-                f'same, so that the flights tell their ratios alone. Leave {held} out of --free '
-                f'if it is known; the values hold if {held} is {value}')
+        return (f'{", ".join(members)} are undetermined: multiplied by one factor they give the '
+                f'same motion, so the flights determine only their ratios. Leave {held} out of '
+                f'--free if it is known; the values hold if {held} is {value}')
     if len(members) == 1:
         return (f'{held} is undetermined: the flights do not show it. Fly: {excitation_of(held)}; '
                 f'until then it stays at {value}')
     wanted = '; '.join(dict.fromkeys(excitation_of(name) for name in members))
-    return (f'{", ".join(members)} are undetermined: the flights do not tell them from one '
-            f'another. Leave one out of --free, or fly: {wanted}; the values hold if {held} is '
+    return (f'{", ".join(members)} are undetermined: the flights do not determine them '
+            f'separately. Leave one out of --free, or fly: {wanted}; the values hold if {held} is '
             f'{value}')
 
 
@@ -253,21 +253,21 @@ def _findings(found: Estimate, parameters: Iterable[Parameter],
     """Return what is to be known of the estimate besides what it leaves undetermined."""
     said = []
     if not found.converged:
-        said.append('the fit did not converge: the values are not the best ones; start it from '
-                    'a vehicle file that is nearer, or free fewer parameters')
+        said.append('the fit did not converge: the values are not the best ones; start from a '
+                    'vehicle file that is closer to the truth, or free fewer parameters')
     for parameter in parameters:
         if parameter.status == 'bound' and parameter.value is not None:
-            why = 'what the flights ask for lies beyond' if parameter.value else 'it is not there'
+            why = 'the best value lies beyond it' if parameter.value else 'it is not there'
             said.append(f'{parameter.name} ends at its bound, '
-                        f'{_with_unit(parameter.value, parameter.name)}: {why}, or something '
-                        'that the model lacks takes its place')
+                        f'{_with_unit(parameter.value, parameter.name)}: {why}, or it stands in '
+                        'for something that is not in the model')
     if pairs:
-        said.append(f'correlated by more than {STRONG:g}, so that a combination is known better '
-                    'than each: ' + ', '.join(f'{a} and {b} ({share:.3f})'
+        said.append(f'correlated by more than {STRONG:g}, so a combination of them is known '
+                    'better than each one: ' + ', '.join(f'{a} and {b} ({share:.3f})'
                                               for a, b, share in pairs))
     widest = float(np.sqrt(scatter_of(found.normal).max(initial=1.0)))
     if widest > 1.0:
-        said.append(f'what is left hangs together in time: standard errors are widened, up to '
+        said.append('the residuals are autocorrelated: standard errors are widened, up to '
                     f'{widest:.1f} times')
     for flight, noise, raw in zip(flights, found.noise, found.residuals, strict=True):
         ratio = noise / quick_noise(raw)
@@ -275,9 +275,9 @@ def _findings(found: Estimate, parameters: Iterable[Parameter],
         coloured = [f'{group} {times:.1f} times' for group, times in worst.items()
                     if times > COLOURED]
         if coloured:
-            said.append(f'{flight.name}: more is left than the noise from sample to sample '
-                        f'({", ".join(coloured)}): noise that is not white, or an effect that '
-                        'the model lacks')
+            said.append(f'{flight.name}: the residuals are larger than the noise from sample to '
+                        f'sample ({", ".join(coloured)}): the noise is not white, or an effect is '
+                        'missing from the model')
     return said
 
 

@@ -29,9 +29,9 @@ OF_MOTORS = tuple(name for name, effect in EFFECTS.items() if effect.actuator)
 
 NO_COMMANDS = Finding(
     'rotor_speeds', 'info', 'rotor1, rotor2, ...',
-    'the record has no commands, so the measured rotor speeds drive the model; what the motors '
-    f'make of commands, {" and ".join(OF_MOTORS)}, cannot be told',
-    'log the commands, too, to have the motors diagnosed')
+    'the record has no commands, so the measured rotor speeds drive the model; the response of '
+    f'the motors, {" and ".join(OF_MOTORS)}, is not visible',
+    'log the commands as well to have the motors diagnosed')
 """What is said of a record that is_driven_by_speeds."""
 
 

@@ -8,8 +8,9 @@ from quad_ident_ros.identify.space import at_bounds
 from quad_ident_ros.identify.uncertainty import level_spread
 
 UNDETERMINED = 'these data do not determine K, a and b: the information matrix is singular'
-LEVEL = ('the input never changes and the start is free: K cannot be told from the level that the '
-         'output is measured from; its error counts a level off by the range of the output')
+LEVEL = ('the input never changes and the start is free: K cannot be distinguished from the level '
+         'from which the output is measured; its error allows for a level off by the range of the '
+         'output')
 SAME = 1e-9        # of an input's range: changes below are rounding
 TRACELESS = 10.0   # pole x period beyond which e^-10 of its response is left at the next sample
 
@@ -34,18 +35,19 @@ def said_of(signal, model, sure, tests, bounds=None):
               and not (mixed and name in 'ab')]
     if unsure:
         yield (f'not identifiable from this record: {", ".join(unsure)}; the standard error is '
-               'above half of the number, or of what the record can tell from zero')
+               'above half of the number, or of the smallest number that the record can '
+               'distinguish from zero')
     if tests.depends_on_input:
-        yield ('the input is still in the residuals: the model leaves out dynamics, and the '
-               'standard errors count the noise alone')
+        yield ('the residuals still depend on the input: the model omits dynamics, and the '
+               'standard errors cover the noise only')
     elif tests.is_coloured:
-        yield ('the residuals are not white, by coloured noise or by dynamics left out: the '
+        yield ('the residuals are not white, because of coloured noise or omitted dynamics: the '
                'standard errors are too small')
     gaps, changed = _gaps(signal)
     if changed:
         yield (f'the input differs between the two sides of {changed} of {gaps} gaps in the '
                'record: when it changed within them is not known, and the standard errors, which '
-               'count the noise alone, are too small')
+               'cover the noise only, are too small')
     # The level enters beside the noise: it is said where it is not small.
     if sure.errors['K'] and sure.errors['K'] < 2 * level_spread(signal, model):
         yield LEVEL
@@ -54,8 +56,8 @@ def said_of(signal, model, sure, tests, bounds=None):
         yield (f'the search ended on the bounds of the {name}, {low:.4g} to {high:.4g}: a better '
                'model may lie beyond')
     if model.form != 'complex' and model.a * signal.period > TRACELESS:
-        yield (f'a = {model.a:.4g} 1/s dies out within a sample: of K and a the record tells '
-               f'K/a = {model.gain / model.a:.4g}')
+        yield (f'a = {model.a:.4g} 1/s dies out within a sample: of K and a, the record '
+               f'determines only K/a = {model.gain / model.a:.4g}')
 
 
 def _gaps(signal):
@@ -73,9 +75,10 @@ def said_of_order(other):
     if not other.is_better:
         return None
     if other.name == 'first order':
-        return (f'K/(s+a) with a = {other.denominator[0]:.4g} describes the record as well, with '
-                'one number less')
+        return (f'K/(s+a) with a = {other.denominator[0]:.4g} describes the record equally well, '
+                'with one number less')
     if other.name == 'double integrator':
-        return 'K/s^2 describes the record as well: its poles cannot be told from zero'
+        return ('K/s^2 describes the record equally well: its poles cannot be distinguished from '
+                'zero')
     return ('a third pole fits significantly better: the rms error falls to '
             f'{other.nrmse_percent:.3g} % of the range')

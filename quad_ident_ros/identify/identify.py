@@ -25,9 +25,10 @@ from quad_ident_ros.identify.validity import validity
 
 FIRST_SAMPLE = ('search joint: the level at rest is taken from the first sample, whose noise '
                 'enters the fit')
-LEVEL_UNKNOWN = ('the record does not say at which level it rests, as a bag of the recorder does: '
-                 'it is estimated beside K, a and b. Where the vehicle is not of this class it '
-                 'takes up a part of the misfit: a record that has it gives other numbers')
+LEVEL_UNKNOWN = ('unlike a bag of the recorder, the record does not say at which level it rests: '
+                 'the level is estimated with K, a and b. If the vehicle is not of this class, '
+                 'the level absorbs part of the misfit, and a record that has it gives different '
+                 'numbers')
 POOR = 50.0   # fit %
 FEWEST_FOR_ORDERS = 30   # samples
 OVERFLOW = 'no model was found that stays finite over the record'
@@ -151,7 +152,7 @@ def identify(records, settings=None, *, on_progress=lambda method, output, share
 def _direct(method, objective, space, output):
     fitted, spent, remarks = method.direct(objective, space)
     if fitted is not None and not space.holds(fitted.model):
-        remarks = [*remarks, 'beyond the bounds: those are for the searches, this method has none']
+        remarks = [*remarks, 'beyond the bounds: these are for the searches; this method has none']
     return _finish(objective.signal, output, fitted, spent, remarks)
 
 

@@ -240,8 +240,8 @@ def _even_grid(t, inputs, measured):
     changed = np.count_nonzero(np.any(np.diff(inputs, axis=0)[gaps] != 0, axis=1))
     if changed:
         remark += (f'; an input differs between the two sides of {changed} of '
-                   f'{np.count_nonzero(gaps)} gaps, and the standard errors do not count that '
-                   'nobody knows when it changed')
+                   f'{np.count_nonzero(gaps)} gaps, and the standard errors do not allow for the '
+                   'unknown time of the change')
     return grid, _mean_inputs(t, inputs, grid), columns, there, [remark]
 
 

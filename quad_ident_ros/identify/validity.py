@@ -38,7 +38,7 @@ def validity(signal):
         share = float(blocks.neglected.max()) / GRAVITY
         what = f'at a tilt of {np.degrees(tilt):.0f} deg drag is up to {share:.0%} of the thrust'
         if signal.at_rest:
-            what += ', with what the tilt takes of U1'
+            what += ', including the part of U1 that the tilt takes'
     else:
         usual = float(np.sqrt(np.mean(blocks.target ** 2)))
         share = float(np.sqrt(np.mean(blocks.neglected ** 2))) / usual if usual > 0 else 0.0
@@ -46,5 +46,5 @@ def validity(signal):
                 f'{share:.0%} of the angular acceleration')
     holds = share <= LARGEST_SHARE
     return Validity(holds, share, tilt, f'{what}: the linear model '
-                    + ('holds' if holds else f'leaves out more than {LARGEST_SHARE:.0%}, and does '
-                       'not hold'))
+                    + ('holds' if holds else f'omits more than {LARGEST_SHARE:.0%} and does not '
+                       'hold'))

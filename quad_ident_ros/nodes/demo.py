@@ -128,8 +128,8 @@ class Watcher:
             if node.count_publishers(topic) > 1:
                 raise InputError(
                     f'others publish {topic}, too, on ROS domain {node.context.get_domain_id()}, '
-                    'which this run has for itself: what they say cannot be told from it; start '
-                    'them on another ROS_DOMAIN_ID, and this again')
+                    'which this run uses: their messages cannot be distinguished from it; start '
+                    'them on another ROS_DOMAIN_ID, and start this again')
 
     @property
     def done(self):
@@ -201,8 +201,8 @@ def watch(watcher, nodes, logs):
                     raise InputError(watcher.refusal)
                 elif time.monotonic() - since > PATIENCE:
                     raise InputError(f'nothing has happened for {PATIENCE:g} s; the logs are in '
-                                     f'{logs}; where one of them compiles, let '
-                                     '`quad_ident warm-up` do that before')
+                                     f'{logs}; if one of them compiles, let `quad_ident warm-up` '
+                                     'do that before')
 
 
 def _end(number, _):

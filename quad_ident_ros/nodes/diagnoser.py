@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Node `diagnoser`: says which effects a vehicle has beside its nominal description."""
+"""Node `diagnoser`: says which effects a vehicle has in addition to its nominal description."""
 
 from datetime import datetime, timezone
 import json
@@ -22,7 +22,7 @@ from quad_ident_ros.nodes.parameters import help_text, ParameterSpec
 from quad_ident_ros.nodes.qos import latched
 from quad_ident_ros.nodes.record_worker import RecordWorker, Words
 from quad_ident_ros.nodes.stamped import StampedGap
-from quad_ident_ros.report.diagnosis import closed_of, verdict_line
+from quad_ident_ros.report.verdict import closed_of, verdict_line
 from quad_ident_ros.tolerances import EXAMPLE, rules_from
 from quad_ident_ros.vehicle_files.load import load_vehicle
 from quad_ident_ros.warm_up import warm_up_diagnosis
@@ -46,7 +46,7 @@ SPECS = (
                   + '; empty: the usual ones.'),
 )
 
-HELP = f"""diagnoser: says which effects a vehicle has beside its nominal description.
+HELP = f"""diagnoser: says which effects a vehicle has in addition to its nominal description.
 
   ros2 run quad_ident_ros diagnoser --ros-args -p vehicle:=hummingbird
   ros2 topic echo /diagnosis --once --full-length --field data

@@ -44,8 +44,8 @@ SPECS = (
                   'data.', length=(0, 2)),
     ParameterSpec('gain_bounds', [], 'Lower and upper bound of K; empty: from the data.',
                   length=(0, 2)),
-    ParameterSpec('poles', 'auto', 'Complex pairs: never (real), where they lessen the '
-                  'error by more than noise does (auto), or where they are better at all (any).',
+    ParameterSpec('poles', 'auto', 'Complex pairs: never (real), if they reduce the error by more '
+                  'than noise does (auto), or if they are better at all (any).',
                   choices=tuple(COMPLEX_PENALTY)),
     ParameterSpec('search', 'per_output', "per_output solves for K; joint is the paper's literal "
                   '12-dimensional search.', choices=('per_output', 'joint')),
@@ -63,8 +63,8 @@ SPECS = (
     ParameterSpec('population', _SWARM.population, 'Particles or nests, N.', limits=(2, 100_000)),
     ParameterSpec('generations', _SWARM.generations, 'Generations.', limits=(1, 1_000_000)),
     ParameterSpec('w', _SWARM.inertia, 'Inertia weight of PSO.', limits=(0.0, 2.0)),
-    ParameterSpec('c1', _SWARM.c1, 'Largest pull to the own best.', limits=(0.0, 10.0)),
-    ParameterSpec('c2', _SWARM.c2, 'Largest pull to the common best.', limits=(0.0, 10.0)),
+    ParameterSpec('c1', _SWARM.c1, 'Largest pull towards the own best.', limits=(0.0, 10.0)),
+    ParameterSpec('c2', _SWARM.c2, 'Largest pull towards the common best.', limits=(0.0, 10.0)),
     ParameterSpec('pa', _SWARM.abandon, 'Probability that an egg is discovered.',
                   limits=(0.0, 1.0)),
     ParameterSpec('alpha', _SWARM.alpha, 'Step size of the Levy flights.', limits=(0.0, 1000.0)),
@@ -120,8 +120,7 @@ class Identifier(RecordWorker):
 
     def _unfit(self, record):
         if len(record) < FEWEST:
-            return (f'a record of {len(record)} samples is left aside: at least {FEWEST} are '
-                    'needed')
+            return (f'a record of {len(record)} samples is ignored: at least {FEWEST} are needed')
         return None
 
     def _on_session(self):

@@ -109,7 +109,8 @@ class RecordWorker(PackageNode):
         self._job.request()
         response.success = True
         response.message = (
-            f'the node still gets ready; a {self._words.noun} follows' if not self.is_ready else
+            f'the node is still getting ready; a {self._words.noun} '
+            'follows' if not self.is_ready else
             f'a {self._words.noun} is running; another follows' if busy else
             f'{self._words.doing} {len(self._taken())} records')
         return response

@@ -42,7 +42,7 @@ SPECS = (
                   'Name of a shipped experiment or path of an experiment file.'),
     ParameterSpec('vehicle', '', 'Name or path of a vehicle file that replaces the '
                   "experiment's; empty keeps it."),
-    ParameterSpec('effects', (), 'Effects that the vehicle has beside those of its file, each '
+    ParameterSpec('effects', (), 'Effects of the vehicle in addition to those of its file, each '
                   'NAME:PARAMETER=VALUE.'),
     ParameterSpec('real_time_factor', 1.0, 'Simulated seconds per second; 0 runs as fast as the '
                   'subscribers keep up, without loss.', limits=(0.0, 1000.0), fixed=True),

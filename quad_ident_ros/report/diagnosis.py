@@ -15,19 +15,24 @@ from quad_ident_ros.diagnose.result import (
     BLOCKS,
     Channel,
     Diagnosis,
-    Gap,
-    GapGivenAttitude,
     GapInSimulator,
     Ranked,
     Unexplained,
-    Value,
 )
 from quad_ident_ros.diagnose.rules import RULES
+from quad_ident_ros.effects.registry import EFFECTS, titled
+from quad_ident_ros.report.verdict import (
+    above_noise,
+    closed_of,
+    contribution_of,
+    next_step,
+    size_line,
+    values_of,
+    verdict_line,
+)
 
 WIDTH = 118     # columns that the widest row needs
 WORTH = 0.02        # probability or share from which on a row is shown
-
-NOTHING_TO_CLOSE = "the velocity gap is not above the noise's, so that there is nothing to close"
 
 NUMBER = re.compile(r'[-+]?\d+(\.\d+)?(e[-+]?\d+)?')
 
@@ -54,10 +59,11 @@ def show(found: Diagnosis, stream: TextIO) -> None:
 
     say(f'verdict: {verdict_line(found)}', 'bold')
     say(size_line(found))
+    say(next_step(found))
     say('')
     say('where: force and moment that the nominal vehicle does not explain')
     screen.print(_table(WHERE, [where_row(row) for row in shown(found.where)]))
-    say('which')
+    say('which effects cause it')
     screen.print(_which(found))
     for line in (*minor_lines(found), *one_finding_lines(found)):
         say(line)
@@ -74,46 +80,6 @@ def show(found: Diagnosis, stream: TextIO) -> None:
     if found.fly_next:
         say('what to fly next')
         screen.print(_table(NEXT, [next_row(one) for one in found.fly_next]))
-
-
-def verdict_line(found: Diagnosis) -> str:
-    """Return the verdict in words."""
-    said = ', '.join(found.verdict)
-    if found.verdict == ('none',):
-        said += ': the nominal vehicle explains the flights to within noise and tolerance'
-    if 'unknown' in found.verdict:
-        said += ': no known effect explains all of the gap'
-    if found.undetermined:
-        said += f': the flights cannot tell between {", ".join(found.undetermined)}'
-        if found.verdict == ('undetermined',) and found.sure:
-            said += f'; sure beside them: {", ".join(found.sure)}'
-    return said
-
-
-def size_line(found: Diagnosis) -> str:
-    """Return how large the gap of the velocity is before and after, as a sentence."""
-    gap = found.gap
-    before, after, noise = (stage['velocity'] for stage in (gap.before, gap.after, gap.noise))
-    said = (f'On {found.held_out}, which took no part, the velocity {gap.horizon:g} s ahead is '
-            f'off by {before:.3g} m/s with the nominal vehicle')
-    if gap.without:
-        said += f', by {after:.3g} m/s with the effects named'
-    said += f'; noise alone makes {noise:.3g} m/s.'
-    if gap.without and not above_noise(gap):
-        return f'{said} {NOTHING_TO_CLOSE[0].upper()}{NOTHING_TO_CLOSE[1:]}.'
-    return said if not gap.without else (
-        f'{said} {100 * gap.closed:.0f} % of the gap above the noise is closed.')
-
-
-def above_noise(gap: Gap | GapGivenAttitude | GapInSimulator) -> bool:
-    """Whether the nominal vehicle, nuisances taken out, is farther off than the noise is."""
-    return gap.before_own['velocity'] > gap.noise['velocity']
-
-
-def closed_of(gap: Gap | GapGivenAttitude | GapInSimulator) -> str:
-    """Return how much of a velocity gap is closed, in words."""
-    return (f'{100 * gap.closed:.0f} % of the velocity gap above the noise is closed'
-            if above_noise(gap) else NOTHING_TO_CLOSE)
 
 
 def shown(channels: Iterable[Channel]) -> list[Channel]:
@@ -146,11 +112,6 @@ def form_of(row: Ranked) -> str:
     return row.form if row.explained is None else f'{row.form}, {100 * row.explained:.0f} %'
 
 
-def contribution_of(row: Ranked) -> str:
-    """Return in words the share of the closable gap that is lost without an effect."""
-    return '' if row.contribution is None else f'{100 * row.contribution:.0f} %'
-
-
 def without_it(found: Diagnosis, row: Ranked) -> str:
     """Return in words the velocity gap (m/s) of the flight held out without an effect."""
     gap = found.gap.without.get(row.effect)
@@ -158,14 +119,14 @@ def without_it(found: Diagnosis, row: Ranked) -> str:
 
 
 def minor_lines(found: Diagnosis) -> list[str]:
-    """Return what is there and does not matter, in words."""
+    """Return the effects that are present and do not matter, in words."""
     alike = [(f'closing less than {100 * RULES.material:.0f} %',
               [one for one in found.minor if one.contribution < RULES.material]),
-             ('closing no more than the error of form of the other effects may be',
+             ("closing no more than the other effects' errors of form could",
               [one for one in found.minor if one.contribution >= RULES.material])]
-    return [f'also there, but {why}: ' + ', '.join(
-        f'{one.effect} ({100 * max(one.contribution, 0.0):.1f} %, probability '
-        f'{one.probability:.2f})' for one in some) for why, some in alike if some]
+    return [f'also present, but {why}: ' + '; '.join(
+        f'{titled(one.effect)}, {100 * max(one.contribution, 0.0):.1f} %, probability '
+        f'{one.probability:.2f}' for one in some) for why, some in alike if some]
 
 
 def one_finding_lines(found: Diagnosis) -> list[str]:
@@ -173,19 +134,20 @@ def one_finding_lines(found: Diagnosis) -> list[str]:
     lines = []
     for row in found.one_finding:
         may_be = ', '.join(' or '.join(names) for names in row['may_be'])
-        lines.append(f'{row["effect"]} may as well be another cause of the same motion'
-                     + (f' ({may_be})' if may_be else '') + f'; what tells: {row["tells"]}')
+        lines.append(f'{titled(row["effect"])} could also be another cause of the same motion'
+                     + (f' ({may_be})' if may_be else '')
+                     + f'; what tells them apart: {row["tells"]}')
     return lines
 
 
 def far_line(found: Diagnosis) -> str:
-    """Return how much of the velocity gap is closed, open loop and given the attitude."""
+    """Return what the errors of predictions are, and how much of the velocity gap is closed."""
     gap, given = found.gap, found.gap_given_attitude
-    said = f'how far, on {found.held_out} (held out), {gap.horizon:g} s ahead: '
-    if above_noise(gap) and above_noise(given):
-        return (f'{said}of the velocity gap above the noise {100 * gap.closed:.0f} % is closed, '
-                f'given the recorded attitude {100 * given.closed:.0f} %')
-    return f'{said}{closed_of(gap)}; given the recorded attitude, {closed_of(given)}'
+    closed = (f'{closed_of(gap)}, {100 * given.closed:.0f} % given the recorded attitude'
+              if above_noise(gap) and above_noise(given)
+              else f'{closed_of(gap)}; given the recorded attitude, {closed_of(given)}')
+    return (f'how far: error of predictions {gap.horizon:g} s ahead on {found.held_out} (held '
+            f'out), root mean square with 95 % interval; {closed}')
 
 
 def far_rows(found: Diagnosis) -> list[list[str]]:
@@ -221,7 +183,7 @@ def _between(gap: dict, interval: dict, name: str) -> str:
 
 
 def open_lines(found: Diagnosis) -> list[str]:
-    """Return what the verdict does not explain, what did not show and what to be wary of."""
+    """Return what the verdict does not explain, what did not show, and warnings."""
     lines = [f'unexplained: {row.channel}, {row.depends_on}, {row.rms:.2g} {row.unit} rms, '
              + (f'{band_of(row)} Hz' if row.band[1] > 0.0 else 'constant')
              for row in found.unknown]
@@ -233,7 +195,8 @@ def open_lines(found: Diagnosis) -> list[str]:
             lines.append(f'{one.flight} differs from the other {others}; gap over that of the '
                          f'noise: {times}')
     if found.not_shown:
-        lines.append(f'would not show at their usual size: {", ".join(found.not_shown)}')
+        names = ', '.join(map(titled, found.not_shown))
+        lines.append(f'would not show at their usual size: {names}')
     return lines + caution_lines(found)
 
 
@@ -243,8 +206,9 @@ def nuisance_lines(found: Diagnosis) -> list[str]:
     for name, one in (found.nuisances or {}).items():
         lines.append(f'{name} ({one["what"]}), {one["unit"]}: {_values(one)}')
         if one.get('hidden_delay'):
-            lines.append(f'a delay of all flights of up to {1e3 * one["hidden_delay"]:.0f} ms '
-                         'cannot be told from the clocks')
+            most = 1e3 * one['hidden_delay']
+            lines.append(f'a delay common to all flights of up to {most:.0f} ms cannot be '
+                         'distinguished from clock offsets')
     return ['estimated per flight, not reported as effects:',
             *(f'  {line}' for line in lines)] if lines else []
 
@@ -258,13 +222,14 @@ def _values(one: dict) -> str:
 
 def caution_lines(found: Diagnosis) -> list[str]:
     """
-    Return what to be wary of, a line for each kind of it.
+    Return the warnings of a diagnosis, a line for each kind.
 
-    A held-out flight that the effects found lead away from, and what was found in the records:
-    what is said of several flights in the same words, whatever the numbers, is one line.
+    They concern a held-out flight that the effects predict worse, a simulator that differs from
+    the vehicle file, and the records. Warnings on several flights that differ only in their
+    numbers are one line.
     """
-    farther = [f'be wary of {found.held_out} (held out): it is farther from the model with the '
-               'effects named than without: it was flown otherwise, or by another vehicle']
+    farther = [f'warning: {found.held_out} (held out): the model with the effects named predicts '
+               'it worse than the nominal one: it was flown differently or by another vehicle']
     alike: dict = {}
     said: Counter = Counter()
     for one in found.findings:
@@ -272,7 +237,7 @@ def caution_lines(found: Diagnosis) -> list[str]:
                  NUMBER.sub('#', one['message']))
         said[one['flight'], words] += 1
         alike.setdefault((words, said[one['flight'], words]), []).append(one)
-    lines = [f'{"" if first.get("severity") == "info" else "be wary of "}{first["flight"]}'
+    lines = [f'{"" if first.get("severity") == "info" else "warning: "}{first["flight"]}'
              + (f' ({", ".join(one["flight"] for one in others)} alike)' if others else '')
              + f': {first["where"]}: {first["message"]}' for first, *others in alike.values()]
     return [*(farther if found.gap.closed < 0.0 else []), *_of_simulator(found), *lines]
@@ -284,9 +249,9 @@ def _of_simulator(found: Diagnosis) -> list[str]:
     far = [] if one is None else [
         f'{name} by {value:.3g} {found.gap.units[name]}'
         for name, value in one.from_nominal.items() if value > found.tolerance[name]]
-    return [f'be wary of {one.simulator}: {one.horizon:g} s ahead it is apart from the nominal '
-            f'vehicle ({", ".join(far)}), to which the effects were fitted: make the vehicle file '
-            'that of the simulator'] if one and far else []
+    return [f'warning: {one.simulator}: {one.horizon:g} s ahead it differs from the nominal '
+            f'vehicle ({", ".join(far)}), to which the effects were fitted: give the vehicle file '
+            'the constants of the simulator'] if one and far else []
 
 
 def next_row(one: dict) -> list[str]:
@@ -301,18 +266,12 @@ def next_row(one: dict) -> list[str]:
             f'{one["speed"]:.1f} m/s']
 
 
-def change_of(parameter: Value) -> str:
-    """Return what a parameter is more than in the vehicle file, where that has the effect."""
-    return '' if parameter.change is None else f' ({parameter.change:+.3g} to the file)'
-
-
 def _which(found: Diagnosis) -> Table:
     rows = []
     for row in shown_effects(found):
-        values = ', '.join(f'{name} {one.value:.4g} ± {one.std:.2g} {one.unit}'.removesuffix(' 1')
-                           + change_of(one) for name, one in row.parameters.items())
-        rows.append([row.effect, form_of(row), f'{row.probability:.2f}', contribution_of(row),
-                     values, without_it(found, row)])
+        rows.append([f'{row.effect}\n{EFFECTS[row.effect].title}', form_of(row),
+                     f'{row.probability:.2f}', contribution_of(row), values_of(row),
+                     without_it(found, row)])
     return _table(('effect', 'form, explains', 'probability', 'contribution', 'parameters',
                    'velocity gap\nwithout it, m/s'), rows or [['none', *[''] * 5]])
 

@@ -7,10 +7,9 @@ import tempfile
 
 from quad_ident_ros import __version__
 from quad_ident_ros.diagnose.result import Diagnosis
+from quad_ident_ros.effects.registry import titled
 from quad_ident_ros.report import gap_pictures
 from quad_ident_ros.report.diagnosis import (
-    change_of,
-    contribution_of,
     FAR,
     far_line,
     far_rows,
@@ -26,13 +25,19 @@ from quad_ident_ros.report.diagnosis import (
     shown_effects,
     simulator_line,
     simulator_rows,
-    size_line,
-    verdict_line,
     WHERE,
     where_row,
     without_it,
 )
 from quad_ident_ros.report.html import figure, join, Markup, table, tag, write_page
+from quad_ident_ros.report.verdict import (
+    change_of,
+    contribution_of,
+    next_step,
+    sentence,
+    size_line,
+    verdict_line,
+)
 
 WIDE = 1.96     # standard errors to the ends of a 95 % interval
 KINDS = {'none': 'yes', 'unknown': 'no', 'undetermined': 'part'}
@@ -77,17 +82,8 @@ def _verdict(found: Diagnosis) -> list:
     words = join((tag('span', name, f'tag {KINDS.get(name, "part")}') for name in found.verdict),
                  ' ')
     return [tag('p', join([tag('strong', 'Verdict: '), words], '')),
-            tag('p', f'{_explained(found)}{size_line(found)}')]
-
-
-def _explained(found: Diagnosis) -> str:
-    """Return what the verdict means, where it is more than names, as a sentence."""
-    _, colon, text = verdict_line(found).partition(': ')
-    return f'{_sentence(text)} ' if colon else ''
-
-
-def _sentence(text: str) -> str:
-    return f'{text[0].upper()}{text[1:]}.'
+            tag('p', tag('strong', sentence(verdict_line(found)))),
+            tag('p', f'{size_line(found)} {next_step(found)}')]
 
 
 def _where(found: Diagnosis, pictures: dict) -> list:
@@ -99,7 +95,7 @@ def _where(found: Diagnosis, pictures: dict) -> list:
 def _which(found: Diagnosis, pictures: dict) -> list:
     rows = []
     for row in shown_effects(found):
-        first = [row.effect, form_of(row), f'{row.probability:.2f}', contribution_of(row),
+        first = [titled(row.effect), form_of(row), f'{row.probability:.2f}', contribution_of(row),
                  without_it(found, row)]
         for name, one in row.parameters.items():
             spread = WIDE * one.std
@@ -118,7 +114,7 @@ def _which(found: Diagnosis, pictures: dict) -> list:
 
 
 def _far(found: Diagnosis, pictures: dict) -> list:
-    return [tag('h2', 'How far'), tag('p', _sentence(far_line(found))),
+    return [tag('h2', 'How far'), tag('p', sentence(far_line(found))),
             table(FAR, far_rows(found), kinds=('text', '', '', '', '', 'text')),
             pictures['horizons'], pictures['predictions']]
 
@@ -128,7 +124,7 @@ def _in_simulator(found: Diagnosis) -> list:
     if one is None:
         return []
     rows = [where_row(row) for row in shown(one.where)]
-    return [tag('h2', 'In the simulator'), tag('p', _sentence(simulator_line(one, found))),
+    return [tag('h2', 'In the simulator'), tag('p', sentence(simulator_line(one, found))),
             table(IN_SIMULATOR, simulator_rows(found), kinds=('text', *[''] * 6, 'text')),
             tag('p', 'Force and moment that the simulator does not explain:'),
             table(WHERE, rows, kinds=('text', '', '', '', 'text', ''))]
@@ -147,7 +143,7 @@ def _open(found: Diagnosis) -> list:
 
 def _listed(lines: list[str]) -> list:
     """Return lines as sentences of a list; none where there is none."""
-    items = join(tag('li', _sentence(line.strip())) for line in lines)
+    items = join(tag('li', sentence(line.strip())) for line in lines)
     return [Markup(f'<ul>{items}</ul>')] if lines else []
 
 

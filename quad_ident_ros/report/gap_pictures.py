@@ -9,6 +9,7 @@ import numpy as np
 
 from quad_ident_ros.diagnose.residual_wrench import CHANNELS, ResidualWrench, weights
 from quad_ident_ros.diagnose.result import Diagnosis, Gap, Ranked
+from quad_ident_ros.effects.registry import titled
 from quad_ident_ros.greybox.errors import GROUPS
 from quad_ident_ros.model.dynamics import STATES
 from quad_ident_ros.model.vehicle import Vehicle
@@ -137,13 +138,13 @@ def _by_third(flights: tuple[ResidualWrench, ...], names: list[str],
 def save_probabilities(ranking: tuple[Ranked, ...], path: str | Path) -> None:
     """Save the probability of each effect as bars."""
     plt = pyplot(path)
-    figure, axis = plt.subplots(figsize=(7.0, 0.26 * len(ranking) + 0.8), dpi=110,
+    figure, axis = plt.subplots(figsize=(9.0, 0.26 * len(ranking) + 0.8), dpi=110,
                                 layout='constrained')
     values = [row.probability for row in ranking]
     bars = axis.barh(range(len(ranking)), values, height=0.7,
                      color=[AFTER if value >= NAMED else '#b9c4cc' for value in values])
     axis.bar_label(bars, [f'{value:.2f}' for value in values], padding=3, fontsize='small')
-    axis.set_yticks(range(len(ranking)), [row.effect for row in ranking])
+    axis.set_yticks(range(len(ranking)), [titled(row.effect) for row in ranking])
     axis.invert_yaxis()
     axis.set_xlim(0.0, 1.12)
     axis.set_xlabel('probability of being present')

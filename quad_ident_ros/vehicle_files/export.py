@@ -110,8 +110,8 @@ def mean_left(vehicle: Vehicle, records: Iterable[FlightRecord]) -> float | None
     shares = []
     for record in records:
         if by_voltage and (full is None or not record.has('vbat')):
-            raise InputError('--flight: battery_sag hangs on the voltage, which these flights do '
-                             'not have all; give flights with vbat')
+            raise InputError('--flight: battery_sag depends on the voltage, which some of these '
+                             'flights do not have; give flights with vbat')
         time = record.t - record.t[0]
         left = 1.0 - (sag.get('per_second', 0.0) + sag.get('drain', 0.0)) * time
         if by_voltage and full is not None:
@@ -143,7 +143,7 @@ def _constants(vehicle: Vehicle, base: Base, target: Target, edits: Edits) -> li
     for name, reason in (('gravity', 'it is of the world; set it there'),
                          ('speed_min', 'the lowest speed of a rotor is not changed'),
                          ('rotor_inertia', NEEDS['rotor_gyro']),
-                         ('rotor_radius', 'only what flies near the ground hangs on it')):
+                         ('rotor_radius', 'only flight near the ground depends on it')):
         value = getattr(vehicle, name)
         if value and differs(data.get(name, 0.0), value):
             found.append(Fate(name, '', reason))

@@ -65,7 +65,7 @@ def _push(model: Model, element: Element, site: Pose) -> Push:
                          'site')
     if (element.get('biastype', 'none') != 'none'
             or element.get('gaintype', 'fixed') != 'fixed'):
-        raise InputError(f'{element.where}: its force hangs on more than its control (gaintype, '
+        raise InputError(f'{element.where}: its force depends on more than its control (gaintype, '
                          'biastype); rotors are read of actuators with a fixed gain')
     gear = np.zeros(6)
     words = element.get('gear', '1').split()

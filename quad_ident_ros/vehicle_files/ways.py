@@ -74,7 +74,7 @@ NEEDS: dict[str, str] = {
     'body_drag': 'the format has no drag with the square of the velocity of the air',
     'wind': 'a wind is of the world, not of the vehicle; state it there',
     'inflow': 'the format has no such loss of thrust with the velocity of the air',
-    'ground_effect': 'the format has no thrust that hangs on the height',
+    'ground_effect': 'the format has no thrust that depends on the height',
     'rotor_drag': 'the format has no drag of the rotors',
     'rotor_fault': 'the format has the same numbers for all rotors',
     'rotor_gyro': 'it comes from the inertia of rotor bodies, which is not changed',
@@ -153,7 +153,7 @@ def fates_of(effects: Values, base_effects: Values, holds: Collection[Key],
         elif way is None or reason:
             not_carried.append(Fate(effect, form, reason or NEEDS[effect]))
         elif effect == 'battery_sag' and sag is None:
-            not_carried.append(Fate(effect, form, 'its mean hangs on the flight; name one by '
+            not_carried.append(Fate(effect, form, 'its mean depends on the flight; name one by '
                                     '--flight'))
         elif effect == 'motor_lag' and form != lag:
             not_carried.append(Fate(effect, form, f'the file has one lag, that of the form {lag}'))

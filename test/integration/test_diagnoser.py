@@ -167,7 +167,7 @@ def test_it_answers_while_it_diagnoses_and_can_be_cancelled(graph, draggy):
     assert bench.await_diagnosis()['verdict'] == ['rotor_drag']
     assert json.loads(bench.progress[-1].data)['fraction'] <= 1.0
     values = {entry.key: entry.value for entry in bench.await_status(
-        DiagnosticStatus.WARN, 'verdict: rotor_drag').values}
+        DiagnosticStatus.WARN, 'verdict: drag of the rotors (rotor_drag), ').values}
     assert float(values['probability/rotor_drag']) > 0.5
 
 

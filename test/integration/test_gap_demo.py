@@ -39,9 +39,9 @@ def test_the_secret_is_found_and_revealed_last(demo):
     assert [row['effect'] for row in data['diagnosis']['ranking']
             if row['probability'] > 0.5] == list(truth)
     assert data['closed'] == data['diagnosis']['gap']['closed'] > 0.9
-    verdict, revealed = said.index('verdict: '), said.index('revealed: ')
-    assert verdict < revealed < said.index('the same again: --seed')
-    assert f'revealed: {list(truth)[0]} ' in said
+    verdict, truth_at = said.index('verdict: '), said.index('truth: ')
+    assert verdict < truth_at < said.index('to repeat: --seed')
+    assert f'({list(truth)[0]}), ' in said[truth_at:]
     assert f'flight_*.csv --vehicle {folder / "nominal.yaml"} --report' in said
 
 

@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""The recipes of the README work as they are printed."""
+"""The recipes of the README and of the pages on ROS 2 work as they are printed."""
 
 from pathlib import Path
 import re
@@ -12,7 +12,8 @@ import pytest
 from quad_ident_ros.nodes.mapped import message_class
 from quad_ident_ros.nodes.qos import latched
 
-README = Path(__file__).parents[2] / 'README.md'
+ROOT = Path(__file__).parents[2]
+PAGES = ('README.md', 'docs/nodes.md', 'docs/continuous.md')
 # Flights of one-off recipes are flown as fast as they can be; the other has to be followed.
 FAST = ['-p', 'real_time_factor:=0.0']
 
@@ -20,11 +21,12 @@ FAST = ['-p', 'real_time_factor:=0.0']
 def recipes():
     """Return [(nodes, topics)] of the blocks that run nodes: [[name, words...]] and [topic]."""
     found = []
-    for block in re.findall(r'(?:^    .*\n)+', README.read_text(encoding='utf-8'), re.M):
+    text = '\n'.join((ROOT / page).read_text(encoding='utf-8') for page in PAGES)
+    for block in re.findall(r'(?:^    .*\n)+', text, re.M):
         lines = [shlex.split(line) for line in block.replace('\\\n', ' ').splitlines()]
         nodes = [words[3:] for words in lines if words[:3] == 'ros2 run quad_ident_ros'.split()]
         topics = [words[3] for words in lines if words[:3] == ['ros2', 'topic', 'echo']]
-        if nodes:
+        if nodes and (nodes, topics) not in found:
             found.append((nodes, topics))
     return found
 
@@ -32,9 +34,9 @@ def recipes():
 RECIPES = recipes()
 
 
-def test_the_readme_has_recipes():
+def test_the_pages_have_recipes():
     assert [len(nodes) for nodes, _ in RECIPES] == [3, 3, 3, 3]
-    assert [topics for _, topics in RECIPES] == [['/parameters'], [], ['/diagnosis'], ['/change']]
+    assert [topics for _, topics in RECIPES] == [['/diagnosis'], ['/parameters'], [], ['/change']]
 
 
 @pytest.mark.parametrize('nodes, topics', RECIPES,

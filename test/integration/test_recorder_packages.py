@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Node recorder on what PX4, MAVROS, Crazyswarm2 and Gazebo publish, by lines of the README."""
+"""Node recorder on what PX4, MAVROS, Crazyswarm2 and Gazebo publish, by lines of docs/nodes.md."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -70,8 +70,8 @@ def graph(fast_graph):
 
 
 def row_of(title):
-    """Return the mapping that the table of the README has for a source."""
-    text = (Path(__file__).parents[2] / 'README.md').read_text('utf-8')
+    """Return the mapping that the table of docs/nodes.md has for a source."""
+    text = (Path(__file__).parents[2] / 'docs' / 'nodes.md').read_text('utf-8')
     [row] = [line for line in text.splitlines() if line.startswith(f'| {title} |')]
     lines, besides = row.split('|')[2:4]
     topics, same = {}, ''

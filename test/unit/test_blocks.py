@@ -18,7 +18,8 @@ from quad_ident_ros.flight.measure import SENSORS
 from quad_ident_ros.greybox.flights import flight_of, track_of
 from quad_ident_ros.greybox.parameters import nominal
 from quad_ident_ros.model.vehicle import load_vehicle
-from quad_ident_ros.report.diagnosis import caution_lines, open_lines, size_line
+from quad_ident_ros.report.diagnosis import caution_lines, open_lines
+from quad_ident_ros.report.verdict import size_line
 
 VEHICLE = load_vehicle('hummingbird')
 DRAG = {'rotor_drag': {'coefficient': 0.2}}
@@ -83,7 +84,7 @@ def test_a_flight_that_hovers_in_the_end_shows_its_drag(half_hovered):
     assert 'blocks' in [one['code'] for one in data['findings']]
     lines = open_lines(replace(found, flight_checks=(FlightCheck('f', {'velocity': 3.0}, True),)))
     assert any('differs from the other half of this flight' in line for line in lines)
-    assert f'On {found.held_out}, which took no part' in size_line(found)
+    assert f'on {found.held_out}, which was not used for fitting' in size_line(found)
     used = {'code': 'kept', 'severity': 'info', 'flight': 'f', 'where': 't = 1 to 9 s',
             'message': 'this part of the recording is used', 'remedy': ''}
     assert caution_lines(replace(found, findings=(used,))) == [

@@ -220,7 +220,7 @@ def test_a_flight_that_is_given_twice_is_refused():
     flights = flown({})
     with pytest.raises(InputError, match='given twice'):
         diagnose([*flights, flights[0]], VEHICLE)
-    with pytest.raises(InputError, match='beside the one that is held out'):
+    with pytest.raises(InputError, match='in addition to the one that is held out'):
         diagnose(flights[:1], VEHICLE, hold_out=flights[0])
 
 

@@ -59,7 +59,7 @@ def test_the_gap_of_the_simulator_lies_where_that_of_the_nominal_vehicle_does(fo
         assert theirs.share == pytest.approx(ours.share, abs=0.02)
         assert theirs.rms == pytest.approx(ours.rms, rel=0.02)
     said = text_of(found)
-    assert 'plain_simulators.py:Many, on' in said and 'be wary of' not in said
+    assert 'plain_simulators.py:Many, on' in said and 'warning: ' not in said
 
 
 @pytest.mark.slow
@@ -85,7 +85,7 @@ def test_a_simulator_that_is_not_the_vehicle_of_the_file_is_told(flights, tmp_pa
                str(tmp_path / 'page.html'), '--json', str(tmp_path / 'd.json'), '--simulator']
     assert main([*command, f'{FILE}:Dragged']) == 0
     said = capsys.readouterr().out
-    assert 'be wary of' in said and 'Dragged: 0.5 s ahead it is apart from the nominal' in said
+    assert 'Dragged: 0.5 s ahead it differs from the nominal vehicle' in said
     data = json.loads((tmp_path / 'd.json').read_text())['in_simulator']
     # It has a drag of its own, so that less is missing than of the vehicle of the file.
     assert data['simulator'].endswith(':Dragged')

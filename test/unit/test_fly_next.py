@@ -103,8 +103,9 @@ def test_a_sure_effect_is_named_beside_those_that_are_not():
     text = io.StringIO()
     show(found, text)
     assert text.getvalue().startswith(
-        'verdict: undetermined: the flights cannot tell between mass_offset, thrust_scale; '
-        'sure beside them: attitude_misalignment\n')
+        'verdict: undetermined: the flights cannot tell between error in mass (mass_offset) and '
+        'error in thrust (thrust_scale); certain: tilt of the measured attitude '
+        '(attitude_misalignment)\n')
     assert 'what to fly next' in text.getvalue()
     proposals = found.fly_next
     assert json.loads(json.dumps(proposals)) == proposals

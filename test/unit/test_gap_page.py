@@ -3,6 +3,7 @@
 """A diagnosis as a person reads it: in the terminal, on the page, and its pictures."""
 
 from dataclasses import replace
+from html import escape
 import io
 import json
 import re
@@ -15,7 +16,7 @@ from quad_ident_ros.cli.main import main
 from quad_ident_ros.data.csv import write_csv
 from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.diagnose.residual_wrench import CHANNELS, ResidualWrench
-from quad_ident_ros.diagnose.result import FlightCheck, Minor, Unexplained
+from quad_ident_ros.diagnose.result import FlightCheck, Minor, Unexplained, Value
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import MOCAP_IMU
@@ -68,16 +69,20 @@ def test_the_verdict_comes_first_then_where_which_and_how_far(page, found):
     assert places == sorted(places)
     assert text.count('<img src="data:image/png;base64,') == 4
     assert not re.search(r'(src|href)="(?!data:)', text)     # one file holds it all
-    assert f'{100 * found.gap.closed:.0f} % of the gap above the noise' in text
+    assert f'explains {100 * found.gap.closed:.0f} % of the velocity gap above the noise.' in text
 
 
 def test_the_terminal_has_the_same_order_and_the_size_beside_the_verdict(terminal, found):
     text = terminal()
-    verdict, size, *_ = text.splitlines()
-    assert verdict == 'verdict: rotor_drag'
+    verdict, size, step, *_ = text.splitlines()
+    one = found.ranking[0].parameters['coefficient']
+    assert verdict == (
+        f'verdict: drag of the rotors (rotor_drag), coefficient {one.value:.4g} ± {one.std:.2g} '
+        f'kg/s, explains {100 * found.gap.closed:.0f} % of the velocity gap above the noise')
+    assert step.startswith('Next: ') and '--out-vehicle' in step
     for stage in (found.gap.before, found.gap.after, found.gap.noise):
         assert f'{stage["velocity"]:.3g} m/s' in size
-    places = [text.index(part) for part in ('\nwhere: ', '\nwhich\n', '\nhow far, on ')]
+    places = [text.index(part) for part in ('\nwhere: ', '\nwhich effects ', '\nhow far: ')]
     assert places == sorted(places)
 
 
@@ -110,10 +115,10 @@ def test_an_effect_has_its_form_and_what_is_lost_without_it(terminal, found):
 def test_where_the_gap_is_within_the_noise_there_is_nothing_to_close(terminal, found):
     within = found.gap.before | {'velocity': 0.5 * found.gap.noise['velocity']}
     gap = replace(found.gap, before=within, before_own=within, after=within, closed=1.0)
-    _, size, *rest = terminal(gap=gap).splitlines()
-    [far] = [line for line in rest if line.startswith('how far, on ')]
-    assert all('nothing to close' in line and '100 %' not in line.partition(';')[0] for line in
-               (size.replace(';', ','), far))
+    verdict, size, *rest = terminal(gap=gap).splitlines()
+    [far] = [line for line in rest if line.startswith('how far: ')]
+    assert 'nothing to close' in size and 'nothing to close' in far
+    assert verdict.endswith('explains the gap')
     assert f'attitude, {100 * found.gap_given_attitude.closed:.0f} % of the velocity gap' in far
     assert 'nothing to close' not in terminal()
 
@@ -130,23 +135,26 @@ OPEN = {
                                    'held_out': [0.03], 'hidden_delay': 0.014}},
     'findings': ({'flight': 'monday', 'code': 'gap', 'where': 'rows', 'message': 'are lost'},),
     'not_shown': ('ground_effect',)}
-SAID = ('also there, but closing less than 5 %: motor_lag (1.2 %, probability 0.98)',
-        'also there, but closing no more than the error of form of the other effects may be: '
-        'inflow (30.0 %, probability 0.90)',
+SAID = ('also present, but closing less than 5 %: lag of the motors (motor_lag), 1.2 %, '
+        'probability 0.98',
+        "also present, but closing no more than the other effects' errors of form could: inflow "
+        'and translational lift (inflow), 30.0 %, probability 0.90',
         'unexplained: Fz, height under 0.66 m, 0.03 N rms, 0.2 to 1.2 Hz',
-        'inertia_mismatch may as well be another cause of the same motion (inertia about z or '
-        'torque coefficient); what tells: a ruler',
+        'error in inertia (inertia_mismatch) could also be another cause of the same motion '
+        '(inertia about z or torque coefficient); what tells them apart: a ruler',
         'payload differs from the other flights; gap over that of the noise: velocity 14.2',
         'estimated per flight, not reported as effects:',
         'clock_offset (how late), s: 0.01; 0.02; held out 0.03',
-        'a delay of all flights of up to 14 ms cannot be told from the clocks',
-        'would not show at their usual size: ground_effect',
-        'be wary of monday: rows: are lost')
+        'a delay common to all flights of up to 14 ms cannot be distinguished from clock offsets',
+        'would not show at their usual size: ground effect (ground_effect)',
+        'warning: monday: rows: are lost')
 
 
 def test_what_remains_open_is_said_in_the_terminal(terminal):
     text = terminal(**OPEN)
-    assert text.startswith('verdict: rotor_drag, unknown: no known effect explains all')
+    verdict, *_ = text.splitlines()
+    assert verdict.startswith('verdict: drag of the rotors (rotor_drag), ')
+    assert verdict.endswith(', and the rest is unknown')
     lines = [line.strip() for line in text.splitlines()]
     assert [said for said in SAID if said not in lines] == []
     assert 'monday differs' not in text
@@ -172,7 +180,8 @@ def test_each_finding_on_a_flight_is_told_and_equal_ones_of_several_flights_once
 def test_what_remains_open_is_said_on_the_page(page):
     text = page(**OPEN)
     assert '<h2>What remains open</h2>' in text
-    assert [said for said in SAID if f'<li>{said[0].upper()}{said[1:]}.' not in text] == []
+    assert [said for said in SAID
+            if f'<li>{escape(f"{said[0].upper()}{said[1:]}.")}' not in text] == []
 
 
 def test_what_a_diagnosis_says_survives_the_way_over_json(found):
@@ -197,12 +206,35 @@ def test_what_cannot_be_told_apart_asks_for_a_flight(page, terminal):
     changes = {'verdict': ('undetermined',), 'undetermined': ('wind', 'body_drag'),
                'sure': ('rotor_drag',), 'fly_next': [proposal('circle'), proposal('chirp_x')]}
     text = page(**changes)
-    assert 'The flights cannot tell between wind, body_drag; sure beside them: rotor_drag.' in text
+    said = ('undetermined: the flights cannot tell between steady wind (wind) and drag of the '
+            'body (body_drag); certain: drag of the rotors (rotor_drag)')
+    assert f'U{said[1:]}.' in text
     assert text.index('<td class="text">circle, 20 s</td>') < text.index('chirp_x, 20 s')
     assert '<td class="text">tell apart wind, body_drag</td><td>0.5</td><td>12</td>' in text
-    assert terminal(**changes).startswith(
-        'verdict: undetermined: the flights cannot tell between wind, body_drag; '
-        'sure beside them: rotor_drag\n')
+    assert terminal(**changes).startswith(f'verdict: {said}\n')
+    assert '\nNext: fly what ' in terminal(**changes)
+
+
+def test_each_of_several_effects_is_told_with_its_size(terminal, found):
+    first, second, *_ = found.ranking
+    second = replace(second, contribution=0.2, parameters={'x': Value(2.0, 0.1, 'm/s', 0.5)})
+    verdict, size, *_ = terminal(verdict=(first.effect, second.effect),
+                                 ranking=(first, second)).splitlines()
+    assert verdict.startswith('verdict: 2 effects explain ')
+    assert verdict.endswith(f' ({second.effect}), x 2 ± 0.1 m/s (+0.5 to the file), '
+                            'contribution 20 %')
+    assert size.startswith('With these effects, ')
+
+
+def test_the_verdict_of_nothing_known_names_no_effect(terminal, found):
+    gap = replace(found.gap, without={})
+    unknown, size, step, *_ = terminal(verdict=('unknown',), gap=gap).splitlines()
+    assert unknown == 'verdict: unknown: no known effect explains the gap'
+    assert size.startswith('The velocity error of the nominal vehicle after 0.5 s is ')
+    assert '"unexplained"' in step
+    none, _, step, *_ = terminal(verdict=('none',), gap=gap, fly_next=None).splitlines()
+    assert none.startswith('verdict: none: the nominal vehicle explains the flights')
+    assert 'the simulation matches these flights' in step
 
 
 def test_text_from_records_is_no_markup(page):
@@ -239,7 +271,7 @@ def test_the_command_writes_it(paths, tmp_path, capsys):
     out = tmp_path / 'new' / 'report.html'
     assert main(['diagnose', *paths, '--vehicle', 'hummingbird', '--effects',
                  'rotor_drag,body_drag', '--report', str(out)]) == 0
-    assert capsys.readouterr().out.startswith('verdict: rotor_drag')
+    assert capsys.readouterr().out.startswith('verdict: drag of the rotors (rotor_drag), ')
     assert '<h1>Sim-to-real gap of hummingbird</h1>' in out.read_text(encoding='utf-8')
 
 

@@ -13,6 +13,7 @@ import yaml
 from quad_ident_ros import resources
 from quad_ident_ros.cli.main import parser
 from quad_ident_ros.experiment import load_experiment
+from quad_ident_ros.model.vehicle import load_vehicle
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -80,13 +81,52 @@ def test_what_is_installed_is_pinned_with_checksums_and_from_no_named_host(name)
 def test_the_readme_calls_commands_that_exist():
     text = (ROOT / 'README.md').read_text(encoding='utf-8')
     calls = re.findall(r'^    \./run (\S+)(.*?)(?:  #.*)?$', text, flags=re.MULTILINE)
-    assert {name for name, _ in calls} >= {'demo', 'test', 'simulate', 'identify'}
+    assert {name for name, _ in calls} >= {'demo', 'test', 'diagnose', 'simulate', 'identify'}
     for name, rest in calls:
         if name != 'test':
             parser([name]).parse_args([name, *rest.split()])
 
 
-def test_links_in_documents_lead_somewhere():
-    for document in [ROOT / 'README.md', ROOT / 'CONTRIBUTING.md', *(ROOT / 'docs').glob('*.md')]:
-        for target in re.findall(r'\]\(([^)#]+)', document.read_text(encoding='utf-8')):
-            assert target.startswith('http') or (document.parent / target).exists(), target
+DOCUMENTS = [ROOT / 'README.md', ROOT / 'CONTRIBUTING.md', *sorted((ROOT / 'docs').glob('*.md'))]
+
+
+@pytest.mark.parametrize('document', DOCUMENTS, ids=lambda path: path.name)
+def test_links_in_documents_lead_somewhere(document):
+    """To files that exist, and to headings in them."""
+    for target, _, heading in re.findall(r'\]\(([^)#\s]*)(#([^)\s]+))?\)', _text(document)):
+        if not target.startswith('http'):
+            path = document.parent / target if target else document
+            assert path.exists(), target
+            assert not heading or heading in _anchors(path), f'{target}#{heading}'
+
+
+def _text(document):
+    return re.sub(r'^```.*?^```', '', document.read_text(encoding='utf-8'), flags=re.M | re.S)
+
+
+def _anchors(document):
+    """Return the names by which a browser finds the headings of a page."""
+    headings = re.findall(r'^#+ (.*)$', _text(document), re.M)
+    return {re.sub(r'[^\w\- ]', '', heading.lower()).replace(' ', '-') for heading in headings}
+
+
+def test_the_readme_leads_to_every_page_and_is_read_in_minutes():
+    text = (ROOT / 'README.md').read_text(encoding='utf-8')
+    pages = [path.name for path in (ROOT / 'docs').glob('*.md')]
+    assert [name for name in pages if f'docs/{name}' not in text] == []
+    assert text.count('\n') < 200
+
+
+@pytest.mark.slow
+def test_the_python_of_the_readme_runs_and_names_the_effect(capsys):
+    [block] = re.findall(r'^```python\n(.*?)^```', (ROOT / 'README.md').read_text('utf-8'),
+                         re.M | re.S)
+    exec(block, {})
+    assert capsys.readouterr().out.startswith('drag of the rotors (rotor_drag), coefficient 0.')
+
+
+def test_the_vehicle_file_of_the_readme_is_one(tmp_path):
+    [block] = re.findall(r'^```yaml\n(.*?)^```', (ROOT / 'README.md').read_text('utf-8'),
+                         re.M | re.S)
+    (tmp_path / 'quad.yaml').write_text(block, encoding='utf-8')
+    assert load_vehicle(str(tmp_path / 'quad.yaml')).mass == 0.5

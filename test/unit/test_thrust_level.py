@@ -100,7 +100,7 @@ def test_what_scales_thrust_over_mass_is_not_among_the_candidates():
                                   'thrust_scale.factor'])
 def test_a_fit_does_not_give_back_the_weight_that_scaled_the_commands(name):
     [read] = commanded([told(SPEEDS / FULL)], UNLIMITED)
-    with pytest.raises(InputError, match='tells .*leave that out of --free') as caught:
+    with pytest.raises(InputError, match='determines .*leave that out of --free') as caught:
         fit([FLIGHT, read], UNLIMITED, ['inertia', name])
     assert len(str(caught.value).splitlines()) == 1
 

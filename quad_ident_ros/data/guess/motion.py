@@ -91,7 +91,7 @@ def axes(draft: Draft) -> None:
         draft.world = 'NED' if level else 'ENU'
     elif down is not None and draft.attitude is not None and _up(draft.attitude) < 0:
         draft.guess.doubts.append('world, body: by the attitude the vehicle flies upside down')
-    said = f'by {why}' if why else 'taken, as nothing tells'
+    said = f'by {why}' if why else 'assumed, as nothing shows it'
     draft.guess.said.append(f'frames {draft.world} and {draft.body}, {said}')
 
 
@@ -105,7 +105,7 @@ def velocities(draft: Draft) -> None:
     if not unit:
         fast = float(np.nanquantile(np.abs(values), 0.9))
         unit = 'mm/s' if fast > QUICK else 'm/s'
-    frame, said = 'world', 'as no stream tells otherwise'
+    frame, said = 'world', 'as no stream contradicts it'
     if any('body' in draft.names[name] for name in names):
         frame, said = 'body', 'by its name'
     off = _off(draft, values * factor_of('vx', unit))

@@ -312,6 +312,6 @@ def commands(record, vehicle):
         return []
     return [Finding(
         'command_offset', 'warning', 'commands against accelerometer',
-        f'the thrust follows the commands by {1e3 * found.offset:.1f} ± {1e3 * found.std:.1f} ms'
-        f'{", so before they are given" if early else ", more than motors take"}',
+        f'the thrust follows the commands by {1e3 * found.offset:.1f} ± {1e3 * found.std:.1f} '
+        f'ms{", so before they are given" if early else ", longer than motors take"}',
         'stamp commands and accelerometer by one clock')]

@@ -57,8 +57,8 @@ def frozen(record, vehicle):
     names = [name for names in GROUPS for name in names if record.has(name)]
     if not names or np.any(np.diff(record.stack(*names), axis=0)):
         return []
-    return [Finding('frozen', 'error', ', '.join(names), 'none of these ever changes: a sensor '
-                    'or the recorder stood still', 'see that the streams run, and record again')]
+    return [Finding('frozen', 'error', ', '.join(names), 'none of these ever changes: a sensor or '
+                    'the recorder was stuck', 'check that the streams run, and record again')]
 
 
 def dead(record, vehicle):
@@ -71,14 +71,14 @@ def dead(record, vehicle):
                 and _changes(record, theirs)):
             found.append(Finding(
                 'dead', 'error', ', '.join(mine), f'the {one} never changes, but the {other} '
-                'does: the stream stood still, or its columns were filled up',
-                'see that the stream runs, or leave its columns out'))
+                'does: the stream was stuck, or its columns were filled in',
+                'check that the stream runs, or omit its columns'))
     names = record.numbered('cmd')
     moving = [name for name in GROUPS[-1] if record.has(name)]
     if names and moving and not _changes(record, names) and _changes(record, moving):
         found.append(Finding(
             'dead', 'warning', f'{names[0]} to {names[-1]}', 'the commands never change, but the '
-            'rate does: they stood still, or nobody steered',
+            'rate does: they were stuck, or nobody steered',
             'record the commands that the rotors follow'))
     return found
 

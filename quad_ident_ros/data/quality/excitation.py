@@ -41,7 +41,7 @@ def axes(record, vehicle):
     """Find axes that are hardly moved."""
     units = {'vertical': 'm/s^2', 'horizontal': 'm/s'}
     return [Finding('excitation', 'info', name,
-                    f'the {name} axis is hardly excited ({value:.3f} '
-                    f'{units.get(name, "rad/s")}): the flight tells little of {UNTOLD[name]}',
+                    f'the {name} axis is hardly excited ({value:.3f} {units.get(name, "rad/s")}): '
+                    f'the flight says little about {UNTOLD[name]}',
                     f'add a flight that moves the {name} axis')
             for name, value in excitation(record).items() if value < LEAST[name]]

@@ -237,6 +237,6 @@ def _strangers(moved, velocity):
     if alike > STRANGE or fast < SLOW:
         return []
     return [Finding('velocity_other', 'warning', 'vx, vy, vz',
-                    f'the position changes otherwise than the velocity says (correlation '
+                    'the position does not change as the velocity says (correlation '
                     f'{alike:.2f}): they are of different frames, clocks or vehicles',
                     'say frame: world or body of the velocity in a mapping, or leave it out')]

@@ -44,15 +44,16 @@ def stands(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     first = f't = {record.t[rests][0]:.3f} s'
     kept = _kept(record, rests)
     if not kept:
-        return [Finding('ground', 'error', first, 'the vehicle stands on the ground all the time',
+        return [Finding('ground', 'error', first, 'the vehicle is on the ground all the time',
                         'give a record of a flight')]
     spans = ' and '.join(f't = {record.t[begin]:.3f} to {record.t[end]:.3f} s'
                          for begin, end in kept)
     return [Finding(
         'ground', 'warning', first,
-        f'the vehicle stands on the ground or is carried for {rests.sum() * record.period():.1f} '
-        f's, where no command tells the force on it; kept is where it flies, {spans}',
-        'nothing needs to be done; --from and --to choose another part')]
+        f'the vehicle is on the ground or carried for {rests.sum() * record.period():.1f} s, '
+        'where the commands do not determine the force on it; the parts in flight are kept: '
+        f'{spans}',
+        'nothing to do; --from and --to choose another part')]
 
 
 def airborne(record: FlightRecord, vehicle: Vehicle) -> FlightRecord:

@@ -33,7 +33,7 @@ def bias(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
         f'where the vehicle stands, for {len(means) * WINDOW:.3g} s, the gyro reads '
         + ', '.join(f'{one:.4f} ± {error:.2g}' for one, error in zip(value, std, strict=True))
         + ' rad/s: that is its bias',
-        'nothing needs to be done where that is small; else calibrate the gyro before take-off')]
+        'nothing to do where that is small; else calibrate the gyro before take-off')]
 
 
 def _at_rest(record: FlightRecord, rests: np.ndarray) -> np.ndarray:

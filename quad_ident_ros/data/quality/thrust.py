@@ -30,7 +30,7 @@ def level(record, vehicle):
     return [Finding(
         'thrust_level', 'warning', 'commands',
         f'{what}, so that thrust carries the weight on average: a constant factor of thrust, and '
-        'a mass that is off, cannot be told and are not named; inertia and drag are told in '
+        'a mass that is off, are not visible and not named; inertia and drag are given in '
         'proportion to the mass', remedy)]
 
 
@@ -54,7 +54,7 @@ def carried(record, vehicle):
             found.append(Finding(
                 'thrust', 'error', f'{names[0]} to {names[-1]}, t = {grid.t[off][0]:.3f} s',
                 f'for {off.sum() * grid.period:.1f} s the commands give {what} the thrust by '
-                f'which {vehicle.name} flies: they stand still, are of something else, or the '
+                f'which {vehicle.name} flies: they are stuck, belong to something else, or the '
                 'vehicle file is of another vehicle',
                 without(grid.t, bad, 'record the commands that the rotors follow in rad/s')))
     return found

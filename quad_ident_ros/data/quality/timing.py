@@ -24,8 +24,8 @@ def slow(record, vehicle):
     if period <= SLOWEST:
         return [Finding(
             'coarse', 'warning', 't',
-            f'a sample every {period:.4g} s: rotors are faster, so that lags, delays and what '
-            'turns the vehicle cannot be told well', f'record at {1.0 / COARSE:.0f} Hz or more')]
+            f'a sample every {period:.4g} s: rotors are faster, so lags, delays and moments are '
+            'not determined well', f'record at {1.0 / COARSE:.0f} Hz or more')]
     return [Finding(
         'slow', 'error', 't',
         f'a sample every {period:.4g} s is too slow to see a vehicle fly; at least every '
@@ -115,6 +115,6 @@ def reader_notes(record, vehicle):
     codes = {note: code for code in NOTED for note in record.info.get(code, ())}
     # What a note on anything but commands asks for, if anything, it says itself.
     return [Finding(codes.get(note, 'reader'), 'info', 'file', note,
-                    'nothing needs to be done where this is right'
+                    'nothing to do if this is right'
                     if codes.get(note) == 'commands' else '')
             for note in record.info.get('notes', ()) if isinstance(note, str)]

@@ -1,0 +1,119 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The verdict of a diagnosis in sentences: what causes the gap, how large it is, what to do."""
+
+from collections.abc import Sequence
+
+from quad_ident_ros.diagnose.result import (
+    Diagnosis,
+    Gap,
+    GapGivenAttitude,
+    GapInSimulator,
+    Ranked,
+    Value,
+)
+from quad_ident_ros.effects.registry import titled
+
+NOTHING_TO_CLOSE = 'the velocity gap is not above the noise, so there is nothing to close'
+
+
+def verdict_line(found: Diagnosis) -> str:
+    """Return the verdict as a sentence without its full stop."""
+    if found.verdict == ('none',):
+        return ('none: the nominal vehicle explains the flights to within noise and tolerance, '
+                'so no effect is named')
+    if found.undetermined:
+        certain = f'; certain: {_listed(found.sure)}' if found.sure else ''
+        return ('undetermined: the flights cannot tell between '
+                f'{_listed(found.undetermined)}{certain}')
+    named = _named(found)
+    if not named:
+        return 'unknown: no known effect explains the gap'
+    unknown = 'unknown' in found.verdict
+    share = (f'{100 * max(found.gap.closed, 0.0):.0f} % of the velocity gap above the noise'
+             if above_noise(found.gap) else 'part of the gap' if unknown else 'the gap')
+    share += ', and the rest is unknown' if unknown else ''
+    if len(named) == 1:
+        return f'{titled(named[0].effect)}, {values_of(named[0])}, explains {share}'
+    return f'{len(named)} effects explain {share}: ' + '; '.join(
+        f'{titled(row.effect)}, {values_of(row)}, contribution {contribution_of(row)}'
+        for row in named)
+
+
+def size_line(found: Diagnosis) -> str:
+    """Return the velocity gap before and after, on the flight held out, as sentences."""
+    gap = found.gap
+    before, after, noise = (stage['velocity'] for stage in (gap.before, gap.after, gap.noise))
+    where = f'on {found.held_out}, which was not used for fitting'
+    if not gap.without:
+        return (f'The velocity error of the nominal vehicle after {gap.horizon:g} s is '
+                f'{before:.3g} m/s {where}; noise alone gives {noise:.3g} m/s.')
+    said = (f'With {_them(found)}, the velocity error after {gap.horizon:g} s '
+            f'{"falls" if after <= before else "rises"} from {before:.3g} m/s to {after:.3g} m/s '
+            f'{where}; noise alone gives {noise:.3g} m/s.')
+    return said if above_noise(gap) else f'{said} {sentence(NOTHING_TO_CLOSE)}'
+
+
+def next_step(found: Diagnosis) -> str:
+    """Return what to do with the verdict, as a sentence."""
+    if 'unknown' in found.verdict:
+        return ('Next: the lines "unexplained" and "differs" say in which channel, regime and '
+                'flight the rest occurs.')
+    if found.fly_next:
+        return ('Next: fly what the table "what to fly next" proposes, and diagnose again with '
+                'the new flights.')
+    if _named(found):
+        return ('Next: "--out-vehicle FILE" writes the vehicle with these effects, and '
+                '"quad_ident export FILE" puts them into your simulator.')
+    return 'Next: nothing; the simulation matches these flights.'
+
+
+def above_noise(gap: Gap | GapGivenAttitude | GapInSimulator) -> bool:
+    """Whether the nominal vehicle, nuisances taken out, is farther off than the noise is."""
+    return gap.before_own['velocity'] > gap.noise['velocity']
+
+
+def closed_of(gap: Gap | GapGivenAttitude | GapInSimulator) -> str:
+    """Return how much of a velocity gap is closed, in words."""
+    return (f'{100 * gap.closed:.0f} % of the velocity gap above the noise is closed'
+            if above_noise(gap) else NOTHING_TO_CLOSE)
+
+
+def values_of(row: Ranked) -> str:
+    """Return the parameters of an effect with their standard errors, in words."""
+    return ', '.join(
+        f'{name} {one.value:.4g} ± {one.std:.2g} {one.unit}'.removesuffix(' 1')
+        + change_of(one)
+        for name, one in row.parameters.items())
+
+
+def change_of(parameter: Value) -> str:
+    """Return by how much a parameter exceeds its value in the vehicle file, where it has one."""
+    return '' if parameter.change is None else f' ({parameter.change:+.3g} to the file)'
+
+
+def contribution_of(row: Ranked) -> str:
+    """Return in words the share of the closable gap that is lost without an effect."""
+    return '' if row.contribution is None else f'{100 * row.contribution:.0f} %'
+
+
+def sentence(text: str) -> str:
+    """Return a text with a capital letter and a full stop."""
+    return f'{text[0].upper()}{text[1:]}.'
+
+
+def _named(found: Diagnosis) -> list[Ranked]:
+    rows = {row.effect: row for row in found.ranking}
+    return [rows[name] for name in found.verdict if name in rows]
+
+
+def _them(found: Diagnosis) -> str:
+    if found.undetermined:
+        return 'the most probable choice'
+    return {0: 'the effects of the model', 1: 'this effect'}.get(len(_named(found)),
+                                                                  'these effects')
+
+
+def _listed(names: Sequence[str]) -> str:
+    *most, last = map(titled, names)
+    return f'{", ".join(most)} and {last}' if most else last
