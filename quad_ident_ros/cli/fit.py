@@ -19,7 +19,7 @@ from quad_ident_ros.data.quality.ground import airborne, stands
 from quad_ident_ros.data.split import joined
 from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.greybox.cautions import cautions
-from quad_ident_ros.greybox.free import columns_of_names, UNITS
+from quad_ident_ros.greybox.free import columns_of_names, EXCITATION
 from quad_ident_ros.model.mixing import with_commands
 from quad_ident_ros.model.vehicle import write_vehicle
 from quad_ident_ros.report.data import write_json
@@ -35,7 +35,7 @@ def add(commands, said):
                     'prediction error over short\nrollouts, with standard errors and a word on '
                     'what the flights cannot determine.',
         epilog='what can be freed, several with commas between:\n'
-               f'  of the vehicle file: {", ".join(UNITS)},\n'
+               f'  of the vehicle file: {", ".join(EXCITATION)},\n'
                '  or one component, such as inertia_x\n'
                + _wrapped(EFFECTS)
                + '  or one parameter of an effect, such as motor_lag.time_constant\n\n'

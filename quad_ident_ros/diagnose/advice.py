@@ -78,9 +78,9 @@ def by_input_errors(judged: Judgement) -> tuple[dict, ...]:
             rows.append({
                 'flight': 'all flights', 'code': 'input_errors', 'severity': 'warning',
                 'where': cause.effect,
-                'message': f'these flights allow {", ".join(ranges)}, which includes no difference: '
-                           'a vehicle seems to answer less than it does if the commands have '
-                           'errors, as in a log that is slower than the controller'
+                'message': f'these flights allow {", ".join(ranges)}, which includes no '
+                           'difference: a vehicle seems to answer less than it does if the '
+                           'commands have errors, as in a log that is slower than the controller'
                            f'{so if cause in judged.stand_ins else ""}',
                 'remedy': AT_THE_RATE})
     return tuple(rows)
