@@ -87,6 +87,8 @@ def judge(bench: Bench) -> Judgement:
                if there.get(cause.effect) is cause}
     present = probabilities(bench.selection.posterior, weights, rules)
     absent = tuple(cause for cause in there.values() if present[cause.effect] < rules.present)
+    if set(model.effects) <= set(absent) and closes_half(model.gap, before, noise, rules):
+        absent = tuple(cause for cause in absent if cause not in model.effects)
     # What needs values that no vehicle has does the work of something else, which it stands for.
     untold = bench.untold(model)
     stand_ins = tuple(cause for cause in model.effects
@@ -173,6 +175,16 @@ def matters(after: dict, without: dict, before: dict, noise: dict, rules: Rules,
                and (apart or beyond(without[name], after[name])
                     >= rules.form_error * beyond(before[name], without[name]))
                for name, share in shares.items())
+
+
+def closes_half(after: dict, before: dict, noise: dict, rules: Rules) -> bool:
+    """
+    Return whether a model closes half of the gap of some group of outputs.
+
+    What does is named, though each of its effects may be less probable than not: `unknown` in its
+    place would say less than the flights do.
+    """
+    return max(lost_shares(after, before, before, noise, rules).values()) >= rules.half
 
 
 def clear(weights: list[Weight], distance: float, rules: Rules) -> bool:

@@ -64,6 +64,8 @@ class Rules:
         cost. What helps in most of such blocks helps steadily.
     Naming:
       present: probability from which on an effect is named: more likely there than not.
+      half: share of the closable gap from which on the effects that matter are named although each
+        of them is less probable than that, if nothing else is: most of it has their cause.
       doubt: probability of a rival from which on it is not ruled out; an effect of 1 - doubt is
         sure. instead: how many times likelier a rival must be without an effect than with it.
       material: share of the closable gap that an effect must close to be in the verdict: less is
@@ -120,6 +122,7 @@ class Rules:
     near_horizon: float = 0.1
     steady_block: float = 2.0
     present: float = 0.5
+    half: float = 0.5
     doubt: float = 0.12
     instead: float = 2.0
     calibration: tuple[float, float, float, float] = (-4.85, 3.62, 1.39, 0.408)

@@ -16,6 +16,7 @@ from quad_ident_ros.diagnose.judgement import (
     _weight,
     beyond,
     clear,
+    closes_half,
     lost_shares,
     matters,
     pooled,
@@ -283,3 +284,9 @@ def test_of_more_parameters_without_an_effect_one_is_no_further_off_by_chance():
         far = [standard_errors_from_none(rng.normal(size=count), np.eye(count))
                for _ in range(2000)]
         assert np.mean(np.array(far) > 2.0) == pytest.approx(0.0455, abs=0.02)
+
+
+@pytest.mark.parametrize(('after', 'expected'), [(0.4, False), (0.2, True)])
+def test_what_closes_half_of_a_gap_in_one_group_is_named_in_place_of_unknown(after, expected):
+    before = of(velocity=0.64)
+    assert closes_half(of(velocity=after), before, NOISE, RULES) is expected
