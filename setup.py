@@ -28,7 +28,7 @@ setup(
     long_description=(
         'ROS 2 nodes and a command line that simulate a quadrotor, record its flight, identify '
         'the parameters of second-order models of it, with their standard errors, and diagnose '
-        'what it has and its nominal description lacks.'
+        'which effects it has that its nominal description does not have.'
     ),
     long_description_content_type='text/plain',
     author='quad_ident_ros contributors',

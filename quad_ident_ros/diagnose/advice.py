@@ -49,7 +49,7 @@ def fly_next(selection: Selection, flights: list, vehicle: Vehicle, z: np.ndarra
 
 
 def at_bounds(judged: Judgement, vehicle: Vehicle, rules: Rules) -> tuple[dict, ...]:
-    """Return what to be wary of where parameters of a model end at bounds, as data of findings."""
+    """Return warnings on parameters of a model that end at bounds, as data of findings."""
     rows, z = [], judged.model.z
     for cause in judged.model.effects:
         names = [f'{NAMES[column].split(".")[1]} {z[column]:.3g}'

@@ -41,7 +41,7 @@ def diagnose(records: Iterable[FlightRecord], vehicle: Vehicle, *,
     (half of the blocks of a single one); effects: names that may be named, by default all; rules:
     thresholds of the verdict; simulator: of the user, in which the flights are predicted, too;
     on_progress is called with the share done.
-    Raises InputError where the records cannot bear a verdict.
+    Raises InputError where the records are too faulty to diagnose.
     """
     for name in effects or ():
         if name not in EFFECTS:

@@ -47,7 +47,7 @@ class Intake:
 
     tracks: those learnt from; held_out: that which takes no part; flights: the tracks cut into
     rollouts; late: {stream: s} that was moved in each, and clocks: the Clock, or None, of each,
-    the one held out last; findings: what to be wary of, as data; refuted: effects of the actuators
+    the one held out last; findings: warnings, as data; refuted: effects of the actuators
     that measured rotor speeds speak against.
     """
 
@@ -78,7 +78,7 @@ def take_in(records: Sequence[FlightRecord], vehicle: Vehicle, hold_out: FlightR
     Return the Intake of flight records.
 
     The last one is held out, or hold_out, or blocks of a single one. Raises InputError
-    for a fault that no verdict survives, and where there is too little.
+    where they are too faulty or too short to diagnose.
     """
     records = joined(records)
     if hold_out is not None:    # among others it would take part in fit and choice

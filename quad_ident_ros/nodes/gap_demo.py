@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""The demo of the gap: a reality with a secret is flown, recorded and diagnosed by three nodes."""
+"""The demo of the gap: three nodes fly, record and diagnose a reality with a hidden effect."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -8,7 +8,7 @@ import time
 
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.experiment import CLOSED_LOOP, load_experiment
-from quad_ident_ros.flight.secret import draw_reality
+from quad_ident_ros.flight.hidden_effect import draw_reality
 from quad_ident_ros.model.vehicle import load_vehicle, write_vehicle
 from quad_ident_ros.nodes.demo import prepared, recording_of, watch, Watcher
 
@@ -41,10 +41,10 @@ class GapOutcome:
 
 def run_gap_demo(options, on_progress):
     """
-    Have a secret reality flown, recorded and diagnosed by three processes; return a GapOutcome.
+    Fly, record and diagnose a reality in three processes; return a GapOutcome.
 
-    What it has is drawn into a file that only the simulator is told of; the diagnoser knows the
-    nominal vehicle and the recorder's records. Args: as those of demo.run_demo. Raises
+    Only the simulator gets the file with the hidden effect; the diagnoser knows the nominal
+    vehicle and the recorder's records. Args: as those of demo.run_demo. Raises
     InputError where a node fails or refuses.
     """
     started = time.monotonic()

@@ -17,6 +17,7 @@ from quad_ident_ros.diagnose.result import (
     Unexplained,
     Value,
 )
+from quad_ident_ros.model.covariance import covariance_from
 from quad_ident_ros.model.vehicle import Vehicle
 
 
@@ -41,4 +42,6 @@ def diagnosis_from(data: dict, vehicle: Vehicle) -> Diagnosis:
         fly_next=data['fly_next'], nuisances=data['nuisances'], flights=tuple(data['flights']),
         held_out=data['held_out'],
         flight_checks=tuple(FlightCheck(**row) for row in data['flight_checks']),
-        findings=tuple(data['findings']), z=np.empty(0), pictures=None)
+        findings=tuple(data['findings']), z=np.empty(0), pictures=None,
+        covariance=data['covariance'] and covariance_from('covariance', data['covariance'],
+                                                          len(vehicle.rotors)))

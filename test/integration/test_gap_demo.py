@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""The demo of the gap: what the simulator alone knows is found, and revealed last."""
+"""The demo of the gap: the hidden effect is named, and the truth printed last."""
 
 from concurrent.futures import ThreadPoolExecutor
 import json
@@ -31,7 +31,7 @@ def demo(tmp_path_factory):
     return folder / 'run_1', done.stdout, json.loads((folder / 'out.json').read_text())
 
 
-def test_the_secret_is_found_and_revealed_last(demo):
+def test_the_hidden_effect_is_named_and_the_truth_printed_last(demo):
     folder, said, data = demo
     truth = load_vehicle(folder / 'reality.yaml').effects
     assert data['effects'] == truth and data['found']
@@ -58,7 +58,7 @@ def test_the_diagnosing_process_was_not_told(demo):
 
 
 def test_everything_of_a_run_is_in_a_folder_that_no_other_run_has(demo, tmp_path):
-    """Two at a time shared the file of the secret: one revealed that of the other."""
+    """Two at a time shared the file of the reality: one printed the truth of the other."""
     folder, _, _ = demo
     assert sorted(path.name for path in folder.parent.iterdir()) == ['out.json', 'run_1']
     assert {'log', 'nominal.yaml', 'reality.yaml', 'recording_1'} <= {

@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""A reality in rotorpy with secrets, the user's simulator in MuJoCo: what is promised, holds."""
+"""A reality in rotorpy with hidden effects, the user's simulator in MuJoCo: the gap closes."""
 
 from pathlib import Path
 
@@ -19,7 +19,7 @@ DEVIATION = np.repeat([7e-4, 7e-3, 1.4e-3, 7e-3], 3)
 SHARE = 0.95    # of what is promised
 
 
-def flown(secret, seed, a, b):
+def flown(hidden, seed, a, b):
     """Return the record of a flight of rotorpy's multirotor under rotorpy's controller."""
     from rotorpy.controllers.quadrotor_control import SE3Control
     from rotorpy.trajectories.lissajous_traj import TwoDLissajous
@@ -29,7 +29,7 @@ def flown(secret, seed, a, b):
               for name, place in quad_params['rotor_pos'].items()}
     bare = quad_params | dict.fromkeys(('c_Dx', 'c_Dy', 'c_Dz', 'k_d', 'k_z', 'k_h', 'k_flap'),
                                        0.0) | {'rotor_pos': places}
-    reality, draw = Multirotor(bare | secret), np.random.default_rng(seed)
+    reality, draw = Multirotor(bare | hidden), np.random.default_rng(seed)
     control, path = SE3Control(bare), TwoDLissajous(1.0, 0.8, a, b, height=2.0)
     aim = path.update(0.0)
     hover = np.sqrt(bare['mass'] * 9.81 / (4 * bare['k_eta']))
@@ -54,10 +54,10 @@ def flown(secret, seed, a, b):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize('secret', [
+@pytest.mark.parametrize('hidden', [
     {'k_d': 1.2e-4, 'mass': 0.53}, {'tau_m': 0.04, 'c_Dx': 0.08, 'c_Dy': 0.08, 'c_Dz': 0.08},
     {'k_eta': 5.2e-6, 'tau_m': 0.03, 'k_d': 8e-5}])
-def test_the_gap_in_mujoco_falls_by_the_share_that_is_promised(secret):
+def test_the_gap_in_mujoco_falls_by_the_share_that_is_promised(hidden):
     pytest.importorskip('mujoco', reason='MuJoCo is not installed')
     pytest.importorskip('rotorpy.vehicles.multirotor', reason='rotorpy is not installed')
     vehicle = load_vehicle(FOLDER / 'quadrotor.xml')
@@ -65,7 +65,7 @@ def test_the_gap_in_mujoco_falls_by_the_share_that_is_promised(secret):
     factor = np.sqrt(5.57e-6 / vehicle.thrust_coefficient)
     records = []
     for seed, (a, b) in enumerate([(1.5, 1.0), (1.0, 2.0), (1.3, 1.7)]):
-        record = flown({'tau_m': 1e-3} | secret, seed, a, b)
+        record = flown({'tau_m': 1e-3} | hidden, seed, a, b)
         columns = {name: factor * values if name.startswith('cmd') else values
                    for name, values in record.columns.items()}
         records.append(FlightRecord(record.t, columns, record.info))

@@ -74,7 +74,7 @@ def gravest_first(found):
 
 
 def refuse_unfit(record, vehicle):
-    """Return the Findings on a record; InputError for a fault that no verdict survives."""
+    """Return the Findings on a record; InputError where it is too faulty to diagnose."""
     found = findings(record, vehicle)
     refuse_errors(record, found)
     return found
@@ -82,13 +82,13 @@ def refuse_unfit(record, vehicle):
 
 def cautions(record, vehicle, doubtful=()):
     """
-    Return what to be wary of in a record that bears a verdict, as data.
+    Return the warnings on a record that can be diagnosed, as data.
 
     These are the Findings of warning, what its outputs to the motors were taken for, what its log
     was too slow for or has no estimates of, and which states are derivatives of others.
 
     Args: doubtful: codes of errors that other flights of the vehicle speak against: see refuted.
-    Raises InputError for a fault that no verdict survives.
+    Raises InputError where the record is too faulty to diagnose.
     """
     found = [replace(finding, severity='warning') if finding.code in doubtful else finding
              for finding in findings(record, vehicle)]

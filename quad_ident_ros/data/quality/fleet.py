@@ -15,7 +15,7 @@ _DATED = range(946684800 * 10 ** 9, 4102444800 * 10 ** 9)   # ns, 2000 to 2100: 
 
 def vehicles(records: Sequence[FlightRecord]) -> list[dict]:
     """
-    Return what to be wary of where the logs of flights are of several vehicles, as data.
+    Return a warning where the logs of flights are of several vehicles, as data.
 
     By the info `hardware` of the records: what (board, id, craft) -> text. Two logs are of
     several vehicles where they differ in what both of them know.
@@ -42,7 +42,7 @@ def vehicles(records: Sequence[FlightRecord]) -> list[dict]:
 
 def days(records: Sequence[FlightRecord]) -> list[dict]:
     """
-    Return what to be wary of where flights are of several days, by UTC, as data.
+    Return a warning where flights are of several days, by UTC, as data.
 
     By the info `utc_ns` of the records, or `start_ns` where it is a date.
     """

@@ -6,7 +6,7 @@ import pytest
 
 from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.experiment import fly, load_experiment
-from quad_ident_ros.flight.secret import draw_reality
+from quad_ident_ros.flight.hidden_effect import draw_reality
 from quad_ident_ros.model.vehicle import load_vehicle, write_vehicle
 
 SEEDS = range(150)

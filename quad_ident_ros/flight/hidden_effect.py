@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""A reality drawn at random: the nominal vehicle with one effect that it does not tell of."""
+"""A reality drawn at random: the nominal vehicle with a hidden effect."""
 
 from dataclasses import replace
 
