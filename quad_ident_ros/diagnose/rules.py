@@ -125,7 +125,7 @@ class Rules:
     half: float = 0.5
     doubt: float = 0.12
     instead: float = 2.0
-    calibration: tuple[float, float, float, float] = (-4.85, 3.62, 1.39, 0.408)
+    calibration: tuple[float, float, float, float] = (-6.08, 5.07, 1.53, 0.5)
     companion: tuple[float, float] = (0.1, 3.0)
     stand_in: float = 0.5
     tied: float = 0.9
