@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """A force and moment as a function of state and command, as plain numbers of a vehicle file."""
 
-from dataclasses import dataclass
+from collections.abc import Collection
+from dataclasses import dataclass, replace
 import math
 from typing import Any
 
@@ -76,6 +77,16 @@ class ResidualFunction:
         waves = [[*(places[k] for k in wave.inputs), *wave.frequencies, wave.phase, *wave.weights]
                  for wave in self.waves]
         return np.concatenate([self.limit, self.constant, inputs.ravel(), np.ravel(waves)])
+
+    def of(self, channels: Collection[int]) -> 'ResidualFunction':
+        """Return it with nothing but some of its six channels."""
+        def kept(row: tuple[float, ...]) -> tuple[float, ...]:
+            return tuple(one if k in channels else 0.0 for k, one in enumerate(row))
+
+        return ResidualFunction(
+            kept(self.limit), kept(self.constant),
+            tuple((name, replace(one, weights=kept(one.weights))) for name, one in self.inputs),
+            tuple(replace(wave, weights=kept(wave.weights)) for wave in self.waves))
 
 
 NOTHING = ResidualFunction((0.0,) * CHANNELS, (0.0,) * CHANNELS, (), ())

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from quad_ident_ros.diagnose.result import (
+    Ceiling,
     Channel,
     Diagnosis,
     FlightCheck,
@@ -14,6 +15,7 @@ from quad_ident_ros.diagnose.result import (
     GapGivenAttitude,
     Minor,
     Ranked,
+    ShareClosed,
     Unexplained,
     Value,
 )
@@ -34,7 +36,7 @@ def diagnosis_from(data: dict, vehicle: Vehicle) -> Diagnosis:
                                                row.parameters.items()}) for row in ranking),
         where=tuple(Channel(**row) for row in data['where']), gap=Gap(**data['gap']),
         gap_given_attitude=GapGivenAttitude(**data['gap_given_attitude']),
-        tolerance=data['tolerance'],
+        ceiling=_ceiling_from(data['ceiling']), tolerance=data['tolerance'],
         unknown=tuple(Unexplained(**row) for row in data['unknown'] or ()),
         undetermined=tuple(data['undetermined'] or ()), sure=tuple(data['sure'] or ()),
         one_finding=tuple(data['one_finding']), not_shown=tuple(data['not_shown']),
@@ -42,3 +44,9 @@ def diagnosis_from(data: dict, vehicle: Vehicle) -> Diagnosis:
         held_out=data['held_out'],
         flight_checks=tuple(FlightCheck(**row) for row in data['flight_checks']),
         findings=tuple(data['findings']), z=np.empty(0), pictures=None)
+
+
+def _ceiling_from(data: dict) -> Ceiling:
+    """Return the Ceiling that asdict made data of."""
+    return Ceiling(ShareClosed(**data['open_loop']), ShareClosed(**data['given_attitude']),
+                   data['gain'], tuple(data['shown']))
