@@ -9,23 +9,24 @@ def ceiling_line(found: Diagnosis) -> str:
     """Return how much of the velocity gap a function of state and command closes, in words."""
     one = found.ceiling
     if not one.shown:
-        return ('the ceiling: no function of state and command, learnt without what is held out, '
-                'is shown to close more of its gap')
-    return (f'the ceiling: with a {" and ".join(one.shown)} as a function of state and command, '
-            f'learnt without what is held out, {share_of(one.open_loop)} would be closed, '
-            f'{share_of(one.given_attitude)} given the recorded attitude')
+        return ('the ceiling: no function of state and command, learnt without the held-out '
+                'flight, is shown to close more of its gap')
+    return (f'the ceiling: a {" and ".join(one.shown)} as a function of state and command, learnt '
+            'without the held-out flight and added to the effects, would close '
+            f'{share_of(one.open_loop)}, {share_of(one.given_attitude)} given the recorded '
+            'attitude')
 
 
 def residual_line(found: Diagnosis) -> str:
-    """Return what the residual function of the vehicle file gains beside the effects, in words."""
+    """Return what the residual function of the vehicle file closes beside the effects, in words."""
     one = found.ceiling
     if not one.shown:
-        return ('residual: none is written, for no function of state and command is shown to '
+        return ('residual: none is written, because no function of state and command is shown to '
                 f'close more of the gap on {found.held_out} than the effects do')
-    return (f'residual ({" and ".join(one.shown)}): of the velocity gap on {found.held_out} (held '
-            f'out), which the effects close by {100 * found.gap.closed:.0f} %, it closes '
-            f'{share_of(one.open_loop)} with them; it has no name, and beyond what these flights '
-            'flew it stays as at the edge')
+    return (f'residual ({" and ".join(one.shown)}): the effects close '
+            f'{100 * found.gap.closed:.0f} % of the velocity gap on {found.held_out} (held out), '
+            f'with it {share_of(one.open_loop)}; it is no cause, and outside the range of these '
+            'flights it stays constant')
 
 
 def share_of(one: ShareClosed) -> str:

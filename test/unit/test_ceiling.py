@@ -134,7 +134,7 @@ def test_the_command_writes_it_and_the_verdict_is_the_same(tmp_path, capsys, str
         told.append(json.loads(said.read_text()))
     assert told[0] == told[1]
     printed = capsys.readouterr().out
-    assert printed.count('residual (force): of the velocity gap') == 1
+    assert printed.count('residual (force): the effects close') == 1
     real, named = load_vehicle(out), load_vehicle(plain)
     assert named.residual is None and real.residual is not None
     assert replace(real, residual=None) == named
