@@ -18,7 +18,7 @@ def ceiling_line(found: Diagnosis) -> str:
 
 
 def residual_line(found: Diagnosis) -> str:
-    """Return what the residual function of the vehicle file closes beside the effects, in words."""
+    """Return what the residual function closes beside the effects, in words."""
     one = found.ceiling
     if not one.shown:
         return ('residual: none is written, because no function of state and command is shown to '
