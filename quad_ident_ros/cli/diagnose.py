@@ -4,6 +4,7 @@
 
 import argparse
 from contextlib import nullcontext
+from dataclasses import replace
 import sys
 import textwrap
 
@@ -23,6 +24,7 @@ from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.greybox.errors import UNITS
 from quad_ident_ros.model.vehicle import write_vehicle
+from quad_ident_ros.report.ceiling import residual_line
 from quad_ident_ros.report.data import write_json
 from quad_ident_ros.report.diagnosis import show
 from quad_ident_ros.tolerances import EXAMPLE, rules_from
@@ -45,6 +47,8 @@ def add(commands, said):
                '  quad_ident diagnose monday_*.csv.gz --vehicle quad.yaml\n'
                '  quad_ident diagnose a.csv b.csv --hold-out c.csv --vehicle quad.yaml \\\n'
                '      --json diagnosis.json --out-vehicle like_real.yaml\n'
+               '  quad_ident diagnose a.csv b.csv c.csv --vehicle quad.yaml \\\n'
+               '      --out-vehicle like_real.yaml --residual\n'
                '  quad_ident diagnose log_12.ulg --vehicle auto --segment 2 --from 35 --to 95\n'
                '  quad_ident diagnose a.csv b.csv --vehicle quad.xml --simulator mine.py:Quad\n\n'
                'docs/diagnosis.md explains every line of the answer, docs/simulators.md has '
@@ -75,6 +79,9 @@ def add(commands, said):
                         help='write a page for a browser: the verdict, pictures, all numbers')
     parser.add_argument('--out-vehicle', metavar='FILE',
                         help='write the vehicle file with the effects named, for the simulator')
+    parser.add_argument('--residual', action='store_true',
+                        help='write into that file, too, what no effect explains, as a force and '
+                             'moment by state and command, where it helps on the flight held out')
     add_selection(parser)
     parser.set_defaults(run=run)
 
@@ -83,6 +90,9 @@ def run(options):
     """Read the flights, diagnose, and show what came of it."""
     rules = RULES if options.tolerance is None else rules_from(options.tolerance.split(','),
                                                                '--tolerance')
+    if options.residual and not options.out_vehicle:
+        raise InputError('--residual: it is written into a vehicle file; name one with '
+                         '--out-vehicle FILE.yaml')
     selection = selection_of(options)
     if options.vehicle is None:
         raise InputError(asking_for_vehicle(options.flights[0]))
@@ -110,4 +120,9 @@ def run(options):
         from quad_ident_ros.report import gap_page  # it draws: half a second to import
         gap_page.write(options.report, found)
     if options.out_vehicle:
-        write_vehicle(options.out_vehicle, found.corrected(vehicle))
+        made = found.corrected(vehicle)
+        if options.residual and found.residual is not None:
+            made = replace(made, residual=found.residual)
+        write_vehicle(options.out_vehicle, made)
+    if options.residual and options.json != '-':
+        print(residual_line(found))

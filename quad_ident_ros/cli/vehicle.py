@@ -104,6 +104,9 @@ def _show_vehicle(reading: Reading, screen: Any) -> None:
         say(screen, f'effect: {name} {numbers}')
     if not vehicle.effects:
         say(screen, 'effects: none')
+    if vehicle.residual is not None:
+        say(screen, f'residual: force and moment by {len(vehicle.residual.inputs)} inputs and '
+                    f'{len(vehicle.residual.waves)} waves over them')
 
 
 def _entry(text: str) -> tuple[str, Any]:

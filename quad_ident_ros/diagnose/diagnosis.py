@@ -10,6 +10,7 @@ from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.diagnose import advice, measure
 from quad_ident_ros.diagnose.bench import Bench
 from quad_ident_ros.diagnose.candidates import candidates
+from quad_ident_ros.diagnose.ceiling import ceiling_of
 from quad_ident_ros.diagnose.in_simulator import gap_in_simulator, refuse_inertial
 from quad_ident_ros.diagnose.intake import take_in
 from quad_ident_ros.diagnose.judgement import judge, pooled
@@ -82,6 +83,7 @@ def diagnose(records: Iterable[FlightRecord], vehicle: Vehicle, *,
     before = measure.residual_wrenches(bench, [z0 + z - model.z for z in model.vectors],
                                        noise.deviation)
     after = measure.residual_wrenches(bench, model.vectors, whole)
+    ceiling, residual = ceiling_of(bench, judged, after)
     told(0.95)
     in_simulator = None if simulator is None else gap_in_simulator(
         simulator, bench, judged, lambda share: on_progress(0.5 + 0.5 * share))
@@ -90,6 +92,7 @@ def diagnose(records: Iterable[FlightRecord], vehicle: Vehicle, *,
         vehicle=vehicle, verdict=verdict.names, minor=verdict.minor, ranking=verdict.ranking,
         where=measure.channels(before, vehicle, rules), gap=measure.open_loop_gap(bench, judged),
         gap_given_attitude=measure.gap_given_attitude(bench, judged),
+        ceiling=ceiling,
         tolerance={name: rules.tolerance(name, gap)
                    for name, gap in pooled(judged.noise).items()},
         unknown=measure.unexplained(judged, measure.channels(after, vehicle, rules)),
@@ -106,4 +109,5 @@ def diagnose(records: Iterable[FlightRecord], vehicle: Vehicle, *,
         findings=(*intake.findings, *advice.at_bounds(judged, vehicle, rules),
                   *advice.by_input_errors(judged)), z=model.z,
         pictures=measure.pictures(bench, judged, before, after),
-        covariance=known_together(bench, model), in_simulator=in_simulator)
+        covariance=known_together(bench, model), in_simulator=in_simulator,
+        residual=residual)

@@ -12,6 +12,7 @@ from quad_ident_ros.diagnose.residual_wrench import ResidualWrench
 from quad_ident_ros.effects.registry import mapping, vector
 from quad_ident_ros.greybox.parameters import SPLIT
 from quad_ident_ros.model.covariance import Covariance, covariance_to_mapping
+from quad_ident_ros.model.residual_function import ResidualFunction
 from quad_ident_ros.model.vehicle import Vehicle
 
 SCHEMA = 'quad_ident/diagnosis/2'
@@ -123,6 +124,36 @@ class GapGivenAttitude:
 
 
 @dataclass(frozen=True)
+class ShareClosed:
+    """
+    A gap {group: ...} on the flight held out, and what that closes of the velocity's.
+
+    closed: the share of what is above the noise, std: its standard error, by the jackknife over
+    blocks of time, None where there is but one.
+    """
+
+    after: dict
+    closed: float
+    std: float | None
+
+
+@dataclass(frozen=True)
+class Ceiling:
+    """
+    What any function of state and command closes of the gap on a flight that it has not seen.
+
+    The effects named and a force and moment learnt from the other flights, in full open loop and
+    given the recorded attitude. gain {force, moment: standard errors by which what was learnt
+    helps beside the effects}; shown: those that count, for they surely help.
+    """
+
+    open_loop: ShareClosed
+    given_attitude: ShareClosed
+    gain: dict
+    shown: tuple[str, ...]
+
+
+@dataclass(frozen=True)
 class GapInSimulator:
     """
     The gap of a user's simulator, FILE.py:NAME, on the flight held out, {group: ...}.
@@ -191,7 +222,8 @@ class Diagnosis:
     verdict: what matters, the largest contribution first, or none, unknown, undetermined; minor:
     what is there and does not matter; z (Z,): the parameter vector with the effects named;
     covariance: how well their parameters are known together, with the constants whose deviations
-    the vehicle file states, or None where there are none.
+    the vehicle file states, or None where there are none; residual: the function of state and
+    command that reaches the ceiling, None where effects do.
     """
 
     vehicle: Vehicle
@@ -201,6 +233,7 @@ class Diagnosis:
     where: tuple[Channel, ...]
     gap: Gap
     gap_given_attitude: GapGivenAttitude
+    ceiling: Ceiling
     tolerance: dict
     unknown: tuple[Unexplained, ...]
     undetermined: tuple[str, ...]
@@ -217,6 +250,7 @@ class Diagnosis:
     pictures: Pictures
     covariance: Covariance | None
     in_simulator: GapInSimulator | None = None
+    residual: ResidualFunction | None = None
 
     def effects(self) -> dict:
         """Return {effect: {parameter: value}} of the vehicle, as flights and file have it."""
@@ -242,7 +276,7 @@ class Diagnosis:
             'ranking': [asdict(one) for one in self.ranking],
             'where': [asdict(one) for one in self.where],
             'gap': asdict(self.gap), 'gap_given_attitude': asdict(self.gap_given_attitude),
-            'tolerance': dict(self.tolerance),
+            'ceiling': asdict(self.ceiling), 'tolerance': dict(self.tolerance),
             'unknown': [asdict(one) for one in self.unknown] or None,
             'undetermined': list(self.undetermined) or None,
             'sure': list(self.sure) if self.undetermined else None,

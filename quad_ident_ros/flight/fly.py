@@ -14,7 +14,7 @@ from quad_ident_ros.flight.measure import CLEAN, errors_of, measured
 from quad_ident_ros.flight.trajectories import plan, scale_of
 from quad_ident_ros.model.attitude import quaternion_from_euler, rotation_matrix
 from quad_ident_ros.model.dynamics import STATES
-from quad_ident_ros.model.rigid_body import rotor_table, STATE, vehicle_vector
+from quad_ident_ros.model.rigid_body import rotor_table, STATE, vehicle_vector, with_residual
 from quad_ident_ros.model.sensors import BLOCK, recorded, tilts_of, turn
 from quad_ident_ros.model.vehicle import hover_fault
 
@@ -127,7 +127,7 @@ def _flown(vehicle, theta, wanted, errors, rate, parts):
         count, n = len(phase), len(vehicle.rotors)
         out = (np.empty((count, STATE)), np.empty((count, n)), np.empty((count, n)),
                np.empty((count, 3)), np.empty(count))
-        close_loop(vehicle_vector(vehicle)[:, None], rotor_table(vehicle),
+        close_loop(with_residual(vehicle_vector(vehicle), vehicle)[:, None], rotor_table(vehicle),
                    acting[:, None].copy(), tilt, rate_tilt, 1 / rate, clock, clock * FALL,
                    FULL_VOLTAGE, LONGEST_STEP, x, np.ascontiguousarray(phase),
                    np.ascontiguousarray(seen), gains_of(vehicle), mixer_of(vehicle), memory, *out)

@@ -16,7 +16,8 @@ from quad_ident_ros.model.actuators import (
     RISE,
     SLEW,
 )
-from quad_ident_ros.model.rigid_body import derivative, INPUT, prepare, STATE
+from quad_ident_ros.model.residual_in_flight import smooth, SMOOTHED
+from quad_ident_ros.model.rigid_body import CONSTANTS, derivative, INPUT, prepare, STATE
 from quad_ident_ros.model.rollout import step, take_up
 from quad_ident_ros.model.situation import (
     COM_X,
@@ -69,7 +70,7 @@ def close_loop(v, places, theta, tilt, rate_tilt, dt, clock, fall, full, longest
     count, n = len(wanted), len(places)
     s, rotors = np.zeros((TABLE, 1)), np.zeros((n, ROTOR_ROWS, 1))
     state, change, work = np.empty((STATE, 1)), np.empty((STATE, 1)), np.empty((4, STATE, 1))
-    u, h = np.zeros((INPUT, 1)), np.empty(1)
+    u, h, late = np.zeros((INPUT + SMOOTHED, 1)), np.empty(1), v.shape[0] > CONSTANTS
     speed, command, extra = np.empty((n, 1)), np.empty((n, 1)), np.zeros((3, n, 1))
     up, down, slew = theta[LAG, 0] + theta[RISE, 0], theta[LAG, 0] + theta[FALL, 0], theta[SLEW, 0]
     mean_lag, inner_lag = theta[MEAN_LAG, 0], theta[INNER_LAG, 0]
@@ -96,6 +97,7 @@ def close_loop(v, places, theta, tilt, rate_tilt, dt, clock, fall, full, longest
         if k == 0:
             speed[:, 0] = commands[0]
             inner[0] = commands[0]
+            smooth(u[INPUT:, 0], commands[0], np.inf, places, v[5, 0], v[6, 0])
         drop[k] = min(fall * energy, (1.0 - EMPTY) * full)
         u[5, 0], u[6, 0] = drop[k], drop[k] / full
         s[TIME, 0] = clock * k * dt
@@ -133,4 +135,6 @@ def close_loop(v, places, theta, tilt, rate_tilt, dt, clock, fall, full, longest
                 step(state, h, u, v, places, theta, speed, command, extra, lag, s, rotors, work)
                 if clock == 0.0:
                     s[TIME, 0] = 0.0
+        if late:
+            smooth(u[INPUT:, 0], commands[k], dt, places, v[5, 0], v[6, 0])
     x[:] = state[:, 0]

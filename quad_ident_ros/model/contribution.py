@@ -9,7 +9,12 @@ from quad_ident_ros.effects.registry import NULL, SLICES
 from quad_ident_ros.model.actuators import accelerations, actuated
 from quad_ident_ros.model.attitude import rotation_matrix
 from quad_ident_ros.model.dynamics import Course
-from quad_ident_ros.model.rigid_body import derivatives, rotor_table, vehicle_vector
+from quad_ident_ros.model.rigid_body import (
+    derivatives,
+    rotor_table,
+    vehicle_vector,
+    with_residual,
+)
 from quad_ident_ros.model.sensors import underlying
 from quad_ident_ros.model.vehicle import Vehicle
 
@@ -35,7 +40,8 @@ def _along(vehicle: Vehicle, theta: np.ndarray, course: Course, states: np.ndarr
     """Return the accelerations of a body with effects along a course, (N, 3) each."""
     acted = actuated(course.t, course.stamps, course.commands, theta[None])
     (speeds,), (rising,) = acted.speeds, accelerations(course.t, acted, theta[None])
-    return accelerations_of(vehicle, theta, course.t, states, speeds, rising, course.inputs())
+    return accelerations_of(vehicle, theta, course.t, states, speeds, rising,
+                            course.inputs(vehicle))
 
 
 def accelerations_of(vehicle: Vehicle, theta: np.ndarray, t: np.ndarray, states: np.ndarray,
@@ -49,8 +55,9 @@ def accelerations_of(vehicle: Vehicle, theta: np.ndarray, t: np.ndarray, states:
     """
     states = np.ascontiguousarray(underlying(theta, states))
     change = np.empty_like(states)
-    derivatives(vehicle_vector(vehicle)[:, None], rotor_table(vehicle), theta, t, states, speeds,
-                rising, inputs, change)
+    constants = with_residual(vehicle_vector(vehicle), vehicle)
+    derivatives(constants[:, None], rotor_table(vehicle), theta, t, states, speeds, rising, inputs,
+                change)
     arm = -theta[SLICES['com_offset']]
     rate, turning = states[:, 10:], change[:, 10:]
     swing = np.cross(turning, arm) + np.cross(rate, np.cross(rate, arm))

@@ -14,7 +14,14 @@ from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.actuators import actuated, distinct, without_lag
 from quad_ident_ros.model.attitude import quaternion_from_euler
-from quad_ident_ros.model.rigid_body import INPUT, rotor_table, STATE, vehicle_vector
+from quad_ident_ros.model.residual_in_flight import smoothed
+from quad_ident_ros.model.rigid_body import (
+    INPUT,
+    rotor_table,
+    STATE,
+    vehicle_vector,
+    with_residual,
+)
 from quad_ident_ros.model.rollout import roll_out, roll_out_one
 from quad_ident_ros.model.sensors import (
     change,
@@ -59,14 +66,22 @@ class Course:
         """Fall of the voltage as a share of that of reference, (N,)."""
         return self.volt_drop / self.reference_voltage
 
-    def inputs(self, rows: np.ndarray | slice = slice(None)) -> np.ndarray:
-        """Return what acts besides the rotors at some samples, (N, INPUT) of rigid_body."""
-        drop = self.volt_drop[rows]
-        found = np.zeros((len(drop), INPUT))
-        found[:, 5], found[:, 6] = drop, self.volt_share[rows]
+    def inputs(self, vehicle: Vehicle, steps: int = 1) -> np.ndarray:
+        """
+        Return what acts on a vehicle besides the rotors, (N, INPUT or more) of rigid_body.
+
+        Args: steps to each sample, in each of which it stays the same: (steps (N - 1) + 1, ...).
+        """
+        rows = np.arange(steps * (len(self.t) - 1) + 1) // steps
+        found = np.zeros((len(rows), INPUT))
+        found[:, 5], found[:, 6] = self.volt_drop[rows], self.volt_share[rows]
         if self.across is not None:
             found[:, 7:9] = self.across[rows]
-        return found
+        if vehicle.residual is None:
+            return found
+        before = smoothed(finer(self.t, steps), self.stamps, self.commands, rotor_table(vehicle),
+                          vehicle.thrust_coefficient, vehicle.torque_coefficient)
+        return np.concatenate([found, before], axis=1)
 
 
 def course_of(record: FlightRecord, vehicle: Vehicle, reference_voltage: float | None = None
@@ -149,7 +164,7 @@ def predict(vehicle: Vehicle, thetas: ArrayLike, course: Course, starts: np.ndar
     steps = steps_within(course.t)
     t, first = finer(course.t, steps), steps * np.asarray(first, np.int64)
     acted = actuated(t, course.stamps, course.commands, thetas)
-    inputs = course.inputs(np.arange(len(t)) // steps)
+    inputs = course.inputs(vehicle, steps)
     sensors = sensors_of(thetas)
     leads, lead_of = (NO_GUIDE if guide is None
                       else _guides(thetas, sensors, guide, course.t, t))
@@ -159,7 +174,8 @@ def predict(vehicle: Vehicle, thetas: ArrayLike, course: Course, starts: np.ndar
     kernel = roll_out if len(x0) > 1 else roll_out_one
     if constants is None:
         constants = np.tile(vehicle_vector(vehicle), (len(thetas), 1))
-    kernel(np.ascontiguousarray(constants), rotor_table(vehicle), without_lag(thetas), which, x0,
+    constants = np.ascontiguousarray(with_residual(constants, vehicle))
+    kernel(constants, rotor_table(vehicle), without_lag(thetas), which, x0,
            t, *acted, inputs, first, steps * count, 1, leads, lead_of, out)
     if steps > 1:
         out = out[:, ::steps].copy()

@@ -5,7 +5,8 @@ The equations of motion of a multirotor with all effects, many rollouts side by 
 
 Vehicle vector, (19,) or (19, LANES): mass, Ix, Iy, Iz, gravity, thrust and torque coefficient,
 rotor radius, linear drag (3), rotational drag (3), 1 where the linear drag acts along world axes,
-sum of the hover speeds, Ixy, Ixz, Iyz as they stand in the matrix of inertia.
+sum of the hover speeds, Ixy, Ixz, Iyz as they stand in the matrix of inertia. Where the vehicle
+has a residual function, its table follows.
 """
 
 
@@ -13,6 +14,7 @@ import numpy as np
 
 from quad_ident_ros.compiled import compiled
 from quad_ident_ros.effects.registry import AIR, BODY, mark, TABLE, THRUST, WRENCH
+from quad_ident_ros.model import residual_in_flight
 from quad_ident_ros.model.situation import (
     ARMS_X,
     ARMS_Y,
@@ -96,8 +98,9 @@ from quad_ident_ros.model.vehicle import Vehicle
 
 STATE = 13      # position, velocity (world), quaternion (body to world), rate (body)
 # Besides the rotors: force z, moment x, y, z (body), spin sum, fall of the voltage, V and share,
-# specific force x, y (body).
+# specific force x, y (body); for a residual function, smoothed commands after these.
 INPUT = 9
+CONSTANTS = 19
 
 
 def vehicle_vector(vehicle: Vehicle, drag_in_world: bool = False) -> np.ndarray:
@@ -106,6 +109,15 @@ def vehicle_vector(vehicle: Vehicle, drag_in_world: bool = False) -> np.ndarray:
                      vehicle.torque_coefficient, vehicle.rotor_radius, *vehicle.linear_drag,
                      *vehicle.rotational_drag, float(drag_in_world),
                      len(vehicle.rotors) * vehicle.hover_speed, *vehicle.products])
+
+
+def with_residual(constants: np.ndarray, vehicle: Vehicle) -> np.ndarray:
+    """Return constants (..., 19) with the table of the vehicle's residual function, if any."""
+    if vehicle.residual is None:
+        return constants
+    table = vehicle.residual.table
+    return np.concatenate([constants, np.broadcast_to(
+        table, (*constants.shape[:-1], len(table)))], axis=-1)
 
 
 def rotor_table(vehicle: Vehicle) -> np.ndarray:
@@ -264,7 +276,7 @@ def derivative(x: np.ndarray, u: np.ndarray, v: np.ndarray, places: np.ndarray,
     Write the derivative of the states x (13, LANES) into dx; the rotors' speeds are in `rotors`.
 
     Newton-Euler with a quaternion and the body rate, so that there is no singular attitude.
-    u (INPUT, LANES) what acts besides the rotors.
+    u (INPUT, LANES) what acts besides the rotors, with smoothed commands for a residual function.
     """
     _place(x, s)
     for i in range(s.shape[1]):
@@ -282,6 +294,8 @@ def derivative(x: np.ndarray, u: np.ndarray, v: np.ndarray, places: np.ndarray,
         s[MZ, i] = u[3, i] - v[13, i] * wz * abs(wz)
         s[SPINS, i] = u[4, i]
     wrench(v, places, theta, s, rotors)
+    if v.shape[0] > CONSTANTS:
+        residual_in_flight.add(u, INPUT, v, CONSTANTS, places, s, rotors)
     for i in range(s.shape[1]):
         per_mass = s[PER_MASS, i]
         fx, fy, fz = s[FX, i] * per_mass, s[FY, i] * per_mass, s[FZ, i] * per_mass
@@ -320,14 +334,14 @@ def derivatives(v: np.ndarray, places: np.ndarray, theta: np.ndarray, t: np.ndar
     """
     x, dx = np.empty((STATE, 1)), np.empty((STATE, 1))
     s, rotors = np.zeros((TABLE, 1)), np.zeros((places.shape[0], ROTOR_ROWS, 1))
-    parameters, u = np.empty((len(theta), 1)), np.empty((INPUT, 1))
+    parameters, u = np.empty((len(theta), 1)), np.empty((inputs.shape[1], 1))
     for k in range(len(theta)):
         parameters[k, 0] = theta[k]
     prepare(v, places, parameters, s, rotors)
     for n in range(len(t)):
         for k in range(STATE):
             x[k, 0] = states[n, k]
-        for k in range(INPUT):
+        for k in range(inputs.shape[1]):
             u[k, 0] = inputs[n, k]
         s[TIME, 0], s[VOLT_DROP, 0], s[SPIN_UP, 0] = t[n], inputs[n, 5], 0.0
         s[VOLT_SHARE, 0] = inputs[n, 6]

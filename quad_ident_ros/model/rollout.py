@@ -10,7 +10,7 @@ import numpy as np
 from quad_ident_ros.compiled import compiled
 from quad_ident_ros.effects.registry import ROWS_OF, SLICES, TABLE
 from quad_ident_ros.model.actuators import is_followed, shares
-from quad_ident_ros.model.rigid_body import derivative, INPUT, prepare, STATE
+from quad_ident_ros.model.rigid_body import derivative, prepare, STATE
 from quad_ident_ros.model.situation import (
     FULL,
     GUIDE,
@@ -149,11 +149,11 @@ def _kernel(lanes: int) -> Callable[..., None]:
         Args: vehicles (T, 19), places: see rigid_body; thetas (T, P) parameter sets; which (B,)
         the set of each rollout; x0 (B, 13) states at the start; t (N,) s; followed, speeds
         (A, N, n), added (A, N, 3, n) to each step from a sample on, law (T,) of each parameter
-        set: see actuators; inputs (N, INPUT), what else acts; first (B,) the sample at which a
-        rollout starts; count of samples; substeps per sample, 1 where anything is added or guided;
-        guides (G, N, GUIDE): quaternions and rates that a record gives, by which the centre of
-        mass moves instead of by the predicted ones; without any, G is 0; guide_of (T,) the guide
-        of each parameter set.
+        set: see actuators; inputs (N, INPUT or more), what else acts; first (B,) the sample at
+        which a rollout starts; count of samples; substeps per sample, 1 where anything is added or
+        guided; guides (G, N, GUIDE): quaternions and rates that a record gives, by which the
+        centre of mass moves instead of by the predicted ones; without any, G is 0; guide_of (T,)
+        the guide of each parameter set.
         """
         rotor_count = places.shape[0]
         x = np.empty((STATE, lanes))
@@ -162,7 +162,7 @@ def _kernel(lanes: int) -> Callable[..., None]:
         rotors = np.zeros((rotor_count, ROTOR_ROWS, lanes))
         theta = np.empty((thetas.shape[1], lanes))
         v = np.empty((vehicles.shape[1], lanes))
-        u = np.zeros((INPUT, lanes))
+        u = np.zeros((inputs.shape[1], lanes))
         speed = np.empty((rotor_count, lanes))
         command = np.empty((rotor_count, lanes))
         extra = np.empty((3, rotor_count, lanes))
@@ -198,7 +198,7 @@ def _kernel(lanes: int) -> Callable[..., None]:
                         command[j, i] = followed[acting, row, j]
                         for place in range(3):
                             extra[place, j, i] = added[acting, row, place, j]
-                    for n in range(INPUT):
+                    for n in range(inputs.shape[1]):
                         u[n, i] = inputs[row, n]
                     if guides.shape[0]:
                         lead = guide_of[which[b]]

@@ -14,7 +14,14 @@ from quad_ident_ros.effects import registry
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model import attitude, equations, mixing
 from quad_ident_ros.model.actuators import actuated, FOLLOWED, without_lag
-from quad_ident_ros.model.rigid_body import INPUT, rotor_table, STATE, vehicle_vector
+from quad_ident_ros.model.residual_in_flight import smoothed
+from quad_ident_ros.model.rigid_body import (
+    INPUT,
+    rotor_table,
+    STATE,
+    vehicle_vector,
+    with_residual,
+)
 from quad_ident_ros.model.rollout import roll_out_one
 from quad_ident_ros.model.sensors import NO_GUIDE, recorded
 from quad_ident_ros.model.vehicle import Vehicle
@@ -100,7 +107,11 @@ def _newton_euler(vehicle: Vehicle, inputs: np.ndarray, omega_r: np.ndarray, per
         t = np.append((stamps[:-1, None] + period / every * np.arange(every)).ravel(), stamps[-1])
     others = np.repeat(others, every, axis=0)
     acted = actuated(t, stamps, commands, theta[None])
-    constants = vehicle_vector(vehicle, drag_in_world=True)[None]
+    if vehicle.residual is not None:
+        before = smoothed(t, stamps, commands, rotor_table(vehicle), vehicle.thrust_coefficient,
+                          vehicle.torque_coefficient)
+        others = np.concatenate([others[:len(t)], before], axis=1)
+    constants = with_residual(vehicle_vector(vehicle, drag_in_world=True), vehicle)[None]
     places = rotor_table(vehicle)[:commands.shape[1]]
     acting, one = without_lag(theta[None]), np.zeros(1, np.int64)
 
@@ -155,6 +166,7 @@ def _acting(vehicle: Vehicle, theta: np.ndarray, inputs: np.ndarray, omega_r: np
     names = list(dict.fromkeys(
         name for name, form in registry.FORMS if form.on_rotors and name in vehicle.effects
         and (theta != registry.NULL)[registry.PLACES[name, form.name]].any()))
+    names += ['residual'] if vehicle.residual is not None else []
     if names:
         problem = mixing.infeasibility(vehicle, inputs, t)
         if problem:
@@ -180,6 +192,9 @@ def _printed(vehicle: Vehicle, inputs: np.ndarray, omega_r: np.ndarray, period: 
     if vehicle.effects:
         raise InputError(f'vehicle {vehicle.name}: the equations as printed know no effects; fly '
                          'the model newton_euler, or take the effects out of the vehicle file')
+    if vehicle.residual is not None:
+        raise InputError(f'vehicle {vehicle.name}: the equations as printed know no residual; fly '
+                         'the model newton_euler, or take it out of the vehicle file')
     if any(vehicle.products):
         raise InputError(f'vehicle {vehicle.name}: the equations as printed know moments of '
                          'inertia alone; fly the model newton_euler, or give inertia: '

@@ -13,6 +13,7 @@ import yaml
 from quad_ident_ros import resources, schema
 from quad_ident_ros.effects import registry
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.model import residual_function
 from quad_ident_ros.model.covariance import (
     Covariance,
     covariance_from,
@@ -20,6 +21,7 @@ from quad_ident_ros.model.covariance import (
 )
 from quad_ident_ros.model.motors import Motors, motors_from, motors_to_mapping
 from quad_ident_ros.model.plausible import refuse_absurd
+from quad_ident_ros.model.residual_function import ResidualFunction
 from quad_ident_ros.whole_file import write_whole
 
 Uncertainty: TypeAlias = float | tuple[float | None, ...]
@@ -53,7 +55,8 @@ class Vehicle:
     standard deviations of the constants that have one, in the constant's unit, by key (those of
     places by 'rotors[0].position'); those of lists are tuples, None where an entry has none;
     motors: what the signals of its records are, or None; covariance: how well flights, and what
-    was stated before, tell numbers of it together, or None.
+    was stated before, tell numbers of it together, or None; residual: a force and moment beside
+    all effects, or None.
     """
 
     name: str
@@ -74,6 +77,7 @@ class Vehicle:
     motors: Motors | None = None
     products: tuple[float, float, float] = (0.0, 0.0, 0.0)
     covariance: Covariance | None = field(default=None, hash=False)
+    residual: ResidualFunction | None = field(default=None, hash=False)
 
     @property
     def arm_length(self) -> float:
@@ -155,6 +159,9 @@ def vehicle_from_mapping(data: Any, where: str) -> Vehicle:
         raise InputError(f'{where}: speed_max must be greater than speed_min')
     if 'motors' in data:
         vehicle = replace(vehicle, motors=motors_from(f'{where}: motors', data['motors']))
+    if 'residual' in data:
+        vehicle = replace(vehicle, residual=residual_function.from_mapping(
+            f'{where}: residual', data['residual']))
     refuse_absurd(where, vehicle)
     if 'effects' in data:
         theta = registry.vector(data['effects'], vehicle, f'{where}: effects')
@@ -169,7 +176,7 @@ def vehicle_to_mapping(vehicle: Vehicle) -> dict[str, Any]:
     """Return the mapping of a vehicle file that describes the vehicle."""
     stds = vehicle.uncertainty
     data = {key: _with_std(value, stds.get(key)) for key, value in asdict(vehicle).items()
-            if key not in ('uncertainty', 'motors', 'products', 'covariance')}
+            if key not in ('uncertainty', 'motors', 'products', 'covariance', 'residual')}
     data['rotors'] = [{'position': _with_std(rotor.position, stds.get(_place_of(i))),
                        'spin': rotor.spin} for i, rotor in enumerate(vehicle.rotors)]
     if any(vehicle.products):
@@ -183,6 +190,8 @@ def vehicle_to_mapping(vehicle: Vehicle) -> dict[str, Any]:
         del data['effects']
     if vehicle.covariance is not None:
         data['covariance'] = covariance_to_mapping(vehicle.covariance, len(vehicle.rotors))
+    if vehicle.residual is not None:
+        data['residual'] = residual_function.to_mapping(vehicle.residual)
     return data
 
 

@@ -21,6 +21,7 @@ from quad_ident_ros.diagnose.result import (
 )
 from quad_ident_ros.diagnose.rules import RULES
 from quad_ident_ros.effects.registry import EFFECTS, titled
+from quad_ident_ros.report.ceiling import ceiling_line
 from quad_ident_ros.report.verdict import (
     above_noise,
     closed_of,
@@ -31,7 +32,7 @@ from quad_ident_ros.report.verdict import (
     verdict_line,
 )
 
-WIDTH = 118     # columns that the widest row needs
+WIDTH = 124     # columns that the widest row needs
 WORTH = 0.02        # probability or share from which on a row is shown
 
 NUMBER = re.compile(r'[-+]?\d+(\.\d+)?(e[-+]?\d+)?')
@@ -39,7 +40,7 @@ NUMBER = re.compile(r'[-+]?\d+(\.\d+)?(e[-+]?\d+)?')
 WHERE = ('channel', 'share', 'rms', 'noise alone', 'where most of it is', 'Hz')
 """What where_row says of a channel."""
 
-FAR = ('', 'nominal', 'with nuisances', 'after', 'noise', 'unit')
+FAR = ('', 'nominal', 'with\nnuisances', 'after', 'ceiling', 'noise', 'unit')
 """What far_rows say of a group of outputs."""
 
 IN_SIMULATOR = ('', 'as it is', 'with nuisances', 'with the effects', 'our model after',
@@ -69,6 +70,7 @@ def show(found: Diagnosis, stream: TextIO) -> None:
         say(line)
     say('')
     say(far_line(found))
+    say(ceiling_line(found))
     screen.print(_table(FAR, far_rows(found)))
     if found.in_simulator:
         say(simulator_line(found.in_simulator, found))
@@ -152,13 +154,15 @@ def far_line(found: Diagnosis) -> str:
 
 def far_rows(found: Diagnosis) -> list[list[str]]:
     """Return the cells of every group of outputs: open loop, then given the attitude."""
-    gap, given = found.gap, found.gap_given_attitude
+    gap, given, ceiling = found.gap, found.gap_given_attitude, found.ceiling
     rows = [[name, _between(gap.before, gap.before_interval, name), f'{gap.before_own[name]:.3g}',
-             _between(gap.after, gap.after_interval, name), f'{gap.noise[name]:.3g}', unit]
+             _between(gap.after, gap.after_interval, name),
+             f'{ceiling.open_loop.after[name]:.3g}', f'{gap.noise[name]:.3g}', unit]
             for name, unit in gap.units.items()]
     return rows + [[f'{name} given attitude',
-                    *(f'{stage[name]:.3g}' for stage in (given.before, given.before_own,
-                                                         given.after, given.noise)),
+                    *(f'{stage[name]:.3g}' for stage in (
+                        given.before, given.before_own, given.after,
+                        ceiling.given_attitude.after, given.noise)),
                     gap.units[name]] for name in given.before]
 
 

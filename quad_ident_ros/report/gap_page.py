@@ -9,6 +9,7 @@ from quad_ident_ros import __version__
 from quad_ident_ros.diagnose.result import Diagnosis
 from quad_ident_ros.effects.registry import titled
 from quad_ident_ros.report import gap_pictures
+from quad_ident_ros.report.ceiling import ceiling_line
 from quad_ident_ros.report.diagnosis import (
     FAR,
     far_line,
@@ -115,7 +116,8 @@ def _which(found: Diagnosis, pictures: dict) -> list:
 
 def _far(found: Diagnosis, pictures: dict) -> list:
     return [tag('h2', 'How far'), tag('p', sentence(far_line(found))),
-            table(FAR, far_rows(found), kinds=('text', '', '', '', '', 'text')),
+            tag('p', sentence(ceiling_line(found))),
+            table(FAR, far_rows(found), kinds=('text', *[''] * 5, 'text')),
             pictures['horizons'], pictures['predictions']]
 
 

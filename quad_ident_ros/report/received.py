@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from quad_ident_ros.diagnose.result import (
+    Ceiling,
     Channel,
     Diagnosis,
     FlightCheck,
@@ -14,6 +15,7 @@ from quad_ident_ros.diagnose.result import (
     GapGivenAttitude,
     Minor,
     Ranked,
+    ShareClosed,
     Unexplained,
     Value,
 )
@@ -35,7 +37,7 @@ def diagnosis_from(data: dict, vehicle: Vehicle) -> Diagnosis:
                                                row.parameters.items()}) for row in ranking),
         where=tuple(Channel(**row) for row in data['where']), gap=Gap(**data['gap']),
         gap_given_attitude=GapGivenAttitude(**data['gap_given_attitude']),
-        tolerance=data['tolerance'],
+        ceiling=_ceiling_from(data['ceiling']), tolerance=data['tolerance'],
         unknown=tuple(Unexplained(**row) for row in data['unknown'] or ()),
         undetermined=tuple(data['undetermined'] or ()), sure=tuple(data['sure'] or ()),
         one_finding=tuple(data['one_finding']), not_shown=tuple(data['not_shown']),
@@ -45,3 +47,9 @@ def diagnosis_from(data: dict, vehicle: Vehicle) -> Diagnosis:
         findings=tuple(data['findings']), z=np.empty(0), pictures=None,
         covariance=data['covariance'] and covariance_from('covariance', data['covariance'],
                                                           len(vehicle.rotors)))
+
+
+def _ceiling_from(data: dict) -> Ceiling:
+    """Return the Ceiling that asdict made data of."""
+    return Ceiling(ShareClosed(**data['open_loop']), ShareClosed(**data['given_attitude']),
+                   data['gain'], tuple(data['shown']))

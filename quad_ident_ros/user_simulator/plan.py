@@ -153,7 +153,7 @@ def plan_of(vehicle: Vehicle, theta: np.ndarray, course: Course, starts: np.ndar
     given = _rotors(t, actuated(t, t, held, inside[None]), inside)
     added = None
     if not same:
-        inputs = course.inputs(np.arange(len(t)) // steps)
+        inputs = course.inputs(vehicle, steps)
         added = Added(vehicle, without_sensors(theta), without_sensors(own), wanted.at(rows),
                       given.at(rows), (t[:-1] + 0.5 * np.diff(t))[rows], inputs[rows])
     return Plan(underlying(sensors_alone(theta), starts),

@@ -151,6 +151,9 @@ def _constants(vehicle: Vehicle, base: Base, target: Target, edits: Edits) -> li
         found.append(Fate('linear_drag', '', 'the format has no such drag'))
     if any(vehicle.rotational_drag):
         found.append(Fate('rotational_drag', '', 'the format has no such drag'))
+    if vehicle.residual is not None:
+        found.append(Fate('residual', '', 'the format has no force by state and command; fly '
+                          'simulates it'))
     if 'rotors' in data and any(
             math.dist(rotor['position'], other.position) > PLACES
             or rotor.get('spin', other.spin) != other.spin
