@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The path that a controller is to follow, out of the record of a flight."""
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.interpolate import make_lsq_spline
@@ -67,6 +68,14 @@ def reference_of(record: FlightRecord) -> Reference:
         # Of headings that are the same but for whole turns the nearest.
         path[:, 3] += 2.0 * np.pi * np.round(np.mean(flown[:, 6] - path[:, 3]) / (2.0 * np.pi))
     return Reference(rate, wanted_of(t, path), flown, asked)
+
+
+def with_asked(record: FlightRecord, trajectory: Callable[[np.ndarray], tuple[np.ndarray, ...]]
+               ) -> FlightRecord:
+    """Return a record with the columns ASKED of a trajectory: see flight.trajectories.plan."""
+    places, _, _, _, yaw, _ = trajectory(record.t)
+    return replace(record, columns={**record.columns,
+                                    **dict(zip(ASKED, (*places.T, yaw), strict=True))})
 
 
 def wanted_of(t: np.ndarray, path: np.ndarray, knot: float = KNOT) -> np.ndarray:

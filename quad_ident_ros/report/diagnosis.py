@@ -21,7 +21,7 @@ from quad_ident_ros.diagnose.result import (
 )
 from quad_ident_ros.diagnose.rules import RULES
 from quad_ident_ros.effects.registry import EFFECTS, titled
-from quad_ident_ros.report.closed_loop import COSTS, cost_rows, loop_line, loop_rows, TITLES
+from quad_ident_ros.report.closed_loop import cost_rows, COSTS, loop_line, loop_rows, TITLES
 from quad_ident_ros.report.verdict import (
     above_noise,
     closed_of,

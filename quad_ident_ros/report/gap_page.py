@@ -9,7 +9,7 @@ from quad_ident_ros import __version__
 from quad_ident_ros.diagnose.result import Diagnosis
 from quad_ident_ros.effects.registry import titled
 from quad_ident_ros.report import gap_pictures
-from quad_ident_ros.report.closed_loop import COSTS, cost_rows, loop_line, loop_rows, TITLES
+from quad_ident_ros.report.closed_loop import cost_rows, COSTS, loop_line, loop_rows, TITLES
 from quad_ident_ros.report.diagnosis import (
     FAR,
     far_line,
