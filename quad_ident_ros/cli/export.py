@@ -40,7 +40,7 @@ def add(commands: Any, said: str) -> None:
                '  quad_ident diagnose *.csv --vehicle model.sdf --out-vehicle real.yaml\n'
                '  quad_ident export real.yaml --to gazebo --base model.sdf -o like_real.sdf\n'
                '  quad_ident export real.yaml --randomise 50 -o vehicles\n'
-               '  quad_ident export real.yaml --randomise 50 --to mujoco --base quad.xml -o models\n'
+               '  quad_ident export real.yaml --randomise 50 --to mujoco --base q.xml -o models\n'
                '  quad_ident export real.yaml --randomise 4096 --seed 1 -o vehicles.npz\n\n'
                'docs/vehicles.md says what each target carries.')
     parser.add_argument('vehicle', metavar='V.yaml', help='the vehicle file')

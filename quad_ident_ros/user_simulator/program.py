@@ -62,11 +62,11 @@ class Program:
         wrench = wrench or (np.zeros((len(dt), 3)),) * 2
         pushes = wrench if self.takes_wrench else ()
         if self.at_once:
-            made = self._user.call('step_many', self._step, states.copy(), commands.copy(), dt.copy(),
-                              *pushes)
+            made = self._user.call('step_many', self._step, states.copy(), commands.copy(),
+                                   dt.copy(), *pushes)
         else:
             made = self._user.call('step', self._step, commands[0].copy(), float(dt[0]),
-                              *(push[0] for push in pushes))
+                                   *(push[0] for push in pushes))
         return self._checked(made, states)
 
     def _checked(self, made: Any, states: np.ndarray) -> np.ndarray:

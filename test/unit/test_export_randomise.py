@@ -183,7 +183,8 @@ def test_the_command_writes_an_array_with_names_and_units(file, tmp_path):
     (['--randomise', '2', '--to', 'px4_sih', '-o', 'out'], 'its rotors are not in the places'),
     (['-o', 'out.xml'], '--to is missing: name the simulator'),
     (['--to', 'urdf', '--seed', '1', '-o', 'out.urdf'], 'only draws have a seed')])
-def test_what_cannot_be_drawn_is_said_in_one_line(words, said, file, tmp_path, monkeypatch, capsys):
+def test_what_cannot_be_drawn_is_said_in_one_line(words, said, file, tmp_path, monkeypatch,
+                                                  capsys):
     monkeypatch.chdir(tmp_path)
     (tmp_path / 'taken').write_text('mine')
     assert main(['export', str(file), *words]) == 2
