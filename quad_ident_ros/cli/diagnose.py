@@ -76,8 +76,9 @@ def add(commands, said):
                              'lies, and how far it shrinks with the effects named around it; '
                              'see below')
     parser.add_argument('--controller', metavar='FILE.py:NAME',
-                        help='a class of yours that closes the loop, or `ours`: how much worse it '
-                             'tracks, by which effects, and its bandwidth; see below')
+                        help='a class of yours that controls the vehicle, or `ours`: the tracking '
+                             'error and bandwidth with the nominal, the corrected and the real '
+                             'vehicle, and what each effect costs; see below')
     parser.add_argument('--json', metavar='FILE', help='write it as data; - prints it')
     parser.add_argument('--report', metavar='FILE.html',
                         help='write a page for a browser: the verdict, pictures, all numbers')

@@ -8,20 +8,22 @@ from quad_ident_ros.closed_loop.compare import ClosedLoop, CORRECTED, NOMINAL, R
 TITLES = ('', NOMINAL, CORRECTED, REAL, 'unit')
 """What loop_rows say."""
 
-COSTS = ('effect', 'position without it, m', 'costs, m', 'velocity without it, m/s', 'costs, m/s')
+COSTS = ('effect', 'position error without it, m', 'cost, m', 'velocity error without it, m/s',
+         'cost, m/s')
+COST_LINE = 'cost of each effect: the corrected vehicle without it, all others unchanged'
 """What cost_rows say of an effect."""
 
-LEFT = 'leaves it'
+LEFT = 'leaves the path'
 UNKNOWN = '?'
 
 
 def loop_line(one: ClosedLoop, flight: str) -> str:
     """Return what was flown, along what, in words."""
-    path = ('the path that the flight was asked for' if one.asked else
-            'its own smooth path, for the record does not say what was asked for, and so nothing '
-            'of the real tracking')
-    return (f'closed loop, {one.controller} along {flight}, {one.seconds:.3g} s: rms off {path}; '
-            'bandwidth about hover')
+    path = ('the reference in the record' if one.asked else
+            'the smoothed path of the flight, because the record has no reference, so that the '
+            'error of the real vehicle is not known')
+    return (f'closed loop with {one.controller}, {one.seconds:.3g} s along {flight}: bandwidth '
+            f'about hover, and rms error against {path}')
 
 
 def loop_rows(one: ClosedLoop) -> list[list[str]]:

@@ -21,7 +21,14 @@ from quad_ident_ros.diagnose.result import (
 )
 from quad_ident_ros.diagnose.rules import RULES
 from quad_ident_ros.effects.registry import EFFECTS, titled
-from quad_ident_ros.report.closed_loop import cost_rows, COSTS, loop_line, loop_rows, TITLES
+from quad_ident_ros.report.closed_loop import (
+    COST_LINE,
+    cost_rows,
+    COSTS,
+    loop_line,
+    loop_rows,
+    TITLES,
+)
 from quad_ident_ros.report.verdict import (
     above_noise,
     closed_of,
@@ -80,7 +87,7 @@ def show(found: Diagnosis, stream: TextIO) -> None:
         say(loop_line(found.closed_loop, found.held_out))
         screen.print(_table(TITLES, loop_rows(found.closed_loop)))
         if found.closed_loop.without:
-            say('what effects cost it: the corrected vehicle without each')
+            say(COST_LINE)
             screen.print(_table(COSTS, cost_rows(found.closed_loop)))
     for line in (*open_lines(found), *nuisance_lines(found)):
         say(line)

@@ -9,7 +9,14 @@ from quad_ident_ros import __version__
 from quad_ident_ros.diagnose.result import Diagnosis
 from quad_ident_ros.effects.registry import titled
 from quad_ident_ros.report import gap_pictures
-from quad_ident_ros.report.closed_loop import cost_rows, COSTS, loop_line, loop_rows, TITLES
+from quad_ident_ros.report.closed_loop import (
+    COST_LINE,
+    cost_rows,
+    COSTS,
+    loop_line,
+    loop_rows,
+    TITLES,
+)
 from quad_ident_ros.report.diagnosis import (
     FAR,
     far_line,
@@ -136,9 +143,9 @@ def _closed_loop(found: Diagnosis) -> list:
     one = found.closed_loop
     if one is None:
         return []
-    costs = [tag('p', 'What effects cost it: the corrected vehicle without each.'),
+    costs = [tag('p', sentence(COST_LINE)),
              table(COSTS, cost_rows(one), kinds=('text', '', '', '', ''))] if one.without else []
-    return [tag('h2', 'In closed loop'), tag('p', _sentence(loop_line(one, found.held_out))),
+    return [tag('h2', 'In closed loop'), tag('p', sentence(loop_line(one, found.held_out))),
             table(TITLES, loop_rows(one), kinds=('text', '', '', '', 'text')), *costs]
 
 

@@ -199,7 +199,8 @@ def test_the_command_tells_the_closed_loop_in_table_json_and_page(tmp_path, caps
                  'hummingbird', '--effects', 'rotor_drag,motor_lag', '--controller', 'ours',
                  '--json', str(tmp_path / 'd.json'), '--report', str(tmp_path / 'p.html')]) == 0
     said = capsys.readouterr().out
-    assert 'closed loop, ours along 2, 8 s: rms off the path that the flight was asked for' in said
+    assert 'closed loop with ours, 8 s along 2: bandwidth about hover, and rms error' in said
+    assert 'against the reference in the record' in said
     data = json.loads((tmp_path / 'd.json').read_text())['closed_loop']
     assert data['tracking']['corrected']['position'] == pytest.approx(
         data['tracking']['real']['position'], rel=0.05)
