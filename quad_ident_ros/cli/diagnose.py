@@ -17,6 +17,8 @@ from quad_ident_ros.cli.options import (
     thrust_by_log,
     vehicle_from,
 )
+from quad_ident_ros.closed_loop.controller import controller_of
+from quad_ident_ros.closed_loop.controller import INTERFACE as OF_CONTROLLERS
 from quad_ident_ros.data.split import joined
 from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.diagnose.rules import RULES
@@ -44,15 +46,18 @@ def add(commands, said):
                                        in EFFECTS.items()) + '\n'
                'a simulator for --simulator, whose file is run:\n'
                + textwrap.indent(INTERFACE, '  ') + '\n\n'
+               'a controller for --controller, whose file is run:\n'
+               + textwrap.indent(OF_CONTROLLERS, '  ') + '\n\n'
                '  quad_ident diagnose monday_*.csv.gz --vehicle quad.yaml\n'
                '  quad_ident diagnose a.csv b.csv --hold-out c.csv --vehicle quad.yaml \\\n'
                '      --json diagnosis.json --out-vehicle like_real.yaml\n'
                '  quad_ident diagnose a.csv b.csv c.csv --vehicle quad.yaml \\\n'
                '      --out-vehicle like_real.yaml --residual\n'
                '  quad_ident diagnose log_12.ulg --vehicle auto --segment 2 --from 35 --to 95\n'
-               '  quad_ident diagnose a.csv b.csv --vehicle quad.xml --simulator mine.py:Quad\n\n'
+               '  quad_ident diagnose a.csv b.csv --vehicle quad.xml --simulator mine.py:Quad\n'
+               '  quad_ident diagnose a.csv b.csv --vehicle quad.yaml --controller ours\n\n'
                'docs/diagnosis.md explains every line of the answer, docs/simulators.md has '
-               'simulators.')
+               'simulators and controllers.')
     parser.add_argument('flights', nargs='+', metavar='FLIGHT',
                         help='a table (CSV, Parquet), a bag (ROS 1 or 2), or a log of PX4, '
                              'ArduPilot, Crazyflie or Betaflight')
@@ -74,6 +79,10 @@ def add(commands, said):
                         help='a class of yours that flies the nominal vehicle: its gap, where it '
                              'lies, and how far it shrinks with the effects named around it; '
                              'see below')
+    parser.add_argument('--controller', metavar='FILE.py:NAME',
+                        help='a class of yours that controls the vehicle, or `ours`: the tracking '
+                             'error and bandwidth with the nominal, the corrected and the real '
+                             'vehicle, and what each effect costs; see below')
     parser.add_argument('--json', metavar='FILE', help='write it as data; - prints it')
     parser.add_argument('--report', metavar='FILE.html',
                         help='write a page for a browser: the verdict, pictures, all numbers')
@@ -106,11 +115,12 @@ def run(options):
                                           by_log))
     held = (joined(flights_from(options.hold_out, options.mapping, vehicle, selection, by_log))[-1]
             if options.hold_out else None)
+    controller = controller_of(options.controller, vehicle) if options.controller else None
     with (Simulator(options.simulator, vehicle) if options.simulator else nullcontext()
           ) as simulator, progress_bar() as bar:
         task = bar.add_task('comparing sets of effects', total=1.0)
         found = diagnose(records, vehicle, hold_out=held, effects=effects, rules=rules,
-                         simulator=simulator,
+                         simulator=simulator, controller=controller,
                          on_progress=lambda share: bar.update(task, completed=share))
     if options.json != '-':
         show(found, sys.stdout)

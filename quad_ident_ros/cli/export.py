@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from quad_ident_ros import resources
+from quad_ident_ros.cli.export_draws import run_draws
 from quad_ident_ros.cli.options import flights_from
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.diagnose.carried import Carried, carried
@@ -19,12 +20,10 @@ from quad_ident_ros.report.export import CODE, FILE, show, show_cost
 from quad_ident_ros.vehicle_files.export import Export, export, mean_left
 from quad_ident_ros.vehicle_files.load import source_of
 from quad_ident_ros.vehicle_files.mujoco_code import SAYS as CODE_SAYS
-from quad_ident_ros.vehicle_files.source import Source
+from quad_ident_ros.vehicle_files.source import mark_of, Source
 from quad_ident_ros.vehicle_files.targets import TARGETS
 from quad_ident_ros.vehicle_files.written import read_back, with_code
 from quad_ident_ros.whole_file import write_whole
-
-BOM = b'\xef\xbb\xbf'
 
 
 def add(commands: Any, said: str) -> None:
@@ -35,13 +34,18 @@ def add(commands: Any, said: str) -> None:
                     'simulator: a new\none, or with --base yours, in which only numbers change '
                     'and everything else stays byte for byte.\nLists what the effects change, '
                     'and which of them the file carries exactly, by the nearest\nequivalent, or '
-                    'not at all.',
+                    'not at all. With --randomise, draws N vehicles as far apart as the flights '
+                    'leave\nthe vehicle open, for domain randomisation.',
         epilog='  quad_ident export real.yaml --to rotorpy -o real_params.py\n'
                '  quad_ident diagnose *.csv --vehicle model.sdf --out-vehicle real.yaml\n'
-               '  quad_ident export real.yaml --to gazebo --base model.sdf -o like_real.sdf\n\n'
+               '  quad_ident export real.yaml --to gazebo --base model.sdf -o like_real.sdf\n'
+               '  quad_ident export real.yaml --randomise 50 -o vehicles\n'
+               '  quad_ident export real.yaml --randomise 50 --to mujoco --base q.xml -o models\n'
+               '  quad_ident export real.yaml --randomise 4096 --seed 1 -o vehicles.npz\n\n'
                'docs/vehicles.md says what each target carries.')
     parser.add_argument('vehicle', metavar='V.yaml', help='the vehicle file')
-    parser.add_argument('--to', required=True, choices=list(TARGETS), help='the simulator')
+    parser.add_argument('--to', choices=list(TARGETS),
+                        help='the simulator (default with --randomise: our own vehicle files)')
     parser.add_argument('--base', metavar='FILE',
                         help='your file that the numbers go into; FILE:NAME for one of several '
                              'vehicles in it (default: a new file)')
@@ -49,13 +53,27 @@ def add(commands: Any, said: str) -> None:
                         help='flights, preferably those that the diagnosis held out, on which the '
                              'gap that the file closes is measured, and over which a sag of the '
                              'battery becomes a mean factor')
-    parser.add_argument('-o', '--output', required=True, metavar='OUT', help='the file to write')
+    parser.add_argument('--randomise', type=int, metavar='N',
+                        help='draw N vehicles from the normal distribution that the vehicle file '
+                             'states: its covariance, and the std of constants apart from it; '
+                             'what cannot be a vehicle is drawn again')
+    parser.add_argument('--seed', type=int, metavar='N', help='of the draws (default: 0)')
+    parser.add_argument('-o', '--output', required=True, metavar='OUT',
+                        help='the file to write; with --randomise a folder for N files, or '
+                             'FILE.npz for one array with names and units')
     parser.add_argument('--json', metavar='FILE', help='write what changes as data; - prints it')
     parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> None:
-    """Write the file and show what changes in it."""
+    """Write the file, or those of drawn vehicles, and show what changes."""
+    if options.randomise is not None:
+        run_draws(options, load_vehicle(_file_of_ours(options.vehicle)), _base(options))
+        return
+    if options.to is None:
+        raise InputError(f'--to is missing: name the simulator ({", ".join(TARGETS)})')
+    if options.seed is not None:
+        raise InputError('--seed: only draws have a seed; give --randomise N too, or leave it out')
     target = TARGETS[options.to]
     if Path(options.output).suffix not in target.endings:
         endings = ', '.join(ending or 'nothing' for ending in target.endings)
@@ -69,7 +87,7 @@ def run(options: argparse.Namespace) -> None:
     cost = cost_of(found, vehicle, records) if records else None
     if found.code is not None:
         _refuse_others(_beside(options.output))
-    _write(options.output, _mark(source) + found.text)
+    _write(options.output, mark_of(source) + found.text)
     if found.code is not None:
         _write(_beside(options.output), found.code.text)
     if options.json != '-':
@@ -121,14 +139,6 @@ def _write(path: str | Path, text: str) -> None:
         write_whole(path, text)
     except OSError as error:
         raise InputError(f'{path}: cannot be written: {error.strerror}') from None
-
-
-def _mark(source: Source | None) -> str:
-    """Return the mark with which some editors begin a file, where a base file has it."""
-    if source is None:
-        return ''
-    with open(source.path, 'rb') as file:
-        return '\ufeff' if file.read(len(BOM)) == BOM else ''
 
 
 def as_data(found: Export, cost: Carried | None, options: argparse.Namespace) -> dict[str, Any]:

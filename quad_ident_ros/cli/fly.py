@@ -9,12 +9,13 @@ import numpy as np
 
 from quad_ident_ros import resources, schema
 from quad_ident_ros.cli.identify import progress_bar
+from quad_ident_ros.closed_loop.reference import with_asked
 from quad_ident_ros.data.csv import write_csv
 from quad_ident_ros.effects.registry import EFFECTS, from_entries
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import SENSORS
-from quad_ident_ros.flight.trajectories import TRAJECTORIES
+from quad_ident_ros.flight.trajectories import plan, TRAJECTORIES
 from quad_ident_ros.report.data import write_json
 from quad_ident_ros.vehicle_files.load import load_vehicle
 
@@ -82,6 +83,7 @@ def run(options):
         record = fly_closed_loop(vehicle, effects, options.trajectory, duration=options.duration,
                                  rate=options.rate, seed=options.seed,
                                  noise=SENSORS[options.noise])
+    record = with_asked(record, plan(options.trajectory, vehicle, options.duration, options.seed))
     path.parent.mkdir(parents=True, exist_ok=True)
     write_csv(path, record)
     if options.json != '-':

@@ -6,11 +6,14 @@ from collections.abc import Callable, Iterable
 
 import numpy as np
 
+from quad_ident_ros.closed_loop.controller import NamedController
+from quad_ident_ros.closed_loop.reference import reference_of
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.diagnose import advice, measure
 from quad_ident_ros.diagnose.bench import Bench
 from quad_ident_ros.diagnose.candidates import candidates
 from quad_ident_ros.diagnose.ceiling import ceiling_of
+from quad_ident_ros.diagnose.in_closed_loop import in_closed_loop
 from quad_ident_ros.diagnose.in_simulator import gap_in_simulator, refuse_inertial
 from quad_ident_ros.diagnose.intake import take_in
 from quad_ident_ros.diagnose.judgement import judge, pooled
@@ -34,6 +37,7 @@ from quad_ident_ros.user_simulator.simulator import Simulator
 def diagnose(records: Iterable[FlightRecord], vehicle: Vehicle, *,
              hold_out: FlightRecord | None = None, effects: list[str] | None = None,
              rules: Rules = RULES, simulator: Simulator | None = None,
+             controller: NamedController | None = None,
              on_progress: Callable[[float], None] = lambda share: None) -> Diagnosis:
     """
     Return the Diagnosis of flight records against a nominal vehicle and the effects that it has.
@@ -41,6 +45,7 @@ def diagnose(records: Iterable[FlightRecord], vehicle: Vehicle, *,
     Args: hold_out: a record that takes no part in the fit or the choice, by default the last one
     (half of the blocks of a single one); effects: names that may be named, by default all; rules:
     thresholds of the verdict; simulator: of the user, in which the flights are predicted, too;
+    controller: whose tracking of the flight held out is compared with and without the effects;
     on_progress is called with the share done.
     Raises InputError where the records are too faulty to diagnose.
     """
@@ -51,7 +56,11 @@ def diagnose(records: Iterable[FlightRecord], vehicle: Vehicle, *,
     def told(share: float) -> None:     # flying in a simulator of the user takes as long
         on_progress(share if simulator is None else 0.5 * share)
 
-    intake = take_in(list(records), vehicle, hold_out, rules)
+    given = list(records)
+    reference = (None if controller is None or not given
+                 else reference_of(given[-1] if hold_out is None else hold_out))
+    intake = take_in(given, vehicle, hold_out, rules)
+    del given
     give_back()
     if simulator is not None:
         refuse_inertial(intake.flights)
@@ -87,6 +96,8 @@ def diagnose(records: Iterable[FlightRecord], vehicle: Vehicle, *,
     told(0.95)
     in_simulator = None if simulator is None else gap_in_simulator(
         simulator, bench, judged, lambda share: on_progress(0.5 + 0.5 * share))
+    closed_loop = (None if controller is None or reference is None
+                   else in_closed_loop(controller, reference, bench, judged))
     unseen = advice.not_shown(selection, causes, verdict, rules)
     return Diagnosis(
         vehicle=vehicle, verdict=verdict.names, minor=verdict.minor, ranking=verdict.ranking,
@@ -110,4 +121,4 @@ def diagnose(records: Iterable[FlightRecord], vehicle: Vehicle, *,
                   *advice.by_input_errors(judged)), z=model.z,
         pictures=measure.pictures(bench, judged, before, after),
         covariance=known_together(bench, model), in_simulator=in_simulator,
-        residual=residual)
+        closed_loop=closed_loop, residual=residual)

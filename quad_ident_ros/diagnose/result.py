@@ -7,6 +7,7 @@ from dataclasses import asdict, dataclass, field, replace
 import numpy as np
 
 from quad_ident_ros import __version__
+from quad_ident_ros.closed_loop.compare import ClosedLoop
 from quad_ident_ros.diagnose.gap import Ends
 from quad_ident_ros.diagnose.residual_wrench import ResidualWrench
 from quad_ident_ros.effects.registry import mapping, vector
@@ -251,6 +252,7 @@ class Diagnosis:
     covariance: Covariance | None
     in_simulator: GapInSimulator | None = None
     residual: ResidualFunction | None = None
+    closed_loop: ClosedLoop | None = None
 
     def effects(self) -> dict:
         """Return {effect: {parameter: value}} of the vehicle, as flights and file have it."""
@@ -288,4 +290,5 @@ class Diagnosis:
             'findings': list(self.findings),
             'covariance': self.covariance and covariance_to_mapping(self.covariance,
                                                                     len(self.vehicle.rotors)),
-            'in_simulator': self.in_simulator and asdict(self.in_simulator)}
+            'in_simulator': self.in_simulator and asdict(self.in_simulator),
+            'closed_loop': self.closed_loop and asdict(self.closed_loop)}

@@ -65,6 +65,22 @@ def mixer_of(vehicle):
     return np.linalg.pinv(matrix)
 
 
+class Tracking:
+    """The controller of a vehicle: what it sees and what is wanted to rotor speeds, over time."""
+
+    def __init__(self, vehicle):
+        self._gains, self._mixer = gains_of(vehicle), mixer_of(vehicle)
+        self._memory = np.zeros(MEMORY)
+
+    def reset(self):
+        """Forget what was flown."""
+        self._memory[:] = 0.0
+
+    def control(self, seen, wanted, dt, command):
+        """Write rotor speeds command (n,) rad/s for what is SEEN and WANTED; dt s since."""
+        control(seen, wanted, dt, self._gains, self._mixer, self._memory, command)
+
+
 @compiled
 def _clamp(value, most):
     return min(max(value, -most), most)

@@ -8,7 +8,7 @@ from quad_ident_ros import schema
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.effects.registry import vector
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.flight.controller import gains_of, MEMORY, mixer_of
+from quad_ident_ros.flight.controller import Tracking
 from quad_ident_ros.flight.loop import close_loop
 from quad_ident_ros.flight.measure import CLEAN, errors_of, measured
 from quad_ident_ros.flight.trajectories import plan, scale_of
@@ -61,8 +61,8 @@ def fly_closed_loop(vehicle, effects, trajectory, *, duration=30.0, rate=100.0, 
     *places, yaw, yaw_rate = course(t)
     wanted = np.concatenate([*places, yaw[:, None], yaw_rate[:, None]], axis=1)
     errors = errors_of(noise, len(t), 1 / rate, seed)
-    states, commands, speeds, forces, drop = _flown(
-        vehicle, theta, wanted, errors[:, :12], rate, parts)
+    states, commands, speeds, forces, drop = flown(
+        vehicle, theta, wanted, errors[:, :12], rate, Tracking(vehicle), parts)
     states = recorded(theta, states)
     forces = forces @ rotation_matrix(turn(theta[BLOCK]))   # the accelerometer is in the block
     _check_course(vehicle, states, wanted, t)
@@ -116,26 +116,36 @@ def _phases(theta, parts, wanted, errors, rate):
     return phases
 
 
-def _flown(vehicle, theta, wanted, errors, rate, parts):
-    """Return true states, commands, rotor speeds, forces and fall of the voltage by sample."""
+def flown(vehicle, theta, wanted, errors, rate, controller, parts=()):
+    """
+    Return true states, commands, rotor speeds, forces and fall of the voltage by sample.
+
+    From hover at the first place, in which the vehicle is trimmed. Args: vehicle, theta (P,): what
+    flies; wanted (N, WANTED) at rate Hz; errors (N, 12) of what the controller sees; controller:
+    as of controller.Tracking; parts: see _parts_of.
+    """
     tilt, rate_tilt = (rotation_matrix(each) for each in tilts_of(theta))
-    x, memory = np.zeros(STATE), np.zeros(MEMORY)
+    x = np.zeros(STATE)
     x[:3] = wanted[0, :3]
     x[6:10] = quaternion_from_euler([0.0, 0.0, wanted[0, 12]])
-    flown, fallen = [], 0.0
+    controller.reset()
+    flown_parts, fallen = [], 0.0
     for acting, phase, seen, clock in _phases(theta, parts, wanted, errors, rate):
         count, n = len(phase), len(vehicle.rotors)
         out = (np.empty((count, STATE)), np.empty((count, n)), np.empty((count, n)),
                np.empty((count, 3)), np.empty(count))
+
+        def act(k, sight, command, phase=phase):
+            controller.control(sight, phase[k], 1 / rate, command)
+
         close_loop(with_residual(vehicle_vector(vehicle), vehicle)[:, None], rotor_table(vehicle),
                    acting[:, None].copy(), tilt, rate_tilt, 1 / rate, clock, clock * FALL,
-                   FULL_VOLTAGE, LONGEST_STEP, x, np.ascontiguousarray(phase),
-                   np.ascontiguousarray(seen), gains_of(vehicle), mixer_of(vehicle), memory, *out)
+                   FULL_VOLTAGE, LONGEST_STEP, x, np.ascontiguousarray(seen), act, *out)
         if clock:
             out[-1][:] += fallen
             fallen = out[-1][-1]
-            flown.append(out)
-    return tuple(np.concatenate(each) for each in zip(*flown, strict=True))
+            flown_parts.append(out)
+    return tuple(np.concatenate(each) for each in zip(*flown_parts, strict=True))
 
 
 def _check_course(vehicle, states, wanted, t):

@@ -1,12 +1,12 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""The closed loop of plant and controller, compiled."""
+"""The closed loop of plant and controller, sample by sample."""
 
 import numpy as np
 
 from quad_ident_ros.compiled import compiled
 from quad_ident_ros.effects.registry import SLICES, TABLE
-from quad_ident_ros.flight.controller import control, SEEN
+from quad_ident_ros.flight.controller import SEEN
 from quad_ident_ros.model.actuators import (
     FALL,
     follow,
@@ -54,8 +54,85 @@ def _look(x, arm, tilt, rate_tilt, bias, error, seen):
 
 
 @compiled(fused=True)
-def close_loop(v, places, theta, tilt, rate_tilt, dt, clock, fall, full, longest, x, wanted,
-               errors, gains, mixer, memory, states, commands, speeds, forces, drop):
+def _advance(k, v, places, theta, dt, clock, fall, full, longest, state, speed, inner, energy, u,
+             s, rotors, commands, speeds, forces, drop):
+    """
+    Fly from sample k to the next with the commands so far; write what is at sample k.
+
+    Args: state (13, 1), speed (n, 1), inner (2, n), energy (1,) and u (INPUT + SMOOTHED, 1) go on
+    from sample to sample; the others as of close_loop.
+    """
+    n = len(places)
+    change, work = np.empty((STATE, 1)), np.empty((4, STATE, 1))
+    h, late = np.empty(1), v.shape[0] > CONSTANTS
+    command, extra = np.empty((n, 1)), np.zeros((3, n, 1))
+    up, down, slew = theta[LAG, 0] + theta[RISE, 0], theta[LAG, 0] + theta[FALL, 0], theta[SLEW, 0]
+    mean_lag, inner_lag = theta[MEAN_LAG, 0], theta[INNER_LAG, 0]
+    by_law = is_followed(theta[:, 0])
+    acting = theta.copy()
+    if by_law:
+        acting[LAG, 0] = 0.0
+    lag = acting[LAG]
+    end, added = np.empty(n), np.zeros((3, n))
+    force, lever = np.empty(3), np.empty(3)
+    arm = s[COM_X:COM_X + 3, 0]
+    whole = int(np.floor(theta[DELAY, 0] / dt + 1e-9))
+    part = max(theta[DELAY, 0] / dt - whole, 0.0)
+    if part < 1e-9:
+        part = 0.0
+    if k == 0:
+        speed[:, 0] = commands[0]
+        inner[0] = commands[0]
+        smooth(u[INPUT:, 0], commands[0], np.inf, places, v[5, 0], v[6, 0])
+    drop[k] = min(fall * energy[0], (1.0 - EMPTY) * full)
+    u[5, 0], u[6, 0] = drop[k], drop[k] / full
+    s[TIME, 0] = clock * k * dt
+    # The command that acts changes within the sample where the delay is no multiple of it.
+    before = max(k - whole - (1 if part > 0.0 else 0), 0)
+    for j in range(n):
+        command[j, 0] = commands[before, j]
+        rotors[j, SPEED, 0] = speed[j, 0] if by_law or lag[0] > 0.0 else command[j, 0]
+        speeds[k, j] = rotors[j, SPEED, 0]
+    derivative(state, u, v, places, theta, s, rotors, change)
+    for i in range(3):
+        force[i] = s[FX + i, 0] / s[MASS, 0]
+    rate = state[10:13, 0]
+    lever[:] = np.cross(change[10:13, 0], arm) + np.cross(rate, np.cross(rate, arm))
+    forces[k] = force - lever
+    power = 0.0
+    for j in range(n):
+        power += speeds[k, j] ** 3
+    energy[0] += dt * power * n * n * s[PER_HOVER, 0] ** 3
+    for piece in range(2):
+        length = part * dt if piece == 0 else (1.0 - part) * dt
+        if length == 0.0:
+            continue
+        for j in range(n):
+            command[j, 0] = commands[before if piece == 0 else max(k - whole, 0), j]
+        pieces = int(np.ceil(length / longest - 1e-9))
+        h[0] = length / pieces
+        for _ in range(pieces):
+            if by_law:
+                end[:] = speed[:, 0]
+                follow(end, inner, commands[before if piece == 0 else max(k - whole, 0)],
+                       h[0], up, down, slew, mean_lag, inner_lag, added)
+                command[:, 0], extra[:, :, 0] = end, added
+            take_up(state, speed, command, h, acting, places, s, rotors, work)
+            step(state, h, u, v, places, theta, speed, command, extra, lag, s, rotors, work)
+            if clock == 0.0:
+                s[TIME, 0] = 0.0
+    if late:
+        smooth(u[INPUT:, 0], commands[k], dt, places, v[5, 0], v[6, 0])
+
+
+@compiled(fused=True)
+def _begin(v, places, theta, s, rotors):
+    """Write what stays the same along a flight."""
+    prepare(v, places, theta, s, rotors)
+
+
+def close_loop(v, places, theta, tilt, rate_tilt, dt, clock, fall, full, longest, x, errors,
+               controller, states, commands, speeds, forces, drop):
     """
     Fly and write what is at each sample: true states (N, 13), commands and speeds (N, n) rad/s.
 
@@ -64,77 +141,19 @@ def close_loop(v, places, theta, tilt, rate_tilt, dt, clock, fall, full, longest
     the first sample the first command is held. x (13,) is the state at the start and at the end.
     Args: v, places: see rigid_body; theta (P, 1); tilt, rate_tilt (3, 3) from the body to the
     frames of attitude and rate; dt s between samples; clock 0 where the time of flight stands
-    still; fall V/s at hover from full V; longest s of an integration step; wanted (N, WANTED),
-    errors (N, 12), gains, mixer, memory: see controller.
+    still; fall V/s at hover from full V; longest s of an integration step; errors (N, 12) of what
+    is seen; controller(k, seen (SEEN,), command (n,)) writes the command of sample k.
     """
-    count, n = len(wanted), len(places)
+    n = len(places)
     s, rotors = np.zeros((TABLE, 1)), np.zeros((n, ROTOR_ROWS, 1))
-    state, change, work = np.empty((STATE, 1)), np.empty((STATE, 1)), np.empty((4, STATE, 1))
-    u, h, late = np.zeros((INPUT + SMOOTHED, 1)), np.empty(1), v.shape[0] > CONSTANTS
-    speed, command, extra = np.empty((n, 1)), np.empty((n, 1)), np.zeros((3, n, 1))
-    up, down, slew = theta[LAG, 0] + theta[RISE, 0], theta[LAG, 0] + theta[FALL, 0], theta[SLEW, 0]
-    mean_lag, inner_lag = theta[MEAN_LAG, 0], theta[INNER_LAG, 0]
-    by_law = is_followed(theta[:, 0])
-    acting = theta.copy()
-    if by_law:
-        acting[LAG, 0] = 0.0
-    lag = acting[LAG]
-    end, added, inner = np.empty(n), np.zeros((3, n)), np.zeros((2, n))
-    seen, force, lever = np.empty(SEEN), np.empty(3), np.empty(3)
-    state[:, 0] = x
-    prepare(v, places, theta, s, rotors)
-    arm = s[COM_X:COM_X + 3, 0].copy()
-    bias = theta[BIAS:BIAS + 3, 0]
-    whole = int(np.floor(theta[DELAY, 0] / dt + 1e-9))
-    part = max(theta[DELAY, 0] / dt - whole, 0.0)
-    if part < 1e-9:
-        part = 0.0
-    energy = 0.0
-    for k in range(count):
+    speed, inner, energy = np.empty((n, 1)), np.zeros((2, n)), np.zeros(1)
+    state, seen, u = x[:, None].copy(), np.empty(SEEN), np.zeros((INPUT + SMOOTHED, 1))
+    _begin(v, places, theta, s, rotors)
+    arm, bias = s[COM_X:COM_X + 3, 0].copy(), theta[BIAS:BIAS + 3, 0].copy()
+    for k in range(len(errors)):
         states[k] = state[:, 0]
-        _look(state[:, 0], arm, tilt, rate_tilt, bias, errors[k], seen)
-        control(seen, wanted[k], dt, gains, mixer, memory, commands[k])
-        if k == 0:
-            speed[:, 0] = commands[0]
-            inner[0] = commands[0]
-            smooth(u[INPUT:, 0], commands[0], np.inf, places, v[5, 0], v[6, 0])
-        drop[k] = min(fall * energy, (1.0 - EMPTY) * full)
-        u[5, 0], u[6, 0] = drop[k], drop[k] / full
-        s[TIME, 0] = clock * k * dt
-        # The command that acts changes within the sample where the delay is no multiple of it.
-        before = max(k - whole - (1 if part > 0.0 else 0), 0)
-        for j in range(n):
-            command[j, 0] = commands[before, j]
-            rotors[j, SPEED, 0] = speed[j, 0] if by_law or lag[0] > 0.0 else command[j, 0]
-            speeds[k, j] = rotors[j, SPEED, 0]
-        derivative(state, u, v, places, theta, s, rotors, change)
-        for i in range(3):
-            force[i] = s[FX + i, 0] / s[MASS, 0]
-        rate = state[10:13, 0]
-        lever[:] = np.cross(change[10:13, 0], arm) + np.cross(rate, np.cross(rate, arm))
-        forces[k] = force - lever
-        power = 0.0
-        for j in range(n):
-            power += speeds[k, j] ** 3
-        energy += dt * power * n * n * s[PER_HOVER, 0] ** 3
-        for piece in range(2):
-            length = part * dt if piece == 0 else (1.0 - part) * dt
-            if length == 0.0:
-                continue
-            for j in range(n):
-                command[j, 0] = commands[before if piece == 0 else max(k - whole, 0), j]
-            pieces = int(np.ceil(length / longest - 1e-9))
-            h[0] = length / pieces
-            for _ in range(pieces):
-                if by_law:
-                    end[:] = speed[:, 0]
-                    follow(end, inner, commands[before if piece == 0 else max(k - whole, 0)],
-                           h[0], up, down, slew, mean_lag, inner_lag, added)
-                    command[:, 0], extra[:, :, 0] = end, added
-                take_up(state, speed, command, h, acting, places, s, rotors, work)
-                step(state, h, u, v, places, theta, speed, command, extra, lag, s, rotors, work)
-                if clock == 0.0:
-                    s[TIME, 0] = 0.0
-        if late:
-            smooth(u[INPUT:, 0], commands[k], dt, places, v[5, 0], v[6, 0])
+        _look(states[k], arm, tilt, rate_tilt, bias, errors[k], seen)
+        controller(k, seen, commands[k])
+        _advance(k, v, places, theta, dt, clock, fall, full, longest, state, speed, inner, energy,
+                 u, s, rotors, commands, speeds, forces, drop)
     x[:] = state[:, 0]

@@ -22,6 +22,14 @@ from quad_ident_ros.diagnose.result import (
 from quad_ident_ros.diagnose.rules import RULES
 from quad_ident_ros.effects.registry import EFFECTS, titled
 from quad_ident_ros.report.ceiling import ceiling_line
+from quad_ident_ros.report.closed_loop import (
+    COST_LINE,
+    cost_rows,
+    COSTS,
+    loop_line,
+    loop_rows,
+    TITLES,
+)
 from quad_ident_ros.report.verdict import (
     above_noise,
     closed_of,
@@ -77,6 +85,12 @@ def show(found: Diagnosis, stream: TextIO) -> None:
         screen.print(_table(IN_SIMULATOR, simulator_rows(found)))
         say('where: force and moment that the simulator does not explain')
         screen.print(_table(WHERE, [where_row(row) for row in shown(found.in_simulator.where)]))
+    if found.closed_loop:
+        say(loop_line(found.closed_loop, found.held_out))
+        screen.print(_table(TITLES, loop_rows(found.closed_loop)))
+        if found.closed_loop.without:
+            say(COST_LINE)
+            screen.print(_table(COSTS, cost_rows(found.closed_loop)))
     for line in (*open_lines(found), *nuisance_lines(found)):
         say(line)
     if found.fly_next:

@@ -30,16 +30,22 @@ def show(found: Export, path: str, new: bool, beside: Path) -> None:
               change.unit, change.source) for change in found.changes], ('old', 'new', 'std')))
     for text in found.remarks:
         say(screen, f'note: {text}')
-    for key, said in _CLASSES.items():
-        for fate in getattr(found.fates, key):
-            form = f' ({fate.form})' if fate.form else ''
-            say(screen, f'{said}: {fate.name}{form}: {fate.reason}')
+    show_fates(found)
     count = len(found.changes)
     say(screen, f'{path}: {"new, " if new else ""}{count or "no"} number{"s" * (count != 1)} '
                 'changed' + (' by the effects' if new else ''))
     if found.code is not None:
         say(screen, f'{beside}: code for what the file has no number for; its first lines say how '
                     'to use it')
+
+
+def show_fates(found: Export) -> None:
+    """Print what becomes of each effect."""
+    screen = console()
+    for key, said in _CLASSES.items():
+        for fate in getattr(found.fates, key):
+            form = f' ({fate.form})' if fate.form else ''
+            say(screen, f'{said}: {fate.name}{form}: {fate.reason}')
 
 
 def show_cost(cost: Carried) -> None:

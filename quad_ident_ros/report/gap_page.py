@@ -10,6 +10,14 @@ from quad_ident_ros.diagnose.result import Diagnosis
 from quad_ident_ros.effects.registry import titled
 from quad_ident_ros.report import gap_pictures
 from quad_ident_ros.report.ceiling import ceiling_line
+from quad_ident_ros.report.closed_loop import (
+    COST_LINE,
+    cost_rows,
+    COSTS,
+    loop_line,
+    loop_rows,
+    TITLES,
+)
 from quad_ident_ros.report.diagnosis import (
     FAR,
     far_line,
@@ -51,7 +59,8 @@ def write(path: str | Path, found: Diagnosis) -> None:
         pictures = {name: figure(Path(folder) / f'{name}.png', caption)
                     for name, caption in captions.items()}
         body = [*_verdict(found), *_where(found, pictures), *_which(found, pictures),
-                *_far(found, pictures), *_in_simulator(found), *_open(found), *_provenance(found)]
+                *_far(found, pictures), *_in_simulator(found),
+                *_closed_loop(found), *_open(found), *_provenance(found)]
     write_page(path, f'Sim-to-real gap of {found.vehicle.name}', join(body))
 
 
@@ -130,6 +139,16 @@ def _in_simulator(found: Diagnosis) -> list:
             table(IN_SIMULATOR, simulator_rows(found), kinds=('text', *[''] * 6, 'text')),
             tag('p', 'Force and moment that the simulator does not explain:'),
             table(WHERE, rows, kinds=('text', '', '', '', 'text', ''))]
+
+
+def _closed_loop(found: Diagnosis) -> list:
+    one = found.closed_loop
+    if one is None:
+        return []
+    costs = [tag('p', sentence(COST_LINE)),
+             table(COSTS, cost_rows(one), kinds=('text', '', '', '', ''))] if one.without else []
+    return [tag('h2', 'In closed loop'), tag('p', sentence(loop_line(one, found.held_out))),
+            table(TITLES, loop_rows(one), kinds=('text', '', '', '', 'text')), *costs]
 
 
 def _open(found: Diagnosis) -> list:

@@ -3,12 +3,7 @@
 """A simulator that is a class in a user's Python file: loaded, called, and its errors told."""
 
 from collections.abc import Callable
-import importlib.util
 import inspect
-from pathlib import Path
-import sys
-import traceback
-from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -16,10 +11,10 @@ import numpy as np
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.dynamics import STATES
 from quad_ident_ros.model.rigid_body import STATE
+from quad_ident_ros.user_class import UserClass
 
 WRENCH = ('force', 'moment')
 UNIT = 1e-3         # by which the length of a quaternion may differ from 1: float32 is far below
-LONGEST = 160       # characters of an error that is not ours
 
 INTERFACE = """\
 class Name:                                # made without arguments
@@ -43,29 +38,17 @@ class Program:
     """
 
     def __init__(self, spec: str) -> None:
-        path, _, self.name = spec.rpartition(':')
-        if not path.endswith('.py') or not self.name.isidentifier():
-            raise InputError(f'--simulator {spec}: expected FILE.py:NAME, a class in a Python '
-                             'file')
-        self.spec, self.path = spec, Path(path).expanduser()
-        if not self.path.is_file():
-            raise InputError(f'{path}: there is no such file; give that with the simulator')
-        self.path = self.path.resolve()
-        made = getattr(self._module(), self.name, None)
-        if not isinstance(made, type):
-            raise InputError(f'{path}: it has no class {self.name}; give FILE.py:NAME')
-        self._device = self._call('making it', made)
+        self._user = UserClass(spec, '--simulator')
+        self._device = self._user.made
         self.at_once = callable(getattr(self._device, 'step_many', None))
         for name in ('step_many',) if self.at_once else ('reset', 'step'):
-            if not callable(getattr(self._device, name, None)):
-                raise InputError(f'{path}, line {_line(made)}: {self.name} has no method {name}; '
-                                 'it needs reset(state) and step(commands, dt)')
+            self._user.method(name, 'reset(state) and step(commands, dt)')
         self._step: Callable = self._device.step_many if self.at_once else self._device.step
         self.takes_wrench = set(WRENCH) <= set(inspect.signature(self._step).parameters)
 
     def reset(self, state: np.ndarray) -> None:
         """Begin at a state (13 + n,)."""
-        self._call('reset', self._device.reset, state.copy())
+        self._user.call('reset', self._device.reset, state.copy())
 
     def step(self, states: np.ndarray, commands: np.ndarray, dt: np.ndarray, *wrench: np.ndarray
              ) -> np.ndarray:
@@ -79,43 +62,16 @@ class Program:
         wrench = wrench or (np.zeros((len(dt), 3)),) * 2
         pushes = wrench if self.takes_wrench else ()
         if self.at_once:
-            made = self._call('step_many', self._step, states.copy(), commands.copy(), dt.copy(),
-                              *pushes)
+            made = self._user.call('step_many', self._step, states.copy(), commands.copy(),
+                                   dt.copy(), *pushes)
         else:
-            made = self._call('step', self._step, commands[0].copy(), float(dt[0]),
-                              *(push[0] for push in pushes))
+            made = self._user.call('step', self._step, commands[0].copy(), float(dt[0]),
+                                   *(push[0] for push in pushes))
         return self._checked(made, states)
-
-    def _module(self) -> ModuleType:
-        """Return what the file defines, run as Python runs a file: beside its neighbours."""
-        made = importlib.util.spec_from_file_location(f'user_simulator_{self.path.stem}',
-                                                      self.path)
-        assert made is not None and made.loader is not None
-        module = importlib.util.module_from_spec(made)
-        sys.modules[module.__name__] = module
-        if str(self.path.parent) not in sys.path:
-            sys.path.insert(0, str(self.path.parent))
-        self._call('reading it', made.loader.exec_module, module)
-        return module
-
-    def _call(self, what: str, function: Callable, *args: Any) -> Any:
-        """Return what a function of the user's file returns; InputError for what it raises."""
-        try:
-            return function(*args)
-        except (Exception, SystemExit) as error:
-            lines = [entry.lineno for entry in traceback.extract_tb(error.__traceback__)
-                     if Path(entry.filename) == self.path]
-            if isinstance(error, SyntaxError) and error.filename == str(self.path):
-                lines = [error.lineno]
-            where = f'{self.path}, line {lines[-1]}' if lines else str(self.path)
-            text = ' '.join(str(error).split())[:LONGEST]
-            raise InputError(f'{where}: {what} of {self.name} raises {type(error).__name__}'
-                             + (f': {text}' if text else '')) from None
 
     def _checked(self, made: Any, states: np.ndarray) -> np.ndarray:
         """Return what a step returned as states of (B, 13) or (B, 13 + n); InputError."""
-        where = (f'{self.path}, line {_line(self._step)}: {self._step.__name__} of {self.name} '
-                 'returns')
+        where = self._user.returns(self._step)
         shapes = [(*(states.shape[:1] if self.at_once else ()), width)
                   for width in (STATE, states.shape[1])]
         try:
@@ -141,11 +97,3 @@ class Program:
                              f'{length.flat[np.argmax(np.abs(length - 1.0))]:.4g}; expected 1')
         found[:, 6:10] /= length
         return found
-
-
-def _line(thing: Any) -> int:
-    """Return the line at which a class or function is defined, or 1 where none is known."""
-    try:
-        return inspect.getsourcelines(thing)[1]
-    except (OSError, TypeError):
-        return 1

@@ -13,6 +13,7 @@ from quad_ident_ros.errors import InputError
 
 Thing = TypeVar('Thing')
 MOST_BYTES = 2 ** 22    # of a file, ten times a large model without its meshes
+BOM = b'\xef\xbb\xbf'
 MOST = 1e9      # of a number: in SI units nothing of a vehicle is larger
 
 
@@ -56,6 +57,14 @@ def text_of(path: str | Path) -> str:
         what = resources.kind_of(path)
         raise InputError(f'{path}: ' + (f'this is {what}' if what else 'is not text in UTF-8')
                          + '; expected a vehicle file') from None
+
+
+def mark_of(source: Source | None) -> str:
+    """Return the mark with which some editors begin a file, where that of a Source has it."""
+    if source is None:
+        return ''
+    with open(source.path, 'rb') as file:
+        return '\ufeff' if file.read(len(BOM)) == BOM else ''
 
 
 def one_of(source: Source, known: Mapping[str, Thing], what: str) -> Thing:

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from quad_ident_ros.cli.main import main
+from quad_ident_ros.closed_loop.reference import ASKED
 from quad_ident_ros.data.csv import read_csv
 from quad_ident_ros.effects.registry import from_entries
 from quad_ident_ros.flight.fly import fly_closed_loop
@@ -26,7 +27,9 @@ def test_the_command_writes_what_the_library_flies(tmp_path, capsys):
     direct = fly_closed_loop(load_vehicle('paper_quadrotor'), effects, 'circle', duration=5.0,
                              rate=200.0, seed=5, noise=MOCAP_IMU)
     written = read_csv(path)
-    assert list(written.columns) == list(direct.columns)
+    # Beside it stands what was asked for, which is where the vehicle is but for its errors.
+    assert list(written.columns) == [*direct.columns, *ASKED]
+    assert np.abs(written.columns['px_ref'] - direct.columns['px']).max() < 0.5
     for name, values in direct.columns.items():
         np.testing.assert_array_equal(written.columns[name], values)
     truth = json.loads(capsys.readouterr().out)

@@ -1,0 +1,84 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""A class in a user's Python file: made, called, and its errors told."""
+
+from collections.abc import Callable
+import importlib.util
+import inspect
+from pathlib import Path
+import sys
+import traceback
+from types import ModuleType
+from typing import Any
+
+from quad_ident_ros.errors import InputError
+
+LONGEST = 160       # characters of an error that is not ours
+
+
+class UserClass:
+    """
+    An instance, `made`, of the class that FILE.py:NAME names.
+
+    Raises InputError for all that is wrong with the file, in one line that says where; option:
+    that by which it was named.
+    """
+
+    def __init__(self, spec: str, option: str) -> None:
+        path, _, self.name = spec.rpartition(':')
+        if not path.endswith('.py') or not self.name.isidentifier():
+            raise InputError(f'{option} {spec}: expected FILE.py:NAME, a class in a Python file')
+        self.path = Path(path).expanduser()
+        if not self.path.is_file():
+            raise InputError(f'{path}: there is no such file; give that of {option}')
+        self.path = self.path.resolve()
+        self._kind = getattr(self._module(), self.name, None)
+        if not isinstance(self._kind, type):
+            raise InputError(f'{path}: it has no class {self.name}; give FILE.py:NAME')
+        self.made = self.call('making it', self._kind)
+
+    def method(self, name: str, needs: str) -> Callable:
+        """Return a method; InputError where there is none, needs: what the class needs."""
+        found = getattr(self.made, name, None)
+        if not callable(found):
+            raise InputError(f'{self.path}, line {line_of(self._kind)}: {self.name} has no method '
+                             f'{name}; it needs {needs}')
+        return found
+
+    def call(self, what: str, function: Callable, *args: Any) -> Any:
+        """Return what a function of the user's file returns; InputError for what it raises."""
+        try:
+            return function(*args)
+        except (Exception, SystemExit) as error:
+            lines = [entry.lineno for entry in traceback.extract_tb(error.__traceback__)
+                     if Path(entry.filename) == self.path]
+            if isinstance(error, SyntaxError) and error.filename == str(self.path):
+                lines = [error.lineno]
+            where = f'{self.path}, line {lines[-1]}' if lines else str(self.path)
+            text = ' '.join(str(error).split())[:LONGEST]
+            raise InputError(f'{where}: {what} of {self.name} raises {type(error).__name__}'
+                             + (f': {text}' if text else '')) from None
+
+    def returns(self, function: Callable) -> str:
+        """Return the begin of what is said of what a method returns."""
+        return (f'{self.path}, line {line_of(function)}: {function.__name__} of {self.name} '
+                'returns')
+
+    def _module(self) -> ModuleType:
+        """Return what the file defines, run as Python runs a file: beside its neighbours."""
+        made = importlib.util.spec_from_file_location(f'user_file_{self.path.stem}', self.path)
+        assert made is not None and made.loader is not None
+        module = importlib.util.module_from_spec(made)
+        sys.modules[module.__name__] = module
+        if str(self.path.parent) not in sys.path:
+            sys.path.insert(0, str(self.path.parent))
+        self.call('reading it', made.loader.exec_module, module)
+        return module
+
+
+def line_of(thing: Any) -> int:
+    """Return the line at which a class or function is defined, or 1 where none is known."""
+    try:
+        return inspect.getsourcelines(thing)[1]
+    except (OSError, TypeError):
+        return 1
