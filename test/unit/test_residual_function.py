@@ -165,6 +165,17 @@ def test_beyond_what_was_seen_it_stays_as_at_the_edge():
         assert force(speed) == pytest.approx(expected, abs=1e-12)
 
 
+def test_some_of_its_channels_are_those_alone():
+    course = held(BARE, hover_speed(BARE), 0.02)
+    states = np.tile(START, (len(course.t), 1))
+    whole = constant((0.3, -0.2, 0.1, 0.01, 0.02, -0.01))
+    linear_of, angular_of = ([accelerations(replace(BARE, residual=one), course, states)[k][0]
+                              for one in (whole, whole.of([0, 1, 2]), constant(NONE))]
+                             for k in (0, 1))
+    np.testing.assert_array_equal(linear_of[1], linear_of[0])
+    np.testing.assert_array_equal(angular_of[1], angular_of[2])
+
+
 # Files.
 
 def test_a_vehicle_file_has_it_to_the_last_digit(tmp_path):
