@@ -19,8 +19,8 @@ from quad_ident_ros.greybox.flights import Track
 from quad_ident_ros.greybox.parameters import nominal
 from quad_ident_ros.model.residual_function import CHANNELS, ResidualFunction
 
-PARTS = {'force': (('position', 'velocity'), range(3)), 'moment': (('attitude', 'rate'),
-                                                                  range(3, CHANNELS))}
+PARTS = {'force': (('position', 'velocity'), range(3)),
+         'moment': (('attitude', 'rate'), range(3, CHANNELS))}
 """What of a function counts by itself: groups of outputs, given the attitude, and channels."""
 
 

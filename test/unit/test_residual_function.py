@@ -33,7 +33,7 @@ FAST = settings(deadline=None, max_examples=30)
 
 
 def accelerations(vehicle, course, states):
-    """Return linear (world) and angular accelerations (N, 3) of rotors that follow at once."""
+    """Return what accelerates the body, linear (world) and angular, (N, 3), without a lag."""
     return accelerations_of(vehicle, NULL, course.t, states, course.commands,
                             np.zeros_like(course.commands), course.inputs(vehicle))
 
