@@ -39,7 +39,7 @@ class Joint:
 
     @property
     def errors(self) -> np.ndarray:
-        """Return the standard errors (C,) of the columns."""
+        """Return how far each column may be off: (C,), one standard error."""
         return np.sqrt(np.maximum(np.diag(self.covariance), 0.0))
 
 

@@ -42,25 +42,35 @@ class Idle(Cascade):
 
 
 class Short(Cascade):
+    """Three speeds for four rotors."""
+
     def control(self, state, reference, dt):
         return np.zeros(3)
 
 
 class Words(Cascade):
+    """No numbers."""
+
     def control(self, state, reference, dt):
         return 'fast'
 
 
 class Endless(Cascade):
+    """One is not a number."""
+
     def control(self, state, reference, dt):
         return [1.0, np.nan, 1.0, 1.0]
 
 
 class Broken(Cascade):
+    """It raises an error."""
+
     def control(self, state, reference, dt):
         return 1 / 0
 
 
 class Half:
+    """It cannot control."""
+
     def reset(self):
         pass
