@@ -42,8 +42,9 @@ def add(commands, said):
         description='Compare flights of a real vehicle with its nominal description. The last '
                     'flight named is held\nout: the effects are not fitted to it. Contributions '
                     'are judged on all flights, and the gap\nis measured on this one.',
-        epilog='effects:\n' + ''.join(f'  {name}: {effect.title}\n' for name, effect
-                                       in EFFECTS.items()) + '\n'
+        epilog='effects:\n'
+               + ''.join(f'  {effect.name}: {effect.title}\n' for effect in EFFECTS.values())
+               + '\n'
                'a simulator for --simulator, whose file is run:\n'
                + textwrap.indent(INTERFACE, '  ') + '\n\n'
                'a controller for --controller, whose file is run:\n'

@@ -53,7 +53,7 @@ class Selection:
 
     @property
     def covariance(self) -> np.ndarray:
-        """Return how the errors of the best columns go together, (C, C), tied as by the Joint."""
+        """Return how the columns of the best set covary, (C, C), tied as by the Joint."""
         wider = np.where(self.joint.errors > 0.0,
                          self.errors / np.maximum(self.joint.errors, 1e-300), 1.0)
         return self.joint.covariance * np.outer(wider, wider)

@@ -39,7 +39,7 @@ class Joint:
 
     @property
     def errors(self) -> np.ndarray:
-        """Return how far each column may be off: (C,), one standard error."""
+        """Return the standard error of each column, (C,)."""
         return np.sqrt(np.maximum(np.diag(self.covariance), 0.0))
 
 

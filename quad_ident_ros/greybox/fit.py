@@ -262,9 +262,9 @@ def _findings(found: Estimate, parameters: Iterable[Parameter],
                         f'{_with_unit(parameter.value, parameter.name)}: {why}, or it stands in '
                         'for something that is not in the model')
     if pairs:
+        names = ', '.join(f'{a} and {b} ({share:.3f})' for a, b, share in pairs)
         said.append(f'correlated by more than {STRONG:g}, so a combination of them is known '
-                    'better than each one: ' + ', '.join(f'{a} and {b} ({share:.3f})'
-                                              for a, b, share in pairs))
+                    f'better than each one: {names}')
     widest = float(np.sqrt(scatter_of(found.normal).max(initial=1.0)))
     if widest > 1.0:
         said.append('the residuals are autocorrelated: standard errors are widened, up to '

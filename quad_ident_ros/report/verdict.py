@@ -110,8 +110,8 @@ def _named(found: Diagnosis) -> list[Ranked]:
 def _them(found: Diagnosis) -> str:
     if found.undetermined:
         return 'the most probable choice'
-    return {0: 'the effects of the model', 1: 'this effect'}.get(len(_named(found)),
-                                                                  'these effects')
+    words = {0: 'the effects of the model', 1: 'this effect'}
+    return words.get(len(_named(found)), 'these effects')
 
 
 def _listed(names: Sequence[str]) -> str:
