@@ -6,9 +6,9 @@ from quad_ident_ros.compiled import compiled
 from quad_ident_ros.effects.base import Effect, Form, Parameter, Table
 from quad_ident_ros.model.situation import WIND_X, WIND_Y, WIND_Z
 
-SIZES = {'x': (20.0, 1.0), 'y': (20.0, 1.0), 'z': (1.0, 0.2)}
-"""Bounds and usual sizes, m/s. Over ground, air that moves steadily moves level: its mean rises or
-sinks by far less than it blows (Kaimal and Finnigan, Atmospheric Boundary Layer Flows, 1994)."""
+SIZES = {'x': 1.0, 'y': 1.0, 'z': 0.05}
+"""Usual sizes, m/s. Over ground, air that moves steadily moves level: its mean rises or sinks by
+some centimetres per second (Kaimal and Finnigan, Atmospheric Boundary Layer Flows, 1994)."""
 
 
 @compiled(fused=True, inlined=True)
@@ -22,9 +22,9 @@ def air(p: Table, k: int, s: Table) -> None:
 
 FORM = Form(
     name='steady', title='steady wind',
-    parameters=tuple(Parameter(axis, 'm/s', -most, most, usual,
+    parameters=tuple(Parameter(axis, 'm/s', -20.0, 20.0, size,
                                f'velocity of the air along world {axis}')
-                     for axis, (most, usual) in SIZES.items()),
+                     for axis, size in SIZES.items()),
     source='air velocity = velocity - wind, in everything that depends on it',
     acts_on='translation', on_rotors=False,
     air=air, needs_reference=True)
