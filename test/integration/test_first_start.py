@@ -46,12 +46,12 @@ def test_a_node_is_there_at_once_while_it_compiles(graph, processes, tmp_path, n
         assert time.monotonic() - asked < SOON
         return response.success and response.message
 
-    assert 'gets ready' in graph.spin_until(requested, 'the record to be kept')
+    assert 'getting ready' in graph.spin_until(requested, 'the record to be kept')
     graph.spin_until(lambda: 'compiling: ' in process.errors(), 'news of it')
     ready, most = re.search(r'compiling: (\d+) of at most (\d+) functions',
                             process.errors()).groups()
     assert 0 < int(ready) < int(most)
-    assert any('gets ready' in status.message for message in statuses
+    assert any('getting ready' in status.message for message in statuses
                for status in message.status)
     assert 'ready: ' not in process.errors()
     assert graph.trigger(f'{node}/cancel').success   # the work that waits
