@@ -19,7 +19,7 @@ from quad_ident_ros.nodes.qos import latched
 from quad_ident_ros.nodes.records import Records
 
 NEWS = 10.0     # s between two lines of log on records that are left aside, windows come fast
-GETTING_READY = 'getting ready: loads or compiles its inner loops, and keeps the records that arrive'
+GETTING_READY = 'getting ready: loads or compiles its inner loops, and keeps records that arrive'
 
 
 @dataclass(frozen=True)

@@ -15,6 +15,7 @@ from quad_ident_ros.diagnose.promising import other_actuators
 from quad_ident_ros.diagnose.rules import RULES
 from quad_ident_ros.diagnose.select import _Search
 from quad_ident_ros.diagnose.selection import posteriors, Selection
+from quad_ident_ros.diagnose.standard_errors import Joint
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import SENSORS
 from quad_ident_ros.greybox.flights import flight_of, track_of
@@ -35,8 +36,13 @@ def fitted(chosen, value, error, evidence):
     return Fitted(chosen, estimate, evidence, (0, 0))
 
 
+def selection(*sets, least=0.0):
+    covariance = np.array([[least ** 2]])
+    return Selection(sets[0], sets, {}, None, {}, [], Joint(covariance, (), covariance))
+
+
 def errors(*sets, least=0.0):
-    return Selection(sets[0], sets, {}, None, {}, [], np.array([least])).errors
+    return selection(*sets, least=least).errors
 
 
 NARROW = fitted((EFFECT, own(0.003)), 1.0, 0.1, 0.0)
@@ -48,6 +54,11 @@ def test_one_set_has_its_own():
 
 def test_no_error_is_smaller_than_what_formulas_may_be_wrong_by():
     assert errors(NARROW, least=0.3) == pytest.approx([0.3])
+
+
+def test_the_covariance_has_the_errors_that_are_told():
+    chosen = selection(NARROW, least=0.05)
+    assert np.sqrt(np.diag(chosen.covariance)) == pytest.approx(chosen.errors)
 
 
 def searched(costs, evidence):

@@ -268,7 +268,7 @@ def test_numbers_that_yaml_takes_for_text_are_numbers():
 @pytest.mark.parametrize(('values', 'words'), [
     ({'mas': 0.6}, "'mas' is not known here; did you mean 'mass'?"),
     ({'linear_darg': [0, 0, 0]}, "did you mean 'linear_drag'?"),
-    ({'colour': 'red'}, 'known are effects, gravity, inertia'),
+    ({'colour': 'red'}, 'known are covariance, effects, gravity, inertia'),
     ({'mass': None}, "'mass' is missing"), ({'rotors': None}, "'rotors' is missing"),
     ({'mass': 0}, 'mass: 0 is out of range, expected > 0'),
     ({'mass': -1.5}, 'mass: -1.5 is out of range'),
