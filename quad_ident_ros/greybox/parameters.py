@@ -29,6 +29,10 @@ FACTORS = {
 """Parameters of effects that are a factor on a constant, by constant."""
 OFFSETS = {'mass': ('mass_offset.mass',)}
 """Parameters of effects that are added to a constant, by constant."""
+RATIOS = {
+    **{f'inertia_mismatch.inertia_{axis}': (f'inertia_{axis}', 'inertia_x') for axis in 'yz'},
+    'inertia_mismatch.moment_z': ('torque_coefficient', 'inertia_x')}
+"""Parameters of effects that are a factor on one constant over another, by parameter."""
 
 
 def nominal(vehicle: Vehicle) -> np.ndarray:
@@ -78,7 +82,11 @@ def prior_sizes(vehicle: Vehicle, width: float) -> np.ndarray:
     A drag that is well known says nothing of the effects of drag, which are forces beside it.
     """
     sizes, constants = width * limits(vehicle)[2], vehicle_vector(vehicle)
-    for name, one in stated(vehicle).items():
+    known = stated(vehicle)
+    for name, both in RATIOS.items():
+        if set(both) <= set(known):
+            sizes[INDEX[name]] = np.hypot(*(known[one] / constants[INDEX[one]] for one in both))
+    for name, one in known.items():
         if name not in INDEX:   # of places and limits of speed no column is
             continue
         sizes[INDEX[name]] = one

@@ -18,6 +18,7 @@ from quad_ident_ros.effects.registry import (
     PLACES,
     vector,
 )
+from quad_ident_ros.greybox.parameters import INDEX, prior_sizes
 from quad_ident_ros.model.dynamics import course_of, predict
 
 # Those of the format of a diagnosis.
@@ -114,3 +115,16 @@ def test_drag_and_that_of_the_vehicle_file_are_together_not_negative():
     assert lower == pytest.approx([-0.1, -0.2, 0.0])
     assert (bounds(replace(vehicle, linear_drag=(0.0,) * 3))[0][
         PLACES['rotor_drag', 'axes']] == 0.0).all()
+
+
+def test_a_ratio_of_constants_is_known_as_far_as_both_are():
+    inertia = tuple(0.01 * value for value in VEHICLE.inertia)
+    known = {'inertia': inertia, 'torque_coefficient': 0.02 * VEHICLE.torque_coefficient}
+    sizes = prior_sizes(replace(VEHICLE, uncertainty=known), 3.0)
+    usual = prior_sizes(VEHICLE, 3.0)
+    for name, expected in (('inertia_y', np.hypot(0.01, 0.01)), ('moment_z', np.hypot(0.01, 0.02)),
+                           ('factor_z', 0.01)):
+        assert sizes[INDEX[f'inertia_mismatch.{name}']] == pytest.approx(expected)
+    # Of the arms the file says nothing.
+    moment = INDEX['inertia_mismatch.moment_x']
+    assert sizes[moment] == usual[moment]
