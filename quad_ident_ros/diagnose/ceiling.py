@@ -11,6 +11,7 @@ from quad_ident_ros.diagnose import gap as gaps
 from quad_ident_ros.diagnose.bench import Bench
 from quad_ident_ros.diagnose.gap import Ends
 from quad_ident_ros.diagnose.judgement import Judgement, stability
+from quad_ident_ros.diagnose.measure import residual_wrenches
 from quad_ident_ros.diagnose.residual_fit import residual_fit, windows_of
 from quad_ident_ros.diagnose.residual_wrench import ResidualWrench
 from quad_ident_ros.diagnose.result import Ceiling, ShareClosed
@@ -24,16 +25,19 @@ PARTS = {'force': (('position', 'velocity'), range(3)),
 """What of a function counts by itself: groups of outputs, given the attitude, and channels."""
 
 
-def ceiling_of(bench: Bench, judged: Judgement, wrenches: Sequence[ResidualWrench]
-               ) -> tuple[Ceiling, ResidualFunction | None]:
+def ceiling_of(bench: Bench, judged: Judgement, wrenches: Sequence[ResidualWrench],
+               noise: np.ndarray) -> tuple[Ceiling, ResidualFunction | None]:
     """
     Return the Ceiling and the function of state and command that reaches it, None where none does.
 
-    Args: wrenches: what the effects do not explain of the flights learnt from. A function that the
-    vehicle file has is put aside, for the new one learns what it does, too.
+    Args: wrenches: what the model does not explain of the flights learnt from, and noise (12,):
+    that of their states. A function that the vehicle file has is put aside, for the new one learns
+    what it does, too.
     """
     model, rules = judged.model, bench.rules
     bare = replace(bench.vehicle, residual=None)
+    if bench.vehicle.residual is not None:
+        wrenches = residual_wrenches(replace(bench, vehicle=bare), model.vectors, noise)
     learnt = residual_fit(windows_of(bench.tracks[:-1], bare, model.vectors[:-1], wrenches, rules),
                           rules)
     gain, residual, vehicle = dict.fromkeys(PARTS, 0.0), None, bench.vehicle
