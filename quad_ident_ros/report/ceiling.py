@@ -21,7 +21,9 @@ def residual_line(found: Diagnosis) -> str:
     """Return what the residual function closes beside the effects, in words."""
     one = found.ceiling
     if not one.shown:
-        return ('residual: none is written, because no function of state and command is shown to '
+        what = ('none is written' if found.vehicle.residual is None
+                else 'that of the vehicle file stays')
+        return (f'residual: {what}, because no function of state and command is shown to '
                 f'close more of the gap on {found.held_out} than the effects do')
     return (f'residual ({" and ".join(one.shown)}): the effects close '
             f'{100 * found.gap.closed:.0f} % of the velocity gap on {found.held_out} (held out), '
