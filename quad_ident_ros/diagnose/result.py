@@ -15,6 +15,7 @@ from quad_ident_ros.greybox.parameters import SPLIT
 from quad_ident_ros.model.covariance import Covariance, covariance_to_mapping
 from quad_ident_ros.model.residual_function import ResidualFunction
 from quad_ident_ros.model.vehicle import Vehicle
+from quad_ident_ros.schema import lengthened
 
 SCHEMA = 'quad_ident/diagnosis/2'
 BLOCKS = 'blocks'
@@ -262,12 +263,13 @@ class Diagnosis:
         """
         Return the vehicle of the file that flights were held against, with the effects named.
 
-        Of the effects that the file has, those that these flights cannot have shown stay.
+        Of the effects that the file has, those that these flights cannot have shown stay, and
+        so does its covariance where these flights estimated nothing.
         """
         given, used = (vector(each.effects, vehicle) for each in (vehicle, self.vehicle))
-        return replace(vehicle, name=f'{vehicle.name}_diagnosed',
+        return replace(vehicle, name=lengthened(vehicle.name, '_diagnosed'),
                        effects=mapping(np.where(given != used, given, self.z[SPLIT:])),
-                       covariance=self.covariance)
+                       covariance=self.covariance or vehicle.covariance)
 
     def as_data(self) -> dict:
         """Return the JSON of the project as data."""

@@ -104,6 +104,14 @@ def test_deviations_are_the_standard_errors_that_are_told(flights):
 
 
 @pytest.mark.slow
+def test_where_nothing_new_is_estimated_the_covariance_of_the_file_stays(flights):
+    real = diagnose(flights, BARE, effects=['rotor_drag', 'motor_lag']).corrected(BARE)
+    again = diagnose(flights, real, effects=['rotor_drag', 'motor_lag'])
+    assert again.verdict == ('none',) and again.covariance is None
+    assert again.corrected(real).covariance == real.covariance
+
+
+@pytest.mark.slow
 def test_constants_that_are_stated_are_as_wide_as_flights_leave_them(flights):
     # Mass, thrust, moments of inertia and torque in proportion are the same motion: what is stated
     # of each tells the common factor; flights tell the ratios far better than the statements.
