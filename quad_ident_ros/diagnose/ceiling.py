@@ -51,9 +51,11 @@ def ceiling_of(bench: Bench, judged: Judgement, wrenches: Sequence[ResidualWrenc
         residual = learnt.of([channel for name in shown for channel in PARTS[name][1]])
         vehicle = replace(bare, residual=residual)
     given = bench.tracks[-1]
+    # A moment alone says nothing of the velocity where that is not measured, and little at once.
+    told = 'rate' if shown == ('moment',) else 'velocity'
     free, led = (_share(bench, judged, track, gaps.ends(
-        track, vehicle, model.vectors[-1], bench.horizon))
-        for track in (replace(given, guide=None), given))
+        track, vehicle, model.vectors[-1], bench.horizon), group)
+        for track, group in ((replace(given, guide=None), told), (given, 'velocity')))
     return Ceiling(free, led, gain, shown), residual
 
 
@@ -65,12 +67,13 @@ def _only(ends: Ends, groups: Sequence[str]) -> Ends:
     return Ends(errors, ends.t)
 
 
-def _share(bench: Bench, judged: Judgement, track: Track, after: Ends) -> ShareClosed:
-    """Return what is closed of the velocity gap, with a standard error by the jackknife."""
-    model, part = judged.model, GROUPS['velocity']
+def _share(bench: Bench, judged: Judgement, track: Track, after: Ends, group: str
+           ) -> ShareClosed:
+    """Return what is closed of the gap of a group, with a standard error by the jackknife."""
+    model, part = judged.model, GROUPS[group]
     z = model.vectors[-1]
     before = gaps.ends(track, bench.vehicle, nominal(bench.vehicle) + z - model.z, bench.horizon)
-    noise = gaps.noise_gap(track, bench.vehicle, z, bench.noise, bench.horizon)['velocity']
+    noise = gaps.noise_gap(track, bench.vehicle, z, bench.noise, bench.horizon)[group]
     block = np.unique((before.t // bench.rules.steady_block).astype(int), return_inverse=True)[1]
     sums = [np.bincount(block, np.sum(one.errors[:, part] ** 2, axis=1))
             for one in (before, after)]
@@ -83,4 +86,4 @@ def _share(bench: Bench, judged: Judgement, track: Track, after: Ends) -> ShareC
     every = np.arange(len(counts))
     without = [closed(every != k) for k in every if len(every) > 1]
     std = float(np.sqrt(len(without) - 1) * np.std(without)) if without else None
-    return ShareClosed(gaps.gap([after]), closed(every >= 0), std)
+    return ShareClosed(gaps.gap([after]), closed(every >= 0), std, group)

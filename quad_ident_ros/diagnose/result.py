@@ -128,15 +128,17 @@ class GapGivenAttitude:
 @dataclass(frozen=True)
 class ShareClosed:
     """
-    A gap {group: ...} on the flight held out, and what that closes of the velocity's.
+    A gap {group: ...} on the flight held out, and what that closes of one group's.
 
     closed: the share of what is above the noise, std: its standard error, by the jackknife over
-    blocks of time, None where there is but one.
+    blocks of time, None where there is but one; group: velocity, or rate where a moment alone is
+    added in open loop.
     """
 
     after: dict
     closed: float
     std: float | None
+    group: str
 
 
 @dataclass(frozen=True)

@@ -86,6 +86,23 @@ def test_it_is_told_beside_what_the_effects_close(found, explained):
     assert float(velocity[4]) == pytest.approx(found.ceiling.open_loop.after['velocity'], rel=0.01)
 
 
+def test_the_ceiling_of_a_moment_is_told_by_the_rate():
+    """Flights without velocity, whose motors lag, and an effect that is no moment."""
+    lag = {'motor_lag': {'time_constant': 0.03}}
+    seen = [replace(one, columns={name: values for name, values in one.columns.items()
+                                  if name in ('wx', 'wy', 'wz', 'ax', 'ay', 'az')
+                                  or name.startswith('cmd')})
+            for one in flights(NOMINAL, lag, courses=('figure8', 'lissajous', 'steps'))]
+    one = diagnose(seen, NOMINAL, effects=['thrust_scale'])
+    assert one.ceiling.shown == ('moment',)
+    ceiling = one.ceiling.open_loop
+    assert ceiling.group == 'rate' and ceiling.after['rate'] < one.gap.after['rate']
+    assert ceiling.closed > 3.0 * ceiling.std
+    closed = f'{100 * ceiling.closed:.0f} ± '
+    assert f'would close {closed}' in ceiling_line(one) and 'rate gap' in ceiling_line(one)
+    assert closed in residual_line(one) and '% of the rate gap' in residual_line(one)
+
+
 def test_it_travels_as_data(found):
     data = json.loads(json.dumps(found.as_data()))
     assert data['ceiling']['open_loop']['closed'] == found.ceiling.open_loop.closed
