@@ -11,6 +11,7 @@ from typing import TypeVar
 from quad_ident_ros.errors import InputError
 
 Option = TypeVar('Option')
+NAME_LENGTH = 100   # characters, well within the 255 bytes that file systems allow a file name
 
 
 class _Short(reprlib.Repr):
@@ -129,10 +130,15 @@ def name(where: str, value: object) -> str:
     """Return a name, of text or a number, that can be part of a file name, or raise InputError."""
     short = not isinstance(value, int) or abs(value) < 10 ** 99
     text = str(value) if short and isinstance(value, str | int | float) else ''
-    if not text.strip() or not text.isprintable() or '/' in text or len(text) > 100:
+    if not text.strip() or not text.isprintable() or '/' in text or len(text) > NAME_LENGTH:
         raise InputError(f'{where}: expected a name, one line of text without /, got '
                          f'{shown(value)}')
     return text
+
+
+def lengthened(text: str, ending: str) -> str:
+    """Return a name with an ending, cut before it where both are longer than a name may be."""
+    return text[:NAME_LENGTH - len(ending)] + ending
 
 
 def integer(where: str, value: object, minimum: int) -> int:

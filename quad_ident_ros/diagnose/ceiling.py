@@ -11,6 +11,7 @@ from quad_ident_ros.diagnose import gap as gaps
 from quad_ident_ros.diagnose.bench import Bench
 from quad_ident_ros.diagnose.gap import Ends
 from quad_ident_ros.diagnose.judgement import Judgement, stability
+from quad_ident_ros.diagnose.measure import residual_wrenches
 from quad_ident_ros.diagnose.residual_fit import residual_fit, windows_of
 from quad_ident_ros.diagnose.residual_wrench import ResidualWrench
 from quad_ident_ros.diagnose.result import Ceiling, ShareClosed
@@ -24,16 +25,19 @@ PARTS = {'force': (('position', 'velocity'), range(3)),
 """What of a function counts by itself: groups of outputs, given the attitude, and channels."""
 
 
-def ceiling_of(bench: Bench, judged: Judgement, wrenches: Sequence[ResidualWrench]
-               ) -> tuple[Ceiling, ResidualFunction | None]:
+def ceiling_of(bench: Bench, judged: Judgement, wrenches: Sequence[ResidualWrench],
+               noise: np.ndarray) -> tuple[Ceiling, ResidualFunction | None]:
     """
     Return the Ceiling and the function of state and command that reaches it, None where none does.
 
-    Args: wrenches: what the effects do not explain of the flights learnt from. A function that the
-    vehicle file has is put aside, for the new one learns what it does, too.
+    Args: wrenches: what the model does not explain of the flights learnt from, and noise (12,):
+    that of their states. A function that the vehicle file has is put aside, for the new one learns
+    what it does, too.
     """
     model, rules = judged.model, bench.rules
     bare = replace(bench.vehicle, residual=None)
+    if bench.vehicle.residual is not None:
+        wrenches = residual_wrenches(replace(bench, vehicle=bare), model.vectors, noise)
     learnt = residual_fit(windows_of(bench.tracks[:-1], bare, model.vectors[:-1], wrenches, rules),
                           rules)
     gain, residual, vehicle = dict.fromkeys(PARTS, 0.0), None, bench.vehicle
@@ -47,9 +51,11 @@ def ceiling_of(bench: Bench, judged: Judgement, wrenches: Sequence[ResidualWrenc
         residual = learnt.of([channel for name in shown for channel in PARTS[name][1]])
         vehicle = replace(bare, residual=residual)
     given = bench.tracks[-1]
+    # A moment alone says nothing of the velocity where that is not measured, and little at once.
+    told = 'rate' if shown == ('moment',) else 'velocity'
     free, led = (_share(bench, judged, track, gaps.ends(
-        track, vehicle, model.vectors[-1], bench.horizon))
-        for track in (replace(given, guide=None), given))
+        track, vehicle, model.vectors[-1], bench.horizon), group)
+        for track, group in ((replace(given, guide=None), told), (given, 'velocity')))
     return Ceiling(free, led, gain, shown), residual
 
 
@@ -61,12 +67,13 @@ def _only(ends: Ends, groups: Sequence[str]) -> Ends:
     return Ends(errors, ends.t)
 
 
-def _share(bench: Bench, judged: Judgement, track: Track, after: Ends) -> ShareClosed:
-    """Return what is closed of the velocity gap, with a standard error by the jackknife."""
-    model, part = judged.model, GROUPS['velocity']
+def _share(bench: Bench, judged: Judgement, track: Track, after: Ends, group: str
+           ) -> ShareClosed:
+    """Return what is closed of the gap of a group, with a standard error by the jackknife."""
+    model, part = judged.model, GROUPS[group]
     z = model.vectors[-1]
     before = gaps.ends(track, bench.vehicle, nominal(bench.vehicle) + z - model.z, bench.horizon)
-    noise = gaps.noise_gap(track, bench.vehicle, z, bench.noise, bench.horizon)['velocity']
+    noise = gaps.noise_gap(track, bench.vehicle, z, bench.noise, bench.horizon)[group]
     block = np.unique((before.t // bench.rules.steady_block).astype(int), return_inverse=True)[1]
     sums = [np.bincount(block, np.sum(one.errors[:, part] ** 2, axis=1))
             for one in (before, after)]
@@ -79,4 +86,4 @@ def _share(bench: Bench, judged: Judgement, track: Track, after: Ends) -> ShareC
     every = np.arange(len(counts))
     without = [closed(every != k) for k in every if len(every) > 1]
     std = float(np.sqrt(len(without) - 1) * np.std(without)) if without else None
-    return ShareClosed(gaps.gap([after]), closed(every >= 0), std)
+    return ShareClosed(gaps.gap([after]), closed(every >= 0), std, group)

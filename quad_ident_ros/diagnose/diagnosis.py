@@ -92,7 +92,7 @@ def diagnose(records: Iterable[FlightRecord], vehicle: Vehicle, *,
     before = measure.residual_wrenches(bench, [z0 + z - model.z for z in model.vectors],
                                        noise.deviation)
     after = measure.residual_wrenches(bench, model.vectors, whole)
-    ceiling, residual = ceiling_of(bench, judged, after)
+    ceiling, residual = ceiling_of(bench, judged, after, whole)
     told(0.95)
     in_simulator = None if simulator is None else gap_in_simulator(
         simulator, bench, judged, lambda share: on_progress(0.5 + 0.5 * share))

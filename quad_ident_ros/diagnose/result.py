@@ -15,6 +15,7 @@ from quad_ident_ros.greybox.parameters import SPLIT
 from quad_ident_ros.model.covariance import Covariance, covariance_to_mapping
 from quad_ident_ros.model.residual_function import ResidualFunction
 from quad_ident_ros.model.vehicle import Vehicle
+from quad_ident_ros.schema import lengthened
 
 SCHEMA = 'quad_ident/diagnosis/2'
 BLOCKS = 'blocks'
@@ -127,15 +128,17 @@ class GapGivenAttitude:
 @dataclass(frozen=True)
 class ShareClosed:
     """
-    A gap {group: ...} on the flight held out, and what that closes of the velocity's.
+    A gap {group: ...} on the flight held out, and what that closes of one group's.
 
     closed: the share of what is above the noise, std: its standard error, by the jackknife over
-    blocks of time, None where there is but one.
+    blocks of time, None where there is but one; group: velocity, or rate where a moment alone is
+    added in open loop.
     """
 
     after: dict
     closed: float
     std: float | None
+    group: str
 
 
 @dataclass(frozen=True)
@@ -262,12 +265,13 @@ class Diagnosis:
         """
         Return the vehicle of the file that flights were held against, with the effects named.
 
-        Of the effects that the file has, those that these flights cannot have shown stay.
+        Of the effects that the file has, those that these flights cannot have shown stay, and
+        so does its covariance where these flights estimated nothing.
         """
         given, used = (vector(each.effects, vehicle) for each in (vehicle, self.vehicle))
-        return replace(vehicle, name=f'{vehicle.name}_diagnosed',
+        return replace(vehicle, name=lengthened(vehicle.name, '_diagnosed'),
                        effects=mapping(np.where(given != used, given, self.z[SPLIT:])),
-                       covariance=self.covariance)
+                       covariance=self.covariance or vehicle.covariance)
 
     def as_data(self) -> dict:
         """Return the JSON of the project as data."""

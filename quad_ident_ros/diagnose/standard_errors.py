@@ -15,7 +15,7 @@ from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.greybox.flights import Flight
 from quad_ident_ros.greybox.normal import covariance_of, marginal, Normal, scatter_of
 from quad_ident_ros.greybox.nuisances import Layout
-from quad_ident_ros.greybox.parameters import FACTORS, INDEX, limits, OFFSETS
+from quad_ident_ros.greybox.parameters import constants_within, INDEX, limits, NAMES
 from quad_ident_ros.model.quantities import stated
 from quad_ident_ros.model.vehicle import Vehicle
 
@@ -91,8 +91,7 @@ def uncertain_constants(vehicle: Vehicle, columns: Sequence[int]) -> dict[str, f
 
     Where a column is the same physical number, such as an offset of the mass, flights tell it.
     """
-    same = {constant for constant, parameters in (*FACTORS.items(), *OFFSETS.items())
-            if {INDEX[name] for name in parameters} & set(columns)}
+    same = constants_within(NAMES[column] for column in columns)
     return {name: std for name, std in stated(vehicle).items()
             if name in INDEX and name not in same}
 

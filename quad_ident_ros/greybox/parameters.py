@@ -35,6 +35,13 @@ RATIOS = {
 """Parameters of effects that are a factor on one constant over another, by parameter."""
 
 
+def constants_within(names: Iterable[str]) -> set[str]:
+    """Return the constants that are the same physical number as one of these parameters."""
+    given = set(names)
+    return {constant for constant, parameters in (*FACTORS.items(), *OFFSETS.items())
+            if given & set(parameters)}
+
+
 def nominal(vehicle: Vehicle) -> np.ndarray:
     """
     Return the vector (Z,) of the vehicle file, with the effects that it has.

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.linalg import block_diag
 
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.greybox.parameters import FACTORS, OFFSETS
+from quad_ident_ros.greybox.parameters import constants_within
 from quad_ident_ros.model.quantities import stated, unit_of, value_of, with_values
 from quad_ident_ros.model.vehicle import (
     hover_fault,
@@ -17,6 +17,7 @@ from quad_ident_ros.model.vehicle import (
     vehicle_from_mapping,
     vehicle_to_mapping,
 )
+from quad_ident_ros.schema import lengthened
 from quad_ident_ros.vehicle_files.bodies import Body, is_body
 from quad_ident_ros.vehicle_files.wanted import Wanted, wanted_of
 
@@ -78,7 +79,8 @@ def draw(vehicle: Vehicle, count: int, seed: int = 0,
                 cut, why = cut + 1, why or fault
                 continue
             rows.append(row)
-            vehicles.append(replace(made, name=f'{vehicle.name}_{len(rows):04d}'))
+            vehicles.append(replace(made, name=lengthened(vehicle.name,
+                                                          f'_{len(rows):04d}')))
         if cut >= DRAWN and len(rows) < FEWEST * cut:
             raise InputError(f'vehicle {vehicle.name}: {len(rows)} of {len(rows) + cut} draws can '
                              f'be vehicles; the first that cannot: {why}; correct the covariance '
@@ -123,8 +125,7 @@ def _normal_of(vehicle: Vehicle) -> tuple[tuple[str, ...], np.ndarray]:
     if known is None:
         raise InputError(f'vehicle {vehicle.name}: its file has no covariance, which `quad_ident '
                          'diagnose ... --out-vehicle FILE` writes where its verdict names effects')
-    same = {constant for constant, parameters in (*FACTORS.items(), *OFFSETS.items())
-            if set(parameters) & set(known.names)}
+    same = constants_within(known.names)
     apart = {name: std for name, std in stated(vehicle).items()
              if name not in known.names and name not in same}
     return ((*known.names, *apart),

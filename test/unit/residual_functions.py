@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Residual functions that tests fly: some of one input, and a force that no effect has."""
 
+from dataclasses import replace
+
 from quad_ident_ros.model.residual_function import Input, ResidualFunction, Wave
 
 NONE = (0.0,) * 6
@@ -19,6 +21,17 @@ def linear(name, weights, low=-WIDE, high=WIDE):
 def constant(wrench):
     """Return the function that is the same force and moment (6,) everywhere."""
     return ResidualFunction((WIDE,) * 6, tuple(wrench), (), ())
+
+
+def times(factor, function):
+    """Return a function that is everywhere a factor times another one."""
+    def by(weights):
+        return tuple(factor * one for one in weights)
+    return replace(function, limit=by(function.limit), constant=by(function.constant),
+                   inputs=tuple((name, replace(one, weights=by(one.weights)))
+                                for name, one in function.inputs),
+                   waves=tuple(replace(one, weights=by(one.weights))
+                               for one in function.waves))
 
 
 # Smooth in the velocity of the air, odd in nothing, across it: no law of drag is alike.

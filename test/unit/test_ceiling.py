@@ -6,7 +6,7 @@ from dataclasses import replace
 import json
 
 import pytest
-from residual_functions import STRANGE
+from residual_functions import STRANGE, times
 
 from quad_ident_ros.cli.main import main
 from quad_ident_ros.data.csv import write_csv
@@ -79,9 +79,28 @@ def test_it_is_told_beside_what_the_effects_close(found, explained):
     assert f'{100 * found.gap.closed:.0f} %' in residual_line(found)
     assert 'no function' in ceiling_line(explained) and 'none is written' in residual_line(
         explained)
+    had = replace(explained, vehicle=replace(NOMINAL, residual=STRANGE))
+    assert 'residual: that of the vehicle file stays' in residual_line(had)
     velocity = far_rows(found)[1]
     assert velocity[0] == 'velocity'
     assert float(velocity[4]) == pytest.approx(found.ceiling.open_loop.after['velocity'], rel=0.01)
+
+
+def test_the_ceiling_of_a_moment_is_told_by_the_rate():
+    """Flights without velocity, whose motors lag, and an effect that is no moment."""
+    lag = {'motor_lag': {'time_constant': 0.03}}
+    seen = [replace(one, columns={name: values for name, values in one.columns.items()
+                                  if name in ('wx', 'wy', 'wz', 'ax', 'ay', 'az')
+                                  or name.startswith('cmd')})
+            for one in flights(NOMINAL, lag, courses=('figure8', 'lissajous', 'steps'))]
+    one = diagnose(seen, NOMINAL, effects=['thrust_scale'])
+    assert one.ceiling.shown == ('moment',)
+    ceiling = one.ceiling.open_loop
+    assert ceiling.group == 'rate' and ceiling.after['rate'] < one.gap.after['rate']
+    assert ceiling.closed > 3.0 * ceiling.std
+    closed = f'{100 * ceiling.closed:.0f} ± '
+    assert f'would close {closed}' in ceiling_line(one) and 'rate gap' in ceiling_line(one)
+    assert closed in residual_line(one) and '% of the rate gap' in residual_line(one)
 
 
 def test_it_travels_as_data(found):
@@ -106,6 +125,17 @@ def test_a_nominal_vehicle_that_has_the_function_has_nothing_unknown(strange, fo
     again = diagnose(strange, known, effects=EFFECTS)
     assert again.gap.before['velocity'] < 0.5 * found.gap.before['velocity']
     assert again.corrected(known).residual == found.residual
+
+
+def test_a_new_function_does_what_that_of_the_vehicle_file_did_too():
+    """It is flown in place of the old one: with half of the truth known it learns the whole."""
+    real = flights(replace(NOMINAL, residual=times(2.0, STRANGE)), {})
+    half = diagnose(real, replace(NOMINAL, residual=STRANGE), effects=['rotor_drag'])
+    assert half.ceiling.shown == ('force',)
+    ceiling = half.ceiling.open_loop
+    assert ceiling.closed - 3.0 * ceiling.std > half.gap.closed
+    bare = diagnose(real, NOMINAL, effects=['rotor_drag']).ceiling.open_loop
+    assert ceiling.after['velocity'] == pytest.approx(bare.after['velocity'], rel=0.1)
 
 
 def test_blocks_of_a_single_flight_have_a_ceiling(strange):

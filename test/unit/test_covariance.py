@@ -101,6 +101,9 @@ def test_deviations_are_the_standard_errors_that_are_told(flights):
     assert dict(zip(found.covariance.names, found.covariance.stds, strict=True)) == told
     assert found.corrected(BARE).covariance == found.covariance
     assert found.as_data()['covariance']['correlation'][0][0] == 1.0
+    # A second round that estimates nothing leaves what the first one wrote.
+    again = replace(found, covariance=None)
+    assert again.corrected(found.corrected(BARE)).covariance == found.covariance
 
 
 @pytest.mark.slow

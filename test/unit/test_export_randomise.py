@@ -124,6 +124,13 @@ def test_the_array_has_what_simulators_have_with_the_effects_in_it():
     assert unit['with_effects.thrust_coefficient_4'] == 'N/(rad/s)^2'
 
 
+def test_a_drawn_vehicle_of_a_long_name_can_be_read_back(tmp_path):
+    made = draw(known(name='v' * 98), 2).vehicles
+    assert made[0].name != made[1].name
+    write_vehicle(tmp_path / 'v.yaml', made[1])
+    assert load_vehicle(tmp_path / 'v.yaml') == made[1]
+
+
 @pytest.fixture
 def file(tmp_path):
     path = tmp_path / 'real.yaml'
