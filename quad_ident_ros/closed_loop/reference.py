@@ -55,8 +55,8 @@ def reference_of(record: FlightRecord) -> Reference:
     if len(t) < 20.0 * KNOT * rate:
         raise InputError(f'{name}: --controller needs {20.0 * KNOT:g} s of flight at least, to '
                          f'follow, and this has {span:.3g} s')
-    yaw = (record.columns['psi'] if record.has('psi') else np.unwrap(
-        euler_from_quaternion(record.stack(*QUATERNION))[:, 2]))
+    yaw = np.unwrap(record.columns['psi'] if record.has('psi') else
+                    euler_from_quaternion(record.stack(*QUATERNION))[:, 2])
     columns = [*(record.columns[each] for each in (*PLACE, *VELOCITY)), yaw]
     flown = np.stack([np.interp(at, record.t, column) for column in columns], axis=1)
     asked = record.has(*ASKED) and all(np.isfinite(record.columns[each]).all() for each in ASKED)

@@ -26,6 +26,7 @@ from quad_ident_ros.errors import InputError
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import SENSORS
 from quad_ident_ros.flight.trajectories import plan
+from quad_ident_ros.model.attitude import euler_from_quaternion
 from quad_ident_ros.model.vehicle import load_vehicle
 
 BARE = load_vehicle('hummingbird')
@@ -98,6 +99,29 @@ def test_without_what_was_asked_the_path_is_that_of_the_flight_and_reality_is_no
         slope = np.gradient(part, 1.0 / reference.rate, axis=0)[1:-1]
         rest = reference.wanted[1:-1, 3 * order + 3:3 * order + 6] - slope
         assert np.sqrt(np.mean(rest ** 2)) < 0.02 * np.sqrt(np.mean(slope ** 2))
+
+
+@pytest.mark.parametrize('asked', [True, False])
+def test_tracking_is_the_same_in_a_world_that_is_turned(asked):
+    # Euler angles within half a turn of zero: near pi, the recorded heading jumps by a turn.
+    record = flight()
+    yaw = euler_from_quaternion(record.stack('qw', 'qx', 'qy', 'qz'))[:, 2]
+    kept = {name: values for name, values in record.columns.items()
+            if name not in ('qw', 'qx', 'qy', 'qz') and (asked or name not in ASKED)}
+    found = []
+    for turn in (0.0, np.pi):
+        columns = dict(kept)
+        cos, sin = np.cos(turn), np.sin(turn)
+        for x, y in (('px', 'py'), ('vx', 'vy'), ASKED[:2]):
+            if x in kept:
+                columns |= {x: cos * kept[x] - sin * kept[y], y: sin * kept[x] + cos * kept[y]}
+        columns['psi'] = np.mod(yaw + turn + np.pi, 2.0 * np.pi) - np.pi
+        if asked:
+            columns['yaw_ref'] = np.mod(kept['yaw_ref'] + turn + np.pi, 2.0 * np.pi) - np.pi
+        found.append(along(replace(record, columns=columns)).tracking)
+    assert np.ptp(np.unwrap(columns['psi'])) < np.pi < np.ptp(columns['psi'])
+    for who, errors in found[0].items():
+        assert found[1][who] == pytest.approx(errors, rel=1e-3, abs=1e-6)
 
 
 def test_the_bandwidth_of_a_lag_of_the_first_order_is_its_corner():
