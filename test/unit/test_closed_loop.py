@@ -183,7 +183,12 @@ def test_a_vehicle_that_leaves_its_path_is_told():
     ('Short', 'returns an array of shape (3,); expected (4,)'),
     ('Words', 'returns str; expected an array of 4 rotor speeds'),
     ('Endless', 'returns cmd2 = nan; expected finite speeds'),
+    ('Complex', 'returns complex numbers; expected an array of 4 rotor speeds'),
+    ('Huge', 'returns numbers beyond what a float holds; expected an array of'),
+    ('Partial', 'control of Partial returns an array of shape (3,); expected (4,)'),
     ('Broken', 'control of Broken raises ZeroDivisionError'),
+    ('Silent', 'control of Silent raises SilentError'),
+    ('Property', 'control of Property raises ZeroDivisionError'),
     ('Half', 'Half has no method control; it needs reset() and control'),
     ('Missing', 'it has no class Missing; give FILE.py:NAME')])
 def test_what_is_wrong_with_a_controller_is_told_at_once_in_one_line(name, said):
