@@ -43,6 +43,13 @@ class Idle(Cascade):
         return np.zeros(4)
 
 
+class Blind(Cascade):
+    """A little less than the speeds of hover, whatever happens."""
+
+    def control(self, state, reference, dt):
+        return np.full(4, np.sqrt(0.995 * MASS * GRAVITY / (4 * THRUST)))
+
+
 class Short(Cascade):
     """Three speeds for four rotors."""
 

@@ -28,6 +28,7 @@ from quad_ident_ros.flight.measure import SENSORS
 from quad_ident_ros.flight.trajectories import plan
 from quad_ident_ros.model.attitude import euler_from_quaternion
 from quad_ident_ros.model.vehicle import load_vehicle
+from quad_ident_ros.report.closed_loop import loop_rows
 
 BARE = load_vehicle('hummingbird')
 TRUTH = {'rotor_drag': {'coefficient': 0.3}, 'motor_lag': {'time_constant': 0.05}}
@@ -177,6 +178,16 @@ def test_a_vehicle_that_leaves_its_path_is_told():
     found = along(flight(), name=f'{FILE}:Idle')
     assert set(found.tracking['corrected'].values()) == {None}
     assert found.tracking['real']['position'] > 0.0
+    assert [row[1:3] for row in loop_rows(found)] == [['leaves the path'] * 2] * 7
+
+
+def test_a_vehicle_that_stays_near_its_path_and_not_near_that_of_bandwidth_is_told():
+    # It falls at 0.05 m/s^2: 5 m in the flight, 39 m in the time of the multisine.
+    found = along(flight('hover', effects={}), {}, f'{FILE}:Blind')
+    assert found.tracking['nominal']['position'] > 1.0
+    assert found.bandwidth['nominal'] is None and found.bandwidth['real'] is not None
+    rows = {row[0]: row for row in loop_rows(found)}
+    assert rows['bandwidth x'][1:] == ['leaves the path', 'leaves the path', '?', 'Hz']
 
 
 @pytest.mark.parametrize('name, said', [
