@@ -24,13 +24,15 @@ class Reference:
     """
     A path at `rate` Hz: wanted (N, 14), see flight.controller; flown (N, 7) by the record.
 
-    flown: position m, velocity m/s (world), yaw rad; asked: whether wanted is what the flight
-    was asked for by the record, or else the smooth path that it flew.
+    flown: position m, velocity m/s (world), yaw rad; path (N, 4): position and yaw, of which
+    wanted is the smooth one; asked: whether path is what the flight was asked for by the record,
+    or else what it flew.
     """
 
     rate: float
     wanted: np.ndarray
     flown: np.ndarray
+    path: np.ndarray
     asked: bool
 
 
@@ -67,7 +69,7 @@ def reference_of(record: FlightRecord) -> Reference:
                          for each in ASKED], axis=1)
         # Of headings that are the same but for whole turns the nearest.
         path[:, 3] += 2.0 * np.pi * np.round(np.mean(flown[:, 6] - path[:, 3]) / (2.0 * np.pi))
-    return Reference(rate, wanted_of(t, path), flown, asked)
+    return Reference(rate, wanted_of(t, path), flown, path, asked)
 
 
 def with_asked(record: FlightRecord, trajectory: Callable[[np.ndarray], tuple[np.ndarray, ...]]

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from scipy.signal import lfilter
+from scipy.signal import chirp, lfilter
 
 from quad_ident_ros.cli.main import main
 from quad_ident_ros.closed_loop.bandwidth import (
@@ -21,6 +21,7 @@ from quad_ident_ros.closed_loop.compare import compare
 from quad_ident_ros.closed_loop.controller import controller_of
 from quad_ident_ros.closed_loop.reference import ASKED, reference_of, with_asked
 from quad_ident_ros.data.csv import write_csv
+from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.effects.registry import vector
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.flight.fly import fly_closed_loop
@@ -146,6 +147,23 @@ def test_the_bandwidth_of_a_flight_shows_where_it_was_asked_for_enough():
     assert found['yaw'] is None
     noisy = flown + 0.1 * rng.standard_normal(flown.shape)
     assert bandwidth_of_flight(asked, noisy, RATE)['x'] is None
+
+
+def test_the_bandwidth_of_a_flight_shows_above_the_frequencies_of_a_smooth_path():
+    t = np.arange(int(60.0 * RATE)) / RATE
+    corners = np.array([2.0, 3.0, 4.0, 2.5])
+    asked = 0.3 * np.stack([chirp(t, 0.05, t[-1], 8.0, phi=90 * k) for k in range(4)], axis=1)
+    went = np.stack([lagged(asked[:, k], 2.0 * np.pi * corner)
+                     for k, corner in enumerate(corners)], axis=1)
+    speed = np.gradient(went[:, :3], t, axis=0)
+    columns = {name: values for name, values in zip(
+        ('px', 'py', 'pz', 'psi', *ASKED, 'vx', 'vy', 'vz'),
+        (*went.T, *asked.T, *speed.T), strict=True)}
+    reference = reference_of(FlightRecord(t, columns, {'name': 'chirps'}))
+    found = compare('idle', controller_of(f'{FILE}:Idle', BARE).controller, reference, BARE, NONE,
+                    NONE, {}).bandwidth['real']
+    # The spectra have a line every 0.1 Hz and a leakage that makes them less sharp.
+    assert list(found.values()) == pytest.approx(corners, rel=0.1)
 
 
 def test_where_gains_cross_is_found_between_lines():
