@@ -22,6 +22,7 @@ from quad_ident_ros.closed_loop.controller import controller_of
 from quad_ident_ros.closed_loop.reference import ASKED, reference_of, with_asked
 from quad_ident_ros.data.csv import write_csv
 from quad_ident_ros.data.record import FlightRecord
+from quad_ident_ros.data.split import joined, split
 from quad_ident_ros.effects.registry import vector
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.flight.fly import fly_closed_loop
@@ -247,6 +248,17 @@ def test_a_flight_that_is_too_short_to_follow_is_refused():
                                                        record.columns.items()})
     with pytest.raises(InputError, match='needs 5 s of flight at least'):
         reference_of(short)
+
+
+def test_of_a_flight_in_which_an_estimator_was_reset_the_longest_part_is_followed():
+    record = replace(flight(), info={'name': 'one', 'source': 'one.csv'})
+    moved = record.columns['px'] + 30.0 * (record.t > 9.2)
+    pieces = split(replace(record, columns={**record.columns, 'px': moved}),
+                   [(9.2, 9.21, 'reset')])
+    assert len(pieces) == 2
+    whole, alone = reference_of(joined(pieces)[-1]), reference_of(pieces[0])
+    assert len(whole.wanted) / RATE == pytest.approx(9.2, abs=0.02)
+    np.testing.assert_array_equal(whole.wanted, alone.wanted)
 
 
 @pytest.mark.slow
