@@ -95,10 +95,10 @@ def diagnose(records: Iterable[FlightRecord], vehicle: Vehicle, *,
     after = measure.residual_wrenches(bench, model.vectors, whole)
     ceiling, residual = ceiling_of(bench, judged, after)
     told(0.95)
+    closed_loop = None if controller is None or reference is None else in_closed_loop(
+        controller, reference, bench, judged, lambda share: told(0.95 + 0.05 * share))
     in_simulator = None if simulator is None else gap_in_simulator(
         simulator, bench, judged, lambda share: on_progress(0.5 + 0.5 * share))
-    closed_loop = (None if controller is None or reference is None
-                   else in_closed_loop(controller, reference, bench, judged))
     unseen = advice.not_shown(selection, causes, verdict, rules)
     return Diagnosis(
         vehicle=vehicle, verdict=verdict.names, minor=verdict.minor, ranking=verdict.ranking,

@@ -88,6 +88,13 @@ def test_what_an_effect_costs_is_lost_without_it():
     assert alone.without['rotor_drag'] == alone.tracking['nominal']
 
 
+def test_progress_is_told_up_to_the_end():
+    told = []
+    compare('ours', controller_of('ours', BARE).controller, reference_of(flight()), BARE, NONE,
+            NONE, {'rotor_drag': NONE}, told.append)
+    assert told == pytest.approx([0.2, 0.4, 0.6, 0.8, 1.0])
+
+
 def test_without_what_was_asked_the_path_is_that_of_the_flight_and_reality_is_not_told():
     record = flight('lissajous', noise='mocap_imu')
     bare = replace(record, columns={name: values for name, values in record.columns.items()
