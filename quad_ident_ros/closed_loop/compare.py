@@ -8,7 +8,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from quad_ident_ros.closed_loop.bandwidth import (
-    AXES,
     bandwidth_of_flight,
     bandwidth_of_multisine,
     multisine,
@@ -36,8 +35,9 @@ class ClosedLoop:
     controller: as it was named; asked: whether the path is what the record of the flight says it
     was asked for, or else the smooth path that it flew, and then nothing is known of the real one;
     seconds: of the path; units of tracking; tracking {vehicle: {group: rms error}}, None
-    where it leaves its path; bandwidth {vehicle: {axis: Hz}}, None where it is beyond what shows
-    it; without {effect: {group: rms error}} of the corrected vehicle without an effect.
+    where it leaves its path; bandwidth {vehicle: {axis: Hz}}, None of an axis where it is beyond
+    what shows it, and of a vehicle that leaves the path which shows it; without
+    {effect: {group: rms error}} of the corrected vehicle without an effect.
     """
 
     controller: str
@@ -45,7 +45,7 @@ class ClosedLoop:
     seconds: float
     units: dict[str, str]
     tracking: dict[str, Errors]
-    bandwidth: dict[str, dict[str, float | None]]
+    bandwidth: dict[str, dict[str, float | None] | None]
     without: dict[str, Errors]
 
 
@@ -83,7 +83,7 @@ def compare(name: str, controller: Controller, reference: Reference, vehicle: Ve
     watched = _Watched(controller, LOST * vehicle.arm_length)
     jobs, done = {NOMINAL: nominal, CORRECTED: corrected}, 0
     tracking: dict[str, Errors] = {}
-    bandwidth: dict[str, dict[str, float | None]] = {}
+    bandwidth: dict[str, dict[str, float | None] | None] = {}
 
     def told() -> None:
         nonlocal done
@@ -101,8 +101,9 @@ def compare(name: str, controller: Controller, reference: Reference, vehicle: Ve
         told()
     if reference.asked:
         tracking[REAL] = errors_of(reference, reference.flown)
-        bandwidth[REAL] = bandwidth_of_flight(reference.wanted[:, [0, 1, 2, 12]],
-                                              reference.flown[:, [0, 1, 2, 6]], reference.rate)
+        # The smooth path has nothing above the frequencies of its knots.
+        bandwidth[REAL] = bandwidth_of_flight(reference.path, reference.flown[:, [0, 1, 2, 6]],
+                                              reference.rate)
     return ClosedLoop(name, reference.asked, len(reference.wanted) / reference.rate, dict(UNITS),
                       tracking, bandwidth, left_out)
 
@@ -125,13 +126,13 @@ def _tracked(controller: Controller, reference: Reference, vehicle: Vehicle, the
 
 
 def _bandwidth(controller: Controller, reference: Reference, vehicle: Vehicle,
-               theta: np.ndarray) -> dict[str, float | None]:
-    """Return the bandwidths about hover at the begin of a Reference."""
+               theta: np.ndarray) -> dict[str, float | None] | None:
+    """Return the bandwidths about hover at the begin of a Reference, or None off the path."""
     asked = multisine(reference.rate)
     path = asked + reference.wanted[0, [0, 1, 2, 12]]
     wanted = wanted_of(np.arange(len(path)) / reference.rate, path, 0.02)
     found = _path(controller, wanted, reference.rate, vehicle, theta)
-    return (dict.fromkeys(AXES) if found is None
+    return (None if found is None
             else bandwidth_of_multisine(wanted[:, [0, 1, 2, 12]], found[:, [0, 1, 2, 6]]))
 
 

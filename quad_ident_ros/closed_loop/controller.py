@@ -67,18 +67,15 @@ class UserController:
         turned = Rotation.from_matrix(seen[6:15].reshape(3, 3)).as_quat()
         state = np.concatenate([seen[:6], turned[3:], turned[:3], seen[15:]])
         made = self._user.call('control', self._control, state, wanted.copy(), dt)
-        try:
-            found = np.asarray(made, float)
-        except (TypeError, ValueError):
-            raise InputError(f'{self._user.returns(self._control)} {type(made).__name__}; '
-                             f'expected an array of {len(command)} rotor speeds') from None
+        found = self._user.array('control', self._control, made,
+                                 f'an array of {len(command)} rotor speeds')
         if found.shape != command.shape:
-            raise InputError(f'{self._user.returns(self._control)} an array of shape '
+            raise InputError(f'{self._user.returns("control", self._control)} an array of shape '
                              f'{found.shape}; expected {command.shape}: a speed (rad/s) for each '
                              'rotor')
         if not np.isfinite(found).all():
             rotor = int(np.argmin(np.isfinite(found)))
-            raise InputError(f'{self._user.returns(self._control)} cmd{rotor + 1} = '
+            raise InputError(f'{self._user.returns("control", self._control)} cmd{rotor + 1} = '
                              f'{found[rotor]:g}; expected finite speeds, rad/s')
         np.clip(found, *self._limits, out=command)
 

@@ -9,6 +9,7 @@ import numpy as np
 from scipy.interpolate import make_lsq_spline
 
 from quad_ident_ros.data.record import FlightRecord, QUATERNION
+from quad_ident_ros.data.split import spans
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.flight.fly import RATES
 from quad_ident_ros.model.attitude import euler_from_quaternion
@@ -24,13 +25,15 @@ class Reference:
     """
     A path at `rate` Hz: wanted (N, 14), see flight.controller; flown (N, 7) by the record.
 
-    flown: position m, velocity m/s (world), yaw rad; asked: whether wanted is what the flight
-    was asked for by the record, or else the smooth path that it flew.
+    flown: position m, velocity m/s (world), yaw rad; path (N, 4): position and yaw, of which
+    wanted is the smooth one; asked: whether path is what the flight was asked for by the record,
+    or else what it flew.
     """
 
     rate: float
     wanted: np.ndarray
     flown: np.ndarray
+    path: np.ndarray
     asked: bool
 
 
@@ -39,7 +42,8 @@ def reference_of(record: FlightRecord) -> Reference:
     Return the Reference of a record: its columns ASKED, or else its own path, smoothed.
 
     Both are the least-squares spline of fifth order with knots at KNOT, so that velocity,
-    acceleration and jerk belong to it. Raises InputError where the record has no position,
+    acceleration and jerk belong to it. Of a record joined from parts it is the longest one, for
+    between parts an estimator was reset. Raises InputError where the record has no position,
     velocity or heading, or is too short.
     """
     name = record.info.get('source') or record.info.get('name', 'the flight held out')
@@ -48,6 +52,7 @@ def reference_of(record: FlightRecord) -> Reference:
         raise InputError(f'{name}: --controller needs a path to follow, and this flight, which is '
                          'held out, lacks position, velocity or attitude; hold out one that has '
                          'them')
+    record = _longest_part(record)
     rate = float(np.clip(round(1.0 / record.period()), *RATES))
     span = min(float(record.t[-1] - record.t[0]), MOST)
     t = np.arange(int(span * rate + 1e-6)) / rate
@@ -55,8 +60,8 @@ def reference_of(record: FlightRecord) -> Reference:
     if len(t) < 20.0 * KNOT * rate:
         raise InputError(f'{name}: --controller needs {20.0 * KNOT:g} s of flight at least, to '
                          f'follow, and this has {span:.3g} s')
-    yaw = (record.columns['psi'] if record.has('psi') else np.unwrap(
-        euler_from_quaternion(record.stack(*QUATERNION))[:, 2]))
+    yaw = np.unwrap(record.columns['psi'] if record.has('psi') else
+                    euler_from_quaternion(record.stack(*QUATERNION))[:, 2])
     columns = [*(record.columns[each] for each in (*PLACE, *VELOCITY)), yaw]
     flown = np.stack([np.interp(at, record.t, column) for column in columns], axis=1)
     asked = record.has(*ASKED) and all(np.isfinite(record.columns[each]).all() for each in ASKED)
@@ -67,7 +72,12 @@ def reference_of(record: FlightRecord) -> Reference:
                          for each in ASKED], axis=1)
         # Of headings that are the same but for whole turns the nearest.
         path[:, 3] += 2.0 * np.pi * np.round(np.mean(flown[:, 6] - path[:, 3]) / (2.0 * np.pi))
-    return Reference(rate, wanted_of(t, path), flown, asked)
+    return Reference(rate, wanted_of(t, path), flown, path, asked)
+
+
+def _longest_part(record: FlightRecord) -> FlightRecord:
+    begin, end = max(spans(record), key=lambda span: span[1] - span[0])
+    return record.slice(*np.searchsorted(record.t, [begin, np.nextafter(end, np.inf)]))
 
 
 def with_asked(record: FlightRecord, trajectory: Callable[[np.ndarray], tuple[np.ndarray, ...]]

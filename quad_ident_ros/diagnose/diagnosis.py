@@ -9,6 +9,7 @@ import numpy as np
 from quad_ident_ros.closed_loop.controller import NamedController
 from quad_ident_ros.closed_loop.reference import reference_of
 from quad_ident_ros.data.record import FlightRecord
+from quad_ident_ros.data.split import joined
 from quad_ident_ros.diagnose import advice, measure
 from quad_ident_ros.diagnose.bench import Bench
 from quad_ident_ros.diagnose.candidates import candidates
@@ -58,7 +59,7 @@ def diagnose(records: Iterable[FlightRecord], vehicle: Vehicle, *,
 
     given = list(records)
     reference = (None if controller is None or not given
-                 else reference_of(given[-1] if hold_out is None else hold_out))
+                 else reference_of(joined(given)[-1] if hold_out is None else hold_out))
     intake = take_in(given, vehicle, hold_out, rules)
     del given
     give_back()
@@ -94,10 +95,10 @@ def diagnose(records: Iterable[FlightRecord], vehicle: Vehicle, *,
     after = measure.residual_wrenches(bench, model.vectors, whole)
     ceiling, residual = ceiling_of(bench, judged, after, whole)
     told(0.95)
+    closed_loop = None if controller is None or reference is None else in_closed_loop(
+        controller, reference, bench, judged, lambda share: told(0.95 + 0.05 * share))
     in_simulator = None if simulator is None else gap_in_simulator(
         simulator, bench, judged, lambda share: on_progress(0.5 + 0.5 * share))
-    closed_loop = (None if controller is None or reference is None
-                   else in_closed_loop(controller, reference, bench, judged))
     unseen = advice.not_shown(selection, causes, verdict, rules)
     return Diagnosis(
         vehicle=vehicle, verdict=verdict.names, minor=verdict.minor, ranking=verdict.ranking,

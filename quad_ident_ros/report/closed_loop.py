@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The closed loop of a diagnosis in words and cells."""
 
-from quad_ident_ros.closed_loop.bandwidth import HIGHEST
+from quad_ident_ros.closed_loop.bandwidth import AXES, HIGHEST
 from quad_ident_ros.closed_loop.compare import ClosedLoop, CORRECTED, NOMINAL, REAL
 
 TITLES = ('', NOMINAL, CORRECTED, REAL, 'unit')
@@ -31,7 +31,7 @@ def loop_rows(one: ClosedLoop) -> list[list[str]]:
     rows = [[group, *(_error(one.tracking[who][group]) if who in one.tracking else UNKNOWN
                       for who in TITLES[1:-1]), unit] for group, unit in one.units.items()]
     return rows + [[f'bandwidth {axis}', *(_hertz(one, who, axis) for who in TITLES[1:-1]), 'Hz']
-                   for axis in one.bandwidth[NOMINAL]]
+                   for axis in AXES]
 
 
 def cost_rows(one: ClosedLoop) -> list[list[str]]:
@@ -54,8 +54,10 @@ def _error(value: float | None) -> str:
 def _hertz(one: ClosedLoop, who: str, axis: str) -> str:
     if who not in one.bandwidth:
         return UNKNOWN
-    value = one.bandwidth[who][axis]
+    values = one.bandwidth[who]
+    if values is None:
+        return LEFT
+    value = values[axis]
     if value is None:
-        return UNKNOWN if who == REAL or one.tracking[who]['position'] is None else (
-            f'over {HIGHEST:g}')
+        return UNKNOWN if who == REAL else f'over {HIGHEST:g}'
     return f'{value:.3g}'

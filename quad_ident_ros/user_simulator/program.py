@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """A simulator that is a class in a user's Python file: loaded, called, and its errors told."""
 
-from collections.abc import Callable
 import inspect
 from typing import Any
 
@@ -14,6 +13,7 @@ from quad_ident_ros.model.rigid_body import STATE
 from quad_ident_ros.user_class import UserClass
 
 WRENCH = ('force', 'moment')
+METHODS = 'reset(state) and step(commands, dt)'
 UNIT = 1e-3         # by which the length of a quaternion may differ from 1: float32 is far below
 
 INTERFACE = """\
@@ -39,16 +39,17 @@ class Program:
 
     def __init__(self, spec: str) -> None:
         self._user = UserClass(spec, '--simulator')
-        self._device = self._user.made
-        self.at_once = callable(getattr(self._device, 'step_many', None))
-        for name in ('step_many',) if self.at_once else ('reset', 'step'):
-            self._user.method(name, 'reset(state) and step(commands, dt)')
-        self._step: Callable = self._device.step_many if self.at_once else self._device.step
-        self.takes_wrench = set(WRENCH) <= set(inspect.signature(self._step).parameters)
+        self.at_once = self._user.optional('step_many') is not None
+        if not self.at_once:
+            self._reset = self._user.method('reset', METHODS)
+        self._name = 'step_many' if self.at_once else 'step'
+        self._step = self._user.method(self._name, METHODS)
+        signature = self._user.call(self._name, inspect.signature, self._step)
+        self.takes_wrench = set(WRENCH) <= set(signature.parameters)
 
     def reset(self, state: np.ndarray) -> None:
         """Begin at a state (13 + n,)."""
-        self._user.call('reset', self._device.reset, state.copy())
+        self._user.call('reset', self._reset, state.copy())
 
     def step(self, states: np.ndarray, commands: np.ndarray, dt: np.ndarray, *wrench: np.ndarray
              ) -> np.ndarray:
@@ -62,23 +63,20 @@ class Program:
         wrench = wrench or (np.zeros((len(dt), 3)),) * 2
         pushes = wrench if self.takes_wrench else ()
         if self.at_once:
-            made = self._user.call('step_many', self._step, states.copy(), commands.copy(),
+            made = self._user.call(self._name, self._step, states.copy(), commands.copy(),
                                    dt.copy(), *pushes)
         else:
-            made = self._user.call('step', self._step, commands[0].copy(), float(dt[0]),
+            made = self._user.call(self._name, self._step, commands[0].copy(), float(dt[0]),
                                    *(push[0] for push in pushes))
         return self._checked(made, states)
 
     def _checked(self, made: Any, states: np.ndarray) -> np.ndarray:
         """Return what a step returned as states of (B, 13) or (B, 13 + n); InputError."""
-        where = self._user.returns(self._step)
+        where = self._user.returns(self._name, self._step)
         shapes = [(*(states.shape[:1] if self.at_once else ()), width)
                   for width in (STATE, states.shape[1])]
-        try:
-            found = np.asarray(made, float)
-        except (TypeError, ValueError):
-            raise InputError(f'{where} {type(made).__name__}; expected an array of '
-                             f'{shapes[0]} or {shapes[1]} numbers') from None
+        found = self._user.array(self._name, self._step, made,
+                                 f'an array of {shapes[0]} or {shapes[1]} numbers')
         if found.shape not in shapes:
             raise InputError(f'{where} an array of shape {found.shape}; expected {shapes[0]} or '
                              f'{shapes[1]}: {" ".join(STATES)}, and the speeds of the rotors')

@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Controllers as users write them, good ones and bad ones."""
 
+from functools import partial
+
 import numpy as np
 
 MASS, GRAVITY, THRUST, TORQUE, ARM = 0.5, 9.81, 5.57e-6, 1.36e-7, 0.12020815
@@ -41,6 +43,13 @@ class Idle(Cascade):
         return np.zeros(4)
 
 
+class Blind(Cascade):
+    """A little less than the speeds of hover, whatever happens."""
+
+    def control(self, state, reference, dt):
+        return np.full(4, np.sqrt(0.995 * MASS * GRAVITY / (4 * THRUST)))
+
+
 class Short(Cascade):
     """Three speeds for four rotors."""
 
@@ -66,6 +75,48 @@ class Broken(Cascade):
     """It raises an error."""
 
     def control(self, state, reference, dt):
+        return 1 / 0
+
+
+class Complex(Cascade):
+    """No real numbers."""
+
+    def control(self, state, reference, dt):
+        return np.full(4, 1j)
+
+
+class Huge(Cascade):
+    """Beyond what a float holds."""
+
+    def control(self, state, reference, dt):
+        return [10 ** 400] * 4
+
+
+class Partial(Cascade):
+    """A method without a name; three speeds for four rotors."""
+
+    control = partial(lambda count, *told: np.zeros(count), 3)
+
+
+class SilentError(Exception):
+    """An error that cannot say what it is."""
+
+    def __str__(self):
+        raise ValueError
+
+
+class Silent(Cascade):
+    """It raises an error that says nothing."""
+
+    def control(self, state, reference, dt):
+        raise SilentError
+
+
+class Property(Cascade):
+    """To ask for its method raises an error."""
+
+    @property
+    def control(self):
         return 1 / 0
 
 

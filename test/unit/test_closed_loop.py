@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from scipy.signal import lfilter
+from scipy.signal import chirp, lfilter
 
 from quad_ident_ros.cli.main import main
 from quad_ident_ros.closed_loop.bandwidth import (
@@ -21,12 +21,16 @@ from quad_ident_ros.closed_loop.compare import compare
 from quad_ident_ros.closed_loop.controller import controller_of
 from quad_ident_ros.closed_loop.reference import ASKED, reference_of, with_asked
 from quad_ident_ros.data.csv import write_csv
+from quad_ident_ros.data.record import FlightRecord
+from quad_ident_ros.data.split import joined, split
 from quad_ident_ros.effects.registry import vector
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import SENSORS
 from quad_ident_ros.flight.trajectories import plan
+from quad_ident_ros.model.attitude import euler_from_quaternion
 from quad_ident_ros.model.vehicle import load_vehicle
+from quad_ident_ros.report.closed_loop import loop_rows
 
 BARE = load_vehicle('hummingbird')
 TRUTH = {'rotor_drag': {'coefficient': 0.3}, 'motor_lag': {'time_constant': 0.05}}
@@ -84,6 +88,13 @@ def test_what_an_effect_costs_is_lost_without_it():
     assert alone.without['rotor_drag'] == alone.tracking['nominal']
 
 
+def test_progress_is_told_up_to_the_end():
+    told = []
+    compare('ours', controller_of('ours', BARE).controller, reference_of(flight()), BARE, NONE,
+            NONE, {'rotor_drag': NONE}, told.append)
+    assert told == pytest.approx([0.2, 0.4, 0.6, 0.8, 1.0])
+
+
 def test_without_what_was_asked_the_path_is_that_of_the_flight_and_reality_is_not_told():
     record = flight('lissajous', noise='mocap_imu')
     bare = replace(record, columns={name: values for name, values in record.columns.items()
@@ -98,6 +109,29 @@ def test_without_what_was_asked_the_path_is_that_of_the_flight_and_reality_is_no
         slope = np.gradient(part, 1.0 / reference.rate, axis=0)[1:-1]
         rest = reference.wanted[1:-1, 3 * order + 3:3 * order + 6] - slope
         assert np.sqrt(np.mean(rest ** 2)) < 0.02 * np.sqrt(np.mean(slope ** 2))
+
+
+@pytest.mark.parametrize('asked', [True, False])
+def test_tracking_is_the_same_in_a_world_that_is_turned(asked):
+    # Euler angles within half a turn of zero: near pi, the recorded heading jumps by a turn.
+    record = flight()
+    yaw = euler_from_quaternion(record.stack('qw', 'qx', 'qy', 'qz'))[:, 2]
+    kept = {name: values for name, values in record.columns.items()
+            if name not in ('qw', 'qx', 'qy', 'qz') and (asked or name not in ASKED)}
+    found = []
+    for turn in (0.0, np.pi):
+        columns = dict(kept)
+        cos, sin = np.cos(turn), np.sin(turn)
+        for x, y in (('px', 'py'), ('vx', 'vy'), ASKED[:2]):
+            if x in kept:
+                columns |= {x: cos * kept[x] - sin * kept[y], y: sin * kept[x] + cos * kept[y]}
+        columns['psi'] = np.mod(yaw + turn + np.pi, 2.0 * np.pi) - np.pi
+        if asked:
+            columns['yaw_ref'] = np.mod(kept['yaw_ref'] + turn + np.pi, 2.0 * np.pi) - np.pi
+        found.append(along(replace(record, columns=columns)).tracking)
+    assert np.ptp(np.unwrap(columns['psi'])) < np.pi < np.ptp(columns['psi'])
+    for who, errors in found[0].items():
+        assert found[1][who] == pytest.approx(errors, rel=1e-3, abs=1e-6)
 
 
 def test_the_bandwidth_of_a_lag_of_the_first_order_is_its_corner():
@@ -121,6 +155,23 @@ def test_the_bandwidth_of_a_flight_shows_where_it_was_asked_for_enough():
     assert found['yaw'] is None
     noisy = flown + 0.1 * rng.standard_normal(flown.shape)
     assert bandwidth_of_flight(asked, noisy, RATE)['x'] is None
+
+
+def test_the_bandwidth_of_a_flight_shows_above_the_frequencies_of_a_smooth_path():
+    t = np.arange(int(60.0 * RATE)) / RATE
+    corners = np.array([2.0, 3.0, 4.0, 2.5])
+    asked = 0.3 * np.stack([chirp(t, 0.05, t[-1], 8.0, phi=90 * k) for k in range(4)], axis=1)
+    went = np.stack([lagged(asked[:, k], 2.0 * np.pi * corner)
+                     for k, corner in enumerate(corners)], axis=1)
+    speed = np.gradient(went[:, :3], t, axis=0)
+    columns = {name: values for name, values in zip(
+        ('px', 'py', 'pz', 'psi', *ASKED, 'vx', 'vy', 'vz'),
+        (*went.T, *asked.T, *speed.T), strict=True)}
+    reference = reference_of(FlightRecord(t, columns, {'name': 'chirps'}))
+    found = compare('idle', controller_of(f'{FILE}:Idle', BARE).controller, reference, BARE, NONE,
+                    NONE, {}).bandwidth['real']
+    # The spectra have a line every 0.1 Hz and a leakage that makes them less sharp.
+    assert list(found.values()) == pytest.approx(corners, rel=0.1)
 
 
 def test_where_gains_cross_is_found_between_lines():
@@ -153,13 +204,28 @@ def test_a_vehicle_that_leaves_its_path_is_told():
     found = along(flight(), name=f'{FILE}:Idle')
     assert set(found.tracking['corrected'].values()) == {None}
     assert found.tracking['real']['position'] > 0.0
+    assert [row[1:3] for row in loop_rows(found)] == [['leaves the path'] * 2] * 7
+
+
+def test_a_vehicle_that_stays_near_its_path_and_not_near_that_of_bandwidth_is_told():
+    # It falls at 0.05 m/s^2: 5 m in the flight, 39 m in the time of the multisine.
+    found = along(flight('hover', effects={}), {}, f'{FILE}:Blind')
+    assert found.tracking['nominal']['position'] > 1.0
+    assert found.bandwidth['nominal'] is None and found.bandwidth['real'] is not None
+    rows = {row[0]: row for row in loop_rows(found)}
+    assert rows['bandwidth x'][1:] == ['leaves the path', 'leaves the path', '?', 'Hz']
 
 
 @pytest.mark.parametrize('name, said', [
     ('Short', 'returns an array of shape (3,); expected (4,)'),
     ('Words', 'returns str; expected an array of 4 rotor speeds'),
     ('Endless', 'returns cmd2 = nan; expected finite speeds'),
+    ('Complex', 'returns complex numbers; expected an array of 4 rotor speeds'),
+    ('Huge', 'returns numbers beyond what a float holds; expected an array of'),
+    ('Partial', 'control of Partial returns an array of shape (3,); expected (4,)'),
     ('Broken', 'control of Broken raises ZeroDivisionError'),
+    ('Silent', 'control of Silent raises SilentError'),
+    ('Property', 'control of Property raises ZeroDivisionError'),
     ('Half', 'Half has no method control; it needs reset() and control'),
     ('Missing', 'it has no class Missing; give FILE.py:NAME')])
 def test_what_is_wrong_with_a_controller_is_told_at_once_in_one_line(name, said):
@@ -189,6 +255,17 @@ def test_a_flight_that_is_too_short_to_follow_is_refused():
                                                        record.columns.items()})
     with pytest.raises(InputError, match='needs 5 s of flight at least'):
         reference_of(short)
+
+
+def test_of_a_flight_in_which_an_estimator_was_reset_the_longest_part_is_followed():
+    record = replace(flight(), info={'name': 'one', 'source': 'one.csv'})
+    moved = record.columns['px'] + 30.0 * (record.t > 9.2)
+    pieces = split(replace(record, columns={**record.columns, 'px': moved}),
+                   [(9.2, 9.21, 'reset')])
+    assert len(pieces) == 2
+    whole, alone = reference_of(joined(pieces)[-1]), reference_of(pieces[0])
+    assert len(whole.wanted) / RATE == pytest.approx(9.2, abs=0.02)
+    np.testing.assert_array_equal(whole.wanted, alone.wanted)
 
 
 @pytest.mark.slow

@@ -171,6 +171,12 @@ BEGIN = 'import numpy as np\nclass Sim:\n    def reset(self, state):\n        se
     ('class Sim:\n    def step_many(self, states, commands, dt):\n        return states[0]\n',
      'returns an array of shape (17,); expected (1, 13) or (1, 17)'),
     (BEGIN + '    def step(self, commands):\n        return self.x\n', 'raises TypeError'),
+    (BEGIN + '    def step(self, commands, dt):\n        return self.x * 1j\n',
+     'returns complex numbers; expected an array of'),
+    (BEGIN + '    @property\n    def step(self):\n        raise OSError("no")\n',
+     'line 7: step of Sim raises OSError: no'),
+    ('def __getattr__(name):\n    raise OSError(name)\n',
+     'line 2: reading it of Sim raises OSError'),
 ])
 def test_what_is_wrong_with_a_simulator_is_one_line_with_its_place(tmp_path, text, said):
     path = tmp_path / 'mine.py'
@@ -186,7 +192,8 @@ def test_what_is_wrong_with_a_simulator_is_one_line_with_its_place(tmp_path, tex
     ('mine.py', '--simulator mine.py: expected FILE.py:NAME'),
     ('mine.txt:Sim', 'expected FILE.py:NAME'),
     ('mine.py:a b', 'expected FILE.py:NAME'),
-    ('none.py:Sim', 'none.py: there is no such file')])
+    ('none.py:Sim', 'none.py: there is no such file'),
+    ('~nosuch/none.py:Sim', '~nosuch/none.py: there is no such file')])
 def test_a_simulator_is_a_class_in_a_file(spec, said):
     with pytest.raises(InputError, match=said):
         Program(spec)
