@@ -171,7 +171,11 @@ def test_priors_are_as_wide_as_the_file_says():
         'inertia_z': 1.3e-4, 'inertia_mismatch.factor_z': 0.1,
         'thrust_coefficient': 2.9842e-6, 'thrust_scale.factor': 0.1, 'thrust_scale.at_hover': 0.1,
         'thrust_scale.hover_factor': 0.1, 'torque_coefficient': 1.616e-6,
-        'inertia_mismatch.torque': 0.5, **{f'linear_drag_{axis}': 0.1 for axis in 'xyz'}}
+        'inertia_mismatch.torque': 0.5,
+        # A ratio is known as far as both of its constants are: of the inertia about y nothing is.
+        'inertia_mismatch.inertia_z': np.hypot(0.1, 0.2),
+        'inertia_mismatch.moment_z': np.hypot(0.5, 0.2),
+        **{f'linear_drag_{axis}': 0.1 for axis in 'xyz'}}
     for name, size in expected.items():
         assert told[INDEX[name]] == pytest.approx(size), name
     # All else is as wide as before: the inertia about y, the effects of drag, the arms.
