@@ -29,7 +29,9 @@ WHITE = Sensors(white=MOCAP_IMU.white)
 # Weaker thrust gives weaker moments, too: of more than this a hover tells by them which it is.
 PAYLOAD = {'mass_offset': {'mass': 0.012 * VEHICLE.mass}}
 WEAKER = {'thrust_scale': {'factor': 0.988}}
-TILTED = {'attitude_misalignment': {'roll': 0.03, 'pitch': -0.02}, **PAYLOAD}
+# Half of it beside a tilt: of the whole, the flights of the test tell at seven to one what it is.
+TILTED = {'attitude_misalignment': {'roll': 0.03, 'pitch': -0.02},
+          'mass_offset': {'mass': 0.006 * VEHICLE.mass}}
 ALIKE = ['mass_offset', 'thrust_scale']
 
 
