@@ -5,12 +5,12 @@
 import argparse
 from pathlib import Path
 
-from quad_ident_ros.cli.identify import progress_bar
 from quad_ident_ros.cli.options import add_selection, flights_from, selection_of, vehicle_from
 from quad_ident_ros.cli.outputs import refuse_overwriting
 from quad_ident_ros.data.export import save
 from quad_ident_ros.data.record import CUT
 from quad_ident_ros.report.data import write_json
+from quad_ident_ros.report.screen import progress_bar
 
 
 def add(commands, said):

@@ -5,7 +5,7 @@
 import secrets
 import sys
 
-from quad_ident_ros.cli.identify import progress_bar, show
+from quad_ident_ros.cli.identify import show
 from quad_ident_ros.effects.registry import EFFECTS, titled
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.identify.result import as_data
@@ -14,6 +14,7 @@ from quad_ident_ros.report.data import write_json
 from quad_ident_ros.report.diagnosis import show as show_diagnosis
 from quad_ident_ros.report.picture import save_responses
 from quad_ident_ros.report.received import diagnosis_from
+from quad_ident_ros.report.screen import progress_bar
 from quad_ident_ros.report.verdict import closed_of
 
 PICTURE = 'responses.png'

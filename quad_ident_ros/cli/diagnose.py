@@ -8,7 +8,6 @@ from dataclasses import replace
 import sys
 import textwrap
 
-from quad_ident_ros.cli.identify import progress_bar
 from quad_ident_ros.cli.options import (
     add_selection,
     asking_for_vehicle,
@@ -28,7 +27,8 @@ from quad_ident_ros.greybox.errors import UNITS
 from quad_ident_ros.model.vehicle import write_vehicle
 from quad_ident_ros.report.ceiling import residual_line
 from quad_ident_ros.report.data import write_json
-from quad_ident_ros.report.diagnosis import show
+from quad_ident_ros.report.diagnosis import ALL, show, USUAL, VERDICT
+from quad_ident_ros.report.screen import progress_bar
 from quad_ident_ros.tolerances import EXAMPLE, rules_from
 from quad_ident_ros.user_simulator.program import INTERFACE
 from quad_ident_ros.user_simulator.simulator import Simulator
@@ -92,6 +92,13 @@ def add(commands, said):
     parser.add_argument('--residual', action='store_true',
                         help='write into that file, too, what no effect explains, as a force and '
                              'moment by state and command, where it helps on the flight held out')
+    amount = parser.add_mutually_exclusive_group()
+    amount.add_argument('--quiet', '-q', dest='detail', action='store_const', const=VERDICT,
+                        default=USUAL, help='print the verdict, its size and the next step only, '
+                        'and no progress')
+    amount.add_argument('--verbose', '-v', dest='detail', action='store_const', const=ALL,
+                        help='print the gap at 0.1, 0.5 and 1 s, and what was estimated for '
+                        'each flight, too')
     add_selection(parser)
     parser.set_defaults(run=run)
 
@@ -118,13 +125,13 @@ def run(options):
             if options.hold_out else None)
     controller = controller_of(options.controller, vehicle) if options.controller else None
     with (Simulator(options.simulator, vehicle) if options.simulator else nullcontext()
-          ) as simulator, progress_bar() as bar:
+          ) as simulator, progress_bar(options.detail == VERDICT) as bar:
         task = bar.add_task('comparing sets of effects', total=1.0)
         found = diagnose(records, vehicle, hold_out=held, effects=effects, rules=rules,
                          simulator=simulator, controller=controller,
                          on_progress=lambda share: bar.update(task, completed=share))
     if options.json != '-':
-        show(found, sys.stdout)
+        show(found, sys.stdout, options.detail)
     if options.json:
         write_json(options.json, found.as_data())
     if options.report:

@@ -6,14 +6,13 @@ import argparse
 from pathlib import Path
 
 from quad_ident_ros import schema
-from quad_ident_ros.cli.identify import progress_bar
 from quad_ident_ros.cli.options import flights_from
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.vehicle import Vehicle
 from quad_ident_ros.report.data import write_json
 from quad_ident_ros.report.draws import rows_of, show_draws
 from quad_ident_ros.report.export import show_fates
-from quad_ident_ros.report.table import console, say
+from quad_ident_ros.report.screen import console, progress_bar, say
 from quad_ident_ros.vehicle_files.draws import draw
 from quad_ident_ros.vehicle_files.export import export, mean_left
 from quad_ident_ros.vehicle_files.source import Source

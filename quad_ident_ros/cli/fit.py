@@ -6,7 +6,6 @@ import argparse
 from dataclasses import replace
 import textwrap
 
-from quad_ident_ros.cli.identify import progress_bar
 from quad_ident_ros.cli.options import (
     add_selection,
     flights_from,
@@ -23,7 +22,7 @@ from quad_ident_ros.greybox.free import columns_of_names, EXCITATION
 from quad_ident_ros.model.mixing import with_commands
 from quad_ident_ros.model.vehicle import write_vehicle
 from quad_ident_ros.report.data import write_json
-from quad_ident_ros.report.table import console
+from quad_ident_ros.report.screen import console, progress_bar
 
 
 def add(commands, said):

@@ -8,7 +8,6 @@ from pathlib import Path
 import numpy as np
 
 from quad_ident_ros import resources, schema
-from quad_ident_ros.cli.identify import progress_bar
 from quad_ident_ros.closed_loop.reference import with_asked
 from quad_ident_ros.data.csv import write_csv
 from quad_ident_ros.effects.registry import EFFECTS, from_entries
@@ -17,6 +16,7 @@ from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import SENSORS
 from quad_ident_ros.flight.trajectories import plan, TRAJECTORIES
 from quad_ident_ros.report.data import write_json
+from quad_ident_ros.report.screen import progress_bar
 from quad_ident_ros.vehicle_files.load import load_vehicle
 
 

@@ -3,10 +3,6 @@
 """`quad_ident identify`: fit the four models to recorded flights."""
 
 import argparse
-import sys
-
-from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn
 
 from quad_ident_ros.cli.options import add_selection, flights_from, selection_of
 from quad_ident_ros.data.commands import with_inputs
@@ -17,7 +13,8 @@ from quad_ident_ros.identify.result import as_data
 from quad_ident_ros.identify.vp import COMPLEX_PENALTY
 from quad_ident_ros.report.data import write_json
 from quad_ident_ros.report.picture import save_responses
-from quad_ident_ros.report.table import console, identification_table, legend, notes
+from quad_ident_ros.report.screen import console, progress_bar
+from quad_ident_ros.report.table import identification_table, legend, notes
 from quad_ident_ros.vehicle_files.load import load_vehicle
 
 
@@ -98,14 +95,6 @@ def run(options):
         save_responses(result, options.picture, 'Measured and fitted responses')
     if options.json:
         write_json(options.json, as_data(result))
-
-
-def progress_bar():
-    """Return a progress bar on standard error that goes away at the end."""
-    return Progress(TextColumn('{task.description}', markup=False), BarColumn(),
-                    TextColumn('{task.percentage:>3.0f} %'), transient=True,
-                    console=Console(stderr=True, markup=False, emoji=False),
-                    disable=not sys.stderr.isatty())
 
 
 def show(result):

@@ -8,7 +8,6 @@ from collections.abc import Sequence
 from rich import box
 from rich.table import Table
 
-from quad_ident_ros.cli.identify import progress_bar
 from quad_ident_ros.cli.options import (
     add_selection,
     AUTO,
@@ -26,7 +25,7 @@ from quad_ident_ros.data.summary import contents, segments, summarise, unread
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.vehicle import Vehicle
 from quad_ident_ros.report.data import write_json
-from quad_ident_ros.report.table import console
+from quad_ident_ros.report.screen import console, progress_bar
 
 FAULTY = 3
 """Exit code where there is a finding of severity error."""

@@ -11,6 +11,7 @@ INPUTS = ('flight', 'flights', 'hold_out', 'mapping', 'vehicle', 'experiment', '
 OUTPUTS = ('out', 'output', 'out_vehicle', 'json', 'report', 'picture', 'write_mapping')
 FILES = ('out_vehicle', 'json', 'report', 'picture', 'write_mapping')
 """Names of the options, of any command, that name files read, written, and never folders."""
+PAGES = ('.html', '.htm')
 
 
 def check_outputs(options):
@@ -18,7 +19,7 @@ def check_outputs(options):
     Check, before any work, where the options of a command have it write.
 
     Raises InputError for an output that is an input, another output, a folder or lies in a file,
-    and for a vehicle file of another ending or in no folder.
+    for a report or vehicle file of another ending, and for a vehicle file in no folder.
     """
     inputs, written = _named(options, INPUTS), set()
     for output in _named(options, OUTPUTS):
@@ -34,6 +35,10 @@ def check_outputs(options):
     for output in _named(options, FILES):
         if Path(output).is_dir():
             raise InputError(f'{output}: this is a folder; name a file')
+    for output in _named(options, ('report',)):
+        if Path(output).suffix.lower() not in PAGES:
+            raise InputError(f'{output}: a report is a page for a browser; name a file that ends '
+                             'in .html, and print it to a PDF from there')
     for output in _named(options, ('out_vehicle',)):
         check_ending(output)
         if not Path(output).parent.is_dir():

@@ -6,7 +6,6 @@ import argparse
 from pathlib import Path
 import time
 
-from quad_ident_ros.cli.identify import progress_bar
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.paper import page
 from quad_ident_ros.paper.claims import claims as claims_of
@@ -14,7 +13,7 @@ from quad_ident_ros.paper.presets import PRESETS
 from quad_ident_ros.paper.reproduce import as_data, reproduce
 from quad_ident_ros.paper.summary import conclusions_table, errors_table
 from quad_ident_ros.report.data import write_json
-from quad_ident_ros.report.table import console
+from quad_ident_ros.report.screen import console, progress_bar
 
 
 def add(commands, said):

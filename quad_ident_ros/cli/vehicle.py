@@ -12,7 +12,7 @@ from quad_ident_ros import schema
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.vehicle import load_vehicle, vehicle_to_mapping, write_vehicle
 from quad_ident_ros.report.data import write_json
-from quad_ident_ros.report.table import console, say, table_of
+from quad_ident_ros.report.screen import console, say, table_of
 from quad_ident_ros.vehicle_files.kinds import KINDS
 from quad_ident_ros.vehicle_files.load import read_vehicle, source_of
 from quad_ident_ros.vehicle_files.reading import needed_vehicle, Reading, SETTABLE

@@ -7,8 +7,6 @@ from collections.abc import Iterable
 import re
 from typing import TextIO
 
-from rich import box
-from rich.console import Console
 from rich.table import Table
 
 from quad_ident_ros.diagnose.result import (
@@ -30,6 +28,7 @@ from quad_ident_ros.report.closed_loop import (
     loop_rows,
     TITLES,
 )
+from quad_ident_ros.report.screen import console, say, table_of
 from quad_ident_ros.report.verdict import (
     above_noise,
     closed_of,
@@ -40,8 +39,10 @@ from quad_ident_ros.report.verdict import (
     verdict_line,
 )
 
-WIDTH = 124     # columns that the widest row needs
-WORTH = 0.02        # probability or share from which on a row is shown
+VERDICT, USUAL, ALL = 'verdict', 'usual', 'all'
+"""How much of a Diagnosis `show` prints."""
+
+WORTH = 0.02    # share from which on a channel has a row, probability from which on it is printed
 
 NUMBER = re.compile(r'[-+]?\d+(\.\d+)?(e[-+]?\d+)?')
 
@@ -51,6 +52,9 @@ WHERE = ('channel', 'share', 'rms', 'noise alone', 'where most of it is', 'Hz')
 FAR = ('', 'nominal', 'with\nnuisances', 'after', 'ceiling', 'noise', 'unit')
 """What far_rows say of a group of outputs."""
 
+AHEAD = {'nominal': 'before', 'with nuisances': 'before_own', 'after': 'after', 'noise': 'noise'}
+"""What ahead_rows say of a horizon, and which stage of the gap that is."""
+
 IN_SIMULATOR = ('', 'as it is', 'with nuisances', 'with the effects', 'our model after',
                 'noise', 'off nominal', 'unit')
 """What simulator_rows say of a group of outputs in a simulator of the user."""
@@ -59,43 +63,44 @@ NEXT = ('manoeuvre', 'to', 'standard errors now', 'with it', 'size', 'height', '
 """What next_row says of a manoeuvre."""
 
 
-def show(found: Diagnosis, stream: TextIO) -> None:
-    """Print a Diagnosis to a stream: the verdict first."""
-    screen = Console(file=stream, width=WIDTH, markup=False, emoji=False)
-
-    def say(text: str, style: str | None = None) -> None:
-        screen.print(text, style=style, markup=False, highlight=False, soft_wrap=True)
-
-    say(f'verdict: {verdict_line(found)}', 'bold')
-    say(size_line(found))
-    say(next_step(found))
-    say('')
-    say('where: force and moment that the nominal vehicle does not explain')
-    screen.print(_table(WHERE, [where_row(row) for row in shown(found.where)]))
-    say('which effects cause it')
+def show(found: Diagnosis, stream: TextIO, detail: str = USUAL) -> None:
+    """Print a Diagnosis to a stream, the verdict first; detail: VERDICT, USUAL or ALL of it."""
+    screen = console(stream)
+    say(screen, f'verdict: {verdict_line(found)}', 'bold')
+    say(screen, size_line(found))
+    say(screen, next_step(found))
+    if detail == VERDICT:
+        return
+    say(screen, '')
+    say(screen, 'where: force and moment that the nominal vehicle does not explain')
+    screen.print(table_of(WHERE, [where_row(row) for row in shown(found.where)]))
+    say(screen, 'which effects cause it')
     screen.print(_which(found))
-    for line in (*minor_lines(found), *one_finding_lines(found)):
-        say(line)
-    say('')
-    say(far_line(found))
-    say(ceiling_line(found))
-    screen.print(_table(FAR, far_rows(found)))
+    for line in (*improbable_lines(found), *minor_lines(found), *one_finding_lines(found)):
+        say(screen, line)
+    say(screen, '')
+    say(screen, far_line(found))
+    say(screen, ceiling_line(found))
+    screen.print(table_of(FAR, far_rows(found)))
+    if detail == ALL:
+        say(screen, f'velocity gap on {found.held_out} (held out) by how far ahead, m/s')
+        screen.print(table_of(('s ahead', *AHEAD), ahead_rows(found)))
     if found.in_simulator:
-        say(simulator_line(found.in_simulator, found))
-        screen.print(_table(IN_SIMULATOR, simulator_rows(found)))
-        say('where: force and moment that the simulator does not explain')
-        screen.print(_table(WHERE, [where_row(row) for row in shown(found.in_simulator.where)]))
+        say(screen, simulator_line(found.in_simulator, found))
+        screen.print(table_of(IN_SIMULATOR, simulator_rows(found)))
+        say(screen, 'where: force and moment that the simulator does not explain')
+        screen.print(table_of(WHERE, [where_row(row) for row in shown(found.in_simulator.where)]))
     if found.closed_loop:
-        say(loop_line(found.closed_loop, found.held_out))
-        screen.print(_table(TITLES, loop_rows(found.closed_loop)))
+        say(screen, loop_line(found.closed_loop, found.held_out))
+        screen.print(table_of(TITLES, loop_rows(found.closed_loop)))
         if found.closed_loop.without:
-            say(COST_LINE)
-            screen.print(_table(COSTS, cost_rows(found.closed_loop)))
-    for line in (*open_lines(found), *nuisance_lines(found)):
-        say(line)
+            say(screen, COST_LINE)
+            screen.print(table_of(COSTS, cost_rows(found.closed_loop)))
+    for line in (*open_lines(found), *(nuisance_lines(found) if detail == ALL else ())):
+        say(screen, line)
     if found.fly_next:
-        say('what to fly next')
-        screen.print(_table(NEXT, [next_row(one) for one in found.fly_next]))
+        say(screen, 'what to fly next')
+        screen.print(table_of(NEXT, [next_row(one) for one in found.fly_next]))
 
 
 def shown(channels: Iterable[Channel]) -> list[Channel]:
@@ -116,9 +121,21 @@ def band_of(row: Channel | Unexplained) -> str:
 
 
 def shown_effects(found: Diagnosis) -> list[Ranked]:
-    """Return the effects that are named, or probable enough for a row."""
-    named = {*found.verdict, *(one.effect for one in found.minor)}
-    return [row for row in found.ranking if row.probability >= WORTH or row.effect in named]
+    """Return the effects that are named, and those that the model has beside them."""
+    named = {*found.verdict, *found.undetermined, *(one.effect for one in found.minor)}
+    return [row for row in found.ranking if row.form is not None or row.effect in named]
+
+
+def improbable_lines(found: Diagnosis) -> list[str]:
+    """Return the probabilities of the effects without a row as a line, if there are any."""
+    rows = {row.effect for row in shown_effects(found)}
+    others = [row for row in found.ranking if row.effect not in rows]
+    told = [f'{titled(row.effect)} {row.probability:.2f}' for row in others
+            if row.probability >= WORTH]
+    below = len(others) - len(told)
+    if below:
+        told.append(f'{below}{" other" if told else ""} effect{"s" * (below != 1)} below {WORTH}')
+    return [f'probability of effects not in the table: {", ".join(told)}'] if told else []
 
 
 def form_of(row: Ranked) -> str:
@@ -178,6 +195,12 @@ def far_rows(found: Diagnosis) -> list[list[str]]:
                         given.before, given.before_own, given.after,
                         ceiling.given_attitude.after, given.noise)),
                     gap.units[name]] for name in given.before]
+
+
+def ahead_rows(found: Diagnosis) -> list[list[str]]:
+    """Return the cells of every horizon: the velocity gap at each stage."""
+    return [[f'{float(seconds):g}', *(f'{one[stage]["velocity"]:.3g}' for stage in AHEAD.values())]
+            for seconds, one in found.gap.horizons.items()]
 
 
 def simulator_line(one: GapInSimulator, found: Diagnosis) -> str:
@@ -290,14 +313,5 @@ def _which(found: Diagnosis) -> Table:
         rows.append([f'{row.effect}\n{EFFECTS[row.effect].title}', form_of(row),
                      f'{row.probability:.2f}', contribution_of(row), values_of(row),
                      without_it(found, row)])
-    return _table(('effect', 'form, explains', 'probability', 'contribution', 'parameters',
-                   'velocity gap\nwithout it, m/s'), rows or [['none', *[''] * 5]])
-
-
-def _table(names: tuple, rows: list) -> Table:
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1), header_style='bold')
-    for name in names:
-        table.add_column(name, overflow='fold')
-    for row in rows:
-        table.add_row(*row)
-    return table
+    return table_of(('effect', 'form, explains', 'probability', 'contribution', 'parameters',
+                     'velocity gap\nwithout it, m/s'), rows or [['none', *[''] * 5]])

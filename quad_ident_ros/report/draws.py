@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from quad_ident_ros.report.table import console, say, table_of
+from quad_ident_ros.report.screen import console, say, table_of
 from quad_ident_ros.vehicle_files.draws import Draws
 
 TITLES = ('number', 'vehicle file', 'std', 'std drawn', 'from', 'to', 'unit')

@@ -5,7 +5,7 @@
 from pathlib import Path
 
 from quad_ident_ros.diagnose.carried import Carried, NOMINAL, WHOLE
-from quad_ident_ros.report.table import console, say, table_of
+from quad_ident_ros.report.screen import console, say, table_of
 from quad_ident_ros.vehicle_files.export import Export
 
 FILE, CODE = 'file', 'file_and_code'

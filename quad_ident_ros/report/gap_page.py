@@ -23,6 +23,7 @@ from quad_ident_ros.report.diagnosis import (
     far_line,
     far_rows,
     form_of,
+    improbable_lines,
     IN_SIMULATOR,
     minor_lines,
     NEXT,
@@ -120,7 +121,7 @@ def _which(found: Diagnosis, pictures: dict) -> list:
                         kinds=('text', 'text', '', '', '', 'text', '', '', 'text'))]
                  if rows else [tag('p', 'No effect is probable.')])
     return [tag('h2', 'Which'), pictures['probabilities'], *estimates,
-            *_listed([*minor_lines(found), *one_finding_lines(found)])]
+            *_listed([*improbable_lines(found), *minor_lines(found), *one_finding_lines(found)])]
 
 
 def _far(found: Diagnosis, pictures: dict) -> list:

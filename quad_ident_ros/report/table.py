@@ -5,37 +5,10 @@
 import math
 
 from rich import box
-from rich.console import Console
 from rich.table import Table
 
 from quad_ident_ros.identify.methods import METHODS
 from quad_ident_ros.identify.signals import GAIN_UNITS
-
-WIDTH = 150   # columns that the table may need: a narrower screen wraps it, and loses no digit
-
-
-def console():
-    """
-    Return a console that does not cut the table, whatever the width of the screen.
-
-    Names of files and columns are shown as they are, whatever signs they have.
-    """
-    return Console(width=max(Console().width, WIDTH), markup=False, emoji=False)
-
-
-def say(screen, text):
-    """Print a line on a console as it is, however long."""
-    screen.print(text, markup=False, highlight=False, soft_wrap=True)
-
-
-def table_of(titles, rows, numbers=()):
-    """Return a rich Table of rows of text; numbers: titles of the columns on the right."""
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1), header_style='bold')
-    for title in titles:
-        table.add_column(title, overflow='fold', justify='right' if title in numbers else 'left')
-    for row in rows:
-        table.add_row(*row)
-    return table
 
 
 def identification_table(identification):

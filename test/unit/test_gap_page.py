@@ -17,12 +17,13 @@ from quad_ident_ros.data.csv import write_csv
 from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.diagnose.residual_wrench import CHANNELS, ResidualWrench
 from quad_ident_ros.diagnose.result import FlightCheck, Minor, Unexplained, Value
+from quad_ident_ros.effects.registry import titled
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import MOCAP_IMU
 from quad_ident_ros.model.vehicle import load_vehicle
 from quad_ident_ros.report import gap_page
-from quad_ident_ros.report.diagnosis import caution_lines, show
+from quad_ident_ros.report.diagnosis import ALL, caution_lines, show, USUAL, VERDICT
 from quad_ident_ros.report.gap_pictures import _by_third, save_map, save_probabilities
 from quad_ident_ros.report.received import diagnosis_from
 
@@ -54,9 +55,9 @@ def page(found, tmp_path):
 @pytest.fixture
 def terminal(found):
     """Return a function that returns what is printed of a changed diagnosis."""
-    def printed(**changes):
+    def printed(detail=USUAL, **changes):
         stream = io.StringIO()
-        show(replace(found, **changes), stream)
+        show(replace(found, **changes), stream, detail)
         return stream.getvalue()
     return printed
 
@@ -151,13 +152,57 @@ SAID = ('also present, but closing less than 5 %: lag of the motors (motor_lag),
 
 
 def test_what_remains_open_is_said_in_the_terminal(terminal):
-    text = terminal(**OPEN)
+    text = terminal(ALL, **OPEN)
     verdict, *_ = text.splitlines()
     assert verdict.startswith('verdict: drag of the rotors (rotor_drag), ')
     assert verdict.endswith(', and the rest is unknown')
     lines = [line.strip() for line in text.splitlines()]
     assert [said for said in SAID if said not in lines] == []
     assert 'monday differs' not in text
+
+
+def test_what_was_estimated_per_flight_and_other_horizons_are_asked_for(terminal, found):
+    usual, everything = terminal(**OPEN), terminal(ALL, **OPEN)
+    lines = [line.split() for line in everything.splitlines()]
+    for seconds, one in found.gap.horizons.items():
+        row = [f'{float(seconds):g}', *(f'{one[stage]["velocity"]:.3g}' for stage in (
+            'before', 'before_own', 'after', 'noise'))]
+        assert row in lines and row not in [line.split() for line in usual.splitlines()]
+    assert 'clock_offset' in everything and 'clock_offset' not in usual
+
+
+def test_the_verdict_alone_is_three_lines(terminal):
+    whole = terminal().splitlines()
+    assert terminal(VERDICT).splitlines() == whole[:3]
+
+
+def test_effects_without_a_row_are_told_in_one_line(terminal, found):
+    [line] = [one for one in terminal().splitlines() if 'not in the table' in one]
+    without = [row for row in found.ranking if row.form is None]
+    assert len(without) == 2
+    likely = [replace(row, probability=0.31) if row is without[0] else
+              replace(row, probability=0.001) if row is without[1] else row
+              for row in found.ranking]
+    [line] = [one for one in terminal(ranking=tuple(likely)).splitlines()
+              if 'not in the table' in one]
+    assert line == (f'probability of effects not in the table: {titled(without[0].effect)} 0.31, '
+                    '1 other effect below 0.02')
+
+
+class Screen(io.StringIO):
+    """A terminal that knows colours."""
+
+    def isatty(self):
+        return True
+
+
+@pytest.mark.parametrize(('value', 'coded'), [('1', False), ('', True)])
+def test_no_color_prints_no_codes(found, monkeypatch, value, coded):
+    monkeypatch.setenv('NO_COLOR', value)
+    monkeypatch.setenv('TERM', 'xterm-256color')
+    screen = Screen()
+    show(found, screen)
+    assert ('\x1b' in screen.getvalue()) == coded
 
 
 def finding(flight, message):

@@ -32,3 +32,9 @@ def test_a_folder_is_no_file_to_write(tmp_path, option):
 def test_a_vehicle_file_in_no_folder_is_said_before_the_work(tmp_path):
     with pytest.raises(InputError, match='there is no folder .*none; make it, or name another'):
         check_outputs(Namespace(out_vehicle=str(tmp_path / 'none' / 'a.yaml')))
+
+
+@pytest.mark.parametrize('name', ['a.pdf', 'a', 'a.html.gz'])
+def test_a_report_is_a_page_for_a_browser(name):
+    with pytest.raises(InputError, match=r'name a file that ends in \.html'):
+        check_outputs(Namespace(report=name))
