@@ -56,8 +56,11 @@ def find(kind, name_or_path):
     path = shipped or _existing(text)
     if path is not None:
         return path
-    raise InputError(f'{schema.shown(text)} is not among the {kind} ({", ".join(names(kind))}); '
-                     'give one of these or the path of a .yaml file')
+    shipped_names = names(kind)
+    mend = (schema.suggestion(text, shipped_names)
+            or 'give one of these or the path of a .yaml file')
+    raise InputError(f'{schema.shown(text)} is not among the {kind} ({", ".join(shipped_names)}); '
+                     f'{mend}')
 
 
 def _existing(path, kind=Path.is_file):

@@ -34,11 +34,16 @@ def shown(value: object) -> str:
     return _short.repr(value)
 
 
-def unknown_key(where: str, key: object, known: Collection[str]) -> InputError:
-    """Return the InputError for a key that is not known, with the nearest known one."""
+def suggestion(key: object, known: Collection[str]) -> str:
+    """Return "did you mean ...?" with the nearest known name, or nothing if none is near."""
     lower = {str(name).lower(): name for name in known}
     near = difflib.get_close_matches(shown(key).strip("'").lower(), list(lower), n=1)
-    hint = f'did you mean {lower[near[0]]!r}?' if near else f'known are {", ".join(sorted(known))}'
+    return f'did you mean {lower[near[0]]!r}?' if near else ''
+
+
+def unknown_key(where: str, key: object, known: Collection[str]) -> InputError:
+    """Return the InputError for a key that is not known, with the nearest known one."""
+    hint = suggestion(key, known) or f'known are {", ".join(sorted(known))}'
     return InputError(f'{where}: {shown(key)} is not known here; {hint}')
 
 

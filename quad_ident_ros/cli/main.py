@@ -4,11 +4,13 @@
 
 import argparse
 import importlib
+import re
 import sys
 
 from quad_ident_ros import __version__
 from quad_ident_ros.cli.node import NODES
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.schema import suggestion, unknown_key
 
 COMMANDS = {
     'demo': 'simulate, record and identify, or diagnose, on ROS 2, in three processes',
@@ -46,7 +48,11 @@ examples:
 
 
 def parser(wanted):
-    """Return the parser of the command line, with the options of the commands in `wanted`."""
+    """
+    Return the parser of the command line, and {command: its parser}.
+
+    Those of the commands in `wanted` have their options.
+    """
     top = argparse.ArgumentParser(
         prog='quad_ident', epilog=EPILOG, formatter_class=argparse.RawDescriptionHelpFormatter,
         description='Identify a quadrotor online by PSO, CS, PSO-CS, LS and VP; say where, why '
@@ -59,16 +65,27 @@ def parser(wanted):
             importlib.import_module(f'quad_ident_ros.cli.{module}').add(commands, said)
         else:
             commands.add_parser(name, help=said)
-    return top
+    return top, commands.choices
+
+
+def _refuse(command, unknown):
+    """End with the arguments that a command's parser does not know, and what may be meant."""
+    known = set(re.findall(r'--[a-z][a-z-]+', command.format_help()))
+    hint = suggestion(unknown[0].partition('=')[0], known) or 'try --help'
+    command.error(f'unrecognized arguments: {" ".join(unknown)}; {hint}')
 
 
 def main(args=None):
     """Run a command and return the exit code: 0, or 2 with one line on standard error."""
     words = sys.argv[1:] if args is None else args
-    top = parser(words[:1])
+    top, parsers = parser(words[:1])
     if words and words[0] in NODES:
         top.error(f'{words[0]} is a node, not a command; did you mean: node {words[0]}')
-    options = top.parse_args(words)
+    if words and words[0] not in COMMANDS and not words[0].startswith('-'):
+        top.error(str(unknown_key('COMMAND', words[0], COMMANDS)))
+    options, unknown = top.parse_known_args(words)
+    if unknown:
+        _refuse(parsers.get(options.command, top), unknown)
     if options.command is None:
         top.print_help()
         return 0

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable
 
 import numpy as np
 
+from quad_ident_ros import schema
 from quad_ident_ros.closed_loop.controller import NamedController
 from quad_ident_ros.closed_loop.reference import reference_of
 from quad_ident_ros.data.record import FlightRecord
@@ -52,7 +53,7 @@ def diagnose(records: Iterable[FlightRecord], vehicle: Vehicle, *,
     """
     for name in effects or ():
         if name not in EFFECTS:
-            raise InputError(f'{name!r} is not among the effects: {", ".join(EFFECTS)}')
+            raise schema.unknown_key('effects', name, EFFECTS)
 
     def told(share: float) -> None:     # flying in a simulator of the user takes as long
         on_progress(share if simulator is None else 0.5 * share)

@@ -190,6 +190,29 @@ def test_bad_input_gets_one_line_and_exit_code_2(call, flights, tmp_path, capsys
     assert '\n' not in said
 
 
+@pytest.mark.parametrize(('call', 'meant'), [
+    ('diagnos a.csv', 'diagnose'), ('identify a.csv --metod ls', '--method'),
+    ('diagnose a.csv --vehicle hummingbrd', 'hummingbird'),
+    ('diagnose a.csv --vehicle iris --effects rotor_drga', 'rotor_drag'),
+    ('fly figur8 --vehicle iris -o a.csv', 'figure8')])
+def test_a_wrong_name_is_told_with_the_one_that_may_be_meant(call, meant, capsys):
+    try:
+        code = main(call.split())
+    except SystemExit as end:
+        code = end.code
+    assert code == 2
+    *_, last = capsys.readouterr().err.splitlines()
+    assert ': error: ' in last and last.endswith(f'did you mean {meant!r}?')
+
+
+@pytest.mark.parametrize('call', ['--nonsense', 'info a.csv --zzz', 'xyz'])
+def test_a_name_like_no_other_is_refused_without_a_guess(call, capsys):
+    with pytest.raises(SystemExit) as end:
+        main(call.split())
+    said = capsys.readouterr().err
+    assert end.value.code == 2 and 'did you mean' not in said and call.split()[-1] in said
+
+
 def test_help_loads_no_library():
     """It took a second and a half."""
     code = """if True:
@@ -208,5 +231,5 @@ def test_help_loads_no_library():
 
 @pytest.mark.parametrize('name', list(COMMANDS))
 def test_every_command_has_a_parser_in_the_module_of_its_name(name):
-    parsed = parser([name])._subparsers._group_actions[0].choices[name]
+    parsed = parser([name])[1][name]
     assert name == 'withheld' or parsed.get_default('run') or parsed._actions[1:]

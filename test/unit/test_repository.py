@@ -84,7 +84,7 @@ def test_the_readme_calls_commands_that_exist():
     assert {name for name, _ in calls} >= {'demo', 'test', 'diagnose', 'simulate', 'identify'}
     for name, rest in calls:
         if name != 'test':
-            parser([name]).parse_args([name, *rest.split()])
+            parser([name])[0].parse_args([name, *rest.split()])
 
 
 DOCUMENTS = [ROOT / 'README.md', ROOT / 'CONTRIBUTING.md', *sorted((ROOT / 'docs').glob('*.md'))]

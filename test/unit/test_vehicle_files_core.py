@@ -316,4 +316,4 @@ def test_the_page_names_every_kind_and_its_commands_are_ones():
     assert all(kind.title in page for kind in KINDS)
     for call in re.findall(r'^    \./run ([^#\n]+)', page, flags=re.MULTILINE):
         words = call.split()
-        parser(words[:1]).parse_args(words)
+        parser(words[:1])[0].parse_args(words)
