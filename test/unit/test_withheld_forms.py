@@ -382,6 +382,29 @@ def test_the_plant_moves_by_rotorpys_law():
 
 
 @needs_rotorpy
+@pytest.mark.parametrize('effects', [
+    {}, {'motor_lag': {'time_constant': 0.02}}, {'rotor_gyro': {'rotor_inertia': 1e-4}},
+    {'rotor_drag': {'coefficient': 0.3}, 'actuation_delay': {'delay': 0.013}}])
+def test_a_step_of_the_plant_is_as_good_as_many(effects):
+    from withheld.plant import Reality
+    from withheld.vehicles import vehicle_of
+    params = vehicle_of('px4_quadrotor', np.random.default_rng(0), False)
+    commands = 1.0 + 0.05 * np.random.default_rng(1).normal(size=(50, 4))
+    ends = []
+    for parts in (1, 20):
+        plant = Reality(params, effects)
+        state = np.concatenate([[0, 0, 2, 0, 0, 0, 0, 0, 0, 1.0], np.zeros(6),
+                                np.full(4, plant.hover)])
+        for command in plant.hover * commands:
+            for _ in range(parts):
+                state = plant.hold(state, command, 0.01 / parts)
+        ends.append(state)
+    # After 0.5 s, far below what is measured: m, m/s, quaternion, rad/s.
+    assert np.abs(ends[1] - ends[0])[:13].max() < 2e-5
+    assert np.abs(ends[0][:3] - (0, 0, 2)).max() > 0.01
+
+
+@needs_rotorpy
 def test_the_controller_is_rotorpys():
     from rotorpy.controllers.quadrotor_control import SE3Control
 
