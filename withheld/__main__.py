@@ -32,7 +32,8 @@ One process flies realities with rotorpy and seals what they were; a second one 
 flights and cannot open the seal; this one then opens it and prints how often the diagnosis was
 right. The labels on disk are enciphered with a pad that only this process holds in its memory.
 
-`calibrate` instead fits the probabilities of the diagnosis to flights of development.
+`calibrate` instead fits the probabilities of the diagnosis to flights of development. `in-mujoco`
+says whether the gap falls in MuJoCo, once the effects are exported, by as much as was promised.
 """
 
 EPILOG = """\
@@ -42,6 +43,8 @@ examples:
   ./run withheld --count 150 --jobs 2            the same kinds of cases in proportion, but fewer
   ./run withheld calibrate                       fly development; print Rules.calibration
   ./run withheld calibrate KEPT                  the same of a folder that --keep has written
+  ./run withheld in-mujoco KEPT --count 40       diagnose against MuJoCo's model of the vehicle,
+                                                 export, and compare the gaps there
 """
 
 
@@ -50,10 +53,11 @@ def main(arguments=None):
     parser = argparse.ArgumentParser(
         prog='quad_ident withheld', description=DESCRIPTION, epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument('action', nargs='?', choices=('calibrate',), metavar='calibrate',
-                        help='fit the probabilities to flights of development')
+    parser.add_argument('action', nargs='?', choices=('calibrate', 'in-mujoco'), metavar='ACTION',
+                        help='calibrate: fit the probabilities to flights of development; '
+                             'in-mujoco: fly what is exported in MuJoCo')
     parser.add_argument('folders', nargs='*', metavar='FOLDER',
-                        help='for calibrate: kept runs (default: one that is flown now)')
+                        help='kept runs (default for calibrate: one that is flown now)')
     parser.add_argument('--set', choices=SETS,
                         help='which cases (default: evaluation, to be run once per release)')
     parser.add_argument('--count', type=_positive, metavar='N',
@@ -68,6 +72,8 @@ def main(arguments=None):
     options = parser.parse_args(arguments)
     if options.keep and Path(options.keep).exists():
         parser.error(f'--keep {options.keep}: it exists already; name a new folder')
+    if options.action == 'in-mujoco':
+        return _in_mujoco(parser, options)
     if options.action:
         return _calibrate(parser, options)
     options.set = options.set or 'evaluation'
@@ -90,6 +96,20 @@ def main(arguments=None):
     if options.set == 'evaluation' and options.count is None:
         keep(DOCUMENT, result, datetime.date.today())
     return 0
+
+
+def _in_mujoco(parser: argparse.ArgumentParser, options: argparse.Namespace) -> int:
+    """Print how far gaps fall in MuJoCo; return 1 where one falls by less than promised."""
+    from withheld.in_mujoco import falls_of, summary
+    if not options.folders:
+        parser.error('in-mujoco: name a folder that --keep has written')
+    cases = [case for folder in map(Path, options.folders)
+             for case in sorted((folder / 'flights').glob('*/vehicle.yaml'))][:options.count]
+    if not cases:
+        parser.error(f'in-mujoco {options.folders[0]}: there are no flights of a kept run')
+    said, fell_short = summary(falls_of([case.parent for case in cases], options.jobs))
+    print(said)
+    return 1 if fell_short else 0
 
 
 def _calibrate(parser: argparse.ArgumentParser, options: argparse.Namespace) -> int:
