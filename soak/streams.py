@@ -121,7 +121,7 @@ def _one(name: str, trouble: Callable[[Watch], list[Source]]) -> Finding:
         with launched.watcher('soak') as pair:
             watch = Watch(*pair)
             watch.until(lambda: watch.account, 'the recorder')
-            sources = [source for source in trouble(watch)]
+            sources = list(trouble(watch))
             sent = sum(source.sent for source in sources)
             # Rows that wait for others are given up 2 s after the publishers are gone.
             for source in sources:

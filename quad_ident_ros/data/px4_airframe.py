@@ -22,7 +22,7 @@ DSHOT_TIMER = -2        # of a bank's TIM; from this on down the timer speaks DS
 
 OTHERS = {1: 'a fixed wing', 3: 'a coaxial helicopter', 4: 'a helicopter', 7: 'an airship',
           8: 'a balloon', 10: 'a rover', 11: 'a boat', 12: 'a submarine', 15: 'a tricopter',
-          **{kind: 'a VTOL' for kind in range(19, 26)}}
+          **dict.fromkeys(range(19, 26), 'a VTOL')}
 """MAV_TYPE of MAVLink."""
 
 # Directions (forward, right) and senses of turning of motors 1.. where the parameters name none.

@@ -164,9 +164,8 @@ def test_the_bandwidth_of_a_flight_shows_above_the_frequencies_of_a_smooth_path(
     went = np.stack([lagged(asked[:, k], 2.0 * np.pi * corner)
                      for k, corner in enumerate(corners)], axis=1)
     speed = np.gradient(went[:, :3], t, axis=0)
-    columns = {name: values for name, values in zip(
-        ('px', 'py', 'pz', 'psi', *ASKED, 'vx', 'vy', 'vz'),
-        (*went.T, *asked.T, *speed.T), strict=True)}
+    columns = dict(zip(('px', 'py', 'pz', 'psi', *ASKED, 'vx', 'vy', 'vz'),
+                       (*went.T, *asked.T, *speed.T), strict=True))
     reference = reference_of(FlightRecord(t, columns, {'name': 'chirps'}))
     found = compare('idle', controller_of(f'{FILE}:Idle', BARE).controller, reference, BARE, NONE,
                     NONE, {}).bandwidth['real']

@@ -358,8 +358,8 @@ def test_angles_and_inputs_do_instead_of_quaternion_and_commands(problem):
 
 
 def test_a_quaternion_that_is_zero_names_its_flight(problem):
-    zero = with_columns(problem.clean, **{name: 0 * problem.clean.t for name in
-                                          ('qw', 'qx', 'qy', 'qz')})
+    nothing = dict.fromkeys(('qw', 'qx', 'qy', 'qz'), 0 * problem.clean.t)
+    zero = with_columns(problem.clean, **nothing)
     named = FlightRecord(zero.t, zero.columns, {'source': 'second.csv'})
     with pytest.raises(InputError, match='second.csv: sample 0: the quaternion'):
         fit([problem.clean, named], VEHICLE, ['mass'])

@@ -247,7 +247,7 @@ def test_thrusts_are_commands_where_they_are_shares_of_the_full_one(tmp_path):
 
 
 def test_a_flight_on_the_ground_keeps_its_four_motors(tmp_path):
-    record = changed(FLIGHT, **{name: 0.0 * T for name in CMD})
+    record = changed(FLIGHT, **dict.fromkeys(CMD, 0.0 * T))
     found = {'time': T, **columns('gyro_', 'xyz', RATE), **named(
         ('m1', 'm2', 'm3', 'm4'), record.stack(*CMD))}
     assert load(table(tmp_path, found)).has('output1', 'output4')
