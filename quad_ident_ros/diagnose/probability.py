@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """How probable it is that an effect is present: the one definition."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -54,6 +55,19 @@ def probabilities(posterior: dict, weights: dict, rules: Rules) -> dict[str, flo
     """
     there = {cause.effect: presence(weight, rules) for cause, weight in weights.items()}
     return by_effect(posterior) | there
+
+
+def told_apart(probability: dict[str, float], posterior: dict, doubtful: Iterable
+               ) -> dict[str, float]:
+    """
+    Return {effect: probability of being present} for effects that flights cannot tell apart.
+
+    What an effect contributes says that it, or its rival, is present; which of them, the posterior
+    says. Args: posterior {candidate: ...}; doubtful: candidates of the best set that have a rival.
+    """
+    which = by_effect(posterior)
+    return probability | {cause.effect: probability[cause.effect] * which[cause.effect]
+                          for cause in doubtful}
 
 
 def by_effect(posterior: dict) -> dict[str, float]:

@@ -11,6 +11,7 @@ from quad_ident_ros.diagnose import gap as gaps
 from quad_ident_ros.diagnose.bench import Bench
 from quad_ident_ros.diagnose.doubts import doubts_of
 from quad_ident_ros.diagnose.judgement import beyond, Judgement, unexplained
+from quad_ident_ros.diagnose.probability import told_apart
 from quad_ident_ros.diagnose.result import FlightCheck, Minor, Ranked, Value
 from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.greybox.parameters import NAMES, nominal
@@ -39,15 +40,16 @@ def verdict_of(bench: Bench, judged: Judgement, causes: tuple,
                ruled_out: Sequence[str] = ()) -> Verdict:
     """Return the Verdict of a Judgement; ruled_out: effects that were no candidates for it."""
     rules, checks = bench.rules, flight_checks(bench, judged)
-    total = judged.probability
     named = sorted(judged.material, key=lambda cause: -judged.weights[cause].contribution)
-    minor = tuple(Minor(cause.effect, total[cause.effect], judged.weights[cause].contribution)
-                  for cause in judged.model.effects
-                  if cause not in {*judged.material, *judged.stand_ins})
     # A flight that differs vetoes `none`; effects are what the others show, and it is named.
     unknown = (bool(judged.unexplained or judged.stand_ins)
                or not named and any(one.differs for one in checks))
     doubts = {} if unknown else doubts_of(bench.selection, tuple(named), rules)
+    total = told_apart(judged.probability, bench.selection.posterior,
+                       [cause for cause in named if cause in doubts])
+    minor = tuple(Minor(cause.effect, total[cause.effect], judged.weights[cause].contribution)
+                  for cause in judged.model.effects
+                  if cause not in {*judged.material, *judged.stand_ins})
     certain = tuple(cause for cause in named if cause not in doubts)
     sure = tuple(dict.fromkeys(cause.effect for cause in certain))
     names = ((*sure, 'unknown') if unknown else ('undetermined',) if doubts else sure or ('none',))

@@ -71,6 +71,8 @@ def flown_as(doubtful, trajectory):
 def test_a_hover_does_not_tell_a_payload_from_weaker_thrust(doubtful):
     found = doubtful[2]
     assert found.verdict == ('undetermined',) and found.undetermined == tuple(ALIKE)
+    # One of them is there, and no more than one is.
+    assert 0.9 < sum(probabilities(found)[name] for name in ALIKE) < 1.05
     one = proposal(doubtful[2])
     assert one['effects'] == ALIKE
     assert one['now'] < 1.0 < 5.0 < one['after'] == one['manoeuvres'][one['trajectory']]

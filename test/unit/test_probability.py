@@ -8,7 +8,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from quad_ident_ros.diagnose.probability import presence, probabilities, Weight, with_companions
+from quad_ident_ros.diagnose.probability import (
+    presence,
+    probabilities,
+    told_apart,
+    Weight,
+    with_companions,
+)
 from quad_ident_ros.diagnose.rules import RULES
 
 Named = namedtuple('Named', 'effect form')
@@ -53,3 +59,11 @@ def test_what_is_not_in_the_best_set_keeps_its_posterior_summed_over_its_forms()
     weights = {drag: of(0.8, 0.9)}
     found = probabilities({drag: 0.99, wind: 0.03, gust: 0.02}, weights, RULE)
     assert found == {'drag': presence(of(0.8, 0.9), RULE), 'wind': pytest.approx(0.05)}
+
+
+def test_effects_that_are_not_told_apart_share_their_probability():
+    """Each form of the mass counts for it; the drag has no rival and stays as it is."""
+    mass, other, thrust = Named('mass', 'a'), Named('mass', 'b'), Named('thrust', 'a')
+    posterior = {mass: 0.5, other: 0.2, thrust: 0.3, Named('drag', 'a'): 0.6}
+    found = told_apart({'mass': 0.98, 'thrust': 0.3, 'drag': 0.9}, posterior, [mass])
+    assert found == pytest.approx({'mass': 0.98 * 0.7, 'thrust': 0.3, 'drag': 0.9})
