@@ -96,7 +96,7 @@ def identify(records, settings=None, *, on_progress=lambda method, output, share
 
     Args: records: FlightRecords, for instance one per axis; settings: Settings;
     on_progress: called with method, output and the share done (0 to 1) of that fit; what it
-    raises (search.Cancelled) ends the identification; near: models by output near which the best
+    raises (errors.Cancelled) ends the identification; near: models by output near which the best
     ones are expected.
     Returns an Identification. The same records, settings and seed give the same numbers.
     Raises InputError for data that cannot be identified.
