@@ -87,7 +87,7 @@ def test_the_readme_calls_commands_that_exist():
             parser([name])[0].parse_args([name, *rest.split()])
 
 
-DOCUMENTS = [ROOT / 'README.md', ROOT / 'CONTRIBUTING.md', *sorted((ROOT / 'docs').glob('*.md'))]
+DOCUMENTS = [ROOT / 'README.md', ROOT / 'CONTRIBUTING.md', *sorted((ROOT / 'docs').rglob('*.md'))]
 
 
 @pytest.mark.parametrize('document', DOCUMENTS, ids=lambda path: path.name)
