@@ -11,7 +11,8 @@ HEAD = """\
 # Command line
 
 `quad_ident COMMAND`, in a checkout `./run COMMAND`, in a ROS 2 workspace
-`ros2 run quad_ident_ros quad_ident COMMAND`. This page is made from the parsers: `quad_ident COMMAND --help` says the same.
+`ros2 run quad_ident_ros quad_ident COMMAND`. This page is made from the parsers:
+`quad_ident COMMAND --help` says the same.
 
 | command | what it does |
 | --- | --- |

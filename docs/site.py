@@ -3,6 +3,7 @@
 """Hooks of mkdocs.yml: pages that are made when the site is built, links, no network."""
 
 from collections.abc import Iterator
+import json
 from pathlib import Path
 import re
 
@@ -12,7 +13,7 @@ from mkdocs.structure.files import File, Files
 from mkdocs.structure.pages import Page
 
 from docs.command_line import reference
-from docs.notebook import page_of
+from docs.notebook import NOTEBOOK, page_of
 from docs.offline import loaded
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -24,14 +25,13 @@ FENCED = re.compile(r'(^```.*?^```$)', re.M | re.S)
 
 
 def on_files(files: Files, config: MkDocsConfig) -> Files:
-    """Add the front page, the command line, the notebooks, and the files that links lead to."""
+    """Add the front page, the command line, the notebook, and the files that links lead to."""
     for name, path in FRONT.items():
         text = (ROOT / path).read_text(encoding='utf-8')
         files.append(File.generated(config, name, content=_moved(text)))
     files.append(File.generated(config, 'command_line.md', content=reference()))
-    for file in [file for file in files if file.src_uri.endswith('.ipynb')]:
-        files.append(File.generated(config, file.src_uri.replace('.ipynb', '.md'),
-                                    content=page_of(Path(file.abs_src_path))))
+    notebook = json.loads(NOTEBOOK.read_text(encoding='utf-8'))
+    files.append(File.generated(config, 'tutorials/notebook.md', content=page_of(notebook)))
     wanted = {target for page in files.documentation_pages()
               for target in _outside(page.content_string, page.src_uri)}
     for target in sorted(wanted):

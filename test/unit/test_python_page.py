@@ -5,15 +5,14 @@
 import doctest
 import inspect
 import json
-from pathlib import Path
 import re
 
 import pytest
 
+from docs.notebook import NOTEBOOK, page_of, run
 from quad_ident_ros import api
 
-DOCS = Path(__file__).resolve().parents[2] / 'docs'
-PAGE = DOCS / 'python.md'
+PAGE = NOTEBOOK.parents[1] / 'python.md'
 
 
 @pytest.mark.slow
@@ -28,7 +27,6 @@ def test_the_examples_of_the_page_do_what_they_print(tmp_path, monkeypatch):
 
 def test_the_page_names_everything_that_is_public():
     text = PAGE.read_text(encoding='utf-8')
-    assert sorted(api.__all__, key=str.lower) == api.__all__
     assert [name for name in api.__all__ if not re.search(rf'\b{name}\b', text)] == []
 
 
@@ -39,3 +37,15 @@ def test_every_public_function_is_typed_and_documented(name):
     assert signature.return_annotation is not inspect.Signature.empty
     assert all(one.annotation is not one.empty for one in signature.parameters.values())
     assert inspect.getdoc(getattr(api, name))
+
+
+@pytest.mark.slow
+def test_the_notebook_runs_and_says_what_is_saved_in_it():
+    def texts(notebook):
+        return [re.sub(r'\d+(\.\d+)?', '#', ''.join(output.get('text', 'picture')))
+                for cell in notebook['cells'] for output in cell.get('outputs', ())]
+    saved = json.loads(NOTEBOOK.read_text(encoding='utf-8'))
+    assert texts(run(saved)) == texts(saved)
+    said = page_of(saved)
+    assert 'drag of the rotors (rotor_drag)' in said and 'error in mass (mass_offset)' in said
+    assert said.count('data:image/png') == 2
