@@ -64,7 +64,8 @@ def _flat(mapping, prefix=''):
 
 
 @pytest.mark.parametrize('name', ['requirements.txt', '.ci/requirements-ament.txt',
-                                  '.ci/requirements-colcon.txt'])
+                                  '.ci/requirements-colcon.txt',
+                                  '.ci/requirements-site.txt'])
 def test_what_is_installed_is_pinned_with_checksums_and_from_no_named_host(name):
     text = re.sub('#.*', '', (ROOT / name).read_text(encoding='utf-8'))
     entries = text.replace('\\\n', ' ').split('\n')
