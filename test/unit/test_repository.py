@@ -45,6 +45,7 @@ def test_shipped_experiments_load_under_their_own_name(name):
 
 
 def test_the_parameters_file_has_parameters_of_the_nodes_only():
+    pytest.importorskip('rclpy', reason='there is no ROS 2 here')
     from quad_ident_ros.nodes import diagnoser, identifier, recorder, simulator
     data = yaml.safe_load((ROOT / 'config' / 'parameters.yaml').read_text(encoding='utf-8'))
     for node, module in (('simulator', simulator), ('recorder', recorder),
