@@ -21,13 +21,11 @@ HEAD = """\
 
 def reference() -> str:
     """Return the page: a table of the commands, then each with its arguments and examples."""
-    top = parser(COMMANDS)
-    [commands] = [action for action in top._actions
-                  if isinstance(action, argparse._SubParsersAction)]
+    _, commands = parser(COMMANDS)
     table = ''.join(f'| [`{name}`](#{name}) | {_cell(said)} |\n'
                     for name, said in COMMANDS.items())
     return HEAD + table + ''.join(
-        _command(name, commands.choices[name]) for name in COMMANDS)
+        _command(name, commands[name]) for name in COMMANDS)
 
 
 def _command(name: str, command: argparse.ArgumentParser) -> str:
