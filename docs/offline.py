@@ -11,6 +11,7 @@ NOT_LOADED = {'canonical', 'next', 'prev', 'alternate', 'license', 'author'}   #
 
 
 class _Addresses(HTMLParser):
+
     def __init__(self):
         super().__init__()
         self.found = []
