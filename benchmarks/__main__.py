@@ -10,6 +10,7 @@ import sys
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
+from benchmarks import runs
 from benchmarks.machine import described, take_one_core
 from benchmarks.size import QUICK, Size
 from benchmarks.tables import keep
@@ -35,7 +36,8 @@ def main(arguments=None):
                         f'{" and ".join(APART)}')
     parser.add_argument('--quick', action='store_true', help='few draws, to see that it works')
     parser.add_argument('--keep', action='store_true',
-                        help='put the tables into docs/, which is tracked; not with --quick')
+                        help='put the tables into docs/, which is tracked, and those that they '
+                        'replace into docs/performance/; not with --quick')
     options = parser.parse_args(arguments)
     if options.quick and options.keep:
         parser.error('--keep: few draws are nothing to keep')
@@ -65,7 +67,8 @@ def main(arguments=None):
             text = f'{found}\n\nMeasured: {described(PACKAGES, "all" if whole else "one")}.'
             print(f'\n## {name}\n\n{text}\n', flush=True)
             if options.keep:
-                keep(SECTIONS[name], name, text)
+                with runs.older_kept(SECTIONS[name], name):
+                    keep(SECTIONS[name], name, text)
         except InputError as error:
             screen.print(f'error: {error}', markup=False)
             return 2

@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""The one error that bad input raises, and what is said of the errors of libraries."""
+"""What is raised by bad input and by cancelled work, and how errors of libraries are worded."""
 
 from pathlib import Path
 import struct
@@ -13,6 +13,10 @@ _LONGEST = 100      # characters of a library's message
 
 class InputError(ValueError):
     """Input that cannot be used; the message says what, where and how to mend it."""
+
+
+class Cancelled(Exception):
+    """The work was cancelled by whoever started it; raised out of on_progress."""
 
 
 class Reason(Exception):

@@ -17,6 +17,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from withheld.cases import SETS
+from withheld.page import keep
 from withheld.score import score
 from withheld.seal import unseal
 from withheld.table import markdown
@@ -39,7 +40,7 @@ says whether the gap falls in MuJoCo, once the effects are exported, by as much 
 EPILOG = """\
 examples:
   ./run withheld --set development --count 12    a few cases, to see that it works
-  ./run withheld                                 the evaluation set; adds to docs/withheld.md
+  ./run withheld                                 the evaluation set; kept in docs/withheld.md
   ./run withheld --count 150 --jobs 2            the same kinds of cases in proportion, but fewer
   ./run withheld calibrate                       fly development; print Rules.calibration
   ./run withheld calibrate KEPT                  the same of a folder that --keep has written
@@ -204,14 +205,6 @@ def follow(process, bar, title, total=None):
             bar.update(task, completed=count, total=total or int(parts[-1]))
     if process.returncode:
         raise subprocess.CalledProcessError(process.returncode, title)
-
-
-def keep(document, result, day):
-    """Append the tables of a run to the document."""
-    text = document.read_text(encoding='utf-8').rstrip('\n')
-    head = (f'## {day}, version {result["version"]}: {result["count"]} cases, '
-            f'seed {result["seed"]}')
-    document.write_text(f'{text}\n\n{head}\n\n{markdown(result)}\n', encoding='utf-8')
 
 
 def _bar():

@@ -6,6 +6,7 @@ import secrets
 import sys
 
 from quad_ident_ros.cli.identify import show
+from quad_ident_ros.cli.options import asking_for_ros
 from quad_ident_ros.effects.registry import EFFECTS, titled
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.identify.result import as_data
@@ -52,8 +53,7 @@ def run(options):
         from quad_ident_ros.nodes.demo import run_demo
         from quad_ident_ros.nodes.gap_demo import run_gap_demo
     except ImportError as error:
-        raise InputError(f'ROS 2 is not installed ({error}): source ROS 2 Jazzy, or start this as '
-                         '`./run demo`, which installs it') from None
+        raise InputError(asking_for_ros(error)) from None
     if options.seed is None:
         options.seed = secrets.randbelow(10 ** 6) if options.gap else 0
     if options.real_time_factor < 0 or options.seed < 0:

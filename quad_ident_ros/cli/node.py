@@ -5,6 +5,9 @@
 import argparse
 import importlib
 
+from quad_ident_ros.cli.options import asking_for_ros
+from quad_ident_ros.errors import InputError
+
 NODES = ('simulator', 'recorder', 'identifier', 'diagnoser')
 
 
@@ -21,5 +24,8 @@ def add(commands, said):
 
 def run(options):
     """Run the node until it is stopped; returns its exit code."""
-    module = importlib.import_module(f'quad_ident_ros.nodes.{options.name}')
+    try:
+        module = importlib.import_module(f'quad_ident_ros.nodes.{options.name}')
+    except ImportError as error:
+        raise InputError(asking_for_ros(error)) from None
     return module.main(options.arguments)

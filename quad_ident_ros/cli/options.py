@@ -89,6 +89,12 @@ def asking_for_vehicle(path: str) -> str:
             'logs of PX4 contain part of it')
 
 
+def asking_for_ros(error: ImportError) -> str:
+    """Return what to say where ROS 2 is missing."""
+    return (f'ROS 2 is not installed ({error}): source ROS 2 Jazzy and start this again; on Linux '
+            'on x86-64 ./run in a checkout installs one by itself')
+
+
 def thrust_by_log(option: str | None, path: str) -> bool:
     """Whether the thrust coefficient of --vehicle is that by which the log carries the weight."""
     if option != AUTO:

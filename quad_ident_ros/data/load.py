@@ -4,6 +4,7 @@
 
 from pathlib import Path
 
+from quad_ident_ros.data.mapping import Mapping
 from quad_ident_ros.data.outputs import commanded
 from quad_ident_ros.data.readers.others import (
     is_text,
@@ -13,11 +14,14 @@ from quad_ident_ros.data.readers.others import (
     START,
 )
 from quad_ident_ros.data.readers.registry import READERS
+from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.data.split import split_at_jumps
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.model.vehicle import Vehicle
 
 
-def load(path, mapping=None, vehicle=None):
+def load(path: str | Path, mapping: Mapping | None = None,
+         vehicle: Vehicle | None = None) -> FlightRecord:
     """
     Return the FlightRecord in a file or bag that holds one flight.
 
@@ -33,7 +37,8 @@ def load(path, mapping=None, vehicle=None):
     return flights[0]
 
 
-def load_all(path, mapping=None, vehicle=None, in_part=False):
+def load_all(path: str | Path, mapping: Mapping | None = None, vehicle: Vehicle | None = None,
+             in_part: bool = False) -> list[FlightRecord]:
     """
     Return the flight records in a file or bag, at least one; arguments and errors of load.
 

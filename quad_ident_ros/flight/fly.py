@@ -2,21 +2,23 @@
 # SPDX-License-Identifier: Apache-2.0
 """Flights with known truth: the vehicle model with effects, under control, along a trajectory."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from quad_ident_ros import schema
 from quad_ident_ros.data.record import FlightRecord
-from quad_ident_ros.effects.registry import vector
+from quad_ident_ros.effects.registry import Values, vector
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.flight.controller import Tracking
 from quad_ident_ros.flight.loop import close_loop
-from quad_ident_ros.flight.measure import CLEAN, errors_of, measured
+from quad_ident_ros.flight.measure import CLEAN, errors_of, measured, Sensors
 from quad_ident_ros.flight.trajectories import plan, scale_of
 from quad_ident_ros.model.attitude import quaternion_from_euler, rotation_matrix
 from quad_ident_ros.model.dynamics import STATES
 from quad_ident_ros.model.rigid_body import rotor_table, STATE, vehicle_vector, with_residual
 from quad_ident_ros.model.sensors import BLOCK, recorded, tilts_of, turn
-from quad_ident_ros.model.vehicle import hover_fault
+from quad_ident_ros.model.vehicle import hover_fault, Vehicle
 
 FULL_VOLTAGE = 16.8     # V at the start of every flight: the voltage of reference
 FALL = 0.015            # V/s at hover power: some four minutes of flight with four cells
@@ -31,8 +33,10 @@ REMEMBERING = ('battery_sag', 'motor_lag', 'actuation_delay')
 MEASURING = ('com_offset', 'attitude_misalignment', 'gyro_bias')
 
 
-def fly_closed_loop(vehicle, effects, trajectory, *, duration=30.0, rate=100.0, seed=0,
-                    noise=CLEAN, changes=()):
+def fly_closed_loop(vehicle: Vehicle, effects: Values, trajectory: str, *,
+                    duration: float = 30.0, rate: float = 100.0, seed: int = 0,
+                    noise: Sensors = CLEAN,
+                    changes: Sequence[tuple[float, Values]] = ()) -> FlightRecord:
     """
     Return the FlightRecord of a closed-loop flight, in the columns of the record format.
 

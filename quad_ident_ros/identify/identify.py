@@ -2,12 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Identification of a set of flight records by one or more methods."""
 
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 import time
 
 import numpy as np
 
 from quad_ident_ros import __version__
+from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.identify.findings import said_of, said_of_order
 from quad_ident_ros.identify.methods import METHODS
@@ -90,13 +92,15 @@ def collect(records, settings):
             list(dict.fromkeys(remarks)))
 
 
-def identify(records, settings=None, *, on_progress=lambda method, output, share: None, near=None):
+def identify(records: Sequence[FlightRecord], settings: Settings | None = None, *,
+             on_progress: Callable[[str, str, float], None] = lambda method, output, share: None,
+             near: Mapping[str, SecondOrder] | None = None) -> Identification:
     """
     Fit K/((s+a)(s+b)) to each excited output of flight records by each method.
 
     Args: records: FlightRecords, for instance one per axis; settings: Settings;
     on_progress: called with method, output and the share done (0 to 1) of that fit; what it
-    raises (search.Cancelled) ends the identification; near: models by output near which the best
+    raises (errors.Cancelled) ends the identification; near: models by output near which the best
     ones are expected.
     Returns an Identification. The same records, settings and seed give the same numbers.
     Raises InputError for data that cannot be identified.

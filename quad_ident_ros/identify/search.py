@@ -10,10 +10,6 @@ from quad_ident_ros.identify.moves import keep_better
 from quad_ident_ros.identify.space import SIZE
 
 
-class Cancelled(Exception):
-    """The fit was cancelled by whoever started it."""
-
-
 @dataclass(frozen=True)
 class SwarmSettings:
     """

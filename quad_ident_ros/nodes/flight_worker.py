@@ -4,14 +4,10 @@
 
 import threading
 
-from quad_ident_ros.errors import InputError
+from quad_ident_ros.errors import Cancelled, InputError
 from quad_ident_ros.experiment import fly
 
 ENDING = 1.0    # s that a flight has to end; a compilation in it cannot be told to
-
-
-class _Cancelled(Exception):
-    pass
 
 
 class FlightWorker(threading.Thread):
@@ -31,7 +27,7 @@ class FlightWorker(threading.Thread):
                                on_progress=self._on_progress)
         except InputError as error:
             self.outcome = error
-        except _Cancelled:
+        except Cancelled:
             pass
 
     def cancel(self):
@@ -41,4 +37,4 @@ class FlightWorker(threading.Thread):
 
     def _on_progress(self, _):
         if self._cancelled.is_set():
-            raise _Cancelled
+            raise Cancelled

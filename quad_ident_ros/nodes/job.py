@@ -9,8 +9,7 @@ import traceback
 
 from std_msgs.msg import String
 
-from quad_ident_ros.errors import InputError
-from quad_ident_ros.identify.search import Cancelled
+from quad_ident_ros.errors import Cancelled, InputError
 
 PROGRESS_PERIOD = 0.1   # s between two messages on ~/progress
 ENDING = 1.0            # s that work has to end; a compilation cannot be told to

@@ -24,7 +24,7 @@ from quad_ident_ros.vehicle_files.speed_unit import counted, unit_of
 from quad_ident_ros.vehicle_files.target import Code, Target
 from quad_ident_ros.vehicle_files.targets import TARGETS
 from quad_ident_ros.vehicle_files.wanted import wanted_of
-from quad_ident_ros.vehicle_files.ways import Fate, Fates, fates_of, NEEDS, WAYS
+from quad_ident_ros.vehicle_files.ways import Fate, Fates, fates_of, NEEDS, WAYS, why_not
 
 PLACES = 1e-6       # m between places of rotors that are told apart: files round them
 
@@ -186,5 +186,5 @@ def _remaining(vehicle: Vehicle, effects: Values, target: Target, edits: Edits) 
         reason = next((edits.lacking[key] for key in keys if key in edits.lacking), '')
         if effect not in vehicle.effects and (reason or not keys):
             found.append(Fate(effect, '', 'the vehicle has none, that of the file stays: '
-                              + (reason or NEEDS[effect])))
+                              + (reason or why_not(effect))))
     return found

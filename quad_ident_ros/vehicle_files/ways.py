@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import math
 from typing import Literal
 
-from quad_ident_ros.effects.registry import FORMS, Values
+from quad_ident_ros.effects.registry import EFFECTS, FORMS, Values
 
 Key = Literal['mass', 'centre', 'inertia', 'thrust', 'exponent', 'losses', 'torque', 'speed_max',
               'rise', 'fall', 'rotor_drag', 'linear_drag', 'body_drag', 'inflow', 'flapping',
@@ -83,7 +83,12 @@ NEEDS: dict[str, str] = {
     'gyro_bias': 'it is one of the sensors: set it as the bias of the IMU',
     'com_offset': 'the format has its rotors at fixed places about the centre of mass',
     'motor_lag': 'the format has no such lag'}
-"""Why an effect without a way is not carried."""
+"""Why an effect without a way is not carried; see why_not."""
+
+
+def why_not(effect: str) -> str:
+    """Return why a format of numbers does not carry an effect that has no way into it."""
+    return NEEDS.get(effect, f'the format has no number for {EFFECTS[effect].title}')
 
 
 @dataclass(frozen=True)
@@ -151,7 +156,7 @@ def fates_of(effects: Values, base_effects: Values, holds: Collection[Key],
         if way is None and _alike(values, base_effects.get(effect, {})):
             carried.append(Fate(effect, form, 'the file has it already'))
         elif way is None or reason:
-            not_carried.append(Fate(effect, form, reason or NEEDS[effect]))
+            not_carried.append(Fate(effect, form, reason or why_not(effect)))
         elif effect == 'battery_sag' and sag is None:
             not_carried.append(Fate(effect, form, 'its mean depends on the flight; name one by '
                                     '--flight'))

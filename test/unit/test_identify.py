@@ -12,11 +12,10 @@ import numpy as np
 import pytest
 
 from quad_ident_ros.data.record import FlightRecord
-from quad_ident_ros.errors import InputError
+from quad_ident_ros.errors import Cancelled, InputError
 from quad_ident_ros.experiment import fly, load_experiment
 from quad_ident_ros.identify.identify import identify, LEVEL_UNKNOWN, Settings, with_budget
 from quad_ident_ros.identify.result import as_data, from_data, parameter_table
-from quad_ident_ros.identify.search import Cancelled
 from quad_ident_ros.identify.transfer import response, SecondOrder
 
 T = np.arange(501) * 0.01

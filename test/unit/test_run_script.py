@@ -63,3 +63,36 @@ def test_where_both_are_taken_a_new_one_is_made_and_that_is_said(tmp_path, usual
         (tmp_path / name).touch()
     folder, said = scratch(tmp_path)
     assert folder.is_dir() and folder.parent == tmp_path and 'not for you alone' in said
+
+
+def mode_on(system, tmp_path):
+    """Return the mode of `run` on a machine of which uname says this."""
+    (tmp_path / 'uname').write_text(f'#!/bin/sh\necho "{system}"\n')
+    (tmp_path / 'uname').chmod(0o755)
+    text = RUN.read_text(encoding='utf-8')
+    look = re.search(r'^look_around\(\) {.*?^}$', text, re.MULTILINE | re.DOTALL)[0]
+    code = ['ros_is_sourced() { false; }', f'root={RUN.parent}', look, 'look_around',
+            'echo "$mode"']
+    return subprocess.run(['bash', '-euc', '\n'.join(code)], capture_output=True, text=True,
+                          check=True, env={'PATH': f'{tmp_path}:{os.environ["PATH"]}'}
+                          ).stdout.strip()
+
+
+@pytest.mark.parametrize('system, mode', [('Linux x86_64', 'wheels'), ('Linux aarch64', 'plain'),
+                                          ('Darwin arm64', 'plain')])
+def test_ros_comes_along_only_where_pip_has_it(tmp_path, system, mode):
+    assert mode_on(system, tmp_path) == mode
+
+
+def test_without_ros_its_packages_are_left_out_and_all_others_stay():
+    text = RUN.read_text(encoding='utf-8')
+    program = re.search(r"awk '(.*?)' \"\$root/requirements.txt\"", text)[1]
+    every = (RUN.parent / 'requirements.txt').read_text(encoding='utf-8')
+    kept = subprocess.run(['awk', program, RUN.parent / 'requirements.txt'], capture_output=True,
+                          text=True, check=True).stdout
+
+    def names(lines):
+        return set(re.findall(r'^([a-z][\w-]*)==', lines, re.MULTILINE))
+    assert names(kept) == {name for name in names(every) if not name.startswith('ros-')}
+    assert {'numpy', 'rosbags'} <= names(kept) < names(every)
+    assert len(re.findall('--hash', kept)) > len(names(kept))

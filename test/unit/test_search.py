@@ -7,9 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from quad_ident_ros.errors import Cancelled
 from quad_ident_ros.identify.cs import abandon
 from quad_ident_ros.identify.methods import METHODS
-from quad_ident_ros.identify.search import Cancelled, Search, SwarmSettings
+from quad_ident_ros.identify.search import Search, SwarmSettings
 from quad_ident_ros.identify.space import SIZE
 
 PAPER = SwarmSettings()

@@ -609,18 +609,35 @@ def test_a_key_of_many_labels_comes_through_its_pipe():
     assert key == bytes(range(256)) * 4096
 
 
-def test_a_run_is_kept_in_the_document(tmp_path):
+def test_the_latest_run_is_on_the_page_and_older_ones_in_files(tmp_path):
     import datetime
 
-    from withheld.__main__ import keep
+    from withheld.page import keep
     page = tmp_path / 'withheld.md'
-    page.write_text('# Runs\n', encoding='utf-8')
+    page.write_text('# Check\n\n<!-- trend -->\n<!-- end of trend -->\n', encoding='utf-8')
     result = scores.score({'a': label(['wind'])}, {'a': diagnosis('wind')})
-    for day in (1, 2):
-        keep(page, result | {'version': '0.1.0', 'seed': 7}, datetime.date(2026, 1, day))
+    for day in (1, 2, 3):
+        keep(page, result | {'version': f'0.1.0 (c{day})', 'seed': 7},
+             datetime.date(2026, 1, day))
+    older = sorted((tmp_path / 'withheld').iterdir())
+    assert [path.name for path in older] == ['run_01.md', 'run_02.md']
     text = page.read_text(encoding='utf-8')
-    assert text.index('## 2026-01-01') < text.index('## 2026-01-02')
-    assert text.startswith('# Runs\n') and text.count('1 cases, seed 7') == 2
+    assert text.startswith('# Check\n') and text.count('1 cases, seed 7') == 1
+    assert '### 2026-01-03, version 0.1.0 (c3)' in text.partition('## Latest run')[2]
+    assert [path.read_text(encoding='utf-8').startswith(f'# 2026-01-0{k + 1}, version')
+            for k, path in enumerate(older)] == [True, True]
+    rows = [line for line in text.splitlines() if line.startswith('| [')]
+    assert [row.split('|')[1:4] for row in rows] == [
+        [' [c1](withheld/run_01.md) ', ' 2026-01-01 ', ' 1 '],
+        [' [c2](withheld/run_02.md) ', ' 2026-01-02 ', ' 1 '],
+        [' [c3](#latest-run) ', ' 2026-01-03 ', ' 1 ']]
+    assert all(row.split('|')[4] == ' 100 % of 1 ' for row in rows)
+
+
+def test_the_trend_has_what_the_runs_reached():
+    from withheld.__main__ import DOCUMENT
+    from withheld.page import with_trend
+    assert with_trend(DOCUMENT) == DOCUMENT.read_text(encoding='utf-8')
 
 
 def test_the_command_hands_its_arguments_on(capfd):
