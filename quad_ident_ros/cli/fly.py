@@ -84,7 +84,6 @@ def run(options):
                                  rate=options.rate, seed=options.seed,
                                  noise=SENSORS[options.noise])
     record = with_asked(record, plan(options.trajectory, vehicle, options.duration, options.seed))
-    path.parent.mkdir(parents=True, exist_ok=True)
     write_csv(path, record)
     if options.json != '-':
         speed = np.linalg.norm(record.stack('vx', 'vy', 'vz'), axis=1)
