@@ -63,8 +63,8 @@ HELP = f"""recorder: joins the topics of a flight into records, keeps and publis
 Subscribes (as the publisher offers, reliable first): attitude, altitude, pose, twist, input (types
 as the simulator publishes them), run (std_msgs/String, announces runs; not needed). Or odometry
 (nav_msgs/Odometry), imu (sensor_msgs/Imu) and actuators (actuator_msgs/Actuators), or any topics
-that a mapping names, which are joined at the stamps of the pose (else the first state), or of faster commands. So
-are the first five where their stamps are seldom equal.
+that a mapping names, which are joined at the stamps of the pose (else of the first state), or of
+commands that are faster. So are the first five where their stamps are seldom equal.
 Publishes:
   record        std_msgs/Float64MultiArray (latched, 16 deep)  samples x columns, see the labels;
                 and the topics of the parameter windows

@@ -157,7 +157,7 @@ def test_principal_axes_of_mujoco_turn_with_the_inertia():
     mjcf.INERTIAL, mjcf.INERTIAL.replace('mass', 'quat="0.9 0.1 0.2 0.3" mass'),
     '<geom type="box" size=".1 .1 .05" mass="1.2"/>'])
 def test_mujoco_itself_has_the_mass_and_the_inertia(body):
-    mujoco = pytest.importorskip('mujoco')
+    mujoco = pytest.importorskip('mujoco', reason='MuJoCo is not installed')
     source = Source('quad.xml', mjcf.model(body=body))
     vehicle = read_vehicle(source).vehicle
     wanted = replace(vehicle, mass=1.1 * vehicle.mass, products=(

@@ -92,7 +92,7 @@ def test_a_drone_of_drone_models_is_reduced_at_hover():
 @pytest.mark.skipif(os.environ.get('SCIPY_ARRAY_API') != '1',
                     reason='drone-models is imported only with SCIPY_ARRAY_API=1')
 def test_the_wrench_is_that_of_drone_models():
-    models = pytest.importorskip('drone_models')
+    models = pytest.importorskip('drone_models', reason='drone-models is not installed')
     from drone_models.core import load_params
     from drone_models.first_principles import dynamics
     path = Path(models.__file__).parent / 'data' / 'params.toml'

@@ -11,7 +11,7 @@ from quad_ident_ros.effects.registry import vector
 from quad_ident_ros.model.rigid_body import derivatives, INPUT, rotor_table, vehicle_vector
 from quad_ident_ros.vehicle_files.load import load_vehicle
 
-multirotor = pytest.importorskip('rotorpy.vehicles.multirotor')
+multirotor = pytest.importorskip('rotorpy.vehicles.multirotor', reason='rotorpy is not installed')
 
 
 @pytest.mark.parametrize('name', ['crazyflie', 'hummingbird', 'px4_sihsim_quadx'])

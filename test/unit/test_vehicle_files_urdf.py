@@ -132,7 +132,7 @@ def test_a_turned_inertia_beside_a_mounted_body_by_the_closed_form():
 
 
 def test_links_stand_where_yourdfpy_has_them():
-    yourdfpy = pytest.importorskip('yourdfpy')
+    yourdfpy = pytest.importorskip('yourdfpy', reason='yourdfpy is not installed')
     theirs = yourdfpy.URDF.load(io.StringIO(drone()), load_meshes=False, build_scene_graph=True)
     mass = sum(link.inertial.mass for link in theirs.robot.links)
     centre = np.zeros(3)
