@@ -55,7 +55,8 @@ SPECS = (
                   '(estimated) or auto (rest where the record says so).',
                   choices=('auto', 'rest', 'free')),
     ParameterSpec('vehicle', '', 'Name or file of the vehicle whose arm length makes U2 and U3 of '
-                  'moments, for records that do not say it; empty: these have no roll and pitch.'),
+                  'moments, for records that do not say it (empty: these have no roll and pitch), '
+                  'and whose limits tell where rotors saturate.'),
     ParameterSpec('trim', [], 'U1..U4 from which inputs count; empty: what the record says, or '
                   'its first sample.', length=(0, 4)),
     ParameterSpec('evaluations', 0, 'Evaluations of the objective per search, the same for each '
