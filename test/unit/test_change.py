@@ -18,7 +18,7 @@ from quad_ident_ros.identify.identify import collect, identify, Settings
 from quad_ident_ros.identify.online import Changes
 from quad_ident_ros.identify.signals import signals, vertical_share
 from quad_ident_ros.identify.validity import validity
-from quad_ident_ros.vehicle_files.load import load_vehicle
+from quad_ident_ros.vehicle_files.load import load_any_vehicle
 
 HOP = 250_000_000       # ns
 WEIGHT = MASS * GRAVITY
@@ -195,7 +195,7 @@ def test_nothing_is_told_from_inputs_that_the_rotors_cannot_give():
     record = FlightRecord(flight.t, {**flight.columns, 'u1': asked}, flight.info)
     assert 'z' in {found.output for _, found in alarms(record)}
     most = flight.columns['u1'].max() + 0.1     # N
-    vehicle = load_vehicle('paper_quadrotor')
+    vehicle = load_any_vehicle('paper_quadrotor')
     limited = replace(vehicle, speed_max=np.sqrt(most / 4 / vehicle.thrust_coefficient))
     assert alarms(with_inputs(record, limited)) == []
     part = with_inputs(record, limited).slice(1400, 1700)

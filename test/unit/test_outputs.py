@@ -33,17 +33,12 @@ def test_a_folder_is_no_file_to_write(tmp_path, option):
         check_outputs(Namespace(**{option: str(tmp_path)}))
 
 
-<<<<<<< HEAD
-def test_a_vehicle_file_in_no_folder_is_said_before_the_work(tmp_path):
-    with pytest.raises(InputError, match='there is no folder .*none; make it, or name another'):
-        check_outputs(Namespace(out_vehicle=str(tmp_path / 'none' / 'a.yaml')))
-
-
 @pytest.mark.parametrize('name', ['a.pdf', 'a', 'a.html.gz'])
 def test_a_report_is_a_page_for_a_browser(name):
     with pytest.raises(InputError, match=r'name a file that ends in \.html'):
         check_outputs(Namespace(report=name))
-=======
+
+
 @pytest.mark.parametrize('option', ['base', 'mapping'])
 def test_a_folder_is_no_file_to_read(tmp_path, option):
     with pytest.raises(InputError, match='this is a folder; name a file'):
@@ -63,4 +58,3 @@ def test_folders_that_are_not_there_are_made(tmp_path, monkeypatch, words):
     place = Path(words[-1])
     assert list(Path('new').iterdir()) == [place]
     assert place.is_file() or any(place.iterdir())
->>>>>>> 1045597 (Columns of text in Parquet files are named; missing folders are made by every command)

@@ -11,7 +11,7 @@ from refusing import refused
 
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.vehicle_files.kinds import kind_of
-from quad_ident_ros.vehicle_files.load import load_vehicle, read_vehicle
+from quad_ident_ros.vehicle_files.load import load_any_vehicle, read_vehicle
 from quad_ident_ros.vehicle_files.source import Source
 
 ARMS = ((0.2, -0.2), (-0.2, 0.2), (0.2, 0.2), (-0.2, -0.2))
@@ -98,7 +98,7 @@ def test_a_command_that_needs_the_rest_says_how_to_supply_it(tmp_path):
     path = tmp_path / 'drone.urdf'
     path.write_text(drone())
     with pytest.raises(InputError) as error:
-        load_vehicle(path)
+        load_any_vehicle(path)
     said = str(error.value)
     assert 'a URDF without thrust_coefficient, torque_coefficient, spins; run `quad_ident' in said
     assert '--set spins=... -o vehicle.yaml` and give that file' in said
