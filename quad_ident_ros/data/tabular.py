@@ -284,7 +284,7 @@ def _thorough(path: Path, rows: list[str], places: list[int], names: list[str], 
 
 
 def numbers_in(path: Path, name: str, cells: Sequence[str], comma: bool,
-                place: Callable[[int], str]) -> np.ndarray | None:
+               place: Callable[[int], str]) -> np.ndarray | None:
     """
     Return the numbers (N,) in the cells of a column, None for a column of text.
 

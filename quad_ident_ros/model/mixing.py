@@ -116,8 +116,9 @@ def beyond_limits(vehicle: Vehicle, inputs: ArrayLike) -> np.ndarray:
 def _beyond(vehicle: Vehicle, squared: np.ndarray) -> np.ndarray:
     """Return which squared speeds (N, n) are beyond the limits, but for rounding."""
     slack = 1e-9 * max(1.0, float(np.abs(squared).max()))
-    return ((squared < vehicle.speed_min ** 2 - slack)
-            | (squared > vehicle.speed_max ** 2 + slack))
+    low: np.ndarray = squared < vehicle.speed_min ** 2 - slack
+    high: np.ndarray = squared > vehicle.speed_max ** 2 + slack
+    return low | high
 
 
 def residual_rotor_speed(vehicle: Vehicle, inputs: ArrayLike) -> np.ndarray:
