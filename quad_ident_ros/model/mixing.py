@@ -110,7 +110,7 @@ def beyond_limits(vehicle: Vehicle, inputs: ArrayLike) -> np.ndarray:
 
     Args: inputs (N, 4) U1..U4.
     """
-    return _beyond(vehicle, squared_speeds(vehicle, inputs)).any(axis=1)
+    return np.asarray(_beyond(vehicle, squared_speeds(vehicle, inputs)).any(axis=1))
 
 
 def _beyond(vehicle: Vehicle, squared: np.ndarray) -> np.ndarray:
