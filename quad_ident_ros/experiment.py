@@ -24,7 +24,7 @@ from quad_ident_ros.model.simulate import (
     Simulation,
 )
 from quad_ident_ros.model.vehicle import Vehicle
-from quad_ident_ros.vehicle_files.load import load_vehicle
+from quad_ident_ros.vehicle_files.load import load_any_vehicle
 
 INPUTS = ('U1', 'U2', 'U3', 'U4')
 NOISE_UNITS = {'attitude': 'rad', 'altitude': 'm', 'position': 'm', 'velocity': 'm/s',
@@ -154,7 +154,7 @@ def load_experiment(name_or_path, vehicle=None):
     return Experiment(
         name=schema.name(f'{where}: name', data['name']),
         description=str(data.get('description', '')), model=model,
-        vehicle=load_vehicle(vehicle or data['vehicle']),
+        vehicle=load_any_vehicle(vehicle or data['vehicle']),
         period=period,
         trim=schema.choice(f'{where}: trim', data['trim'], ('hover', 'zero')),
         altitude=schema.number(f'{where}: altitude', data.get('altitude', 0.0)),

@@ -10,7 +10,7 @@ from pathlib import Path
 
 def write_whole(path: str | Path, text: str) -> None:
     """
-    Write a text file into a folder that is there; where it fails, what was there before stays.
+    Write a text file, into a new folder if there is none; what was there stays if it fails.
 
     What is no regular file, such as a pipe, is written to as it is. Raises OSError.
     """
@@ -27,11 +27,13 @@ def replacing(path: str | Path) -> Iterator[Path]:
     """
     Give a path to write to, of the same ending, which takes the place of a file at the end.
 
-    Where that fails, what was there before stays. Raises OSError with the name of that file.
+    Missing folders are made. If the block fails, what was there before stays. Raises OSError with
+    the name of that file.
     """
     place = Path(path).resolve()    # of a link, the file that it leads to
     temporary = place.with_name(f'.{os.getpid()}.{place.name}')
     try:
+        place.parent.mkdir(parents=True, exist_ok=True)
         yield temporary
         temporary.replace(place)
     except OSError as error:

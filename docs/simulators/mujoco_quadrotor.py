@@ -7,10 +7,10 @@ from pathlib import Path
 import mujoco
 import numpy as np
 
-from quad_ident_ros.vehicle_files.load import load_vehicle
+from quad_ident_ros.vehicle_files.load import load_any_vehicle
 
 FILE = Path(__file__).with_name('quadrotor.xml')
-THRUST = load_vehicle(FILE).thrust_coefficient      # N/(rad/s)^2 that stand for a thrust here
+THRUST = load_any_vehicle(FILE).thrust_coefficient      # N/(rad/s)^2 that stand for a thrust here
 
 
 class Quadrotor:

@@ -55,7 +55,6 @@ def run(options):
         for path in paths:
             refuse_overwriting(path, [options.flight])
         for path, record in zip(paths, flights, strict=True):
-            path.parent.mkdir(parents=True, exist_ok=True)
             bar.update(task, description=f'writing {path}', total=1.0, completed=0.0)
             save(path, record, lambda share: bar.update(task, completed=share))
             done.append({'file': str(path), 'samples': len(record),

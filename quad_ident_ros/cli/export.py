@@ -18,6 +18,7 @@ from quad_ident_ros.model.vehicle import load_vehicle, Vehicle
 from quad_ident_ros.report.data import write_json
 from quad_ident_ros.report.export import CODE, FILE, show, show_cost
 from quad_ident_ros.vehicle_files.export import Export, export, mean_left
+from quad_ident_ros.vehicle_files.kinds import KINDS
 from quad_ident_ros.vehicle_files.load import source_of
 from quad_ident_ros.vehicle_files.mujoco_code import SAYS as CODE_SAYS
 from quad_ident_ros.vehicle_files.source import mark_of, Source
@@ -114,7 +115,12 @@ def _base(options: argparse.Namespace) -> Source | None:
         return None
     source = source_of(options.base)
     if source is None:
-        raise InputError(f'{options.base}: expected a file of a simulator as --base')
+        kinds = {kind.name: kind.title for kind in KINDS}
+        takes = (kinds[TARGETS[options.to].kind] if options.to else 'a file of a simulator')
+        what = ('this is a vehicle file' if Path(options.base).is_file() else
+                'there is no such file')
+        raise InputError(f'--base {options.base}: {what}; give {takes}, or leave --base '
+                         'out for a new file')
     if Path(options.output).resolve() == Path(source.path).resolve():
         raise InputError(f'{options.output}: this would write over the base file; give another '
                          'name')

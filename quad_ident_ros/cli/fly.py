@@ -17,7 +17,7 @@ from quad_ident_ros.flight.measure import SENSORS
 from quad_ident_ros.flight.trajectories import plan, TRAJECTORIES
 from quad_ident_ros.report.data import write_json
 from quad_ident_ros.report.screen import progress_bar
-from quad_ident_ros.vehicle_files.load import load_vehicle
+from quad_ident_ros.vehicle_files.load import load_any_vehicle
 
 
 def _effects_text():
@@ -73,7 +73,7 @@ def add(commands, said):
 def run(options):
     """Fly, write the record and say what was flown."""
     schema.check_keys('--noise', {options.noise: None}, SENSORS)
-    vehicle = load_vehicle(options.vehicle)
+    vehicle = load_any_vehicle(options.vehicle)
     effects = from_entries(options.effect, vehicle.effects, '--effect')
     path = Path(options.output)
     if not path.name.endswith(('.csv', '.csv.gz')):
@@ -84,7 +84,6 @@ def run(options):
                                  rate=options.rate, seed=options.seed,
                                  noise=SENSORS[options.noise])
     record = with_asked(record, plan(options.trajectory, vehicle, options.duration, options.seed))
-    path.parent.mkdir(parents=True, exist_ok=True)
     write_csv(path, record)
     if options.json != '-':
         speed = np.linalg.norm(record.stack('vx', 'vy', 'vz'), axis=1)

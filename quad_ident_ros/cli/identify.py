@@ -15,7 +15,7 @@ from quad_ident_ros.report.data import write_json
 from quad_ident_ros.report.picture import save_responses
 from quad_ident_ros.report.screen import console, progress_bar
 from quad_ident_ros.report.table import identification_table, legend, notes
-from quad_ident_ros.vehicle_files.load import load_vehicle
+from quad_ident_ros.vehicle_files.load import load_any_vehicle
 
 
 def add(commands, said):
@@ -68,7 +68,7 @@ def run(options):
         raise InputError(f'--evaluations: expected at least 1, got {options.evaluations}')
     trim = {'record': None, 'zero': (0.0, 0.0, 0.0, 0.0)}.get(options.trim)
     if options.trim == 'hover':
-        trim = tuple(load_vehicle(options.vehicle or 'paper_quadrotor').hover_input)
+        trim = tuple(load_any_vehicle(options.vehicle or 'paper_quadrotor').hover_input)
     settings = Settings(
         methods=tuple(METHODS) if options.method == 'all' else (options.method,),
         seed=options.seed, search=options.search, box=options.box, poles=options.poles,
@@ -79,7 +79,7 @@ def run(options):
     records = [record for path in options.flights
                for record in flights_from(path, selection=selection)]
     if options.vehicle:
-        vehicle = load_vehicle(options.vehicle)
+        vehicle = load_any_vehicle(options.vehicle)
         records = [with_inputs(record, vehicle) for record in records]
     with progress_bar() as bar:
         task = bar.add_task('fitting', total=len(settings.methods))

@@ -14,7 +14,7 @@ from quad_ident_ros.errors import InputError
 from quad_ident_ros.experiment import check_noise
 from quad_ident_ros.memory import give_back
 from quad_ident_ros.model.vehicle import Vehicle
-from quad_ident_ros.vehicle_files.load import load_vehicle
+from quad_ident_ros.vehicle_files.load import load_any_vehicle
 
 AUTO = 'auto'
 
@@ -60,7 +60,7 @@ def flights_from(path: str | Path, mapping: str | None = None,
     by_log: see thrust_by_log.
     """
     if isinstance(vehicle, str):
-        vehicle = load_vehicle(vehicle)
+        vehicle = load_any_vehicle(vehicle)
     found = read_flights(path, mapping, vehicle, selection, by_log)
     return found if selection is None else selected(path, found, selection)
 
@@ -110,7 +110,7 @@ def vehicle_from(option: str, path: str, mapping: str | None = None) -> Vehicle:
     Args: path of the flight; mapping: file of --mapping, or None. Raises InputError.
     """
     if option != AUTO:
-        return load_vehicle(option)
+        return load_any_vehicle(option)
     if reader_of(Path(path)).name != 'px4':
         raise InputError(f'{path}: --vehicle auto is for logs of PX4 (ULog), whose parameters '
                          'describe the vehicle; give a vehicle file')

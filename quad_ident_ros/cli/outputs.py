@@ -8,6 +8,8 @@ from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.vehicle import check_ending
 
 INPUTS = ('flight', 'flights', 'hold_out', 'mapping', 'vehicle', 'experiment', 'base')
+FILES_READ = ('mapping', 'base')
+"""Names of the options that name files read, and never folders or what is shipped by name."""
 OUTPUTS = ('out', 'output', 'out_vehicle', 'json', 'report', 'picture', 'write_mapping')
 FILES = ('out_vehicle', 'json', 'report', 'picture', 'write_mapping')
 """Names of the options, of any command, that name files read, written, and never folders."""
@@ -18,9 +20,13 @@ def check_outputs(options):
     """
     Check, before any work, where the options of a command have it write.
 
-    Raises InputError for an output that is an input, another output, a folder or lies in a file,
-    for a report or vehicle file of another ending, and for a vehicle file in no folder.
+    Raises InputError for an input file that is a folder, for an output that is an input, another
+    output, a folder or lies in a file, and for a report or vehicle file of another ending. Folders
+    that are not there are made when the file is written.
     """
+    for given in _named(options, FILES_READ):
+        if Path(given).is_dir():
+            raise InputError(f'{given}: this is a folder; name a file')
     inputs, written = _named(options, INPUTS), set()
     for output in _named(options, OUTPUTS):
         refuse_overwriting(output, inputs)
@@ -41,9 +47,6 @@ def check_outputs(options):
                              'in .html, and print it to a PDF from there')
     for output in _named(options, ('out_vehicle',)):
         check_ending(output)
-        if not Path(output).parent.is_dir():
-            raise InputError(f'{output}: there is no folder {Path(output).parent}; make it, or '
-                             'name another')
 
 
 def refuse_overwriting(output, inputs):

@@ -47,7 +47,6 @@ def run(options):
         flight = fly(experiment, flight_run, noise=noise, seed=options.seed)
         path = Path(options.output) / f'{experiment.name}_{flight_run.name}.csv'
         try:
-            path.parent.mkdir(parents=True, exist_ok=True)
             write_csv(path, flight.record)
         except OSError as error:
             raise InputError(f'{path}: cannot be written: {error.strerror}') from None

@@ -15,11 +15,12 @@ from quad_ident_ros.data.guess import guess
 from quad_ident_ros.data.load import reader_of
 from quad_ident_ros.data.mapping import Column, Mapping
 from quad_ident_ros.data.mapping_text import names_text, table_text, topics_text
+from quad_ident_ros.data.parquet import read_parquet
 from quad_ident_ros.data.readers.base import Content
 from quad_ident_ros.data.readers.table import is_record
 from quad_ident_ros.data.record import unit
 from quad_ident_ros.data.signal_kind import kinds_of
-from quad_ident_ros.data.tabular import read_parquet, read_text
+from quad_ident_ros.data.tabular import read_text
 from quad_ident_ros.errors import InputError
 
 _NUMBERED = re.compile(r'(\w+)(?: (\d+)|\[(\d+)\])?')     # of PX4, of ArduPilot
@@ -49,6 +50,7 @@ def begin_mapping(out: str | Path, path: str | Path, streams: Sequence[Content])
     else:
         text = names_text(path, *_outputs(path), _instances(streams))
     try:
+        out.parent.mkdir(parents=True, exist_ok=True)
         with open(out, 'x', encoding='utf-8') as file:
             file.write(text)
     except FileExistsError:

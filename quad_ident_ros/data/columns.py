@@ -13,7 +13,7 @@ from quad_ident_ros.data.foreign import BODY_VELOCITY, velocity_in_world
 from quad_ident_ros.data.mapping import ATTITUDE, Column, factor_of, Mapping
 from quad_ident_ros.data.record import EULER, FlightRecord, MOMENTS, QUATERNION, unit
 from quad_ident_ros.data.streams import HELD, INTERPOLATED, join, SLOW, Stream
-from quad_ident_ros.data.tabular import Table
+from quad_ident_ros.data.tabular import shown, Table
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.motors import MOTORS_OFF
 
@@ -36,6 +36,9 @@ def record_of(path: Path, table: Table, mapping: Mapping, notes: Sequence[str]) 
     chosen = mapping.columns
     for role, column in chosen.items():
         for name in column.names:
+            if name in table.text:
+                raise InputError(f'{path}: columns: {role}: column {name[:40]!r} holds text; name '
+                                 f'one of numbers: {shown(table.columns)}')
             if name not in table.columns:
                 raise InputError(f'{path}: columns: {role}: there is no column {name[:40]!r} of '
                                  f'numbers; there are {shown(table.columns)}')
@@ -65,13 +68,6 @@ def record_of(path: Path, table: Table, mapping: Mapping, notes: Sequence[str]) 
     else:
         info['start_ns'] = int(start + round(origin * 1e6) * 1000)
     return FlightRecord(seconds, {**columns, **kept}, info)
-
-
-def shown(names: Iterable[str], most: int = 12) -> str:
-    """Return names as one short text."""
-    names = [name[:40] for name in names]
-    more = f' and {len(names) - most} more' if len(names) > most else ''
-    return ', '.join(names[:most]) + more
 
 
 def _values(table: Table, column: Column) -> np.ndarray:

@@ -5,21 +5,34 @@
 import numpy as np
 
 from quad_ident_ros.data.quality.moments import are_forces, FORCES
-from quad_ident_ros.data.record import ARM, FlightRecord, MOMENTS
+from quad_ident_ros.data.record import ARM, FlightRecord, INPUTS, MOMENTS, SATURATED
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.model.mixing import allocation_matrix
-
-INPUTS = ('u1', 'u2', 'u3', 'u4')
+from quad_ident_ros.model.mixing import allocation_matrix, beyond_limits
 
 
 def with_inputs(record, vehicle):
     """
     Return the record with U1..U4 made from moments, or from cmd1..cmdN (rad/s) by eq. (19).
 
-    A record that has any of u2, u3, or neither, is returned as it is. Raises InputError where
-    the commands are not those of this vehicle's rotors.
+    A record that has any of u2, u3, or neither, keeps them. Where rotors cannot give what is asked
+    for, it gets the column SATURATED. Raises InputError where the commands are not those of this
+    vehicle's rotors.
     """
-    record = with_arm(record, vehicle)
+    return _with_saturation(_with_inputs(with_arm(record, vehicle), vehicle), vehicle)
+
+
+def _with_saturation(record, vehicle):
+    """Return a record with a column of 1 where U1..U4 are beyond the limits of the rotors."""
+    if not record.has(*INPUTS):
+        return record
+    beyond = beyond_limits(vehicle, record.inputs())
+    if not beyond.any():
+        return record
+    return FlightRecord(record.t, {**record.columns, SATURATED: beyond.astype(float)}, record.info)
+
+
+def _with_inputs(record, vehicle):
+    """Return the record with U1..U4 where it has commands alone; InputError."""
     commands = [name for name in record.columns if name.startswith('cmd')]
     if not commands or any(map(record.has, INPUTS)):
         return record

@@ -23,17 +23,18 @@ class FlightJoiner:
 
     By equal stamps (Joiner), unless more of the first DECIDED stamps come without the others than
     with them: then topics have rates of their own, and are joined between their samples
-    (StreamJoiner) at the stamps of the pose, or of the first of STATES that is there.
+    (StreamJoiner) at the stamps of the pose, or of the first of STATES that is there, or of
+    inputs that come far more often.
     Args: topics: names that a row needs; gap: s between samples beyond which rows are dropped.
     """
 
     def __init__(self, topics: Sequence[str], gap: float):
         self.topics = tuple(topics)
         self.interpolates = False
-        self.base = next(name for name in (*STATES, *topics) if name in topics)
+        base = next(name for name in (*STATES, *topics) if name in topics)
         self._equal = Joiner(self.topics)
         self._between: StreamJoiner | None = StreamJoiner(
-            {name: HELD if name == 'input' else INTERPOLATED for name in topics}, gap, self.base)
+            {name: HELD if name == 'input' else INTERPOLATED for name in topics}, gap, base)
         self._ahead: deque[Row] = deque(maxlen=AHEAD)
         self._last = -1
 
@@ -41,6 +42,11 @@ class FlightJoiner:
     def counts(self) -> Counts:
         """Return the account of the messages."""
         return self._now.counts
+
+    @property
+    def base(self) -> str:
+        """Return the topic at whose stamps rows are interpolated, '' where stamps are equal."""
+        return self._between.base if self._between is not None else ''
 
     @property
     def _now(self) -> Joiner | StreamJoiner:

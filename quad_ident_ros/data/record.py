@@ -35,6 +35,9 @@ MOMENTS = ('moment_x', 'moment_y')
 ARM = 'arm_length'
 """Info of a record: the arm length l (m) by which u2 and u3 are moments."""
 
+SATURATED = 'saturated'
+"""Column: 1 where U1..U4 ask a rotor for more than its limits, else 0."""
+
 QUATERNION = ('qw', 'qx', 'qy', 'qz')
 EULER = ('phi', 'theta', 'psi')
 

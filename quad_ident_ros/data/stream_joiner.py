@@ -14,18 +14,23 @@ from quad_ident_ros.data.record import EULER, QUATERNION
 from quad_ident_ros.data.streams import HELD, INTERPOLATED, slerp, SLOW
 
 TURN = 2.0 * math.pi
+DECIDED = 50    # samples of a state or of the commands after which it is known which is faster
+FASTER = 1.5    # times as many commands as states from which on every other one might be lost
 
 
 class StreamJoiner:
     """
     Joins messages of several streams into rows at the stamps of one, the base.
 
+    The base is a state, or the commands (the first HELD stream) where FASTER times as many of
+    these come, for a row has one command.
+
     Between its samples a stream is interpolated, attitudes along the shortest turn, or it holds
     (commands, a battery), as data.streams.join has it for bags. A row waits until each stream has
     gone on beyond its stamp, and is dropped where the samples around it are further apart than the
     gap. Streams may run ahead of one another by any time, up to `most` waiting rows.
-    Args: streams: name -> INTERPOLATED, HELD or SLOW; gap: s; base: the name of a stream, by
-    default the first; most.
+    Args: streams: name -> INTERPOLATED, HELD or SLOW; gap: s; base: the name of the state, by
+    default the first stream; most.
     """
 
     def __init__(self, streams, gap, base=None, most=20000):
@@ -33,11 +38,13 @@ class StreamJoiner:
         self.counts = Counts(received=dict.fromkeys(streams, 0))
         self.columns = {}
         self._between = dict(streams)
-        self._base = base or self.topics[0]
+        self.base = base or self.topics[0]
         self._gap = int(gap * 1e9)
         self._most = most
         self._samples = {name: _Samples() for name in streams}
-        self._waiting = deque()
+        commands = next((name for name, how in streams.items() if how == HELD), self.base)
+        self._stamps = {name: deque() for name in (self.base, commands)}    # of rows, by the base
+        self._is_decided = len(self._stamps) == 1
         self._last = dict.fromkeys(streams, -1)
 
     def add(self, name, stamp_ns, values):
@@ -63,8 +70,10 @@ class StreamJoiner:
             return []
         self.columns.setdefault(name, tuple(values))
         self._samples[name].add(stamp_ns, tuple(values.values()))
-        if name == self._base:
-            self._waiting.append(stamp_ns)
+        if name in self._stamps:
+            self._stamps[name].append(stamp_ns)
+            if not self._is_decided and len(self._stamps[name]) >= DECIDED:
+                self._decide()
         return self._ready(False)
 
     def raw_columns(self):
@@ -77,43 +86,56 @@ class StreamJoiner:
 
     def behind(self):
         """Return {name: s} by which the last stamp of each stream heard is behind the base's."""
-        last = self._last[self._base]
+        last = self._last[self.base]
         return {name: (last - stamp) * 1e-9 for name, stamp in self._last.items()
-                if name != self._base and min(stamp, last) >= 0}
+                if name != self.base and min(stamp, last) >= 0}
 
     def drain(self):
         """Return the rows that are complete, giving up those that are not."""
+        if not self._is_decided:
+            self._decide()
         return self._ready(True)
+
+    def _decide(self):
+        """Choose the base by how many states and commands came so far."""
+        state, commands = self._stamps
+        if len(self._stamps[commands]) > FASTER * len(self._stamps[state]):
+            self.base = commands
+        self._stamps = {self.base: self._stamps[self.base]}
+        self._is_decided = True
 
     def _restart(self, name, stamp):
         """Forget the samples of a stream whose clock began anew, and what is from before it."""
         self._samples[name].clear()
-        if name != self._base:
+        given_up = len(self._stamps.get(name, ()))
+        if name in self._stamps:
+            self._stamps[name].clear()
+        if name != self.base:
             return
         self.counts.restarts += 1
-        self.counts.dropped += len(self._waiting)
-        self._waiting.clear()
+        self.counts.dropped += given_up
         for other in self.topics:
             if self._last[other] > stamp + RESTART_NS:
                 self._samples[other].clear()
                 self._last[other] = -1
 
     def _ready(self, drain):
-        rows = []
-        while self._waiting:
-            stamp = self._waiting[0]
+        rows, waiting = [], self._stamps[self.base]
+        while waiting and self._is_decided:
+            stamp = waiting[0]
             parts = [self._at(name, stamp) for name in self.topics]
-            given_up = drain or len(self._waiting) > self._most
+            given_up = drain or len(waiting) > self._most
             if any(part is None for part in parts) and not given_up:
                 break
-            self._waiting.popleft()
+            waiting.popleft()
             if all(parts):
                 rows.append((stamp, tuple(value for part in parts for value in part)))
             else:
                 self.counts.dropped += 1
         # What is before the sample before the next row will not be asked for again.
+        until = min((stamps[0] for stamps in self._stamps.values() if stamps),
+                    default=self._last[self.base])
         for name in self.topics:
-            until = self._waiting[0] if self._waiting else self._last[self._base]
             self._samples[name].forget(until, self._most)
         self.counts.joined += len(rows)
         return rows

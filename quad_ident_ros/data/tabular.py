@@ -1,19 +1,17 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Tables of other people: text with any separator, decimal commas, units in a line; Parquet."""
+"""Tables of other people: text with any separator, decimal commas, units in a line."""
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 import csv
 from dataclasses import dataclass
 from pathlib import Path
 import re
-from typing import Any
 
 import numpy as np
 
 from quad_ident_ros.data.csv import refuse_uneven
-from quad_ident_ros.data.limits import most
 from quad_ident_ros.data.plain_numbers import plain_numbers
 from quad_ident_ros.data.text_lines import first_rows, rows_of
 from quad_ident_ros.errors import InputError
@@ -25,7 +23,7 @@ BLANKS = ' '    # any number of them
 MOTIVE = ('world: Motive has y up unless it is told otherwise: export with Z up and name the '
           'columns in a mapping, or turn them in it, such as py: {column: "Position Z", unit: -m}')
 _HEAD = 20      # lines in which the first numbers come
-_MOST_COLUMNS = 4096    # wide logs have hundreds; each costs the guess a look
+MOST_COLUMNS = 4096    # wide logs have hundreds; each costs the guess a look
 _FEW = 0.1      # of the cells of a column: with more text it is one of text
 _DATE = re.compile(r'[12]\d{3}-\d\d-\d\d[T ]\d\d:\d\d:\d\d(\.\d+)?(Z|[+-]00:?00)?$')
 """A time of day in UTC, or without a zone, as ISO 8601 writes it."""
@@ -40,7 +38,8 @@ class Table:
 
     columns: name -> (N,) float, nan for an empty cell; units: name -> unit, where a line says
     them; notes: what was left out; how: what separates the cells, for messages; doubts: what the
-    program that wrote the table leaves open; rate: Hz, of frames that are counted, or 0.
+    program that wrote the table leaves open; rate: Hz, of frames that are counted, or 0; text:
+    names of columns that hold text and were left out.
     """
 
     columns: dict
@@ -49,6 +48,7 @@ class Table:
     how: str = ''
     doubts: tuple = ()
     rate: float = 0.0
+    text: tuple[str, ...] = ()
 
 
 def read_text(path: Path, separator: str = '') -> Table:
@@ -61,23 +61,24 @@ def read_text(path: Path, separator: str = '') -> Table:
     layout = _layout(path, *begin, separator) if begin else None
     plain = layout and plain_numbers(path, layout.line - 1, layout.delimiter, layout.comma)
     if plain and plain.values.shape[1] == len(layout.names):
-        columns, truncated, more = plain.columns(layout.names), plain.truncated, []
+        columns, truncated, text = plain.columns(layout.names), plain.truncated, []
     else:
         rows, truncated = rows_of(path)
         places = [k for k, row in enumerate(rows, 1) if row.strip()]    # as editors count
         rows = [rows[k - 1] for k in places]
         layout = _layout(path, rows, places, separator)
         first = places.index(layout.line)
-        columns, more = _thorough(path, rows[first:], places[first:], layout.names,
+        columns, text = _thorough(path, rows[first:], places[first:], layout.names,
                                   layout.separator, layout.comma)
     notes = ['the last line has no line end and was left out'] if truncated else []
     if not columns or len(next(iter(columns.values()))) < 2:
         raise InputError(f'{path}: there are fewer than 2 lines of numbers; give a table with a '
-                         'header and samples')
+                         f'header and samples{left_out(text, "; ")}')
     how = {',': 'commas', ';': 'semicolons', '\t': 'tabs', BLANKS: 'blanks'}.get(
         layout.separator, repr(layout.separator))
-    return Table(columns, layout.units, (*notes, *more),
-                 f'{how}{", decimal commas" if layout.comma else ""}', layout.doubts, layout.rate)
+    return Table(columns, layout.units, (*notes, *noted(text)),
+                 f'{how}{", decimal commas" if layout.comma else ""}', layout.doubts, layout.rate,
+                 tuple(text))
 
 
 @dataclass(frozen=True)
@@ -138,56 +139,6 @@ def told_separator(rows: list[str]) -> str:
         if count > 1 and lines > 0.9 * len(rows[1:_HEAD]):
             return BLANKS
     return best
-
-
-def read_parquet(path: Path) -> Table:
-    """Return the Table of a Parquet file; raises InputError, ModuleNotFoundError for pyarrow."""
-    import pyarrow
-    from pyarrow import parquet
-    try:
-        with parquet.ParquetFile(path) as file:
-            meta = file.metadata
-            if meta.num_columns > _MOST_COLUMNS or (
-                    8 * meta.num_rows * max(meta.num_columns, 1) > most(path.stat().st_size)):
-                raise InputError(f'{path}: unpacks to far more than flights do; write the '
-                                 'columns of the flight alone')
-            found = file.read()
-        for _ in range(8):      # fields of fields
-            if not any(pyarrow.types.is_struct(field.type) for field in found.schema):
-                break
-            found = found.flatten()
-        columns, notes = {}, []
-        for name, column in zip(found.column_names, found.columns, strict=True):
-            values = _numbers(pyarrow, column)
-            if values is None or name in columns:
-                notes.append(f'column {name[:40]!r} holds no numbers and is left out')
-            elif name.isprintable() and name.strip():
-                columns[name.strip()] = values
-    except InputError:
-        raise
-    except Exception as error:  # a damaged file makes the parser raise anything
-        if isinstance(error, OSError) and error.strerror:
-            raise InputError(f'{path}: cannot be read: {error.strerror}') from None
-        raise InputError(f'{path}: this is no whole Parquet file; write it again') from None
-    if not columns or found.num_rows < 2:
-        raise InputError(f'{path}: there are fewer than 2 rows of numbers; give a table with '
-                         'samples')
-    return Table(columns, {}, tuple(notes), 'Parquet')
-
-
-def _numbers(pyarrow: Any, column: Any) -> np.ndarray | None:
-    """Return the values of a column as float, or None where they are no numbers."""
-    kind = column.type
-    if pyarrow.types.is_timestamp(kind):
-        column, factor = column.cast(pyarrow.int64()), {
-            's': 1e9, 'ms': 1e6, 'us': 1e3, 'ns': 1.0}[kind.unit]
-    elif (pyarrow.types.is_integer(kind) or pyarrow.types.is_floating(kind)
-          or pyarrow.types.is_boolean(kind)):
-        factor = 1.0
-    else:
-        return None
-    values = column.cast(pyarrow.float64(), safe=False).to_numpy()
-    return np.array(values, float) * factor
 
 
 def _cells(row: str, separator: str) -> list[str]:
@@ -251,7 +202,7 @@ def _names(path: Path, rows: list[str], line: int, head: int, first: int,
            separator: str) -> tuple[list[str], dict[str, str]]:
     """Return the names of the columns, with the line above where they alone repeat; units."""
     names = _cells(rows[head].lstrip('#% '), separator)
-    if len(names) > _MOST_COLUMNS:
+    if len(names) > MOST_COLUMNS:
         raise InputError(f'{path}, line {line}: {len(names)} columns are no flight')
     doubled = [name for name, count in Counter(names).items() if count > 1 and name]
     if doubled and head > 0:
@@ -309,7 +260,7 @@ def _seconds(cells: Sequence[str]) -> np.ndarray:
 
 def _thorough(path: Path, rows: list[str], places: list[int], names: list[str], separator: str,
               comma: bool) -> tuple[dict[str, np.ndarray], list[str]]:
-    """Return the columns without text of any table, and notes of what is left out."""
+    """Return the columns of numbers of any table, and the names of those of text."""
     cells, wrong = [], []
     for k, row in zip(places, rows, strict=True):
         line = _cells(row, separator)
@@ -322,20 +273,48 @@ def _thorough(path: Path, rows: list[str], places: list[int], names: list[str], 
     refuse_uneven(path, wrong, len(names), len(cells))
     columns, text = {}, []
     for name, column in zip(names, zip(*cells, strict=True), strict=True):
-        values = [_number(cell, comma) for cell in column]
         if not name:
             continue
-        if None in values and all(_DATE.match(cell) for cell in column if cell):
-            columns[name] = _seconds(column)
-        elif None in values:
-            wrong = [k for k, value in enumerate(values) if value is None]
-            if len(wrong) < _FEW * len(values):
-                k = wrong[0]
-                raise InputError(f'{path}, line {places[k]}, column {name[:40]!r}: '
-                                 f'{column[k][:40]!r} is no number; correct it or leave the cell '
-                                 'empty')
-            text.append(name[:40])
+        values = numbers_in(path, name, column, comma, lambda k: f'line {places[k]}')
+        if values is None:
+            text.append(name)
         else:
-            columns[name] = np.array(values, float)
-    shown = ', '.join(text[:5]) + (f' and {len(text) - 5} more' if len(text) > 5 else '')
-    return columns, [f'columns that are no numbers are left out: {shown}'] if text else []
+            columns[name] = values
+    return columns, text
+
+
+def numbers_in(path: Path, name: str, cells: Sequence[str], comma: bool,
+               place: Callable[[int], str]) -> np.ndarray | None:
+    """
+    Return the numbers (N,) in the cells of a column, None for a column of text.
+
+    Args: place: what messages call the place of a cell. InputError for a few cells of text.
+    """
+    values = [_number(cell, comma) for cell in cells]
+    wrong = [k for k, value in enumerate(values) if value is None]
+    if not wrong:
+        return np.array(values, float)
+    if all(_DATE.match(cell) for cell in cells if cell):
+        return _seconds(cells)
+    if len(wrong) < _FEW * len(values):
+        k = wrong[0]
+        raise InputError(f'{path}, {place(k)}, column {name[:40]!r}: {cells[k][:40]!r} is no '
+                         'number; correct it or leave the cell empty')
+    return None
+
+
+def left_out(text: Sequence[str], begin: str = '') -> str:
+    """Return what to say of columns of text, '' where there are none."""
+    return f'{begin}columns of text are left out: {shown(text, 5)}' if text else ''
+
+
+def shown(names: Iterable[str], most: int = 12) -> str:
+    """Return names as one short text."""
+    names = [name[:40] for name in names]
+    more = f' and {len(names) - most} more' if len(names) > most else ''
+    return ', '.join(names[:most]) + more
+
+
+def noted(text: Sequence[str]) -> list[str]:
+    """Return the notes on columns of text."""
+    return [left_out(text)] if text else []

@@ -32,8 +32,8 @@ class Blocks:
 
     ends_ns (n,) stamps of the last samples; target (n,), which the features (n, k) times K, c1 and
     for angles a constant are: y'', of z together with gravity; neglected (n,): the most that the
-    linear model leaves out of the target (see `neglected`); tilt (n,) rad, the largest in a block,
-    not a number where no attitude is recorded.
+    linear model leaves out of the target (see `neglected`), infinite where rotors cannot give the
+    input; tilt (n,) rad, the largest in a block, not a number where no attitude is recorded.
     """
 
     ends_ns: np.ndarray
@@ -106,6 +106,8 @@ def blocks_of(signal, after_ns):
         most = (np.abs(unsteady[rows] @ slope) / (count * length)
                 + steady[rows] @ weight / count)
         tilt = tilts[rows].max(axis=1)
+    if signal.saturated is not None:
+        most = np.where(signal.saturated[rows[:, :-1]].any(axis=1), np.inf, most)
     return Blocks(ends, target, np.column_stack(features), most, tilt)
 
 

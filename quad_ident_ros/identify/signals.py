@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from quad_ident_ros.data.cutting import options, without
-from quad_ident_ros.data.record import EULER, MOMENTS, QUATERNION
+from quad_ident_ros.data.record import EULER, MOMENTS, QUATERNION, SATURATED
 from quad_ident_ros.errors import InputError
 
 OUTPUTS = ('phi', 'theta', 'psi', 'z')
@@ -34,7 +34,8 @@ class Signal:
 
     at_rest tells that the vehicle was at rest at the first sample, at y = 0 where level_known;
     measured (N,) which samples of y there are, by default all; start_ns is the stamp of the first;
-    trim: what u deviates from; attitude (N, 3) roll, pitch and yaw, rad, where recorded.
+    trim: what u deviates from; attitude (N, 3) roll, pitch and yaw, rad, where recorded; saturated
+    (N,) where the input is beyond the limits of the rotors, by default nowhere.
     """
 
     output: str
@@ -48,6 +49,7 @@ class Signal:
     start_ns: int | None = None
     trim: float = 0.0
     attitude: np.ndarray | None = None
+    saturated: np.ndarray | None = None
 
     def __post_init__(self):
         """Take all samples as measured where nothing else is said."""
@@ -128,10 +130,18 @@ def signals(record, *, trim=None, outputs=None, initial_state='auto'):
                                 level_known=name in known, measured=there_at,
                                 start_ns=record.info.get('start_ns'),
                                 trim=float(trim[int(INPUT_OF[name][1]) - 1]),
-                                attitude=attitude))
+                                attitude=attitude, saturated=_saturated(record, t)))
         else:
             remarks.append(f'{name} does not move: there is nothing to identify in it')
     return found, remarks
+
+
+def _saturated(record, t):
+    """Return where the input held at times t (N,) of the grid is beyond the rotors, or None."""
+    if not record.has(SATURATED):
+        return None
+    last = np.clip(np.searchsorted(record.t, t + 1e-9, side='right') - 1, 0, None)
+    return record.columns[SATURATED][last] > 0
 
 
 def vertical_share(phi, theta):

@@ -31,6 +31,11 @@ def validity(signal):
     blocks = blocks_of(signal if signal.start_ns is not None else replace(signal, start_ns=0), 0)
     if not len(blocks):
         return Validity(None, None, None, 'the record is too short to tell')
+    limited = np.isinf(blocks.neglected)
+    if limited.any():
+        return Validity(False, None, None, f'in {limited.mean():.0%} of the time rotors cannot '
+                        'give the input, which is beyond speed_min or speed_max of the vehicle '
+                        'file: the linear model does not hold there')
     if signal.attitude is None:
         return Validity(None, None, None, 'no attitude is recorded: U1 counts as vertical')
     tilt = float(blocks.tilt.max())

@@ -87,10 +87,7 @@ def infeasibility(vehicle: Vehicle, inputs: ArrayLike, t: np.ndarray) -> str | N
     matrix = allocation_matrix(vehicle)
     scale = np.abs(matrix).max(axis=1)
     squared = squared_speeds(vehicle, inputs)
-    slack = 1e-9 * max(1.0, float(np.abs(squared).max()))
-    low = vehicle.speed_min ** 2 - slack
-    high = vehicle.speed_max ** 2 + slack
-    bad = (squared < low) | (squared > high)
+    bad = _beyond(vehicle, squared)
     missed = np.linalg.norm((squared @ matrix.T - inputs) / scale, axis=1)
     unreachable = missed > RESIDUAL * np.linalg.norm(inputs / scale, axis=1)
     failing = bad.any(axis=1) | unreachable
@@ -105,6 +102,23 @@ def infeasibility(vehicle: Vehicle, inputs: ArrayLike, t: np.ndarray) -> str | N
     return (f'{problem}rotor {rotor + 1} would need a squared speed of {squared[k, rotor]:.6g} '
             f'(rad/s)^2, possible are {vehicle.speed_min ** 2:.6g} to '
             f'{vehicle.speed_max ** 2:.6g}')
+
+
+def beyond_limits(vehicle: Vehicle, inputs: ArrayLike) -> np.ndarray:
+    """
+    Return where inputs ask a rotor for a speed beyond speed_min and speed_max, (N,) of bool.
+
+    Args: inputs (N, 4) U1..U4.
+    """
+    return np.asarray(_beyond(vehicle, squared_speeds(vehicle, inputs)).any(axis=1))
+
+
+def _beyond(vehicle: Vehicle, squared: np.ndarray) -> np.ndarray:
+    """Return which squared speeds (N, n) are beyond the limits, but for rounding."""
+    slack = 1e-9 * max(1.0, float(np.abs(squared).max()))
+    low: np.ndarray = squared < vehicle.speed_min ** 2 - slack
+    high: np.ndarray = squared > vehicle.speed_max ** 2 + slack
+    return low | high
 
 
 def residual_rotor_speed(vehicle: Vehicle, inputs: ArrayLike) -> np.ndarray:

@@ -24,7 +24,7 @@ from quad_ident_ros.nodes.record_worker import RecordWorker, Words
 from quad_ident_ros.nodes.stamped import StampedGap
 from quad_ident_ros.report.verdict import closed_of, verdict_line
 from quad_ident_ros.tolerances import EXAMPLE, rules_from
-from quad_ident_ros.vehicle_files.load import load_vehicle
+from quad_ident_ros.vehicle_files.load import load_any_vehicle
 from quad_ident_ros.warm_up import warm_up_diagnosis
 
 WORDS = Words('diagnose', 'diagnosis', 'diagnosing', 'diagnosed')
@@ -102,7 +102,7 @@ class Diagnoser(RecordWorker):
         records = self._taken()
 
         def run():
-            vehicle = load_vehicle(values['vehicle'])
+            vehicle = load_any_vehicle(values['vehicle'])
             flights = commanded([record.last(values['window']) if values['window'] else record
                                  for record in records], vehicle)
             found = diagnose(flights, vehicle,
@@ -142,7 +142,7 @@ class Diagnoser(RecordWorker):
 
 
 def _validate(values):
-    load_vehicle(values['vehicle'])
+    load_any_vehicle(values['vehicle'])
     rules = rules_from(values['tolerance'], 'parameter tolerance')
     if 0.0 < values['window'] < rules.shortest:
         raise InputError(f'parameter window: {values["window"]:g} s are too short for a '

@@ -26,7 +26,7 @@ from quad_ident_ros.nodes.parameters import help_text, ParameterSpec
 from quad_ident_ros.nodes.qos import latched
 from quad_ident_ros.nodes.record_worker import RecordWorker, Words
 from quad_ident_ros.nodes.stamped import StampedParameters
-from quad_ident_ros.vehicle_files.load import load_vehicle
+from quad_ident_ros.vehicle_files.load import load_any_vehicle
 from quad_ident_ros.warm_up import warm_up
 
 WORDS = Words('identify', 'fit', 'fitting', 'fitted')
@@ -55,7 +55,8 @@ SPECS = (
                   '(estimated) or auto (rest where the record says so).',
                   choices=('auto', 'rest', 'free')),
     ParameterSpec('vehicle', '', 'Name or file of the vehicle whose arm length makes U2 and U3 of '
-                  'moments, for records that do not say it; empty: these have no roll and pitch.'),
+                  'moments, for records that do not say it (empty: these have no roll and pitch), '
+                  'and whose limits tell where rotors saturate.'),
     ParameterSpec('trim', [], 'U1..U4 from which inputs count; empty: what the record says, or '
                   'its first sample.', length=(0, 4)),
     ParameterSpec('evaluations', 0, 'Evaluations of the objective per search, the same for each '
@@ -132,7 +133,7 @@ class Identifier(RecordWorker):
         run = self._tracker.update if self._continuous else identify
         records, settings = self._taken(), _settings(values)
         if values['vehicle']:
-            vehicle = load_vehicle(values['vehicle'])
+            vehicle = load_any_vehicle(values['vehicle'])
             records = [with_inputs(record, vehicle) for record in records]
         window, order = values['window'], list(settings.methods)
 
@@ -197,7 +198,7 @@ def _settings(values):
     """Return the Settings that parameter values stand for; raises InputError."""
     levy_sigma(values['lambda'])
     if values['vehicle']:
-        load_vehicle(values['vehicle'])
+        load_any_vehicle(values['vehicle'])
     swarm = SwarmSettings(
         population=values['population'], generations=values['generations'],
         evaluations=values['evaluations'] or None, inertia=values['w'], c1=values['c1'],

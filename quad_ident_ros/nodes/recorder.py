@@ -16,6 +16,7 @@ from std_msgs.msg import String, UInt64
 from std_srvs.srv import Trigger
 
 from quad_ident_ros.data.flight_joiner import FlightJoiner
+from quad_ident_ros.data.frame_watch import FrameWatch
 from quad_ident_ros.data.stream_joiner import StreamJoiner
 from quad_ident_ros.data.topics import (
     FLIGHT_TOPICS,
@@ -62,15 +63,16 @@ HELP = f"""recorder: joins the topics of a flight into records, keeps and publis
 Subscribes (as the publisher offers, reliable first): attitude, altitude, pose, twist, input (types
 as the simulator publishes them), run (std_msgs/String, announces runs; not needed). Or odometry
 (nav_msgs/Odometry), imu (sensor_msgs/Imu) and actuators (actuator_msgs/Actuators), or any topics
-that a mapping names, which are joined at the stamps of the pose, or else of the first state. So
-are the first five where their stamps are seldom equal.
+that a mapping names, which are joined at the stamps of the pose (else of the first state), or of
+commands that are faster. So are the first five where their stamps are seldom equal.
 Publishes:
   record        std_msgs/Float64MultiArray (latched, 16 deep)  samples x columns, see the labels;
                 and the topics of the parameter windows
   ~/statistics  std_msgs/String (latched)                      JSON: received, joined, dropped,
                 late, duplicated, out of order, NaN, lost, unread, recordings
   joined_until  std_msgs/UInt64                                stamp (ns) of the last joined row
-  /diagnostics  diagnostic_msgs/DiagnosticArray
+  /diagnostics  diagnostic_msgs/DiagnosticArray, also wrong frames: a twist or pose that is not
+                in ENU and FLU
 A record is complete when an announced run ends, when the window is full, or on the service.
 Services: ~/flush (std_srvs/Trigger)
 
@@ -101,6 +103,7 @@ class Recorder(PackageNode):
         self._outlets = outlets_of(self, columns, parameters)
         self._buffer = self._outlets[0].buffer
         self._last_message = None
+        self._frames = FrameWatch()
         self._health = Health(self._topics, self._apart, self._silent)
         self._announced = None
         self._disk = OnDisk(parameters['output'], self.get_clock(), self.get_logger())
@@ -277,6 +280,7 @@ class Recorder(PackageNode):
                 for outlet in self._outlets:
                     outlet.buffer.columns = columns
             self._health.note_rows(self._now())
+            self._frames.add(rows)
             self._unacknowledged += len(rows)
             if self._unacknowledged >= ACKNOWLEDGED:
                 self._unacknowledged = 0
@@ -388,9 +392,9 @@ class Recorder(PackageNode):
         trouble = self._health.look(now, self.counts.received, self._unreadable)
         self._unreadable = None
         self._say_what_is_awaited(now)
-        if other := self._another_type():
-            self._health.blame(now, other)
-            self.get_logger().error(other, throttle_duration_sec=10.0)
+        if wrong := self._another_type() or self._frames.look(self._buffer.columns):
+            self._health.blame(now, wrong)
+            self.get_logger().error(wrong, throttle_duration_sec=10.0)
         elif trouble:
             self.get_logger().warning(trouble, throttle_duration_sec=10.0)
         folder = str(self._disk.folder) if self._disk.folder else None

@@ -14,6 +14,7 @@ from geometry_msgs.msg import (
 import numpy as np
 from rclpy._rclpy_pybind11 import RCLError
 from rclpy.clock import Clock, ClockType
+from rclpy.duration import Duration
 from rosgraph_msgs.msg import Clock as ClockMessage
 from std_msgs.msg import String, UInt64
 from std_srvs.srv import Trigger
@@ -35,6 +36,7 @@ RUN_GAP = 10        # sample periods between the stamps of two runs
 BATCH = 20          # samples published before the executor has its turn
 AHEAD = 60          # samples that a recorder may be behind at full speed
 NO_ANSWER = 1.0     # s without news of a recorder after which it is not waited for
+ANNOUNCED = 5.0     # s for subscribers to have the notice of the first run, unless they hang
 STALLED = 5.0       # s of waiting for a subscriber after which the node says so
 
 SPECS = (
@@ -248,11 +250,32 @@ class Simulator(PackageNode):
             self.get_logger().error(f'{run.name}: {worker.outcome}')
             self._next_run()
             return
+        is_first = self._session is None
         self._announce(run, worker.outcome)
         self._started = self._pace.now().nanoseconds
         self._news = self._steady.now().nanoseconds
         self._sent = 0
         self._part = 0
+        if is_first and self._config['wait_for_subscribers']:
+            self._schedule(0.002, self._await_announced)
+        else:
+            self._publish_run()
+
+    def _await_announced(self):
+        """
+        Publish the first run once the subscribers have its notice, or are too late with it.
+
+        Who acknowledges it has discovered its publisher, and those of the streams, which were
+        there before it: what is published now arrives.
+        """
+        waited = (self._steady.now().nanoseconds - self._news) * 1e-9
+        if waited < ANNOUNCED and not self._run_publisher.wait_for_all_acked(Duration()):
+            return
+        self._stop_timer()
+        self._publish_run()
+
+    def _publish_run(self):
+        self._news = self._steady.now().nanoseconds
         period = self._experiment.period / self._factor if self._factor else 0.0
         # A timer per sample would set the pace by its own lateness; it only asks what is due.
         self._schedule(min(max(period, 0.001), 0.05) if self._factor else 0.0005,

@@ -4,7 +4,6 @@
 
 import json
 import math
-from pathlib import Path
 import sys
 
 from quad_ident_ros.errors import InputError
@@ -22,7 +21,6 @@ def write_json(path, data):
         sys.stdout.write(text)
         return
     try:
-        Path(path).parent.mkdir(parents=True, exist_ok=True)
         write_whole(path, text)
     except OSError as error:
         raise InputError(f'{path}: cannot be written: {error.strerror}') from None

@@ -100,7 +100,6 @@ def write_page(path, title, body):
             f'<title>{escape(title)}</title>\n<style>\n{STYLE}</style></head>\n<body>\n'
             f'{tag("h1", title)}\n{markup(body)}\n</body></html>\n')
     try:
-        Path(path).parent.mkdir(parents=True, exist_ok=True)
         write_whole(path, text)
     except OSError as error:
         raise InputError(f'{path}: cannot be written: {error.strerror}') from None

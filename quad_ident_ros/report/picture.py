@@ -131,7 +131,6 @@ def pyplot(path):
 def save(plt, figure, path):
     """Write a figure to a file and forget it; raises InputError."""
     try:
-        Path(path).parent.mkdir(parents=True, exist_ok=True)
         with replacing(path) as temporary:
             figure.savefig(temporary)
     except (OSError, ValueError) as error:

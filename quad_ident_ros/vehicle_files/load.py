@@ -18,7 +18,7 @@ from quad_ident_ros.vehicle_files.source import is_file, Source, text_of
 YAML_ENDINGS = ('.yaml', '.yml')
 
 
-def load_vehicle(name_or_path: str | Path) -> Vehicle:
+def load_any_vehicle(name_or_path: str | Path) -> Vehicle:
     """
     Return the vehicle of a shipped name, a vehicle file, or a file of a simulator.
 

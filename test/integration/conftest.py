@@ -9,6 +9,7 @@ import pytest
 
 from quad_ident_ros.nodes.domain import claim_domain
 from quad_ident_ros.nodes.process import FastExecutor
+from quad_ident_ros.warm_up import warm_up
 
 
 def pytest_collection_modifyitems(items):
@@ -18,6 +19,12 @@ def pytest_collection_modifyitems(items):
             item.add_marker(pytest.mark.ros)
             item.add_marker(pytest.mark.slow)
             item.add_marker(pytest.mark.xdist_group('ros'))
+
+
+@pytest.fixture(scope='session', autouse=True)
+def compiled():
+    """Compile before anything has a deadline: on a busy machine it takes longer than that."""
+    warm_up()
 
 
 @pytest.fixture(scope='session')

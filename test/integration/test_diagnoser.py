@@ -15,6 +15,7 @@ from rcl_interfaces.srv import ListParameters
 from std_msgs.msg import Float64MultiArray, String
 import yaml
 
+from quad_ident_ros.data.frames import rotate
 from quad_ident_ros.data.record import EULER, FlightRecord, QUATERNION
 from quad_ident_ros.experiment import fly, load_experiment
 from quad_ident_ros.model.mixing import with_commands
@@ -57,6 +58,13 @@ def draggy(experiment):
     return [FlightRecord(record.t, record.columns,
                          {**record.info, 'session': 1, 'run_index': k, 'run_count': 2})
             for k, record in enumerate(records)]
+
+
+def in_world(record):
+    """Return the velocity that the recorder makes of a twist in the axes of the world."""
+    names = ('vx', 'vy', 'vz')
+    return dict(zip(names, rotate(record.stack(*QUATERNION), record.stack(*names)).T,
+                    strict=True))
 
 
 class Bench:
@@ -190,7 +198,8 @@ def test_each_window_is_diagnosed_in_continuous_mode(graph, draggy):
     (lambda record: {name: values for name, values in record.columns.items()
                      if not name.startswith(('u', 'cmd', 'rotor'))}, 'cmd1'),
     (lambda record: {**record.columns, 'cmd1': record.columns['cmd2'],
-                     'cmd2': record.columns['cmd1']}, 'cmd')])
+                     'cmd2': record.columns['cmd1']}, 'cmd'),
+    (lambda record: {**record.columns, **in_world(record)}, 'world')])
 def test_records_that_bear_no_verdict_are_refused_in_one_line(graph, draggy, spoil, said):
     bench = Bench(graph, {})
     bench.feed([FlightRecord(record.t, spoil(record), record.info) for record in draggy])

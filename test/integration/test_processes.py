@@ -187,19 +187,21 @@ def test_a_killed_identifier_starts_again_and_gets_the_records(graph, processes)
 
 def test_a_killed_simulator_starts_again(graph, processes, tmp_path):
     """The cut flight becomes a record of its own; the experiment that follows is fitted."""
-    path = write_experiment(tmp_path / 'two.yaml', {'psi': (8.0, {'U4': 0.05}),
-                                                    'z': (2.0, {'U1': 1.0})})
+    runs = {'psi': (8.0, {'U4': 0.05}), 'z': (2.0, {'U1': 1.0})}
+    path = write_experiment(tmp_path / 'two.yaml', runs)
+    # Of any length: it is not over when it is known that it flies.
+    endless = write_experiment(tmp_path / 'long.yaml', {**runs, 'psi': (600.0, {'U4': 0.001})})
     json, _, records = graph.results()
     statistics = graph.listen(String, 'recorder/statistics', latched())
     processes.start('recorder')
     processes.start('identifier', {'method': 'ls'})
-    first = processes.start('simulator', {'experiment': path})
+    first = processes.start('simulator', {'experiment': endless})
     graph.spin_until(lambda: statistics and statistics.data()[-1]['joined'] >= 50, 'a flight')
     first.kill()
     processes.start('simulator', {'experiment': path})
     graph.spin_until(lambda: json and len(records) == 3, 'records and result', 2 * DEADLINE)
     cut, *whole = records.records()
-    assert 50 <= len(cut) < 801 and cut.info['dropped'] == 801 - len(cut)
+    assert 50 <= len(cut) and cut.info['dropped'] == 60001 - len(cut)
     assert [len(record) for record in whole] == [801, 201]
     data = json.data()[0]
     assert len({info['session'] for info in data['records']}) == 1

@@ -5,12 +5,15 @@
 import time
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
-from graph import Graph, Vehicle, write_experiment
+from graph import Graph, sample, Vehicle, write_experiment
 from nav_msgs.msg import Odometry
 import pytest
 from std_msgs.msg import Float64MultiArray
 
+from quad_ident_ros.data.frames import conjugate, rotate
+from quad_ident_ros.data.record import QUATERNION
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.experiment import fly, load_experiment
 from quad_ident_ros.nodes.qos import latched, LOSSLESS
 from quad_ident_ros.nodes.recorder import Recorder
 from quad_ident_ros.nodes.simulator import Simulator
@@ -101,6 +104,38 @@ def test_stamps_that_never_meet_are_told_and_joined_between(graph):
 
     _fly_until_it_is_said(graph, vehicle, send, 'joined by interpolation at those of attitude')
     assert graph.trigger('recorder/flush').success
+
+
+@pytest.mark.parametrize('turned, said', [(False, ''), (True, 'say frame: world')])
+def test_a_twist_in_the_axes_of_the_world_is_told_while_it_flies(graph, turned, said):
+    experiment = load_experiment('closed_loop')
+    flown = fly(experiment, experiment.runs[0]).record.slice(0, 800)
+    velocity, attitude = flown.stack('vx', 'vy', 'vz'), flown.stack(*QUATERNION)
+    linear = velocity if turned else rotate(conjugate(attitude), velocity)
+    heard = graph.listen(DiagnosticArray, '/diagnostics')
+    recorder = graph.start(Recorder, {'topics': ['pose', 'twist']})
+    vehicle = Vehicle(graph, ('pose', 'twist'))
+    for t, p, q, v, w in zip(flown.t, flown.stack('px', 'py', 'pz'), attitude, linear,
+                             flown.stack('wx', 'wy', 'wz'), strict=True):
+        stamp = 10 ** 9 + round(1e9 * t)
+        pose, twist = sample('pose', stamp), sample('twist', stamp)
+        fill(pose.pose.position, 'xyz', p)
+        fill(pose.pose.orientation, 'wxyz', q)
+        fill(twist.twist.linear, 'xyz', v)
+        fill(twist.twist.angular, 'xyz', w)
+        vehicle.publishers['pose'].publish(pose)
+        vehicle.publishers['twist'].publish(twist)
+    graph.spin_until(lambda: recorder.counts.joined == 800, 'the flight')
+    before = len(heard)
+    graph.spin_until(lambda: len(heard) > before + 1, 'a look at the flight')
+    status = [one for message in heard for one in message.status if said in one.message][-1]
+    assert status.level == (DiagnosticStatus.WARN if turned else DiagnosticStatus.OK)
+
+
+def fill(field, names, values):
+    """Set the numbers of a field of a message."""
+    for name, value in zip(names, values, strict=True):
+        setattr(field, name, float(value))
 
 
 @pytest.mark.parametrize('end', ['~/stop', 'the node ends'])

@@ -2,10 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Changes in flight by their equation of motion: what is found, what is not, and how often."""
 
+from dataclasses import replace
+
 import numpy as np
 from payload import climb, MASS, PAYLOAD, PICKED_UP, START_NS
 import pytest
 
+from quad_ident_ros.data.commands import with_inputs
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.gravity import GRAVITY
 from quad_ident_ros.identify import change
@@ -15,6 +18,7 @@ from quad_ident_ros.identify.identify import collect, identify, Settings
 from quad_ident_ros.identify.online import Changes
 from quad_ident_ros.identify.signals import signals, vertical_share
 from quad_ident_ros.identify.validity import validity
+from quad_ident_ros.vehicle_files.load import load_any_vehicle
 
 HOP = 250_000_000       # ns
 WEIGHT = MASS * GRAVITY
@@ -182,3 +186,19 @@ def test_without_an_attitude_the_tilt_is_not_known():
     bare = FlightRecord(flight.t, {name: flight.columns[name] for name in ('pz', 'u1')},
                         flight.info)
     assert identify([bare], FREE).validity['z'].holds is None
+
+
+def test_nothing_is_told_from_inputs_that_the_rotors_cannot_give():
+    """For a second 3 N more are asked for than act: without limits, that is a heavier vehicle."""
+    flight = climb(0.0, seed=2)
+    asked = flight.columns['u1'] + np.where((flight.t > 15.0) & (flight.t < 16.0), 3.0, 0.0)
+    record = FlightRecord(flight.t, {**flight.columns, 'u1': asked}, flight.info)
+    assert 'z' in {found.output for _, found in alarms(record)}
+    most = flight.columns['u1'].max() + 0.1     # N
+    vehicle = load_any_vehicle('paper_quadrotor')
+    limited = replace(vehicle, speed_max=np.sqrt(most / 4 / vehicle.thrust_coefficient))
+    assert alarms(with_inputs(record, limited)) == []
+    part = with_inputs(record, limited).slice(1400, 1700)
+    held = identify([part], FREE).validity['z']
+    assert held.holds is False and 'beyond speed_min or speed_max' in held.why
+    assert identify([with_inputs(flight, limited)], FREE).validity['z'].holds is True

@@ -157,7 +157,7 @@ def test_principal_axes_of_mujoco_turn_with_the_inertia():
     mjcf.INERTIAL, mjcf.INERTIAL.replace('mass', 'quat="0.9 0.1 0.2 0.3" mass'),
     '<geom type="box" size=".1 .1 .05" mass="1.2"/>'])
 def test_mujoco_itself_has_the_mass_and_the_inertia(body):
-    mujoco = pytest.importorskip('mujoco')
+    mujoco = pytest.importorskip('mujoco', reason='MuJoCo is not installed')
     source = Source('quad.xml', mjcf.model(body=body))
     vehicle = read_vehicle(source).vehicle
     wanted = replace(vehicle, mass=1.1 * vehicle.mass, products=(
@@ -274,14 +274,16 @@ def test_the_command_says_what_it_does(tmp_path, capsys):
 
 @pytest.mark.parametrize(('change', 'said'), [
     ({'-o': 'model.sdf'}, 'would write over'), ({'-o': 'real.txt'}, 'ends in .sdf'),
-    ({'-o': 'none/real.sdf'}, 'cannot be written'), ({'--to': 'mujoco', '-o': 'a.xml'}, 'MJCF'),
-    ({'--base': 'v.yaml'}, 'file of a simulator'), ({'--base': 'nothing.sdf'}, 'simulator'),
+    ({'-o': 'text/real.sdf'}, 'text is a file'), ({'--to': 'mujoco', '-o': 'a.xml'}, 'MJCF'),
+    ({'--base': 'v.yaml'}, '--base v.yaml: this is a vehicle file; give an SDF model of Gazebo'),
+    ({'--base': 'nothing.sdf'}, '--base nothing.sdf: there is no such file'),
     ({'V': 'model.sdf'}, 'expected a vehicle file'), ({'V': 'none.yaml'}, 'none.yaml')])
 def test_bad_input_is_said_in_one_line(change, said, tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
     source, vehicle = base('gazebo')
     (tmp_path / 'model.sdf').write_text(source.text, newline='')
     write_vehicle(tmp_path / 'v.yaml', vehicle)
+    (tmp_path / 'text').write_text('')
     given = {'V': 'v.yaml', '--to': 'gazebo', '--base': 'model.sdf', '-o': 'real.sdf', **change}
     words = ['export', given.pop('V')] + [word for pair in given.items() for word in pair]
     assert main(words) == 2

@@ -41,7 +41,7 @@ def without_callback():
 
 def model_of(vehicle, source=None):
     """Return MuJoCo's model of an Export with its code installed, and the code's names."""
-    mujoco = pytest.importorskip('mujoco')
+    mujoco = pytest.importorskip('mujoco', reason='MuJoCo is not installed')
     found = export(vehicle, 'mujoco', source)
     model = mujoco.MjModel.from_xml_string(found.text)
     space: dict = {}
@@ -135,7 +135,7 @@ def test_code_beside_a_model_of_the_user_finds_its_rotors():
 
 
 def test_another_model_is_left_alone():
-    mujoco = pytest.importorskip('mujoco')
+    mujoco = pytest.importorskip('mujoco', reason='MuJoCo is not installed')
     other = mujoco.MjModel.from_xml_string('<mujoco><worldbody><body><freejoint/><geom size="1"/>'
                                            '</body></worldbody></mujoco>')
     model_of(replace(VEHICLE, effects=SETS[0]))

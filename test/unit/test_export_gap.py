@@ -9,7 +9,7 @@ import pytest
 
 from quad_ident_ros.cli.main import main
 from quad_ident_ros.model.vehicle import load_vehicle, vehicle_to_mapping, write_vehicle
-from quad_ident_ros.vehicle_files.load import load_vehicle as load_any
+from quad_ident_ros.vehicle_files.load import load_any_vehicle
 
 EFFECTS = {'motor_lag': {'time_constant': 0.03}, 'rotor_drag': {'coefficient': 0.15},
            'body_drag': {'horizontal': 0.03, 'vertical': 0.03}, 'mass_offset': {'mass': 0.05}}
@@ -64,7 +64,7 @@ def test_the_base_is_the_nominal_vehicle(flown):
     with_base = exported(flown, 'rotorpy', 'b_params.py', '--base', str(nominal))
     alone = exported(flown, 'rotorpy', 'c_params.py')
     assert with_base['gap'] == alone['gap']
-    one, other = (vehicle_to_mapping(load_any(flown / name))
+    one, other = (vehicle_to_mapping(load_any_vehicle(flown / name))
                   for name in ('b_params.py', 'c_params.py'))
     assert one['effects'] == other['effects']
 

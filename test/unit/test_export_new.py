@@ -75,7 +75,7 @@ def test_a_weak_rotor_is_one_when_the_file_is_read_again(to):
 
 
 def test_mujoco_itself_pushes_as_a_new_file_says():
-    mujoco = pytest.importorskip('mujoco')
+    mujoco = pytest.importorskip('mujoco', reason='MuJoCo is not installed')
     vehicle = replace(load_vehicle('hummingbird'), effects={'rotor_fault': {'loss_2': 0.2}})
     model = mujoco.MjModel.from_xml_string(export(vehicle, 'mujoco').text)
     data = mujoco.MjData(model)
@@ -93,7 +93,7 @@ def test_mujoco_itself_pushes_as_a_new_file_says():
 
 
 def test_yourdfpy_reads_a_new_urdf():
-    yourdfpy = pytest.importorskip('yourdfpy')
+    yourdfpy = pytest.importorskip('yourdfpy', reason='yourdfpy is not installed')
     import io
     vehicle = load_vehicle('hummingbird')
     robot = yourdfpy.URDF.load(io.StringIO(export(vehicle, 'urdf').text), load_meshes=False,

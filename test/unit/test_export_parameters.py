@@ -85,7 +85,8 @@ def test_a_dictionary_that_is_not_written_out_is_refused_in_one_line():
 
 
 def test_rotorpy_itself_has_the_wrench_of_what_is_written(tmp_path):
-    multirotor = pytest.importorskip('rotorpy.vehicles.multirotor')
+    multirotor = pytest.importorskip('rotorpy.vehicles.multirotor',
+                                     reason='rotorpy is not installed')
     vehicle = with_effects(load_vehicle('hummingbird'), **AIR)
     space: dict = {}
     exec(export(vehicle, 'rotorpy').text, space)

@@ -19,7 +19,7 @@ from quad_ident_ros.model.quantities import value_of, with_values
 from quad_ident_ros.model.vehicle import load_vehicle, write_vehicle
 from quad_ident_ros.vehicle_files.bodies import Body, check_body
 from quad_ident_ros.vehicle_files.draws import draw, table_of_draws
-from quad_ident_ros.vehicle_files.load import load_vehicle as load_any
+from quad_ident_ros.vehicle_files.load import load_any_vehicle
 
 BARE = load_vehicle('hummingbird')
 NAMES = ('rotor_drag.coefficient', 'mass', 'thrust_coefficient')
@@ -166,7 +166,7 @@ def test_the_command_writes_files_of_a_simulator(file, tmp_path, capsys):
     assert 'carried: rotor_drag (by_speed): as it is' in capsys.readouterr().out
     assert base.read_text() == text
     for made in draw(known(), 3).vehicles:
-        read = load_any(tmp_path / 'models' / f'{made.name}.sdf')
+        read = load_any_vehicle(tmp_path / 'models' / f'{made.name}.sdf')
         assert read.mass == pytest.approx(made.mass, rel=1e-9)
         assert read.effects['rotor_drag']['coefficient'] == pytest.approx(
             made.effects['rotor_drag']['coefficient'], rel=1e-6)

@@ -24,7 +24,7 @@ SPEEDS = FLIGHT.stack('cmd1', 'cmd2', 'cmd3', 'cmd4')
 
 
 def parquet(path):
-    pyarrow = pytest.importorskip('pyarrow')
+    pyarrow = pytest.importorskip('pyarrow', reason='pyarrow is not installed')
     from pyarrow import parquet as writer
     writer.write_table(pyarrow.table({name: pyarrow.array(values) for name, values in
                                       others(FLIGHT).items()}), path)

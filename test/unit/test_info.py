@@ -63,7 +63,7 @@ def test_the_modes_of_a_px4_log_are_shown_with_their_spans(tmp_path, capsys):
 
 
 def test_the_modes_of_ardupilot_are_shown_with_their_spans(tmp_path, capsys):
-    pytest.importorskip('pymavlink')
+    pytest.importorskip('pymavlink', reason='pymavlink is not installed')
     messages = copter(SHORT, np.full((len(SHORT), 4), 1500.0), start=2.0)
     messages += [('MODE', (1_000_000, 5, 5)), ('MODE', (4_000_000, 16, 16))]
     path = tmp_path / 'a.BIN'
@@ -142,7 +142,7 @@ def test_a_mapping_to_begin_with_of_a_log_is_one(tmp_path, capsys):
 
 def test_the_mapping_of_a_log_names_its_kind_outputs_and_instances(tmp_path, capsys):
     """A Crazyflie's duty; an ArduPilot hexarotor's PWM, and its two IMUs."""
-    pytest.importorskip('pymavlink')
+    pytest.importorskip('pymavlink', reason='pymavlink is not installed')
     shares = (SHORT.stack(*CMD) - 100) / 1600
     (tmp_path / 'log16').write_bytes(usdlog(crazyflie_events(SHORT, 65535 * shares)))
     six = changed(SHORT, cmd5=SHORT.columns['cmd1'], cmd6=SHORT.columns['cmd2'])

@@ -115,7 +115,7 @@ def test_a_wrong_kind_is_told_by_its_content(kind, name, tmp_path):
 
 
 def test_an_old_log_of_px4_is_told(tmp_path):
-    pytest.importorskip('pymavlink')
+    pytest.importorskip('pymavlink', reason='pymavlink is not installed')
 
     def definition(kind, size, name, letters, labels):
         return (b'\xa3\x95\x80' + bytes([kind, size]) + name.ljust(4, b'\0')

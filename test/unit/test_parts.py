@@ -187,7 +187,7 @@ def test_logs_know_their_vehicle(tmp_path):
 
 
 def test_logs_of_ardupilot_know_their_board(tmp_path):
-    pytest.importorskip('pymavlink')
+    pytest.importorskip('pymavlink', reason='pymavlink is not installed')
     path = tmp_path / 'f.BIN'
     messages = copter(WHOLE.slice(0, 500), np.full((500, 4), 1500.0))
     path.write_bytes(dataflash([*messages[:1], (
@@ -197,7 +197,7 @@ def test_logs_of_ardupilot_know_their_board(tmp_path):
 
 
 def test_logs_of_betaflight_know_their_craft(tmp_path):
-    pytest.importorskip('orangebox')
+    pytest.importorskip('orangebox', reason='orangebox is not installed')
     path, part = tmp_path / 'f.bbl', WHOLE.slice(0, 300)
     path.write_bytes(blackbox(rows_of(part, np.full((300, 4), 900)),
                               **{'Board information': 'SPBE F405', 'Craft name': 'five inch'}))

@@ -11,7 +11,7 @@ from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.model.dynamics import STATES
 from quad_ident_ros.user_simulator.simulator import Simulator
-from quad_ident_ros.vehicle_files.load import load_vehicle
+from quad_ident_ros.vehicle_files.load import load_any_vehicle
 
 FOLDER = Path(__file__).resolve().parents[2] / 'docs' / 'simulators'
 STEP = 0.01     # s
@@ -60,7 +60,7 @@ def flown(hidden, seed, a, b):
 def test_the_gap_in_mujoco_falls_by_the_share_that_is_promised(hidden):
     pytest.importorskip('mujoco', reason='MuJoCo is not installed')
     pytest.importorskip('rotorpy.vehicles.multirotor', reason='rotorpy is not installed')
-    vehicle = load_vehicle(FOLDER / 'quadrotor.xml')
+    vehicle = load_any_vehicle(FOLDER / 'quadrotor.xml')
     # Both have the constants of the Hummingbird; a speed stands for a thrust in MuJoCo's file.
     factor = np.sqrt(5.57e-6 / vehicle.thrust_coefficient)
     records = []

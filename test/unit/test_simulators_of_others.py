@@ -17,7 +17,7 @@ from quad_ident_ros.flight.measure import SENSORS
 from quad_ident_ros.greybox.flights import track_of
 from quad_ident_ros.greybox.parameters import nominal, SPLIT
 from quad_ident_ros.user_simulator.simulator import Simulator
-from quad_ident_ros.vehicle_files.load import load_vehicle
+from quad_ident_ros.vehicle_files.load import load_any_vehicle
 
 FOLDER = Path(__file__).resolve().parents[2] / 'docs' / 'simulators'
 WITHIN = 0.05       # of the gap that our model has
@@ -47,7 +47,7 @@ def drone_models():
 def flown(request):
     """Read a vehicle of a simulator's file, and fly one that has more."""
     file, spec = request.param()
-    vehicle = load_vehicle(file)
+    vehicle = load_any_vehicle(file)
     truth = {name: dict(values) for name, values in vehicle.effects.items()}
     drag = truth.setdefault('rotor_drag', {})
     drag['coefficient'] = drag.get('coefficient', 0.0) + 0.4 * vehicle.mass

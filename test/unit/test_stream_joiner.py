@@ -116,10 +116,36 @@ def test_a_clock_that_begins_anew_begins_new_rows():
     assert joiner.counts.restarts == 1
 
 
+@pytest.mark.parametrize('period', [5, 10, 40])
+def test_no_command_is_lost_where_commands_come_more_often_than_states(period):
+    """States each 20 ms: rows at their stamps, or at those of commands that are faster."""
+    joiner = StreamJoiner({'pose': INTERPOLATED, 'commands': HELD}, 0.1)
+    rows = rows_of(joiner, sorted(
+        [('pose', k * 20 * MS, {'px': 0.1 * k}) for k in range(200)]
+        + [('commands', k * period * MS + MS, {'cmd1': float(k)}) for k in range(4000 // period)],
+        key=lambda one: one[1]))
+    stamps, values = np.array([row[0] for row in rows]), np.array([row[1] for row in rows])
+    assert joiner.base == ('commands' if period < 20 else 'pose')
+    np.testing.assert_allclose(values[:, 0], 0.005 * stamps / MS, rtol=1e-12)
+    np.testing.assert_array_equal(values[:, 1], (stamps - MS) // (period * MS))
+    if period < 20:
+        assert set(values[:, 1]) >= set(range(1, 3960 // period))
+
+
+def test_few_samples_are_joined_at_the_end():
+    joiner = StreamJoiner({'pose': INTERPOLATED, 'commands': HELD}, 0.1)
+    for k in range(10):
+        assert joiner.add('commands', k * 10 * MS, {'cmd1': float(k)}) == []
+        assert joiner.add('pose', k * 10 * MS, {'px': 0.0}) == []
+    assert [row[0] for row in joiner.drain()] == [k * 10 * MS for k in range(10)]
+
+
+@pytest.mark.parametrize('commands', [False, True])
 @pytest.mark.parametrize('alone', ['pose', 'rate'])
-def test_a_stream_alone_takes_bounded_memory(alone):
-    joiner = StreamJoiner({'pose': INTERPOLATED, 'rate': INTERPOLATED}, 0.1, most=100)
+def test_a_stream_alone_takes_bounded_memory(alone, commands):
+    joiner = StreamJoiner({'pose': INTERPOLATED, 'rate': INTERPOLATED,
+                           **({'commands': HELD} if commands else {})}, 0.1, most=100)
     for k in range(1000):
         assert joiner.add(alone, k * MS, {'x': 0.0}) == []
     assert all(len(part._stamps) <= 165 for part in joiner._samples.values())
-    assert len(joiner._waiting) <= 100
+    assert all(len(stamps) <= 100 for stamps in joiner._stamps.values())

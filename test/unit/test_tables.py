@@ -294,6 +294,28 @@ def test_parquet_is_read_by_the_same_rules(tmp_path):
     refused(path, 'Parquet')
 
 
+def test_text_in_a_parquet_file_is_named(tmp_path):
+    """As in a table of text: a cell that is no number, and a column that has none."""
+    pyarrow = pytest.importorskip('pyarrow', reason='pyarrow is not installed')
+    from pyarrow import parquet
+    path = tmp_path / 'f.parquet'
+
+    def write(**columns):
+        parquet.write_table(pyarrow.table({**others(), **columns}), path)
+
+    [name, *_] = others()
+    numbers = [str(value) for value in others()[name]]
+    write(**{name: numbers})
+    close(load(path))
+    write(**{name: [*numbers[:3], 'three', *numbers[4:]]})
+    refused(path, f"row 4, column '{name}': 'three' is no number")
+    write(note=['text'] * len(FLIGHT))
+    refused(path, "columns: px: column 'note' holds text; name one of numbers",
+            mapping=mapping_from({'columns': {'t': 'timestamp', 'px': 'note'}}, 'm.yaml'))
+    parquet.write_table(pyarrow.table({'a': ['x', 'y'], 'b': ['z', 'z']}), path)
+    refused(path, 'columns of text are left out: a, b')
+
+
 def test_without_pyarrow_the_extra_is_named(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, 'pyarrow', None)
     (tmp_path / 'f.parquet').write_bytes(b'PAR1')

@@ -8,6 +8,8 @@ import math
 from flightmaker import flight, VEHICLE
 import numpy as np
 import pytest
+from standing import brisk, standing_first
+from standing import VEHICLE as STANDING
 
 from quad_ident_ros.data.outputs import commanded
 from quad_ident_ros.data.quality import findings
@@ -113,3 +115,17 @@ def test_a_fit_takes_flights_of_the_same_motors_on_one_scale():
     assert np.ptp([record.info[FULL_SPEED] for record in records]) > 0.15 * FULL
     [inertia] = fit(records, UNLIMITED, ['inertia_x']).parameters
     assert inertia.value == pytest.approx(VEHICLE.inertia[0], rel=5e-3)
+
+
+@pytest.mark.parametrize('idle', [0.2, 0.5])
+@pytest.mark.parametrize('spin_up', [0.0, 3.0])
+@pytest.mark.parametrize('leave_out', [(), FORCE])
+def test_idling_on_the_ground_does_not_change_the_level(idle, spin_up, leave_out):
+    record = standing_first(brisk(), spin_up=spin_up, idle=idle, lag=1.0)
+    columns = {name: values for name, values in record.columns.items()
+               if not name.startswith(('cmd', 'rotor')) and name not in leave_out}
+    columns |= {f'output{k}': record.columns[f'cmd{k}'] / FULL for k in range(1, 5)}
+    vehicle = replace(STANDING, speed_min=0.0, speed_max=math.inf,
+                      motors=motors_from('motors', {'kind': 'normalised'}))
+    [read] = commanded([FlightRecord(record.t, columns, {})], vehicle)
+    assert read.info[FULL_SPEED] == pytest.approx(FULL, rel=0.005)

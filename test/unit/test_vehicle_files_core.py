@@ -14,7 +14,7 @@ from refusing import refused
 from quad_ident_ros.cli.main import main, parser
 from quad_ident_ros.effects.registry import mapping, vector
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.model.vehicle import load_vehicle as load_ours
+from quad_ident_ros.model.vehicle import load_vehicle
 from quad_ident_ros.vehicle_files.bodies import (
     about,
     Body,
@@ -28,7 +28,7 @@ from quad_ident_ros.vehicle_files.bodies import (
     turned,
 )
 from quad_ident_ros.vehicle_files.kinds import kind_of, KINDS
-from quad_ident_ros.vehicle_files.load import load_vehicle, read_vehicle, source_of
+from quad_ident_ros.vehicle_files.load import load_any_vehicle, read_vehicle, source_of
 from quad_ident_ros.vehicle_files.reading import Draft, finished
 from quad_ident_ros.vehicle_files.source import Source
 
@@ -119,7 +119,7 @@ def test_the_tilt_of_the_principal_axes_is_the_angle_turned():
 
 def test_a_dictionary_of_rotorpy_is_read_number_for_number(tmp_path):
     path = written(tmp_path, PARAMETERS)
-    vehicle = load_vehicle(path)
+    vehicle = load_any_vehicle(path)
     assert vehicle.name == 'params' and vehicle.mass == 0.5 and vehicle.gravity == 9.81
     assert vehicle.inertia == (3e-3, 4e-3, 5e-3)
     assert (vehicle.thrust_coefficient, vehicle.torque_coefficient) == (5e-6, 1e-7)
@@ -147,10 +147,10 @@ def test_every_entry_names_its_line():
 
 def test_products_of_inertia_are_those_of_the_vehicle(tmp_path):
     path = written(tmp_path, PARAMETERS.replace("'Ixz': 0.0", "'Ixz': 1e-4"))
-    vehicle, out = load_vehicle(path), tmp_path / 'v.yaml'
+    vehicle, out = load_any_vehicle(path), tmp_path / 'v.yaml'
     assert vehicle.inertia == (3e-3, 4e-3, 5e-3) and vehicle.products == (0.0, 1e-4, 0.0)
     assert main(['vehicle', str(path), '-o', str(out)]) == 0
-    assert load_ours(out) == vehicle
+    assert load_vehicle(out) == vehicle
     found = {entry.key: entry.value for entry in read_vehicle(source_of(path)).read}
     assert found['products of inertia'] == [0.0, 1e-4, 0.0]
     # tan(2 angle) = 2 Ixz / (Izz - Ixx).
@@ -209,14 +209,14 @@ def test_what_stands_beside_a_dictionary_does_not_change_it():
 def test_a_file_in_the_home_folder_is_found_by_its_sign(tmp_path, monkeypatch):
     monkeypatch.setenv('HOME', str(tmp_path))
     path = written(tmp_path, PARAMETERS)
-    assert load_vehicle('~/params.py') == load_vehicle(path)
+    assert load_any_vehicle('~/params.py') == load_any_vehicle(path)
     assert source_of('~/params.py:heavy').path == str(path)
 
 
 def test_a_python_file_is_not_run(tmp_path):
     witness = tmp_path / 'run'
     text = f'open({str(witness)!r}, "w")\n' + PARAMETERS
-    assert load_vehicle(written(tmp_path, text)).mass == 0.5
+    assert load_any_vehicle(written(tmp_path, text)).mass == 0.5
     assert not witness.exists()
 
 
@@ -226,9 +226,9 @@ def test_of_several_vehicles_one_is_named(tmp_path):
     said = refused(text, 'params.py')
     assert 'several vehicles are in it (quad_params, heavy); name one: params.py:quad_p' in said
     path = written(tmp_path, text)
-    assert load_vehicle(f'{path}:heavy').mass == 2.0
+    assert load_any_vehicle(f'{path}:heavy').mass == 2.0
     with pytest.raises(InputError, match="of the name 'light' is in it; give one of quad_params"):
-        load_vehicle(f'{path}:light')
+        load_any_vehicle(f'{path}:light')
 
 
 def test_what_is_missing_is_named_and_can_be_supplied():
@@ -257,7 +257,7 @@ def test_the_command_shows_and_writes_what_the_file_says(tmp_path, capsys):
     assert main(['vehicle', str(path), '-o', str(out)]) == 0
     shown = capsys.readouterr().out
     assert 'line 13' in shown and 'effect: motor_lag time_constant = 0.02' in shown
-    assert load_ours(out) == load_vehicle(path)
+    assert load_vehicle(out) == load_any_vehicle(path)
     assert main(['vehicle', str(path), '--json', '-']) == 0
     data = json.loads(capsys.readouterr().out)
     assert data['vehicle']['mass'] == 0.5 and data['missing'] == {}
@@ -286,14 +286,14 @@ def test_a_flight_is_flown_with_a_vehicle_of_a_simulator(tmp_path):
 
 
 def test_files_of_ours_are_loaded_as_before(tmp_path):
-    assert load_vehicle('hummingbird') == load_ours('hummingbird')
+    assert load_any_vehicle('hummingbird') == load_vehicle('hummingbird')
     assert source_of('hummingbird') is None
     with pytest.raises(InputError, match='is not among the vehicles'):
-        load_vehicle('humingbird')
+        load_any_vehicle('humingbird')
     picture = tmp_path / 'drone.xml'
     picture.write_bytes(b'\x89PNG\r\n\x1a\n' + bytes(range(128, 256)))
     with pytest.raises(InputError, match='this is a picture'):
-        load_vehicle(picture)
+        load_any_vehicle(picture)
 
 
 def test_entities_that_stand_for_gigabytes_are_refused_at_once(tmp_path):
@@ -301,7 +301,7 @@ def test_entities_that_stand_for_gigabytes_are_refused_at_once(tmp_path):
     text = (f'<!DOCTYPE robot [<!ENTITY a0 "ha">{levels}<!ATTLIST robot name CDATA "&a11;">]>\n'
             '<robot>&a11;</robot>')
     with pytest.raises(InputError, match='line 1: a document type .DTD. is not read'):
-        load_vehicle(written(tmp_path, text, 'bomb.urdf'))
+        load_any_vehicle(written(tmp_path, text, 'bomb.urdf'))
 
 
 def test_kinds_are_told_by_content():

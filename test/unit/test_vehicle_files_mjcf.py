@@ -192,7 +192,7 @@ GEOMS = """
     '<inertial pos="0 0 0.1" mass="1" diaginertia="0.02 0.03 0.04" zaxis="1 2 3"/>'])
 def test_mass_and_inertia_are_those_of_mujoco(before, body, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)     # where MuJoCo puts its log
-    mujoco = pytest.importorskip('mujoco')
+    mujoco = pytest.importorskip('mujoco', reason='MuJoCo is not installed')
     text = model(body, before=before)
     theirs = mujoco.MjModel.from_xml_string(text)
     data = mujoco.MjData(theirs)
@@ -219,7 +219,7 @@ def test_mass_and_inertia_are_those_of_mujoco(before, body, tmp_path, monkeypatc
 
 
 def test_a_wrench_is_that_of_mujoco():
-    mujoco = pytest.importorskip('mujoco')
+    mujoco = pytest.importorskip('mujoco', reason='MuJoCo is not installed')
     text = model(actuators=motors('0 0 1.5 0 0 {}').replace('0.02', '0.03'))
     theirs = mujoco.MjModel.from_xml_string(text)
     data = mujoco.MjData(theirs)

@@ -14,7 +14,7 @@ from refusing import refused
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.motors import rotor_speeds
 from quad_ident_ros.vehicle_files.kinds import kind_of
-from quad_ident_ros.vehicle_files.load import load_vehicle, read_vehicle
+from quad_ident_ros.vehicle_files.load import load_any_vehicle, read_vehicle
 from quad_ident_ros.vehicle_files.source import Source
 
 TOML = pytest.mark.skipif(sys.version_info < (3, 11), reason='TOML is read from Python 3.11 on')
@@ -92,14 +92,14 @@ def test_a_drone_of_drone_models_is_reduced_at_hover():
 @pytest.mark.skipif(os.environ.get('SCIPY_ARRAY_API') != '1',
                     reason='drone-models is imported only with SCIPY_ARRAY_API=1')
 def test_the_wrench_is_that_of_drone_models():
-    models = pytest.importorskip('drone_models')
+    models = pytest.importorskip('drone_models', reason='drone-models is not installed')
     from drone_models.core import load_params
     from drone_models.first_principles import dynamics
     path = Path(models.__file__).parent / 'data' / 'params.toml'
     with pytest.raises(InputError, match='several vehicles are in it .cf2x_L250, .*; name one'):
-        load_vehicle(path)
+        load_any_vehicle(path)
     for name in ('cf2x_L250', 'cf2x_P250', 'cf2x_T350', 'cf21B_500'):
-        vehicle, theirs = load_vehicle(f'{path}:{name}'), load_params('first_principles', name)
+        vehicle, theirs = load_any_vehicle(f'{path}:{name}'), load_params('first_principles', name)
         known = dynamics.__kwdefaults__ or dynamics.__wrapped__.__code__.co_varnames
         values = {key: np.asarray(value) for key, value in theirs.items() if key in known}
         exponent = vehicle.effects['thrust_scale']['exponent']

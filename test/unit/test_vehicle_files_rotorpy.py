@@ -9,16 +9,16 @@ import pytest
 
 from quad_ident_ros.effects.registry import vector
 from quad_ident_ros.model.rigid_body import derivatives, INPUT, rotor_table, vehicle_vector
-from quad_ident_ros.vehicle_files.load import load_vehicle
+from quad_ident_ros.vehicle_files.load import load_any_vehicle
 
-multirotor = pytest.importorskip('rotorpy.vehicles.multirotor')
+multirotor = pytest.importorskip('rotorpy.vehicles.multirotor', reason='rotorpy is not installed')
 
 
 @pytest.mark.parametrize('name', ['crazyflie', 'hummingbird', 'px4_sihsim_quadx'])
 def test_force_and_moment_are_those_of_rotorpy(name):
     module = importlib.import_module(f'rotorpy.vehicles.{name}_params')
     theirs = multirotor.Multirotor(module.quad_params)
-    vehicle = load_vehicle(module.__file__)
+    vehicle = load_any_vehicle(module.__file__)
     draw, count = np.random.default_rng(1), 20
     velocity, rate = draw.normal(0, 4, (count, 3)), draw.normal(0, 2, (count, 3))
     speeds = vehicle.hover_speed * draw.uniform(0.7, 1.3, (count, 4))
@@ -40,5 +40,5 @@ def test_force_and_moment_are_those_of_rotorpy(name):
 
 def test_the_lag_is_that_of_rotorpy():
     module = importlib.import_module('rotorpy.vehicles.crazyflie_params')
-    vehicle = load_vehicle(module.__file__)
+    vehicle = load_any_vehicle(module.__file__)
     assert vehicle.effects['motor_lag'] == {'time_constant': module.quad_params['tau_m']}

@@ -12,7 +12,7 @@ from quad_ident_ros.effects.registry import mapping, vector
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.vehicle_files.bodies import about
 from quad_ident_ros.vehicle_files.kinds import kind_of
-from quad_ident_ros.vehicle_files.load import load_vehicle, read_vehicle
+from quad_ident_ros.vehicle_files.load import load_any_vehicle, read_vehicle
 from quad_ident_ros.vehicle_files.source import Source
 
 ARMS = ((0.2, -0.25), (-0.2, 0.25), (0.2, 0.25), (-0.2, -0.25))
@@ -143,7 +143,7 @@ def test_an_included_model_beside_it_is_read(tmp_path, merge):
     include = f"<include merge='{str(merge).lower()}'><uri>model://quad_base</uri></include>"
     text = motors() if merge else motors().replace('rotor_', 'quad_base::rotor_')
     top.write_text(model(include, text))
-    assert load_vehicle(top) == reading(WHOLE).vehicle
+    assert load_any_vehicle(top) == reading(WHOLE).vehicle
     found = read_vehicle(Source(str(top), top.read_text()))
     links = {entry.key: entry.place for entry in found.read if entry.key.startswith('link')}
     assert len(links) == 5
@@ -169,7 +169,7 @@ def test_what_an_included_file_is_instead_of_a_model_is_said(tmp_path):
     top.parent.mkdir()
     top.write_text(model('<include><uri>model://base</uri></include>', motors()))
     with pytest.raises(InputError, match='base/model.sdf: this is a picture'):
-        load_vehicle(top)
+        load_any_vehicle(top)
 
 
 @pytest.mark.parametrize('encoding', ['UTF-16', 'latin-1', 'nobody-knows'])
@@ -183,7 +183,7 @@ def test_models_that_include_one_another_end(tmp_path):
     path.parent.mkdir()
     path.write_text(model('<include><uri>model://a</uri></include>', motors()))
     with pytest.raises(InputError, match='include one another without end'):
-        load_vehicle(path)
+        load_any_vehicle(path)
 
 
 def test_of_two_vehicles_in_a_world_one_is_named():

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from test_vehicle_files_sdf import bodies, model, motors
 
-from quad_ident_ros.vehicle_files.load import load_vehicle, read_vehicle, source_of
+from quad_ident_ros.vehicle_files.load import load_any_vehicle, read_vehicle, source_of
 
 PROGRAM = r"""
 #include <iomanip>
@@ -113,7 +113,7 @@ def test_mass_inertia_and_places_are_those_of_libsdformat(tmp_path, program, bas
             moments = np.diag([across, across, moments[2, 2]])
         arm = place - centre
         inertia += moments + weight * (arm @ arm * np.eye(3) - np.outer(arm, arm))
-    vehicle = load_vehicle(path)
+    vehicle = load_any_vehicle(path)
     found = {entry.key: entry.value for entry in read_vehicle(source_of(path)).read}
     assert vehicle.mass == pytest.approx(mass, rel=1e-12)
     np.testing.assert_allclose(vehicle.inertia, np.diag(inertia), rtol=1e-9)

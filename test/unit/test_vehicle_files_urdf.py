@@ -11,7 +11,7 @@ from refusing import refused
 
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.vehicle_files.kinds import kind_of
-from quad_ident_ros.vehicle_files.load import load_vehicle, read_vehicle
+from quad_ident_ros.vehicle_files.load import load_any_vehicle, read_vehicle
 from quad_ident_ros.vehicle_files.source import Source
 
 ARMS = ((0.2, -0.2), (-0.2, 0.2), (0.2, 0.2), (-0.2, -0.2))
@@ -98,7 +98,7 @@ def test_a_command_that_needs_the_rest_says_how_to_supply_it(tmp_path):
     path = tmp_path / 'drone.urdf'
     path.write_text(drone())
     with pytest.raises(InputError) as error:
-        load_vehicle(path)
+        load_any_vehicle(path)
     said = str(error.value)
     assert 'a URDF without thrust_coefficient, torque_coefficient, spins; run `quad_ident' in said
     assert '--set spins=... -o vehicle.yaml` and give that file' in said
@@ -132,7 +132,7 @@ def test_a_turned_inertia_beside_a_mounted_body_by_the_closed_form():
 
 
 def test_links_stand_where_yourdfpy_has_them():
-    yourdfpy = pytest.importorskip('yourdfpy')
+    yourdfpy = pytest.importorskip('yourdfpy', reason='yourdfpy is not installed')
     theirs = yourdfpy.URDF.load(io.StringIO(drone()), load_meshes=False, build_scene_graph=True)
     mass = sum(link.inertial.mass for link in theirs.robot.links)
     centre = np.zeros(3)

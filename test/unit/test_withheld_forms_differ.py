@@ -136,7 +136,7 @@ def test_a_centre_that_yields_is_no_constant_offset():
 
 
 def test_a_mass_that_is_not_at_the_centre_moves_the_centre_and_a_cable_swings():
-    pytest.importorskip('mujoco')
+    pytest.importorskip('mujoco', reason='MuJoCo is not installed')
     true = fresh()
     made('mass_offset', 'other_battery').alter(true, PARAMS)
     assert np.linalg.norm(true['centre']) > 1e-4

@@ -42,10 +42,9 @@ CHECKS = (columns.known, columns.incomplete, columns.differentiated, columns.fro
           stale.held,
           stale.marked, glitches.attitude,
           units.rates_in_degrees, units.euler_in_degrees, units.force_in_g,
-          units.position_in_millimetres, units.speeds_in_rpm, frames.quaternion, frames.world,
-          frames.velocity_in_body, frames.rate_in_world, frames.signs, rotors.hover, rotors.size,
-          rotors.count, rotors.order_and_spin, moments.unit, thrust.carried, thrust.level,
-          clock.attitude, clock.velocity, clock.commands,
+          units.position_in_millimetres, units.speeds_in_rpm, *frames.CHECKS,
+          rotors.hover, rotors.size, rotors.count, rotors.order_and_spin, moments.unit,
+          thrust.carried, thrust.level, clock.attitude, clock.velocity, clock.commands,
           ground.stands, gyro.bias, answer.commands, saturation.speeds, excitation.axes)
 
 TOLD = 'commands', 'logging', 'differentiated'

@@ -240,3 +240,6 @@ def _strangers(moved, velocity):
                     'the position does not change as the velocity says (correlation '
                     f'{alike:.2f}): they are of different frames, clocks or vehicles',
                     'say frame: world or body of the velocity in a mapping, or leave it out')]
+
+
+CHECKS = (quaternion, world, velocity_in_body, rate_in_world, signs)

@@ -5,10 +5,10 @@
 from pathlib import Path
 
 from quad_ident_ros.data.mapping import Mapping
+from quad_ident_ros.data.parquet import read_parquet
 from quad_ident_ros.data.readers.base import Content, Reader
 from quad_ident_ros.data.readers.table import contents_of_table, records_from
 from quad_ident_ros.data.record import FlightRecord
-from quad_ident_ros.data.tabular import read_parquet
 from quad_ident_ros.model.vehicle import Vehicle
 
 

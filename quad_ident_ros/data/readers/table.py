@@ -10,14 +10,14 @@ import zlib
 
 import numpy as np
 
-from quad_ident_ros.data.columns import record_of, shown
+from quad_ident_ros.data.columns import record_of
 from quad_ident_ros.data.csv import read_csv
 from quad_ident_ros.data.guess import Guess, guess
 from quad_ident_ros.data.mapping import ATTITUDE, factor_of, Mapping
 from quad_ident_ros.data.mapping_text import flow
 from quad_ident_ros.data.readers.base import Content, content_of, Reader
 from quad_ident_ros.data.record import EULER, FlightRecord, QUATERNION, unit
-from quad_ident_ros.data.tabular import read_text, Table
+from quad_ident_ros.data.tabular import read_text, shown, Table
 from quad_ident_ros.data.text_lines import is_packed, rows_of
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.vehicle import Vehicle
@@ -172,8 +172,9 @@ def _doubtful(path: Path, table: Table, found: Guess) -> str:
     lines = flow(found.mapping)
     if len(lines) > 300:
         lines = lines[:lines.rindex(', ', 0, 300)] + ', ...}'
+    texts = f' (of text: {shown(table.text, 5)})' if table.text else ''
     return (f'{path}: not told: {"; ".join(found.doubts[:4])[:300]}; the columns are '
-            f'{shown(table.columns, 10)[:250]}; write a mapping such as {lines}, or begin '
+            f'{shown(table.columns, 10)[:250]}{texts}; write a mapping such as {lines}, or begin '
             'one with: quad_ident info FILE --write-mapping map.yaml')
 
 

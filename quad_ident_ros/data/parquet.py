@@ -1,0 +1,71 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Tables in Parquet files."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from quad_ident_ros.data.limits import most
+from quad_ident_ros.data.tabular import left_out, MOST_COLUMNS, noted, numbers_in, Table
+from quad_ident_ros.errors import InputError
+
+
+def read_parquet(path: Path) -> Table:
+    """Return the Table of a Parquet file; raises InputError, ModuleNotFoundError for pyarrow."""
+    import pyarrow
+    from pyarrow import parquet
+    try:
+        with parquet.ParquetFile(path) as file:
+            meta = file.metadata
+            if meta.num_columns > MOST_COLUMNS or (
+                    8 * meta.num_rows * max(meta.num_columns, 1) > most(path.stat().st_size)):
+                raise InputError(f'{path}: unpacks to far more than flights do; write the '
+                                 'columns of the flight alone')
+            found = file.read()
+        for _ in range(8):      # fields of fields
+            if not any(pyarrow.types.is_struct(field.type) for field in found.schema):
+                break
+            found = found.flatten()
+        columns, text = {}, []
+        for name, column in zip(found.column_names, found.columns, strict=True):
+            if not name.isprintable() or not name.strip() or name.strip() in columns:
+                continue
+            values = _numbers(pyarrow, column)
+            if values is None and _is_text(pyarrow, column.type):
+                cells = [(cell or '').strip() for cell in column.to_pylist()]
+                values = numbers_in(path, name, cells, False, lambda k: f'row {k + 1}')
+            if values is None:
+                text.append(name)
+            else:
+                columns[name.strip()] = values
+    except InputError:
+        raise
+    except Exception as error:  # a damaged file makes the parser raise anything
+        if isinstance(error, OSError) and error.strerror:
+            raise InputError(f'{path}: cannot be read: {error.strerror}') from None
+        raise InputError(f'{path}: this is no whole Parquet file; write it again') from None
+    if not columns or found.num_rows < 2:
+        raise InputError(f'{path}: there are fewer than 2 rows of numbers; give a table with '
+                         f'samples{left_out(text, "; ")}')
+    return Table(columns, {}, tuple(noted(text)), 'Parquet', text=tuple(text))
+
+
+def _is_text(pyarrow: Any, kind: Any) -> bool:
+    return bool(pyarrow.types.is_string(kind) or pyarrow.types.is_large_string(kind))
+
+
+def _numbers(pyarrow: Any, column: Any) -> np.ndarray | None:
+    """Return the values of a column as float, or None where they are no numbers."""
+    kind = column.type
+    if pyarrow.types.is_timestamp(kind):
+        column, factor = column.cast(pyarrow.int64()), {
+            's': 1e9, 'ms': 1e6, 'us': 1e3, 'ns': 1.0}[kind.unit]
+    elif (pyarrow.types.is_integer(kind) or pyarrow.types.is_floating(kind)
+          or pyarrow.types.is_boolean(kind)):
+        factor = 1.0
+    else:
+        return None
+    values = column.cast(pyarrow.float64(), safe=False).to_numpy()
+    return np.array(values, float) * factor
