@@ -14,7 +14,7 @@ from quad_ident_ros.identify.identify import identify, Settings
 from quad_ident_ros.identify.result import Identification
 from quad_ident_ros.model.vehicle import Vehicle, write_vehicle
 from quad_ident_ros.report.verdict import verdict_line
-from quad_ident_ros.vehicle_files.load import load_vehicle
+from quad_ident_ros.vehicle_files.load import load_any_vehicle as load_vehicle
 
 __all__ = [
     'Cancelled', 'diagnose', 'Diagnosis', 'fit', 'Fit', 'fitted_vehicle', 'FlightRecord',
