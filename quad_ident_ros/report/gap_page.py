@@ -57,7 +57,7 @@ def write(path: str | Path, found: Diagnosis) -> None:
     """Write the page of a Diagnosis; raises InputError where the file cannot be written."""
     with tempfile.TemporaryDirectory() as folder:
         captions = save_pictures(found, Path(folder))
-        pictures = {name: figure(Path(folder) / f'{name}.png', caption)
+        pictures = {name: figure(Path(folder) / f'{name}.png', name, caption)
                     for name, caption in captions.items()}
         body = [*_verdict(found), *_where(found, pictures), *_which(found, pictures),
                 *_far(found, pictures), *_in_simulator(found),
@@ -92,15 +92,16 @@ def save_pictures(found: Diagnosis, folder: Path) -> dict[str, str]:
 def _verdict(found: Diagnosis) -> list:
     words = join((tag('span', name, f'tag {KINDS.get(name, "part")}') for name in found.verdict),
                  ' ')
-    return [tag('p', join([tag('strong', 'Verdict: '), words], '')),
-            tag('p', tag('strong', sentence(verdict_line(found)))),
-            tag('p', f'{size_line(found)} {next_step(found)}')]
+    return [tag('p', sentence(verdict_line(found)), 'lead'),
+            tag('p', size_line(found)), tag('p', next_step(found)),
+            tag('p', join([tag('strong', 'Verdict: '), words], ''))]
 
 
 def _where(found: Diagnosis, pictures: dict) -> list:
     rows = [where_row(row) for row in shown(found.where)]
     return [tag('h2', 'Where'), pictures['map'],
-            table(WHERE, rows, kinds=('text', '', '', '', 'text', ''))]
+            table(WHERE, rows, kinds=('text', '', '', '', 'text', ''),
+                  caption='Force and moment that the nominal vehicle does not explain')]
 
 
 def _which(found: Diagnosis, pictures: dict) -> list:
@@ -118,7 +119,8 @@ def _which(found: Diagnosis, pictures: dict) -> list:
     estimates = ([table(['effect', 'form, explains', 'probability', 'contribution',
                          'velocity gap without it, m/s', 'parameter', 'estimate',
                          '95 % interval', 'unit'], rows,
-                        kinds=('text', 'text', '', '', '', 'text', '', '', 'text'))]
+                        kinds=('text', 'text', '', '', '', 'text', '', '', 'text'),
+                        caption='Effects of the model that explains the flights best')]
                  if rows else [tag('p', 'No effect is probable.')])
     return [tag('h2', 'Which'), pictures['probabilities'], *estimates,
             *_listed([*improbable_lines(found), *minor_lines(found), *one_finding_lines(found)])]
@@ -127,7 +129,8 @@ def _which(found: Diagnosis, pictures: dict) -> list:
 def _far(found: Diagnosis, pictures: dict) -> list:
     return [tag('h2', 'How far'), tag('p', sentence(far_line(found))),
             tag('p', sentence(ceiling_line(found))),
-            table(FAR, far_rows(found), kinds=('text', *[''] * 5, 'text')),
+            table(FAR, far_rows(found), kinds=('text', *[''] * 5, 'text'),
+                  caption=f'Error of predictions {found.gap.horizon:g} s ahead'),
             pictures['horizons'], pictures['predictions']]
 
 
@@ -137,19 +140,21 @@ def _in_simulator(found: Diagnosis) -> list:
         return []
     rows = [where_row(row) for row in shown(one.where)]
     return [tag('h2', 'In the simulator'), tag('p', sentence(simulator_line(one, found))),
-            table(IN_SIMULATOR, simulator_rows(found), kinds=('text', *[''] * 6, 'text')),
-            tag('p', 'Force and moment that the simulator does not explain:'),
-            table(WHERE, rows, kinds=('text', '', '', '', 'text', ''))]
+            table(IN_SIMULATOR, simulator_rows(found), kinds=('text', *[''] * 6, 'text'),
+                  caption=f'Error of predictions {one.horizon:g} s ahead in {one.simulator}'),
+            table(WHERE, rows, kinds=('text', '', '', '', 'text', ''),
+                  caption='Force and moment that the simulator does not explain')]
 
 
 def _closed_loop(found: Diagnosis) -> list:
     one = found.closed_loop
     if one is None:
         return []
-    costs = [tag('p', sentence(COST_LINE)),
-             table(COSTS, cost_rows(one), kinds=('text', '', '', '', ''))] if one.without else []
+    costs = ([table(COSTS, cost_rows(one), kinds=('text', '', '', '', ''),
+                    caption=sentence(COST_LINE))] if one.without else [])
     return [tag('h2', 'In closed loop'), tag('p', sentence(loop_line(one, found.held_out))),
-            table(TITLES, loop_rows(one), kinds=('text', '', '', '', 'text')), *costs]
+            table(TITLES, loop_rows(one), kinds=('text', '', '', '', 'text'),
+                  caption=f'Tracking error and bandwidth with {one.controller}'), *costs]
 
 
 def _open(found: Diagnosis) -> list:
@@ -159,7 +164,8 @@ def _open(found: Diagnosis) -> list:
     if found.fly_next:
         parts += [tag('h2', 'What to fly next'),
                   table(NEXT, [next_row(one) for one in found.fly_next],
-                        kinds=('text', 'text', '', '', '', '', ''))]
+                        kinds=('text', 'text', '', '', '', '', ''),
+                        caption='Manoeuvres that would decide what is open')]
     return parts
 
 

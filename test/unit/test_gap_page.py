@@ -254,7 +254,7 @@ def test_what_cannot_be_told_apart_asks_for_a_flight(page, terminal):
     said = ('undetermined: the flights cannot tell between steady wind (wind) and drag of the '
             'body (body_drag); certain: drag of the rotors (rotor_drag)')
     assert f'U{said[1:]}.' in text
-    assert text.index('<td class="text">circle, 20 s</td>') < text.index('chirp_x, 20 s')
+    assert text.index('<th scope="row" class="text">circle, 20 s</th>') < text.index('chirp_x, 20 s')
     assert '<td class="text">tell apart wind, body_drag</td><td>0.5</td><td>12</td>' in text
     assert terminal(**changes).startswith(f'verdict: {said}\n')
     assert '\nNext: fly what ' in terminal(**changes)
