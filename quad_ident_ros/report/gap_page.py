@@ -2,12 +2,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """The page of a diagnosis: the verdict first, then pictures and numbers."""
 
+from collections import Counter
 from pathlib import Path
 import tempfile
+
+import yaml
 
 from quad_ident_ros import __version__
 from quad_ident_ros.diagnose.result import Diagnosis
 from quad_ident_ros.effects.registry import titled
+from quad_ident_ros.model.vehicle import vehicle_to_mapping
 from quad_ident_ros.report import gap_pictures
 from quad_ident_ros.report.ceiling import ceiling_line
 from quad_ident_ros.report.closed_loop import (
@@ -39,7 +43,16 @@ from quad_ident_ros.report.diagnosis import (
     where_row,
     without_it,
 )
-from quad_ident_ros.report.html import figure, join, Markup, table, tag, write_page
+from quad_ident_ros.report.html import (
+    details,
+    figure,
+    join,
+    Markup,
+    markup,
+    table,
+    tag,
+    write_page,
+)
 from quad_ident_ros.report.verdict import (
     change_of,
     contribution_of,
@@ -176,6 +189,31 @@ def _listed(lines: list[str]) -> list:
 
 
 def _provenance(found: Diagnosis) -> list:
-    return [tag('h2', 'From what'),
-            tag('p', f'Fitted to {", ".join(found.flights)}; held out: {found.held_out}; '
-                     f'quad_ident_ros {__version__}.')]
+    """Return what the diagnosis comes from: run, files, flights, vehicle."""
+    run = found.run
+    made = f'Made by quad_ident_ros {__version__}' + (f' on {run.date} with' if run else '.')
+    parts = [tag('h2', 'From what'),
+             tag('p', f'Fitted to {", ".join(found.flights)}; held out: {found.held_out}.'),
+             tag('p', join([made, tag('code', run.command)], ' ') if run else made)]
+    findings = Counter(one['flight'] for one in found.findings)
+    rows = [[one.flight, f'{one.duration:.2f}', f'{one.rate:.4g}', str(one.samples),
+             str(findings[one.flight])] for one in found.recorded]
+    if rows:
+        parts.append(table(['flight', 'duration, s', 'rate, Hz', 'samples', 'findings'], rows,
+                           caption='Flights as recorded'))
+    if found.findings:
+        parts.append(table(['flight', 'where', 'finding'], [
+            [one['flight'], _prose(one['where']), _prose(one['message'])]
+            for one in found.findings], ('text', 'text', 'text'), caption='Findings'))
+    if run:
+        parts.append(table(['file', 'SHA-256'], [
+            [path, Markup(f'<td class="prose"><code>{whole}</code></td>')]
+            for path, whole in run.files.items()], caption='Files'))
+    text = yaml.safe_dump(vehicle_to_mapping(found.vehicle), sort_keys=False,
+                          default_flow_style=None)
+    return [*parts, details('Vehicle file in full', Markup(
+        f'<pre tabindex="0">{markup(text)}</pre>'))]
+
+
+def _prose(text: str) -> Markup:
+    return tag('td', text, 'prose')

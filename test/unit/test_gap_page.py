@@ -3,9 +3,11 @@
 """A diagnosis as a person reads it: in the terminal, on the page, and its pictures."""
 
 from dataclasses import replace
-from html import escape
+import hashlib
+from html import escape, unescape
 import io
 import json
+from pathlib import Path
 import re
 
 import matplotlib.image
@@ -254,7 +256,8 @@ def test_what_cannot_be_told_apart_asks_for_a_flight(page, terminal):
     said = ('undetermined: the flights cannot tell between steady wind (wind) and drag of the '
             'body (body_drag); certain: drag of the rotors (rotor_drag)')
     assert f'U{said[1:]}.' in text
-    assert text.index('<th scope="row" class="text">circle, 20 s</th>') < text.index('chirp_x, 20 s')
+    first = text.index('<th scope="row" class="text">circle, 20 s</th>')
+    assert first < text.index('chirp_x, 20 s')
     assert '<td class="text">tell apart wind, body_drag</td><td>0.5</td><td>12</td>' in text
     assert terminal(**changes).startswith(f'verdict: {said}\n')
     assert '\nNext: fly what ' in terminal(**changes)
@@ -317,7 +320,14 @@ def test_the_command_writes_it(paths, tmp_path, capsys):
     assert main(['diagnose', *paths, '--vehicle', 'hummingbird', '--effects',
                  'rotor_drag,body_drag', '--report', str(out)]) == 0
     assert capsys.readouterr().out.startswith('verdict: drag of the rotors (rotor_drag), ')
-    assert '<h1>Sim-to-real gap of hummingbird</h1>' in out.read_text(encoding='utf-8')
+    text = out.read_text(encoding='utf-8')
+    assert '<h1>Sim-to-real gap of hummingbird</h1>' in text
+    for path in paths:      # what the page comes from can be checked
+        assert hashlib.sha256(Path(path).read_bytes()).hexdigest() in text
+    assert '--effects rotor_drag,body_drag' in text
+    [vehicle] = re.findall(r'<pre tabindex="0">(.*?)</pre>', text, flags=re.DOTALL)
+    (tmp_path / 'again.yaml').write_text(unescape(vehicle))
+    assert load_vehicle(tmp_path / 'again.yaml') == VEHICLE
 
 
 def test_a_gap_within_the_tolerance_of_the_user_does_not_matter(paths, tmp_path):
