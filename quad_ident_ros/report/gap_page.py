@@ -6,6 +6,7 @@ from collections import Counter
 from pathlib import Path
 import tempfile
 
+from matplotlib import rc_context
 import yaml
 
 from quad_ident_ros import __version__
@@ -44,8 +45,9 @@ from quad_ident_ros.report.diagnosis import (
     without_it,
 )
 from quad_ident_ros.report.html import (
+    bar,
     details,
-    figure,
+    drawing,
     join,
     Markup,
     markup,
@@ -53,6 +55,7 @@ from quad_ident_ros.report.html import (
     tag,
     write_page,
 )
+from quad_ident_ros.report.svg import FONTS, inline
 from quad_ident_ros.report.verdict import (
     change_of,
     contribution_of,
@@ -65,21 +68,27 @@ from quad_ident_ros.report.verdict import (
 WIDE = 1.96     # standard errors to the ends of a 95 % interval
 KINDS = {'none': 'yes', 'unknown': 'no', 'undetermined': 'part'}
 
+ALTS = {'predictions': 'Measured and predicted velocity and rates over time, and their difference',
+        'horizons': 'Gap by horizon, before and after, and of noise alone',
+        'map': 'Residual force and moment by channel and regime, before and after'}
+
 
 def write(path: str | Path, found: Diagnosis) -> None:
     """Write the page of a Diagnosis; raises InputError where the file cannot be written."""
     with tempfile.TemporaryDirectory() as folder:
-        captions = save_pictures(found, Path(folder))
-        pictures = {name: figure(Path(folder) / f'{name}.png', name, caption)
+        with rc_context(FONTS):
+            captions = save_pictures(found, Path(folder), '.svg')
+        pictures = {name: drawing(inline(Path(folder) / f'{name}.svg', name, ALTS[name]),
+                                  ALTS[name], caption)
                     for name, caption in captions.items()}
-        body = [*_verdict(found), *_where(found, pictures), *_which(found, pictures),
+        body = [*_verdict(found), *_where(found, pictures), *_which(found),
                 *_far(found, pictures), *_in_simulator(found),
                 *_closed_loop(found), *_open(found), *_provenance(found)]
     write_page(path, f'Sim-to-real gap of {found.vehicle.name}', join(body))
 
 
-def save_pictures(found: Diagnosis, folder: Path) -> dict[str, str]:
-    """Save the pictures of a Diagnosis as NAME.png in a folder; return {name: caption}."""
+def save_pictures(found: Diagnosis, folder: Path, ending: str) -> dict[str, str]:
+    """Save the pictures of a Diagnosis as NAME and an ending, .png or .svg; return captions."""
     made = {}
     for name, draw, caption in (
             ('predictions', lambda path: gap_pictures.save_predictions(found, path),
@@ -93,11 +102,8 @@ def save_pictures(found: Diagnosis, folder: Path) -> dict[str, str]:
                 found.pictures.wrench_before, found.pictures.wrench_after, found.vehicle, path),
              'Force and moment that the model does not explain, by channel and regime: each '
              'feature is cut into three thirds of the flight time. As the velocity that it makes '
-             'in half a second, noise taken off; one scale for both.'),
-            ('probabilities',
-             lambda path: gap_pictures.save_probabilities(found.ranking, path),
-             'Probability of each effect of being present.')):
-        draw(folder / f'{name}.png')
+             'in half a second, noise taken off; one scale for both.')):
+        draw(folder / f'{name}{ending}')
         made[name] = caption
     return made
 
@@ -117,7 +123,7 @@ def _where(found: Diagnosis, pictures: dict) -> list:
                   caption='Force and moment that the nominal vehicle does not explain')]
 
 
-def _which(found: Diagnosis, pictures: dict) -> list:
+def _which(found: Diagnosis) -> list:
     rows = []
     for row in shown_effects(found):
         first = [titled(row.effect), form_of(row), f'{row.probability:.2f}', contribution_of(row),
@@ -135,8 +141,15 @@ def _which(found: Diagnosis, pictures: dict) -> list:
                         kinds=('text', 'text', '', '', '', 'text', '', '', 'text'),
                         caption='Effects of the model that explains the flights best')]
                  if rows else [tag('p', 'No effect is probable.')])
-    return [tag('h2', 'Which'), pictures['probabilities'], *estimates,
+    return [tag('h2', 'Which'), *estimates, _probabilities(found),
             *_listed([*improbable_lines(found), *minor_lines(found), *one_finding_lines(found)])]
+
+
+def _probabilities(found: Diagnosis) -> Markup:
+    return table(['effect', 'probability', ''], [
+        [titled(row.effect), f'{row.probability:.2f}', bar(row.probability)]
+        for row in found.ranking], ('text', '', 'text'),
+        caption='Probability of each effect of being present')
 
 
 def _far(found: Diagnosis, pictures: dict) -> list:

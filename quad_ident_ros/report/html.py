@@ -72,6 +72,12 @@ def figure(path, alt, caption):
                   f'<figcaption>{escape(caption)}</figcaption></figure>')
 
 
+def drawing(content, alt, caption):
+    """Return an SVG element as a figure, which can be scrolled where it is wider than it fits."""
+    return Markup(f'<figure><div class="picture" role="group" tabindex="0" aria-label="{alt}">'
+                  f'{content}</div>{tag("figcaption", caption)}</figure>')
+
+
 def bar(share):
     """Return a horizontal bar for a share from 0 to 1, as a drawing beside its number."""
     return Markup(f'<span class="bar" aria-hidden="true"><span style="width:{100 * share:.0f}%">'

@@ -26,7 +26,7 @@ from quad_ident_ros.flight.measure import MOCAP_IMU
 from quad_ident_ros.model.vehicle import load_vehicle
 from quad_ident_ros.report import gap_page
 from quad_ident_ros.report.diagnosis import ALL, caution_lines, show, USUAL, VERDICT
-from quad_ident_ros.report.gap_pictures import _by_third, save_map, save_probabilities
+from quad_ident_ros.report.gap_pictures import _by_third, save_map
 from quad_ident_ros.report.received import diagnosis_from
 
 pytestmark = pytest.mark.slow
@@ -70,8 +70,9 @@ def test_the_verdict_comes_first_then_where_which_and_how_far(page, found):
                                             '<h2>Where</h2>', '<h2>Which</h2>',
                                             '<h2>How far</h2>', '<h2>From what</h2>')]
     assert places == sorted(places)
-    assert text.count('<img src="data:image/png;base64,') == 4
-    assert not re.search(r'(src|href)="(?!data:)', text)     # one file holds it all
+    assert text.count('<svg role="img"') == 3 and '<img' not in text
+    assert not re.search(r'(src|href)="(?!#)', text)     # one file holds it all
+    assert not re.search(r'url\((?!#)|@import', text)
     assert f'explains {100 * found.gap.closed:.0f} % of the velocity gap above the noise.' in text
 
 
@@ -374,10 +375,18 @@ def test_the_map_shows_where_the_force_acts():
     assert not table[1:].any()      # what noise alone gives is taken off
 
 
-def test_pictures_have_ink(found, tmp_path):
+def test_the_map_has_ink(tmp_path):
     save_map((wrench(lambda speed: speed),), (wrench(lambda speed: 0.0 * speed),), VEHICLE,
              tmp_path / 'map.png')
-    save_probabilities(found.ranking, tmp_path / 'bars.png')
-    for name in ('map.png', 'bars.png'):
-        picture = matplotlib.image.imread(tmp_path / name)
-        assert picture.shape[1] > 500 and np.std(picture[..., :3]) > 0.05
+    picture = matplotlib.image.imread(tmp_path / 'map.png')
+    assert picture.shape[1] > 500 and np.std(picture[..., :3]) > 0.05
+
+
+def test_every_effect_has_its_probability_and_ids_are_unique(page, found):
+    text = page()
+    for row in found.ranking:
+        assert re.search(f'{re.escape(titled(row.effect))}</th><td>{row.probability:.2f}</td>',
+                         text)
+    ids = re.findall(r'\bid="([^"]*)"', text)
+    assert len(ids) == len(set(ids))
+    assert set(re.findall(r'(?:url\(|href=")#([^")]*)', text)) <= set(ids)
