@@ -44,7 +44,8 @@ setup(
         'Topic :: Scientific/Engineering',
     ],
     packages=find_packages(include=[PACKAGE, f'{PACKAGE}.*']),
-    package_data={f'{PACKAGE}.data.definitions': ['*/*.msg']},
+    package_data={f'{PACKAGE}.data.definitions': ['*/*.msg'],
+                  f'{PACKAGE}.report': ['web/*']},
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{PACKAGE}']),
         (SHARE, ['package.xml']),

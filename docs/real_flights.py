@@ -124,7 +124,7 @@ def nanobench(folder: Path) -> None:
 def save(found: Diagnosis) -> None:
     """Save the pictures of a diagnosis beside the document."""
     with tempfile.TemporaryDirectory() as folder:
-        gap_page.save_pictures(found, Path(folder))
+        gap_page.save_pictures(found, Path(folder), '.png')
         for name in PICTURES:
             shutil.copy(Path(folder) / f'{name}.png', DOCUMENTS / f'real_flights_{name}.png')
 

@@ -5,6 +5,7 @@
 import argparse
 from contextlib import nullcontext
 from dataclasses import replace
+from pathlib import Path
 import sys
 import textwrap
 
@@ -20,6 +21,7 @@ from quad_ident_ros.closed_loop.controller import controller_of
 from quad_ident_ros.closed_loop.controller import INTERFACE as OF_CONTROLLERS
 from quad_ident_ros.data.split import joined
 from quad_ident_ros.diagnose.diagnosis import diagnose
+from quad_ident_ros.diagnose.provenance import Run, run_of
 from quad_ident_ros.diagnose.rules import RULES
 from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.errors import InputError
@@ -136,7 +138,7 @@ def run(options):
         write_json(options.json, found.as_data())
     if options.report:
         from quad_ident_ros.report import gap_page  # it draws: half a second to import
-        gap_page.write(options.report, found)
+        gap_page.write(options.report, replace(found, run=_run_of(options)))
     if options.out_vehicle:
         made = found.corrected(vehicle)
         if options.residual and found.residual is not None:
@@ -144,3 +146,10 @@ def run(options):
         write_vehicle(options.out_vehicle, made)
     if options.residual and options.json != '-':
         print(residual_line(found))
+
+
+def _run_of(options: argparse.Namespace) -> Run:
+    """Return the Run of this command on the files that it has read."""
+    given = [options.vehicle] if Path(options.vehicle).is_file() else []
+    others = [path for path in (options.hold_out, options.mapping) if path]
+    return run_of(options.words, [*options.flights, *others, *given])

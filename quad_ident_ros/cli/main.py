@@ -84,6 +84,7 @@ def main(args=None):
     if words and words[0] not in COMMANDS and not words[0].startswith('-'):
         top.error(str(unknown_key('COMMAND', words[0], COMMANDS)))
     options, unknown = top.parse_known_args(words)
+    options.words = tuple(words)
     if unknown:
         _refuse(parsers.get(options.command, top), unknown)
     if options.command is None:

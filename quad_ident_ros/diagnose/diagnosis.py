@@ -22,6 +22,7 @@ from quad_ident_ros.diagnose.judgement import judge, pooled
 from quad_ident_ros.diagnose.noise import noise_of
 from quad_ident_ros.diagnose.nuisances import as_data as nuisances_as_data
 from quad_ident_ros.diagnose.nuisances import late_controller
+from quad_ident_ros.diagnose.provenance import recorded
 from quad_ident_ros.diagnose.result import Diagnosis
 from quad_ident_ros.diagnose.rules import RULES, Rules
 from quad_ident_ros.diagnose.select import select
@@ -61,6 +62,7 @@ def diagnose(records: Iterable[FlightRecord], vehicle: Vehicle, *,
     given = list(records)
     reference = (None if controller is None or not given
                  else reference_of(joined(given)[-1] if hold_out is None else hold_out))
+    came = recorded([*given, *([] if hold_out is None else [hold_out])])
     intake = take_in(given, vehicle, hold_out, rules)
     del given
     give_back()
@@ -123,4 +125,4 @@ def diagnose(records: Iterable[FlightRecord], vehicle: Vehicle, *,
                   *advice.by_input_errors(judged)), z=model.z,
         pictures=measure.pictures(bench, judged, before, after),
         covariance=known_together(bench, model), in_simulator=in_simulator,
-        closed_loop=closed_loop, residual=residual)
+        closed_loop=closed_loop, residual=residual, recorded=came)

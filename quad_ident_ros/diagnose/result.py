@@ -9,6 +9,7 @@ import numpy as np
 from quad_ident_ros import __version__
 from quad_ident_ros.closed_loop.compare import ClosedLoop
 from quad_ident_ros.diagnose.gap import Ends
+from quad_ident_ros.diagnose.provenance import Recorded, Run
 from quad_ident_ros.diagnose.residual_wrench import ResidualWrench
 from quad_ident_ros.effects.registry import mapping, vector
 from quad_ident_ros.greybox.parameters import SPLIT
@@ -227,7 +228,8 @@ class Diagnosis:
     what is there and does not matter; z (Z,): the parameter vector with the effects named;
     covariance: how well their parameters are known together, with the constants whose deviations
     the vehicle file states, or None where there are none; residual: the function of state and
-    command that reaches the ceiling, None where effects do.
+    command that reaches the ceiling, None where effects do; recorded: the flights as they came;
+    run: the Run of the program, None where a library made the diagnosis.
     """
 
     vehicle: Vehicle
@@ -256,6 +258,8 @@ class Diagnosis:
     in_simulator: GapInSimulator | None = None
     residual: ResidualFunction | None = None
     closed_loop: ClosedLoop | None = None
+    recorded: tuple[Recorded, ...] = ()
+    run: Run | None = None
 
     def effects(self) -> dict:
         """Return {effect: {parameter: value}} of the vehicle, as flights and file have it."""

@@ -95,7 +95,7 @@ def _conclusions(claims):
                  'so in a case where the 95 % interval of the probability that the other ends '
                  'below lies under one half.'),
         table(['claim', 'verdict', 'so in', 'the numbers'], rows,
-              ('text', 'text', 'text', 'text'))])
+              ('text', 'text', 'text', 'text'), caption='Claims of the paper')])
 
 
 def _preset(reproduction, name, pictures):
@@ -104,7 +104,8 @@ def _preset(reproduction, name, pictures):
     if preset.infeasible:
         parts.append(tag('p', f'Not feasible: {preset.infeasible}.'))
     parts += [tag('p', f'Note: {remark}.') for remark in study.remarks]
-    parts += [figure(pictures[name], f'Figures 4 to 7 for {name}: measured, fitted, and their '
+    parts += [figure(pictures[name], f'Responses and fits of {name}',
+                     f'Figures 4 to 7 for {name}: measured, fitted, and their '
                                      'difference (the run of median cost of each method)'),
               sections.spent(study, 'per_output'), sections.fits(study, 'per_output'),
               details('The same with one search over all 12 parameters, as in the paper',
@@ -115,7 +116,7 @@ def _preset(reproduction, name, pictures):
     if preset.truth:
         parts.append(sections.truth(preset))
     parts += [tag('h3', 'Which method is better?'),
-              figure(pictures[f'{name}/ranking'],
+              figure(pictures[f'{name}/ranking'], f'Errors of each method on {name}',
                      f'Each dot is one seed. CS and PSO-CS spend {EQUAL_BUDGET} evaluations per '
                      'search in the generations of the paper, PSO about half of that: the equal '
                      'budget gives PSO more generations.'),
@@ -136,7 +137,8 @@ def _tables(reproduction, pictures):
         tag('p', 'The last column is the error of each model against the responses that Table 3 '
                  'implies (below).'),
         sections.table_2(reproduction.printed),
-        figure(pictures['table_2'], 'Figures 4 to 7 of the paper, drawn from its tables'),
+        figure(pictures['table_2'], 'Responses of Table 2 and those that Table 3 implies',
+               'Figures 4 to 7 of the paper, drawn from its tables'),
         tag('h3', 'Table 3: errors, computed from Table 2'),
         tag('p', f'Plain sums over {SAMPLES} samples, one each {PERIOD:g} s up to '
                  f'{DURATION:g} s, over a power of ten ({powers}); in {" and ".join(EXCHANGED)} '

@@ -49,7 +49,7 @@ def fits(study, effort):
     units = ', '.join(f'{output} in {OUTPUT_UNITS[output]}, its K in {GAIN_UNITS[output]}'
                       for output in study.signals)
     return table(['output', 'method', 'K', 'a, 1/s', 'b, 1/s', 'IAE', 'ISE', 'ITAE', 'ITSE',
-                  'NRMSE, %'], rows, ('text', 'text') + ('',) * 8,
+                  'NRMSE, %'], rows, ('text', 'text') + ('',) * 8, caption=
                  'The run of median cost and, in grey beneath, the worst run; bold: the smallest '
                  'median cost, or equal to it. IAE to ITSE are integrals over time. Units: '
                  f'{units}.' + _remarks(median))
@@ -86,8 +86,8 @@ def spent(study, effort):
                      number(1e3 * fit.seconds, 3), number(middle(ordered), 3),
                      number(ordered[-1], 3) if name in SWARMS else NONE])
     return table(['method', 'evaluations', 'time, ms', 'NRMSE, % (median)', 'NRMSE, % (worst)'],
-                 rows, (), f'Searched {EFFORTS[effort].label}. NRMSE is the rms over the outputs, '
-                 'evaluations are those of all outputs. To find the bounds took '
+                 rows, caption=f'Searched {EFFORTS[effort].label}. NRMSE is the rms over the '
+                 'outputs, evaluations are those of all outputs. To find the bounds took '
                  f'{bounds} evaluations more, once for all methods.')
 
 
@@ -97,14 +97,15 @@ def references(preset):
              number(entry.computed, 10), number(abs(entry.computed - entry.expected), 2),
              entry.source] for entry in preset.references]
     return table(['output', 't, s', 'must be', 'computed', 'difference', 'known from'], rows,
-                 ('text', '', '', '', '', 'text'))
+                 ('text', '', '', '', '', 'text'), caption='Values that are known exactly')
 
 
 def truth(preset):
     """Return the table of the parameters that a preset was made from."""
     rows = [[output, *(number(value, 7) for value in model)]
             for output, model in preset.truth.items()]
-    return table(['output', 'K', 'a, 1/s', 'b, 1/s'], rows, (), 'What the responses are made of')
+    return table(['output', 'K', 'a, 1/s', 'b, 1/s'], rows,
+                 caption='What the responses are made of')
 
 
 def ranking(study):
@@ -114,7 +115,7 @@ def ranking(study):
     rows = [[METHODS[row[0].first].label, METHODS[row[0].second].label,
              *(_probability(entry) for entry in row)]
             for row in zip(*columns, strict=True)]
-    return table(head, rows, ('text', 'text') + ('',) * len(EFFORTS),
+    return table(head, rows, ('text', 'text') + ('',) * len(EFFORTS), caption=
                  'Probability that the first method ends below the second, by the cost of all '
                  'outputs, with its 95 % interval; green: better, red: worse, no colour: '
                  'undecided')
@@ -127,7 +128,8 @@ def ranking_by_output(study, name):
              *(_probability(entry) for entry in row)]
             for row in zip(*columns, strict=True)]
     return table(['first', 'second', *study.signals], rows,
-                 ('text', 'text') + ('',) * len(study.signals), EFFORTS[name].label)
+                 ('text', 'text') + ('',) * len(study.signals),
+                 caption=EFFORTS[name].label)
 
 
 def _probability(entry):
@@ -160,7 +162,7 @@ def table_1():
              ['m', 'mass', number(vehicle.mass), 'kg', ''],
              ['l', 'half span', number(vehicle.arm_length), 'm', '']]
     return table(['', 'meaning', 'value', 'unit', 'remark'], rows,
-                 ('text', 'text', '', 'text', 'text'))
+                 ('text', 'text', '', 'text', 'text'), caption='The vehicle as printed')
 
 
 def table_2(printed):
@@ -172,7 +174,7 @@ def table_2(printed):
             rows.append([NAMES[output] if place == 0 else '', METHODS[method].label,
                          *(number(value, 6) for value in model), number(nrmse, 3)])
     return table(['output', 'method', 'K', 'a, 1/s', 'b, 1/s', 'implied NRMSE, %'], rows,
-                 ('text', 'text', '', '', '', ''))
+                 ('text', 'text', '', '', '', ''), caption='The models as printed')
 
 
 def table_3(cells):
@@ -190,7 +192,7 @@ def table_3(cells):
             row += [both(number(cell.printed, 5), number(cell.computed, 5)),
                     Markup(f'<td class="{kind}">{cell.ratio:.3f}</td>')]
         rows.append(row)
-    return table(head, rows, ('text', 'text') + ('',) * (2 * len(ERRORS)),
+    return table(head, rows, ('text', 'text') + ('',) * (2 * len(ERRORS)), caption=
                  'Printed and, in grey beneath, computed; ratio: computed over printed')
 
 
@@ -205,7 +207,7 @@ def ls_printed(reproduction):
                          number(fit.nrmse_percent, 2), *_fit(right[fit.output])[:3],
                          _fit(right[fit.output])[-1]])
     return table(['preset', 'output', 'K printed', 'a', 'b', 'NRMSE, %', 'K right', 'a', 'b',
-                  'NRMSE, %'], rows, ('text', 'text') + ('',) * 8,
+                  'NRMSE, %'], rows, ('text', 'text') + ('',) * 8, caption=
                  'NRMSE of the printed formulas: that of the real parts; a dash: no number at all')
 
 
@@ -216,7 +218,8 @@ def round_trips(trips):
              *(_complex(value) for value in trip.printed or (None,) * 3),
              *(number(value, 6) for value in trip.right or (None,) * 3)] for trip in trips]
     return table(['output', 'method', 'K', 'a', 'b', 'K printed', 'a', 'b', 'K right', 'a', 'b'],
-                 rows, ('text', 'text') + ('',) * 9)
+                 rows, ('text', 'text') + ('',) * 9,
+                 caption="Table 2's models, through the printed formulas and the right ones")
 
 
 def _complex(value):
@@ -237,7 +240,8 @@ def printed_equations(cases):
              number(case.expected, 5), case.source, case.derived] for case in cases]
     return table(['inputs', 'vehicle', 'flown, s', 'as printed', 'ended at, s', 'expected, s',
                   'known from', 'derived right'], rows,
-                 ('text', 'text', '', 'text', '', '', 'text', 'text'))
+                 ('text', 'text', '', 'text', '', '', 'text', 'text'),
+                 caption='How the runs of the printed equations end')
 
 
 def _ended(status):

@@ -2,12 +2,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """The page of a diagnosis: the verdict first, then pictures and numbers."""
 
+from collections import Counter
 from pathlib import Path
 import tempfile
+
+from matplotlib import rc_context
+import yaml
 
 from quad_ident_ros import __version__
 from quad_ident_ros.diagnose.result import Diagnosis
 from quad_ident_ros.effects.registry import titled
+from quad_ident_ros.model.vehicle import vehicle_to_mapping
 from quad_ident_ros.report import gap_pictures
 from quad_ident_ros.report.ceiling import ceiling_line
 from quad_ident_ros.report.closed_loop import (
@@ -39,7 +44,18 @@ from quad_ident_ros.report.diagnosis import (
     where_row,
     without_it,
 )
-from quad_ident_ros.report.html import figure, join, Markup, table, tag, write_page
+from quad_ident_ros.report.html import (
+    bar,
+    details,
+    drawing,
+    join,
+    Markup,
+    markup,
+    table,
+    tag,
+    write_page,
+)
+from quad_ident_ros.report.svg import FONTS, inline
 from quad_ident_ros.report.verdict import (
     change_of,
     contribution_of,
@@ -52,21 +68,27 @@ from quad_ident_ros.report.verdict import (
 WIDE = 1.96     # standard errors to the ends of a 95 % interval
 KINDS = {'none': 'yes', 'unknown': 'no', 'undetermined': 'part'}
 
+ALTS = {'predictions': 'Measured and predicted velocity and rates over time, and their difference',
+        'horizons': 'Gap by horizon, before and after, and of noise alone',
+        'map': 'Residual force and moment by channel and regime, before and after'}
+
 
 def write(path: str | Path, found: Diagnosis) -> None:
     """Write the page of a Diagnosis; raises InputError where the file cannot be written."""
     with tempfile.TemporaryDirectory() as folder:
-        captions = save_pictures(found, Path(folder))
-        pictures = {name: figure(Path(folder) / f'{name}.png', caption)
+        with rc_context(FONTS):
+            captions = save_pictures(found, Path(folder), '.svg')
+        pictures = {name: drawing(inline(Path(folder) / f'{name}.svg', name, ALTS[name]),
+                                  ALTS[name], caption)
                     for name, caption in captions.items()}
-        body = [*_verdict(found), *_where(found, pictures), *_which(found, pictures),
+        body = [*_verdict(found), *_where(found, pictures), *_which(found),
                 *_far(found, pictures), *_in_simulator(found),
                 *_closed_loop(found), *_open(found), *_provenance(found)]
     write_page(path, f'Sim-to-real gap of {found.vehicle.name}', join(body))
 
 
-def save_pictures(found: Diagnosis, folder: Path) -> dict[str, str]:
-    """Save the pictures of a Diagnosis as NAME.png in a folder; return {name: caption}."""
+def save_pictures(found: Diagnosis, folder: Path, ending: str) -> dict[str, str]:
+    """Save the pictures of a Diagnosis as NAME and an ending, .png or .svg; return captions."""
     made = {}
     for name, draw, caption in (
             ('predictions', lambda path: gap_pictures.save_predictions(found, path),
@@ -80,11 +102,8 @@ def save_pictures(found: Diagnosis, folder: Path) -> dict[str, str]:
                 found.pictures.wrench_before, found.pictures.wrench_after, found.vehicle, path),
              'Force and moment that the model does not explain, by channel and regime: each '
              'feature is cut into three thirds of the flight time. As the velocity that it makes '
-             'in half a second, noise taken off; one scale for both.'),
-            ('probabilities',
-             lambda path: gap_pictures.save_probabilities(found.ranking, path),
-             'Probability of each effect of being present.')):
-        draw(folder / f'{name}.png')
+             'in half a second, noise taken off; one scale for both.')):
+        draw(folder / f'{name}{ending}')
         made[name] = caption
     return made
 
@@ -92,18 +111,19 @@ def save_pictures(found: Diagnosis, folder: Path) -> dict[str, str]:
 def _verdict(found: Diagnosis) -> list:
     words = join((tag('span', name, f'tag {KINDS.get(name, "part")}') for name in found.verdict),
                  ' ')
-    return [tag('p', join([tag('strong', 'Verdict: '), words], '')),
-            tag('p', tag('strong', sentence(verdict_line(found)))),
-            tag('p', f'{size_line(found)} {next_step(found)}')]
+    return [tag('p', sentence(verdict_line(found)), 'lead'),
+            tag('p', size_line(found)), tag('p', next_step(found)),
+            tag('p', join([tag('strong', 'Verdict: '), words], ''))]
 
 
 def _where(found: Diagnosis, pictures: dict) -> list:
     rows = [where_row(row) for row in shown(found.where)]
     return [tag('h2', 'Where'), pictures['map'],
-            table(WHERE, rows, kinds=('text', '', '', '', 'text', ''))]
+            table(WHERE, rows, kinds=('text', '', '', '', 'text', ''),
+                  caption='Force and moment that the nominal vehicle does not explain')]
 
 
-def _which(found: Diagnosis, pictures: dict) -> list:
+def _which(found: Diagnosis) -> list:
     rows = []
     for row in shown_effects(found):
         first = [titled(row.effect), form_of(row), f'{row.probability:.2f}', contribution_of(row),
@@ -118,16 +138,25 @@ def _which(found: Diagnosis, pictures: dict) -> list:
     estimates = ([table(['effect', 'form, explains', 'probability', 'contribution',
                          'velocity gap without it, m/s', 'parameter', 'estimate',
                          '95 % interval', 'unit'], rows,
-                        kinds=('text', 'text', '', '', '', 'text', '', '', 'text'))]
+                        kinds=('text', 'text', '', '', '', 'text', '', '', 'text'),
+                        caption='Effects of the model that explains the flights best')]
                  if rows else [tag('p', 'No effect is probable.')])
-    return [tag('h2', 'Which'), pictures['probabilities'], *estimates,
+    return [tag('h2', 'Which'), *estimates, _probabilities(found),
             *_listed([*improbable_lines(found), *minor_lines(found), *one_finding_lines(found)])]
+
+
+def _probabilities(found: Diagnosis) -> Markup:
+    return table(['effect', 'probability', ''], [
+        [titled(row.effect), f'{row.probability:.2f}', bar(row.probability)]
+        for row in found.ranking], ('text', '', 'text'),
+        caption='Probability of each effect of being present')
 
 
 def _far(found: Diagnosis, pictures: dict) -> list:
     return [tag('h2', 'How far'), tag('p', sentence(far_line(found))),
             tag('p', sentence(ceiling_line(found))),
-            table(FAR, far_rows(found), kinds=('text', *[''] * 5, 'text')),
+            table(FAR, far_rows(found), kinds=('text', *[''] * 5, 'text'),
+                  caption=f'Error of predictions {found.gap.horizon:g} s ahead'),
             pictures['horizons'], pictures['predictions']]
 
 
@@ -137,19 +166,21 @@ def _in_simulator(found: Diagnosis) -> list:
         return []
     rows = [where_row(row) for row in shown(one.where)]
     return [tag('h2', 'In the simulator'), tag('p', sentence(simulator_line(one, found))),
-            table(IN_SIMULATOR, simulator_rows(found), kinds=('text', *[''] * 6, 'text')),
-            tag('p', 'Force and moment that the simulator does not explain:'),
-            table(WHERE, rows, kinds=('text', '', '', '', 'text', ''))]
+            table(IN_SIMULATOR, simulator_rows(found), kinds=('text', *[''] * 6, 'text'),
+                  caption=f'Error of predictions {one.horizon:g} s ahead in {one.simulator}'),
+            table(WHERE, rows, kinds=('text', '', '', '', 'text', ''),
+                  caption='Force and moment that the simulator does not explain')]
 
 
 def _closed_loop(found: Diagnosis) -> list:
     one = found.closed_loop
     if one is None:
         return []
-    costs = [tag('p', sentence(COST_LINE)),
-             table(COSTS, cost_rows(one), kinds=('text', '', '', '', ''))] if one.without else []
+    costs = ([table(COSTS, cost_rows(one), kinds=('text', '', '', '', ''),
+                    caption=sentence(COST_LINE))] if one.without else [])
     return [tag('h2', 'In closed loop'), tag('p', sentence(loop_line(one, found.held_out))),
-            table(TITLES, loop_rows(one), kinds=('text', '', '', '', 'text')), *costs]
+            table(TITLES, loop_rows(one), kinds=('text', '', '', '', 'text'),
+                  caption=f'Tracking error and bandwidth with {one.controller}'), *costs]
 
 
 def _open(found: Diagnosis) -> list:
@@ -159,7 +190,8 @@ def _open(found: Diagnosis) -> list:
     if found.fly_next:
         parts += [tag('h2', 'What to fly next'),
                   table(NEXT, [next_row(one) for one in found.fly_next],
-                        kinds=('text', 'text', '', '', '', '', ''))]
+                        kinds=('text', 'text', '', '', '', '', ''),
+                        caption='Manoeuvres that would decide what is open')]
     return parts
 
 
@@ -170,6 +202,31 @@ def _listed(lines: list[str]) -> list:
 
 
 def _provenance(found: Diagnosis) -> list:
-    return [tag('h2', 'From what'),
-            tag('p', f'Fitted to {", ".join(found.flights)}; held out: {found.held_out}; '
-                     f'quad_ident_ros {__version__}.')]
+    """Return what the diagnosis comes from: run, files, flights, vehicle."""
+    run = found.run
+    made = f'Made by quad_ident_ros {__version__}' + (f' on {run.date} with' if run else '.')
+    parts = [tag('h2', 'From what'),
+             tag('p', f'Fitted to {", ".join(found.flights)}; held out: {found.held_out}.'),
+             tag('p', join([made, tag('code', run.command)], ' ') if run else made)]
+    findings = Counter(one['flight'] for one in found.findings)
+    rows = [[one.flight, f'{one.duration:.2f}', f'{one.rate:.4g}', str(one.samples),
+             str(findings[one.flight])] for one in found.recorded]
+    if rows:
+        parts.append(table(['flight', 'duration, s', 'rate, Hz', 'samples', 'findings'], rows,
+                           caption='Flights as recorded'))
+    if found.findings:
+        parts.append(table(['flight', 'where', 'finding'], [
+            [one['flight'], _prose(one['where']), _prose(one['message'])]
+            for one in found.findings], ('text', 'text', 'text'), caption='Findings'))
+    if run:
+        parts.append(table(['file', 'SHA-256'], [
+            [path, Markup(f'<td class="prose"><code>{whole}</code></td>')]
+            for path, whole in run.files.items()], caption='Files'))
+    text = yaml.safe_dump(vehicle_to_mapping(found.vehicle), sort_keys=False,
+                          default_flow_style=None)
+    return [*parts, details('Vehicle file in full', Markup(
+        f'<pre tabindex="0">{markup(text)}</pre>'))]
+
+
+def _prose(text: str) -> Markup:
+    return tag('td', text, 'prose')

@@ -8,8 +8,7 @@ from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 import numpy as np
 
 from quad_ident_ros.diagnose.residual_wrench import CHANNELS, ResidualWrench, weights
-from quad_ident_ros.diagnose.result import Diagnosis, Gap, Ranked
-from quad_ident_ros.effects.registry import titled
+from quad_ident_ros.diagnose.result import Diagnosis, Gap
 from quad_ident_ros.greybox.errors import GROUPS
 from quad_ident_ros.model.dynamics import STATES
 from quad_ident_ros.model.vehicle import Vehicle
@@ -20,7 +19,6 @@ SHOWN = {'velocity': (('vx', 'vy', 'vz'), 'm/s'), 'rate': (('wx', 'wy', 'wz'), '
 THIRDS = ('low', 'mid', 'high')
 HEADROOM = 1.5      # times the range of what was measured that is shown of predictions
 NARROW = 4.0        # times the lowest gap that its axis shows at least
-NAMED = 0.5         # probability from which on a bar is coloured
 
 
 def save_predictions(found: Diagnosis, path: str | Path) -> None:
@@ -103,14 +101,16 @@ def save_map(before: tuple[ResidualWrench, ...], after: tuple[ResidualWrench, ..
     figure, axes = plt.subplots(2, 1, figsize=(11.4, 5.6), dpi=110, sharex=True,
                                 layout='constrained')
     for axis, table, title in zip(axes, tables, ('before', 'after'), strict=True):
-        image = axis.imshow(table, aspect='auto', cmap='magma_r', vmin=0.0, vmax=most)
-        axis.set_yticks(range(len(CHANNELS)), CHANNELS)
+        image = axis.pcolormesh(table, cmap='magma_r', vmin=0.0, vmax=most,
+                                edgecolors='face')
+        axis.invert_yaxis()
+        axis.set_yticks(np.arange(len(CHANNELS)) + 0.5, CHANNELS)
         axis.set_title(title, fontsize='medium', loc='left')
         for edge in range(1, len(names)):
-            axis.axvline(len(THIRDS) * edge - 0.5, color='white', linewidth=3)
+            axis.axvline(len(THIRDS) * edge, color='white', linewidth=3)
         axis.tick_params(length=0)
         axis.spines[:].set_visible(False)
-    columns = np.arange(len(names)) * len(THIRDS) + 1
+    columns = (np.arange(len(names)) + 0.5) * len(THIRDS)
     axes[1].set_xticks(columns, [f'{name}\nlow to high'.replace(' and ', ' and\n')
                                  .replace('horizontal air', 'horizontal\nair')
                                  .replace('to the left', '\nto the left')
@@ -133,24 +133,6 @@ def _by_third(flights: tuple[ResidualWrench, ...], names: list[str],
         columns += [np.sqrt(np.maximum(energy[rank == third].mean(axis=0), 0.0))
                     for third in range(len(THIRDS))]
     return np.stack(columns, axis=1)
-
-
-def save_probabilities(ranking: tuple[Ranked, ...], path: str | Path) -> None:
-    """Save the probability of each effect as bars."""
-    plt = pyplot(path)
-    figure, axis = plt.subplots(figsize=(9.0, 0.26 * len(ranking) + 0.8), dpi=110,
-                                layout='constrained')
-    values = [row.probability for row in ranking]
-    bars = axis.barh(range(len(ranking)), values, height=0.7,
-                     color=[AFTER if value >= NAMED else '#b9c4cc' for value in values])
-    axis.bar_label(bars, [f'{value:.2f}' for value in values], padding=3, fontsize='small')
-    axis.set_yticks(range(len(ranking)), [titled(row.effect) for row in ranking])
-    axis.invert_yaxis()
-    axis.set_xlim(0.0, 1.12)
-    axis.set_xlabel('probability of being present')
-    _plain(axis)
-    axis.grid(visible=False)
-    save(plt, figure, path)
 
 
 def _plain(axis):

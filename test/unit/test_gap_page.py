@@ -3,9 +3,11 @@
 """A diagnosis as a person reads it: in the terminal, on the page, and its pictures."""
 
 from dataclasses import replace
-from html import escape
+import hashlib
+from html import escape, unescape
 import io
 import json
+from pathlib import Path
 import re
 
 import matplotlib.image
@@ -24,7 +26,7 @@ from quad_ident_ros.flight.measure import MOCAP_IMU
 from quad_ident_ros.model.vehicle import load_vehicle
 from quad_ident_ros.report import gap_page
 from quad_ident_ros.report.diagnosis import ALL, caution_lines, show, USUAL, VERDICT
-from quad_ident_ros.report.gap_pictures import _by_third, save_map, save_probabilities
+from quad_ident_ros.report.gap_pictures import _by_third, save_map
 from quad_ident_ros.report.received import diagnosis_from
 
 pytestmark = pytest.mark.slow
@@ -68,8 +70,9 @@ def test_the_verdict_comes_first_then_where_which_and_how_far(page, found):
                                             '<h2>Where</h2>', '<h2>Which</h2>',
                                             '<h2>How far</h2>', '<h2>From what</h2>')]
     assert places == sorted(places)
-    assert text.count('<img src="data:image/png;base64,') == 4
-    assert not re.search(r'(src|href)="(?!data:)', text)     # one file holds it all
+    assert text.count('<svg role="img"') == 3 and '<img' not in text
+    assert not re.search(r'(src|href)="(?!#|data:)', text)     # one file holds it all
+    assert not re.search(r'url\((?!#)|@import', text)
     assert f'explains {100 * found.gap.closed:.0f} % of the velocity gap above the noise.' in text
 
 
@@ -254,7 +257,8 @@ def test_what_cannot_be_told_apart_asks_for_a_flight(page, terminal):
     said = ('undetermined: the flights cannot tell between steady wind (wind) and drag of the '
             'body (body_drag); certain: drag of the rotors (rotor_drag)')
     assert f'U{said[1:]}.' in text
-    assert text.index('<td class="text">circle, 20 s</td>') < text.index('chirp_x, 20 s')
+    first = text.index('<th scope="row" class="text">circle, 20 s</th>')
+    assert first < text.index('chirp_x, 20 s')
     assert '<td class="text">tell apart wind, body_drag</td><td>0.5</td><td>12</td>' in text
     assert terminal(**changes).startswith(f'verdict: {said}\n')
     assert '\nNext: fly what ' in terminal(**changes)
@@ -317,7 +321,14 @@ def test_the_command_writes_it(paths, tmp_path, capsys):
     assert main(['diagnose', *paths, '--vehicle', 'hummingbird', '--effects',
                  'rotor_drag,body_drag', '--report', str(out)]) == 0
     assert capsys.readouterr().out.startswith('verdict: drag of the rotors (rotor_drag), ')
-    assert '<h1>Sim-to-real gap of hummingbird</h1>' in out.read_text(encoding='utf-8')
+    text = out.read_text(encoding='utf-8')
+    assert '<h1>Sim-to-real gap of hummingbird</h1>' in text
+    for path in paths:      # what the page comes from can be checked
+        assert hashlib.sha256(Path(path).read_bytes()).hexdigest() in text
+    assert '--effects rotor_drag,body_drag' in text
+    [vehicle] = re.findall(r'<pre tabindex="0">(.*?)</pre>', text, flags=re.DOTALL)
+    (tmp_path / 'again.yaml').write_text(unescape(vehicle))
+    assert load_vehicle(tmp_path / 'again.yaml') == VEHICLE
 
 
 def test_a_gap_within_the_tolerance_of_the_user_does_not_matter(paths, tmp_path):
@@ -364,10 +375,18 @@ def test_the_map_shows_where_the_force_acts():
     assert not table[1:].any()      # what noise alone gives is taken off
 
 
-def test_pictures_have_ink(found, tmp_path):
+def test_the_map_has_ink(tmp_path):
     save_map((wrench(lambda speed: speed),), (wrench(lambda speed: 0.0 * speed),), VEHICLE,
              tmp_path / 'map.png')
-    save_probabilities(found.ranking, tmp_path / 'bars.png')
-    for name in ('map.png', 'bars.png'):
-        picture = matplotlib.image.imread(tmp_path / name)
-        assert picture.shape[1] > 500 and np.std(picture[..., :3]) > 0.05
+    picture = matplotlib.image.imread(tmp_path / 'map.png')
+    assert picture.shape[1] > 500 and np.std(picture[..., :3]) > 0.05
+
+
+def test_every_effect_has_its_probability_and_ids_are_unique(page, found):
+    text = page()
+    for row in found.ranking:
+        assert re.search(f'{re.escape(titled(row.effect))}</th><td>{row.probability:.2f}</td>',
+                         text)
+    ids = re.findall(r'\bid="([^"]*)"', text)
+    assert len(ids) == len(set(ids))
+    assert set(re.findall(r'(?:url\(|href=")#([^")]*)', text)) <= set(ids)
