@@ -14,7 +14,7 @@ from quad_ident_ros.watch.state import Model, NODES, OK, State
 
 LEVELS = {OK: ('OK', 'green'), 1: ('WARN', 'yellow'), 2: ('ERROR', 'red'), 3: ('STALE', 'red')}
 BAR = 20            # columns of a progress bar
-UNITS_FROM = 100    # columns from which the units of K have room
+WIDE = 100          # columns from which units of K and the fit have room beside K, a, b
 GAP_ROWS = ('before', 'after', 'noise')
 ROLES = {'recorder': 'joins the topics of the vehicle into records',
          'identifier': 'fits K, a, b to the records',
@@ -60,11 +60,10 @@ def recorder_panel(state: State, now: float) -> RenderableType:
     problems = ', '.join(f'{count} {name.replace("_", " ")}'
                          for name, count in recording.problems.items())
     lines.append(Text.assemble(
-        f'  {recording.joined} samples joined, {counted(recording.records, "record")}, '
-        f'{recording.buffered} samples waiting; ',
+        f'  {counted(recording.records, "record")}, {recording.buffered} samples in the next; ',
         (problems, 'yellow') if problems else 'nothing lost',
         f'; run {recording.run}' if recording.run else '',
-        f'; {recording.folder}' if recording.folder else '; in memory only'))
+        f'; {recording.folder}' if recording.folder else ''))
     if recording.disk_error:
         lines.append(Text(f'  {recording.disk_error}', 'red'))
     return Group(*lines)
@@ -75,18 +74,18 @@ def identifier_panel(state: State, now: float, width: int) -> RenderableType:
     title = _title(state, 'identifier', now)
     if state.fit is None:
         return title
+    wide = width >= WIDE
     table = _grid(header=True)
-    table.add_column(f'  {METHODS[state.fit.method].label}')
-    for name in ('K', 'a, 1/s', 'b, 1/s', 'fit, %'):
+    table.add_column(f'  {METHODS[state.fit.method].label}', no_wrap=True)
+    for name in ('K', 'a, 1/s', 'b, 1/s', *(('fit, %',) if wide else ())):
         table.add_column(name, justify='right', no_wrap=True)
-    table.add_column('last change', no_wrap=True)
-    if wide := width >= UNITS_FROM:
-        table.add_column('unit of K', no_wrap=True)
+    for name in ('changed', *(('unit of K',) if wide else ())):
+        table.add_column(name, no_wrap=True)
     for model in state.fit.models:
         fit = '' if model.fit_percent is None else f'{model.fit_percent:.2f}'
-        table.add_row(f'  {model.output}', *_numbers(model), fit,
+        table.add_row(f'  {model.output}', *_numbers(model), *((fit,) if wide else ()),
                       Text(state.changed.get(model.output, ''), 'bold yellow'),
-                      *([GAIN_UNITS[model.output]] if wide else []))
+                      *((GAIN_UNITS[model.output],) if wide else ()))
     return Group(title, table)
 
 
@@ -97,7 +96,7 @@ def diagnoser_panel(state: State, now: float) -> RenderableType:
     if verdict is None:
         return title
     table = _grid(header=True)
-    table.add_column(f'  gap {verdict.horizon:g} s ahead')
+    table.add_column(f'  gap {verdict.horizon:g} s ahead', no_wrap=True)
     for name, unit in verdict.units.items():
         table.add_column(f'{name}, {unit}', justify='right', no_wrap=True)
     for row in GAP_ROWS:
@@ -105,7 +104,6 @@ def diagnoser_panel(state: State, now: float) -> RenderableType:
                                     for name in verdict.units))
     said = Table.grid(padding=(0, 1))
     said.add_row(' ', Text.assemble(('verdict: ', 'bold'), verdict.line))
-    said.add_row(' ', verdict.closed)
     return Group(title, said, table)
 
 

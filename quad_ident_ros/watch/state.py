@@ -9,7 +9,7 @@ from datetime import datetime
 from quad_ident_ros.data.joiner import Counts
 from quad_ident_ros.identify.signals import OUTPUTS
 from quad_ident_ros.report.received import diagnosis_from
-from quad_ident_ros.report.verdict import closed_of, sentence, verdict_line
+from quad_ident_ros.report.verdict import verdict_line
 
 NODES = ('recorder', 'identifier', 'diagnoser')
 KEPT = 200          # events, some screens full
@@ -91,8 +91,6 @@ class Verdict:
     """
 
     line: str
-    closed: str
-    held_out: str
     horizon: float
     units: Mapping[str, str]
     before: Mapping[str, float]
@@ -203,8 +201,7 @@ def with_diagnosis(state: State, data: dict) -> State:
     gap, line = found.gap, verdict_line(found)
     state = _without_progress(state, 'diagnoser')
     state = replace(state, verdict=Verdict(
-        line, sentence(closed_of(gap)), found.held_out, gap.horizon, gap.units, gap.before,
-        gap.after, gap.noise))
+        line, gap.horizon, gap.units, gap.before, gap.after, gap.noise))
     return with_event(state, Event(time_text(data['span_ns'][1]), 'verdict', line))
 
 

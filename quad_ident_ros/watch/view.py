@@ -44,18 +44,20 @@ class WatchApp(App[None]):
     ENABLE_COMMAND_PALETTE = False
     CSS = """
     #top { height: 1; text-style: reverse; }
-    #waiting, #recorder, #identifier, #diagnoser { height: auto; margin-bottom: 1; }
+    #waiting, #recorder, #identifier, #diagnoser { height: auto; }
+    .-tall #waiting, .-tall #recorder, .-tall #identifier, .-tall #diagnoser { margin-bottom: 1; }
     #title { height: 1; text-style: bold; }
     #events { height: 1fr; min-height: 3; }
     Screen { overflow-y: auto; }
     """
+    VERTICAL_BREAKPOINTS: ClassVar[list[tuple[int, str]] | None] = [(0, '-short'), (30, '-tall')]
     BINDINGS: ClassVar[list[BindingType]] = [
         *((name[0], f'request("{name}")', name) for name in REQUESTS), ('q', 'quit', 'quit'),
         ('ctrl+c', 'quit', '')]
 
     def __init__(self, source: Source) -> None:
-        super().__init__()
-        self.theme = 'ansi-dark'    # the colours of the terminal, none of our choice
+        super().__init__(ansi_color=True)   # the terminal's own colours, none with NO_COLOR
+        self.theme = 'ansi-dark'
         self._source = source
         self._shown: tuple[State | None, float] = (None, 0.0)
 
