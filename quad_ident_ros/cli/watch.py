@@ -5,7 +5,7 @@
 import argparse
 import sys
 
-from quad_ident_ros.cli.ros import needs_ros
+from quad_ident_ros.cli.options import asking_for_ros
 from quad_ident_ros.errors import InputError
 
 DESCRIPTION = """\
@@ -54,7 +54,9 @@ def run(options):
             raise
         raise InputError('the live view needs Textual, which is not installed: '
                          "pip install 'quad_ident_ros[watch]'") from None
-    with needs_ros('watch'):
+    try:
         from quad_ident_ros.nodes.watching import Watching
+    except ImportError as error:
+        raise InputError(asking_for_ros(error)) from None
     with Watching(options.namespace) as source:
         WatchApp(source).run()

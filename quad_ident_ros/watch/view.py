@@ -90,12 +90,13 @@ class WatchApp(App[None]):
         if state is before and now - then < ALIVE:
             return
         self._shown = (state, now)
-        where = self._source.where
+        where, width = self._source.where, self.size.width
+        title, clock = f'quad_ident watch  {self._source.namespace}  {where}', time.strftime('%X')
         panels = {
-            'top': f'quad_ident watch  {self._source.namespace}  {where}  {time.strftime("%X")}',
+            'top': f'{title:{max(width - len(clock), 0)}}{clock}',
             'waiting': waiting_panel(state, self._source.namespace, where),
             'recorder': recorder_panel(state, now),
-            'identifier': identifier_panel(state, now, self.size.width),
+            'identifier': identifier_panel(state, now, width),
             'diagnoser': diagnoser_panel(state, now),
             'history': history_panel(state)}
         for name, panel in panels.items():

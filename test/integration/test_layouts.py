@@ -10,12 +10,12 @@ import pytest
 from rosbags.highlevel import AnyReader
 from rosbags.rosbag2 import StoragePlugin, Writer
 from rosbags.typesys import get_typestore, Stores
-from rosidl_runtime_py.utilities import get_message
 from std_msgs.msg import String
 import yaml
 
 from quad_ident_ros.nodes.diagnoser import Diagnoser
 from quad_ident_ros.nodes.identifier import Identifier
+from quad_ident_ros.nodes.mapped import message_class
 from quad_ident_ros.nodes.qos import latched
 from quad_ident_ros.nodes.recorder import Recorder
 from quad_ident_ros.nodes.simulator import Simulator
@@ -48,7 +48,7 @@ def bag(graph, tmp_path):
                 durable = any(info.qos_profile.durability == latched().durability
                               for info in graph.probe.get_publishers_info_by_topic(topic))
                 heard[topic] = kind, []
-                graph.probe.create_subscription(get_message(kind), topic, heard[topic][1].append,
+                graph.probe.create_subscription(message_class(kind), topic, heard[topic][1].append,
                                                 latched(16) if durable else 100, raw=True)
         return all(done)
 

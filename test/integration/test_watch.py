@@ -8,7 +8,6 @@ import pty
 import re
 import select
 import signal
-import subprocess
 import sys
 import time
 
@@ -122,11 +121,3 @@ def test_it_leaves_the_terminal_as_it_was(processes, end):
     assert b'\x1b[?1049l' in terminal.output and b'\x1b[?25h' in terminal.output
     assert b'Traceback' not in terminal.output
     assert not COLOUR.search(terminal.output)   # NO_COLOR
-
-
-def test_without_a_terminal_it_is_one_line(processes):
-    done = subprocess.run([sys.executable, '-m', 'quad_ident_ros', 'watch'], text=True,
-                          capture_output=True, stdin=subprocess.DEVNULL, timeout=DEADLINE,
-                          env=processes.environment)
-    assert done.returncode == 2 and not done.stdout
-    assert re.fullmatch(r'quad_ident watch: error: this is no terminal: .*\n', done.stderr)
