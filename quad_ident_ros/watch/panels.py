@@ -117,24 +117,26 @@ def history_panel(state: State) -> RenderableType:
     return rows
 
 
-def _title(state: State, node: str, now: float) -> Text:
+def _title(state: State, node: str, now: float) -> Table:
     """Return the line of a node: its health, or that it is silent, and how far its work is."""
-    line = Text(node, 'bold')
-    health = state.health.get(node)
+    name, said = Text(node, 'bold'), Text()
+    health, silence = state.health.get(node), state.silence(node, now)
     if health is None:
-        return line.append('  not heard', 'not bold dim')
-    silence = state.silence(node, now)
-    if silence is not None:
-        return line.append(f'  silent for {silence:.0f} s; it has ended, or the network lost it',
-                           'not bold red')
-    word, style = LEVELS.get(health.level, LEVELS[3])
-    line.append(f'  {word}', f'bold {style}')
-    share = state.progress.get(node)
-    if share is not None:
-        done = round(BAR * share)
-        line.append(f'  {"█" * done}{"░" * (BAR - done)} {100 * share:.0f} %', 'not bold cyan')
-    if not _is_repeated(state, node, health.text):
-        line.append(f'  {health.text}', 'not bold')
+        said.append('not heard', 'dim')
+    elif silence is not None:
+        said.append(f'silent for {silence:.0f} s; it has ended, or the network lost it', 'red')
+    else:
+        word, style = LEVELS.get(health.level, LEVELS[3])
+        name.append(f'  {word}', style)
+        share = state.progress.get(node)
+        if share is not None:
+            done = round(BAR * share)
+            said.append(f'{"█" * done}{"░" * (BAR - done)} {100 * share:.0f} %  ', 'cyan')
+        if not _is_repeated(state, node, health.text):
+            said.append(health.text)
+    line = Table.grid(padding=(0, 2, 0, 0))     # a long text is wrapped beside the name
+    line.add_column(no_wrap=True)
+    line.add_row(name, said)
     return line
 
 

@@ -4,17 +4,19 @@
 
 import re
 import sys
+from types import SimpleNamespace
 
 import pytest
 
+from quad_ident_ros.cli import watch
 from quad_ident_ros.cli.main import main
 
 
 @pytest.fixture
 def terminal(monkeypatch):
-    """Let the streams be those of a terminal."""
-    for name in ('stdin', 'stdout', 'stderr'):
-        monkeypatch.setattr(getattr(sys, name), 'isatty', lambda: True)
+    """Let the streams that the command looks at be those of a terminal."""
+    stream = SimpleNamespace(isatty=lambda: True)
+    monkeypatch.setattr(watch, 'sys', SimpleNamespace(stdin=stream, stdout=stream, stderr=stream))
 
 
 def refusal(capsys, *words):

@@ -64,8 +64,11 @@ def seen(state, *keys, size=(80, 24)):
 
     async def look():
         async with app.run_test(size=size) as pilot:
+            while not app.query('FooterKey') and app.is_running:    # it comes after the panels
+                await pilot.pause()
             await pilot.press(*keys)
-            await pilot.pause(0.3)
+            app.show()
+            await pilot.pause()
             ended = not app.is_running or app._exit
             return lines_of(app.export_screenshot()), ended
 
