@@ -10,7 +10,6 @@ import pytest
 from rosbags.highlevel import AnyReader
 from rosbags.rosbag2 import StoragePlugin, Writer
 from rosbags.typesys import get_typestore, Stores
-from std_msgs.msg import String
 import yaml
 
 from quad_ident_ros.nodes.diagnoser import Diagnoser
@@ -34,9 +33,9 @@ def bag(graph, tmp_path):
         'name': 'two', 'model': 'closed_loop', 'vehicle': 'hummingbird', 'period': 0.01,
         'runs': [{'name': name, 'duration': 8.0, 'trajectory': name, 'sensors': 'mocap_imu'}
                  for name in ('figure8', 'circle')]}), encoding='utf-8')
-    done = [graph.listen(String, name, latched()) for name in ('diagnosis', 'parameters_json')]
+    wanted = {topic for topic, *_ in foxglove_paths()} | foxglove_topics()
     graph.start(Recorder)
-    graph.start(Identifier, {'method': 'ls', 'vehicle': 'hummingbird'})
+    graph.start(Identifier, {'method': 'vp', 'vehicle': 'hummingbird'})
     graph.start(Diagnoser, {'vehicle': 'hummingbird', 'effects': ['rotor_drag']})
     graph.start(Simulator, {
         'experiment': str(experiment), 'effects': ['rotor_drag:coefficient=0.3'],
@@ -54,9 +53,9 @@ def bag(graph, tmp_path):
     def finished():
         for topic in [topic for topic in listening if heard[topic][1]]:
             graph.probe.destroy_subscription(listening.pop(topic))     # one message is enough
-        return all(done) and '/where/moment' not in listening
+        return not wanted & set(listening)
 
-    graph.spin_until(finished, 'a fit and a verdict', PATIENCE)
+    graph.spin_until(finished, 'a message of each topic', PATIENCE)
     folder = tmp_path / 'bag'
     with Writer(folder, version=9, storage_plugin=StoragePlugin.MCAP) as writer:
         for topic, (kind, messages) in heard.items():

@@ -3,6 +3,7 @@
 """The live view with the real nodes, and as a program in a terminal."""
 
 import contextlib
+import json
 import os
 import pty
 import re
@@ -11,17 +12,22 @@ import signal
 import sys
 import time
 
+from diagnostic_msgs.msg import DiagnosticArray
 from graph import DEADLINE, flights
+from published import diagnosis, published
 import pytest
-from std_msgs.msg import Float64MultiArray
+from std_msgs.msg import Float64MultiArray, String
 
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.identify.change import Change
 from quad_ident_ros.nodes.identifier import Identifier
 from quad_ident_ros.nodes.messages import record_message
 from quad_ident_ros.nodes.outlets import RECORD
 from quad_ident_ros.nodes.qos import latched
 from quad_ident_ros.nodes.recorder import Recorder
+from quad_ident_ros.nodes.stamped import change_message
 from quad_ident_ros.nodes.watching import Watching
+from quad_ident_ros.report.verdict import verdict_line
 
 COLOUR = re.compile(rb'\x1b\[[0-9;]*\b(3[0-7]|4[0-7]|38|48|9[0-7])[;m]')
 
@@ -64,6 +70,21 @@ def test_a_key_shows_what_the_service_said(graph, domain):
             return any('fewer than two samples' in event.text for event in watching.state.history)
 
         graph.spin_until(answered, 'an answer')
+
+
+def test_verdicts_and_changes_that_came_before_are_shown_too(graph, domain):
+    node = graph.probe
+    found = diagnosis()
+    latched_json = node.create_publisher(String, 'diagnosis', latched())
+    latched_json.publish(String(data=json.dumps(published(found))))
+    changes = node.create_publisher(DiagnosticArray, 'change', latched(10))
+    changes.publish(change_message(Change('phi', 3.2, 90.0, {'K': (4.35, 3.3)}, 63_200_000_000),
+                                   node, 0))
+    with watched(graph, domain) as (watching, until):
+        until(lambda state: len(state.history) == 2, 'both')
+        assert {(event.time, event.about, event.text) for event in watching.state.history} == {
+            ('12.34 s', 'verdict', verdict_line(found)),
+            ('63.20 s', 'change', 'phi changed: K 4.35 -> 3.3')}
 
 
 def test_a_namespace_that_is_none_is_refused():
