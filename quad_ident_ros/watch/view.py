@@ -50,7 +50,7 @@ class WatchApp(App[None]):
     #events { height: 1fr; min-height: 3; }
     Screen { overflow-y: auto; }
     """
-    VERTICAL_BREAKPOINTS: ClassVar[list[tuple[int, str]] | None] = [(0, '-short'), (30, '-tall')]
+    VERTICAL_BREAKPOINTS = [(0, '-short'), (30, '-tall')]
     BINDINGS: ClassVar[list[BindingType]] = [
         *((name[0], f'request("{name}")', name) for name in REQUESTS), ('q', 'quit', 'quit'),
         ('ctrl+c', 'quit', '')]
