@@ -25,6 +25,7 @@ COMMANDS = {
     'convert': 'write a flight record in another format',
     'paper': "reproduce the paper's tables and figures, and check its claims",
     'withheld': 'check the diagnosis on flights whose effects are withheld from it',
+    'watch': 'follow a vehicle on ROS 2 live in the terminal',
     'node': 'run a ROS 2 node (the same as `ros2 run quad_ident_ros NAME`)',
     'warm-up': 'compile the inner loops once, after install'}
 """What each command does; it is in the module of its name, whose import takes a second."""
@@ -42,6 +43,7 @@ examples:
   quad_ident export v.yaml --to gazebo --base model.sdf -o like_real.sdf
   quad_ident info flight.csv                       what is in a flight, and what is wrong
   quad_ident convert flight.csv flight.mcap        the same flight as a bag
+  quad_ident watch --namespace uav1                follow a vehicle live on ROS 2
   quad_ident paper                                 reproduce the paper and check its claims
   quad_ident node identifier --ros-args -p method:=pso_cs
 """

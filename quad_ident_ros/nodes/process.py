@@ -66,7 +66,7 @@ def _plain_arguments(args):
 
 
 def _run(node_class, args, executor_class, warm_up):
-    _ensure_log_folder()
+    ensure_log_folder()
     free_abandoned()
     stop = []
     previous = {number: signal.signal(number, lambda *_: stop.append(True))
@@ -130,7 +130,7 @@ def is_wanted():
     return parent is None or parent == str(os.getppid())
 
 
-def _ensure_log_folder():
+def ensure_log_folder():
     """Give rclpy a folder for its log where it would find none."""
     if 'ROS_LOG_DIR' not in os.environ and 'ROS_HOME' not in os.environ:
         home = os.environ.get('HOME')

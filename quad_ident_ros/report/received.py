@@ -23,11 +23,12 @@ from quad_ident_ros.model.covariance import covariance_from
 from quad_ident_ros.model.vehicle import Vehicle
 
 
-def diagnosis_from(data: dict, vehicle: Vehicle) -> Diagnosis:
+def diagnosis_from(data: dict, vehicle: Vehicle | None) -> Diagnosis:
     """
     Return the Diagnosis of a nominal vehicle that Diagnosis.as_data made data of.
 
-    Without the parameter vector and what pictures are drawn from, which do not travel.
+    Without the parameter vector and what pictures are drawn from, which do not travel. vehicle:
+    None where only the words and the gap are wanted; the covariance is then left out.
     """
     ranking = (Ranked(**row) for row in data['ranking'])
     return Diagnosis(
@@ -45,8 +46,8 @@ def diagnosis_from(data: dict, vehicle: Vehicle) -> Diagnosis:
         held_out=data['held_out'],
         flight_checks=tuple(FlightCheck(**row) for row in data['flight_checks']),
         findings=tuple(data['findings']), z=np.empty(0), pictures=None,
-        covariance=data['covariance'] and covariance_from('covariance', data['covariance'],
-                                                          len(vehicle.rotors)))
+        covariance=vehicle and data['covariance'] and covariance_from(
+            'covariance', data['covariance'], len(vehicle.rotors)))
 
 
 def _ceiling_from(data: dict) -> Ceiling:

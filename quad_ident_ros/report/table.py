@@ -54,6 +54,14 @@ def notes(identification):
                                        for (label, text), outputs in who.items())]
 
 
+def with_error(value, error):
+    """Return a value with the decimals that its standard error gives a meaning to, at least 3."""
+    if error is None or not error > 0:
+        return f'{value:.5g}'
+    decimals = min(max(1 - _exponent(error), 2 - _exponent(value), 0), 5)
+    return f'{value:.{decimals}f} ± {error:.2g}'
+
+
 def _cells(fit):
     if fit.model is None:
         return ['none'] * 3 + ['-'] * 5
@@ -61,19 +69,11 @@ def _cells(fit):
     if model.form == 'complex':
         poles = [f'{model.a.real:.4g}', f'±{abs(model.a.imag):.4g}j']
     else:
-        poles = [_with_error(model.a, error['a']), _with_error(model.b, error['b'])]
+        poles = [with_error(model.a, error['a']), with_error(model.b, error['b'])]
     values = [fit.errors[key] for key in ('iae', 'ise', 'itae', 'itse')]
-    return [_with_error(model.gain, error['K']), *poles,
+    return [with_error(model.gain, error['K']), *poles,
             *[f'{value:.2e}' if value < 1e-3 else f'{value:.3g}' for value in values],
             f'{fit.errors["fit_percent"]:.3f}']
-
-
-def _with_error(value, error):
-    """Return a value with the decimals that its standard error gives a meaning to, at least 3."""
-    if error is None or not error > 0:
-        return f'{value:.5g}'
-    decimals = min(max(1 - _exponent(error), 2 - _exponent(value), 0), 5)
-    return f'{value:.{decimals}f} ± {error:.2g}'
 
 
 def _exponent(number):

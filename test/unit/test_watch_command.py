@@ -1,0 +1,49 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""`quad_ident watch` where it cannot show anything: one line and exit code 2."""
+
+import re
+import sys
+from types import SimpleNamespace
+
+import pytest
+
+from quad_ident_ros.cli import watch
+from quad_ident_ros.cli.main import main
+
+
+@pytest.fixture
+def terminal(monkeypatch):
+    """Let the streams that the command looks at be those of a terminal."""
+    stream = SimpleNamespace(isatty=lambda: True)
+    monkeypatch.setattr(watch, 'sys', SimpleNamespace(stdin=stream, stdout=stream, stderr=stream))
+
+
+def refusal(capsys, *words):
+    """Return the one line that a command is refused with."""
+    assert main(['watch', *words]) == 2
+    printed = capsys.readouterr()
+    assert not printed.out and printed.err.count('\n') == 1
+    return printed.err
+
+
+def test_without_a_terminal(capsys):
+    assert re.match('quad_ident watch: error: this is no terminal: start it in one, ',
+                    refusal(capsys))
+
+
+def test_without_textual_it_names_the_extra(capsys, monkeypatch, terminal):
+    for name in [name for name in sys.modules if name.partition('.')[0] == 'textual']:
+        monkeypatch.delitem(sys.modules, name)
+    monkeypatch.delitem(sys.modules, 'quad_ident_ros.watch.view', raising=False)
+    monkeypatch.setitem(sys.modules, 'textual', None)
+    assert refusal(capsys).endswith("not installed: pip install 'quad_ident_ros[watch]'\n")
+
+
+def test_without_ros_it_says_where_to_get_it(capsys, monkeypatch, terminal):
+    pytest.importorskip('textual', reason="Textual is not installed: pip install '.[watch]'")
+    for name in [name for name in sys.modules if name.startswith('quad_ident_ros.nodes')]:
+        monkeypatch.delitem(sys.modules, name)
+    for name in ('rclpy', 'diagnostic_msgs', 'diagnostic_msgs.msg'):
+        monkeypatch.setitem(sys.modules, name, None)
+    assert 'ROS 2 is not installed' in refusal(capsys)
