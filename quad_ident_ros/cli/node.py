@@ -5,7 +5,6 @@
 import argparse
 import importlib
 
-from quad_ident_ros.cli.options import asking_for_ros
 from quad_ident_ros.errors import InputError
 
 NODES = ('simulator', 'recorder', 'identifier', 'diagnoser')
@@ -27,5 +26,6 @@ def run(options):
     try:
         module = importlib.import_module(f'quad_ident_ros.nodes.{options.name}')
     except ImportError as error:
+        from quad_ident_ros.cli.options import asking_for_ros   # a second; help needs none of it
         raise InputError(asking_for_ros(error)) from None
     return module.main(options.arguments)
