@@ -26,6 +26,6 @@ def run(options):
     try:
         module = importlib.import_module(f'quad_ident_ros.nodes.{options.name}')
     except ImportError as error:
-        from quad_ident_ros.cli.options import asking_for_ros   # a second; help needs none of it
+        from quad_ident_ros.cli.options import asking_for_ros  # a second; help needs none of it
         raise InputError(asking_for_ros(error)) from None
     return module.main(options.arguments)
