@@ -65,8 +65,12 @@ def first_rows(path: Path, count: int) -> tuple[list[str], list[int]] | None:
 
 def is_packed(path: Path) -> bool:
     """Return whether a file is packed by gzip, or named so; raises OSError."""
+    return path.suffix == '.gz' or _begins_packed(path)
+
+
+def _begins_packed(path: Path) -> bool:
     with open(path, 'rb') as file:
-        return path.suffix == '.gz' or file.read(2) == b'\x1f\x8b'
+        return file.read(2) == b'\x1f\x8b'
 
 
 def _bytes(path):
@@ -84,6 +88,9 @@ def _bytes(path):
                              'it first: zcat FILE > flight.csv')
         return data
     except (EOFError, zlib.error, gzip.BadGzipFile):
+        if not _begins_packed(path):
+            raise InputError(f'{path}: it is named as a gzip file, but its content is not packed; '
+                             'name it without .gz') from None
         raise InputError(f'{path}: this is no whole gzip file; copy it again, or save what is '
                          'left of it with: zcat FILE > flight.csv') from None
     except OSError as error:

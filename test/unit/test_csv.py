@@ -178,6 +178,13 @@ def _written(folder):
     return folder / 'f.csv'
 
 
+def test_a_table_that_is_only_named_as_a_gzip_file_is_told(tmp_path):
+    path = tmp_path / 'f.csv.gz'
+    path.write_text('t,pz\n0,1\n1,2\n')
+    with pytest.raises(InputError, match='not packed; name it without .gz'):
+        read_csv(path)
+
+
 def test_no_permission(tmp_path, monkeypatch):
     """A file that may not be read is refused."""
     path = tmp_path / 'flight.csv'
