@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What no command may write to."""
 
+import os
 from pathlib import Path
 
 from quad_ident_ros.errors import InputError
@@ -21,8 +22,8 @@ def check_outputs(options):
     Check, before any work, where the options of a command have it write.
 
     Raises InputError for an input file that is a folder, for an output that is an input, another
-    output, a folder or lies in a file, and for a report or vehicle file of another ending. Folders
-    that are not there are made when the file is written.
+    output, a folder, lies in a file or in a folder that cannot be written to, and for a report or
+    vehicle file of another ending. Folders that are not there are made when the file is written.
     """
     for given in _named(options, FILES_READ):
         if Path(given).is_dir():
@@ -38,6 +39,10 @@ def check_outputs(options):
         for folder in Path(output).parents:
             if folder.exists() and not folder.is_dir():
                 raise InputError(f'{output}: {folder} is a file, no folder; give another path')
+        nearest = next(folder for folder in place.parents if folder.exists())
+        if not os.access(nearest, os.W_OK):
+            raise InputError(f'{output}: nothing can be written into {nearest}; give another '
+                             'path, or see to its permissions')
     for output in _named(options, FILES):
         if Path(output).is_dir():
             raise InputError(f'{output}: this is a folder; name a file')

@@ -58,3 +58,10 @@ def test_folders_that_are_not_there_are_made(tmp_path, monkeypatch, words):
     place = Path(words[-1])
     assert list(Path('new').iterdir()) == [place]
     assert place.is_file() or any(place.iterdir())
+
+
+def test_a_folder_without_permission_is_told_before_the_work(tmp_path, monkeypatch):
+    monkeypatch.setattr('os.access', lambda place, mode: Path(place) != tmp_path)
+    with pytest.raises(InputError, match=f'nothing can be written into {tmp_path};'):
+        check_outputs(Namespace(report=str(tmp_path / 'new' / 'a.html')))
+    check_outputs(Namespace(report=str(tmp_path.parent / 'a.html')))
