@@ -111,11 +111,11 @@ class InMujoco:
                 self._put(data, start)
             if line is None:
                 data.ctrl[:] = controls[k]
-            else:
-                line.command(data, controls[k])
             parts = int(np.ceil(dt[k] / STEP - 1e-9))
             self.model.opt.timestep = dt[k] / parts
             for _ in range(parts):
+                if line is not None:
+                    line.command(data, controls[k])
                 mujoco.mj_step(self.model, data)
             if k >= now and (k + 1 - now) % steps == 0:
                 states.append(np.concatenate([data.qpos[:3], data.qvel[:3], data.qpos[3:7],

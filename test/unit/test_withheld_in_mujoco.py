@@ -29,10 +29,12 @@ def case_of(folder, effects):
 
 
 @pytest.mark.slow
-def test_a_gap_in_mujoco_falls_as_promised(in_mujoco, tmp_path):
-    one = in_mujoco.fall_of(case_of(tmp_path, {'rotor_drag': {'coefficient': 0.3},
-                                               'motor_lag': {'time_constant': 0.04}}))
-    assert set(one.verdict) == {'rotor_drag', 'motor_lag'}
+@pytest.mark.parametrize('late', [{'motor_lag': {'time_constant': 0.04}},
+                                  {'actuation_delay': {'delay': 0.025}}])
+def test_a_gap_in_mujoco_falls_as_promised(in_mujoco, tmp_path, late):
+    effects = {'rotor_drag': {'coefficient': 0.3}, **late}
+    one = in_mujoco.fall_of(case_of(tmp_path, effects))
+    assert set(one.verdict) == set(effects)
     assert one.judged and one.before == pytest.approx(one.promised_before, rel=0.02)
     assert one.share == pytest.approx(1.0, abs=0.05)
     assert in_mujoco.summary([one])[0].startswith('1 of 1 gaps fall')
