@@ -49,10 +49,10 @@ def fits(study, effort):
     units = ', '.join(f'{output} in {OUTPUT_UNITS[output]}, its K in {GAIN_UNITS[output]}'
                       for output in study.signals)
     return table(['output', 'method', 'K', 'a, 1/s', 'b, 1/s', 'IAE', 'ISE', 'ITAE', 'ITSE',
-                  'NRMSE, %'], rows, ('text', 'text') + ('',) * 8, caption=
+                  'NRMSE, %'], rows, ('text', 'text') + ('',) * 8, caption=(
                  'The run of median cost and, in grey beneath, the worst run; bold: the smallest '
                  'median cost, or equal to it. IAE to ITSE are integrals over time. Units: '
-                 f'{units}.' + _remarks(median))
+                 f'{units}.' + _remarks(median)))
 
 
 def _remarks(identification):
@@ -115,10 +115,10 @@ def ranking(study):
     rows = [[METHODS[row[0].first].label, METHODS[row[0].second].label,
              *(_probability(entry) for entry in row)]
             for row in zip(*columns, strict=True)]
-    return table(head, rows, ('text', 'text') + ('',) * len(EFFORTS), caption=
+    return table(head, rows, ('text', 'text') + ('',) * len(EFFORTS), caption=(
                  'Probability that the first method ends below the second, by the cost of all '
                  'outputs, with its 95 % interval; green: better, red: worse, no colour: '
-                 'undecided')
+                 'undecided'))
 
 
 def ranking_by_output(study, name):
@@ -192,8 +192,8 @@ def table_3(cells):
             row += [both(number(cell.printed, 5), number(cell.computed, 5)),
                     Markup(f'<td class="{kind}">{cell.ratio:.3f}</td>')]
         rows.append(row)
-    return table(head, rows, ('text', 'text') + ('',) * (2 * len(ERRORS)), caption=
-                 'Printed and, in grey beneath, computed; ratio: computed over printed')
+    return table(head, rows, ('text', 'text') + ('',) * (2 * len(ERRORS)), caption=(
+                 'Printed and, in grey beneath, computed; ratio: computed over printed'))
 
 
 def ls_printed(reproduction):
@@ -207,8 +207,9 @@ def ls_printed(reproduction):
                          number(fit.nrmse_percent, 2), *_fit(right[fit.output])[:3],
                          _fit(right[fit.output])[-1]])
     return table(['preset', 'output', 'K printed', 'a', 'b', 'NRMSE, %', 'K right', 'a', 'b',
-                  'NRMSE, %'], rows, ('text', 'text') + ('',) * 8, caption=
-                 'NRMSE of the printed formulas: that of the real parts; a dash: no number at all')
+                  'NRMSE, %'], rows, ('text', 'text') + ('',) * 8, caption=(
+                 'NRMSE of the printed formulas: that of the real parts; a dash: no number at '
+                 'all'))
 
 
 def round_trips(trips):
