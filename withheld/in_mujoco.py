@@ -115,7 +115,7 @@ class InMujoco:
             self.model.opt.timestep = dt[k] / parts
             for _ in range(parts):
                 if line is not None:
-                    line.command(data, controls[k])
+                    line.command(self.model, data, controls[k])
                 mujoco.mj_step(self.model, data)
             if k >= now and (k + 1 - now) % steps == 0:
                 states.append(np.concatenate([data.qpos[:3], data.qvel[:3], data.qpos[3:7],

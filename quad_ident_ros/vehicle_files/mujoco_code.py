@@ -107,15 +107,15 @@ def forces(model, data):
 DELAY = '''
 
 class Delayed:
-    """Commands that act {delay} s after they are given: one for each mjData."""
+    """Commands that act {delay} s after they are given, to the nearest step; one for an mjData."""
 
     def __init__(self):
         self.waiting = []
 
-    def command(self, data, controls):
+    def command(self, model, data, controls):
         """Give controls (n,), and let those act whose time has come; call it before mj_step."""
         self.waiting.append((data.time + {delay}, np.array(controls)))
-        while self.waiting and self.waiting[0][0] <= data.time + 1e-9:
+        while self.waiting and self.waiting[0][0] <= data.time + 0.5 * model.opt.timestep:
             data.ctrl[ACTUATORS] = self.waiting.pop(0)[1]
 '''
 

@@ -96,7 +96,7 @@ def test_a_flight_in_mujoco_is_that_of_our_model(effects):
             if line is None:
                 data.ctrl[:] = controls
             else:
-                line.command(data, controls)
+                line.command(model, data, controls)
             mujoco.mj_step(model, data)
     # Our step of 10 ms leaves micrometres over half a second; the effects make decimetres.
     np.testing.assert_allclose(data.qpos[:3], ours[-1, :3], atol=1e-5)
@@ -161,3 +161,17 @@ def test_the_command_writes_it_beside_the_model(tmp_path, capsys):
     said = capsys.readouterr().err.strip()
     assert 'mine.py: the code beside the file would be written over this' in said
     assert '\n' not in said and not (tmp_path / 'mine.xml').exists()
+
+
+@pytest.mark.parametrize(('delay', 'steps_late'), [(0.0041, 2), (0.0049, 2), (0.0051, 3)])
+def test_a_delay_ends_at_the_nearest_step(delay, steps_late):
+    mujoco, model, space, _ = model_of(replace(
+        VEHICLE, effects={'actuation_delay': {'delay': delay}}))
+    model.opt.timestep = 0.002
+    data, line = mujoco.MjData(model), space['Delayed']()
+    seen = []
+    for _ in range(5):
+        line.command(model, data, np.full(4, 1.0))
+        seen.append(data.ctrl[0])
+        mujoco.mj_step(model, data)
+    assert seen == [0.0] * steps_late + [1.0] * (5 - steps_late)
