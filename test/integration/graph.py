@@ -264,6 +264,7 @@ class Processes:
     def close(self):
         for process in self._all:
             process.kill()
+            print(f'{process.node} said:\n{process.errors()}')   # shown where a test fails
 
 
 def _yaml(value):

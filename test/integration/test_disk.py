@@ -84,28 +84,33 @@ def test_each_recorder_has_a_folder_of_its_own(fast_graph, tmp_path):
 
 @pytest.mark.parametrize('seconds', [1.2, 2.4])
 def test_kill_9_loses_at_most_the_last_second(graph, processes, tmp_path, seconds):
-    """Compare the newest stamp on the wire with the newest on disk."""
+    """
+    Compare what the recorder had joined a second before it was killed with what is on disk.
+
+    What it had not heard by then does not count: FastDDS may hand it the first seconds at once,
+    where the simulator's end has matched before the recorder's.
+    """
     path = write_experiment(tmp_path / 'long.yaml', {'psi': (60.0, {'U4': 0.001})})
     wire = graph.listen(STREAMS['attitude'], 'attitude')
     account = graph.listen(String, 'recorder/statistics', latched())
     recorder = processes.start('recorder', {'output': str(tmp_path / 'flights')})
     await_recorder(graph)
     graph.start(Simulator, {'experiment': path, 'real_time_factor': 1.0})
-    graph.spin_until(lambda: len(wire) > 100 * seconds and account
+    graph.spin_until(lambda: account and account.data()[-1]['joined'] > 100 * seconds
                      and account.data()[-1]['run'], 'a part of the flight')
+    joined, heard_at = account.data()[-1]['joined'], account.times[-1]
+    graph.spin_until(lambda: wire.times[-1] > heard_at + 1.0, 'another second')
     recorder.kill()
-    newest = stamps_of(wire)[-1]
     folder = tmp_path / 'flights/recording_1'
     [flight] = read_bag(folder / 'bag')
     csv = read_csv(folder / 'flight_1.csv')
     # Every sample from the first on, to one at most a second old.
     np.testing.assert_allclose(np.diff(flight.t), 0.01, atol=1e-9)
     np.testing.assert_allclose(np.diff(csv.t), 0.01, atol=1e-9)
-    lost = {'bag': newest * 1e-9 - (flight.info['start_ns'] * 1e-9 + flight.t[-1]),
-            'csv': newest * 1e-9 - (flight.info['start_ns'] * 1e-9 + csv.t[-1])}
-    print(f'killed after {seconds} s: lost {lost}')
+    print(f'killed after {len(wire)} samples: {len(flight)} and {len(csv)} are on disk, '
+          f'{joined} were joined a second before')
     assert flight.info['start_ns'] == stamps_of(wire)[0]
-    assert max(lost.values()) <= 1.0
+    assert min(len(flight), len(csv)) >= joined
     assert flight.info['run'] == 'psi'
 
 
@@ -129,6 +134,8 @@ def test_a_recorder_that_was_killed_goes_on_in_a_new_folder(graph, processes, tm
     graph.start(Simulator, {'experiment': path, 'real_time_factor': 1.0})
     graph.spin_until(lambda: heard and heard.data()[-1]['joined'] > 100
                      and heard.data()[-1]['run'], 'samples')
+    said = len(heard)
+    graph.spin_until(lambda: len(heard) > said, 'the next account: by then these are on disk')
     recorder.kill()
     again = processes.start('recorder', {'output': str(tmp_path / 'flights')})
     folder = tmp_path / 'flights/recording_2'

@@ -22,7 +22,7 @@ from quad_ident_ros.vehicle_files.export import export, mean_left
 from quad_ident_ros.vehicle_files.load import read_vehicle
 from quad_ident_ros.vehicle_files.source import Source
 from quad_ident_ros.vehicle_files.targets import TARGETS
-from quad_ident_ros.vehicle_files.ways import NEEDS
+from quad_ident_ros.vehicle_files.ways import NEEDS, WAYS
 
 
 def changed_lines(old, new):
@@ -197,6 +197,11 @@ def test_every_form_of_every_effect_ends_in_one_class(to):
                                                     *fates.nearest, *fates.not_carried)]
         assert ends.count((effect, form.name)) == 1, (effect, form.name, fates)
         assert all(fate.reason for fate in (*fates.carried, *fates.nearest, *fates.not_carried))
+
+
+def test_each_effect_has_a_way_or_a_reason_why_not():
+    assert all(effect in NEEDS or (effect, form.name) in WAYS for effect, form in FORMS
+               if effect in EFFECTS)
 
 
 def test_an_effect_that_no_format_knows_is_said_by_its_title(monkeypatch):

@@ -16,7 +16,7 @@ from quad_ident_ros.data.quality.excitation import excitation
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.experiment import fly, load_experiment
 from quad_ident_ros.flight.fly import fly_closed_loop
-from quad_ident_ros.flight.measure import FAULTY
+from quad_ident_ros.flight.measure import FAULTY, MOCAP_IMU
 from quad_ident_ros.model.attitude import euler_from_quaternion
 from quad_ident_ros.model.vehicle import load_vehicle
 
@@ -242,6 +242,33 @@ def test_a_fault_is_found_in_a_real_flight(fault):
 def test_right_euler_angles_beside_the_quaternion_are_no_fault():
     record = flight()
     assert codes(changed(record, **named(('phi', 'theta', 'psi'), euler(record)))) == set()
+
+
+def by_euler(record, angles=1.0, rates=1.0):
+    """Return a record with Euler angles in place of the quaternion, and factors on units."""
+    return changed(record, **dict.fromkeys(Q),
+                   **named(('phi', 'theta', 'psi'), angles * euler(record)),
+                   **named(W, rates * record.stack(*W)))
+
+
+@pytest.mark.parametrize('trajectory', ['steps', 'chirp_x', 'lissajous', 'figure8'])
+@pytest.mark.parametrize(('angles', 'rates', 'told'), [
+    (57.3, 57.3, {'euler_in_degrees', 'rate_in_degrees'}), (57.3, 1.0, {'euler_in_degrees'}),
+    (1.0, 57.3, {'rate_in_degrees'}), (1.0, 1.0, set())])
+def test_degrees_show_where_there_is_no_quaternion(trajectory, angles, rates, told):
+    record = fly_closed_loop(VEHICLE, {'rotor_drag': {'coefficient': 0.1}}, trajectory,
+                             duration=15.0, seed=3, noise=MOCAP_IMU)
+    degrees = {'euler_in_degrees', 'rate_in_degrees'}
+    assert codes(by_euler(record, angles, rates)) & degrees == told
+
+
+@needs_real_flights
+@pytest.mark.parametrize(('angles', 'told'), [(1.0, set()), (57.3, {'euler_in_degrees',
+                                                                    'rate_in_degrees'})])
+@pytest.mark.parametrize('name', ['star_fast', 'oval_fast'])
+def test_degrees_show_in_a_real_flight_without_quaternion(name, angles, told):
+    degrees = {'euler_in_degrees', 'rate_in_degrees'}
+    assert codes(by_euler(real_flight(name), angles, angles), real_vehicle()) & degrees == told
 
 
 def test_signs_of_the_quaternion_may_jump():

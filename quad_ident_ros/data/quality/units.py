@@ -4,11 +4,12 @@
 
 import numpy as np
 
+from quad_ident_ros.data.frames import rotate
 from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.quality.series import correlation, Grid
 from quad_ident_ros.data.record import EULER, QUATERNION
 from quad_ident_ros.gravity import GRAVITY
-from quad_ident_ros.model.attitude import body_rate
+from quad_ident_ros.model.attitude import body_rate, quaternion_from_euler
 
 DEGREE = np.pi / 180
 RPM = 2 * np.pi / 60
@@ -45,9 +46,7 @@ def rates_in_degrees(record, vehicle):
     if abs(sure) < SURE or not _is(abs(slope), 1 / DEGREE):
         return _other_size(rates[1], rates[0], 'wx, wy, wz', 'the rates',
                            'those of the attitude')
-    return [Finding('rate_in_degrees', 'error', 'wx, wy, wz',
-                    f'the rates are {abs(slope):.1f} times those of the attitude: they are in '
-                    'deg/s', 'multiply wx, wy and wz by pi/180, or say unit: deg/s in a mapping')]
+    return [_gyro_in_degrees(f'the rates are {abs(slope):.1f} times those of the attitude')]
 
 
 def _other_size(one, other, where, these, those):
@@ -62,25 +61,65 @@ def _other_size(one, other, where, these, those):
 
 
 def euler_in_degrees(record, vehicle):
-    """Find phi, theta, psi in degrees: they turn 57.3 times as fast as the gyro says."""
+    """
+    Find phi, theta, psi in degrees, and a gyro in deg/s beside them.
+
+    Where one of them is, the angles turn 57.3 times as fast or as slowly as the gyro says; where
+    both are, the vehicle accelerates as it would at tilts of a 57.3rd.
+    """
     grid = Grid.of(record)
     if grid is None or not record.has(*EULER):
         return []
-    euler = grid.signal(*EULER)
+    alone, euler = not record.has(*QUATERNION), grid.signal(*EULER)
+    reference = None
     if record.has('wx', 'wy', 'wz'):
         reference = grid.smooth(grid.signal('wx', 'wy', 'wz'))
-    elif record.has(*QUATERNION) and grid.attitude() is not None:
+    elif not alone and grid.attitude() is not None:
         reference = grid.rate_of(grid.attitude())
+    if reference is not None:
+        rate = body_rate(euler * DEGREE, grid.derivative(euler))
+        sure, slope = correlation(rate[grid.good], reference[grid.good])
+        if abs(sure) >= SURE and _is(abs(slope), 1 / DEGREE):
+            return [_in_degrees(f'the angles turn {abs(slope):.1f} times as fast as the body')]
+        if abs(sure) >= SURE and alone and _is(abs(slope), DEGREE):
+            return [_gyro_in_degrees(f'the rates are {1 / abs(slope):.1f} times those of the '
+                                     'angles')]
+    slope = _tilted_by_degrees(grid, euler) if alone else None
+    if slope is None:
+        return []
+    found = [_in_degrees(f'the vehicle accelerates {slope:.2f} times as the angles tell, read as '
+                         'degrees')]
+    return found + ([_gyro_in_degrees('they are those of angles in degrees')]
+                    if reference is not None and abs(sure) >= SURE else [])
+
+
+def _in_degrees(why):
+    return Finding('euler_in_degrees', 'error', 'phi, theta, psi',
+                   f'{why}: they are in degrees',
+                   'multiply phi, theta and psi by pi/180, or say unit: deg in a mapping')
+
+
+def _gyro_in_degrees(why):
+    return Finding('rate_in_degrees', 'error', 'wx, wy, wz', f'{why}: they are in deg/s',
+                   'multiply wx, wy and wz by pi/180, or say unit: deg/s in a mapping')
+
+
+def _tilted_by_degrees(grid, euler):
+    """
+    Return the slope of the horizontal acceleration on that of tilts in degrees, if it is about 1.
+
+    Angles in radians have a slope of 57.3.
+    """
+    if grid.record.has('vx', 'vy'):
+        velocity = grid.signal('vx', 'vy')
+    elif grid.record.has('px', 'py'):
+        velocity = grid.derivative(grid.signal('px', 'py'))
     else:
-        return []
-    rate = body_rate(euler * DEGREE, grid.derivative(euler))
-    sure, slope = correlation(rate[grid.good], reference[grid.good])
-    if abs(sure) < SURE or not _is(abs(slope), 1 / DEGREE):
-        return []
-    return [Finding('euler_in_degrees', 'error', 'phi, theta, psi',
-                    f'the angles turn {abs(slope):.1f} times as fast as the body: they are in '
-                    'degrees', 'multiply phi, theta and psi by pi/180, or say unit: deg in a '
-                    'mapping')]
+        return None
+    up = rotate(quaternion_from_euler(euler * DEGREE), np.array([0.0, 0.0, 1.0]))
+    sure, slope = correlation(grid.derivative(velocity)[grid.good],
+                              GRAVITY * grid.smooth(up[:, :2])[grid.good])
+    return slope if sure >= SURE and _is(slope, 1.0) else None
 
 
 def force_in_g(record, vehicle):
