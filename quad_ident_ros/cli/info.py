@@ -22,6 +22,7 @@ from quad_ident_ros.data.mapping import load_mapping
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.data.selection import refuse_spoilt, segment_of, selected, Selection
 from quad_ident_ros.data.summary import contents, segments, summarise, unread
+from quad_ident_ros.diagnose.intake import lacking
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.vehicle import Vehicle
 from quad_ident_ros.report.data import write_json
@@ -106,7 +107,8 @@ def _summaries(path: str, records: Sequence[FlightRecord], selection: Selection,
         refuse_spoilt(chosen, selection)
     except InputError as error:
         return [unread(path, error)]
-    return [summarise(record, vehicle) for record in selected(path, records, selection)]
+    return [summarise(record, vehicle, lacking(record, vehicle) if vehicle else ())
+            for record in selected(path, records, selection)]
 
 
 def _vehicle(options: argparse.Namespace) -> tuple[Vehicle | None, list[dict]]:

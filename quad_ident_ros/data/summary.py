@@ -30,9 +30,11 @@ UNITS = {'roll': 'rad/s', 'pitch': 'rad/s', 'yaw': 'rad/s', 'vertical': 'm/s^2',
          'horizontal': 'm/s'}
 
 
-def summarise(record, vehicle=None):
+def summarise(record, vehicle=None, more=()):
     """
-    Return what is in a record, JSON-able; arguments as those of data.quality.findings.
+    Return what is in a record, JSON-able.
+
+    Args: record and vehicle as those of data.quality.findings; more: Findings beside those.
 
     The rate of a column is that at which its value changes, so that a slow stream shows beside a
     fast one.
@@ -60,7 +62,8 @@ def summarise(record, vehicle=None):
                        for name, value in excited.items()},
         'clock': dict(zip(('attitude_against_gyro', 'position_against_velocity',
                            'accelerometer_against_commands'), map(_clock, clocks), strict=True)),
-        'findings': [asdict(finding) for finding in _findings(record, vehicle)],
+        'findings': [asdict(finding) for finding in gravest_first(
+            [*more, *_findings(record, vehicle)])],
     }
 
 

@@ -34,6 +34,7 @@ from quad_ident_ros.greybox.rotor_answer import (
     rotor_answer,
     ruled_out_by,
 )
+from quad_ident_ros.model.dynamics import course_of, states_of
 from quad_ident_ros.model.mixing import with_commands
 from quad_ident_ros.model.vehicle import Vehicle
 
@@ -116,6 +117,21 @@ def take_in(records: Sequence[FlightRecord], vehicle: Vehicle, hold_out: FlightR
     *tracks, held_out = tracks
     return Intake(vehicle, tuple(tracks), held_out, rollouts(tracks, vehicle), tuple(late),
                   tuple(clocks), findings, ruled_out)
+
+
+def lacking(record: FlightRecord, vehicle: Vehicle) -> tuple[Finding, ...]:
+    """Return the Finding that says which columns a flight lacks for a diagnosis, if any."""
+    try:
+        record = with_commands(with_motion(record), vehicle)
+        course_of(record, vehicle)
+        if not is_inertial(record):
+            states_of(with_position(record))
+    except InputError as error:
+        name = record.info.get('source') or record.info.get('name', 'flight')
+        why = str(error).removeprefix(name).lstrip(':, ')
+        return Finding('lacking', 'warning', 'columns', 'diagnose and fit refuse this flight: it '
+                       f'{why}', ''),
+    return ()
 
 
 def _beside_records(vehicle: Vehicle, records: Sequence[FlightRecord], findings: list) -> Vehicle:

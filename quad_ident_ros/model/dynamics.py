@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from scipy.interpolate import CubicHermiteSpline
 
 from quad_ident_ros.data.cutting import without
-from quad_ident_ros.data.record import FlightRecord
+from quad_ident_ros.data.record import FlightRecord, INPUTS
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.actuators import actuated, distinct, without_lag
 from quad_ident_ros.model.attitude import quaternion_from_euler
@@ -95,12 +95,15 @@ def course_of(record: FlightRecord, vehicle: Vehicle, reference_voltage: float |
     names = [f'cmd{j}' for j in range(1, len(vehicle.rotors) + 1)]
     given = ', '.join(names)
     instead = f'give {given}, or u1, u2, u3, u4, the thrust and moments'
+    missing = [name for name in INPUTS if not record.has(name)]
     if record.has('output1'):
         instead = (f'give {given}, which outputs become by motors of the vehicle file, or by a '
                    'mapping with actuators (kind, order, speeds), see docs/records.md')
     elif record.info.get('notes'):      # of others, whose names were guessed
         instead = ('name the commands of the motors in a mapping (--mapping), which begins with: '
                    'quad_ident info FILE --write-mapping map.yaml')
+    elif len(missing) < len(INPUTS):
+        instead = f'give {given}, or {", ".join(missing)} as well, beside what it has of u1 to u4'
     _refuse_without(record, names, instead)
     commands = record.stack(*names)
     drop, reference = np.zeros(len(record)), np.inf

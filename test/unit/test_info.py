@@ -24,6 +24,9 @@ from quad_ident_ros.data.mapping import Column, load_mapping, mapping_from
 from quad_ident_ros.data.mapping_text import names_text, table_text, topics_text
 from quad_ident_ros.data.readers.base import Content
 from quad_ident_ros.data.summary import summarise
+from quad_ident_ros.diagnose.intake import lacking
+from quad_ident_ros.flight.fly import fly_closed_loop
+from quad_ident_ros.model.vehicle import load_vehicle
 
 SHORT = flight(seconds=6.0, noise=0.3)
 
@@ -110,6 +113,30 @@ def test_an_error_in_a_flight_has_the_exit_code(tmp_path, capsys):
     columns |= {name: np.degrees(columns[name]) for name in ('wx', 'wy', 'wz')}
     write_csv(tmp_path / 'f.csv', type(SHORT)(SHORT.t, columns))
     assert info(capsys, tmp_path / 'f.csv')[0] == FAULTY
+
+
+@pytest.mark.parametrize('gone, words', [
+    (('cmd1', 'cmd2', 'cmd3', 'cmd4'), 'no column cmd1, cmd2, cmd3, cmd4'),
+    (Q, 'no column qw, qx, qy, qz'), ((), '')])
+def test_a_flight_that_a_diagnosis_refuses_is_told_with_a_vehicle(tmp_path, capsys, gone, words):
+    path, flown = tmp_path / 'f.csv', fly_closed_loop(load_vehicle('hummingbird'), {}, 'steps',
+                                                      duration=6.0, seed=1)
+    columns = {name: values for name, values in flown.columns.items()
+               if name not in gone and not name.startswith(('rotor', 'u'))}
+    write_csv(path, type(flown)(flown.t, columns))
+    code, data = info(capsys, path, '--vehicle', 'hummingbird')
+    told = [one['message'] for one in data['findings'] if one['code'] == 'lacking']
+    assert code == 0 and len(told) == bool(gone) and all(words in one for one in told)
+    if gone:    # as diagnose says it
+        assert main(['diagnose', str(path), '--vehicle', 'hummingbird']) == 2
+        assert words in capsys.readouterr().err
+
+
+def test_a_part_of_thrust_and_moments_is_told_by_what_is_missing():
+    columns = {name: values for name, values in SHORT.columns.items() if name not in CMD}
+    columns |= dict.fromkeys(('u2', 'u3', 'u4'), np.zeros(len(SHORT)))
+    [told] = lacking(type(SHORT)(SHORT.t, columns), VEHICLE)
+    assert 'or u1 as well' in told.message
 
 
 def test_a_mapping_to_begin_with_reads_the_table(tmp_path, capsys):

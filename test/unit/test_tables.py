@@ -83,6 +83,17 @@ def test_separators_and_decimal_commas(tmp_path, separator, comma):
     assert ('decimal commas' in said(read)) == comma
 
 
+def test_a_flight_record_between_semicolons_keeps_its_thrust_and_moments(tmp_path):
+    moments = {name: np.linspace(low, high, len(FLIGHT)) for name, low, high in (
+        ('u1', 5.0, 9.0), ('u2', -0.1, 0.1), ('u3', -0.1, 0.1), ('u4', -0.01, 0.01))}
+    columns = {name: FLIGHT.columns[name] for name in EVERY} | moments
+    read = load(table(tmp_path, {'t': FLIGHT.t, **columns}, separator=';'))
+    close(read)
+    for name, values in moments.items():
+        np.testing.assert_allclose(read.columns[name], values)
+    assert not read.has('output1') and 'thrust and moments' in said(read)
+
+
 def test_a_line_of_units_and_lines_above_the_header(tmp_path):
     columns = others()
     path = table(tmp_path, columns, name='f.csv.gz', above='# made by a program\n# 2026\n')

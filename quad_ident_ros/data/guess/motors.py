@@ -18,6 +18,7 @@ from quad_ident_ros.data.guess.names import (
 )
 from quad_ident_ros.data.mapping import factor_of
 from quad_ident_ros.data.motor_order import about_motors, quad
+from quad_ident_ros.data.record import INPUTS
 from quad_ident_ros.data.signal_kind import kinds_of, TITLES
 
 AROUND = (1, -1), (-1, -1), (-1, 1), (1, 1)     # forward, left: front right to front left
@@ -36,6 +37,11 @@ def motors(draft: Draft) -> None:
         if np.nanmin(values) >= 0 and np.nanmedian(values) > SLOWEST:
             draft.take([f'rotor{k}' for k in range(1, len(measured) + 1)], measured, unit,
                        role='rotors', said=f'measured rotor speeds in {unit}')
+    if set(INPUTS) <= set(draft.free) and all(column.names == (role,)
+                                              for role, column in draft.columns.items()):
+        draft.take(INPUTS, INPUTS, role='commands', said='thrust and moments, for the other '
+                   'columns have the names of a flight record')
+        return
     names = _numbered(draft, MOTOR) or _corners(draft)
     if not names:
         return
