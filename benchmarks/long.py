@@ -88,7 +88,7 @@ def _bytes(path):
 
 def make(name, folder, seconds):
     """Fly a vehicle and write its record as a file of this name into a folder."""
-    sys.path[:0] = [str(ROOT / 'test')]
+    sys.path[:0] = [str(ROOT / 'test' / 'helpers')]
     from flightmaker import changed, VEHICLE
 
     from quad_ident_ros.data.csv import write_csv

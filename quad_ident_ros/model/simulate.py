@@ -30,8 +30,8 @@ Progress: TypeAlias = Callable[[float], object]
 Flown: TypeAlias = tuple[dict[str, np.ndarray], float]
 """Columns of a record and the time at which it ends, s."""
 
-# Longest integration step, s. The errors that they leave are stated in docs/paper.md and shown
-# by test/unit/test_golden.py: the printed equations are stiff and chaotic, the derived are not.
+# Longest integration step, s. The errors that they leave are stated in docs/paper.md and shown by
+# test/unit/model/test_golden.py: the printed equations are stiff and chaotic, the derived are not.
 LONGEST_STEP = {'newton_euler': 1e-4, 'paper': 1e-5}
 
 STEPS_AT_ONCE = 1_000_000   # integrated before a signal or a cancel can act: about 0.5 s

@@ -1,7 +1,7 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Fly two vehicles of rotorpy for a second, for test/unit/test_rotorpy.py to compare with.
+Fly two vehicles of rotorpy for a second, for test/unit/docs/test_rotorpy.py to compare with.
 
 Writes a flight record and a vehicle file of each beside itself. In an environment of its own:
 

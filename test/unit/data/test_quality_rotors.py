@@ -1,0 +1,103 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Order, spin, number and limits of the rotors, by what their commands do."""
+
+from dataclasses import replace
+from itertools import permutations, product
+
+from flightmaker import changed, flight, VEHICLE
+import numpy as np
+import pytest
+from quality_records import CMD, named
+from real import needs_real_flights, real_flight, real_vehicle
+
+from quad_ident_ros.data.quality import cautions, findings, refuted
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.flight.fly import fly_closed_loop
+
+
+@pytest.mark.parametrize('order', [p for p in permutations(range(4)) if p != (0, 1, 2, 3)])
+def test_every_wrong_order_of_the_rotors_is_found_and_named(order):
+    record = flight()
+    names = [CMD[k] for k in order]
+    [finding] = findings(changed(record, **named(CMD, record.stack(*names))), VEHICLE)
+    assert finding.code == 'rotor_order'
+    assert f'rotors {", ".join(str(k + 1) for k in order)} of' in finding.message
+
+
+@pytest.mark.parametrize('columns', [{'cmd4': None}, {'cmd5': flight().columns['cmd1']}])
+def test_the_commands_of_another_vehicle_are_found(columns):
+    [finding] = findings(changed(flight(), **columns), VEHICLE)
+    assert finding.code == 'rotor_count' and finding.severity == 'error'
+
+
+@pytest.mark.slow
+@needs_real_flights
+@pytest.mark.parametrize('name', ['star_fast', 'oval_fast'])
+def test_wrong_orders_are_found_in_real_flights(name):
+    record = real_flight(name)
+    vehicle = real_vehicle()
+    for order in permutations(range(4)):
+        mixed = changed(record, **named(CMD, record.stack(*[CMD[k] for k in order])))
+        found = [f for f in findings(mixed, vehicle) if f.code == 'rotor_order']
+        said = [f'rotors {", ".join(str(k + 1) for k in order)} of' in f.message for f in found]
+        assert said == ([] if order == (0, 1, 2, 3) else [True])
+
+
+@pytest.mark.parametrize('spins', [spins for spins in product((1, -1), repeat=4)
+                                   if spins != (1, -1, 1, -1)])
+def test_every_wrong_set_of_spins_is_found(spins):
+    wrong = replace(VEHICLE, rotors=tuple(replace(rotor, spin=spin) for rotor, spin in
+                                          zip(VEHICLE.rotors, spins, strict=True)))
+    [finding] = findings(flight(), wrong)
+    assert finding.code == 'rotor_spin'
+    assert str([rotor.spin for rotor in VEHICLE.rotors]) in finding.message
+
+
+@pytest.mark.parametrize('wrong, said', [
+    ({'mass': 500.0}, 'beyond its speed_max'), ({'mass': 0.0005}, 'below its speed_min'),
+    ({'thrust_coefficient': 1.2e-6 / 91, 'speed_max': 1700.0}, 'beyond its speed_max'),
+    ({'speed_max': 178.0}, 'beyond its speed_max'), ({'speed_max': 1e6}, '% of its speed_max')])
+def test_a_vehicle_that_cannot_hover_is_found(wrong, said):
+    vehicle = replace(VEHICLE, **wrong)
+    [finding] = [finding for finding in findings(flight(), vehicle) if finding.code == 'hover']
+    assert finding.severity == 'error' and said in finding.message and 'kg' in finding.remedy
+    with pytest.raises(InputError, match='half_kilogram would hover at'):
+        fly_closed_loop(vehicle, {}, 'hover', duration=10.0)
+
+
+@pytest.mark.parametrize(('arms', 'inertia'), [(100.0, 1.0), (1000.0, 1.0), (1.0, 1e3),
+                                               (1.0, 1e4)],
+                         ids=['cm', 'mm', 'g m^2', 'kg cm^2'])
+def test_arms_or_inertia_in_another_unit_are_found(arms, inertia):
+    wrong = replace(VEHICLE, inertia=tuple(inertia * one for one in VEHICLE.inertia), rotors=tuple(
+        replace(rotor, position=tuple(arms * one for one in rotor.position))
+        for rotor in VEHICLE.rotors))
+    [found] = [one for one in findings(flight(), wrong) if one.code == 'vehicle_size']
+    assert found.severity == 'error' and 'kg m^2' in found.remedy
+    assert not [one for one in findings(flight(), VEHICLE) if one.code == 'vehicle_size']
+
+
+def test_saturated_commands_are_found():
+    limit = 1080.0
+    record = flight()
+    clipped = np.minimum(record.stack(*CMD), limit)
+    [finding] = findings(changed(record, **named(CMD, clipped)),
+                         replace(VEHICLE, speed_max=limit))
+    assert finding.code == 'saturation' and 'speed_max = 1080' in finding.message
+    share = float(finding.message.split(' %')[0])
+    assert share == pytest.approx(100 * (clipped >= limit - 2.0).any(axis=1).mean(), abs=0.3)
+
+
+def test_an_order_that_another_flight_refutes_is_a_warning():
+    """Rotors do not change places: one flight that shows the order is right speaks for all."""
+    right = replace(flight(), info={**flight().info, 'name': 'right'})
+    wrong = changed(flight(), **named(CMD, flight().stack('cmd2', 'cmd1', 'cmd3', 'cmd4')))
+    wrong = replace(wrong, info={**wrong.info, 'name': 'wrong'})
+    assert refuted([wrong], VEHICLE) == refuted([wrong, wrong], VEHICLE) == ()
+    with pytest.raises(InputError, match='rotors 2, 1, 3, 4'):
+        cautions(wrong, VEHICLE, refuted([wrong, wrong], VEHICLE))
+    [said] = [one for one in cautions(wrong, VEHICLE, refuted([wrong, right], VEHICLE))
+              if one['code'] == 'rotor_order']
+    assert said['severity'] == 'warning' and said['flight'] == 'wrong'
+    assert cautions(right, VEHICLE, refuted([wrong, right], VEHICLE)) == []

@@ -1,0 +1,94 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Streams that are dead, have a wrong sign or are of something else: no verdict stands on them."""
+
+from flightmaker import changed, flight, VEHICLE
+import numpy as np
+import pytest
+from quality_records import CMD
+
+from quad_ident_ros.data.quality import cautions, findings
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.flight.fly import fly_closed_loop
+
+
+def columns(record, names, change):
+    return changed(record, **{name: change(record.columns[name]) for name in names})
+
+
+def dead(values):
+    return np.full_like(values, values[0])
+
+
+def second_half(values):
+    return np.where(np.arange(len(values)) < len(values) // 2, values, 0.0)
+
+
+GRAVE = {
+    'dead, rate': (('wx', 'wy', 'wz'), dead),
+    'dead, velocity': (('vx', 'vy', 'vz'), dead),
+    'dead, position': (('px', 'py', 'pz'), dead),
+    'dead, attitude': (('qw', 'qx', 'qy', 'qz'), dead),
+    'frame_sign, height': (('pz',), np.negative),
+    'frame_sign, speed': (('vx',), np.negative),
+    'frame_sign, mirrored': (('px', 'vx'), np.negative),
+    'frame_sign, gyro': (('wy',), np.negative),
+    'negative, speeds': (CMD, np.negative),
+    'thrust, none': (CMD, lambda values: 1e-3 * values),
+    'thrust, none in the end': (CMD, second_half),
+    'thrust, too much': (CMD, lambda values: 5.0 * values),
+    'saturation, one rotor': (('cmd2',), lambda values: np.full_like(values, VEHICLE.speed_min)),
+    'no_voltage, none': (('vbat',), np.zeros_like),
+}
+
+
+@pytest.mark.parametrize('fault', GRAVE)
+def test_a_record_without_a_stream_bears_no_verdict(fault):
+    record = changed(flight(), vbat=np.full(len(flight()), 16.0))
+    wrong = columns(record, *GRAVE[fault])
+    code = fault.partition(',')[0]
+    [found] = [one for one in findings(wrong, VEHICLE) if one.code == code][:1]
+    assert found.severity == 'error'
+    with pytest.raises(InputError):
+        cautions(wrong, VEHICLE)
+    assert cautions(record, VEHICLE) == []
+
+
+def test_a_voltage_that_drops_out_is_a_warning():
+    """The median of it is that of the battery."""
+    record = flight()
+    for lost in (-1.0, 0.0):
+        voltage = np.where((record.t > 15.0) & (record.t < 18.4), lost, 16.0)
+        [found] = [one for one in findings(changed(record, vbat=voltage), VEHICLE)
+                   if one.code == 'no_voltage']
+        assert found.severity == 'warning' and '17.0 %' in found.message
+        assert 't = 15.010 s' in found.where
+        assert '--to 15' in found.remedy
+
+
+def test_commands_that_never_change_are_a_warning():
+    record = flight()
+    usual = {name: np.full(len(record), VEHICLE.hover_speed) for name in CMD}
+    [found] = [one for one in findings(changed(record, **usual), VEHICLE) if one.code == 'dead']
+    assert found.severity == 'warning' and found.where == 'cmd1 to cmd4'
+
+
+def test_few_samples_a_second_are_a_warning():
+    record = fly_closed_loop(VEHICLE, {}, 'lissajous', duration=10.0, rate=100.0, seed=1)
+    thin = type(record)(record.t[::5], {name: values[::5] for name, values in
+                                        record.columns.items()}, record.info)
+    [found] = [one for one in cautions(thin, VEHICLE) if one['code'] == 'coarse']
+    assert '0.05 s' in found['message']
+
+
+def test_a_vehicle_that_stands_needs_no_thrust():
+    """Records begin on the ground, with the motors off."""
+    record = flight()
+    rest = 300
+    stood = {name: np.concatenate([np.full(rest, values[0]), values])
+             for name, values in record.columns.items()}
+    for name in (*CMD, 'vx', 'vy', 'vz', 'wx', 'wy', 'wz'):
+        stood[name][:rest] = 0.0
+    t = np.concatenate([record.t[0] + record.period() * np.arange(-rest, 0), record.t])
+    found = findings(type(record)(t, stood, record.info), VEHICLE)
+    assert not [one for one in found if one.code == 'thrust']

@@ -1,0 +1,348 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Tables as certain programs write them, held against the flight that is in them."""
+
+from dataclasses import replace
+
+from flightmaker import changed, flight, VEHICLE, world_velocity_in_body
+import numpy as np
+import pytest
+from reader_checks import refused
+from table_files import FORCE, named, PLACE, Q, RATE, SPEED, table
+
+from quad_ident_ros.data.columns import from_euler
+from quad_ident_ros.data.frames import multiply
+from quad_ident_ros.data.load import load, load_all
+from quad_ident_ros.data.mapping import mapping_from
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.model.attitude import euler_from_quaternion
+
+FLIGHT = flight(seconds=10.0, rate=100.0)
+T = FLIGHT.t
+CMD = ('cmd1', 'cmd2', 'cmd3', 'cmd4')
+XYZW = ('qx', 'qy', 'qz', 'qw')
+
+
+def columns(prefix, letters, group):
+    """Return columns prefix + letter of a group of the flight."""
+    return named([prefix + letter for letter in letters], FLIGHT.stack(*group))
+
+
+def same(read, *groups, atol=1e-6):
+    """Check that groups of a record are those of the flight."""
+    at = np.searchsorted(T, read.t - 1e-6)
+    for group in groups:
+        expected = FLIGHT.stack(*group)[at]
+        found = read.stack(*group)
+        if group == Q:
+            found = found * np.sign(np.sum(found * expected, axis=1, keepdims=True))
+        np.testing.assert_allclose(found, expected, atol=atol)
+
+
+def test_a_table_of_several_topics_has_rows_of_each(tmp_path):
+    """Programs (PlotJuggler, pandas) write a row for each message, and the twist in the body."""
+    body, odd, even = world_velocity_in_body(FLIGHT), slice(1, None, 4), slice(0, None, 2)
+    found = {'__time': 1.7e9 + T}
+    odom = {**columns('/odom/pose/pose/position/', 'xyz', PLACE),
+            **columns('/odom/pose/pose/orientation/', 'xyzw', XYZW),
+            **named([f'/odom/twist/twist/linear/{axis}' for axis in 'xyz'], body)}
+    others = {**columns('/imu/angular_velocity/', 'xyz', RATE),
+              **columns('/imu/linear_acceleration/', 'xyz', FORCE),
+              **columns('/motors/data', ['[0]', '[1]', '[2]', '[3]'], CMD)}
+    for part, rows in ((odom, odd), (others, even)):
+        for name, values in part.items():
+            found[name] = np.full(len(T), np.nan)
+            found[name][rows] = values[rows]
+    read = load(table(tmp_path, found))
+    assert any('body axes, by the position' in note for note in read.info['notes'])
+    at = np.searchsorted(T, read.t + read.info['start_ns'] * 1e-9 - 1.7e9 - 1e-5)
+    np.testing.assert_allclose(read.stack(*RATE), FLIGHT.stack(*RATE)[at], atol=1e-6)
+    assert np.median(np.abs(read.stack(*SPEED) - FLIGHT.stack(*SPEED)[at])) < 0.02
+
+
+@pytest.mark.parametrize('unit', ['', ' (g)'])
+def test_a_table_of_blackbox_decode_has_rates_and_forces_without_units(tmp_path, unit):
+    """It writes the numbers of the log: deg/s, 1/2048 g, and hundreds of electrical turns."""
+    three, four = range(3), range(4)
+    force = FLIGHT.stack(*FORCE) / 9.80665 * (1 if unit else 2048)
+    found = {'loopIteration': 8 * np.arange(len(T)), 'time (us)': np.round(1e6 * T),
+             **named([f'axisP[{k}]' for k in three], 10 * np.sin(FLIGHT.stack(*RATE))),
+             **named([f'setpoint[{k}]' for k in four], 100 * np.sin(FLIGHT.stack(*CMD))),
+             'vbatLatest (V)': FLIGHT.columns['vbat'],
+             **named([f'gyroADC[{k}]' for k in three], np.degrees(FLIGHT.stack(*RATE))),
+             **named([f'gyroUnfilt[{k}]' for k in three], np.degrees(FLIGHT.stack(*RATE)) + 3),
+             **named([f'accSmooth[{k}]{unit}' for k in three], force),
+             **named([f'motor[{k}]' for k in four], np.round(48 + FLIGHT.stack(*CMD) / 2)),
+             **named([f'eRPM[{k}]' for k in four], np.round(FLIGHT.stack(*CMD) * 0.67)),
+             **named(['roll', 'pitch', 'heading'], 0.1 * FLIGHT.stack(*RATE))}
+    read = load(table(tmp_path, found, separator=', '))
+    same(read, RATE, FORCE)
+    assert not read.has('rotor1') and not read.has('qw')
+    assert read.info['motors']['rotors'][0] == [-1.0, -1.0, 0.0, 0]     # rear right
+    notes = ' '.join(read.info['notes'])
+    assert 'eRPM[0] to eRPM[3]: not taken' in notes and '2 front right' in notes
+    np.testing.assert_allclose(read.columns['output2'], found['motor[1]'])
+    np.testing.assert_allclose(read.columns['vbat'], FLIGHT.columns['vbat'])
+
+
+@pytest.mark.parametrize('gyro', [False, True])
+def test_the_pitch_of_a_crazyflie_has_the_other_sign(tmp_path, gyro):
+    euler = np.degrees(euler_from_quaternion(FLIGHT.stack(*Q))) * [1.0, -1.0, 1.0]
+    found = {'timestamp': 1e3 * T, **columns('stateEstimate.', 'xyz', PLACE),
+             **named([f'stabilizer.{name}' for name in ('roll', 'pitch', 'yaw')], euler)}
+    if gyro:
+        found |= named([f'gyro.{axis}' for axis in 'xyz'], np.degrees(FLIGHT.stack(*RATE)))
+    same(load(table(tmp_path, found)), PLACE, Q)
+
+
+def test_a_pitch_whose_sign_the_gyro_contradicts_is_turned(tmp_path):
+    euler = euler_from_quaternion(FLIGHT.stack(*Q)) * [1.0, -1.0, 1.0]
+    found = {'time': T, **named(('roll', 'pitch', 'yaw'), euler), **columns('g', 'xyz', RATE)}
+    read = load(table(tmp_path, found))
+    same(read, Q, RATE)
+    assert any('pitch with the other sign' in note for note in read.info['notes'])
+
+
+def test_a_minus_before_a_unit_turns_a_column(tmp_path):
+    """Motion capture with y up: east, up, south."""
+    found = {'time': T, 'a': FLIGHT.columns['px'], 'b': FLIGHT.columns['pz'],
+             'c': -1e3 * FLIGHT.columns['py'], 'qa': FLIGHT.columns['qw'],
+             'qb': FLIGHT.columns['qx'], 'qc': FLIGHT.columns['qz'],
+             'qd': -FLIGHT.columns['qy']}
+    mapping = mapping_from({'columns': {
+        't': 'time', 'px': 'a', 'py': {'column': 'c', 'unit': '-mm'}, 'pz': 'b', 'qw': 'qa',
+        'qx': 'qb', 'qy': {'column': 'qd', 'unit': -1}, 'qz': 'qc'}}, 'a test')
+    same(load(table(tmp_path, found), mapping), PLACE, Q)
+
+
+def test_what_motive_writes_is_told_and_asked_for_its_axes(tmp_path):
+    names = ['Rotation'] * 4 + ['Position'] * 3
+    above = ('Format Version,1.23,Take Name,one,Length Units,Meters,Coordinate Space,Global\n\n'
+             + ''.join(f',{head},{",".join(cells)}\n' for head, cells in (
+                 ('Type', 7 * ['Rigid Body']), ('Name', 7 * ['quad']), ('ID', 7 * ['1'])))
+             + f',,{",".join(names)}\nFrame,Time (Seconds),X,Y,Z,W,X,Y,Z\n')
+    rows = np.column_stack([np.arange(len(T)), T, FLIGHT.stack(*XYZW), FLIGHT.stack(*PLACE)])
+    path = tmp_path / 'take.csv'
+    path.write_text(above + '\n'.join(','.join(map(repr, row)) for row in rows.tolist()) + '\n')
+    refused(path, 'Motive', 'Z up', '--write-mapping')
+    mapping = mapping_from({'quaternion': 'xyzw', 'columns': {
+        't': 'Time (Seconds)', 'q': [f'Rotation {letter}' for letter in 'XYZW'],
+        'px': 'Position X', 'py': 'Position Y', 'pz': 'Position Z'}}, 'a test')
+    same(load(path, mapping), PLACE, Q)
+
+
+def test_headings_without_cells_tell_names_apart(tmp_path):
+    """As bags of ROS 1 are written out."""
+    head = 'rosbagTimestamp,header,seq,pose,position,x,y,z,orientation,x,y,z,w'
+    rows = zip((1.5e9 + T) * 1e9, FLIGHT.stack(*PLACE).tolist(), FLIGHT.stack(*XYZW).tolist(),
+               strict=True)
+    path = tmp_path / 'state.csv'
+    path.write_text(head + '\n' + ''.join(
+        f'{stamp:.0f},,{k},,,{",".join(map(repr, place))},,{",".join(map(repr, q))}\n'
+        for k, (stamp, place, q) in enumerate(rows)))
+    same(load(path), PLACE, Q)
+
+
+def test_cells_may_lie_between_blanks(tmp_path):
+    """Trajectories of visual odometry: # timestamp tx ty tz qx qy qz qw."""
+    rows = np.column_stack([1.5e9 + T, FLIGHT.stack(*PLACE), FLIGHT.stack(*XYZW)])
+    path = tmp_path / 'groundtruth.txt'
+    path.write_text('# timestamp tx ty tz qx qy qz qw\n' + '\n'.join(
+        ' '.join(map(repr, row)) for row in rows.tolist()) + '\n')
+    same(load(path), PLACE, Q)
+
+
+def test_names_with_frames_and_units_in_powers_are_known(tmp_path):
+    """Visual and inertial data sets name frames, and biases beside the states."""
+    stamps = np.round(1e9 * T) + 1.4e18
+    imu = {'#timestamp [ns]': stamps,
+           **columns('w_RS_S_', [f'{axis} [rad s^-1]' for axis in 'xyz'], RATE),
+           **columns('a_RS_S_', [f'{axis} [m s^-2]' for axis in 'xyz'], FORCE)}
+    same(load(table(tmp_path, imu)), RATE, FORCE)
+    truth = {'#timestamp': stamps, **columns(' p_RS_R_', ['x [m]', 'y [m]', 'z [m]'], PLACE),
+             **columns(' q_RS_', ['w []', 'x []', 'y []', 'z []'], Q),
+             **columns(' v_RS_R_', [f'{axis} [m s^-1]' for axis in 'xyz'], SPEED),
+             **columns(' b_w_RS_S_', [f'{axis} [rad s^-1]' for axis in 'xyz'], RATE)}
+    read = load(table(tmp_path, truth))
+    same(read, PLACE, Q, SPEED)
+    assert not read.has('wx')
+
+
+def test_dates_are_times(tmp_path):
+    stamps = np.datetime64('2026-03-01T10:00:00') + np.round(1e6 * T).astype('timedelta64[us]')
+    rows = zip(stamps.astype(str), FLIGHT.stack(*PLACE, *Q).tolist(), strict=True)
+    path = tmp_path / 'dates.csv'
+    path.write_text('time,x,y,z,qw,qx,qy,qz\n' + ''.join(
+        f'{stamp}Z,{",".join(map(repr, row))}\n' for stamp, row in rows))
+    read = load(path)
+    same(read, PLACE, Q)
+    assert read.info['start_ns'] == 1772359200 * 10 ** 9
+
+
+def test_a_time_of_any_name_is_told_by_its_steps_and_a_count_is_none(tmp_path):
+    found = {'Zeitpunkt': T, **columns('', 'xyz', PLACE)}
+    same(load(table(tmp_path, found)), PLACE)
+    refused(table(tmp_path, {'Bild': np.arange(len(T)), **columns('', 'xyz', PLACE)}),
+            'no column of a time that rises', 'add one in s')
+
+
+def test_names_of_ours_do_not_hide_those_of_others(tmp_path):
+    """A table with t and wx, wy, wz is one of others where it has its pose by other names."""
+    found = {'t': T, **columns('', 'xyz', PLACE), **columns('w', 'xyz', RATE)}
+    numbers = FLIGHT.stack(*XYZW)
+    one = named(('one.q1', 'one.q2', 'one.q3', 'one.q4'), numbers)
+    same(load(table(tmp_path, found | one)), PLACE, RATE, Q)
+    two = named(('two.q1', 'two.q2', 'two.q3', 'two.q4'), -numbers[::-1])
+    refused(table(tmp_path, found | one | two), 'one.q1', 'or two.q1')
+
+
+def test_sizes_that_are_no_unit_are_doubted(tmp_path):
+    found = {'time': T, **columns('p', 'xyz', PLACE), **columns('v', 'xyz', SPEED),
+             **columns('q', 'wxyz', Q), **columns('gyro_', 'xyz', RATE)}
+    same(load(table(tmp_path, found)), PLACE, SPEED, RATE, Q)
+    same(load(table(tmp_path, found | {f'p{axis}': 100.0 * found[f'p{axis}'] for axis in 'xyz'})),
+         PLACE)
+    refused(table(tmp_path, found | {f'gyro_{axis}': 1000.0 * found[f'gyro_{axis}']
+                                     for axis in 'xyz'}), 'wx', 'no unit')
+    refused(table(tmp_path, found | {f'p{axis}': 1e5 * found[f'p{axis}'] for axis in 'xyz'}),
+            'px', 'no unit')
+
+
+def test_a_time_that_begins_anew_begins_another_recording(tmp_path):
+    found = {'time': np.concatenate([T, T[:500] + 0.003]), **{
+        name: np.concatenate([values, values[:500] + 1.0]) for name, values in
+        (columns('', 'xyz', PLACE) | columns('q', 'wxyz', Q)).items() if name[0] != 'q'}}
+    first, second = load_all(table(tmp_path, found))
+    same(first, PLACE)
+    np.testing.assert_allclose(second.columns['pz'], FLIGHT.columns['pz'][:500] + 1.0, atol=1e-9)
+    assert 'recording 2' in second.info['source']
+
+
+def test_streams_one_after_the_other_are_one_recording(tmp_path):
+    gap = np.full(len(T), np.nan)
+    found = {'time': np.concatenate([T, T]), **{
+        name: np.concatenate([values, gap]) for name, values in columns('', 'xyz', PLACE).items()
+    }, **{name: np.concatenate([gap, values]) for name, values in
+          columns('gyro_', 'xyz', RATE).items()}}
+    [read] = load_all(table(tmp_path, found))
+    same(read, PLACE, RATE)
+
+
+def test_gravity_in_body_axes_is_no_gyro(tmp_path):
+    q = from_euler(*euler_from_quaternion(FLIGHT.stack(*Q)).T)
+    down = np.column_stack([2 * (q[:, 1] * q[:, 3] - q[:, 0] * q[:, 2]),
+                            2 * (q[:, 2] * q[:, 3] + q[:, 0] * q[:, 1]),
+                            1 - 2 * (q[:, 1] ** 2 + q[:, 2] ** 2)]) * 9.81
+    found = {'time': T, **named(('gx', 'gy', 'gz'), down), **columns('', 'xyz', PLACE)}
+    assert not load(table(tmp_path, found)).has('wx')
+
+
+def test_thrusts_are_commands_where_they_are_shares_of_the_full_one(tmp_path):
+    speeds = FLIGHT.stack(*CMD)
+    found = {'time': T, **columns('gyro_', 'xyz', RATE), **columns('accel_', 'xyz', FORCE)}
+    share = {f'thrust[{k}]': values for k, values in enumerate((speeds / 1700).T)}
+    assert load(table(tmp_path, found | share)).has('output1')
+    newton = {name: 3.0 * values for name, values in share.items()}
+    assert not load(table(tmp_path, found | newton)).has('output1')
+
+
+def test_a_flight_on_the_ground_keeps_its_four_motors(tmp_path):
+    record = changed(FLIGHT, **dict.fromkeys(CMD, 0.0 * T))
+    found = {'time': T, **columns('gyro_', 'xyz', RATE), **named(
+        ('m1', 'm2', 'm3', 'm4'), record.stack(*CMD))}
+    assert load(table(tmp_path, found)).has('output1', 'output4')
+
+
+@pytest.mark.parametrize('names', [
+    ('mot_FL', 'mot_FR', 'mot_BL', 'mot_BR'),
+    ('motor_front_left', 'motor_front_right', 'motor_rear_left', 'motor_rear_right')])
+def test_motors_named_by_their_corners_are_put_into_order(tmp_path, names):
+    """VEHICLE has its rotors front right, rear right, rear left, front left."""
+    speeds = FLIGHT.stack(*CMD)
+    found = {'time': T, **columns('gyro_', 'xyz', RATE), **named(names, (
+        speeds[:, [3, 0, 2, 1]] - 100) / 1600)}
+    read = load(table(tmp_path, found), vehicle=VEHICLE)
+    np.testing.assert_allclose(read.stack(*CMD), speeds, atol=1e-6)
+
+
+def test_the_motors_of_a_crazyflie_are_put_into_order(tmp_path):
+    turned = replace(VEHICLE, rotors=VEHICLE.rotors[::-1])
+    duty = np.round(65535 * (FLIGHT.stack(*CMD) - 100) / 1600)
+    found = {'time': T, **columns('gyro.', 'xyz', RATE), **named(
+        ('motor.m1', 'motor.m2', 'motor.m3', 'motor.m4'), duty)}
+    read = load(table(tmp_path, found), vehicle=turned)
+    np.testing.assert_allclose(read.stack(*CMD), FLIGHT.stack(*CMD)[:, ::-1], atol=0.1)
+
+
+def test_text_of_windows_is_read(tmp_path):
+    found = {'Zeit [s]': T, **columns('gyro_', ['x [°/s]', 'y [°/s]', 'z [°/s]'], RATE)}
+    found = {name: np.degrees(values) if '°' in name else values
+             for name, values in found.items()}
+    path = table(tmp_path, found, separator=';', comma=True)
+    path.write_bytes(path.read_text('utf-8').encode('cp1252'))
+    same(load(path), RATE)
+    path.write_bytes(b'\x00\x01' + path.read_bytes())
+    refused(path)
+
+
+def vicon(tmp_path, names, units, values, rate='100'):
+    """Write a table as Vicon's Tracker exports an object, with rows of frames, and return it."""
+    path = tmp_path / 'take.csv'
+    rows = np.column_stack([1 + np.arange(len(T)), 0 * T, values]).tolist()
+    path.write_text(f'Objects\n{rate}\n,,Quad:Quad{"," * (len(names) - 1)}\nFrame,Sub Frame,'
+                    f'{",".join(names)}\n,,{",".join(units)}\n'
+                    + ''.join(f'{",".join(map(repr, row))}\n' for row in rows))
+    return path
+
+
+def test_what_vicon_writes_counts_frames_and_has_w_last(tmp_path):
+    """World with z up and x forward, mm, the rate of the cameras above the names."""
+    values = np.hstack([FLIGHT.stack(*XYZW), 1e3 * FLIGHT.stack(*PLACE)])
+    names = ('RX', 'RY', 'RZ', 'RW', 'TX', 'TY', 'TZ')
+    read = load(vicon(tmp_path, names, [''] * 4 + ['mm'] * 3, values))
+    np.testing.assert_allclose(read.t - read.t[0], T - T[0], atol=1e-9)
+    same(replace(read, t=read.t - read.t[0]), PLACE, Q)
+    assert 'Frame: time, frames at 100 Hz' in read.info['notes']
+
+
+def test_a_rotation_of_vicon_that_is_no_quaternion_is_asked_for(tmp_path):
+    values = np.hstack([FLIGHT.stack('qx', 'qy', 'qz'), 1e3 * FLIGHT.stack(*PLACE)])
+    path = vicon(tmp_path, ('RX', 'RY', 'RZ', 'TX', 'TY', 'TZ'), ['rad'] * 3 + ['mm'] * 3, values)
+    refused(path, 'RX, RY, RZ are angles or a rotation vector', 'quaternion')
+
+
+def test_frames_at_a_rate_that_is_not_said_are_asked_for_and_mapped(tmp_path):
+    named_columns = {'Frame': 7 + np.arange(len(T)), **columns('p_', 'xyz', PLACE),
+                     **columns('q', 'wxyz', Q)}
+    path = table(tmp_path, named_columns)
+    refused(path, "'Frame' counts at a rate", 'unit: 100 Hz')
+    given = {'t': {'column': 'Frame', 'unit': '100 Hz'}, 'q': ['qw', 'qx', 'qy', 'qz'],
+             **{f'p{axis}': f'p_{axis}' for axis in 'xyz'}}
+    read = load(path, mapping_from({'columns': given}, 'a test'))
+    np.testing.assert_allclose(np.diff(read.t), 0.01, atol=1e-9)
+    for wrong in ('0 Hz', '-5 Hz', 'Hz', '1e9 Hz'):
+        given['t'] = {'column': 'Frame', 'unit': wrong}
+        with pytest.raises(InputError, match='unit'):
+            mapping_from({'columns': given}, 'a test')
+
+
+@pytest.mark.parametrize('order', ['wxyz', 'xyzw'])
+@pytest.mark.parametrize('turned', [0.0, 0.5, 2.0])
+def test_motion_capture_with_z_up_is_not_guessed_wrongly(tmp_path, order, turned):
+    """Letters tell the order of a quaternion; numbers do, or are asked for, never turned round."""
+    yaw = from_euler(np.zeros(1), np.zeros(1), np.array([turned]))[0]
+    q = multiply(np.broadcast_to(yaw, (len(T), 4)), FLIGHT.stack(*Q))
+    place = FLIGHT.stack(*PLACE)
+    letters = named([f'q{letter}' for letter in order], q[:, ['wxyz'.index(one) for one in order]])
+    numbers = dict(zip(('q0', 'q1', 'q2', 'q3'), letters.values(), strict=True))
+    for cells in (letters, numbers):
+        path = table(tmp_path, {'Time': T, **named(('X [mm]', 'Y [mm]', 'Z [mm]'), 1e3 * place),
+                                **cells})
+        try:
+            read = load(path)
+        except InputError as error:
+            assert cells is numbers and 'the order of q0, q1, q2, q3' in str(error)
+            continue
+        close = np.abs(np.sum(read.stack(*Q) * q, axis=1))
+        np.testing.assert_allclose(close, 1.0, atol=1e-9)
+        np.testing.assert_allclose(read.stack(*PLACE), place, atol=1e-9)
