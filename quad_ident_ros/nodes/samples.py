@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""The messages of one sample of a flight."""
+"""The topics of a flight: the messages of one sample, and their publishers."""
 
 from geometry_msgs.msg import (
     PointStamped,
@@ -9,27 +9,10 @@ from geometry_msgs.msg import (
     Vector3Stamped,
     WrenchStamped,
 )
-import numpy as np
+from rclpy._rclpy_pybind11 import RCLError
 from rosgraph_msgs.msg import Clock
 
-from quad_ident_ros.data.record import ARM
-from quad_ident_ros.model.attitude import rotation_matrix
-
 WORLD_FRAME, BODY_FRAME = 'world', 'base_link'
-
-
-def samples_of(record):
-    """
-    Return the rows that the messages take: plain floats, fast to assign.
-
-    Args: record of a flight whose info says the arm length, by which U2 and U3 are moments.
-    """
-    world = record.stack('vx', 'vy', 'vz')
-    quaternion = record.stack('qw', 'qx', 'qy', 'qz')
-    body = np.einsum('nji,nj->ni', rotation_matrix(quaternion), world)
-    wrench = record.inputs() * [1.0, record.info[ARM], record.info[ARM], 1.0]
-    return np.hstack([record.euler(), record.stack('px', 'py', 'pz'), quaternion, body,
-                      record.stack('wx', 'wy', 'wz'), wrench]).tolist()
 
 
 class SampleMessages:
@@ -44,7 +27,7 @@ class SampleMessages:
             message.header.frame_id = prefix + BODY_FRAME
 
     def fill(self, stamp_ns, row):
-        """Write a stamp (ns) and a row of samples_of into the messages."""
+        """Write a stamp (ns) and a row of playback.rows_of into the messages."""
         seconds, nanoseconds = divmod(stamp_ns, 1_000_000_000)
         for message in (self.attitude, self.altitude, self.pose, self.twist, self.input):
             message.header.stamp.sec = seconds
@@ -63,3 +46,43 @@ class SampleMessages:
         wrench.force.z = row[16]
         wrench.torque.x, wrench.torque.y, wrench.torque.z = row[17:20]
         return self
+
+
+class SampleStreams:
+    """
+    The publishers of the topics of a flight, of which one that is stuck is not passed over.
+
+    Args: node; quality of service; prefix of the body's frame; with_clock: /clock, too.
+    """
+
+    def __init__(self, node, quality, prefix='', with_clock=False):
+        messages = SampleMessages(prefix)
+        self._messages = messages
+        self.flight = [node.create_publisher(type(message), name, quality) for name, message in (
+            ('attitude', messages.attitude), ('altitude', messages.altitude),
+            ('pose', messages.pose), ('twist', messages.twist), ('input', messages.input))]
+        self._all = list(zip(self.flight, (messages.attitude, messages.altitude, messages.pose,
+                                           messages.twist, messages.input), strict=True))
+        if with_clock:
+            self._all.append((node.create_publisher(Clock, '/clock', 10), messages.clock))
+        self._next = 0
+
+    def publish(self, stamp_ns, row):
+        """
+        Publish a sample, or what remains of it; return the publisher whose reader is too slow.
+
+        None where the sample is out. Call it again with the same sample otherwise.
+        """
+        self._messages.fill(stamp_ns, row)
+        for publisher, message in self._all[self._next:]:
+            try:
+                publisher.publish(message)
+            except RCLError:
+                return publisher
+            self._next += 1
+        self._next = 0
+        return None
+
+    def start_over(self):
+        """Forget what remains of a sample."""
+        self._next = 0

@@ -4,22 +4,12 @@
 
 import sys
 
-from geometry_msgs.msg import (
-    PointStamped,
-    PoseStamped,
-    TwistStamped,
-    Vector3Stamped,
-    WrenchStamped,
-)
-import numpy as np
-from rclpy._rclpy_pybind11 import RCLError
 from rclpy.clock import Clock, ClockType
 from rclpy.duration import Duration
-from rosgraph_msgs.msg import Clock as ClockMessage
 from std_msgs.msg import String, UInt64
 from std_srvs.srv import Trigger
 
-from quad_ident_ros.data.topics import JOINED_TOPIC, RUN_TOPIC, RunNotice
+from quad_ident_ros.data.topics import JOINED_TOPIC, RUN_TOPIC
 from quad_ident_ros.effects.registry import EFFECTS, from_entries
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.experiment import load_experiment, NOISE_UNITS
@@ -28,13 +18,11 @@ from quad_ident_ros.nodes.flight_worker import FlightWorker
 from quad_ident_ros.nodes.node import PackageNode
 from quad_ident_ros.nodes.parameters import help_text, NodeParameters, ParameterSpec
 from quad_ident_ros.nodes.qos import latched, LOSSLESS, STREAM
-from quad_ident_ros.nodes.samples import SampleMessages, samples_of
+from quad_ident_ros.nodes.samples import SampleStreams
+from quad_ident_ros.playback import Playback
 
 SETTLING = 0.5      # s without a change of the subscriptions before the first run starts,
 SETTLING_PARTLY = 5.0   # and where some of the five topics have none: discovery takes up to 3 s
-RUN_GAP = 10        # sample periods between the stamps of two runs
-BATCH = 20          # samples published before the executor has its turn
-AHEAD = 60          # samples that a recorder may be behind at full speed
 NO_ANSWER = 1.0     # s without news of a recorder after which it is not waited for
 ANNOUNCED = 5.0     # s for subscribers to have the notice of the first run, unless they hang
 STALLED = 5.0       # s of waiting for a subscriber after which the node says so
@@ -100,29 +88,18 @@ class Simulator(PackageNode):
         self._steady = Clock(clock_type=ClockType.STEADY_TIME)
         external = self.get_parameter('use_sim_time').value
         self._pace = self.get_clock() if external else self._steady
-        quality = STREAM if self._factor else LOSSLESS
-        self._attitude = self.create_publisher(Vector3Stamped, 'attitude', quality)
-        self._altitude = self.create_publisher(PointStamped, 'altitude', quality)
-        self._pose = self.create_publisher(PoseStamped, 'pose', quality)
-        self._twist = self.create_publisher(TwistStamped, 'twist', quality)
-        self._input = self.create_publisher(WrenchStamped, 'input', quality)
+        self._streams = SampleStreams(self, STREAM if self._factor else LOSSLESS,
+                                      self._config['frame_prefix'],
+                                      self._config['publish_clock'])
         self._run_publisher = self.create_publisher(String, RUN_TOPIC, latched(32))
-        self._streams = (self._attitude, self._altitude, self._pose, self._twist, self._input)
-        self._clock_publisher = None
-        if self._config['publish_clock']:
-            self._clock_publisher = self.create_publisher(ClockMessage, '/clock', 10)
         self.create_service(Trigger, '~/start', self._on_start)
         self.create_service(Trigger, '~/stop', self._on_stop)
         self._joined = self.create_subscription(UInt64, JOINED_TOPIC, self._on_joined, 10)
         self._joined_until = 0
         self._news = 0
-        self._messages = SampleMessages(self._config['frame_prefix'])
-        self._queue = []
+        self._playback = None
         self._timer = None
         self._worker = None
-        self._notice = None
-        self._epoch = 0
-        self._session = None
         self._waiting = None
         self.done = False
         if self._config['autostart']:
@@ -138,8 +115,9 @@ class Simulator(PackageNode):
         experiment = self._load(self._config.values())
         self._stop_timer()
         self._cut_short()
-        self._queue = list(experiment.runs)
-        self._experiment = experiment
+        self._streams.start_over()
+        self._playback = Playback(experiment, self._factor,
+                                  self._playback.epoch if self._playback else 0)
         self.done = False
         self._seen = (None, None)
         if self._config['wait_for_subscribers']:
@@ -147,7 +125,7 @@ class Simulator(PackageNode):
                                    '(wait_for_subscribers:=false starts without)')
             self._schedule(0.02, self._await_subscribers)
         else:
-            self._begin()
+            self._next_run()
 
     def close(self):
         """Stop publishing."""
@@ -172,7 +150,8 @@ class Simulator(PackageNode):
             response.message = str(error)
             return response
         response.success = True
-        response.message = f'{self._experiment.name}: {len(self._queue)} runs to fly'
+        response.message = (f'{self._playback.experiment.name}: '
+                            f'{self._playback.waiting} runs to fly')
         return response
 
     def _on_stop(self, _, response):
@@ -186,14 +165,11 @@ class Simulator(PackageNode):
 
     def _cut_short(self):
         """Announce anew, as it was, a run that ends before its time."""
-        if self._notice is not None and self._sent:
-            notice = self._notice
-            info = {**notice.info, 'status': 'stopped', 'end_time': self._sent
-                    * self._experiment.period}
-            self._run_publisher.publish(String(data=RunNotice(
-                notice.start_ns, int(self._stamps[self._sent - 1]), self._sent, info).to_json()))
-            self.get_logger().info(f'{info["run"]}: stopped after {self._sent} samples')
-        self._notice = None
+        notice = self._playback.cut_short() if self._playback else None
+        if notice is not None:
+            self._run_publisher.publish(String(data=notice.to_json()))
+            self.get_logger().info(f'{notice.info["run"]}: stopped after {notice.samples} '
+                                   'samples')
 
     def _schedule(self, period, callback):
         """Call back every so many seconds until the next _schedule or _stop_timer."""
@@ -214,31 +190,26 @@ class Simulator(PackageNode):
 
     def _await_subscribers(self):
         now = self._steady.now()
-        counts = tuple(stream.get_subscription_count() for stream in self._streams)
+        counts = tuple(stream.get_subscription_count() for stream in self._streams.flight)
         if counts != self._seen[0]:
             self._seen = (counts, now.nanoseconds)
         patience = SETTLING if all(counts) else SETTLING_PARTLY
         settled = any(counts) and now.nanoseconds - self._seen[1] >= patience * 1e9
         # A clock that comes from outside stands at zero until its first message.
         if settled and self._pace.now().nanoseconds > 0:
-            self._begin()
+            self._next_run()
         elif settled:
             self.get_logger().info('waiting for /clock', throttle_duration_sec=5.0)
 
-    def _begin(self):
-        self._session = None
-        self._next_run()
-
     def _next_run(self):
         self._stop_timer()
-        if not self._queue:
+        experiment, run = self._playback.experiment, self._playback.next_run()
+        if run is None:
             self.done = True
-            self.get_logger().info(f'{self._experiment.name}: done')
+            self.get_logger().info(f'{experiment.name}: done')
             return
-        run = self._queue.pop(0)
         values = self._config.values()
-        self._worker = FlightWorker(self._experiment, run, _noise(self._experiment, values),
-                                    values['seed'])
+        self._worker = FlightWorker(experiment, run, _noise(experiment, values), values['seed'])
         self._schedule(0.002, lambda: self._await_flight(run))
 
     def _await_flight(self, run):
@@ -250,12 +221,10 @@ class Simulator(PackageNode):
             self.get_logger().error(f'{run.name}: {worker.outcome}')
             self._next_run()
             return
-        is_first = self._session is None
+        is_first = self._playback.is_first
         self._announce(run, worker.outcome)
-        self._started = self._pace.now().nanoseconds
+        self._playback.begin(self._pace.now().nanoseconds)
         self._news = self._steady.now().nanoseconds
-        self._sent = 0
-        self._part = 0
         if is_first and self._config['wait_for_subscribers']:
             self._schedule(0.002, self._await_announced)
         else:
@@ -276,13 +245,12 @@ class Simulator(PackageNode):
 
     def _publish_run(self):
         self._news = self._steady.now().nanoseconds
-        period = self._experiment.period / self._factor if self._factor else 0.0
+        period = self._playback.experiment.period / self._factor if self._factor else 0.0
         # A timer per sample would set the pace by its own lateness; it only asks what is due.
         self._schedule(min(max(period, 0.001), 0.05) if self._factor else 0.0005,
                        self._publish_due)
 
     def _announce(self, run, flight):
-        experiment = self._experiment
         problem = flight.record.info['infeasible']
         if problem:
             self.get_logger().warning(f'{run.name}: {problem}')
@@ -290,69 +258,34 @@ class Simulator(PackageNode):
             self.get_logger().warning(f'{run.name}: the model diverged at t = '
                                       f'{flight.end_time:.6g} s')
         # Stamps begin now, for the flight has taken its time to compute; simulated time goes on
-        # where it was. They never go back.
-        if not self._config['publish_clock']:
-            self._epoch = max(self._epoch, self.get_clock().now().nanoseconds)
-        if self._session is None:
-            self._session = self._epoch
-        self._stamps = self._epoch + np.rint(flight.record.t * 1e9).astype(np.int64)
-        self._samples = samples_of(flight.record)
-        period = round(experiment.period * 1e9)
-        self._epoch = int(self._stamps[-1]) + RUN_GAP * period
-        index = len(experiment.runs) - len(self._queue) - 1
-        info = {**flight.record.info, 'session': self._session, 'run_index': index,
-                'run_count': len(experiment.runs)}
-        notice = RunNotice(int(self._stamps[0]), int(self._stamps[-1]), len(self._stamps), info)
-        self._notice = notice
+        # where it was.
+        now = 0 if self._config['publish_clock'] else self.get_clock().now().nanoseconds
+        notice = self._playback.load(flight, now)
         self._run_publisher.publish(String(data=notice.to_json()))
-        self.get_logger().info(f'{run.name}: flying {len(self._stamps)} samples')
+        self.get_logger().info(f'{run.name}: flying {notice.samples} samples')
 
     def _publish_due(self):
-        due = len(self._stamps)
-        if self._factor:
-            elapsed = (self._pace.now().nanoseconds - self._started) * 1e-9 * self._factor
-            due = min(due, int(elapsed / self._experiment.period + 1e-9) + 1)
-        else:
-            due = min(due, self._sent + BATCH, self._allowed())
-        while self._sent < due:
-            if not self._publish_sample():
+        until = None if self._factor else self._read_until()
+        for _ in range(self._playback.due(self._pace.now().nanoseconds, until)):
+            stuck = self._streams.publish(*self._playback.sample())
+            if stuck is not None:
+                self._say_if_stalled(stuck)
                 return
-        if self._sent == len(self._stamps):
-            self._notice = None
-            self._next_run()
+            self._waiting = None
+            if self._playback.sent():
+                self._next_run()
+                return
 
-    def _allowed(self):
-        """Return how many samples of this run the recorders are ready for."""
+    def _read_until(self):
+        """Return the stamp up to which the recorders have joined, None where none says."""
         waited = (self._steady.now().nanoseconds - self._news) * 1e-9
         if waited > NO_ANSWER or not self.count_publishers(self._joined.topic_name):
-            return len(self._stamps)
-        return int(np.searchsorted(self._stamps, self._joined_until, side='right')) + AHEAD
+            return None
+        return self._joined_until
 
     def _on_joined(self, message):
         self._joined_until = message.data
         self._news = self._steady.now().nanoseconds
-
-    def _publish_sample(self):
-        """Publish what is left of the next sample; False where a subscriber does not keep up."""
-        stamp = int(self._stamps[self._sent])
-        messages = self._messages.fill(stamp, self._samples[self._sent])
-        streams = [(self._attitude, messages.attitude), (self._altitude, messages.altitude),
-                   (self._pose, messages.pose), (self._twist, messages.twist),
-                   (self._input, messages.input)]
-        if self._clock_publisher is not None:
-            streams.append((self._clock_publisher, messages.clock))
-        while self._part < len(streams):
-            publisher, message = streams[self._part]
-            try:
-                publisher.publish(message)
-            except RCLError:
-                self._say_if_stalled(publisher)
-                return False
-            self._part += 1
-        self._waiting = None
-        self._part = 0
-        self._sent += 1
-        return True
 
     def _say_if_stalled(self, publisher):
         now = self._steady.now().nanoseconds
