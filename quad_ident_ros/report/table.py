@@ -22,8 +22,10 @@ def identification_table(identification):
         fits = {name: method.outputs[output] for name, method in identification.methods.items()}
         best = identification.best_of(output)
         for number, (name, fit) in enumerate(fits.items()):
-            table.add_row(output if number == 0 else '', METHODS[name].label, *_cells(fit),
-                          style='bold' if name == best else None,
+            is_best = name == best
+            table.add_row(output if number == 0 else '',
+                          METHODS[name].label + (' *' if is_best else ''), *_cells(fit),
+                          style='bold' if is_best else None,
                           end_section=number == len(fits) - 1)
     return table
 
@@ -32,7 +34,7 @@ def legend(identification):
     """Return the units of the table in a line."""
     units = [f'{output} {GAIN_UNITS[output]}' for output in identification.signals]
     return (f'K in: {", ".join(units)}. ± is one standard error. '
-            'Bold: the smallest error of its output.')
+            '*: the smallest error of its output.')
 
 
 def notes(identification):
