@@ -112,10 +112,15 @@ class Graph:
 
     def spin_until(self, predicate, what='', deadline=DEADLINE):
         """Spin until the predicate holds and return its value; fail after the deadline."""
+        value = self.comes_true(predicate, deadline)
+        if not value:
+            pytest.fail(f'after {deadline:g} s still waiting for {what or predicate}')
+        return value
+
+    def comes_true(self, predicate, deadline):
+        """Spin until the predicate holds or the deadline is over; return its value."""
         end = time.monotonic() + deadline
-        while not (value := predicate()):
-            if time.monotonic() > end:
-                pytest.fail(f'after {deadline:g} s still waiting for {what or predicate}')
+        while not (value := predicate()) and time.monotonic() < end:
             self.executor.spin_once(timeout_sec=0.05)
         return value
 

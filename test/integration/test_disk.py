@@ -126,6 +126,24 @@ def test_a_recorder_that_is_behind_flushes_all_the_same(fast_graph, tmp_path, mo
     assert len(flight) == len(read_csv(tmp_path / 'recording_1/flight_1.csv')) == 30
 
 
+def restarted(graph, processes, heard, parent):
+    """
+    Return a recorder that was started after a kill -9 and joins the run, and its folder.
+
+    In about one of a hundred kills FastDDS hands nothing to the process that comes next, whatever
+    it does: it goes on with the shared memory of the killed one (its issue 5469). The one after
+    that is not affected.
+    """
+    for number in (2, 3):
+        again = processes.start('recorder', {'output': str(parent)})
+        folder = parent / f'recording_{number}'
+        if graph.comes_true(lambda: heard.data()[-1]['recording'] == str(folder)    # noqa: B023
+                            and heard.data()[-1]['joined'] > 10 and heard.data()[-1]['run'], 20.0):
+            return again, folder
+        again.kill()
+    pytest.fail('neither of two recorders that were started joins the run')
+
+
 def test_a_recorder_that_was_killed_goes_on_in_a_new_folder(graph, processes, tmp_path):
     path = write_experiment(tmp_path / 'long.yaml', {'psi': (60.0, {'U4': 0.001})})
     heard = graph.listen(String, 'recorder/statistics', latched())
@@ -137,11 +155,7 @@ def test_a_recorder_that_was_killed_goes_on_in_a_new_folder(graph, processes, tm
     said = len(heard)
     graph.spin_until(lambda: len(heard) > said, 'the next account: by then these are on disk')
     recorder.kill()
-    again = processes.start('recorder', {'output': str(tmp_path / 'flights')})
-    folder = tmp_path / 'flights/recording_2'
-    graph.spin_until(lambda: heard.data()[-1]['recording'] == str(folder)
-                     and heard.data()[-1]['joined'] > 10 and heard.data()[-1]['run'],
-                     'the recorder again, in the run')
+    again, folder = restarted(graph, processes, heard, tmp_path / 'flights')
     assert again.stop() == 0
     [first], [second] = read_bag(folder.with_name('recording_1') / 'bag'), read_bag(folder / 'bag')
     # The announcement of the run is there for it, and it does not take its start for the run's.
