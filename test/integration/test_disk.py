@@ -130,9 +130,9 @@ def restarted(graph, processes, heard, parent):
     """
     Return a recorder that was started after a kill -9 and joins the run, and its folder.
 
-    In about one of a hundred kills FastDDS hands nothing to the process that comes next, whatever
-    it does: it goes on with the shared memory of the killed one (its issue 5469). The one after
-    that is not affected.
+    After some kills, on a loaded machine, FastDDS hands nothing to the process that comes next:
+    others go on with the shared memory of the killed one (its issue 5469). The one after that is
+    not affected.
     """
     for number in (2, 3):
         again = processes.start('recorder', {'output': str(parent)})
