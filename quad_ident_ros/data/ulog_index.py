@@ -51,9 +51,9 @@ def contents(path: str | Path) -> list[Content]:
         times = times[times <= _LATEST].astype(np.int64) * 1000
         if not len(times):
             continue
-        # Of messages from before the clock was set, such as parameters at the start.
+        # Messages from before the clock was set, such as parameters, stand at the start.
         lately = times >= origin_ns - _BEFORE
-        times = times[lately] if lately.any() else times
+        times = times[lately] if lately.any() else np.full(len(times), origin_ns)
         label = name if instance == 0 else f'{name} {instance}'
         found.append(content_of(label, name, times, origin_ns, formats.get(name, ()),
                                 ROLES.get(name, ())))

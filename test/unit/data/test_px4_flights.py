@@ -300,6 +300,17 @@ def test_contents_are_what_is_logged(tmp_path):
     assert 'q[4]' in topics['vehicle_attitude'].fields
 
 
+def test_messages_from_before_the_clock_was_set_stand_at_the_start(tmp_path):
+    epoch = 1_700_000_000_000_000      # us: all but the status have a clock that GPS has set
+    samples = [(topic, instance, epoch + stamp, values)
+               for topic, instance, stamp, values in px4_samples(SMALL)]
+    data = bytearray(ulog([status(0), *samples], FORMATS, parameters()))
+    data[8:16] = epoch.to_bytes(8, 'little')
+    _, found = contents_of(log(tmp_path, bytes(data)))
+    starts = {content.name: content.start for content in found}
+    assert starts['vehicle_status'] == 0.0 and all(0 <= start < 60 for start in starts.values())
+
+
 def test_auto_writes_a_vehicle_file_and_asks_for_the_rest(tmp_path, capsys):
     record = flight(seconds=6.0, noise=0.0)
     path = log(tmp_path, log_of(record, motors=controls(record, 'thrust'),
