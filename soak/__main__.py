@@ -51,8 +51,11 @@ def main(arguments: list[str] | None = None) -> int:
     for name in options.cases or (SHORT if options.short else CASES):
         print(f'{name} ...', file=sys.stderr, flush=True)
         try:
-            findings += CASES[name](kills=kills_, seconds=seconds, rates=rates,
-                                    count=options.count, seed=options.seed, short=options.short)
+            for each in CASES[name](kills=kills_, seconds=seconds, rates=rates,
+                                    count=options.count, seed=options.seed, short=options.short):
+                findings.append(each)
+                print(f'  {"holds" if each.held else "does not hold"}: {each.done}: '
+                      f'{each.result}', file=sys.stderr, flush=True)
         except InputError as error:
             print(f'./run soak: {name}: {error}', file=sys.stderr)
             return 2
