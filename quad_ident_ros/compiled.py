@@ -3,6 +3,7 @@
 """Compilation of the inner loops to machine code, kept on disk between starts."""
 
 from collections.abc import Callable
+from contextlib import suppress
 from functools import lru_cache
 import hashlib
 import os
@@ -64,6 +65,17 @@ def _is_own_group(gid: int) -> bool:
         return False
 
 
+def _go_on_where_nothing_can_be_kept(cache: Any) -> None:
+    """Have a cache of numba leave out what a full disk or a missing folder does not take."""
+    save = cache.save_overload
+
+    def save_if_possible(*signature_and_code: Any) -> None:
+        with suppress(OSError):
+            save(*signature_and_code)
+
+    cache.save_overload = save_if_possible
+
+
 FUNCTIONS: list[Any] = []
 """What was made to be compiled, of which `signatures` has something where it can be called."""
 
@@ -87,8 +99,9 @@ def compiled(function: Any = None, *, fused: bool = False, reordered: bool = Fal
     fused lets a product and a sum be one operation and division by zero give infinity, reordered
     lets sums be taken in another order, for kernels that the processor then does several elements
     at a time of; inlined makes it a part of the function that calls it. Not a number and infinity
-    keep their meaning. Where no folder can be written, numba has another way of keeping, or the
-    folder is one in which others can put code, the function is compiled again at each start.
+    keep their meaning. Where no folder can be written, the disk is full, numba has another way of
+    keeping, or the folder is one in which others can put code, the function is compiled again at
+    each start.
     """
     if function is None:
         return lambda function: compiled(function, fused=fused, reordered=reordered,
@@ -105,6 +118,7 @@ def compiled(function: Any = None, *, fused: bool = False, reordered: bool = Fal
                                                                   ).parent:
             raise RuntimeError(f'others can write to {folder}')
         file._source_stamp = (file._source_stamp, STAMP)
+        _go_on_where_nothing_can_be_kept(made._cache)
     except (AttributeError, RuntimeError):
         made = numba.njit(**options)(function)
     FUNCTIONS.append(made)

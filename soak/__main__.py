@@ -9,6 +9,7 @@ from benchmarks.tables import markdown
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.warm_up import warm_up, warm_up_diagnosis
 from soak import busy, disks, hours, kills, parameters, streams
+from soak.rig import Finding
 
 CASES = {'disks': disks.run, 'streams': streams.run, 'parameters': parameters.run,
          'kills': kills.run, 'busy': busy.run, 'hours': hours.run}
@@ -51,11 +52,13 @@ def main(arguments: list[str] | None = None) -> int:
     for name in options.cases or (SHORT if options.short else CASES):
         print(f'{name} ...', file=sys.stderr, flush=True)
         try:
-            findings += CASES[name](kills=kills_, seconds=seconds, rates=rates,
-                                    count=options.count, seed=options.seed, short=options.short)
-        except InputError as error:
-            print(f'./run soak: {name}: {error}', file=sys.stderr)
-            return 2
+            for each in CASES[name](kills=kills_, seconds=seconds, rates=rates,
+                                    count=options.count, seed=options.seed, short=options.short):
+                findings.append(each)
+                print(f'  {"holds" if each.held else "does not hold"}: {each.done}: '
+                      f'{each.result}', file=sys.stderr, flush=True)
+        except InputError as error:     # what it had before is a result all the same
+            findings.append(Finding(name, 'it could not go on', str(error), False))
     print(markdown(('case', 'what was done', 'what came of it', 'holds'), [
         (each.case, each.done, each.result, 'yes' if each.held else '**no**')
         for each in findings]))

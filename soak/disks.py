@@ -2,17 +2,25 @@
 # SPDX-License-Identifier: Apache-2.0
 """Disks that fill up, folders that cannot be written, in each command that writes."""
 
+from collections.abc import Iterator
+from dataclasses import replace
+import errno
+from itertools import product
 import os
 from pathlib import Path
+import re
 import resource
 import subprocess
 import sys
 import tempfile
 
+from quad_ident_ros.model.covariance import Covariance
+from quad_ident_ros.model.vehicle import load_vehicle, write_vehicle
 from soak.rig import Finding
 
-LIMIT = 8 * 1024    # bytes that fit on the disk: less than each command writes
-FLIGHT = 'flight.csv'
+# Bytes that fit on the disk: less than each command writes of much, and of little.
+LIMIT, LITTLE = 8 * 1024, 64
+FLIGHT, VEHICLE = 'flight.csv', 'real.yaml'
 # What each command writes, and its words; {out} is the file.
 COMMANDS = {
     'fly': ('csv', 'fly lissajous --vehicle hummingbird --duration 10 -o {out}'),
@@ -22,14 +30,28 @@ COMMANDS = {
     'diagnose --json': ('json', f'diagnose {FLIGHT} --vehicle hummingbird --json {{out}}'),
     'diagnose --report': ('html', f'diagnose {FLIGHT} --vehicle hummingbird --report {{out}}'),
 }
+SMALL = {
+    'diagnose --out-vehicle': ('yaml', f'diagnose {FLIGHT} --vehicle hummingbird '
+                               '--out-vehicle {out}'),
+    'fit --out-vehicle': ('yaml', f'fit {FLIGHT} --vehicle hummingbird --free mass '
+                          '--out-vehicle {out}'),
+    'identify --json': ('json', f'identify {FLIGHT} --vehicle hummingbird --method ls '
+                        '--json {out}'),
+    'identify --picture': ('png', f'identify {FLIGHT} --vehicle hummingbird --method ls '
+                           '--picture {out}'),
+    'vehicle': ('yaml', f'vehicle {VEHICLE} -o {{out}}'),
+    'export': ('py', f'export {VEHICLE} --to rotorpy -o {{out}}'),
+    'export --randomise to an array': ('npz', f'export {VEHICLE} --randomise 5 -o {{out}}'),
+}
 ROOT = str(Path(__file__).resolve().parents[1])
 KEPT = 'what was there before\n'
 # What each command writes into the folder `in`, and the file of it that is there before.
 WRITTEN = {
     **{title: (f'in/out.{ending}', words.format(out=f'in/out.{ending}'))
-       for title, (ending, words) in COMMANDS.items()},
-    'diagnose --out-vehicle': ('in/out.yaml', f'diagnose {FLIGHT} --vehicle hummingbird '
-                               '--out-vehicle in/out.yaml'),
+       for title, (ending, words) in (COMMANDS | SMALL).items()},
+    'export --randomise': ('in/kept', f'export {VEHICLE} --randomise 5 -o in/out'),
+    'info --write-mapping': ('in/kept', f'info {FLIGHT} --write-mapping in/out.yaml'),
+    'simulate': ('in/kept', 'simulate small_angle -o in'),
     'paper': ('in/paper.html', 'paper --preset paper_table3 --seeds 1 -o in'),
     'demo': ('in/kept', 'demo -o in'),
     'demo --gap': ('in/kept', 'demo --gap -o in'),
@@ -64,9 +86,10 @@ sys.exit(code if happened else 99)
 """
 # On a disk in memory of its own: its content is all that is said on standard output.
 MOUNTED = """
-mount -t tmpfs none "$1" && cp "$2" "$1" && cd "$1" && mkdir in && printf %s "$4" > "$3" || exit 98
-kept=$3
-shift 4
+mount -t tmpfs none "$1" && cp "$2" "$3" "$1" && cd "$1" && mkdir in && printf %s "$5" > "$4" \
+  || exit 98
+kept=$4
+shift 5
 "$@" > /dev/null
 code=$?
 cat "$kept" 2> /dev/null
@@ -77,30 +100,34 @@ exit $code
 SHORT = ('fly', 'convert to CSV', 'convert to a bag')
 
 
-def run(short: bool = False, **_: object) -> list[Finding]:
-    """Return a Finding for each command, on a full disk and where the folder is gone."""
+def run(short: bool = False, **_: object) -> Iterator[Finding]:
+    """Give a Finding for each command, on a full disk and where the folder is gone."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         made = _quad_ident(f'fly lissajous --vehicle hummingbird --duration 10 -o {FLIGHT}',
                            folder)
         if made.returncode:
-            return [Finding('disk', 'a flight', made.stderr.strip(), False)]
+            yield Finding('disk', 'a flight', made.stderr.strip(), False)
+            return
         (folder / 'file').write_text('x')
-        found = [finding for title, (ending, words) in COMMANDS.items()
-                 if not short or title in SHORT for finding in (
-                     _full(title, words, folder, f'out.{ending}'),
-                     _gone(title, words, folder, f'file/out.{ending}'))]
+        write_vehicle(folder / VEHICLE, replace(
+            load_vehicle('hummingbird'), covariance=Covariance(('mass',), (0.01,), ((1.0,),))))
+        for title, (ending, words) in (COMMANDS | SMALL).items():
+            if not short or title in SHORT:
+                yield _full(title, words, folder, f'out.{ending}',
+                            LIMIT if title in COMMANDS else LITTLE)
+                yield _gone(title, words, folder, f'file/out.{ending}')
         if subprocess.run(['unshare', '-m', 'true'], capture_output=True, check=False).returncode:
-            return found    # only root may mount
-        return found + [_halfway(title, file, words, folder, event, what)
-                        for title, (file, words) in WRITTEN.items()
-                        if not short or title == SHORT[0]
-                        for event in ('open', 'os.rename') for what in ('read-only', 'gone')
-                        # A demo renames nothing itself, a bag only what is open, which keeps a
-                        # disk from becoming read-only.
-                        if not (event == 'os.rename' and (
-                            title == 'demo' or (title, what) == ('convert to a bag',
-                                                                 'read-only')))]
+            return    # only root may mount
+        for title, (file, words) in WRITTEN.items():
+            if short and title != SHORT[0]:
+                continue
+            for event, what in product(('open', 'os.rename'), ('read-only', 'gone')):
+                # A demo renames nothing itself, a bag only what is open, which keeps a disk from
+                # becoming read-only.
+                if event == 'open' or not (title == 'demo' or (title, what) == (
+                        'convert to a bag', 'read-only')):
+                    yield _halfway(title, file, words, folder, event, what)
 
 
 def _halfway(title: str, file: str, words: str, folder: Path, event: str,
@@ -109,38 +136,45 @@ def _halfway(title: str, file: str, words: str, folder: Path, event: str,
     place = folder / 'mounted'
     place.mkdir(exist_ok=True)
     done = subprocess.run(
-        ['unshare', '-m', 'sh', '-c', MOUNTED, 'sh', str(place), str(folder / FLIGHT), file, KEPT,
+        ['unshare', '-m', 'sh', '-c', MOUNTED, 'sh', str(place),
+         *(str(folder / name) for name in (FLIGHT, VEHICLE)), file, KEPT,
          sys.executable, '-c', CHILD, str(place), event, what, *words.split()],
         env={**os.environ, 'PYTHONPATH': ROOT}, capture_output=True, text=True, check=False)
-    return _finding(f'{what} at {event}', title, done, what == 'gone' or done.stdout == KEPT)
+    return _finding(f'{what} at {event}', title, done, what == 'gone' or done.stdout == KEPT,
+                    os.strerror(errno.ENOENT if what == 'gone' else errno.EROFS))
 
 
-def _full(title: str, words: str, folder: Path, out: str) -> Finding:
+def _full(title: str, words: str, folder: Path, out: str, limit: int) -> Finding:
     (folder / out).write_text(KEPT)
-    done = _quad_ident(words.format(out=out), folder, full=True)
+    done = _quad_ident(words.format(out=out), folder, limit)
     kept = (folder / out).is_file() and (folder / out).read_text('utf-8', 'replace') == KEPT
     (folder / out).unlink(missing_ok=True)
-    return _finding('disk full', title, done, kept)
+    return _finding('disk full', title, done, kept, f'{out}: .*{os.strerror(errno.EFBIG)}')
 
 
 def _gone(title: str, words: str, folder: Path, out: str) -> Finding:
     """Name a file below a regular file, into which not even root can write."""
-    return _finding('folder gone', title, _quad_ident(words.format(out=out), folder), True)
+    done = _quad_ident(words.format(out=out), folder)
+    return _finding('folder gone', title, done, True, f'{out}: file is a file')
 
 
-def _finding(case: str, title: str, done: subprocess.CompletedProcess, kept: bool) -> Finding:
+def _finding(case: str, title: str, done: subprocess.CompletedProcess, kept: bool,
+             why: str) -> Finding:
+    """Return what came of a command that is to say why (a pattern), in one line."""
     lines = [line for line in done.stderr.splitlines() if line.strip()]
-    one = done.returncode != 0 and len(lines) == 1 and 'Traceback' not in done.stderr
+    one = done.returncode == 2 and len(lines) == 1 and re.search(why, lines[0]) is not None
     said = lines[-1][-90:] if lines else 'nothing was said'
     return Finding(case, title, f'exit code {done.returncode}, {len(lines)} lines: {said}'
                    + ('' if kept else '; the file that was there is gone'), one and kept)
 
 
-def _quad_ident(words: str, folder: Path, full: bool = False) -> subprocess.CompletedProcess:
+def _quad_ident(words: str, folder: Path, most: int | None = None) -> subprocess.CompletedProcess:
+    """Run a command in a folder; most: bytes of a file on its disk."""
     def limit() -> None:
-        resource.setrlimit(resource.RLIMIT_FSIZE, (LIMIT, LIMIT))
+        if most is not None:
+            resource.setrlimit(resource.RLIMIT_FSIZE, (most, most))
 
     # What is compiled has to be kept elsewhere: it would not fit either.
     return subprocess.run([sys.executable, '-m', 'quad_ident_ros', *words.split()], cwd=folder,
                           env={**os.environ, 'PYTHONPATH': ROOT}, capture_output=True, text=True,
-                          preexec_fn=limit if full else None, check=False)
+                          preexec_fn=limit, check=False)

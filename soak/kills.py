@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """kill -9 of each node at random moments: what is on disk, and whether all goes on."""
 
+from collections.abc import Iterator
 from pathlib import Path
 import random
 import tempfile
@@ -27,12 +28,13 @@ LANDED = 5.0            # s without a sample after which a flight is over
 FLIGHT = 120.0          # s; it is flown again when it is over
 
 
-def run(kills: int, rates: tuple[int, ...] = RATES, **_: object) -> list[Finding]:
-    """Return a Finding for each node and rate, Hz."""
-    return [finding for rate in rates for finding in _killed(rate, kills)]
+def run(kills: int, rates: tuple[int, ...] = RATES, **_: object) -> Iterator[Finding]:
+    """Give a Finding for each node and rate, Hz."""
+    for rate in rates:
+        yield from _killed(rate, kills)
 
 
-def _killed(rate: int, kills: int) -> list[Finding]:
+def _killed(rate: int, kills: int) -> Iterator[Finding]:
     random.seed(rate)
     with tempfile.TemporaryDirectory() as name, Launched(name) as launched:
         parameters = {
@@ -46,8 +48,8 @@ def _killed(rate: int, kills: int) -> list[Finding]:
             for node in NODES:
                 launched.start(node, parameters[node])
             watch.until(lambda: watch.heard.keys() >= set(NODES), 'all nodes', 10 * AGAIN)
-            return [_victim(watch, launched, Path(name), node, parameters[node], rate, kills)
-                    for node in NODES]
+            for node in NODES:
+                yield _victim(watch, launched, Path(name), node, parameters[node], rate, kills)
 
 
 def _victim(watch: Watch, launched: Launched, folder: Path, victim: str, parameters: dict,

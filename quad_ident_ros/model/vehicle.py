@@ -195,6 +195,11 @@ def vehicle_to_mapping(vehicle: Vehicle) -> dict[str, Any]:
     return data
 
 
+def vehicle_text(vehicle: Vehicle) -> str:
+    """Return the text of a vehicle file."""
+    return yaml.safe_dump(vehicle_to_mapping(vehicle), sort_keys=False, default_flow_style=None)
+
+
 def check_ending(path: str | Path) -> None:
     """Raise InputError where a path has not the ending of a vehicle file."""
     if Path(path).suffix not in ('.yaml', '.yml'):
@@ -204,9 +209,8 @@ def check_ending(path: str | Path) -> None:
 def write_vehicle(path: str | Path, vehicle: Vehicle) -> None:
     """Write a vehicle file that load_vehicle reads back as it was; raises InputError."""
     check_ending(path)
-    text = yaml.safe_dump(vehicle_to_mapping(vehicle), sort_keys=False, default_flow_style=None)
     try:
-        write_whole(path, text)
+        write_whole(path, vehicle_text(vehicle))
     except OSError as error:
         raise InputError(f'{path}: cannot be written: {error.strerror}') from None
 

@@ -108,6 +108,7 @@ class Watcher:
         self._topics = []
         self.news = 0
         self._runs, self._worker, self._topic = runs, worker, topic
+        self._loggers = ('simulator', 'recorder', worker)
         self._on_progress = on_progress
 
     def subscribe(self, node):
@@ -142,8 +143,8 @@ class Watcher:
         self._on_progress(text, share)
 
     def _on_log(self, message):
-        # A node that compiles has no other news.
-        self.news += message.msg.startswith(COMPILING)
+        # A node that compiles has no other news; one of others, in a namespace, is none.
+        self.news += message.name in self._loggers and message.msg.startswith(COMPILING)
 
     def _on_run(self, message):
         info = json.loads(message.data)['info']

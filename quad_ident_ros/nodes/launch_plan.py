@@ -58,6 +58,8 @@ COMMON = (
              (('recorder', 'window_seconds'),)),
     Argument('overlap', 'Share of a window that the next one keeps.', float,
              (('recorder', 'overlap'),)),
+    Argument('windows', "Further windows, with topics of their own: ['record_long=30,0.5'].", list,
+             (('recorder', 'windows'),)),
 )
 """Arguments of all launch files."""
 

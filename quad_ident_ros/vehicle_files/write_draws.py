@@ -11,7 +11,7 @@ import numpy as np
 
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.model.vehicle import write_vehicle
+from quad_ident_ros.model.vehicle import vehicle_text
 from quad_ident_ros.vehicle_files.draws import Draws, table_of_draws
 from quad_ident_ros.vehicle_files.export import export, mean_left
 from quad_ident_ros.vehicle_files.load import YAML_ENDINGS
@@ -73,7 +73,7 @@ def write_folder(folder: str | Path, draws: Draws, to: str | None = None,
             name = f'{vehicle.name}{_ending(to, source)}'
             names.append(name)
             if to is None:
-                write_vehicle(temporary / name, vehicle)
+                (temporary / name).write_text(vehicle_text(vehicle), 'utf-8')
             else:
                 sag = mean_left(vehicle, records) if records else None
                 made = export(vehicle, to, source, sag, name)

@@ -9,6 +9,7 @@ import sys
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 import pytest
+from rcl_interfaces.msg import Log
 
 from quad_ident_ros.data.replay import read_bag
 from quad_ident_ros.model.vehicle import load_vehicle
@@ -87,3 +88,13 @@ def test_what_the_diagnoser_refuses_is_what_the_demo_ends_with():
     watcher._on_status(DiagnosticArray(status=[DiagnosticStatus(
         name='diagnoser', level=DiagnosticStatus.ERROR, message='3 s are too short')]))
     assert watcher.refusal == '3 s are too short' and not watcher.done
+
+
+def test_what_others_compile_is_no_news_of_a_run():
+    """Its patience would begin anew with each line of a node in a namespace."""
+    watcher = Watcher(1, 'diagnoser', 'diagnosis', lambda text, share: None)
+    counts = []
+    for name in ('uav1.diagnoser', 'identifier', 'simulator', 'diagnoser'):
+        watcher._on_log(Log(name=name, msg='compiling: 3 of at most 90 functions, 12 s'))
+        counts.append(watcher.news)
+    assert counts == [0, 0, 1, 2]

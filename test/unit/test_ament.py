@@ -13,7 +13,8 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
-PARTS = ('benchmarks', 'docs', 'launch', 'quad_ident_ros', 'setup.py', 'test', 'withheld')
+PARTS = ('benchmarks', 'docs', 'launch', 'quad_ident_ros', 'setup.py', 'soak', 'test',
+         'withheld')
 
 
 def paths():

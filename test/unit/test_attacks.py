@@ -3,6 +3,7 @@
 """Input that attacked the programs: each is read, or refused in one line that loses no text."""
 
 import json
+import time
 import tracemalloc
 
 from flightmaker import flight, VEHICLE
@@ -61,6 +62,20 @@ def test_bursty_and_dense_stamps_take_little_memory(t):
 def test_memory_of_the_checks_grows_with_the_rows():
     some, many = (checked(stamped(bursts(count)))[1] for count in (1000, 4000))
     assert many < 2 * 4 * some
+
+
+def test_time_of_the_checks_grows_with_the_rows():
+    def took(count):
+        record, times = stamped(bursts(count)), []
+        for _ in range(3):
+            begin = time.process_time()
+            findings(record, VEHICLE)
+            jumps(record)
+            times.append(time.process_time() - begin)
+        return min(times)
+
+    # Sixteen times, where it grows with the square: what took minutes. Some of it is for any row.
+    assert took(40_000) < 2 * 4 * took(10_000)
 
 
 def test_bursts_are_told_and_gaps_and_even_samples_are_none():

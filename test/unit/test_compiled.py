@@ -8,6 +8,7 @@ import shutil
 import subprocess
 import sys
 
+from full_disk import file_size_limit
 import numba
 import pytest
 
@@ -61,6 +62,15 @@ def test_a_function_is_kept_until_one_that_it_calls_has_changed(package):
     (package / 'model' / 'inner.py').write_text(INNER.format(factor=50.0))
     assert start(package) == [101.0, 0]
     assert start(package) == [101.0, 1]
+
+
+def test_a_full_disk_keeps_nothing_and_ends_nothing(package, tmp_path):
+    """A diagnosis ended with "output: No space left on device", which named no file."""
+    for _ in range(2):
+        with file_size_limit(64):
+            assert start(package) == [7.0, 0]
+    assert start(package) == [7.0, 0]
+    assert start(package) == [7.0, 1]
 
 
 @pytest.mark.parametrize('whose', ['everybody', 'another', 'link'])

@@ -15,7 +15,8 @@ ROOT = Path(__file__).parents[3]
 CUT = 128
 JSON = ('diagnosis', 'parameters_json', 'run', 'statistics', 'progress')   # texts of any length
 PAGES = {'README.md': (ROOT / 'README.md').read_text(encoding='utf-8'),
-         **{path.name: path.read_text(encoding='utf-8') for path in (ROOT / 'docs').glob('*.md')},
+         **{path.name: path.read_text(encoding='utf-8')
+            for path in (ROOT / 'docs').rglob('*.md')},
          **{module.__name__: module.HELP for module in (simulator, recorder, identifier,
                                                         diagnoser)}}
 

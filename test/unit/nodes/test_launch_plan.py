@@ -43,11 +43,13 @@ def test_a_real_vehicle_has_no_simulator(name):
 def test_lists_and_numbers_arrive_as_such():
     plan = Tables('identify').plan(
         effects="['wind:x=3']", seed='7', trim='[6.374, 0, 0, 0]', window='4', experiment='1e3',
-        window_samples='500', vehicle='quad.yaml', topics='[input, altitude]')
+        window_samples='500', vehicle='quad.yaml', topics='[input, altitude]',
+        windows="['record_long=30,0.5']")
     assert plan['simulator'] == ['-p', 'experiment:="1e3"', '-p', 'effects:=["wind:x=3"]',
                                  '-p', 'vehicle:="quad.yaml"', '-p', 'seed:=7']
     assert plan['recorder'] == ['-p', 'topics:=["input", "altitude"]',
-                                '-p', 'window_samples:=500']
+                                '-p', 'window_samples:=500',
+                                '-p', 'windows:=["record_long=30,0.5"]']
     assert plan['identifier'] == ['-p', 'vehicle:="quad.yaml"', '-p', 'seed:=7',
                                   '-p', 'window:=4.0', '-p', 'trim:=[6.374, 0.0, 0.0, 0.0]']
 

@@ -49,3 +49,15 @@ def test_the_legend_lies_beside_the_panels(drawn):
     assert all(axis.get_legend() is None for axis in figure.axes)
     assert not any(legend.overlaps(axis.get_window_extent()) for axis in figure.axes)
     assert [text.get_text() for text in figure.legends[0].get_texts()] == ['measured', 'VP']
+
+
+
+@pytest.mark.parametrize('title', ['$x_{$: a file', r'\frac{ $\frac{$', '$^^$'])
+def test_titles_with_mathematics_are_drawn_as_they_are(tmp_path, title):
+    """Names of files and experiments have any text; matplotlib fails on such between two $."""
+    columns = {'u2': np.ones(2001), 'phi': T, 'theta': 0 * T, 'psi': 0 * T}
+    flight = FlightRecord(T, columns, {'trim': [0.0] * 4, 'starts_at_rest': True})
+    result = identify([flight], Settings(methods=('vp',), compare_orders=False))
+    picture.save_responses(result, tmp_path / 'x.svg', title)
+    picture.save_spread({title: {'vp': np.array([1.0, 2.0])}}, tmp_path / 'y.svg', title, 'error')
+    assert min((tmp_path / name).stat().st_size for name in ('x.svg', 'y.svg')) > 1000

@@ -5,6 +5,7 @@
 from dataclasses import replace
 import json
 
+from full_disk import file_size_limit
 import numpy as np
 import pytest
 from scipy.stats import binom, chi2, truncnorm
@@ -239,3 +240,16 @@ def test_the_true_vehicle_lies_among_the_draws_as_often_as_they_say():
     # Neither too wide: their sum is that of a chi-square distribution.
     low, high = chi2.ppf([0.005, 0.995], 2 * len(distances))
     assert low < np.sum(distances) < high, distances
+
+
+@pytest.mark.parametrize(('name', 'more'), [('vehicles', []), ('vehicles', ['--to', 'rotorpy']),
+                                            ('vehicles.npz', [])])
+def test_a_full_disk_is_said_with_the_place_that_was_asked_for(tmp_path, capsys, name, more):
+    write_vehicle(tmp_path / 'v.yaml', known())
+    with file_size_limit(64):
+        code = main(['export', str(tmp_path / 'v.yaml'), '--randomise', '3', *more,
+                     '-o', str(tmp_path / name)])
+    assert code == 2
+    assert capsys.readouterr().err == (f'quad_ident export: error: {tmp_path / name}: cannot be '
+                                       'written: File too large\n')
+    assert [path.name for path in tmp_path.iterdir()] == ['v.yaml']
