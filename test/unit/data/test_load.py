@@ -200,4 +200,4 @@ def test_info_takes_any_record(tmp_path, capsys):
                  '-']) == 3
     data = json.loads(capsys.readouterr().out)
     assert data['columns']['x']['missing'] == 1
-    assert {finding['code'] for finding in data['findings']} == {'no_columns', 'slow'}
+    assert {finding['code'] for finding in data['findings']} == {'no_columns', 'lacking', 'slow'}
