@@ -10,11 +10,13 @@ from matplotlib import rc_context
 import yaml
 
 from quad_ident_ros import __version__
+from quad_ident_ros.diagnose.residual_wrench import WINDOW
 from quad_ident_ros.diagnose.result import Diagnosis
 from quad_ident_ros.effects.registry import titled
 from quad_ident_ros.model.vehicle import vehicle_to_mapping
 from quad_ident_ros.report import gap_pictures
 from quad_ident_ros.report.ceiling import ceiling_line
+from quad_ident_ros.report.chart import save_chart
 from quad_ident_ros.report.closed_loop import (
     COST_LINE,
     cost_rows,
@@ -44,6 +46,7 @@ from quad_ident_ros.report.diagnosis import (
     where_row,
     without_it,
 )
+from quad_ident_ros.report.gap_charts import predictions, spectrum
 from quad_ident_ros.report.html import (
     bar,
     details,
@@ -68,7 +71,8 @@ from quad_ident_ros.report.verdict import (
 WIDE = 1.96     # standard errors to the ends of a 95 % interval
 KINDS = {'none': 'yes', 'unknown': 'no', 'undetermined': 'part'}
 
-ALTS = {'predictions': 'Measured and predicted velocity and rates over time, and their difference',
+ALTS = {'predictions': 'Measured and predicted velocity and rates over time, and the errors',
+        'spectrum': 'Residual acceleration over the frequency, before and after',
         'horizons': 'Gap by horizon, before and after, and of noise alone',
         'map': 'Residual force and moment by channel and regime, before and after'}
 
@@ -91,10 +95,14 @@ def save_pictures(found: Diagnosis, folder: Path, ending: str) -> dict[str, str]
     """Save the pictures of a Diagnosis as NAME and an ending, .png or .svg; return captions."""
     made = {}
     for name, draw, caption in (
-            ('predictions', lambda path: gap_pictures.save_predictions(found, path),
+            ('predictions', lambda path: save_chart(predictions(found), path),
              f'Velocity (world) and rates (body) of {found.held_out}: open-loop predictions from '
-             f'recorded states, each shown at its end, {found.gap.horizon:g} s later. '
-             'Predictions beyond the frame are cut off.'),
+             f'recorded states, each shown at its end, {found.gap.horizon:g} s later, and their '
+             'errors, measured - predicted. Predictions beyond the frame are cut off.'),
+            ('spectrum', lambda path: save_chart(spectrum(found), path),
+             'Amplitude density of the acceleration (body) that the model does not explain, from '
+             f'its means over {WINDOW:g} s: residual force by mass and residual moment by '
+             'inertia, without their mean.'),
             ('horizons', lambda path: gap_pictures.save_horizons(found.gap, path),
              'Root mean square error of the predictions over the horizon, with 95 % intervals '
              '(bootstrap of blocks of time).'),
@@ -118,7 +126,7 @@ def _verdict(found: Diagnosis) -> list:
 
 def _where(found: Diagnosis, pictures: dict) -> list:
     rows = [where_row(row) for row in shown(found.where)]
-    return [tag('h2', 'Where'), pictures['map'],
+    return [tag('h2', 'Where'), pictures['map'], pictures['spectrum'],
             table(WHERE, rows, kinds=('text', '', '', '', 'text', ''),
                   caption='Force and moment that the nominal vehicle does not explain')]
 
