@@ -3,7 +3,6 @@
 """Charts of lines: one table of values, drawn as a picture and given to the script of a page."""
 
 from dataclasses import dataclass
-import json
 import math
 from pathlib import Path
 
@@ -11,7 +10,6 @@ from matplotlib.ticker import LogLocator, NullFormatter
 import numpy as np
 
 from quad_ident_ros.report.data import finite
-from quad_ident_ros.report.html import Markup
 from quad_ident_ros.report.picture import pyplot, save
 
 STYLES = {'measured': ('#9aa0a6', 4.0), 'before': ('#d55e00', 1.1), 'after': ('#0072b2', 1.1)}
@@ -66,7 +64,8 @@ class Chart:
     def as_data(self) -> dict:
         """Return what the script of a page draws, with as many digits as can be seen."""
         return {'quantity': self.quantity, 'unit': self.unit, 'logarithmic': self.logarithmic,
-                'widths': list(self.widths), 'x': rounded(self.x, DIGITS + 2), 'panels': [
+                'band': self.band, 'widths': list(self.widths),
+                'x': rounded(self.x, DIGITS + 2), 'panels': [
                     {'title': panel.title, 'unit': panel.unit, 'band': panel.band,
                      'limits': panel.limits, 'lines': [
                          {'label': line.label, 'style': line.style,
@@ -84,11 +83,13 @@ def save_chart(chart: Chart, path: str | Path) -> None:
     handles = {}
     for axis, panel in zip(axes.flat, chart.panels, strict=True):
         if panel.band is not None:
-            handles[chart.band] = axis.axhspan(-panel.band, panel.band, color=BAND, linewidth=0)
+            handles['band'] = axis.axhspan(-panel.band, panel.band, color=BAND, linewidth=0,
+                                           label=chart.band)
         for line in panel.lines:
             colour, width = STYLES[line.style]
-            [drawn] = axis.plot(chart.x, line.values, color=colour, linewidth=width)
-            handles.setdefault(line.label, drawn)
+            [drawn] = axis.plot(chart.x, line.values, color=colour, linewidth=width,
+                                label=line.label)
+            handles.setdefault(line.style, drawn)
         if chart.logarithmic:
             axis.set(xscale='log', yscale='log')
             axis.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
@@ -102,17 +103,11 @@ def save_chart(chart: Chart, path: str | Path) -> None:
         axis.spines[['top', 'right']].set_visible(False)
     for axis in axes[-1]:
         axis.set_xlabel(f'{chart.quantity}, {chart.unit}')
-    figure.legend(handles.values(), handles, loc='outside upper center', ncols=len(handles),
-                  frameon=False)
+    figure.legend(handles=list(handles.values()), loc='outside upper center',
+                  ncols=len(handles), frameon=False)
     save(plt, figure, path)
 
 
 def rounded(values: np.ndarray, digits: int = DIGITS) -> list:
     """Return values (N,) with a number of significant digits; None where one is not finite."""
     return finite([float(f'{value:.{digits}g}') for value in values])
-
-
-def script_data(data: dict) -> Markup:
-    """Return data for the script of a page, as an element in which no text can be markup."""
-    text = json.dumps(data, separators=(',', ':'), ensure_ascii=False, allow_nan=False)
-    return Markup('<script type="application/json">' + text.replace('<', '\\u003c') + '</script>')

@@ -32,7 +32,7 @@ def predictions(found: Diagnosis) -> Chart:
                     for style, error in errors.items())),
                     limits=(middle - HEADROOM * half, middle + HEADROOM * half)),
                 Panel(f'error of {name}', unit, tuple(
-                    Line(f'error {style}', style, error) for style, error in errors.items()),
+                    Line(style, style, error) for style, error in errors.items()),
                     band=noise)]
     return Chart('time', 's', pictures.t, tuple(panels), (1.5, 1.0), 1.9,
                  band='noise alone, 2 σ')

@@ -8,7 +8,8 @@ import re
 import numpy as np
 import pytest
 
-from quad_ident_ros.report.chart import Chart, Line, Panel, rounded, save_chart, script_data
+from quad_ident_ros.report.chart import Chart, Line, Panel, rounded, save_chart
+from quad_ident_ros.report.html import script_data
 
 
 def chart(**changes):

@@ -70,7 +70,7 @@ def test_the_verdict_comes_first_then_where_which_and_how_far(page, found):
                                             '<h2>Where</h2>', '<h2>Which</h2>',
                                             '<h2>How far</h2>', '<h2>From what</h2>')]
     assert places == sorted(places)
-    assert text.count('<svg role="img"') == 4 and '<img' not in text
+    assert text.count('<svg role="img"') == 5 and '<img' not in text
     assert not re.search(r'(src|href)="(?!#|data:)', text)     # one file holds it all
     assert not re.search(r'url\((?!#)|@import', text)
     assert f'explains {100 * found.gap.closed:.0f} % of the velocity gap above the noise.' in text
