@@ -44,9 +44,9 @@ def figures(found: Diagnosis) -> dict[str, Figure]:
         'spectrum': Figure(
             lambda file: save_chart(density, file),
             'Residual acceleration over the frequency, before and after',
-            'Amplitude density of the acceleration (body) that the model does not explain, from '
-            f'its means over {WINDOW:g} s: residual force by mass and residual moment by '
-            'inertia, without their mean.', density.as_data()),
+            'Amplitude density (Welch) of the acceleration (body) that the model does not '
+            f'explain, from means over {WINDOW:g} s: residual force by mass and residual moment '
+            'by inertia, each without its mean; the noise is part of it.', density.as_data()),
         'horizons': Figure(
             lambda file: save_horizons(found.gap, file),
             'Gap by horizon, before and after, and of noise alone',

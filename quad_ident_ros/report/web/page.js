@@ -149,15 +149,16 @@
   }
 
   function told(head, field, data, panel, at) {
+    const time = at === null ? '' : `${data.x[at]} ${data.unit}`;
+    const value = line => line.values[at] ?? 'none';
     const parts = panel.lines.map(line => element('span', {class: `key ${line.style}`},
-      at === null ? line.label : `${line.label} ${line.values[at] ?? 'none'}`));
-    if (panel.band) parts.push(element('span', {class: 'key noise'}, data.band));
+      at === null ? line.label : `${line.style} ${value(line)}`));
+    if (panel.band && at === null) parts.push(element('span', {class: 'key noise'}, data.band));
     head.replaceChildren(element('strong', {}, `${panel.title}, ${panel.unit}`),
-                         at === null ? '' : `at ${data.x[at]} ${data.unit}`, ...parts);
+                         time && `at ${time}`, ...parts);
     field.setAttribute('aria-valuenow', at ?? 0);
-    field.setAttribute('aria-valuetext', at === null ? 'no value chosen' : [
-      `${data.x[at]} ${data.unit}`,
-      ...panel.lines.map(line => `${line.label} ${line.values[at] ?? 'none'}`)].join(', '));
+    field.setAttribute('aria-valuetext', at === null ? 'no value chosen' :
+      [time, ...panel.lines.map(line => `${line.label} ${value(line)}`)].join(', '));
   }
 
   function options(data, panel, link, field, state) {
@@ -218,6 +219,7 @@
   function paths(figure, data, live) {
     const link = linked('time', data.t.length), stages = Object.keys(data.errors);
     const ends = data.path.map(axis => [Math.min(...axis), Math.max(...axis)]);
+    const where = at => data.path.map(axis => axis[at].toFixed(2)).join(', ');
     const most = Math.max(...stages.flatMap(stage => data.errors[stage])) || 1;
     const view = {azimuth: data.azimuth, elevation: data.elevation, size: 1};
     const home = {...view};
@@ -269,7 +271,7 @@
       const show = () => {
         const at = link.at, error = data.errors[stage];
         const place = at === null ? `; z ${ends[2].join(' to ')} m` :
-          ` at ${data.t[at]} s, x, y, z ${data.path.map(axis => axis[at]).join(', ')} m`;
+          ` at ${data.t[at]} s, x, y, z ${where(at)} m`;
         head.replaceChildren(
           element('strong', {}, `velocity error ${stage}`), ...at === null
             ? ['0', element('span', {class: 'ramp'}), `${most.toPrecision(2)} m/s${place}`]

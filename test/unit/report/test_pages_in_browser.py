@@ -150,7 +150,7 @@ def test_the_value_under_the_pointer_is_the_datum(shown, over_time):
         place = data['x'].index(time)
         assert time == pytest.approx(data['x'][0] + 0.4 * (data['x'][-1] - data['x'][0]), abs=0.1)
         for line in panel['lines']:
-            assert f'{line["label"]} {line["values"][place]:g}' in head.inner_text()
+            assert f'{line["style"]} {line["values"][place]:g}' in head.inner_text()
         assert field.get_attribute('aria-valuenow') == str(place)
 
 
