@@ -15,6 +15,7 @@ from quad_ident_ros.report.picture import pyplot, save
 STYLES = {'measured': ('#9aa0a6', 4.0), 'before': ('#d55e00', 1.1), 'after': ('#0072b2', 1.1)}
 """Colour and width (pt) of a line; the colours of the page have the same names."""
 BAND = '0.88'
+BREAK = 1.5     # times the usual step, as for the stretches of residual_wrench.py
 DIGITS = 4      # of a value on the page: a part in 1000 or more is less than a pixel
 
 
@@ -64,7 +65,7 @@ class Chart:
     def as_data(self) -> dict:
         """Return what the script of a page draws, with as many digits as can be seen."""
         return {'quantity': self.quantity, 'unit': self.unit, 'logarithmic': self.logarithmic,
-                'band': self.band, 'widths': list(self.widths),
+                'band': self.band, 'widths': list(self.widths), 'breaks': breaks(self.x),
                 'x': rounded(self.x, DIGITS + 2), 'panels': [
                     {'title': panel.title, 'unit': panel.unit, 'band': panel.band,
                      'limits': panel.limits, 'lines': [
@@ -87,8 +88,10 @@ def save_chart(chart: Chart, path: str | Path) -> None:
                                            label=chart.band)
         for line in panel.lines:
             colour, width = STYLES[line.style]
-            [drawn] = axis.plot(chart.x, line.values, color=colour, linewidth=width,
-                                label=line.label)
+            # Nothing is drawn to or from what is no number.
+            drawn, = axis.plot(*(np.insert(values, breaks(chart.x), np.nan)
+                                 for values in (chart.x, line.values)), color=colour,
+                               linewidth=width, label=line.label)
             handles.setdefault(line.style, drawn)
         if chart.logarithmic:
             axis.set(xscale='log', yscale='log')
@@ -106,6 +109,12 @@ def save_chart(chart: Chart, path: str | Path) -> None:
     figure.legend(handles=list(handles.values()), loc='outside upper center',
                   ncols=len(handles), frameon=False)
     save(plt, figure, path)
+
+
+def breaks(x: np.ndarray) -> list[int]:
+    """Return the places in x (N,) before which nothing is known: no line leads to them."""
+    steps = np.diff(x)
+    return [int(place) + 1 for place in np.flatnonzero(steps > BREAK * np.median(steps))]
 
 
 def rounded(values: np.ndarray, digits: int = DIGITS) -> list:

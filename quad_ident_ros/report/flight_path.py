@@ -11,11 +11,12 @@ import numpy as np
 
 from quad_ident_ros.diagnose.result import Diagnosis
 from quad_ident_ros.greybox.errors import GROUPS
-from quad_ident_ros.report.chart import rounded, STYLES
+from quad_ident_ros.report.chart import breaks, rounded, STYLES
 from quad_ident_ros.report.picture import pyplot, save
 
 FROM = {'azimuth': -60.0, 'elevation': 30.0}     # degrees, from where it is seen first
 THIN, THICK = 1.2, 5.0      # pt, at no error and at the largest
+SMALLEST = 0.1      # m to each side: a hover is to look like one
 COLOURS = LinearSegmentedColormap.from_list('error', [STYLES['measured'][0], STYLES['before'][0]])
 
 
@@ -34,6 +35,7 @@ class FlightPath:
     def as_data(self) -> dict:
         """Return what the script of a page draws, with as many digits as can be seen."""
         return {'path': [rounded(axis) for axis in self.positions.T], 't': rounded(self.t, 6),
+                'breaks': breaks(self.t),
                 'errors': {stage: rounded(one) for stage, one in self.errors.items()}, **FROM}
 
     def in_words(self) -> str:
@@ -66,11 +68,12 @@ def save_path(path: FlightPath, file: str | File) -> None:
                                     layout='constrained', subplot_kw={'projection': '3d',
                                                                       'proj_type': 'ortho'})
     most = max(float(max(error.max() for error in path.errors.values())), 1e-9)
-    half = np.ptp(path.positions, axis=0).max() / 2
-    segments = np.stack([path.positions[:-1], path.positions[1:]], axis=1)
+    half = max(np.ptp(path.positions, axis=0).max() / 2, SMALLEST)
+    flown = np.setdiff1d(np.arange(1, len(path.t)), breaks(path.t))
+    segments = np.stack([path.positions[flown - 1], path.positions[flown]], axis=1)
     for axis, (stage, error) in zip(axes, path.errors.items(), strict=True):
-        lines = Line3DCollection(segments, cmap=COLOURS, array=error[1:], capstyle='round',
-                                 linewidths=THIN + (THICK - THIN) * error[1:] / most)
+        lines = Line3DCollection(segments, cmap=COLOURS, array=error[flown], capstyle='round',
+                                 linewidths=THIN + (THICK - THIN) * error[flown] / most)
         lines.set_clim(0.0, most)
         axis.add_collection3d(lines)
         axis.view_init(FROM['elevation'], FROM['azimuth'])

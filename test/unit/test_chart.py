@@ -8,7 +8,7 @@ import re
 import numpy as np
 import pytest
 
-from quad_ident_ros.report.chart import Chart, Line, Panel, rounded, save_chart
+from quad_ident_ros.report.chart import breaks, Chart, Line, Panel, rounded, save_chart
 from quad_ident_ros.report.html import script_data
 
 
@@ -54,3 +54,13 @@ def test_the_picture_names_what_it_shows(tmp_path, logarithmic):
             path)
     text = path.read_text(encoding='utf-8')
     assert all(f'>{said}<' in text for said in ('vx, m/s', 'vy, m/s', 'time, s', 'measured'))
+
+
+def test_no_line_leads_over_a_time_of_which_nothing_is_known(tmp_path):
+    t = np.array([0.1, 0.2, 0.3, 2.0, 2.1, 2.2, 5.0, 5.1])
+    assert breaks(t) == [3, 6] and breaks(np.linspace(0.0, 9.0, 300)) == []
+    panels = (Panel('vx', 'm/s', (Line('measured', 'measured', t),)),) * 2
+    save_chart(chart(x=t, panels=panels), tmp_path / 'chart.svg')
+    drawn = re.findall(r'<path d="([^"]*)" clip-path=[^>]*stroke: #9aa0a6',
+                       (tmp_path / 'chart.svg').read_text(encoding='utf-8'))
+    assert [path.count('M') for path in drawn] == [3, 3]

@@ -179,7 +179,8 @@
       axes: [axis(` ${data.unit}`, {size: 24, space: 60}), axis('', {size: 52, space: 26})],
       series: [{}, ...panel.lines.map(line => ({
         stroke: () => colour(line.style), width: line.style === 'measured' ? 4 : 1.5,
-        points: {show: false}}))],
+        points: {show: false}, gaps: plot => data.breaks.map(place => [place - 1, place].map(
+          end => plot.valToPos(data.x[end], 'x', true)))}))],
       cursor: {y: false, drag: {x: true, y: false, setScale: false},
                points: {size: 7}, bind: {dblclick: () => () => link.reset()}},
       hooks: {
@@ -341,6 +342,7 @@
     ground(pen, box(data), project, stroke, places.slice(first, last + 1));
     const points = places.map(project);
     const order = points.map((_, k) => k).slice(first + 1, last + 1)
+      .filter(k => !data.breaks.includes(k))
       .sort((one, other) => points[one][2] - points[other][2]);
     for (const k of order) {
       const part = 100 * error[k] / most;
