@@ -9,7 +9,6 @@ from pathlib import Path
 from matplotlib.ticker import LogLocator, NullFormatter
 import numpy as np
 
-from quad_ident_ros.report.data import finite
 from quad_ident_ros.report.picture import pyplot, save
 
 STYLES = {'measured': ('#9aa0a6', 4.0), 'before': ('#d55e00', 1.1), 'after': ('#0072b2', 1.1)}
@@ -118,5 +117,5 @@ def breaks(x: np.ndarray) -> list[int]:
 
 
 def rounded(values: np.ndarray, digits: int = DIGITS) -> list:
-    """Return values (N,) with a number of significant digits; None where one is not finite."""
-    return finite([float(f'{value:.{digits}g}') for value in values])
+    """Return values (N,) with a number of significant digits."""
+    return [float(f'{value:.{digits}g}') for value in values]

@@ -34,7 +34,7 @@ class FlightPath:
 
     def as_data(self) -> dict:
         """Return what the script of a page draws, with as many digits as can be seen."""
-        return {'path': [rounded(axis) for axis in self.positions.T], 't': rounded(self.t, 6),
+        return {'path': [rounded(place) for place in self.positions], 't': rounded(self.t, 6),
                 'breaks': breaks(self.t),
                 'errors': {stage: rounded(one) for stage, one in self.errors.items()}, **FROM}
 
@@ -76,12 +76,13 @@ def save_path(path: FlightPath, file: str | File) -> None:
                                  linewidths=THIN + (THICK - THIN) * error[flown] / most)
         lines.set_clim(0.0, most)
         axis.add_collection3d(lines)
+        axis.patch.set_visible(False)   # it would cover the labels of its neighbour
         axis.view_init(FROM['elevation'], FROM['azimuth'])
         for name, values in zip('xyz', path.positions.T, strict=True):
             middle = (values.min() + values.max()) / 2
             getattr(axis, f'set_{name}lim')(middle - half, middle + half)
-            getattr(axis, f'set_{name}label')(f'{name}, m', labelpad=9)
+            getattr(axis, f'set_{name}label')(f'{name}, m', labelpad=4 if name == 'z' else 9)
             getattr(axis, f'{name}axis').set_pane_color((0.0, 0.0, 0.0, 0.0))
         axis.set_title(stage, fontsize='medium')
-    figure.colorbar(lines, ax=axes, label='velocity error, m/s', pad=0.04, shrink=0.8)
+    figure.colorbar(lines, ax=axes, label='velocity error, m/s', pad=0.08, shrink=0.8)
     save(plt, figure, file)

@@ -39,7 +39,7 @@ def figures(found: Diagnosis) -> dict[str, Figure]:
             'Measured and predicted velocity and rates over time, and the errors',
             f'Velocity (world) and rates (body) of {found.held_out}: open-loop predictions from '
             f'recorded states, each shown at its end, {found.gap.horizon:g} s later, and their '
-            'errors, measured - predicted. Predictions beyond the frame are cut off.',
+            'errors, measured minus predicted. Predictions beyond the frame are cut off.',
             ahead.as_data()),
         'spectrum': Figure(
             lambda file: save_chart(density, file),

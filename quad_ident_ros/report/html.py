@@ -9,6 +9,7 @@ import json
 from pathlib import Path
 
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.report.data import finite
 from quad_ident_ros.whole_file import write_whole
 
 MANY = 7    # columns
@@ -87,7 +88,7 @@ def drawing(content, alt, caption, data=None):
 
 def script_data(data):
     """Return data for the script of a page, as an element in which no text can be markup."""
-    text = json.dumps(data, separators=(',', ':'), ensure_ascii=False, allow_nan=False)
+    text = json.dumps(finite(data), separators=(',', ':'), ensure_ascii=False, allow_nan=False)
     return Markup(SCRIPT_DATA + text.replace('<', '\\u003c') + '</script>')
 
 

@@ -64,7 +64,7 @@
       PageUp: () => link.move(at + page), PageDown: () => link.move(at - page),
       Home: () => link.move(link.span[0]), End: () => link.move(link.span[1]),
       '+': () => link.scale(KEY_ZOOM), '=': () => link.scale(KEY_ZOOM),
-      '-': () => link.scale(1 / KEY_ZOOM), Escape: () => link.reset(),
+      '-': () => link.scale(1 / KEY_ZOOM), Escape: () => { link.at = null; link.reset(); },
     };
     act(actions[event.key], event);
   }
@@ -97,7 +97,7 @@
 
   // ---- charts of lines ----
 
-  function charts(figure, data, live) {
+  function charts(data, live) {
     const link = linked(data.quantity, data.x.length);
     const hint = 'Drag to zoom, double-click for all; keys: arrows, + and -, Escape';
     const bar = toolbar(`Zoom over ${data.quantity}`, [
@@ -217,10 +217,10 @@
 
   // ---- the path of a flight in space ----
 
-  function paths(figure, data, live) {
+  function paths(data, live) {
     const link = linked('time', data.t.length), stages = Object.keys(data.errors);
-    const ends = data.path.map(axis => [Math.min(...axis), Math.max(...axis)]);
-    const where = at => data.path.map(axis => axis[at].toFixed(2)).join(', ');
+    const sides = box(data.path);
+    const where = at => data.path[at].map(value => value.toFixed(2)).join(', ');
     const most = Math.max(...stages.flatMap(stage => data.errors[stage])) || 1;
     const view = {azimuth: data.azimuth, elevation: data.elevation, size: 1};
     const home = {...view};
@@ -271,33 +271,33 @@
       canvas.addEventListener('pointerleave', () => link.choose(null));
       const show = () => {
         const at = link.at, error = data.errors[stage];
-        const place = at === null ? `; z ${ends[2].join(' to ')} m` :
+        const place = at === null ? `; z ${sides[2].join(' to ')} m` :
           ` at ${data.t[at]} s, x, y, z ${where(at)} m`;
         head.replaceChildren(
           element('strong', {}, `velocity error ${stage}`), ...at === null
             ? ['0', element('span', {class: 'ramp'}), `${most.toPrecision(2)} m/s${place}`]
             : [`${error[at]} m/s${place}`]);
-        picture(canvas, data, view, link, error, most);
+        picture(canvas, data, sides, view, link, error, most);
       };
       new ResizeObserver(show).observe(canvas);
       return show;
     }
 
-
     function nearest(canvas, event) {
-      const project = projection(canvas, data, view);
-      const far = data.t.map((_, k) => {
-        const [x, y] = project(data.path.map(axis => axis[k]));
-        return Math.hypot(x - event.offsetX, y - event.offsetY);
-      }).map((value, k) => k < link.span[0] || k > link.span[1] ? Infinity : value);
+      const project = projection(canvas, sides, view);
+      const far = data.path.map((place, k) => {
+        const [x, y] = project(place), seen = k >= link.span[0] && k <= link.span[1];
+        return seen ? Math.hypot(x - event.offsetX, y - event.offsetY) : Infinity;
+      });
       const best = Math.min(...far);
       return best < NEAR ? far.indexOf(best) : null;
     }
   }
 
   // The marks of the ground below a path, in steps of 1, 2 or 5, and its heights [low, high].
-  function box(data) {
-    const ends = data.path.map(axis => [Math.min(...axis), Math.max(...axis)]);
+  function box(path) {
+    const ends = [0, 1, 2].map(axis => path.map(place => place[axis]))
+      .map(values => [Math.min(...values), Math.max(...values)]);
     const extent = Math.max(...ends.map(([low, high]) => high - low)) || 1;
     const step = decades(extent / 9, extent).find(value => extent / value <= 5) ?? extent;
     return ends.map(([low, high], axis) => {
@@ -308,10 +308,10 @@
   }
 
   // Points (x, y, z) in m as places on a canvas in px and nearness, seen from infinitely far.
-  function projection(canvas, data, view) {
-    const sides = box(data).map(marks => [marks[0], marks.at(-1)]);
-    const centre = sides.map(([low, high]) => (low + high) / 2);
-    const [long, wide, high] = sides.map(([low, up]) => up - low), across = Math.hypot(long, wide);
+  function projection(canvas, sides, view) {
+    const centre = sides.map(marks => (marks[0] + marks.at(-1)) / 2);
+    const [long, wide, high] = sides.map(marks => marks.at(-1) - marks[0]);
+    const across = Math.hypot(long, wide);
     const [turned, tilted] = [view.azimuth, view.elevation].map(angle => angle * Math.PI / 180);
     const tall = across * Math.abs(Math.sin(tilted)) + high * Math.cos(tilted);
     const scale = view.size * Math.min((canvas.clientWidth - MARGIN) / across,
@@ -326,24 +326,26 @@
     };
   }
 
-  function picture(canvas, data, view, link, error, most) {
+  function picture(canvas, data, sides, view, link, error, most) {
     const ratio = devicePixelRatio, pen = canvas.getContext('2d');
     canvas.width = ratio * canvas.clientWidth;
     canvas.height = ratio * canvas.clientHeight;
     pen.scale(ratio, ratio);
-    const project = projection(canvas, data, view);
+    const project = projection(canvas, sides, view);
     const stroke = (points, style, width) => {
       pen.beginPath();
       for (const [x, y] of points) pen.lineTo(x, y);
       Object.assign(pen, {strokeStyle: style, lineWidth: width, lineCap: 'round'}).stroke();
     };
-    const [first, last] = link.span, [small, large] = ['measured', 'before'].map(colour);
-    const places = data.t.map((_, k) => data.path.map(axis => axis[k]));
-    ground(pen, box(data), project, stroke, places.slice(first, last + 1));
-    const points = places.map(project);
+    const [first, last] = link.span;
+    const [small, large, shade] = ['measured', 'before', 'line'].map(colour);
+    const points = data.path.map(project);
+    const shadow = data.path.map(([x, y]) => project([x, y, sides[2][0]]));
     const order = points.map((_, k) => k).slice(first + 1, last + 1)
-      .filter(k => !data.breaks.includes(k))
-      .sort((one, other) => points[one][2] - points[other][2]);
+      .filter(k => !data.breaks.includes(k));
+    ground(pen, sides, project, stroke);
+    order.forEach(k => stroke([shadow[k - 1], shadow[k]], shade, 0.6));
+    order.sort((one, other) => points[one][2] - points[other][2]);
     for (const k of order) {
       const part = 100 * error[k] / most;
       stroke([points[k - 1], points[k]], `color-mix(in srgb, ${large} ${part}%, ${small})`,
@@ -355,8 +357,8 @@
     Object.assign(pen, {strokeStyle: colour('ink'), lineWidth: 2}).stroke();
   }
 
-  // A grid below the path with its marks in m, and the shadow of the path on it.
-  function ground(pen, [across, along, [bottom]], project, stroke, places) {
+  // A grid below the path with its marks in m.
+  function ground(pen, [across, along, [bottom]], project, stroke) {
     Object.assign(pen, {fillStyle: colour('second'), font: '12px system-ui, sans-serif',
                         textAlign: 'center', textBaseline: 'middle'});
     const ruled = (name, marks, ends) => marks.forEach((mark, k) => {
@@ -369,7 +371,6 @@
     });
     ruled('x', across, x => [[x, along.at(-1), bottom], [x, along[0], bottom]]);
     ruled('y', along, y => [[across[0], y, bottom], [across.at(-1), y, bottom]]);
-    stroke(places.map(([x, y]) => project([x, y, bottom])), colour('line'), 0.6);
   }
 
   // ---- load ----
@@ -379,7 +380,7 @@
     const live = element('div', {class: 'live'});
     figure.insertBefore(live, script);
     figure.classList.add('moving');
-    (data.panels ? charts : paths)(figure, data, live);
+    (data.panels ? charts : paths)(data, live);
   }
   matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () =>
     redraws.forEach(redraw => redraw()));

@@ -76,6 +76,16 @@ def test_the_verdict_comes_first_then_where_which_and_how_far(page, found):
     assert f'explains {100 * found.gap.closed:.0f} % of the velocity gap above the noise.' in text
 
 
+def test_a_flight_that_knows_no_position_has_no_path(page, found):
+    assert page().count('Flight path in space') > 0
+    blind = tuple(replace(one, features={name: feature for name, feature in one.features.items()
+                                         if name != 'height'})
+                  for one in found.pictures.wrench_before)
+    text = page(pictures=replace(found.pictures, wrench_before=blind, wrench_after=blind))
+    drawn = re.sub('<script>.*?</script>', '', text, flags=re.DOTALL)
+    assert drawn.count('<svg role="img"') == 4 and 'Flight path in space' not in drawn
+
+
 def test_the_terminal_has_the_same_order_and_the_size_beside_the_verdict(terminal, found):
     text = terminal()
     verdict, size, step, *_ = text.splitlines()
