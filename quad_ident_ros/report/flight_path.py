@@ -3,6 +3,7 @@
 """The path of a flight in space, coloured by the error of the predictions along it."""
 
 from dataclasses import dataclass
+from itertools import groupby
 from pathlib import Path as File
 
 from matplotlib import rc_context
@@ -11,13 +12,15 @@ import numpy as np
 
 from quad_ident_ros.diagnose.result import Diagnosis
 from quad_ident_ros.greybox.errors import GROUPS
-from quad_ident_ros.report.chart import breaks, rounded, STYLES
+from quad_ident_ros.report.chart import breaks, rounded
 from quad_ident_ros.report.picture import pyplot, save
 
 FROM = {'azimuth': -60.0, 'elevation': 30.0}     # degrees, from where it is seen first
 THIN, THICK = 1.2, 5.0      # pt, at no error and at the largest
+LEVELS = 8          # of colour and thickness
 SMALLEST = 0.1      # m to each side: a hover is to look like one
-COLOURS = LinearSegmentedColormap.from_list('error', [STYLES['measured'][0], STYLES['before'][0]])
+# Both can be seen on white and on black, for they are the same on a dark page.
+COLOURS = LinearSegmentedColormap.from_list('error', ['#92989e', '#d65f04'])
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,11 +72,10 @@ def save_path(path: FlightPath, file: str | File) -> None:
                                                                       'proj_type': 'ortho'})
     most = max(float(max(error.max() for error in path.errors.values())), 1e-9)
     half = max(np.ptp(path.positions, axis=0).max() / 2, SMALLEST)
-    flown = np.setdiff1d(np.arange(1, len(path.t)), breaks(path.t))
-    segments = np.stack([path.positions[flown - 1], path.positions[flown]], axis=1)
     for axis, (stage, error) in zip(axes, path.errors.items(), strict=True):
-        lines = Line3DCollection(segments, cmap=COLOURS, array=error[flown], capstyle='round',
-                                 linewidths=THIN + (THICK - THIN) * error[flown] / most)
+        runs, shares = _runs(path, error / most)
+        lines = Line3DCollection(runs, cmap=COLOURS, array=most * shares, capstyle='round',
+                                 linewidths=THIN + (THICK - THIN) * shares)
         lines.set_clim(0.0, most)
         axis.add_collection3d(lines)
         axis.patch.set_visible(False)   # it would cover the labels of its neighbour
@@ -86,3 +88,21 @@ def save_path(path: FlightPath, file: str | File) -> None:
         axis.set_title(stage, fontsize='medium')
     figure.colorbar(lines, ax=axes, label='velocity error, m/s', pad=0.08, shrink=0.8)
     save(plt, figure, file)
+
+
+def _runs(path: FlightPath, shares: np.ndarray) -> tuple[list[np.ndarray], np.ndarray]:
+    """
+    Return the path as lines (K, 3) of one colour each, and the share (R,) that each has.
+
+    Args: shares (N,) of the largest error, which are rounded to LEVELS: a line for every
+    segment would take twice the room.
+    """
+    levels = np.round(LEVELS * shares) / LEVELS
+    stretch = np.cumsum(np.isin(np.arange(len(path.t)), breaks(path.t)))
+    ends = np.flatnonzero(np.diff(stretch) == 0) + 1    # of the segments
+    lines, values = [], []
+    for (level, _), run in groupby(ends, lambda end: (levels[end], stretch[end])):
+        places = list(run)
+        lines.append(path.positions[places[0] - 1:places[-1] + 1])
+        values.append(level)
+    return lines, np.array(values)

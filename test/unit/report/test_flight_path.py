@@ -9,8 +9,16 @@ import pytest
 
 from quad_ident_ros.report.flight_path import FlightPath, save_path
 
-COLOURS = re.compile(r'<path d="M[^"]*L[^"]*"[^>]*stroke: (#[0-9a-f]{6}); stroke-width: ([\d.]+); '
-                     'stroke-linecap: round')
+LINES = re.compile(r'<path d="([^"]*)"[^>]*stroke: (#[0-9a-f]{6}); stroke-width: ([\d.]+); '
+                   'stroke-linecap: round')
+
+
+def drawn(path, folder):
+    """Return [points, colour, width] of each line of the picture of a path."""
+    save_path(path, folder / 'path.svg')
+    text = (folder / 'path.svg').read_text(encoding='utf-8')
+    return [(re.findall(r'[ML] ([-\d.]+ [-\d.]+)', line), colour, float(width))
+            for line, colour, width in LINES.findall(text)]
 
 
 @pytest.fixture
@@ -27,21 +35,24 @@ def test_words_tell_where_the_error_is_largest(path):
 
 
 def test_the_path_is_orange_and_thick_where_the_error_is_large(path, tmp_path):
-    save_path(path, tmp_path / 'path.svg')
-    drawn = COLOURS.findall((tmp_path / 'path.svg').read_text(encoding='utf-8'))
-    assert len(drawn) == 200
-    before, after = drawn[:100], drawn[100:]
-    assert {'#d55e00'} == {max(before, key=lambda one: float(one[1]))[0]}
-    assert max(float(width) for _, width in after) < min(2.0, float(before[-1][1]) / 2)
+    lines = drawn(path, tmp_path)
+    *before, (after, _, thin) = lines       # the error after is the same all along
+    assert len(after) == 101
+    assert before[-1][1] == '#d65f04' and len({colour for _, colour, _ in before}) > 5
+    widths = [width for *_, width in before]
+    assert widths == sorted(widths) and thin < widths[-1] / 2
+    # Each line begins where the one before ends.
+    assert all(one[0][-1] == other[0][0]
+               for one, other in zip(before[:-1], before[1:], strict=True))
 
 
 def test_nothing_is_drawn_where_nothing_is_known(path, tmp_path):
     """A single flight, of which blocks are held out."""
     known = np.r_[0:30, 60:101]
-    save_path(FlightPath(path.t[known], path.positions[known], {
-        stage: error[known] for stage, error in path.errors.items()}), tmp_path / 'path.svg')
-    drawn = COLOURS.findall((tmp_path / 'path.svg').read_text(encoding='utf-8'))
-    assert len(drawn) == 2 * (29 + 40)
+    lines = drawn(FlightPath(path.t[known], path.positions[known], {
+        stage: error[known] for stage, error in path.errors.items()}), tmp_path)
+    assert [len(points) for points, *_ in lines[-2:]] == [30, 41]
+    assert sum(len(points) - 1 for points, *_ in lines) == 2 * (29 + 40)
 
 
 def test_a_vehicle_that_hovers_without_an_error_has_a_path(path, tmp_path):
