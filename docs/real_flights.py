@@ -25,7 +25,7 @@ from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.diagnose.result import Diagnosis, Ranked
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.vehicle import load_vehicle, Vehicle
-from quad_ident_ros.report import gap_page
+from quad_ident_ros.report import gap_figures
 from quad_ident_ros.report.diagnosis import contribution_of, WORTH
 
 DOCUMENT = 'real_flights.md'
@@ -124,7 +124,7 @@ def nanobench(folder: Path) -> None:
 def save(found: Diagnosis) -> None:
     """Save the pictures of a diagnosis beside the document."""
     with tempfile.TemporaryDirectory() as folder:
-        gap_page.save_pictures(found, Path(folder), '.png')
+        gap_figures.save_figures(found, Path(folder), '.png')
         for name in PICTURES:
             shutil.copy(Path(folder) / f'{name}.png', DOCUMENTS / f'real_flights_{name}.png')
 

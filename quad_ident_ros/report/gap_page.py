@@ -13,7 +13,6 @@ from quad_ident_ros import __version__
 from quad_ident_ros.diagnose.result import Diagnosis
 from quad_ident_ros.effects.registry import titled
 from quad_ident_ros.model.vehicle import vehicle_to_mapping
-from quad_ident_ros.report import gap_pictures
 from quad_ident_ros.report.ceiling import ceiling_line
 from quad_ident_ros.report.closed_loop import (
     COST_LINE,
@@ -44,6 +43,7 @@ from quad_ident_ros.report.diagnosis import (
     where_row,
     without_it,
 )
+from quad_ident_ros.report.gap_figures import figures
 from quad_ident_ros.report.html import (
     bar,
     details,
@@ -68,44 +68,25 @@ from quad_ident_ros.report.verdict import (
 WIDE = 1.96     # standard errors to the ends of a 95 % interval
 KINDS = {'none': 'yes', 'unknown': 'no', 'undetermined': 'part'}
 
-ALTS = {'predictions': 'Measured and predicted velocity and rates over time, and their difference',
-        'horizons': 'Gap by horizon, before and after, and of noise alone',
-        'map': 'Residual force and moment by channel and regime, before and after'}
-
 
 def write(path: str | Path, found: Diagnosis) -> None:
     """Write the page of a Diagnosis; raises InputError where the file cannot be written."""
-    with tempfile.TemporaryDirectory() as folder:
-        with rc_context(FONTS):
-            captions = save_pictures(found, Path(folder), '.svg')
-        pictures = {name: drawing(inline(Path(folder) / f'{name}.svg', name, ALTS[name]),
-                                  ALTS[name], caption)
-                    for name, caption in captions.items()}
-        body = [*_verdict(found), *_where(found, pictures), *_which(found),
-                *_far(found, pictures), *_in_simulator(found),
-                *_closed_loop(found), *_open(found), *_provenance(found)]
+    pictures = _pictures(found)
+    body = [*_verdict(found), *_where(found, pictures), *_which(found), *_far(found, pictures),
+            *_in_simulator(found), *_closed_loop(found), *_open(found), *_provenance(found)]
     write_page(path, f'Sim-to-real gap of {found.vehicle.name}', join(body))
 
 
-def save_pictures(found: Diagnosis, folder: Path, ending: str) -> dict[str, str]:
-    """Save the pictures of a Diagnosis as NAME and an ending, .png or .svg; return captions."""
-    made = {}
-    for name, draw, caption in (
-            ('predictions', lambda path: gap_pictures.save_predictions(found, path),
-             f'Velocity (world) and rates (body) of {found.held_out}: open-loop predictions from '
-             f'recorded states, each shown at its end, {found.gap.horizon:g} s later. '
-             'Predictions beyond the frame are cut off.'),
-            ('horizons', lambda path: gap_pictures.save_horizons(found.gap, path),
-             'Root mean square error of the predictions over the horizon, with 95 % intervals '
-             '(bootstrap of blocks of time).'),
-            ('map', lambda path: gap_pictures.save_map(
-                found.pictures.wrench_before, found.pictures.wrench_after, found.vehicle, path),
-             'Force and moment that the model does not explain, by channel and regime: each '
-             'feature is cut into three thirds of the flight time. As the velocity that it makes '
-             'in half a second, noise taken off; one scale for both.')):
-        draw(folder / f'{name}{ending}')
-        made[name] = caption
-    return made
+def _pictures(found: Diagnosis) -> dict[str, Markup]:
+    """Return {name: picture of the page}."""
+    drawn = {}
+    with tempfile.TemporaryDirectory() as folder, rc_context(FONTS):
+        for name, figure in figures(found).items():
+            file = Path(folder) / f'{name}.svg'
+            figure.save(file)
+            drawn[name] = drawing(inline(file, name, figure.alt), figure.alt, figure.caption,
+                                  figure.data)
+    return drawn
 
 
 def _verdict(found: Diagnosis) -> list:
@@ -118,7 +99,7 @@ def _verdict(found: Diagnosis) -> list:
 
 def _where(found: Diagnosis, pictures: dict) -> list:
     rows = [where_row(row) for row in shown(found.where)]
-    return [tag('h2', 'Where'), pictures['map'],
+    return [tag('h2', 'Where'), pictures['map'], pictures['spectrum'],
             table(WHERE, rows, kinds=('text', '', '', '', 'text', ''),
                   caption='Force and moment that the nominal vehicle does not explain')]
 
@@ -157,7 +138,8 @@ def _far(found: Diagnosis, pictures: dict) -> list:
             tag('p', sentence(ceiling_line(found))),
             table(FAR, far_rows(found), kinds=('text', *[''] * 5, 'text'),
                   caption=f'Error of predictions {found.gap.horizon:g} s ahead'),
-            pictures['horizons'], pictures['predictions']]
+            pictures['horizons'], pictures['predictions'],
+            *([pictures['path']] if 'path' in pictures else [])]
 
 
 def _in_simulator(found: Diagnosis) -> list:

@@ -8,49 +8,14 @@ from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 import numpy as np
 
 from quad_ident_ros.diagnose.residual_wrench import CHANNELS, ResidualWrench, weights
-from quad_ident_ros.diagnose.result import Diagnosis, Gap
+from quad_ident_ros.diagnose.result import Gap
 from quad_ident_ros.greybox.errors import GROUPS
-from quad_ident_ros.model.dynamics import STATES
 from quad_ident_ros.model.vehicle import Vehicle
-from quad_ident_ros.report.picture import MEASURED, pyplot, save
+from quad_ident_ros.report.picture import pyplot, save
 
 BEFORE, AFTER, NOISE = '#d55e00', '#0072b2', '#555555'
-SHOWN = {'velocity': (('vx', 'vy', 'vz'), 'm/s'), 'rate': (('wx', 'wy', 'wz'), 'rad/s')}
 THIRDS = ('low', 'mid', 'high')
-HEADROOM = 1.5      # times the range of what was measured that is shown of predictions
 NARROW = 4.0        # times the lowest gap that its axis shows at least
-
-
-def save_predictions(found: Diagnosis, path: str | Path) -> None:
-    """Save measured against predicted velocity and rates, and the errors beside them."""
-    plt, pictures, gap = pyplot(path), found.pictures, found.gap
-    rows = [(group, number, name, unit) for group, (names, unit) in SHOWN.items()
-            for number, name in enumerate(names)]
-    figure, axes = plt.subplots(len(rows), 2, figsize=(11.4, 11.0), dpi=110, sharex=True,
-                                layout='constrained', gridspec_kw={'width_ratios': (1.5, 1)})
-    t, states = pictures.t, dict(zip(STATES, pictures.states.T, strict=True))
-    for (left, right), (group, number, name, unit) in zip(axes, rows, strict=True):
-        measured = states[name]
-        left.plot(t, measured, color=MEASURED, linewidth=4, label='measured')
-        noise = 2.0 * gap.noise[group] / np.sqrt(3.0)
-        right.axhspan(-noise, noise, color='0.88', linewidth=0, label='noise alone, 2 σ')
-        for ends, color, label in ((pictures.before, BEFORE, 'predicted before'),
-                                   (pictures.after, AFTER, 'predicted after')):
-            error = ends.errors[:, GROUPS[group]][:, number]
-            left.plot(t, measured - error, color=color, linewidth=1.1, label=label)
-            right.plot(t, error, color=color, linewidth=1.0)
-        middle, half = np.mean([measured.min(), measured.max()]), np.ptp(measured) / 2
-        left.set_ylim(middle - HEADROOM * half, middle + HEADROOM * half)
-        left.set_ylabel(f'{name}, {unit}')
-        _plain(left)
-        _plain(right)
-    axes[0, 0].set_title(f'measured, and predicted {gap.horizon:g} s ahead', fontsize='medium')
-    axes[0, 1].set_title('measured - predicted', fontsize='medium')
-    for axis in axes[-1]:
-        axis.set_xlabel('time, s')
-    handles = [*axes[0, 0].get_lines(), *axes[0, 1].patches]
-    figure.legend(handles=handles, loc='outside upper center', ncols=len(handles), frameon=False)
-    save(plt, figure, path)
 
 
 def save_horizons(gap: Gap, path: str | Path) -> None:

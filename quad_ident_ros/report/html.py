@@ -5,12 +5,15 @@
 import base64
 from html import escape
 from importlib.resources import files
+import json
 from pathlib import Path
 
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.report.data import finite
 from quad_ident_ros.whole_file import write_whole
 
 MANY = 7    # columns
+SCRIPT_DATA = '<script type="application/json">'
 
 
 class Markup(str):
@@ -72,10 +75,21 @@ def figure(path, alt, caption):
                   f'<figcaption>{escape(caption)}</figcaption></figure>')
 
 
-def drawing(content, alt, caption):
-    """Return an SVG element as a figure, which can be scrolled where it is wider than it fits."""
-    return Markup(f'<figure><div class="picture" role="group" tabindex="0" aria-label="{alt}">'
-                  f'{content}</div>{tag("figcaption", caption)}</figure>')
+def drawing(content, alt, caption, data=None):
+    """
+    Return an SVG element as a figure, which can be scrolled where it is wider than it fits.
+
+    Args: data: values from which web/page.js draws it in its place, or None.
+    """
+    moving = script_data(data) if data else ''
+    return Markup(f'<figure><div class="picture" role="group" tabindex="0" aria-label='
+                  f'"{escape(alt)}">{content}</div>{moving}{tag("figcaption", caption)}</figure>')
+
+
+def script_data(data):
+    """Return data for the script of a page, as an element in which no text can be markup."""
+    text = json.dumps(finite(data), separators=(',', ':'), ensure_ascii=False, allow_nan=False)
+    return Markup(SCRIPT_DATA + text.replace('<', '\\u003c') + '</script>')
 
 
 def bar(share):
@@ -96,11 +110,21 @@ def web(name):
 
 def write_page(path, title, body):
     """Write a page of HTML; raises InputError where the file cannot be written."""
+    body = markup(body)
+    moving = SCRIPT_DATA in body
+    style = web('page.css') + (web('uPlot.min.css') if moving else '')
     text = (f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">\n'
             f'<meta name="viewport" content="width=device-width, initial-scale=1">\n'
-            f'<title>{escape(title)}</title>\n<style>\n{web("page.css")}</style></head>\n<body>\n'
-            f'<main>{tag("h1", title)}\n{markup(body)}\n</main></body></html>\n')
+            f'<title>{escape(title)}</title>\n<style>\n{style}</style></head>\n<body>\n'
+            f'<main>{tag("h1", title)}\n{body}\n</main>{_scripts() if moving else ""}'
+            '</body></html>\n')
     try:
         write_whole(path, text)
     except OSError as error:
         raise InputError(f'{path}: cannot be written: {error.strerror}') from None
+
+
+def _scripts():
+    """Return what draws the values of drawings: uPlot with its licence, and page.js."""
+    return (f'\n<script>\n/*\n{web("uPlot.LICENSE")}\n*/\n{web("uPlot.iife.min.js")}</script>\n'
+            f'<script>\n{web("page.js")}</script>\n')

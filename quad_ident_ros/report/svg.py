@@ -29,5 +29,7 @@ def inline(path: str | Path, name: str, alt: str) -> Markup:
     for colour, variable in COLOURS.items():
         text = text.replace(colour, f'var(--{variable})')
     text = re.sub(r'\n\s*', '\n', text)
+    # A hundredth of a point is less than any screen or printer shows.
+    text = re.sub(r' d="[^"]*"', lambda path: re.sub(r'(\.\d\d)\d+', r'\1', path[0]), text)
     return Markup(re.sub(r'<svg ([^>]*?)width="[^"]*"', rf'<svg role="img" aria-label="{alt}" \1',
                          re.sub(r' height="[\d.]+pt"', '', text, count=1), count=1))

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What holds of the repository as a whole: style, shipped files, documents."""
 
+import hashlib
 from pathlib import Path
 import re
 import subprocess
@@ -79,6 +80,13 @@ def test_what_is_installed_is_pinned_with_checksums_and_from_no_named_host(name)
     # pip takes no checksums with packages that have none.
     assert {pin.split('==')[0] for pin, *_ in entries} >= ({'numpy', 'ros-jazzy-rclpy'} if name
                                                            == 'requirements.txt' else set())
+
+
+def test_what_is_carried_along_is_what_the_document_says():
+    text = (ROOT / 'docs' / 'dependencies.md').read_text(encoding='utf-8')
+    said = dict(re.findall(r'^\| `(\S+)` \|.*\| `([0-9a-f]{64})` \|$', text, flags=re.MULTILINE))
+    carried = (ROOT / 'quad_ident_ros' / 'report' / 'web').glob('uPlot*')
+    assert said == {path.name: hashlib.sha256(path.read_bytes()).hexdigest() for path in carried}
 
 
 def test_the_readme_calls_commands_that_exist():

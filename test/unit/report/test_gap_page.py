@@ -70,10 +70,20 @@ def test_the_verdict_comes_first_then_where_which_and_how_far(page, found):
                                             '<h2>Where</h2>', '<h2>Which</h2>',
                                             '<h2>How far</h2>', '<h2>From what</h2>')]
     assert places == sorted(places)
-    assert text.count('<svg role="img"') == 3 and '<img' not in text
+    assert text.count('<svg role="img"') == 5 and '<img' not in text
     assert not re.search(r'(src|href)="(?!#|data:)', text)     # one file holds it all
     assert not re.search(r'url\((?!#)|@import', text)
     assert f'explains {100 * found.gap.closed:.0f} % of the velocity gap above the noise.' in text
+
+
+def test_a_flight_that_knows_no_position_has_no_path(page, found):
+    assert page().count('Flight path in space') > 0
+    blind = tuple(replace(one, features={name: feature for name, feature in one.features.items()
+                                         if name != 'height'})
+                  for one in found.pictures.wrench_before)
+    text = page(pictures=replace(found.pictures, wrench_before=blind, wrench_after=blind))
+    drawn = re.sub('<script>.*?</script>', '', text, flags=re.DOTALL)
+    assert drawn.count('<svg role="img"') == 4 and 'Flight path in space' not in drawn
 
 
 def test_the_terminal_has_the_same_order_and_the_size_beside_the_verdict(terminal, found):
@@ -245,7 +255,8 @@ def test_what_a_diagnosis_says_survives_the_way_over_json(found):
 
 def test_no_private_word_is_read(terminal, page):
     for text in (terminal(**OPEN), terminal(), terminal(verdict=('none',)),
-                 re.sub(r'<style>.*?</style>|"data:[^"]*"', '', page(**OPEN), flags=re.DOTALL)):
+                 re.sub('<style>.*?</style>|<script>.*?</script>', '', page(**OPEN),
+                        flags=re.DOTALL)):
         assert not re.search(r'\b(lacks?|lacking|own|left)\b',
                              re.sub('to the left', '', text))
 

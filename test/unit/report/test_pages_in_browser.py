@@ -2,6 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The pages of `diagnose --report` and `paper` in a real browser."""
 
+import json
+import re
+
 from browser import chromium, cut_in_print, opened, printed, violations, WIDTHS
 import pytest
 
@@ -67,3 +70,159 @@ def test_a_wide_table_is_reached_and_scrolled_by_keys(browser, path):
             .find(one => one.scrollWidth > one.clientWidth && one.checkVisibility()).focus()""")
         page.keyboard.press('ArrowRight')
         page.wait_for_function('document.activeElement.scrollLeft > 0')
+
+
+FIELDS = '.field'
+PICTURES = "() => [...document.querySelectorAll('.live canvas')].map(one => one.toDataURL())"
+
+
+@pytest.fixture(params=WIDTHS)
+def shown(request, browser, gap):
+    """Give the open page of a diagnosis and the values beside its picture over time."""
+    with opened(browser, gap, request.param) as (page, said, _):
+        yield page, json.loads(page.locator('figure:has(.field) > script').nth(1).inner_text())
+        assert said == []
+
+
+@pytest.fixture
+def over_time(shown):
+    """Return the charts over time, a locator."""
+    return shown[0].locator('figure:has-text("vx, m/s")').locator(FIELDS)
+
+
+def drag(page, field, begin, end):
+    """Drag over a chart, from a share of its width to another."""
+    field.scroll_into_view_if_needed()
+    box = field.locator('.u-over').bounding_box()
+    page.mouse.move(box['x'] + begin * box['width'], box['y'] + 20)
+    page.mouse.down()
+    page.mouse.move(box['x'] + end * box['width'], box['y'] + 30, steps=4)
+    page.mouse.up()
+
+
+def span(field):
+    """Return the first and the last time that a chart shows, as its keys reach them."""
+    times = []
+    for key in ('Home', 'End'):
+        field.press(key)
+        times.append(float(field.get_attribute('aria-valuetext').split()[0]))
+    return times
+
+
+def at_rest(page):
+    """Return the pictures of all charts, the cursor in none."""
+    page.mouse.move(1, 1)
+    page.wait_for_timeout(100)      # a frame of the browser, in which it draws
+    return page.evaluate(PICTURES)
+
+
+def test_a_zoom_over_time_is_that_of_every_picture_over_time(shown, over_time):
+    page, data = shown
+    before = at_rest(page)
+    whole = span(over_time.last)
+    assert whole == [data['x'][0], data['x'][-1]]
+    drag(page, over_time.first, 0.25, 0.5)
+    width = whole[1] - whole[0]
+    for field in (over_time.first, over_time.last):
+        assert span(field) == pytest.approx([whole[0] + 0.25 * width, whole[0] + 0.5 * width],
+                                            abs=0.2)
+    changed = [one != other for one, other in zip(at_rest(page), before, strict=True)]
+    spectra = page.locator('figure:has-text("Amplitude density")').locator(FIELDS).count()
+    # Those over the frequency come first, those of the path last; they stay, and follow.
+    assert changed == [False] * spectra + [True] * (over_time.count() + 2)
+    over_time.nth(3).locator('.u-over').dblclick()
+    at_rest(page)
+    assert span(over_time.first) == whole
+    over_time.first.press('Escape')
+    assert at_rest(page) == before
+
+
+def test_the_value_under_the_pointer_is_the_datum(shown, over_time):
+    page, data = shown
+    for number in (0, 1):
+        field, panel = over_time.nth(number), data['panels'][number]
+        field.scroll_into_view_if_needed()
+        box = field.locator('.u-over').bounding_box()
+        page.mouse.move(box['x'] + 0.4 * box['width'], box['y'] + box['height'] / 2)
+        head = field.locator('xpath=preceding-sibling::p')
+        page.wait_for_function('one => one.innerText.includes(" s")', arg=head.element_handle())
+        time = float(re.search(r'at (\S+) s', head.inner_text())[1])
+        place = data['x'].index(time)
+        assert time == pytest.approx(data['x'][0] + 0.4 * (data['x'][-1] - data['x'][0]), abs=0.1)
+        for line in panel['lines']:
+            assert f'{line["style"]} {line["values"][place]:g}' in head.inner_text()
+        assert field.get_attribute('aria-valuenow') == str(place)
+
+
+def test_keys_do_what_the_pointer_does(shown, over_time):
+    page, data = shown
+    field = over_time.first
+    field.press('Home')
+    field.press('ArrowRight')
+    field.press('ArrowRight')
+    assert field.get_attribute('aria-valuetext').startswith(f'{data["x"][2]} s, measured ')
+    assert over_time.last.get_attribute('aria-valuenow') == '2'     # one cursor in all
+    for _ in range(30):
+        field.press('ArrowRight')
+    field.press('+')
+    field.press('+')
+    begin, end = span(field)
+    assert begin < data['x'][32] < end
+    assert end - begin == pytest.approx((data['x'][-1] - data['x'][0]) / 1.5 ** 2, abs=0.3)
+    for _ in range(2):      # beyond what is shown, which follows
+        field.press('ArrowRight')
+    assert span(field)[1] == pytest.approx(end + 0.2, abs=1e-6)
+    field.press('-')
+    field.press('Escape')
+    assert span(field) == [data['x'][0], data['x'][-1]]
+    # What has the keys can be seen.
+    assert field.evaluate('one => getComputedStyle(one).outlineStyle') == 'solid'
+
+
+def test_buttons_zoom_where_there_is_no_keyboard(shown, over_time):
+    page, data = shown
+    tools = page.get_by_role('group', name='Zoom over time')
+    tools.get_by_role('button', name='Zoom in').click()
+    assert 'time ' in tools.get_by_role('status').inner_text()
+    tools.get_by_role('button', name='Show all').click()
+    assert 'Drag to zoom' in tools.get_by_role('status').inner_text()
+    assert span(over_time.first) == [data['x'][0], data['x'][-1]]
+
+
+def test_the_path_turns_by_keys_and_by_pointer_and_comes_back(shown):
+    page, _ = shown
+    path = page.locator('canvas.space').first
+    path.scroll_into_view_if_needed()
+    before = at_rest(page)
+    path.focus()
+    seen = [before]
+    for key in ('ArrowLeft', 'ArrowUp', '+'):
+        path.press(key)
+        assert at_rest(page)[-2:] != seen[-1][-2:]
+        seen.append(at_rest(page))
+    assert seen[-1][:-2] == before[:-2]
+    path.press('Escape')
+    assert at_rest(page) == before
+    box = path.bounding_box()
+    page.mouse.move(box['x'] + 100, box['y'] + 100)
+    page.mouse.down()
+    page.mouse.move(box['x'] + 150, box['y'] + 100, steps=3)
+    page.mouse.up()
+    assert at_rest(page)[-2:] != before[-2:]
+
+
+def test_without_scripts_and_in_print_the_pictures_are_those_of_the_file(browser, gap):
+    with opened(browser, gap, java_script_enabled=False) as (page, *_):
+        assert [one.is_visible() for one in page.locator('.picture').all()] == [True] * 5
+    with opened(browser, gap) as (page, *_):
+        assert page.locator('.picture:visible').count() == 2    # what nothing moves in
+        page.emulate_media(media='print')
+        assert page.locator('.picture:visible').count() == 5
+        assert page.locator('.live:visible').count() == 0
+
+
+def test_the_colours_of_the_charts_follow_those_of_the_page(browser, gap):
+    with opened(browser, gap, color_scheme='light') as (page, *_):
+        light = at_rest(page)
+        page.emulate_media(color_scheme='dark')
+        assert all(one != other for one, other in zip(at_rest(page), light, strict=True))
