@@ -16,6 +16,7 @@ from quad_ident_ros.report.picture import pyplot, save
 BEFORE, AFTER, NOISE = '#d55e00', '#0072b2', '#555555'
 THIRDS = ('low', 'mid', 'high')
 NARROW = 4.0        # times the lowest gap that its axis shows at least
+MANY = 300.0        # times the lowest gap from where on an axis names powers of ten alone: 8 marks
 
 
 def save_horizons(gap: Gap, path: str | Path) -> None:
@@ -36,11 +37,14 @@ def save_horizons(gap: Gap, path: str | Path) -> None:
                   color=NOISE, linestyle='--', label='noise alone')
         # The gap after may be a hundredth of that before: both are to be read.
         axis.set_yscale('log')
-        axis.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        low, high = axis.get_ylim()
+        low = min(low, high / NARROW)    # a gap that stays must not look steep
+        axis.set_ylim(low, high)
+        # 2 and 5 between the powers of ten have no room where these are many.
+        axis.yaxis.set_major_locator(LogLocator(
+            subs=(1.0, 2.0, 5.0) if high / low < MANY else (1.0,)))
         axis.yaxis.set_major_formatter(StrMethodFormatter('{x:g}'))
         axis.yaxis.set_minor_formatter(NullFormatter())
-        low, high = axis.get_ylim()
-        axis.set_ylim(min(low, high / NARROW), high)    # a gap that stays must not look steep
         axis.set_xticks(horizons)
         axis.set_title(f'{group}, {gap.units[group]}', fontsize='medium')
         axis.set_xlabel('horizon, s')

@@ -86,10 +86,11 @@
     return bar;
   }
 
-  // Marks of an axis: 1, 2 and 5 times powers of ten, without the 2 and 5 over many decades.
+  // Marks of an axis: 1, 2 and 5 times powers of ten; over many decades some five powers alone.
   function decades(low, high) {
     const places = [], steps = high / low > 300 ? [1] : [1, 2, 5];
-    for (let power = Math.floor(Math.log10(low)); power <= Math.log10(high); power++) {
+    const each = Math.max(1, Math.ceil(Math.log10(high / low) / 5));
+    for (let power = Math.floor(Math.log10(low)); power <= Math.log10(high); power += each) {
       for (const step of steps) places.push(Number(`${step}e${power}`));
     }
     return places.filter(place => place >= low && place <= high);
@@ -163,7 +164,9 @@
 
   function options(data, panel, link, field, state) {
     const log = data.logarithmic ? 3 : 1;
-    const plain = (places, unit) => places.map(place => `${+place.toPrecision(6)}${unit}`);
+    const number = place => place && Math.abs(place) < 1e-3 ? place.toExponential()
+      : +place.toPrecision(6);
+    const plain = (places, unit) => places.map(place => `${number(place)}${unit}`);
     const axis = (unit, more) => ({
       stroke: () => colour('ink'), font: '12px system-ui, sans-serif',
       grid: {stroke: () => colour('grid'), width: 1},
