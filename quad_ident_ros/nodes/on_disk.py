@@ -7,7 +7,9 @@ import time
 from quad_ident_ros.data.recording import Recording
 
 FLUSH_PERIOD = 0.5   # s; a kill -9 loses at most this much of a recording, or
-OVERDUE = 0.6        # s while messages wait, which the timer waits behind
+OVERDUE = 0.6        # s while messages wait, which the timer waits behind; also s of flight: a
+                     # recorder that catches up joins several in one
+SOONEST = 0.1        # s between two flushes: each writes the index of the bag anew
 
 
 class OnDisk:
@@ -22,6 +24,7 @@ class OnDisk:
         self._output, self._clock, self._logger = output, clock, logger
         self._recording = None
         self._flushed = time.monotonic()
+        self._first = self._newest = None
         self.error = None
 
     @property
@@ -57,17 +60,22 @@ class OnDisk:
             if columns is not None:
                 self._recording.columns = columns
             self._try(lambda: self._recording.add_rows(rows))
+            if rows:
+                self._first = rows[0][0] if self._first is None else self._first
+                self._newest = rows[-1][0]
 
     def flush_when_due(self, now):
         """Flush what was recorded where no timer did: it waits while messages do."""
-        if now - self._flushed > OVERDUE:
+        waited = now - self._flushed
+        flown = 0.0 if self._first is None else (self._newest - self._first) * 1e-9
+        if waited > OVERDUE or (flown > OVERDUE and waited > SOONEST):
             self.flush()
 
     def flush(self):
         """Bring what was recorded to disk."""
         if self._recording is not None:
             self._try(self._recording.flush)
-        self._flushed = time.monotonic()
+        self._flushed, self._first = time.monotonic(), None
 
     def close(self):
         """Finish the files."""
