@@ -24,7 +24,7 @@
   const shared = {};
   function linked(quantity, count) {
     return shared[quantity] ??= {
-      whole: [0, count - 1], span: [0, count - 1], at: null, follow: [],
+      whole: [0, count - 1], span: [0, count - 1], at: null, keyed: false, follow: [],
       tell() { this.follow.forEach(one => one()); },
       zoom(first, last) {
         const middle = (first + last) / 2, half = Math.max(last - first, LEAST) / 2;
@@ -45,7 +45,11 @@
         this.span = [first + ahead - back, last + ahead - back];
         this.tell();
       },
-      choose(place) {
+      // What the pointer is over, null for nothing; a page that scrolls below a pointer that rests
+      // does not take the place that keys have chosen.
+      point(place, event) {
+        if (this.keyed && !event?.movementX && !event?.movementY) return;
+        this.keyed = false;
         if (place === this.at) return;
         if (place !== null) return this.move(place);
         this.at = null;
@@ -66,6 +70,7 @@
       '+': () => link.scale(KEY_ZOOM), '=': () => link.scale(KEY_ZOOM),
       '-': () => link.scale(1 / KEY_ZOOM), Escape: () => { link.at = null; link.reset(); },
     };
+    if (actions[event.key]) link.keyed = true;
     act(actions[event.key], event);
   }
 
@@ -145,6 +150,7 @@
     }).observe(field);
     redraws.push(() => plot.redraw(false, true));
     field.addEventListener('keydown', event => keys(link, event));
+    field.addEventListener('pointerdown', () => { link.keyed = false; });
     told(head, field, data, panel, null);
     return show;
   }
@@ -189,7 +195,8 @@
       hooks: {
         drawAxes: [plot => shaded(plot, panel.band)],
         setCursor: [plot => {
-          if (!state.quiet) link.choose(plot.cursor.left < 0 ? null : plot.cursor.idx);
+          if (state.quiet) return;
+          link.point(plot.cursor.left < 0 ? null : plot.cursor.idx, plot.cursor.event);
         }],
         setSelect: [plot => {
           const {left, width} = plot.select;
@@ -264,14 +271,14 @@
         canvas.focus();
       });
       canvas.addEventListener('pointermove', event => {
-        if (!held) return link.choose(nearest(canvas, event));
+        if (!held) return link.point(nearest(canvas, event), event);
         turn(DRAG * (event.clientX - held.clientX), DRAG * (event.clientY - held.clientY));
         held = event;
       });
       for (const end of ['pointerup', 'pointercancel']) {
         canvas.addEventListener(end, () => { held = null; });
       }
-      canvas.addEventListener('pointerleave', () => link.choose(null));
+      canvas.addEventListener('pointerleave', event => link.point(null, event));
       const show = () => {
         const at = link.at, error = data.errors[stage];
         const place = at === null ? `; z ${sides[2].join(' to ')} m` :

@@ -179,6 +179,17 @@ def test_keys_do_what_the_pointer_does(shown, over_time):
     assert field.evaluate('one => getComputedStyle(one).outlineStyle') == 'solid'
 
 
+def test_a_page_that_scrolls_below_the_pointer_takes_no_value_away(shown, over_time):
+    page, data = shown
+    over_time.first.locator('.u-over').hover()
+    over_time.first.press('Home')
+    before = page.evaluate('scrollY')
+    page.mouse.wheel(0, 700)
+    page.wait_for_function('before => scrollY > before + 600', arg=before)
+    page.wait_for_timeout(200)      # frames in which the browser sees what is below it
+    assert over_time.first.get_attribute('aria-valuetext').startswith(f'{data["x"][0]} s, ')
+
+
 def test_buttons_zoom_where_there_is_no_keyboard(shown, over_time):
     page, data = shown
     tools = page.get_by_role('group', name='Zoom over time')
