@@ -19,26 +19,31 @@ FILES = {'identify': ['simulator', 'recorder', 'identifier'],
 
 
 class LaunchDescription:
+
     def __init__(self, initial_entities=None):
         self.entities = list(initial_entities)
 
 
 class DeclareLaunchArgument:
+
     def __init__(self, name, *, default_value=None, description=None):
         self.name, self.default_value, self.description = name, default_value, description
 
 
 class OpaqueFunction:
+
     def __init__(self, *, function):
         self.function = function
 
 
 class Shutdown:
+
     def __init__(self, *, reason='reason not given'):
         self.reason = reason
 
 
 class LaunchConfiguration:
+
     def __init__(self, variable_name):
         self.name = variable_name
 
@@ -47,6 +52,7 @@ class LaunchConfiguration:
 
 
 class Node:
+
     def __init__(self, *, executable, package=None, name=None, namespace=None,
                  ros_arguments=None, output=None, on_exit=None):
         self.executable, self.package, self.name = executable, package, name

@@ -51,7 +51,6 @@ def test_the_legend_lies_beside_the_panels(drawn):
     assert [text.get_text() for text in figure.legends[0].get_texts()] == ['measured', 'VP']
 
 
-
 @pytest.mark.parametrize('title', ['$x_{$: a file', r'\frac{ $\frac{$', '$^^$'])
 def test_titles_with_mathematics_are_drawn_as_they_are(tmp_path, title):
     """Names of files and experiments have any text; matplotlib fails on such between two $."""
