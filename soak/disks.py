@@ -149,7 +149,8 @@ def _full(title: str, words: str, folder: Path, out: str, limit: int) -> Finding
     done = _quad_ident(words.format(out=out), folder, limit)
     kept = (folder / out).is_file() and (folder / out).read_text('utf-8', 'replace') == KEPT
     (folder / out).unlink(missing_ok=True)
-    return _finding('disk full', title, done, kept, f'{out}: .*{os.strerror(errno.EFBIG)}')
+    # The first file that does not fit: a picture of a report is drawn beside it before.
+    return _finding('disk full', title, done, kept, rf'\S+\.\w+: .*{os.strerror(errno.EFBIG)}')
 
 
 def _gone(title: str, words: str, folder: Path, out: str) -> Finding:
