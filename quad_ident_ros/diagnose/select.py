@@ -175,7 +175,8 @@ class _Search:
             self.try_promising()
             self.best = self.order()[0]
             on_progress((turn + 1) / ROUNDS)
-            if self.best.chosen == best:
+            # Sets that are about alike would only take turns, each the best around the other.
+            if self.best.evidence <= self.judge(best).evidence + self.rules.alike:
                 break
             best = self.best.chosen
 
