@@ -48,6 +48,7 @@ def checked(record):
     return codes, memory
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('t', [
     bursts(1200), bursts(1200, apart=1e-10), bursts(1200, of=100), bursts(1200, apart=2e-5),
     1e-9 * np.arange(1200), 1e-6 * np.arange(1200),
@@ -59,6 +60,7 @@ def test_bursty_and_dense_stamps_take_little_memory(t):
     assert checked(stamped(t))[1] < 2e8
 
 
+@pytest.mark.slow
 def test_memory_of_the_checks_grows_with_the_rows():
     some, many = (checked(stamped(bursts(count)))[1] for count in (1000, 4000))
     assert many < 2 * 4 * some
@@ -78,6 +80,7 @@ def test_time_of_the_checks_grows_with_the_rows():
     assert took(40_000) < 2 * 4 * took(10_000)
 
 
+@pytest.mark.slow
 def test_bursts_are_told_and_gaps_and_even_samples_are_none():
     assert 'bursts' in checked(stamped(bursts(1200)))[0]
     assert 'bursts' not in checked(FLIGHT)[0]

@@ -56,6 +56,7 @@ def start(package, **more):
     return [float(word) for word in done.stdout.split()]
 
 
+@pytest.mark.slow
 def test_a_function_is_kept_until_one_that_it_calls_has_changed(package):
     assert start(package) == [7.0, 0]
     assert start(package) == [7.0, 1]
@@ -64,6 +65,7 @@ def test_a_function_is_kept_until_one_that_it_calls_has_changed(package):
     assert start(package) == [101.0, 1]
 
 
+@pytest.mark.slow
 def test_a_full_disk_keeps_nothing_and_ends_nothing(package, tmp_path):
     """A diagnosis ended with "output: No space left on device", which named no file."""
     for _ in range(2):
@@ -73,6 +75,7 @@ def test_a_full_disk_keeps_nothing_and_ends_nothing(package, tmp_path):
     assert start(package) == [7.0, 1]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('whose', ['everybody', 'another', 'link'])
 def test_no_code_is_taken_from_a_folder_into_which_others_write(package, tmp_path, whose):
     # Numba keeps code as pickles, which can do anything when they are loaded.

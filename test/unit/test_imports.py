@@ -47,6 +47,7 @@ def test_the_blocker_blocks():
     assert done.returncode != 0 and 'is blocked' in done.stderr
 
 
+@pytest.mark.slow
 def test_every_module_but_nodes_imports_without_ros():
     assert 'quad_ident_ros.identify.identify' in MODULES and len(MODULES) > 30
     # __main__ runs the command line on import: it is started below.
@@ -56,6 +57,7 @@ def test_every_module_but_nodes_imports_without_ros():
     assert done.returncode == 0, done.stderr[-2000:]
 
 
+@pytest.mark.slow
 def test_a_whole_identification_runs_without_ros():
     done = run("""
 from quad_ident_ros.experiment import fly, load_experiment

@@ -117,6 +117,7 @@ def test_errors_as_large_as_the_bound_give_one():
     assert rmse_over_bound(problem, models) == pytest.approx(1.0)
 
 
+@pytest.mark.slow
 def test_the_joint_cost_is_the_sum_of_the_costs():
     signals = problems.p1()[0].draw(0)
     joint = Joint(signals)

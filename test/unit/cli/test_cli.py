@@ -58,6 +58,7 @@ def test_simulate_writes_what_the_library_flies(flights):
             np.testing.assert_array_equal(written.columns[name], values)
 
 
+@pytest.mark.slow
 def test_identify_gives_what_the_library_gives(flights, tmp_path):
     out, picture = tmp_path / 'out.json', tmp_path / 'deep' / 'fit.png'
     arguments = [*map(str, flights.values()), '--trim', 'hover', '--initial-state', 'rest']

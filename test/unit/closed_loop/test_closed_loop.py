@@ -186,6 +186,7 @@ def test_a_lag_of_the_motors_costs_bandwidth_in_height():
     assert bands[0] > bands[1] > bands[2]
 
 
+@pytest.mark.slow
 def test_a_controller_of_a_user_flies_the_vehicle():
     # It has no integrals: a payload pulls it down until the thrust that the error of the height
     # asks for, mass times 4 / s^2 times that, carries the payload.

@@ -218,6 +218,7 @@ def test_without_pymavlink_a_log_says_what_is_missing(tmp_path, monkeypatch):
     refused(path, "pip install 'quad_ident_ros[ardupilot]'")
 
 
+@pytest.mark.slow
 def test_mutated_logs_are_read_or_refused_in_one_line(tmp_path, capfd):
     valid = dataflash(copter(SMALL.slice(0, 8), OUTPUTS[:8]))
     for seed in range(400):

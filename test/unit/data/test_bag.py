@@ -256,6 +256,7 @@ def test_a_process_that_is_killed_while_it_flushes_loses_nothing_that_it_flushed
     assert len(got) >= flushed and got == swapped(len(got))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('more', [4, 60])
 def test_a_kill_within_a_flush_loses_nothing_that_was_whole(tmp_path, more):
     """Wherever a write ends: before it is what is new, behind it what was there."""
@@ -287,6 +288,7 @@ def test_a_kill_within_a_flush_loses_nothing_that_was_whole(tmp_path, more):
     writer.close()
 
 
+@pytest.mark.slow
 def test_a_bag_that_is_cut_off_is_read_as_far_as_it_goes(tmp_path):
     path = tmp_path / 'bag'
     with BagWriter(path, TOPICS) as writer:

@@ -172,6 +172,7 @@ def example(folder, kind):
     return write1(folder / 'f.bag', rows, packing.get(kind)).read_bytes()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('kind', ['ros1', 'bz2', 'lz4', 'px4', 'mcap', 'sqlite3'])
 def test_mutated_bags_are_read_or_refused_in_a_line(tmp_path, kind):
     """Whole and listed: no traceback, and rows that are finite in time."""

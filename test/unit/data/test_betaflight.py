@@ -132,6 +132,7 @@ def test_without_orangebox_a_log_says_what_is_missing(tmp_path, monkeypatch):
     refused(path, "pip install 'quad_ident_ros[betaflight]'")
 
 
+@pytest.mark.slow
 def test_mutated_logs_are_read_or_refused_in_one_line(tmp_path, capfd):
     valid = blackbox(ROWS[:24])
     for seed in range(300):

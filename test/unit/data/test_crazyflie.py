@@ -160,6 +160,7 @@ def test_bad_logs_are_refused(tmp_path):
     refused(file(tmp_path, whole), 'speeds', mapping=DUTY)
 
 
+@pytest.mark.slow
 def test_mutated_logs_are_read_or_refused_in_one_line(tmp_path):
     short = SMALL.slice(0, 12)
     valid = usdlog(crazyflie_events(short, MOTORS[:12]))

@@ -52,6 +52,7 @@ def test_it_is_said_before_and_after():
     assert told.count('differentiated') == 2
 
 
+@pytest.mark.slow
 def test_motion_capture_and_commands_are_enough_for_a_verdict():
     record = changed(flight(seconds=20.0), **NONE)
     assert diagnose([record], VEHICLE).verdict == ('none',)

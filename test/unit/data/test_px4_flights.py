@@ -406,6 +406,7 @@ def test_auto_is_for_logs_of_px4(tmp_path, capsys):
     assert 'PX4' in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_mutated_logs_are_read_or_refused_in_a_line(tmp_path):
     chance = random.Random(3)
     extra = [status(FIRST), landed(FIRST, False), esc(FIRST + 1000, [500.0] * 4),

@@ -75,6 +75,7 @@ def test_predictions_of_the_part_held_out_begin_and_end_in_it(half_hovered):
     assert len(flight_of(held_out).first) > 10
 
 
+@pytest.mark.slow
 def test_a_flight_that_hovers_in_the_end_shows_its_drag(half_hovered):
     found = diagnose([half_hovered], VEHICLE)
     assert found.verdict == ('rotor_drag',)

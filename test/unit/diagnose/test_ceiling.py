@@ -47,6 +47,7 @@ def explained():
     return diagnose(flights(NOMINAL, DRAG), NOMINAL, effects=EFFECTS)
 
 
+@pytest.mark.slow
 def test_where_effects_explain_all_the_ceiling_is_what_they_close(explained):
     ceiling = explained.ceiling
     assert explained.verdict == ('rotor_drag',)
@@ -54,6 +55,7 @@ def test_where_effects_explain_all_the_ceiling_is_what_they_close(explained):
     assert abs(ceiling.given_attitude.closed - explained.gap_given_attitude.closed) < 0.02
 
 
+@pytest.mark.slow
 def test_noise_alone_has_no_ceiling():
     one = diagnose(flights(NOMINAL, {}), NOMINAL, effects=EFFECTS)
     assert one.verdict == ('none',)
@@ -62,6 +64,7 @@ def test_noise_alone_has_no_ceiling():
     assert one.ceiling.open_loop.after == one.gap.after
 
 
+@pytest.mark.slow
 def test_a_force_that_no_effect_has_is_under_the_ceiling(found):
     assert 'unknown' in found.verdict
     for closed, ceiling in ((found.gap.closed, found.ceiling.open_loop),
@@ -119,6 +122,7 @@ def test_the_written_vehicle_flies_a_third_flight_closer(found):
     assert gaps['vehicle']['velocity'] < 0.5 * gaps['nominal']['velocity']
 
 
+@pytest.mark.slow
 def test_a_nominal_vehicle_that_has_the_function_has_nothing_unknown(strange, found):
     """The next diagnosis is of what remains: the function is a part of the nominal model."""
     known = replace(found.corrected(NOMINAL), residual=found.residual)
@@ -127,6 +131,7 @@ def test_a_nominal_vehicle_that_has_the_function_has_nothing_unknown(strange, fo
     assert again.corrected(known).residual == found.residual
 
 
+@pytest.mark.slow
 def test_a_new_function_does_what_that_of_the_vehicle_file_did_too():
     """It is flown in place of the old one: with half of the truth known it learns the whole."""
     real = flights(replace(NOMINAL, residual=times(2.0, STRANGE)), {})
@@ -154,6 +159,7 @@ def command(tmp_path, records, *more):
             ','.join(EFFECTS), *more]
 
 
+@pytest.mark.slow
 def test_the_command_writes_it_and_the_verdict_is_the_same(tmp_path, capsys, strange):
     out, plain = tmp_path / 'real.yaml', tmp_path / 'plain.yaml'
     told = []
@@ -170,6 +176,7 @@ def test_the_command_writes_it_and_the_verdict_is_the_same(tmp_path, capsys, str
     assert replace(real, residual=None) == named
 
 
+@pytest.mark.slow
 def test_the_command_refuses_it_where_it_gains_nothing(tmp_path, capsys):
     out = tmp_path / 'real.yaml'
     assert main(command(tmp_path, flights(NOMINAL, DRAG), '--out-vehicle', str(out),

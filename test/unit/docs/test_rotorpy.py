@@ -36,6 +36,7 @@ def test_each_effect_is_needed(name):
         assert differences(vehicle, record, theta=vector(rest, vehicle))[1] > 1e-2
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('name', NAMES)
 def test_the_rotors_turn_as_fast(name):
     vehicle, record = flown(name)

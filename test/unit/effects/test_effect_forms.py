@@ -384,6 +384,7 @@ def moment_at(velocity, effects, vehicle):
     return contribution(vehicle, vector(effects, vehicle), course, states)[1][0]
 
 
+@pytest.mark.slow
 def test_a_centre_of_drag_turns_the_vehicle_where_there_is_drag():
     arm = {'blade_flapping': {'arm': 0.05}}
     assert not moment_at((5, 2, 1), arm, BARE).any()

@@ -75,6 +75,7 @@ def test_a_knock_is_no_change():
     assert alarms(FlightRecord(flight.t, {**flight.columns, 'pz': height}, flight.info)) == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('alike', [0.0, 0.5, 0.9])
 def test_false_alarms_are_no_more_than_stated(monkeypatch, alike):
     """At a rate so high that it can be counted: of 80 per hour, one in four is of z."""

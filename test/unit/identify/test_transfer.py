@@ -140,6 +140,7 @@ def test_round_trip_keeps_the_form_and_the_order(drawn):
         assert found.a >= found.b
 
 
+@pytest.mark.slow
 @FAST
 @given(gain, st.floats(0.1, 30), st.floats(0.02, 0.2), st.floats(0.2, 3))
 def test_coefficients_round_trip_where_they_tell_the_poles_apart(k, a, t, ratio):

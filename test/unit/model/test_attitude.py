@@ -66,6 +66,7 @@ def test_unwrapping_follows_many_turns_about_one_axis(axis, speed):
     assert np.abs(unwrap_euler(folded) - angles).max() < 1e-7
 
 
+@pytest.mark.slow
 @FAST
 @given(st.integers(0, 2 ** 32 - 1))
 def test_unwrapping_follows_a_smooth_motion_of_all_axes(seed):

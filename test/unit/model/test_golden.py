@@ -57,6 +57,7 @@ def test_derived_equations_need_no_shorter_step_than_theirs():
     assert 1e-3 < derived_errors(1e-2).max() < 2e-2
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(('t', 'tolerance'), [
     (0.05, (1e-9, 1e-8, 1e-7, 1e-9)),
     (0.1, (1e-7, 5e-7, 1e-7, 1e-9)),
@@ -137,6 +138,7 @@ def test_gravity_is_what_the_altitude_of_the_unit_steps_shows():
         assert 2 * z @ t ** 2 / (t ** 2 @ t ** 2) == pytest.approx(expected, abs=0.05)
 
 
+@pytest.mark.slow
 def test_long_runs_end_in_time():
     inputs = np.ones((50_001, 4))
     began = time.perf_counter()

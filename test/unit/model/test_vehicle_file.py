@@ -216,7 +216,9 @@ def vehicles(draw):
     known = {'mass': small, 'gravity': small, 'rotor_radius': small,
              'inertia': st.tuples(small, st.none() | small, st.none()),
              'rotors[0].position': st.tuples(st.none(), st.none() | positive, positive)}
-    gravity, thrust = draw(st.floats(1.0, 30.0)), draw(st.floats(1e-8, 1e-2))
+    gravity = draw(st.floats(1.0, 30.0))
+    # Rotors that must turn faster than 1e5 rad/s to hover are refused.
+    thrust = draw(st.floats(2e-10 * mass * gravity / count, 1e-2))
     return Vehicle(
         draw(st.text(st.characters(categories=('L', 'N')), min_size=1, max_size=20)), mass,
         (0.01 * mass,) * 3, gravity, thrust,

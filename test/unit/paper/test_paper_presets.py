@@ -56,6 +56,7 @@ def test_exact_solutions_solve_their_equations():
     assert inertia / (drag * rate) == pytest.approx(0.001 * end, rel=1e-4)
 
 
+@pytest.mark.slow
 def test_the_long_flight_follows_the_yaw_spin():
     preset = load_preset('paper_unit_steps_newton_euler_500s')
     record, = preset.records
@@ -87,6 +88,7 @@ def test_the_responses_of_table_3_are_identified_as_what_they_are():
         assert (model.b, model.a) == pytest.approx(sorted((a, b)), abs=1e-9)
 
 
+@pytest.mark.slow
 def test_printed_equations_end_at_the_exact_time(printed_cases):
     exact = [case for case in printed_cases if case.source == 'exact']
     assert len(exact) == 5

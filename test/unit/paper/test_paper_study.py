@@ -33,6 +33,7 @@ def table_3_study(reproduction):
     return reproduction.studies['paper_table3']
 
 
+@pytest.mark.slow
 def test_each_seed_and_method_is_fitted_with_each_effort(table_3_study):
     assert set(SWARMS) | set(DIRECT) == set(METHODS)
     for effort in EFFORTS:

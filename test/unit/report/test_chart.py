@@ -43,6 +43,7 @@ def test_text_in_data_ends_no_element():
     assert json.loads(inside) == {'name': '</script><b>', 'values': [1.0, None]}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('logarithmic', [False, True])
 def test_the_picture_names_what_it_shows(tmp_path, logarithmic):
     import matplotlib

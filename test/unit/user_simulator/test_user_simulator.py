@@ -51,6 +51,7 @@ def apart(track, vehicle, z, flown):
     return gap([replace(theirs, errors=theirs.errors - ours.errors)]), gap([ours])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('name, vehicle', [
     ('Many', BARE), ('ManyLagged', LAGGED), ('One', BARE), ('OneLagged', LAGGED),
     ('OnePushed', BARE), ('ManyPushed', BARE)])
@@ -80,6 +81,7 @@ def test_each_effect_around_a_simulator_does_what_it_does_in_our_model(track, ef
     assert max(change.values()) > 1e-4
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('motors, name', [
     ({'time_constant': 0.05}, 'OneLagged'), ({'time_constant': 0.05}, 'ManyLagged'),
     ({'rise': 0.02, 'fall': 0.05}, 'ManyLagged'), ({'time_constant': 0.02}, 'ManyLagged'),
@@ -126,6 +128,7 @@ def test_slow_records_are_flown_in_finer_steps():
         assert value < 0.01 * before[group]
 
 
+@pytest.mark.slow
 def test_several_processes_fly_what_one_does(track, monkeypatch):
     with simulator('One') as flown:
         alone = ends(track, BARE, with_effects(BARE, REALITY), 0.1, flown)

@@ -640,6 +640,7 @@ def test_the_trend_has_what_the_runs_reached():
     assert with_trend(DOCUMENT) == DOCUMENT.read_text(encoding='utf-8')
 
 
+@pytest.mark.slow
 def test_the_command_hands_its_arguments_on(capfd):
     from quad_ident_ros.cli.main import main
     assert main(['withheld', '--help']) == 0
