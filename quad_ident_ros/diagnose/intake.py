@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from quad_ident_ros.data.clocks import Clock, clocks_of, on_one_clock
+from quad_ident_ros.data.commands import with_commands
 from quad_ident_ros.data.differentiated import with_motion
 from quad_ident_ros.data.inertial import is_inertial, POSITION, reckoned, with_position
 from quad_ident_ros.data.outputs import BY_MOTORS
@@ -35,7 +36,6 @@ from quad_ident_ros.greybox.rotor_answer import (
     ruled_out_by,
 )
 from quad_ident_ros.model.dynamics import course_of, states_of
-from quad_ident_ros.model.mixing import with_commands
 from quad_ident_ros.model.vehicle import Vehicle
 
 MOST_SHOWN = 8      # blocks that a line names, for display alone; as data there are all

@@ -4,12 +4,11 @@
 
 import numpy as np
 
-from quad_ident_ros.data.frames import rotate
 from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.quality.series import correlation, Grid
 from quad_ident_ros.data.record import EULER, QUATERNION
 from quad_ident_ros.gravity import GRAVITY
-from quad_ident_ros.model.attitude import body_rate, quaternion_from_euler
+from quad_ident_ros.model.attitude import body_rate, quaternion_from_euler, rotate
 
 DEGREE = np.pi / 180
 RPM = 2 * np.pi / 60

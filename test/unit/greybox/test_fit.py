@@ -10,7 +10,7 @@ import pytest
 
 from benchmarks.flights import FlightProblem, NAMES, NOISE, VEHICLE, with_constants
 from quad_ident_ros.cli.main import main
-from quad_ident_ros.data.commands import with_inputs
+from quad_ident_ros.data.commands import with_commands, with_inputs
 from quad_ident_ros.data.csv import write_csv
 from quad_ident_ros.data.quality import Finding, findings
 from quad_ident_ros.data.record import FlightRecord
@@ -26,7 +26,6 @@ from quad_ident_ros.greybox.linear import errors_along, linear_of, STEP, tangent
 from quad_ident_ros.greybox.normal import CHANCE, Normal, scatter_of
 from quad_ident_ros.greybox.parameters import INDEX, limits, nominal
 from quad_ident_ros.model.dynamics import course_of, STATES, states_of
-from quad_ident_ros.model.mixing import with_commands
 from quad_ident_ros.model.vehicle import load_vehicle, write_vehicle
 
 DRAWS = 20
