@@ -123,8 +123,9 @@ def _normal_of(vehicle: Vehicle) -> tuple[tuple[str, ...], np.ndarray]:
     """Return the names (P,) of what is drawn, and its covariance (P, P)."""
     known = vehicle.covariance
     if known is None:
-        raise InputError(f'vehicle {vehicle.name}: its file has no covariance, which `quad_ident '
-                         'diagnose ... --out-vehicle FILE` writes where its verdict names effects')
+        raise InputError(f'vehicle {vehicle.name}: its file has no covariance; `quad_ident '
+                         'diagnose` and `quad_ident fit` write that of what they estimate by '
+                         '`--out-vehicle FILE`')
     same = constants_within(known.names)
     apart = {name: std for name, std in stated(vehicle).items()
              if name not in known.names and name not in same}
