@@ -25,7 +25,7 @@ def add(commands, said):
         description='Reproduce the paper: fit all methods to its experiments over many seeds, '
                     'compute its Table 3 from\nits Table 2, fly its equations as printed, and say '
                     'which of its claims hold. Writes paper.html,\npaper.json and the pictures.',
-        epilog='presets, the last of which is no flight but the responses that Table 3 implies:\n'
+        epilog='presets; the last one is the responses that Table 3 implies, not a flight:\n'
         + ''.join(f'  {name}\n' for name in PRESETS)
         + '\nAll of them with 20 seeds take half a minute. A quick look:\n'
           '  quad_ident paper --seeds 6 --preset hover_single_axis')

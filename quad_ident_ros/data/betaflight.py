@@ -70,8 +70,8 @@ def contents(path):
 def _record(path, log, count, actuators):
     where = str(path) if count == 1 else f'{path}, log {log.number}'
     if str(log.headers.get('Firmware type', '')).startswith('Rotorflight'):
-        raise InputError(f'{where}: this is a log of Rotorflight, of a helicopter, which is no '
-                         'multirotor; give a log of Betaflight')
+        raise InputError(f'{where}: this is a log of Rotorflight, of a helicopter, which is not '
+                         'a multirotor; give a log of Betaflight')
     notes = list(log.notes)
     streams = [_attitude(log), _rate(log, notes), _specific_force(log, notes),
                _rotors(log, notes), _battery(log, notes)]

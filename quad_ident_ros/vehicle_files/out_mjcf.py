@@ -77,7 +77,7 @@ def _write_thrusts(edited: EditedXml, base: Base, thrusts: list[Push]) -> None:
     losses = wanted.losses
     if np.max(losses) >= 1.0:
         losses = np.zeros(len(losses))
-        edited.lack(['losses'], 'a rotor without thrust is no rotor; remove its actuator')
+        edited.lack(['losses'], 'a rotor without thrust is not a rotor; remove its actuator')
     moment = 1.0 if torque is None else wanted.torque / torque
     for j, (push, loss) in enumerate(zip(thrusts, losses, strict=True), 1):
         before = base.effect('rotor_fault', f'loss_{j}')

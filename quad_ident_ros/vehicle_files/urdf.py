@@ -127,7 +127,7 @@ def bodies_of(draft: Draft, links: dict[str, Link], rotors: Sequence[Link]) -> d
             draft.note(f'link {name}', body.mass, 'kg', link.element.place('inertial'))
             bodies[name] = body.placed(link.pose)
     for names, said in ((bare, 'links with shapes and no <inertial> are taken without mass'),
-                        (moving, 'links that move and are no rotors are taken as fixed where '
+                        (moving, 'links that move and are not rotors are taken as fixed where '
                          'they start')):
         if names:
             draft.assumed.append(f'{said}: {", ".join(names[:5])}')

@@ -60,7 +60,7 @@ def forces(draft: Draft) -> None:
             return
     if usual < HOVERS[0]:
         draft.guess.said.append(f'{together(names)}: not taken, an acceleration without '
-                                'gravity is no specific force')
+                                'gravity is not a specific force')
         draft.taken(names, '')
         return
     draft.guess.doubts.append(f'ax: the unit of {together(names)}, {usual:.3g} as a rule')
@@ -136,7 +136,7 @@ def _by_velocity(draft: Draft, names: Sequence[str]) -> str:
         if factor / 2 < ratio < 2 * factor:
             return unit
     draft.guess.doubts.append(f'px: {together(names)} change {ratio:.3g} times as fast as '
-                              f'{together(given)} says, which is no unit')
+                              f'{together(given)} says, which is not a unit')
     return 'm'
 
 

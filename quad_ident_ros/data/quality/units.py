@@ -55,7 +55,7 @@ def _other_size(one, other, where, these, those):
     if abs(sure) < CERTAIN or moved < MOVED or 1 / OFF < abs(slope) < OFF:
         return []
     return [Finding('scale', 'error', where,
-                    f'{these} are {abs(slope):.3g} times {those}, which is no unit',
+                    f'{these} are {abs(slope):.3g} times {those}, which is not a unit',
                     'see by what they are scaled where they are written')]
 
 
