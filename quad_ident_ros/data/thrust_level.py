@@ -60,7 +60,7 @@ def levelled(where: str, records: Sequence[FlightRecord], signals: Sequence[np.n
     ratio = float(np.median(np.concatenate(ratios))) if sum(map(len, ratios)) else 0.0
     if not ratio > 0.0:
         raise InputError(f'{where}: the speed of the rotors at full signal is not known, and no '
-                         'flight that carries the weight tells it; give the vehicle file '
+                         'flight that carries the weight shows it; give the vehicle file '
                          'speed_max (rad/s), or motors: with a gain')
     gain = ratio if motors.gives == 'thrust' else float(np.sqrt(ratio))
     return replace(motors, gain=gain), ' and '.join(dict.fromkeys(told))

@@ -140,7 +140,7 @@ def _take_bodies(draft: Draft, links: dict[str, Link], rotors: Sequence[Link]) -
     """Enter mass and inertia of all links, and return them as one."""
     whole = combined(list(bodies_of(draft, links, rotors).values()))
     base = next(link for link in links.values() if link.joint is None)
-    draft.take_body(whole, f'{base.element.place()} with all that hangs on it')
+    draft.take_body(whole, f'{base.element.place()} with all links attached to it')
     return whole
 
 

@@ -66,8 +66,8 @@ def trees_of(root: Element) -> dict[str, dict[str, Link]]:
                                  'link of the robot')
         other = above.setdefault(_end(joint, 'child'), joint)
         if other is not joint:
-            raise InputError(f'{joint.where}: its child hangs on the joint in line {other.line} '
-                             'too; a URDF is a tree')
+            raise InputError(f'{joint.where}: its child is attached to the joint in line '
+                             f'{other.line} too; a URDF is a tree')
     trees: dict[str, dict[str, Link]] = {}
     for name in links:
         _place(name, links, above, trees)
@@ -89,7 +89,7 @@ def _place(name: str, links: dict[str, Element], above: dict[str, Element],
     at, place, seen = name, pose(), set()
     while at in above:
         if at in seen:
-            raise InputError(f'{above[at].where}: the links hang on one another in a circle')
+            raise InputError(f'{above[at].where}: the links form a circle')
         seen.add(at)
         place, at = origin_of(above[at]) @ place, _end(above[at], 'parent')
     trees.setdefault(at, {})[name] = Link(links[name], place, above.get(name),

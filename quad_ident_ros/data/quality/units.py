@@ -86,8 +86,8 @@ def euler_in_degrees(record, vehicle):
     slope = _tilted_by_degrees(grid, euler) if alone else None
     if slope is None:
         return []
-    found = [_in_degrees(f'the vehicle accelerates {slope:.2f} times as the angles tell, read as '
-                         'degrees')]
+    found = [_in_degrees(f'the vehicle accelerates {slope:.2f} times what the angles give, read '
+                         'as degrees')]
     return found + ([_gyro_in_degrees('they are those of angles in degrees')]
                     if reference is not None and abs(sure) >= SURE else [])
 
