@@ -73,7 +73,7 @@ def _heading(anchor, title):
 def _introduction(reproduction):
     return tag('p', 'Quadrotor Identification through the Cooperative Particle Swarm '
                     'Optimization-Cuckoo Search Approach (El gmili, Mjahed, El kari, Ayad, '
-                    f'2019), computed anew by quad_ident_ros {__version__} with '
+                    f'2019), recomputed by quad_ident_ros {__version__} with '
                     f'{reproduction.seeds} seeds of each search. Everything on this page, the '
                     'conclusions too, follows from the numbers of this run; paper.json has them.')
 
@@ -93,17 +93,18 @@ def _conclusions(claims):
              Markup(f'<td class="prose">{markup(claim.numbers)}</td>')] for claim in claims]
     return join([
         _heading('conclusions', 'Conclusions'),
-        tag('p', 'A claim holds when it is so in all cases, in part when in some, and not when in '
-                 'none. One about everything (equations that are the same, a space that contains '
-                 'all solutions, the smallest of all errors, no better method) does not hold '
-                 'when a single case refutes it. Claims of which method is better have each '
-                 'experiment, search and pair of methods as a case: those in which the opposite '
-                 'is so are counted beside. One method is better than another where the 95 % '
-                 'interval of the probability that it ends below the other lies above one half, '
-                 'ties counting half to each; where no case is that sure, the claim is '
-                 'undecided. That no method is better is undecided as long as one case is, and '
-                 'so in a case where the 95 % interval of the probability that the other ends '
-                 'below lies under one half.'),
+        tag('p', 'A claim holds if it is true in all cases, holds in part if it is true in some, '
+                 'and does not hold if it is true in none. A claim about everything (equations that '
+                 'are the same, a space that contains all solutions, the smallest of all errors, '
+                 'no better method) does not hold if a single case refutes it.'),
+        tag('p', 'For claims that one method is better than another, each experiment, search and '
+                 'pair of methods is a case; cases in which the opposite is true are counted '
+                 'beside. A method is better if the 95 % interval of the probability that it ends '
+                 'below the other lies above one half, where a tie counts half for each. A case '
+                 'is undecided if the interval contains one half, and a claim is undecided if all '
+                 'its cases are. That no method is better is decided in a case only if the 95 % '
+                 'interval of the probability that the other ends below lies under one half; a '
+                 'single case that is not decided leaves the claim undecided.'),
         table(['claim', 'verdict', 'so in', 'the numbers'], rows,
               ('text', 'text', 'text', 'text'), caption='Claims of the paper')])
 
@@ -159,8 +160,9 @@ def _tables(reproduction, pictures):
 def _least_squares(reproduction):
     return join([
         _heading('ls', 'Least squares as printed'),
-        tag('p', 'Equations (35) to (37) have signs wrong, a0 and a1 exchanged and a factor '
-                 'missing under the root. Beside what they give: least squares put right.'),
+        tag('p', 'Equations (35) to (37) have wrong signs, a0 and a1 exchanged, and a factor '
+                 'missing under the root. The table compares what they give with corrected least '
+                 'squares.'),
         sections.ls_printed(reproduction),
         tag('p', 'The models of Table 2 through eq. (36), at 5 s, and back through eq. (37):'),
         sections.round_trips(reproduction.trips)])
@@ -169,10 +171,9 @@ def _least_squares(reproduction):
 def _equations(reproduction):
     return join([
         _heading('equations', 'The equations as printed'),
-        tag('p', 'Equations (13) to (15) feed energy in where friction should take it out. A run '
-                 'ends when a rate exceeds 1e6 rad/s. Where one axis turns alone the time is '
-                 'known exactly. The last column is the end of the same flight by the equations '
-                 f'derived right; those of {DURATION:.0f} s were flown so for '
-                 f'{SHORT:g} s, and to the '
-                 'end as an experiment above.'),
+        tag('p', 'Equations (13) to (15) add energy where friction should remove it. A run ends '
+                 'when a rate exceeds 1e6 rad/s. If only one axis turns, the time is known '
+                 'exactly. The last column is the end of the same flight by the correctly derived '
+                 f'equations; flights of {DURATION:.0f} s were flown with these for {SHORT:g} s '
+                 'here, and to the end as an experiment above.'),
         sections.printed_equations(reproduction.cases)])
