@@ -10,9 +10,9 @@ import numpy as np
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.greybox.parameters import INDEX, nominal
+from quad_ident_ros.model.attitude import product, turn
 from quad_ident_ros.model.dynamics import course_of, predict, STATES, states_of
 from quad_ident_ros.model.rigid_body import vehicle_vector
-from quad_ident_ros.model.sensors import product, turn
 from quad_ident_ros.model.vehicle import Rotor, Vehicle
 
 NAMES = ('mass', 'inertia_x', 'inertia_y', 'inertia_z', 'thrust_coefficient',

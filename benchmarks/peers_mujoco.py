@@ -137,7 +137,7 @@ def _modifier(mujoco, vehicle, name):
 
 def _over_noise(_parameters, predicted, measured, _model, _return_all, **_more):
     """Return residuals over the noise; the attitude as a rotation vector."""
-    from quad_ident_ros.model.sensors import product
+    from quad_ident_ros.model.attitude import product
     guess, truth = predicted.data, measured.data
     turned = 2.0 * product(guess[:, 6:10] * [1, -1, -1, -1], truth[:, 6:10])[:, 1:]
     left = np.concatenate([truth[:, :6] - guess[:, :6], turned, truth[:, 10:] - guess[:, 10:]],

@@ -43,7 +43,7 @@ def find(kind, name_or_path):
     Raises InputError that lists the shipped names where there is no such file.
     """
     text = str(name_or_path)
-    if os.sep in text or text.endswith(('.yaml', '.yml')):
+    if os.sep in text or os.path.splitext(text)[1]:
         path = _existing(text)
         if path is None:
             said = text if text.isprintable() and len(text) < 300 else schema.shown(text)

@@ -77,8 +77,10 @@ def run(options: argparse.Namespace) -> None:
         raise InputError('--seed: only draws have a seed; give --randomise N too, or leave it out')
     target = TARGETS[options.to]
     if Path(options.output).suffix not in target.endings:
-        endings = ', '.join(ending or 'nothing' for ending in target.endings)
-        raise InputError(f'{options.output}: a file for {options.to} ends in {endings}; name one')
+        endings = ', '.join(filter(None, target.endings))
+        bare = ' or has no ending' if '' in target.endings else ''
+        raise InputError(f'{options.output}: the name of a file for {options.to} ends in '
+                         f'{endings}{bare}; give such a name')
     vehicle = load_vehicle(_file_of_ours(options.vehicle))
     source = _base(options)
     records = [record for path in options.flight or [] for record in

@@ -13,13 +13,13 @@ from quad_ident_ros.cli.options import (
     thrust_by_log,
     vehicle_from,
 )
+from quad_ident_ros.data.commands import with_commands
 from quad_ident_ros.data.quality import refuse_errors, refuse_unfit
 from quad_ident_ros.data.quality.ground import airborne, stands
 from quad_ident_ros.data.split import joined
 from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.greybox.cautions import cautions
 from quad_ident_ros.greybox.free import columns_of_names, EXCITATION
-from quad_ident_ros.model.mixing import with_commands
 from quad_ident_ros.model.vehicle import write_vehicle
 from quad_ident_ros.report.data import write_json
 from quad_ident_ros.report.screen import console, progress_bar

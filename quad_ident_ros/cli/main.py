@@ -55,7 +55,7 @@ def parser(wanted):
 
     Those of the commands in `wanted` have their options.
     """
-    top = argparse.ArgumentParser(
+    top = _Parser(
         prog='quad_ident', epilog=EPILOG, formatter_class=argparse.RawDescriptionHelpFormatter,
         description='Identify a quadrotor online by PSO, CS, PSO-CS, LS and VP; say where, why '
                     'and how far it differs from its simulation.')
@@ -68,6 +68,18 @@ def parser(wanted):
         else:
             commands.add_parser(name, help=said)
     return top, commands.choices
+
+
+class _Parser(argparse.ArgumentParser):
+    """Says of a value that is none of several which of them may be meant."""
+
+    def error(self, message):
+        """End with a message in one line."""
+        wrong = re.search(r"invalid choice: '([^']*)' \(choose from (.*)\)$", message)
+        if wrong:
+            hint = suggestion(wrong[1], re.findall(r"[^\s',]+", wrong[2]))
+            message += f'; {hint}' if hint else ''
+        super().error(message)
 
 
 def _refuse(command, unknown):

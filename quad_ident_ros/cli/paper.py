@@ -14,6 +14,7 @@ from quad_ident_ros.paper.reproduce import as_data, reproduce
 from quad_ident_ros.paper.summary import conclusions_table, errors_table
 from quad_ident_ros.report.data import write_json
 from quad_ident_ros.report.screen import console, progress_bar
+from quad_ident_ros.report.svg import drawings
 
 
 def add(commands, said):
@@ -24,7 +25,7 @@ def add(commands, said):
         description='Reproduce the paper: fit all methods to its experiments over many seeds, '
                     'compute its Table 3 from\nits Table 2, fly its equations as printed, and say '
                     'which of its claims hold. Writes paper.html,\npaper.json and the pictures.',
-        epilog='presets, the last of which is no flight but the responses that Table 3 implies:\n'
+        epilog='presets; the last one is the responses that Table 3 implies, not a flight:\n'
         + ''.join(f'  {name}\n' for name in PRESETS)
         + '\nAll of them with 20 seeds take half a minute. A quick look:\n'
           '  quad_ident paper --seeds 6 --preset hover_single_axis')
@@ -56,7 +57,7 @@ def run(options):
         found = reproduce(names, options.seeds, lambda text, share: bar.update(
             task, description=text, completed=share))
         bar.update(task, description='drawing')
-        pictures = page.save_pictures(found, folder)
+        pictures = drawings(page.figures(found), folder)
     claims = claims_of(found)
     data = as_data(found, claims)
     page.write(folder / 'paper.html', found, claims, pictures)
@@ -64,7 +65,7 @@ def run(options):
     if options.json != '-':
         show(found, claims)
         for name, value in (('page', folder / 'paper.html'), ('data', folder / 'paper.json'),
-                            ('pictures', folder / '*.png')):
+                            ('pictures', folder / '*.svg')):
             print(f'{name:>8}: {value}')
         print(f'    took: {time.perf_counter() - began:.1f} s, {options.seeds} seeds')
     if options.json:

@@ -45,7 +45,7 @@ def add(commands, said):
 def run(options):
     """Show the view until q or Ctrl-C; raises InputError where it cannot be shown."""
     if not all(stream.isatty() for stream in (sys.stdin, sys.stdout, sys.stderr)):
-        raise InputError('this is no terminal: start it in one, without a pipe or redirection '
+        raise InputError('this is not a terminal: start it in one, without a pipe or redirection '
                          '(with ssh: ssh -t HOST ...); `ros2 topic echo` prints the same topics')
     try:
         from quad_ident_ros.watch.view import WatchApp

@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 from scipy.interpolate import Akima1DInterpolator
 
-from quad_ident_ros.data.frames import continuous
 from quad_ident_ros.data.quality.clock import clock_offset, SEVERAL, velocity_offset
 from quad_ident_ros.data.quality.glitches import jumps
 from quad_ident_ros.data.record import EULER, QUATERNION
+from quad_ident_ros.model.attitude import continuous
 
 STREAMS = {'pose': ('px', 'py', 'pz', *QUATERNION, *EULER), 'velocity': ('vx', 'vy', 'vz'),
            'rate': ('wx', 'wy', 'wz', 'ax', 'ay', 'az')}

@@ -73,7 +73,7 @@ def read_ardupilot(path, mapping=None):
     _refuse_others(path, found, parameters)
     data = {name: _instance(path, name, found.get(name), mapping.instances.get(name))
             for name in ROLES if name != 'ESC'}
-    notes = [f'{damaged} bytes of the log are no messages and are left out'] if damaged else []
+    notes = [f'{damaged} bytes of the log are not messages and are left out'] if damaged else []
     streams = [_attitude(data), *_motion(data), _rate(data), _specific_force(data),
                _battery(data)]
     channels = _channels(parameters)
@@ -146,7 +146,7 @@ def _instance(path, name, messages, number):
     if not there:
         return None
     if not _timed(messages):
-        raise InputError(f'{path}, message {name}: there is no stamp TimeUS; this is no log of '
+        raise InputError(f'{path}, message {name}: there is no stamp TimeUS; this is not a log of '
                          'ArduPilot 3.3 or later')
     if field is not None:
         messages = messages.only(messages.rows[field] == (there[0] if number is None else number))
@@ -193,8 +193,8 @@ def _refuse_others(path, found, parameters):
     if kind is None and parameters.get('FRAME_CLASS') in _HELICOPTERS:
         kind = f'{_HELICOPTERS[parameters["FRAME_CLASS"]]} (FRAME_CLASS)'
     if kind is not None:
-        raise InputError(f'{path}: this is a log of {kind}, which is no multirotor; give a log of '
-                         'ArduCopter of a multirotor')
+        raise InputError(f'{path}: this is a log of {kind}, which is not a multirotor; give a log '
+                         'of ArduCopter of a multirotor')
 
 
 def _stream(messages, columns, values, between=INTERPOLATED):
@@ -329,8 +329,8 @@ def _rotors(messages, channels, notes):
     instances = [channels[motor] - 1 for motor in sorted(channels)]
     if not instances or not set(instances) <= set(there):
         if not there or len(instances) not in (0, len(there)):
-            notes.append(f'ESC: rotor speeds of {len(there)} ESCs are there for {len(instances)} '
-                         'motors, and are left out')
+            notes.append(f'ESC: the log has rotor speeds of {len(there)} ESCs for '
+                         f'{len(instances)} motors; they are left out')
             return []
         instances = there
         notes.append('ESC: the ESCs are not numbered as the outputs; rotor speeds are kept in '

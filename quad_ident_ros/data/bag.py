@@ -102,8 +102,8 @@ class BagWriter:
             raise InputError(f'{path}: the topics {names} repeat one; name each once')
         for name, msgtype in topics:
             if msgtype not in types:
-                raise InputError(f'{path}, topic {name}: {msgtype!r} is no message type of ROS 2 '
-                                 'Jazzy; name one such as geometry_msgs/msg/PoseStamped')
+                raise InputError(f'{path}, topic {name}: {msgtype!r} is not a message type of ROS '
+                                 '2 Jazzy; name one such as geometry_msgs/msg/PoseStamped')
         begun = path.with_name(f'.{path.name}.begun')
         shutil.rmtree(begun, ignore_errors=True)    # of one that was killed just here
         self._writer = _Writer(begun, version=9, storage_plugin=StoragePlugin.MCAP)

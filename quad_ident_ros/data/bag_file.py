@@ -196,7 +196,7 @@ class BagFile:
                 if topics is not None and connection.topic not in topics:
                     raise BadType('its index names messages of other topics')
                 if not -2 ** 63 <= stamp < 2 ** 63:
-                    raise BadType(f'a message is stamped {stamp} ns, which is no time')
+                    raise BadType(f'a message is stamped {stamp} ns, which is not a time')
                 yield connection, stamp, data
 
     def _codec(self, connection):

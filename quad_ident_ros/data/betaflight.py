@@ -13,7 +13,6 @@ import struct
 
 import numpy as np
 
-from quad_ident_ros.data import frames
 from quad_ident_ros.data.autopilot import known_names, outputs_stream
 from quad_ident_ros.data.blackbox import read_logs
 from quad_ident_ros.data.motor_order import about_motors, quad
@@ -22,6 +21,7 @@ from quad_ident_ros.data.record import FlightRecord, QUATERNION
 from quad_ident_ros.data.streams import INTERPOLATED, join, SLOW, Stream
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.gravity import GRAVITY
+from quad_ident_ros.model.attitude import product
 
 
 def _three(name):
@@ -70,8 +70,8 @@ def contents(path):
 def _record(path, log, count, actuators):
     where = str(path) if count == 1 else f'{path}, log {log.number}'
     if str(log.headers.get('Firmware type', '')).startswith('Rotorflight'):
-        raise InputError(f'{where}: this is a log of Rotorflight, of a helicopter, which is no '
-                         'multirotor; give a log of Betaflight')
+        raise InputError(f'{where}: this is a log of Rotorflight, of a helicopter, which is not '
+                         'a multirotor; give a log of Betaflight')
     notes = list(log.notes)
     streams = [_attitude(log), _rate(log, notes), _specific_force(log, notes),
                _rotors(log, notes), _battery(log, notes)]
@@ -162,7 +162,7 @@ def _attitude(log):
     vector = _stack(log, ATTITUDE) / 32767.0
     real = np.sqrt(np.maximum(1.0 - np.sum(vector ** 2, axis=-1, keepdims=True), 0.0))
     q = np.hstack([real, vector])
-    q = frames.multiply(_ENU_FROM_NWU, q / np.linalg.norm(q, axis=-1, keepdims=True))
+    q = product(_ENU_FROM_NWU, q / np.linalg.norm(q, axis=-1, keepdims=True))
     return _stream(log, 'imuQuaternion', QUATERNION, q)
 
 

@@ -15,6 +15,7 @@ from quad_ident_ros.data.record import EULER, FlightRecord, MOMENTS, QUATERNION,
 from quad_ident_ros.data.streams import HELD, INTERPOLATED, join, SLOW, Stream
 from quad_ident_ros.data.tabular import shown, Table
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.model.attitude import product
 from quad_ident_ros.model.motors import MOTORS_OFF
 
 POSITION, VELOCITY = ('px', 'py', 'pz'), ('vx', 'vy', 'vz')
@@ -166,7 +167,7 @@ def from_euler(roll: np.ndarray, pitch: np.ndarray, yaw: np.ndarray) -> np.ndarr
     turns = [np.stack([np.cos(angle / 2), *(np.sin(angle / 2) if k == axis else zero
                                             for k in range(3))], axis=-1)
              for axis, angle in enumerate((roll, pitch, yaw))]
-    return frames.multiply(frames.multiply(turns[2], turns[1]), turns[0])
+    return product(product(turns[2], turns[1]), turns[0])
 
 
 def _kept(table: Table, chosen: Pairs, columns: Pairs, stamps: np.ndarray, known: np.ndarray,

@@ -1,16 +1,19 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""The inputs U1..U4 of a flight of which rotor speed commands or moments were recorded."""
+"""The inputs U1..U4 of a flight whose rotor speed commands or moments are recorded, and back."""
 
 import numpy as np
 
 from quad_ident_ros.data.quality.moments import are_forces, FORCES
 from quad_ident_ros.data.record import ARM, FlightRecord, INPUTS, MOMENTS, SATURATED
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.model.mixing import allocation_matrix, beyond_limits
+from quad_ident_ros.model.mixing import allocation_matrix, beyond_limits, squared_speeds
+from quad_ident_ros.model.vehicle import Vehicle
+
+BY_SPEEDS = 'by_speeds'     # in a record's info: its commands are measured rotor speeds
 
 
-def with_inputs(record, vehicle):
+def with_inputs(record: FlightRecord, vehicle: Vehicle) -> FlightRecord:
     """
     Return the record with U1..U4 made from moments, or from cmd1..cmdN (rad/s) by eq. (19).
 
@@ -21,7 +24,33 @@ def with_inputs(record, vehicle):
     return _with_saturation(_with_inputs(with_arm(record, vehicle), vehicle), vehicle)
 
 
-def _with_saturation(record, vehicle):
+def with_commands(record: FlightRecord, vehicle: Vehicle) -> FlightRecord:
+    """
+    Return a flight record with rotor speed commands; where it has none, those that give U1..U4.
+
+    With more than four rotors these are the smallest. Inputs that no rotor speeds give become
+    rotors at rest. Where it has no inputs either, measured rotor speeds take their place, those
+    between two samples held from the first to the second.
+    """
+    names = [f'cmd{j}' for j in range(1, len(vehicle.rotors) + 1)]
+    measured = [f'rotor{j}' for j in range(1, len(vehicle.rotors) + 1)]
+    if record.has(*names):
+        return record
+    if not record.has(*INPUTS):
+        if not record.has(*measured):
+            return record
+        speeds = record.stack(*measured)
+        speeds[:-1] = (speeds[:-1] + speeds[1:]) / 2.0
+        columns = {name: values for name, values in record.columns.items()
+                   if name not in measured}
+        return FlightRecord(record.t, columns | dict(zip(names, speeds.T, strict=True)),
+                            {**record.info, BY_SPEEDS: True})
+    speeds = np.sqrt(np.maximum(squared_speeds(vehicle, record.inputs()), 0.0))
+    columns = {**record.columns, **dict(zip(names, speeds.T, strict=True))}
+    return FlightRecord(record.t, columns, record.info)
+
+
+def _with_saturation(record: FlightRecord, vehicle: Vehicle) -> FlightRecord:
     """Return a record with a column of 1 where U1..U4 are beyond the limits of the rotors."""
     if not record.has(*INPUTS):
         return record
@@ -31,7 +60,7 @@ def _with_saturation(record, vehicle):
     return FlightRecord(record.t, {**record.columns, SATURATED: beyond.astype(float)}, record.info)
 
 
-def _with_inputs(record, vehicle):
+def _with_inputs(record: FlightRecord, vehicle: Vehicle) -> FlightRecord:
     """Return the record with U1..U4 where it has commands alone; InputError."""
     commands = [name for name in record.columns if name.startswith('cmd')]
     if not commands or any(map(record.has, INPUTS)):
@@ -45,7 +74,7 @@ def _with_inputs(record, vehicle):
                         record.info)
 
 
-def with_arm(record, vehicle):
+def with_arm(record: FlightRecord, vehicle: Vehicle) -> FlightRecord:
     """
     Return the record with u2 and u3 (N) in place of its moments about x and y (N m).
 

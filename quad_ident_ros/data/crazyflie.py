@@ -11,7 +11,6 @@ from pathlib import Path
 
 import numpy as np
 
-from quad_ident_ros.data import frames
 from quad_ident_ros.data.autopilot import known_names, outputs_stream, unit_quaternions
 from quad_ident_ros.data.motor_order import about_motors, quad
 from quad_ident_ros.data.readers.base import content_of
@@ -20,7 +19,7 @@ from quad_ident_ros.data.streams import INTERPOLATED, join, SLOW, Stream
 from quad_ident_ros.data.usdlog import read_events
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.gravity import GRAVITY
-from quad_ident_ros.model.attitude import quaternion_from_euler
+from quad_ident_ros.model.attitude import quaternion_from_euler, rotate
 
 POSITION, VELOCITY = ('px', 'py', 'pz'), ('vx', 'vy', 'vz')
 RATE, FORCE = ('wx', 'wy', 'wz'), ('ax', 'ay', 'az')
@@ -46,7 +45,7 @@ def _euler(degrees):
 
 def _turned(values):
     """Return velocities in the world from those in the body and the quaternion beside them."""
-    return frames.rotate(unit_quaternions(values[:, 3:]), values[:, :3])
+    return rotate(unit_quaternions(values[:, 3:]), values[:, :3])
 
 
 def _unpacked(values):

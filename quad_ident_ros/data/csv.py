@@ -184,7 +184,7 @@ def _header(path, row):
                        'begin with a line of comma-separated column names, t among them')
     for name in names:
         if not name.isprintable():
-            raise error_at(path, 1, name, 'this is no column name', 'use printable text')
+            raise error_at(path, 1, name, 'this is not a column name', 'use printable text')
     return names
 
 
@@ -202,7 +202,7 @@ def _parse_any(path, rows, names):
         elif unit(name) is not None:
             wrong = [k for k, number in enumerate(numbers) if number is None]
             k, delete = wrong[0], deletion([lines[k] for k in wrong], len(lines))
-            raise error_at(path, lines[k], name, f'{column[k][:40]!r} is no number',
+            raise error_at(path, lines[k], name, f'{column[k][:40]!r} is not a number',
                            'write a decimal number' + (f', or {delete}' if delete else ''))
     columns.pop('', None)
     return lines, columns

@@ -10,11 +10,11 @@ import numpy as np
 
 from quad_ident_ros.data.bag import BagWriter, serialize
 from quad_ident_ros.data.csv import write_csv
-from quad_ident_ros.data.frames import conjugate, rotate
 from quad_ident_ros.data.record import EULER, INPUTS, MOMENTS, QUATERNION
 from quad_ident_ros.data.table import record_table
 from quad_ident_ros.data.topics import arm_of, ARRAY_TYPE, EXACT_TOPIC, FLIGHT_TOPICS
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.model.attitude import conjugate, rotate
 
 VECTOR = 'geometry_msgs/msg/Vector3Stamped'
 

@@ -29,6 +29,7 @@ from quad_ident_ros.data.signal_kind import kinds_of
 from quad_ident_ros.data.streams import HELD, INTERPOLATED, join, SLOW, Stream
 from quad_ident_ros.data.topics import not_unit, OTHER_SHAPE
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.model.attitude import rotate
 from quad_ident_ros.model.motors import MOTORS_OFF, TO_SPEED
 
 BODY_VELOCITY = ('body_vx', 'body_vy', 'body_vz')
@@ -111,7 +112,7 @@ def velocity_in_world(path, columns):
         body = np.stack([columns.pop(name) for name in BODY_VELOCITY], axis=-1)
         attitude = np.stack([columns[name] for name in QUATERNION], axis=-1)
         attitude = attitude / np.linalg.norm(attitude, axis=-1, keepdims=True)
-        columns.update(zip(('vx', 'vy', 'vz'), frames.rotate(attitude, body).T, strict=True))
+        columns.update(zip(('vx', 'vy', 'vz'), rotate(attitude, body).T, strict=True))
     return columns
 
 

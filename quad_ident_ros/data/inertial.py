@@ -16,8 +16,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from quad_ident_ros.data.record import EULER, FlightRecord, QUATERNION
-from quad_ident_ros.model.attitude import rotation_matrix
-from quad_ident_ros.model.sensors import turn, turned_on
+from quad_ident_ros.model.attitude import rotation_matrix, turn, turned_on
 
 POSITION, VELOCITY = ('px', 'py', 'pz'), ('vx', 'vy', 'vz')
 RATE, FORCE = ('wx', 'wy', 'wz'), ('ax', 'ay', 'az')

@@ -90,7 +90,7 @@ def table_text(source: object, mapping: Mapping, doubts: Sequence[str], columns:
     Args: source; mapping and doubts of a guess.Guess; columns: names of all in the file.
     """
     used = {name for column in mapping.columns.values() for name in column.names}
-    lines = [f'# not told by names and values: {doubt}' for doubt in doubts]
+    lines = [f'# not recognised by names and values: {doubt}' for doubt in doubts]
     lines += [f'world: {mapping.world}', f'body: {mapping.body}']
     if ATTITUDE in mapping.columns:
         lines.append(f'quaternion: {mapping.quaternion}')

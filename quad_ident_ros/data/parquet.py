@@ -45,7 +45,7 @@ def read_parquet(path: Path) -> Table:
     except Exception as error:  # a damaged file makes the parser raise anything
         if isinstance(error, OSError) and error.strerror:
             raise InputError(f'{path}: cannot be read: {error.strerror}') from None
-        raise InputError(f'{path}: this is no whole Parquet file; write it again') from None
+        raise InputError(f'{path}: this is not a complete Parquet file; write it again') from None
     if not columns or found.num_rows < 2:
         raise InputError(f'{path}: there are fewer than 2 rows of numbers; give a table with '
                          f'samples{left_out(text, "; ")}')

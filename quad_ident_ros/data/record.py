@@ -68,7 +68,7 @@ def find_fault(t, columns):
     for name, values in {'t': t, **columns}.items():
         if unit(name) is not None and not np.isfinite(values).all():
             k = int(np.argmin(np.isfinite(values)))
-            return Fault(name, k, f'{values[k]} is no finite number',
+            return Fault(name, k, f'{values[k]} is not a finite number',
                          'fill in the value, or leave the sample out')
     stuck = t[1:] <= t[:-1]
     if stuck.any():
@@ -232,14 +232,14 @@ class FlightRecord:
 
     def _checked(self, name, values, length):
         if not isinstance(name, str) or not name.isprintable() or name != name.strip() or not name:
-            raise InputError(f'{self._label()}: {str(name)[:40]!r} is no column name; use '
+            raise InputError(f'{self._label()}: {str(name)[:40]!r} is not a column name; use '
                              'printable text without spaces around it')
         if length is not None and name == 't':
             raise InputError(f'{self._label()}: the columns repeat t; give it once')
         try:
             array = np.asarray(values, dtype=float).view()
         except (TypeError, ValueError):
-            raise InputError(f'{self._label()}, column {name!r}: the values are no numbers; '
+            raise InputError(f'{self._label()}, column {name!r}: the values are not numbers; '
                              'give numbers or leave the column out') from None
         if array.ndim != 1 or (length is not None and len(array) != length):
             raise InputError(f'{self._label()}, column {name!r}: shape {array.shape} does not '

@@ -209,7 +209,7 @@ def _counted(data):
         kind, length = struct.unpack_from('<BQ', data, at)
         end = at + HEAD + length
         if kind not in INSIDE or end > len(data):
-            raise ReaderError('this is no chunk')
+            raise ReaderError('this is not a chunk')
         if kind == MESSAGE:
             counts[struct.unpack_from('<H', data, at + HEAD)[0]] += 1
         else:

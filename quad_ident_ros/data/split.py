@@ -9,8 +9,8 @@ from typing import TypeAlias
 import numpy as np
 
 from quad_ident_ros.data.counted import counted
-from quad_ident_ros.data.frames import conjugate, continuous, multiply, rotate
 from quad_ident_ros.data.record import FlightRecord, NOTED, QUATERNION
+from quad_ident_ros.model.attitude import conjugate, continuous, product, rotate
 
 Reset: TypeAlias = tuple[float, float, str]
 
@@ -197,7 +197,7 @@ def _unexplained_heading(record: FlightRecord) -> tuple[np.ndarray, np.ndarray] 
     if not (norm > 0.5).all():
         return None
     q = continuous(quaternion / norm)
-    turn = multiply(conjugate(q[:-1]), q[1:])
+    turn = product(conjugate(q[:-1]), q[1:])
     turn *= np.where(turn[:, :1] < 0, -1.0, 1.0)
     sine = np.linalg.norm(turn[:, 1:], axis=-1, keepdims=True)
     angle = 2.0 * np.arctan2(sine, turn[:, :1])

@@ -8,10 +8,10 @@ import math
 
 import numpy as np
 
-from quad_ident_ros.data.frames import continuous
 from quad_ident_ros.data.joiner import Counts, RESTART_NS
 from quad_ident_ros.data.record import EULER, QUATERNION
 from quad_ident_ros.data.streams import HELD, INTERPOLATED, slerp, SLOW
+from quad_ident_ros.model.attitude import continuous
 
 TURN = 2.0 * math.pi
 DECIDED = 50    # samples of a state or of the commands after which it is known which is faster

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from quad_ident_ros.data.counted import counted
-from quad_ident_ros.data.frames import continuous
 from quad_ident_ros.data.record import QUATERNION
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.model.attitude import continuous
 
 BRIDGED = 5.0   # sample periods of a stream that interpolation may bridge
 

@@ -58,10 +58,10 @@ def _info_from(where, label):
     except (ValueError, RecursionError):
         info = None
     if not isinstance(info, dict):
-        raise InputError(f'{where}: the label of the third dimension is no JSON object')
+        raise InputError(f'{where}: the label of the third dimension is not a JSON object')
     for name in ('run_index', 'run_count', 'start_ns'):
         if not isinstance(info.get(name, 0), int):
-            raise InputError(f'{where}: {name} is no whole number')
+            raise InputError(f'{where}: {name} is not a whole number')
     if not isinstance(info.get('notes', []), list):
-        raise InputError(f'{where}: notes are no list')
+        raise InputError(f'{where}: notes are not a list')
     return info

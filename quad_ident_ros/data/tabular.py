@@ -203,7 +203,7 @@ def _names(path: Path, rows: list[str], line: int, head: int, first: int,
     """Return the names of the columns, with the line above where they alone repeat; units."""
     names = _cells(rows[head].lstrip('#% '), separator)
     if len(names) > MOST_COLUMNS:
-        raise InputError(f'{path}, line {line}: {len(names)} columns are no flight')
+        raise InputError(f'{path}, line {line}: {len(names)} columns are not a flight')
     doubled = [name for name, count in Counter(names).items() if count > 1 and name]
     if doubled and head > 0:
         above = _cells(rows[head - 1], separator)
@@ -212,7 +212,7 @@ def _names(path: Path, rows: list[str], line: int, head: int, first: int,
             doubled = [name for name, count in Counter(names).items() if count > 1 and name]
     bad = [name for name in names if not name.isprintable()]
     if bad:
-        raise InputError(f'{path}, line {line}, column {bad[0][:40]!r}: this is no column '
+        raise InputError(f'{path}, line {line}, column {bad[0][:40]!r}: this is not a column '
                          'name; use printable text')
     units = {}
     if first - head == 2:
@@ -298,8 +298,8 @@ def numbers_in(path: Path, name: str, cells: Sequence[str], comma: bool,
         return _seconds(cells)
     if len(wrong) < _FEW * len(values):
         k = wrong[0]
-        raise InputError(f'{path}, {place(k)}, column {name[:40]!r}: {cells[k][:40]!r} is no '
-                         'number; correct it or leave the cell empty')
+        raise InputError(f'{path}, {place(k)}, column {name[:40]!r}: {cells[k][:40]!r} is not '
+                         'a number; correct it or leave the cell empty')
     return None
 
 

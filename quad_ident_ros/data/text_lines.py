@@ -77,7 +77,7 @@ def _bytes(path):
     """Return the content of a file, unpacked where it is packed by gzip, or named so."""
     try:
         if not path.is_file():
-            problem = 'this is no file' if path.exists() else 'there is no such file'
+            problem = 'this is not a file' if path.exists() else 'there is no such file'
             raise InputError(f'{path}: {problem}; give the path of a .csv or .csv.gz file')
         packed = is_packed(path)
         limit = most(path.stat().st_size)
@@ -91,8 +91,8 @@ def _bytes(path):
         if not _begins_packed(path):
             raise InputError(f'{path}: it is named as a gzip file, but its content is not packed; '
                              'name it without .gz') from None
-        raise InputError(f'{path}: this is no whole gzip file; copy it again, or save what is '
-                         'left of it with: zcat FILE > flight.csv') from None
+        raise InputError(f'{path}: this is not a complete gzip file; copy it again, or save what '
+                         'is left of it with: zcat FILE > flight.csv') from None
     except OSError as error:
         raise InputError(f'{path}: cannot be read ({error.strerror or error}); check the path and '
                          'its permissions') from None

@@ -8,9 +8,9 @@ import math
 
 import numpy as np
 
-from quad_ident_ros.data import frames
 from quad_ident_ros.data.record import FlightRecord, QUATERNION
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.model.attitude import rotate
 from quad_ident_ros.model.motors import Motors, rotor_speeds
 from quad_ident_ros.model.vehicle import Vehicle
 
@@ -60,7 +60,7 @@ def levelled(where: str, records: Sequence[FlightRecord], signals: Sequence[np.n
     ratio = float(np.median(np.concatenate(ratios))) if sum(map(len, ratios)) else 0.0
     if not ratio > 0.0:
         raise InputError(f'{where}: the speed of the rotors at full signal is not known, and no '
-                         'flight that carries the weight tells it; give the vehicle file '
+                         'flight that carries the weight shows it; give the vehicle file '
                          'speed_max (rad/s), or motors: with a gain')
     gain = ratio if motors.gives == 'thrust' else float(np.sqrt(ratio))
     return replace(motors, gain=gain), ' and '.join(dict.fromkeys(told))
@@ -109,7 +109,7 @@ def _lift(record: FlightRecord, gravity: float) -> tuple[np.ndarray, str]:
     attitude = record.stack(*QUATERNION)
     with np.errstate(all='ignore'):
         attitude = attitude / np.linalg.norm(attitude, axis=1, keepdims=True)
-        up = frames.rotate(attitude, np.tile([0.0, 0.0, 1.0], (len(record), 1)))
+        up = rotate(attitude, np.tile([0.0, 0.0, 1.0], (len(record), 1)))
         if not record.has('vx', 'vy', 'vz'):
             return gravity / np.maximum(up[:, 2], 0.1), 'the tilt, level on average'
         force = np.gradient(record.stack('vx', 'vy', 'vz'), record.t, axis=0)

@@ -93,7 +93,7 @@ def refuse_others(path: Path, log: ULog, status: dict | None) -> None:
     other = other_kind(log.initial_parameters, status)
     if other:
         raise InputError(f'{path}: this is the log of {other} (MAV_TYPE, vehicle_status), which '
-                         'is no multirotor; give the log of a multirotor')
+                         'is not a multirotor; give the log of a multirotor')
 
 
 def _modes(path: Path, status: dict | None, start_ns: int) -> list[tuple[float, str]]:
@@ -186,8 +186,8 @@ def _values(path, topic, data, names):
     """Return the fields of a topic, (N, k)."""
     missing = [name for name in names if name not in data]
     if missing:
-        raise InputError(f'{path}, topic {topic}: there is no field {missing[0]}; this is no log '
-                         'of PX4 1.11 or later')
+        raise InputError(f'{path}, topic {topic}: there is no field {missing[0]}; this is not a '
+                         'log of PX4 1.11 or later')
     with np.errstate(invalid='ignore'):   # nan of a kind that signals
         return np.stack([np.asarray(data[name], float) for name in names], axis=-1)
 
@@ -236,7 +236,7 @@ def _position(path: Path, data: dict, notes: list[str]) -> list[Stream]:
         streams, known = _positions(path, topic, data[topic])
         if known.any():
             if not known.all():
-                notes.append(f'topic {topic}: {np.sum(~known)} of {len(known)} samples are no '
+                notes.append(f'topic {topic}: {np.sum(~known)} of {len(known)} samples are not '
                              'valid estimates and are left out')
             return streams
         without.append(topic)

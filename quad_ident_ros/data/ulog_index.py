@@ -39,8 +39,8 @@ def contents(path: str | Path) -> list[Content]:
     except OSError as error:
         raise InputError(f'{path}: cannot be read: {error.strerror}') from None
     if len(data) < START or not data.startswith(b'ULog\x01\x12\x35'):
-        raise InputError(f'{path}: this is no whole log of PX4; download it from the vehicle '
-                         'again')
+        raise InputError(f'{path}: this is not a complete log of PX4; download it from the '
+                         'vehicle again')
     origin = int.from_bytes(data[8:16], 'little')
     messages = walk(data)
     formats, streams = _declared(data, messages)

@@ -119,12 +119,12 @@ def _header(path, data, stamp):
             declared = text()
             match = _VARIABLE.fullmatch(declared)
             if not match or match[2] not in TYPES:
-                raise InputError(f'{path}: event {name}: {declared!r} is no variable with a known '
-                                 f'type; {_AGAIN}')
+                raise InputError(f'{path}: event {name}: {declared!r} is not a variable with a '
+                                 f'known type; {_AGAIN}')
             variables.append((match[1], match[2]))
         if key in kinds or size > _MOST_VARIABLES or len(dict(variables)) < len(variables):
             raise InputError(f'{path}: the header of this Crazyflie log is damaged: event {name} '
-                             f'is there twice, or a variable in it; {_AGAIN}')
+                             f'appears twice, or a variable in it; {_AGAIN}')
         row = np.dtype([('id', '<u2'), ('stamp', stamp),
                         *((f'v{k}', TYPES[letter]) for k, (_, letter) in enumerate(variables))])
         kinds[key] = name, row, tuple(variables)

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from quad_ident_ros.data.clocks import Clock, clocks_of, on_one_clock
+from quad_ident_ros.data.commands import with_commands
 from quad_ident_ros.data.differentiated import with_motion
 from quad_ident_ros.data.inertial import is_inertial, POSITION, reckoned, with_position
 from quad_ident_ros.data.outputs import BY_MOTORS
@@ -35,7 +36,6 @@ from quad_ident_ros.greybox.rotor_answer import (
     ruled_out_by,
 )
 from quad_ident_ros.model.dynamics import course_of, states_of
-from quad_ident_ros.model.mixing import with_commands
 from quad_ident_ros.model.vehicle import Vehicle
 
 MOST_SHOWN = 8      # blocks that a line names, for display alone; as data there are all
@@ -149,7 +149,8 @@ def _beside_records(vehicle: Vehicle, records: Sequence[FlightRecord], findings:
         [with_commands, without] = (records[driven.index(kind)].info.get('source', 'a flight')
                                     for kind in (False, True))
         raise InputError(f'{without} has measured rotor speeds alone, and {with_commands} has '
-                         f'commands: with {motors[0]} in the vehicle file, diagnose them apart')
+                         f'commands: with {motors[0]} in the vehicle file, diagnose them '
+                         'separately')
     inertial = any(is_inertial(record) for record in records)
     no_height = not all(record.has(*POSITION) for record in records)
     gone = {PLACE[name, parameter.name] for name, form in FORMS for parameter in form.parameters
@@ -214,7 +215,7 @@ def _with_states(records: list[FlightRecord], vehicle: Vehicle, findings: list
         [with_states, without] = (records[inertial.index(kind)].info.get('source', 'a flight')
                                   for kind in (False, True))
         raise InputError(f'{without} has neither position nor velocity, and {with_states} has: '
-                         'diagnose flights with and without them apart')
+                         'diagnose flights with and without them separately')
     findings.append({
         'flight': 'all flights', 'code': 'inertial', 'severity': 'info',
         'where': 'accelerometer and gyro alone',

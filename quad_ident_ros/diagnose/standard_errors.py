@@ -15,8 +15,7 @@ from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.greybox.flights import Flight
 from quad_ident_ros.greybox.normal import covariance_of, marginal, Normal, scatter_of
 from quad_ident_ros.greybox.nuisances import Layout
-from quad_ident_ros.greybox.parameters import constants_within, INDEX, limits, NAMES
-from quad_ident_ros.model.quantities import stated
+from quad_ident_ros.greybox.parameters import INDEX, limits, uncertain_constants
 from quad_ident_ros.model.vehicle import Vehicle
 
 # Relative errors of formulas that are tried, the likeliest of which is taken.
@@ -83,17 +82,6 @@ def joint_of(fitted: Fitted, flights: Sequence[Flight], frame: Frame, vehicle: V
     shift = whole @ gradient
     shift[:count] -= covariance_of(_first(white, count), size[:count]) @ gradient[:count]
     return Joint(exact, tuple(constants), whole + np.outer(shift, shift))
-
-
-def uncertain_constants(vehicle: Vehicle, columns: Sequence[int]) -> dict[str, float]:
-    """
-    Return {constant: stated deviation} of those that an estimate is to know of.
-
-    Where a column is the same physical number, such as an offset of the mass, flights tell it.
-    """
-    same = constants_within(NAMES[column] for column in columns)
-    return {name: std for name, std in stated(vehicle).items()
-            if name in INDEX and name not in same}
 
 
 def _first(normal: Normal, count: int) -> Normal:

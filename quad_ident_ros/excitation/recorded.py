@@ -29,8 +29,8 @@ def recorded(t, file, column, trim=0.0):
     except (InputError, OSError):
         record = None
     if record is None:
-        raise InputError(f'file: {schema.shown(file)} is no flight record that can be read (.csv, '
-                         '.csv.gz); quad_ident info FILE says why')
+        raise InputError(f'file: {schema.shown(file)} is not a flight record that can be read '
+                         '(.csv, .csv.gz); quad_ident info FILE says why')
     values = record.stack(column)[:, 0] - schema.number('trim', trim)
     index = np.searchsorted(record.t - record.t[0], t - t[0] + 5e-10, side='right') - 1
     return values[index]

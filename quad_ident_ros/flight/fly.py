@@ -14,10 +14,10 @@ from quad_ident_ros.flight.controller import Tracking
 from quad_ident_ros.flight.loop import close_loop
 from quad_ident_ros.flight.measure import CLEAN, errors_of, measured, Sensors
 from quad_ident_ros.flight.trajectories import plan, scale_of
-from quad_ident_ros.model.attitude import quaternion_from_euler, rotation_matrix
+from quad_ident_ros.model.attitude import quaternion_from_euler, rotation_matrix, turn
 from quad_ident_ros.model.dynamics import STATES
 from quad_ident_ros.model.rigid_body import rotor_table, STATE, vehicle_vector, with_residual
-from quad_ident_ros.model.sensors import BLOCK, recorded, tilts_of, turn
+from quad_ident_ros.model.sensors import BLOCK, recorded, tilts_of
 from quad_ident_ros.model.vehicle import hover_fault, Vehicle
 
 FULL_VOLTAGE = 16.8     # V at the start of every flight: the voltage of reference

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 from scipy.signal import lfilter
 
-from quad_ident_ros.model.sensors import product, turn
+from quad_ident_ros.model.attitude import product, turn
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from quad_ident_ros.compiled import compiled
-from quad_ident_ros.model.sensors import product, turn
+from quad_ident_ros.model.attitude import product, turn
 
 ERRORS = 12     # position, velocity (world), rotation (body, rad), rate (body)
 GROUPS = {'position': slice(0, 3), 'velocity': slice(3, 6), 'attitude': slice(6, 9),

@@ -21,13 +21,15 @@ from quad_ident_ros.greybox.estimate import Estimate, estimate
 from quad_ident_ros.greybox.flights import Flight, highest_voltage, track_of
 from quad_ident_ros.greybox.free import columns_of_names, excitation_of
 from quad_ident_ros.greybox.identifiable import correlated, Freedom, freedoms
+from quad_ident_ros.greybox.known_together import known_together
 from quad_ident_ros.greybox.near import near_flights
 from quad_ident_ros.greybox.noise import quick_noise
 from quad_ident_ros.greybox.normal import covariance_of, Normal, scatter_of
 from quad_ident_ros.greybox.parameters import FACTORS, INDEX, limits, nominal, SPLIT
 from quad_ident_ros.greybox.rotor_answer import is_driven_by_speeds, NO_COMMANDS, OF_MOTORS
+from quad_ident_ros.model.covariance import Covariance
 from quad_ident_ros.model.quantities import unit_of
-from quad_ident_ros.model.vehicle import Vehicle
+from quad_ident_ros.model.vehicle import Uncertainty, Vehicle
 
 SCHEMA = 'quad_ident/fit/1'
 STRONG = 0.9    # correlation from which on two parameters are named
@@ -62,8 +64,9 @@ class Fit:
     """
     Parameters of a vehicle fitted to flights.
 
-    names of the columns of the estimate, and so of its covariance; findings: lines of text;
-    correlations: (name, name, value) of those that are strong.
+    names of the columns of the estimate, and so of its covariance; together: how well they are
+    known with the constants whose deviation the file states, or None where nothing is; findings:
+    lines of text; correlations: (name, name, value) of those that are strong.
     """
 
     vehicle: Vehicle
@@ -71,6 +74,7 @@ class Fit:
     parameters: tuple[Parameter, ...]
     estimate: Estimate
     names: tuple[str, ...]
+    together: Covariance | None
     correlations: tuple[tuple[str, str, float], ...]
     findings: tuple[str, ...]
 
@@ -139,8 +143,9 @@ def fit(records: Sequence[FlightRecord], vehicle: Vehicle, names: Iterable[str],
                   if is_driven_by_speeds(record)),
                 *(_said(freedom, inside, start[columns]) for freedom in undetermined),
                 *_findings(found, parameters, pairs, flights))
-    return Fit(vehicle, tuple(flight.name for flight in flights), parameters,
-               replace(found, covariance=covariance), order, pairs, findings)
+    found = replace(found, covariance=covariance)
+    return Fit(vehicle, tuple(flight.name for flight in flights), parameters, found, order,
+               known_together(found, flights, vehicle), pairs, findings)
 
 
 def _refuse_level(records: Iterable[FlightRecord], free: Iterable[str]) -> None:
@@ -174,25 +179,36 @@ def _apart(names: Sequence[str]) -> list[str]:
 
 def fitted_vehicle(fit: Fit) -> Vehicle:
     """
-    Return the vehicle as it was found; what is undetermined as far as it is given.
+    Return the vehicle with the estimates and their covariance; what is undetermined as given.
 
-    How well its file knows a constant that was fitted is said of the file's value, and left out;
-    so is a covariance, which is that of an earlier diagnosis.
+    The deviation that the file states of a constant that was fitted belongs to the file's value,
+    and is left out; so is a covariance that the file has.
     """
     z = fit.estimate.z
 
     def triple(key: str) -> tuple[float, ...]:
         return tuple(float(z[INDEX[f'{key}_{axis}']]) for axis in 'xyz')
 
-    freed = {parameter.name for parameter in fit.parameters}
-    known = {key: std for key, std in fit.vehicle.uncertainty.items()
-             if not freed & {key, *(f'{key}_{axis}' for axis in 'xyz')}}
-    return replace(fit.vehicle, uncertainty=known, covariance=None, effects=mapping(z[SPLIT:]),
+    return replace(fit.vehicle, uncertainty=_uncertainty(fit), covariance=fit.together,
+                   effects=mapping(z[SPLIT:]),
                    mass=float(z[INDEX['mass']]),
                    thrust_coefficient=float(z[INDEX['thrust_coefficient']]),
                    torque_coefficient=float(z[INDEX['torque_coefficient']]),
                    inertia=triple('inertia'), linear_drag=triple('linear_drag'),
                    rotational_drag=triple('rotational_drag'))
+
+
+def _uncertainty(fit: Fit) -> dict[str, Uncertainty]:
+    """Return the deviations that the file states of what was not fitted."""
+    fitted, kept = {parameter.name for parameter in fit.parameters
+                    if parameter.status != 'undetermined'}, {}
+    for key, std in fit.vehicle.uncertainty.items():
+        if isinstance(std, tuple):
+            std = tuple(None if f'{key}_{axis}' in fitted else one
+                        for axis, one in zip('xyz', std, strict=True))
+        if key not in fitted and std != (None, None, None):
+            kept[key] = std
+    return kept
 
 
 def as_data(fit: Fit) -> dict[str, Any]:

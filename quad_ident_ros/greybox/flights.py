@@ -10,7 +10,6 @@ import numpy as np
 from scipy.ndimage import uniform_filter1d
 
 from quad_ident_ros.data.clocks import Clock
-from quad_ident_ros.data.frames import continuous
 from quad_ident_ros.data.inertial import FORCE, SUMMED
 from quad_ident_ros.data.quality import refuse_errors, timing
 from quad_ident_ros.data.quality.glitches import glitches
@@ -18,6 +17,7 @@ from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.data.thrust_level import FULL_SPEED
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.greybox.errors import ERRORS, GROUPS
+from quad_ident_ros.model.attitude import continuous
 from quad_ident_ros.model.dynamics import Course, course_of, states_of
 from quad_ident_ros.model.vehicle import Vehicle
 

@@ -15,8 +15,8 @@ from scipy.optimize import nnls
 from quad_ident_ros.greybox.errors import difference, GROUPS
 from quad_ident_ros.greybox.flights import Flight, GAP
 from quad_ident_ros.greybox.parameters import SPLIT
-from quad_ident_ros.model.attitude import rotation_matrix
-from quad_ident_ros.model.sensors import product, turn, underlying
+from quad_ident_ros.model.attitude import product, rotation_matrix, turn
+from quad_ident_ros.model.sensors import underlying
 
 PAIRS = (('position', 'velocity'), ('attitude', 'rate'))
 MEMORIES = (0.03, 0.08, 0.2, 0.5)   # s, of which the noise may be made up

@@ -42,6 +42,18 @@ def constants_within(names: Iterable[str]) -> set[str]:
             if given & set(parameters)}
 
 
+def uncertain_constants(vehicle: Vehicle, columns: Iterable[int]) -> dict[str, float]:
+    """
+    Return {constant: stated deviation} of those that an estimate is to know of.
+
+    Where a column is the same physical number, such as an offset of the mass, flights tell it.
+    """
+    estimated = {NAMES[column] for column in columns}
+    same = estimated | constants_within(estimated)
+    return {name: std for name, std in stated(vehicle).items()
+            if name in INDEX and name not in same}
+
+
 def nominal(vehicle: Vehicle) -> np.ndarray:
     """
     Return the vector (Z,) of the vehicle file, with the effects that it has.

@@ -8,13 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import minimize
 
+from quad_ident_ros.data.commands import BY_SPEEDS
 from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.effects.registry import EFFECTS, NULL, Values
 from quad_ident_ros.greybox.flights import BRIDGED, GAP, RATE
 from quad_ident_ros.greybox.normal import BLOCK
 from quad_ident_ros.model.actuators import actuated, DELAY, LAG
-from quad_ident_ros.model.mixing import BY_SPEEDS
 
 MOST = 20_000           # samples, from the middle of a stretch: more tell nothing new
 LEAST_RATE = 40.0       # Hz of measured speeds; slower ones do not show lags

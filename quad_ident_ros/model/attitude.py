@@ -1,9 +1,58 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Attitude conversions: Hamilton quaternions (scalar first, body to world) and Euler angles."""
+"""Attitudes: Hamilton quaternions (scalar first, body to world), matrices and Euler angles."""
+
+import math
 
 import numpy as np
 from numpy.typing import ArrayLike
+
+from quad_ident_ros.compiled import compiled
+
+
+def product(left: ArrayLike, right: ArrayLike) -> np.ndarray:
+    """Return the Hamilton products of quaternions (..., 4)."""
+    left, right = np.broadcast_arrays(left, right)
+    out = np.empty(left.shape)
+    _products(np.ascontiguousarray(left, float).reshape(-1, 4),
+              np.ascontiguousarray(right, float).reshape(-1, 4), out.reshape(-1, 4))
+    return out
+
+
+def turn(vector: ArrayLike) -> np.ndarray:
+    """Return the quaternions of rotation vectors (..., 3) rad."""
+    vector = np.ascontiguousarray(vector, float)
+    out = np.empty((*vector.shape[:-1], 4))
+    _turns(vector.reshape(-1, 3), out.reshape(-1, 4))
+    return out
+
+
+def turned_on(turns: np.ndarray) -> np.ndarray:
+    """Return the quaternions (N + 1, 4) of a body that turns by each of (N, 4) after another."""
+    out = np.empty((len(turns) + 1, 4))
+    out[0] = 1.0, 0.0, 0.0, 0.0
+    _running_products(np.ascontiguousarray(turns), out)
+    return out
+
+
+def conjugate(quaternion: ArrayLike) -> np.ndarray:
+    """Return the inverse rotations of unit quaternions (..., 4)."""
+    return np.asarray(quaternion, float) * np.array([1.0, -1.0, -1.0, -1.0])
+
+
+def rotate(quaternion: ArrayLike, vector: ArrayLike) -> np.ndarray:
+    """Return vectors (..., 3) turned by unit quaternions (..., 4): from body to world."""
+    q, v = np.asarray(quaternion, float), np.asarray(vector, float)
+    twice = 2.0 * np.cross(q[..., 1:], v)
+    return np.asarray(v + q[..., :1] * twice + np.cross(q[..., 1:], twice))
+
+
+def continuous(quaternion: ArrayLike) -> np.ndarray:
+    """Return quaternions (N, 4) with signs such that none jumps to its negative."""
+    q = np.asarray(quaternion, float)
+    turned = np.sign(np.sum(q[1:] * q[:-1], axis=-1))
+    sign = np.concatenate([[1.0], np.cumprod(np.where(turned == 0, 1.0, turned))])
+    return np.asarray(q * sign[:, None])
 
 
 def quaternion_from_euler(euler: ArrayLike) -> np.ndarray:
@@ -80,3 +129,41 @@ def body_rate(euler: ArrayLike, euler_rate: ArrayLike) -> np.ndarray:
         roll_rate - yaw_rate * np.sin(pitch),
         pitch_rate * np.cos(roll) + yaw_rate * np.sin(roll) * np.cos(pitch),
         yaw_rate * np.cos(roll) * np.cos(pitch) - pitch_rate * np.sin(roll)], axis=-1)
+
+
+@compiled(fused=True, inlined=True)
+def product_of(w: float, x: float, y: float, z: float, t: float, i: float, j: float, k: float
+               ) -> tuple[float, float, float, float]:
+    """Return the Hamilton product of two quaternions, for compiled functions."""
+    return (w * t - x * i - y * j - z * k, w * i + x * t + y * k - z * j,
+            w * j - x * k + y * t + z * i, w * k + x * j - y * i + z * t)
+
+
+@compiled(fused=True)
+def _products(a: np.ndarray, b: np.ndarray, out: np.ndarray) -> None:
+    """Write the Hamilton products of quaternions (N, 4) into out."""
+    for n in range(len(out)):
+        out[n, 0], out[n, 1], out[n, 2], out[n, 3] = product_of(
+            a[n, 0], a[n, 1], a[n, 2], a[n, 3], b[n, 0], b[n, 1], b[n, 2], b[n, 3])
+
+
+@compiled(fused=True)
+def _running_products(turns: np.ndarray, out: np.ndarray) -> None:
+    """Write the products of the first of out (N + 1, 4) and turns (N, 4), unit quaternions."""
+    for n in range(len(turns)):
+        w, x, y, z = product_of(out[n, 0], out[n, 1], out[n, 2], out[n, 3],
+                                turns[n, 0], turns[n, 1], turns[n, 2], turns[n, 3])
+        length = math.sqrt(w * w + x * x + y * y + z * z)
+        out[n + 1, 0], out[n + 1, 1] = w / length, x / length
+        out[n + 1, 2], out[n + 1, 3] = y / length, z / length
+
+
+@compiled(fused=True)
+def _turns(vectors: np.ndarray, out: np.ndarray) -> None:
+    """Write the quaternions of rotation vectors (N, 3) rad into out (N, 4)."""
+    for n in range(len(out)):
+        x, y, z = vectors[n, 0], vectors[n, 1], vectors[n, 2]
+        half = 0.5 * math.sqrt(x * x + y * y + z * z)
+        share = 0.5 * (math.sin(half) / half if half > 0.0 else 1.0)
+        out[n, 0] = math.cos(half)
+        out[n, 1], out[n, 2], out[n, 3] = share * x, share * y, share * z

@@ -83,7 +83,7 @@ def _correlation(where: str, rows: Any, names: Sequence[str]) -> tuple[tuple[flo
     table = np.array([schema.numbers(f'{where}[{k}]', row, count, -1.0)
                       for k, row in enumerate(rows)]).reshape(count, count)
     for k, j in np.argwhere(table > 1.0 + ROUNDED).tolist():
-        raise InputError(f'{where}[{k}][{j}]: {table[k, j]:g} is no correlation; they are '
+        raise InputError(f'{where}[{k}][{j}]: {table[k, j]:g} is not a correlation; they are '
                          'between -1 and 1')
     for k in np.flatnonzero(np.diag(table) < 1.0 - ROUNDED).tolist():
         raise InputError(f'{where}[{k}][{k}]: {table[k, k]:g} is that of {names[k]} with itself; '

@@ -13,7 +13,7 @@ from quad_ident_ros.data.cutting import without
 from quad_ident_ros.data.record import FlightRecord, INPUTS
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.actuators import actuated, distinct, without_lag
-from quad_ident_ros.model.attitude import quaternion_from_euler
+from quad_ident_ros.model.attitude import product, quaternion_from_euler
 from quad_ident_ros.model.residual_in_flight import smoothed
 from quad_ident_ros.model.rigid_body import (
     INPUT,
@@ -23,15 +23,7 @@ from quad_ident_ros.model.rigid_body import (
     with_residual,
 )
 from quad_ident_ros.model.rollout import roll_out, roll_out_one
-from quad_ident_ros.model.sensors import (
-    change,
-    lead,
-    NO_GUIDE,
-    product,
-    Sensors,
-    sensors_of,
-    TURNED,
-)
+from quad_ident_ros.model.sensors import change, lead, NO_GUIDE, Sensors, sensors_of, TURNED
 from quad_ident_ros.model.situation import GUIDE
 from quad_ident_ros.model.vehicle import Vehicle
 

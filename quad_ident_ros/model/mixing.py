@@ -6,11 +6,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import lsq_linear
 
-from quad_ident_ros.data.record import FlightRecord, INPUTS
 from quad_ident_ros.model.vehicle import Vehicle
 
 RESIDUAL = 1e-6   # share of the inputs by which speeds that give them may miss
-BY_SPEEDS = 'by_speeds'     # in a record's info: its commands are measured rotor speeds
 
 
 def allocation_matrix(vehicle: Vehicle) -> np.ndarray:
@@ -49,32 +47,6 @@ def squared_speeds(vehicle: Vehicle, inputs: ArrayLike) -> np.ndarray:
             if np.linalg.norm(found.fun) <= RESIDUAL * np.linalg.norm(value):
                 squared[outside[which.ravel() == k]] = found.x
     return squared
-
-
-def with_commands(record: FlightRecord, vehicle: Vehicle) -> FlightRecord:
-    """
-    Return a flight record with rotor speed commands; where it has none, those that give U1..U4.
-
-    With more than four rotors these are the smallest. Inputs that no rotor speeds give become
-    rotors at rest. Where it has no inputs either, measured rotor speeds take their place, those
-    between two samples held from the first to the second.
-    """
-    names = [f'cmd{j}' for j in range(1, len(vehicle.rotors) + 1)]
-    measured = [f'rotor{j}' for j in range(1, len(vehicle.rotors) + 1)]
-    if record.has(*names):
-        return record
-    if not record.has(*INPUTS):
-        if not record.has(*measured):
-            return record
-        speeds = record.stack(*measured)
-        speeds[:-1] = (speeds[:-1] + speeds[1:]) / 2.0
-        columns = {name: values for name, values in record.columns.items()
-                   if name not in measured}
-        return FlightRecord(record.t, columns | dict(zip(names, speeds.T, strict=True)),
-                            {**record.info, BY_SPEEDS: True})
-    speeds = np.sqrt(np.maximum(squared_speeds(vehicle, record.inputs()), 0.0))
-    columns = {**record.columns, **dict(zip(names, speeds.T, strict=True))}
-    return FlightRecord(record.t, columns, record.info)
 
 
 def infeasibility(vehicle: Vehicle, inputs: ArrayLike, t: np.ndarray) -> str | None:

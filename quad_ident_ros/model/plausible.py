@@ -45,7 +45,7 @@ def refuse_absurd(where: str, vehicle: Vehicle) -> None:
                              f'{low:.3g} to {high:.3g}: {why}')
     for key, std, most in _deviations(vehicle):
         if std > most:
-            raise InputError(f'{where}: {key}: std: {std:.6g} is no knowledge of it, expected at '
+            raise InputError(f'{where}: {key}: std: {std:.6g} says nothing of it; expected at '
                              f'most {most:.3g}')
 
 

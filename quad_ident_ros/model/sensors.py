@@ -8,14 +8,13 @@ its rate may have a bias. States (..., 13): position, velocity (world), quaterni
 Parameter sets theta (P,), or (B, P) for states (B, ..., 13).
 """
 
-import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from quad_ident_ros.compiled import compiled
 from quad_ident_ros.effects.registry import PLACES, SLICES
+from quad_ident_ros.model.attitude import product, product_of, turn
 from quad_ident_ros.model.situation import GUIDE
 
 COM, TILT, BIAS = (SLICES[name] for name in ('com_offset', 'attitude_misalignment', 'gyro_bias'))
@@ -39,31 +38,6 @@ class Sensors(NamedTuple):
     attitudes: np.ndarray
     rates: np.ndarray
     biases: np.ndarray
-
-
-def product(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Return the Hamilton products of quaternions (..., 4)."""
-    a, b = np.broadcast_arrays(a, b)
-    out = np.empty(a.shape)
-    _products(np.ascontiguousarray(a).reshape(-1, 4), np.ascontiguousarray(b).reshape(-1, 4),
-              out.reshape(-1, 4))
-    return out
-
-
-def turn(vector: ArrayLike) -> np.ndarray:
-    """Return the quaternions of rotation vectors (..., 3) rad."""
-    vector = np.ascontiguousarray(vector, float)
-    out = np.empty((*vector.shape[:-1], 4))
-    _turns(vector.reshape(-1, 3), out.reshape(-1, 4))
-    return out
-
-
-def turned_on(turns: np.ndarray) -> np.ndarray:
-    """Return the quaternions (N + 1, 4) of a body that turns by each of (N, 4) after another."""
-    out = np.empty((len(turns) + 1, 4))
-    out[0] = 1.0, 0.0, 0.0, 0.0
-    _running_products(np.ascontiguousarray(turns), out)
-    return out
 
 
 def sensors_of(theta: np.ndarray) -> Sensors:
@@ -154,44 +128,6 @@ def lead(attitudes: np.ndarray, rates: np.ndarray, biases: np.ndarray, recorded:
                 out[g, n, 4 + i] = x[10 + i]
 
 
-@compiled(fused=True)
-def _products(a: np.ndarray, b: np.ndarray, out: np.ndarray) -> None:
-    """Write the Hamilton products of quaternions (N, 4) into out."""
-    for n in range(len(out)):
-        aw, ax, ay, az = a[n, 0], a[n, 1], a[n, 2], a[n, 3]
-        bw, bx, by, bz = b[n, 0], b[n, 1], b[n, 2], b[n, 3]
-        out[n, 0] = aw * bw - ax * bx - ay * by - az * bz
-        out[n, 1] = aw * bx + ax * bw + ay * bz - az * by
-        out[n, 2] = aw * by - ax * bz + ay * bw + az * bx
-        out[n, 3] = aw * bz + ax * by - ay * bx + az * bw
-
-
-@compiled(fused=True)
-def _running_products(turns: np.ndarray, out: np.ndarray) -> None:
-    """Write the products of the first of out (N + 1, 4) and turns (N, 4), unit quaternions."""
-    for n in range(len(turns)):
-        a, b, c, d = out[n, 0], out[n, 1], out[n, 2], out[n, 3]
-        w, x, y, z = turns[n, 0], turns[n, 1], turns[n, 2], turns[n, 3]
-        t = a * w - b * x - c * y - d * z
-        i = a * x + b * w + c * z - d * y
-        j = a * y - b * z + c * w + d * x
-        k = a * z + b * y - c * x + d * w
-        length = math.sqrt(t * t + i * i + j * j + k * k)
-        out[n + 1, 0], out[n + 1, 1] = t / length, i / length
-        out[n + 1, 2], out[n + 1, 3] = j / length, k / length
-
-
-@compiled(fused=True)
-def _turns(vectors: np.ndarray, out: np.ndarray) -> None:
-    """Write the quaternions of rotation vectors (N, 3) rad into out (N, 4)."""
-    for n in range(len(out)):
-        x, y, z = vectors[n, 0], vectors[n, 1], vectors[n, 2]
-        half = 0.5 * math.sqrt(x * x + y * y + z * z)
-        share = 0.5 * (math.sin(half) / half if half > 0.0 else 1.0)
-        out[n, 0] = math.cos(half)
-        out[n, 1], out[n, 2], out[n, 3] = share * x, share * y, share * z
-
-
 @compiled(fused=True, inlined=True)
 def _unturned(x: np.ndarray, attitude: np.ndarray, rate: np.ndarray, bias: np.ndarray) -> None:
     """Take bias and turns of sensors out of the attitude and the rate of a state (13,)."""
@@ -206,10 +142,7 @@ def _tilt(x: np.ndarray, tilt: np.ndarray, sense: float) -> None:
     """Turn the attitude of a state (13,) by a quaternion (4,) in the body, back where -1."""
     w, a, b, c = x[6], x[7], x[8], x[9]
     t, i, j, k = tilt[0], sense * tilt[1], sense * tilt[2], sense * tilt[3]
-    x[6] = w * t - a * i - b * j - c * k
-    x[7] = w * i + a * t + b * k - c * j
-    x[8] = w * j - a * k + b * t + c * i
-    x[9] = w * k + a * j - b * i + c * t
+    x[6], x[7], x[8], x[9] = product_of(w, a, b, c, t, i, j, k)
 
 
 @compiled(fused=True, inlined=True)

@@ -74,7 +74,7 @@ def simulate(vehicle: Vehicle, model: str, inputs: ArrayLike, period: float, *,
         raise InputError(f'inputs: expected an array (N >= 2, 4), got {inputs.shape}')
     if not np.isfinite(inputs).all():
         raise InputError(f'inputs: row {int(np.argmin(np.isfinite(inputs).all(axis=1)))} '
-                         'holds a value that is no finite number')
+                         'holds a value that is not a finite number')
     step = step or LONGEST_STEP[model]
     if period / step * len(inputs) > MOST_STEPS:
         raise InputError(f'{len(inputs)} samples of {period:g} s at a step of {step:g} s are more '

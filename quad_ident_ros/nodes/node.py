@@ -83,8 +83,8 @@ def _of_no_type(messages):
     """Return why one of several parameter messages is refused, or None."""
     known = {kind.value for kind in Parameter.Type}
     return next((SetParametersResult(
-        successful=False, reason=f'parameter {message.name}: {message.value.type} is no type of a '
-        'parameter (rcl_interfaces/ParameterType)')
+        successful=False, reason=f'parameter {message.name}: {message.value.type} is not the type '
+        'of a parameter (rcl_interfaces/ParameterType)')
         for message in messages if message.value.type not in known), None)
 
 

@@ -48,7 +48,7 @@ def run(node_class, help_page, args=None, executor_class=SingleThreadedExecutor,
             print(help_page)
             return 0
         if plain:
-            raise InputError(f'{plain[0]!r} is no option here: parameters are given as '
+            raise InputError(f'{plain[0]!r} is not an option here: parameters are given as '
                              '--ros-args -p NAME:=VALUE; --help lists them')
         return _run(node_class, args, executor_class, warm_up)
     except InputError as error:

@@ -165,9 +165,9 @@ class Recorder(PackageNode):
                 self.resolve_topic_name(name)
             except RCLError:
                 raise InputError(
-                    f'{self._config["mapping"]}: topics: {name!r} is no name of a topic; letters, '
-                    'digits, _ and / make one, no digit first and no / last, as `ros2 topic list` '
-                    'shows it') from None
+                    f'{self._config["mapping"]}: topics: {name!r} is not the name of a topic; '
+                    'letters, digits, _ and / make one, no digit first and no / last, as `ros2 '
+                    'topic list` shows it') from None
 
     def _look_for_topics(self):
         """Subscribe to the topics of the mapping that are there: only then are their types."""

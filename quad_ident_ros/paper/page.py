@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The page and the pictures of a reproduction."""
 
-from pathlib import Path
+from functools import partial
 
 from quad_ident_ros import __version__
 from quad_ident_ros.paper import sections
@@ -11,44 +11,54 @@ from quad_ident_ros.paper.divergence import SHORT
 from quad_ident_ros.paper.printed import DURATION
 from quad_ident_ros.paper.study import EFFORTS, EQUAL_BUDGET
 from quad_ident_ros.paper.table3 import EXCHANGED, OUTLIERS, PERIOD, POWERS, SAMPLES, TOLERANCE
-from quad_ident_ros.report.html import (
-    details,
-    figure,
-    join,
-    Markup,
-    markup,
-    table,
-    tag,
-    write_page,
-)
+from quad_ident_ros.report.html import details, join, Markup, markup, table, tag, write_page
 from quad_ident_ros.report.picture import save_responses, save_spread
+from quad_ident_ros.report.svg import Figure
 
 TITLE = 'The paper, reproduced'
 KINDS = {HOLDS: 'yes', IN_PART: 'part', FAILS: 'no', OPEN: ''}
-FIGURES = 'figures_4_to_7.png'
+FIGURES = 'figures_4_to_7'
 
 
-def save_pictures(reproduction, folder):
-    """Save all pictures in a folder, and return the path of each by name; raises InputError."""
-    folder = Path(folder)
-    paths = {'table_2': folder / FIGURES}
-    save_responses(reproduction.printed, paths['table_2'],
-                   "Figures 4-7: the responses that Table 3 implies, and Table 2's models",
-                   'implied')
+def figures(reproduction):
+    """Return {name: Figure} of a reproduction."""
+    made = {FIGURES: Figure(
+        partial(_save_fits, reproduction.printed,
+                "Figures 4-7: the responses that Table 3 implies, and Table 2's models",
+                'implied'),
+        'Responses of Table 2 and those that Table 3 implies',
+        'Figures 4 to 7 of the paper, drawn from its tables')}
     for name, study in reproduction.studies.items():
-        paths[name] = folder / f'responses_{name}.png'
-        save_responses(study.pick('median', 'per_output'), paths[name],
-                       f'{name}: responses and fits')
-        paths[f'{name}/ranking'] = folder / f'ranking_{name}.png'
-        save_spread({effort.label: {method: study.nrmse(key, method)
-                                    for method in study.fits[key]}
-                     for key, effort in EFFORTS.items()}, paths[f'{name}/ranking'],
-                    f'{name}: {reproduction.seeds} seeds', 'NRMSE of all outputs, %')
-    return paths
+        made[f'responses_{name}'] = Figure(
+            partial(_save_fits, study.pick('median', 'per_output'),
+                    f'{name}: responses and fits', 'measured'),
+            f'Responses and fits of {name}',
+            f'Figures 4 to 7 for {name}: measured, fitted, and their difference (the run of '
+            'median cost of each method)')
+        made[f'ranking_{name}'] = Figure(
+            partial(_save_ranking, study, f'{name}: {reproduction.seeds} seeds'),
+            f'Errors of each method on {name}',
+            f'Each dot is one seed. CS and PSO-CS spend {EQUAL_BUDGET} evaluations per search '
+            'in the generations of the paper, PSO about half of that: the equal budget gives '
+            'PSO more generations.')
+    return made
+
+
+def _save_fits(identification, title, given, path):
+    save_responses(identification, path, title, given)
+
+
+def _save_ranking(study, title, path):
+    save_spread({effort.label: {method: study.nrmse(key, method) for method in study.fits[key]}
+                 for key, effort in EFFORTS.items()}, path, title, 'NRMSE of all outputs, %')
 
 
 def write(path, reproduction, claims, pictures):
-    """Write the page; raises InputError where the file cannot be written."""
+    """
+    Write the page; raises InputError where the file cannot be written.
+
+    Args: pictures: {name: drawing of a page} of figures(reproduction).
+    """
     body = [_introduction(reproduction), _contents(reproduction), _conclusions(claims)]
     body += [_preset(reproduction, name, pictures) for name in reproduction.presets]
     body += [_tables(reproduction, pictures), _least_squares(reproduction),
@@ -63,7 +73,7 @@ def _heading(anchor, title):
 def _introduction(reproduction):
     return tag('p', 'Quadrotor Identification through the Cooperative Particle Swarm '
                     'Optimization-Cuckoo Search Approach (El gmili, Mjahed, El kari, Ayad, '
-                    f'2019), computed anew by quad_ident_ros {__version__} with '
+                    f'2019), recomputed by quad_ident_ros {__version__} with '
                     f'{reproduction.seeds} seeds of each search. Everything on this page, the '
                     'conclusions too, follows from the numbers of this run; paper.json has them.')
 
@@ -83,17 +93,18 @@ def _conclusions(claims):
              Markup(f'<td class="prose">{markup(claim.numbers)}</td>')] for claim in claims]
     return join([
         _heading('conclusions', 'Conclusions'),
-        tag('p', 'A claim holds when it is so in all cases, in part when in some, and not when in '
-                 'none. One about everything (equations that are the same, a space that contains '
-                 'all solutions, the smallest of all errors, no better method) does not hold '
-                 'when a single case refutes it. Claims of which method is better have each '
-                 'experiment, search and pair of methods as a case: those in which the opposite '
-                 'is so are counted beside. One method is better than another where the 95 % '
-                 'interval of the probability that it ends below the other lies above one half, '
-                 'ties counting half to each; where no case is that sure, the claim is '
-                 'undecided. That no method is better is undecided as long as one case is, and '
-                 'so in a case where the 95 % interval of the probability that the other ends '
-                 'below lies under one half.'),
+        tag('p', 'A claim holds if it is true in all cases, holds in part if it is true in some, '
+                 'and does not hold if it is true in none. A claim about everything (equations that '
+                 'are the same, a space that contains all solutions, the smallest of all errors, '
+                 'no better method) does not hold if a single case refutes it.'),
+        tag('p', 'For claims that one method is better than another, each experiment, search and '
+                 'pair of methods is a case; cases in which the opposite is true are counted '
+                 'beside. A method is better if the 95 % interval of the probability that it ends '
+                 'below the other lies above one half, where a tie counts half for each. A case '
+                 'is undecided if the interval contains one half, and a claim is undecided if all '
+                 'its cases are. That no method is better is decided in a case only if the 95 % '
+                 'interval of the probability that the other ends below lies under one half; a '
+                 'single case that is not decided leaves the claim undecided.'),
         table(['claim', 'verdict', 'so in', 'the numbers'], rows,
               ('text', 'text', 'text', 'text'), caption='Claims of the paper')])
 
@@ -104,9 +115,7 @@ def _preset(reproduction, name, pictures):
     if preset.infeasible:
         parts.append(tag('p', f'Not feasible: {preset.infeasible}.'))
     parts += [tag('p', f'Note: {remark}.') for remark in study.remarks]
-    parts += [figure(pictures[name], f'Responses and fits of {name}',
-                     f'Figures 4 to 7 for {name}: measured, fitted, and their '
-                                     'difference (the run of median cost of each method)'),
+    parts += [pictures[f'responses_{name}'],
               sections.spent(study, 'per_output'), sections.fits(study, 'per_output'),
               details('The same with one search over all 12 parameters, as in the paper',
                       join([sections.spent(study, 'joint'), sections.fits(study, 'joint')]))]
@@ -116,10 +125,7 @@ def _preset(reproduction, name, pictures):
     if preset.truth:
         parts.append(sections.truth(preset))
     parts += [tag('h3', 'Which method is better?'),
-              figure(pictures[f'{name}/ranking'], f'Errors of each method on {name}',
-                     f'Each dot is one seed. CS and PSO-CS spend {EQUAL_BUDGET} evaluations per '
-                     'search in the generations of the paper, PSO about half of that: the equal '
-                     'budget gives PSO more generations.'),
+              pictures[f'ranking_{name}'],
               sections.ranking(study),
               details('The same for each output',
                       join(sections.ranking_by_output(study, effort) for effort in EFFORTS))]
@@ -137,8 +143,7 @@ def _tables(reproduction, pictures):
         tag('p', 'The last column is the error of each model against the responses that Table 3 '
                  'implies (below).'),
         sections.table_2(reproduction.printed),
-        figure(pictures['table_2'], 'Responses of Table 2 and those that Table 3 implies',
-               'Figures 4 to 7 of the paper, drawn from its tables'),
+        pictures[FIGURES],
         tag('h3', 'Table 3: errors, computed from Table 2'),
         tag('p', f'Plain sums over {SAMPLES} samples, one each {PERIOD:g} s up to '
                  f'{DURATION:g} s, over a power of ten ({powers}); in {" and ".join(EXCHANGED)} '
@@ -155,8 +160,9 @@ def _tables(reproduction, pictures):
 def _least_squares(reproduction):
     return join([
         _heading('ls', 'Least squares as printed'),
-        tag('p', 'Equations (35) to (37) have signs wrong, a0 and a1 exchanged and a factor '
-                 'missing under the root. Beside what they give: least squares put right.'),
+        tag('p', 'Equations (35) to (37) have wrong signs, a0 and a1 exchanged, and a factor '
+                 'missing under the root. The table compares what they give with corrected least '
+                 'squares.'),
         sections.ls_printed(reproduction),
         tag('p', 'The models of Table 2 through eq. (36), at 5 s, and back through eq. (37):'),
         sections.round_trips(reproduction.trips)])
@@ -165,10 +171,9 @@ def _least_squares(reproduction):
 def _equations(reproduction):
     return join([
         _heading('equations', 'The equations as printed'),
-        tag('p', 'Equations (13) to (15) feed energy in where friction should take it out. A run '
-                 'ends when a rate exceeds 1e6 rad/s. Where one axis turns alone the time is '
-                 'known exactly. The last column is the end of the same flight by the equations '
-                 f'derived right; those of {DURATION:.0f} s were flown so for '
-                 f'{SHORT:g} s, and to the '
-                 'end as an experiment above.'),
+        tag('p', 'Equations (13) to (15) add energy where friction should remove it. A run ends '
+                 'when a rate exceeds 1e6 rad/s. If only one axis turns, the time is known '
+                 'exactly. The last column is the end of the same flight by the correctly derived '
+                 f'equations; flights of {DURATION:.0f} s were flown with these for {SHORT:g} s '
+                 'here, and to the end as an experiment above.'),
         sections.printed_equations(reproduction.cases)])

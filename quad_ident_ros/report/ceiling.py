@@ -31,8 +31,8 @@ def residual_line(found: Diagnosis) -> str:
     by_effects = gap_closed(gap.before_own[group], gap.after[group], gap.noise[group])
     return (f'residual ({" and ".join(one.shown)}): the effects close '
             f'{100 * by_effects:.0f} % of the {group} gap on {found.held_out} (held out), '
-            f'with it {share_of(one.open_loop)}; it is no cause, and outside the range of these '
-            'flights it stays constant')
+            f'with it {share_of(one.open_loop)}; it is not a cause, and outside the range of '
+            'these flights it stays constant')
 
 
 def share_of(one: ShareClosed) -> str:

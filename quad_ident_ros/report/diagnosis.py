@@ -169,7 +169,7 @@ def one_finding_lines(found: Diagnosis) -> list[str]:
         may_be = ', '.join(' or '.join(names) for names in row['may_be'])
         lines.append(f'{titled(row["effect"])} could also be another cause of the same motion'
                      + (f' ({may_be})' if may_be else '')
-                     + f'; what tells them apart: {row["tells"]}')
+                     + f'; what distinguishes them: {row["tells"]}')
     return lines
 
 

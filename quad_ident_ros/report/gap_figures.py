@@ -2,8 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Every picture of a diagnosis, with its words and the values that a script may draw."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 
 from quad_ident_ros.diagnose.residual_wrench import WINDOW
@@ -12,21 +10,7 @@ from quad_ident_ros.report.chart import save_chart
 from quad_ident_ros.report.flight_path import flight_path, save_path
 from quad_ident_ros.report.gap_charts import predictions, spectrum
 from quad_ident_ros.report.gap_pictures import save_horizons, save_map
-
-
-@dataclass(frozen=True, eq=False)
-class Figure:
-    """
-    A picture of a diagnosis.
-
-    save: a function that saves it at a path, by whose ending; alt: what it shows, for who does
-    not see it; data: its values for the script of a page, None where there is nothing to move.
-    """
-
-    save: Callable[[str | Path], None]
-    alt: str
-    caption: str
-    data: dict | None = None
+from quad_ident_ros.report.svg import Figure
 
 
 def figures(found: Diagnosis) -> dict[str, Figure]:

@@ -6,7 +6,6 @@ from collections import Counter
 from pathlib import Path
 import tempfile
 
-from matplotlib import rc_context
 import yaml
 
 from quad_ident_ros import __version__
@@ -47,7 +46,6 @@ from quad_ident_ros.report.gap_figures import figures
 from quad_ident_ros.report.html import (
     bar,
     details,
-    drawing,
     join,
     Markup,
     markup,
@@ -55,7 +53,7 @@ from quad_ident_ros.report.html import (
     tag,
     write_page,
 )
-from quad_ident_ros.report.svg import FONTS, inline
+from quad_ident_ros.report.svg import drawings
 from quad_ident_ros.report.verdict import (
     change_of,
     contribution_of,
@@ -71,22 +69,11 @@ KINDS = {'none': 'yes', 'unknown': 'no', 'undetermined': 'part'}
 
 def write(path: str | Path, found: Diagnosis) -> None:
     """Write the page of a Diagnosis; raises InputError where the file cannot be written."""
-    pictures = _pictures(found)
+    with tempfile.TemporaryDirectory() as folder:
+        pictures = drawings(figures(found), folder)
     body = [*_verdict(found), *_where(found, pictures), *_which(found), *_far(found, pictures),
             *_in_simulator(found), *_closed_loop(found), *_open(found), *_provenance(found)]
     write_page(path, f'Sim-to-real gap of {found.vehicle.name}', join(body))
-
-
-def _pictures(found: Diagnosis) -> dict[str, Markup]:
-    """Return {name: picture of the page}."""
-    drawn = {}
-    with tempfile.TemporaryDirectory() as folder, rc_context(FONTS):
-        for name, figure in figures(found).items():
-            file = Path(folder) / f'{name}.svg'
-            figure.save(file)
-            drawn[name] = drawing(inline(file, name, figure.alt), figure.alt, figure.caption,
-                                  figure.data)
-    return drawn
 
 
 def _verdict(found: Diagnosis) -> list:

@@ -2,11 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Pages for a browser, in one file: tables and embedded pictures."""
 
-import base64
 from html import escape
 from importlib.resources import files
 import json
-from pathlib import Path
 
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.report.data import finite
@@ -66,13 +64,6 @@ def _cell(cell, kind, place):
 def _title(content, scope, kind):
     attribute = f' class="{kind}"' if kind else ''
     return Markup(f'<th scope="{scope}"{attribute}>{markup(content)}</th>')
-
-
-def figure(path, alt, caption):
-    """Return a PNG file as an embedded figure; alt: what it shows, for who does not see it."""
-    data = base64.b64encode(Path(path).read_bytes()).decode('ascii')
-    return Markup(f'<figure><img src="data:image/png;base64,{data}" alt="{escape(alt)}">'
-                  f'<figcaption>{escape(caption)}</figcaption></figure>')
 
 
 def drawing(content, alt, caption, data=None):

@@ -21,9 +21,10 @@ from quad_ident_ros.model.actuators import (
     SLEW,
     without_lag,
 )
+from quad_ident_ros.model.attitude import product, turn
 from quad_ident_ros.model.contribution import accelerations_of
 from quad_ident_ros.model.dynamics import Course, finer, steps_within
-from quad_ident_ros.model.sensors import product, turn, TURNED, underlying
+from quad_ident_ros.model.sensors import TURNED, underlying
 from quad_ident_ros.model.vehicle import Vehicle
 
 

@@ -6,11 +6,9 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.linalg import block_diag
 
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.greybox.parameters import constants_within
-from quad_ident_ros.model.quantities import stated, unit_of, value_of, with_values
+from quad_ident_ros.model.quantities import unit_of, value_of, with_values
 from quad_ident_ros.model.vehicle import (
     hover_fault,
     Vehicle,
@@ -19,6 +17,7 @@ from quad_ident_ros.model.vehicle import (
 )
 from quad_ident_ros.schema import lengthened
 from quad_ident_ros.vehicle_files.bodies import Body, is_body
+from quad_ident_ros.vehicle_files.known import known_of
 from quad_ident_ros.vehicle_files.wanted import Wanted, wanted_of
 
 AT_ONCE = 64        # so that the first vehicles of a seed are the same, however many are drawn
@@ -57,7 +56,11 @@ def draw(vehicle: Vehicle, count: int, seed: int = 0,
     that no body has, and where it could not hover.
     Raises InputError where the file has no covariance, or one that is no width of vehicles.
     """
-    names, matrix = _normal_of(vehicle)
+    if vehicle.covariance is None:
+        raise InputError(f'vehicle {vehicle.name}: its file has no covariance; `quad_ident '
+                         'diagnose` and `quad_ident fit` write that of what they estimate by '
+                         '`--out-vehicle FILE`')
+    names, matrix = known_of(vehicle)
     means = np.array([value_of(vehicle, name) for name in names])
     stds = np.sqrt(np.diag(matrix))
     scale = np.where(stds > 0.0, stds, 1.0)
@@ -117,19 +120,6 @@ def _with_effects(wanted: Wanted) -> dict[str, float]:
             **{f'thrust_coefficient_{j}': wanted.thrust * (1.0 - float(loss))
                for j, loss in enumerate(wanted.losses, 1)},
             'torque_coefficient': wanted.torque}
-
-
-def _normal_of(vehicle: Vehicle) -> tuple[tuple[str, ...], np.ndarray]:
-    """Return the names (P,) of what is drawn, and its covariance (P, P)."""
-    known = vehicle.covariance
-    if known is None:
-        raise InputError(f'vehicle {vehicle.name}: its file has no covariance, which `quad_ident '
-                         'diagnose ... --out-vehicle FILE` writes where its verdict names effects')
-    same = constants_within(known.names)
-    apart = {name: std for name, std in stated(vehicle).items()
-             if name not in known.names and name not in same}
-    return ((*known.names, *apart),
-            block_diag(known.matrix, np.diag(np.array(list(apart.values())) ** 2)))
 
 
 def _fault(vehicle: Vehicle, real: bool) -> str:

@@ -37,13 +37,12 @@ class EditedTable(Edits):
             raise InputError(f'{source.path}, line {node.lineno}: {table.name} is not written '
                              f'out; write {table.name} = {{...}} with its numbers')
 
-    def entry(self, key: str, new: float, unit: str, source: str, std: float | None = None,
-              size: float = 0.0) -> None:
+    def entry(self, key: str, new: float, unit: str, source: str, size: float = 0.0) -> None:
         """Have a key hold another number; one that is missing stands for 0."""
         if key in self._values:
             self.number(self._span(self._values[key]), f'line {self.table.lines[key]}: {key}',
-                        float(self.table.values[key]), new, unit, source, std, size)
-        elif any(self.enter(key, [0.0], [new], unit, source, [std], size)):
+                        float(self.table.values[key]), new, unit, source, size)
+        elif any(self.enter(key, [0.0], [new], unit, source, size)):
             before = self.data[:self._first]
             indent = before[before.rfind(b'\n') + 1:]
             gap = '\n' + indent.decode() if not indent.strip() else ' '
@@ -61,7 +60,7 @@ class EditedTable(Edits):
         old = list(old.values()) if isinstance(old, dict) else old
         for k, (value, before, after) in enumerate(zip(inside, old, new, strict=True)):
             place = f'line {value.lineno}: {key}[{k}]'
-            if any(self.enter(place, list(map(float, before)), after, unit, source, None, 1.0)):
+            if any(self.enter(place, list(map(float, before)), after, unit, source, 1.0)):
                 array = next((ast.unparse(each.func) for each in ast.walk(value)
                               if isinstance(each, ast.Call)
                               and ast.unparse(each.func).endswith('array')), '')

@@ -22,17 +22,16 @@ class EditedXml(Edits):
     """The text of a file in XML, with its numbers as attributes and texts of elements."""
 
     def attribute(self, element: Element, name: str, new: Sequence[float] | np.ndarray, unit: str,
-                  source: str, stds: Sequence[float | None] | None = None,
-                  usual: Sequence[float] | None = None, size: float = 0.0) -> None:
+                  source: str, usual: Sequence[float] | None = None, size: float = 0.0) -> None:
         """
         Have an attribute hold other numbers.
 
-        Args: new: all of them; stds: their standard errors; usual: what holds where the file has
-        fewer; size: of what a number is told apart from, beside its own. Raises InputError.
+        Args: new: all of them; usual: what holds where the file has fewer; size: of what a number
+        is told apart from, beside its own. Raises InputError.
         """
         words = element.attributes.get(name, '').split()
         whole = self.enter(element.place(name), _numbers(element.where, words, len(new), usual),
-                           new, unit, source, stds, size)
+                           new, unit, source, size)
         if not any(whole):
             return
         found = self._attributes(element).get(name)
@@ -49,23 +48,22 @@ class EditedXml(Edits):
         self.replace(begin, end, f' {name}="{text}"')
 
     def renamed(self, element: Element, name: str, other: str, new: Sequence[float] | np.ndarray,
-                unit: str, source: str, stds: Sequence[float | None]) -> None:
+                unit: str, source: str) -> None:
         """Have an attribute of another name, with numbers of another count, take its place."""
         found = self._attributes(element)[name]
         old = [*map(float, element.attributes[name].split()), *[None] * len(new)]
-        for k, (value, std) in enumerate(zip(new, stds, strict=True)):
-            self.note(element.place(f'{other}[{k}]'), old[k], value, unit, source, std)
+        for k, value in enumerate(new):
+            self.note(element.place(f'{other}[{k}]'), old[k], value, unit, source)
         self.replace(found.start(1), found.end(2), f'{other}="{shown(new)}"')
 
     def content(self, parent: Element, tag: str, new: Sequence[float] | np.ndarray, unit: str,
-                source: str, stds: Sequence[float | None] | None = None,
-                usual: Sequence[float] | None = None, size: float = 0.0) -> None:
+                source: str, usual: Sequence[float] | None = None, size: float = 0.0) -> None:
         """Have the child of a tag hold other numbers as its text; arguments as of attribute."""
         child = parent.first(tag)
         words = [] if child is None else child.text.split()
         whole = self.enter((child or parent).place('' if child else tag),
                            _numbers((child or parent).where, words, len(new), usual), new, unit,
-                           source, stds, size)
+                           source, size)
         if not any(whole):
             return
         if child is None:

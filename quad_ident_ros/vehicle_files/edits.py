@@ -21,15 +21,15 @@ class Change:
     """
     A number that changes: its place in the file, the old one, None where none is stated, the new.
 
-    unit: of both; std: standard error of the new one, or None; source: what it comes from.
+    unit: of both; source: what it comes from; std: standard error of the new one, or None.
     """
 
     place: str
     old: float | None
     new: float
     unit: str
-    std: float | None
     source: str
+    std: float | None = None
 
 
 @dataclass
@@ -65,27 +65,25 @@ class Edits:
         self._edits.append((begin, end, text))
 
     def number(self, span: tuple[int, int], place: str, old: float | None, new: float, unit: str,
-               source: str, std: float | None = None, size: float = 0.0) -> None:
+               source: str, size: float = 0.0) -> None:
         """Put a number between two places, where it is another than the one that is there."""
-        if any(self.enter(place, [old], [new], unit, source, [std], size)):
+        if any(self.enter(place, [old], [new], unit, source, size)):
             self.replace(*span, shown([new]))
 
     def enter(self, place: str, old: Sequence[float | None], new: Sequence[float] | np.ndarray,
-              unit: str, source: str, stds: Sequence[float | None] | None, size: float
-              ) -> list[bool]:
+              unit: str, source: str, size: float = 0.0) -> list[bool]:
         """Enter the changes; return which numbers do."""
         moved = [differs(before, float(after), size)
                  for before, after in zip(old, new, strict=True)]
         for k, changed in enumerate(moved):
             if changed:
                 self.note(f'{place}[{k}]' if len(moved) > 1 else place, old[k], float(new[k]),
-                          unit, source, stds[k] if stds else None)
+                          unit, source)
         return moved
 
-    def note(self, place: str, old: float | None, new: float, unit: str, source: str,
-             std: float | None = None) -> None:
+    def note(self, place: str, old: float | None, new: float, unit: str, source: str) -> None:
         """Say that a number changes."""
-        self.changes.append(Change(place, old, float(new), unit, std, source))
+        self.changes.append(Change(place, old, float(new), unit, source))
 
     def lack(self, keys: Iterable[str], reason: str) -> None:
         """Say why the file cannot have what some keys of Wanted stand for."""

@@ -17,6 +17,7 @@ from quad_ident_ros.greybox.flights import highest_voltage
 from quad_ident_ros.model.vehicle import Vehicle
 from quad_ident_ros.vehicle_files.edits import Change, differs, Edits, SAME
 from quad_ident_ros.vehicle_files.kinds import Kind, kind_of, KINDS
+from quad_ident_ros.vehicle_files.known import with_errors
 from quad_ident_ros.vehicle_files.out_base import Base
 from quad_ident_ros.vehicle_files.reading import finished
 from quad_ident_ros.vehicle_files.source import Source
@@ -67,10 +68,16 @@ def export(vehicle: Vehicle, to: str, source: Source | None = None, sag: float |
         raise InputError(f'{source.path}: it has {len(rotors)} rotors, the vehicle has '
                          f'{len(vehicle.rotors)}; give the file that it was read from')
     unit = unit_of(draft, vehicle)
-    vehicle = counted(vehicle, unit)
+    stated, vehicle = vehicle, counted(vehicle, unit)
     effects = given.effects if given else draft.effects(vehicle)
-    base = Base(source, draft, effects, wanted_of(vehicle, sag, target.holds))
+
+    def base_of(one: Vehicle) -> Base:
+        return Base(source, draft, effects, wanted_of(one, sag, target.holds))
+
+    base = base_of(vehicle)
     edits = target.write(base)
+    changes = with_errors(edits.changes, stated, lambda one: target.write(
+        base_of(counted(one, unit))).changes)
     fates = fates_of(vehicle.effects, effects, target.holds, edits.lacking, edits.nearest, sag)
     more, near = _constants(vehicle, base, target, edits), _nearest(vehicle, edits, target)
     fates = replace(fates, nearest=(*fates.nearest, *near), not_carried=(
@@ -79,7 +86,7 @@ def export(vehicle: Vehicle, to: str, source: Source | None = None, sag: float |
     if code is not None:
         fates = fates.with_code([*code.forms, *((each, '') for each in code.constants)],
                                 'by the code beside the file')
-    return Export(edits.result(), tuple(edits.changes), tuple(edits.remarks), fates, source, unit,
+    return Export(edits.result(), changes, tuple(edits.remarks), fates, source, unit,
                   code)
 
 

@@ -57,7 +57,7 @@ def tables_of(path: str, text: str, keys: tuple[str, ...]) -> list[Table]:
         tree = ast.parse(text)
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
         line = f', line {error.lineno}' if isinstance(error, SyntaxError) else ''
-        raise InputError(f'{path}{line}: is no Python that can be parsed') from None
+        raise InputError(f'{path}{line}: is not Python that can be parsed') from None
     names: dict[str, Any] = {}
     found: dict[str, Table] = {}
     for statement in tree.body:
@@ -88,7 +88,7 @@ def _value_given_by(statement: Any, names: Mapping[str, Any], path: str, keys: t
         if _keys_of(statement.value) >= set(keys):
             line, said = (error.args if isinstance(error, _Unreadable) else
                           (statement.lineno, 'a value'))
-            raise InputError(f'{path}, line {line}: {said} is no number that can be read '
+            raise InputError(f'{path}, line {line}: {said} is not a number that can be read '
                              'without running the file; write it as one') from None
         return None
 

@@ -68,7 +68,7 @@ def bodies_of(draft: Draft, parts: Sequence[Part], pushed: set[str]) -> list[Bod
         if moving and moving[0].get('type', 'hinge') == 'hinge' and pushed & part.sites.keys():
             stated = moving[0].numbers('axis', 3, (0.0, 0.0, 1.0))
             if not np.linalg.norm(stated) > 1e-9:
-                raise InputError(f'{moving[0].where}: zeros are no axis; correct it')
+                raise InputError(f'{moving[0].where}: zeros are not an axis; correct it')
             axis = part.pose.rotation @ stated
             body = spun(body, axis)
             draft.assumed.append(f'{where}: its inertia is the mean over a turn')

@@ -88,8 +88,8 @@ class Model:
         angles = self.to_radians * element.numbers('euler', 3)
         sequence = self.compiler.get('eulerseq', 'xyz')
         if len(sequence) != 3 or any(letter.lower() not in _AXES for letter in sequence):
-            raise InputError(f'{element.where}: eulerseq {sequence[:20]!r} of <compiler> is no '
-                             'sequence of three axes')
+            raise InputError(f'{element.where}: eulerseq {sequence[:20]!r} of <compiler> is not '
+                             'a sequence of three axes')
         rotation = np.eye(3)
         for letter, angle in zip(sequence, angles, strict=True):
             step = about(_AXES[letter.lower()], angle)
@@ -148,5 +148,5 @@ def _direction(element: Element, attribute: str, values: np.ndarray) -> np.ndarr
     """Return a unit vector; InputError for zeros."""
     length = float(np.linalg.norm(values))
     if not length > 1e-12:
-        raise InputError(f'{element.where}: {attribute}: zeros are no direction; correct it')
+        raise InputError(f'{element.where}: {attribute}: zeros are not a direction; correct it')
     return values / length

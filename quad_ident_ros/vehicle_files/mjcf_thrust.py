@@ -73,7 +73,7 @@ def _push(model: Model, element: Element, site: Pose) -> Push:
     gain = _first(element, 'gainprm')
     kind = element.get('dyntype', 'none')
     if kind not in ('none', 'filter', 'filterexact'):
-        raise InputError(f'{element.where}: dyntype {kind[:20]!r} is no lag; expected none or '
+        raise InputError(f'{element.where}: dyntype {kind[:20]!r} is not a lag; expected none or '
                          'filter')
     lag = 0.0 if kind == 'none' else _first(element, 'dynprm')
     return Push(element, element.get('site'), gain * site.rotation @ gear[:3],

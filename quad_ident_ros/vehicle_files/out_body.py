@@ -60,14 +60,3 @@ def remainder(whole: Body, rest: Sequence[Body]) -> Body:
         arm = body.centre - whole.centre
         about = about - body.inertia - body.mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
     return Body(left, place, about)
-
-
-def spread(rotation: np.ndarray, stds: Sequence[float]) -> list[float | None]:
-    """
-    Return standard errors of moments of inertia in the axes of a rotation (3, 3), None where none.
-
-    Args: stds: those of Ixx, Iyy and Izz, kg m^2, independent of one another.
-    """
-    turned = np.sqrt((rotation.T ** 4) @ np.square(stds))
-    # What a right angle that is rounded lets through is no standard error.
-    return [float(std) if std > SAME * max(stds) else None for std in turned]

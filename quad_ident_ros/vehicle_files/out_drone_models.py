@@ -28,15 +28,13 @@ OTHER_MODELS = ('thrust2torque', 'rotor_dyn_coef_simple', 'thrust_dyn_coef')
 
 def write(base: Base) -> Edits:
     """Return the Edits by which a table of drone-models holds what is wanted; InputError."""
-    wanted, stds = base.wanted, base.wanted.stds
+    wanted = base.wanted
     drone = drone_of(base.source)
     edited = _EditedDrone(drone)
     check_body(f'{base.source.path}, {drone.place("J")}: as the vehicle has it',
                Body(wanted.mass, np.zeros(3), wanted.inertia))
-    edited.key('mass', [wanted.mass], 'kg', wanted.sources['mass'], [*stds.get('mass', (None,))])
-    moments: list[float | None] = [None] * 9
-    moments[::4] = [std or None for std in stds.get('inertia', (0.0, 0.0, 0.0))]
-    edited.key('J', wanted.inertia.ravel(), 'kg m2', wanted.sources['inertia'], moments,
+    edited.key('mass', [wanted.mass], 'kg', wanted.sources['mass'])
+    edited.key('J', wanted.inertia.ravel(), 'kg m2', wanted.sources['inertia'],
                size=float(np.max(np.abs(wanted.inertia))))
     curve = _write_curves(edited, base, drone)
     _write_lags(edited, base, drone, curve)
@@ -59,7 +57,7 @@ class _EditedDrone(Edits):
         self.drone = drone
 
     def key(self, key: str, new: Sequence[float] | np.ndarray, unit: str, source: str,
-            stds: Sequence[float | None] | None = None, size: float = 0.0) -> None:
+            size: float = 0.0) -> None:
         """Have a key hold other numbers; one that is missing stands for zeros."""
         found = self.drone.places.get(key)
         stated = np.ravel(self.drone.table.get(key, np.zeros(len(new)))).astype(float)
@@ -67,7 +65,7 @@ class _EditedDrone(Edits):
             raise InputError(f'{self.drone.source.path}: {key} of {self.drone.name} is written in '
                              f'another way than {key} = ... on a line of its own; write it so')
         place = self.drone.place(key) if found else f'{self.drone.name}: {key}'
-        moved = self.enter(place, list(stated), new, unit, source, stds, size)
+        moved = self.enter(place, list(stated), new, unit, source, size)
         if found is None and any(moved):
             begin = after_header(self.text, self.drone.header)
             self.replace(begin, begin, f'{key} = {_written(new)}\n')
@@ -84,7 +82,7 @@ def _write_curves(edited: _EditedDrone, base: Base, drone: Drone) -> np.ndarray:
     exponent = base.effects.get('thrust_scale', {}).get('exponent', SQUARE)
     speed = math.sqrt(base.mass * base.constant('gravity') / (ROTORS * constant))
     lift = wanted.thrust * wanted.hover ** 2 * (speed / wanted.hover) ** wanted.exponent
-    curve, stds = thrust, wanted.stds
+    curve = thrust
     if differs(exponent, wanted.exponent):
         # A quadratic that has the level and the slope of the power at hover.
         share = wanted.mass * base.constant('gravity') / ROTORS
@@ -94,14 +92,10 @@ def _write_curves(edited: _EditedDrone, base: Base, drone: Drone) -> np.ndarray:
                           (wanted.exponent - 1.0) * share / rpm ** 2])
     elif differs(constant * speed ** 2, lift):
         curve = thrust * lift / (constant * speed ** 2)
-    std = stds.get('thrust', (0.0,))[0]
-    edited.key('rpm2thrust', curve, 'N per power of rpm', wanted.sources['thrust'],
-               [abs(float(value)) * std or None for value in curve])
+    edited.key('rpm2thrust', curve, 'N per power of rpm', wanted.sources['thrust'])
     if differs(torque, wanted.torque):
-        std = stds.get('torque', (0.0,))[0]
-        other = drone.numbers('rpm2torque', 3) * wanted.torque / torque
-        edited.key('rpm2torque', other, 'N m per power of rpm', wanted.sources['torque'],
-                   [abs(float(value)) * std or None for value in other])
+        edited.key('rpm2torque', drone.numbers('rpm2torque', 3) * wanted.torque / torque,
+                   'N m per power of rpm', wanted.sources['torque'])
     _write_limits(edited, base, drone, curve)
     return curve
 

@@ -21,7 +21,7 @@ from quad_ident_ros.vehicle_files.mujoco_code import code as program
 from quad_ident_ros.vehicle_files.mujoco_code import Rotors
 from quad_ident_ros.vehicle_files.new_mjcf import new
 from quad_ident_ros.vehicle_files.out_base import Base
-from quad_ident_ros.vehicle_files.out_body import body_for, MOMENTS, PRODUCTS, spread
+from quad_ident_ros.vehicle_files.out_body import body_for, MOMENTS, PRODUCTS
 from quad_ident_ros.vehicle_files.reading import Draft
 from quad_ident_ros.vehicle_files.target import Code, Target
 from quad_ident_ros.vehicle_files.ways import BODY, LAGS
@@ -77,7 +77,7 @@ def _write_thrusts(edited: EditedXml, base: Base, thrusts: list[Push]) -> None:
     losses = wanted.losses
     if np.max(losses) >= 1.0:
         losses = np.zeros(len(losses))
-        edited.lack(['losses'], 'a rotor without thrust is no rotor; remove its actuator')
+        edited.lack(['losses'], 'a rotor without thrust is not a rotor; remove its actuator')
     moment = 1.0 if torque is None else wanted.torque / torque
     for j, (push, loss) in enumerate(zip(thrusts, losses, strict=True), 1):
         before = base.effect('rotor_fault', f'loss_{j}')
@@ -85,14 +85,11 @@ def _write_thrusts(edited: EditedXml, base: Base, thrusts: list[Push]) -> None:
         words = push.element.get('gear', '1').split()
         stated = push.element.numbers('gear', len(words), (1.0,))
         factors = np.array([force] * 3 + [moment] * 3)[:len(words)]
-        relative = [wanted.stds.get('thrust', (0.0,))[0]] * 3 + [
-            wanted.stds.get('torque', (0.0,))[0]] * 3
         sources = {wanted.sources[key] for key, changed in (
             ('thrust', differs(thrust, wanted.thrust)), ('losses', differs(before, loss, 1.0)),
             ('torque', moment != 1.0)) if changed}
-        edited.attribute(push.element, 'gear', stated * factors, '1 or m', ', '.join(
-            sorted(sources)), [abs(float(value)) * each or None for value, each in
-                               zip(stated * factors, relative, strict=False)], usual=(1.0,))
+        edited.attribute(push.element, 'gear', stated * factors, '1 or m',
+                         ', '.join(sorted(sources)), usual=(1.0,))
 
 
 def _write_lags(edited: EditedXml, base: Base, thrusts: list[Push]) -> None:
@@ -120,8 +117,6 @@ def _write_body(edited: EditedXml, base: Base, model: Model, part: Part, body: B
     """Have a <body> hold a Body that is given in its axes."""
     wanted = base.wanted
     six = [float(body.inertia[at]) for at in (*MOMENTS, *PRODUCTS)]
-    mass_std = wanted.stds.get('mass', (None,))[0]
-    moments = wanted.stds.get('inertia', (0.0, 0.0, 0.0))
     if part.source != 'inertial':
         if model.compiler.get('inertiafromgeom') == 'true':
             raise InputError(f'{part.element.where}: inertiafromgeom="true" takes its mass from '
@@ -130,33 +125,32 @@ def _write_body(edited: EditedXml, base: Base, model: Model, part: Part, body: B
         return
     inertial = part.element.first('inertial')
     assert inertial is not None
-    edited.attribute(inertial, 'mass', [body.mass], 'kg', wanted.sources['mass'], [mass_std])
+    edited.attribute(inertial, 'mass', [body.mass], 'kg', wanted.sources['mass'])
     edited.attribute(inertial, 'pos', body.centre, 'm', wanted.sources['centre'],
                      usual=(0.0, 0.0, 0.0), size=1.0)
     rotation = model.rotation_of(inertial)
     turned = rotation.T @ body.inertia @ rotation
     size = float(np.max(np.abs(turned)))
-    stds = spread(rotation, moments)
     if 'fullinertia' in inertial.attributes:
         edited.attribute(inertial, 'fullinertia',
                          [turned[at] for at in (*MOMENTS, *PRODUCTS)], 'kg m2',
-                         wanted.sources['inertia'], [*stds, None, None, None], size=size)
+                         wanted.sources['inertia'], size=size)
     elif max(abs(turned[at]) for at in PRODUCTS) <= SAME * size:
         edited.attribute(inertial, 'diaginertia', np.diag(turned), 'kg m2',
-                         wanted.sources['inertia'], stds, size=size)
+                         wanted.sources['inertia'], size=size)
     elif 'quat' in inertial.attributes:
         axes, diagonal = _principal(turned)
         x, y, z, w = Rotation.from_matrix(rotation @ axes).as_quat()
         edited.attribute(inertial, 'quat', [w, x, y, z], '1',
                          wanted.sources['inertia'], size=1.0)
         edited.attribute(inertial, 'diaginertia', diagonal, 'kg m2', wanted.sources['inertia'],
-                         spread(rotation @ axes, moments), size=size)
+                         size=size)
     elif any(turn in inertial.attributes for turn in OTHER_TURNS):
         raise InputError(f'{inertial.where}: its principal axes turn, which is written to quat '
                          'alone; state its orientation as quat')
     else:
         edited.renamed(inertial, 'diaginertia', 'fullinertia', six, 'kg m2',
-                       wanted.sources['inertia'], [*stds, None, None, None])
+                       wanted.sources['inertia'])
 
 
 def _insert(edited: EditedXml, base: Base, part: Part, body: Body, six: list[float]) -> None:
@@ -164,15 +158,13 @@ def _insert(edited: EditedXml, base: Base, part: Part, body: Body, six: list[flo
     wanted, where = base.wanted, part.element.place('inertial')
     edited.child(part.element, f'<inertial pos="{shown(body.centre)}" mass="{shown([body.mass])}" '
                                f'fullinertia="{shown(six)}"/>')
-    edited.note(f'{where} mass', part.body.mass, body.mass, 'kg', wanted.sources['mass'],
-                wanted.stds.get('mass', (None,))[0])
+    edited.note(f'{where} mass', part.body.mass, body.mass, 'kg', wanted.sources['mass'])
     for k, axis in enumerate('xyz'):
         edited.note(f'{where} pos {axis}', float(part.body.centre[k]), float(body.centre[k]), 'm',
                     wanted.sources['centre'])
-    stds = [*spread(np.eye(3), wanted.stds.get('inertia', (0.0, 0.0, 0.0))), None, None, None]
-    for at, value, std in zip((*MOMENTS, *PRODUCTS), six, stds, strict=True):
+    for at, value in zip((*MOMENTS, *PRODUCTS), six, strict=True):
         edited.note(f'{where} fullinertia {"xyz"[at[0]]}{"xyz"[at[1]]}',
-                    float(part.body.inertia[at]), value, 'kg m2', wanted.sources['inertia'], std)
+                    float(part.body.inertia[at]), value, 'kg m2', wanted.sources['inertia'])
 
 
 def _principal(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

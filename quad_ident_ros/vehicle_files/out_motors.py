@@ -17,37 +17,34 @@ HOLDS: Keys = ('thrust', 'losses', 'torque', 'speed_max', *LAGS, 'rotor_drag')
 
 def write_motors(edited: EditedXml, base: Base, plugins: Sequence[MotorPlugin]) -> None:
     """Have motor plugins hold what is wanted."""
-    wanted, stds = base.wanted, base.wanted.stds
-    thrust, torque = stds.get('thrust', (0.0,))[0], stds.get('torque', (0.0,))[0]
+    wanted = base.wanted
     losses = wanted.losses
     if np.max(losses) >= 1.0:
         losses = np.zeros(len(losses))
         edited.lack(['losses'], 'the plugin needs a motorConstant above 0; take it out')
-    # Tag, value, unit, standard error, the key of Wanted that says what it comes from.
-    rows = [('timeConstantUp', wanted.rise, 's', 0.0, 'rise'),
-            ('timeConstantDown', wanted.fall, 's', 0.0, 'fall')]
+    # Tag, value, unit, the key of Wanted that says what it comes from.
+    rows = [('timeConstantUp', wanted.rise, 's', 'rise'),
+            ('timeConstantDown', wanted.fall, 's', 'fall')]
     if wanted.rotor_drag < 0.0:
         edited.lack(['rotor_drag'], 'the plugin has no drag below 0')
     else:
-        rows.append(('rotorDragCoefficient', wanted.rotor_drag, 'kg/rad', 0.0, 'rotor_drag'))
+        rows.append(('rotorDragCoefficient', wanted.rotor_drag, 'kg/rad', 'rotor_drag'))
     if math.isinf(wanted.speed_max):
         edited.lack(['speed_max'], 'the plugin needs a limit; that of the file stays')
     else:
-        rows.append(('maxRotVelocity', wanted.speed_max, 'rad/s',
-                     stds.get('speed_max', (0.0,))[0], 'speed_max'))
+        rows.append(('maxRotVelocity', wanted.speed_max, 'rad/s', 'speed_max'))
     for j, (plugin, loss) in enumerate(zip(plugins, losses, strict=True), 1):
         constant = wanted.thrust * (1.0 - loss)
         ratio = wanted.torque / constant
         faulty = f'loss_{j}' in base.effects.get('rotor_fault', {}) or loss
         more = f', {wanted.sources["losses"]}' if faulty else ''
-        for tag, value, unit, std, key in (
-                ('motorConstant', constant, 'N/(rad/s)^2', thrust * constant, 'thrust'),
-                ('momentConstant', ratio, 'm', math.hypot(thrust, torque) * ratio, 'torque'),
-                *rows):
+        for tag, value, unit, key in (
+                ('motorConstant', constant, 'N/(rad/s)^2', 'thrust'),
+                ('momentConstant', ratio, 'm', 'torque'), *rows):
             source = wanted.sources[key] + (more if key == 'thrust' else '')
             if tag == 'momentConstant':
                 source = f'{source} over {wanted.sources["thrust"]}{more}'
             if tag == 'rotorDragCoefficient':
                 source = f'{source} over the hover speeds'
-            edited.content(plugin.element, tag, [value], unit, source, [std or None],
+            edited.content(plugin.element, tag, [value], unit, source,
                            usual=[plugin.numbers[tag]])

@@ -19,22 +19,19 @@ from quad_ident_ros.vehicle_files.ways import LAGS
 
 def write(base: Base) -> Edits:
     """Return the Edits by which parameters of PX4's SIH hold what is wanted; InputError."""
-    wanted, stds = base.wanted, base.wanted.stds
+    wanted = base.wanted
     edited = _EditedParameters(base.source)
     check_body(f'{base.source.path}: SIH_IXX: as the vehicle has it',
                Body(wanted.mass, np.zeros(3), wanted.inertia))
-    edited.set('SIH_MASS', wanted.mass, 'kg', wanted.sources['mass'], *stds.get('mass', ()))
+    edited.set('SIH_MASS', wanted.mass, 'kg', wanted.sources['mass'])
     size = float(np.max(np.abs(wanted.inertia)))
-    moments = [*stds.get('inertia', (None,) * 3), None, None, None]
-    for (axes, sign), std in zip(AXES.items(), moments, strict=True):
+    for axes, sign in AXES.items():
         at = 'XYZ'.index(axes[0]), 'XYZ'.index(axes[1])
         edited.set(f'SIH_I{axes}', sign * float(wanted.inertia[at]), 'kg m2',
-                   wanted.sources['inertia'], std or None, size)
+                   wanted.sources['inertia'], size)
     for name, key, value, unit in (('SIH_T_MAX', 'thrust', wanted.thrust, 'N'),
                                    ('SIH_Q_MAX', 'torque', wanted.torque, 'N m')):
-        full = value * FULL_SPEED ** 2
-        edited.set(name, full, unit, wanted.sources[key],
-                   stds.get(key, (0.0,))[0] * full or None)
+        edited.set(name, value * FULL_SPEED ** 2, unit, wanted.sources[key])
     edited.lack(['speed_max'], 'a command is a share of SIH_T_MAX, and speeds are not of the file')
     if wanted.lag > 0.0:
         edited.set('SIH_T_TAU', wanted.lag, 's', wanted.sources['rise'])
@@ -62,15 +59,13 @@ class _EditedParameters(Edits):
         super().__init__(source.text)
         self.parameters = parameters_of(source.text)
 
-    def set(self, name: str, new: float, unit: str, source: str, std: float | None = None,
-            size: float = 0.0) -> None:
+    def set(self, name: str, new: float, unit: str, source: str, size: float = 0.0) -> None:
         """Have a parameter hold another number; one that is not set has the usual one of PX4."""
         known = self.parameters.get(name)
         if known is not None:
             self.number(known.span, f'line {known.line}: {name}', known.value, new, unit, source,
-                        std, size)
-        elif any(self.enter(f'usual {name} of PX4', [USUAL[name]], [new], unit, source, [std],
-                            size)):
+                        size)
+        elif any(self.enter(f'usual {name} of PX4', [USUAL[name]], [new], unit, source, size)):
             self._add(name, new)
 
     def _add(self, name: str, new: float) -> None:

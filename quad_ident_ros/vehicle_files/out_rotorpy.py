@@ -18,16 +18,15 @@ from quad_ident_ros.vehicle_files.ways import BODY, LAGS
 
 def write(base: Base) -> EditedTable:
     """Return the Edits by which a dictionary of rotorpy holds what is wanted; InputError."""
-    wanted, stds = base.wanted, base.wanted.stds
+    wanted = base.wanted
     edited = EditedTable(base.source, table_of(base.source))
     place = f'{base.source.path}, line {edited.table.lines["Ixx"]}: Ixx: as the vehicle has it'
     check_body(place, Body(wanted.mass, np.zeros(3), wanted.inertia))
-    edited.entry('mass', wanted.mass, 'kg', wanted.sources['mass'], *stds.get('mass', ()))
+    edited.entry('mass', wanted.mass, 'kg', wanted.sources['mass'])
     size = float(np.max(np.abs(wanted.inertia)))
-    moments = [*stds.get('inertia', (None,) * 3), None, None, None]
-    for (name, at), std in zip(ENTRIES.items(), moments, strict=True):
+    for name, at in ENTRIES.items():
         edited.entry(f'I{name[1:]}', float(wanted.inertia[at]), 'kg m2',
-                     wanted.sources['inertia'], std or None, size)
+                     wanted.sources['inertia'], size)
     if wanted.centre.any() and not edited.vectors(
             'rotor_pos', [np.array(rotor['position']) - wanted.centre
                           for rotor in base.constant('rotors')], 'm', wanted.sources['centre']):
@@ -35,8 +34,7 @@ def write(base: Base) -> EditedTable:
     for name, key, value, unit in (
             ('k_eta', 'thrust', wanted.thrust, 'N/(rad/s)^2'),
             ('k_m', 'torque', wanted.torque, 'N m/(rad/s)^2')):
-        std = stds.get(key, (0.0,))[0] * value
-        edited.entry(name, value, unit, wanted.sources[key], std or None)
+        edited.entry(name, value, unit, wanted.sources[key])
     _write_motors(edited, base)
     for name, key, value, unit in (
             ('k_d', 'rotor_drag', wanted.rotor_drag, 'kg/rad'),
@@ -62,8 +60,7 @@ def _write_motors(edited: EditedTable, base: Base) -> None:
     if math.isinf(wanted.speed_max):
         edited.lack(['speed_max'], 'rotorpy needs a limit; that of the file stays')
     else:
-        edited.entry('rotor_speed_max', wanted.speed_max, 'rad/s', wanted.sources['speed_max'],
-                     *wanted.stds.get('speed_max', ()))
+        edited.entry('rotor_speed_max', wanted.speed_max, 'rad/s', wanted.sources['speed_max'])
 
 
 TARGET = Target('rotorpy', ('.py',), frozenset((

@@ -8,7 +8,7 @@ from quad_ident_ros.vehicle_files.bodies import Body
 from quad_ident_ros.vehicle_files.edit_xml import EditedXml
 from quad_ident_ros.vehicle_files.new_sdf import new
 from quad_ident_ros.vehicle_files.out_base import Base
-from quad_ident_ros.vehicle_files.out_body import body_for, ENTRIES, MOMENTS, spread
+from quad_ident_ros.vehicle_files.out_body import body_for, ENTRIES, MOMENTS
 from quad_ident_ros.vehicle_files.out_motors import HOLDS, write_motors
 from quad_ident_ros.vehicle_files.reading import Draft
 from quad_ident_ros.vehicle_files.sdf import flying_model, layout_of, pose_of_inertial
@@ -46,8 +46,7 @@ def _write_body(edited: EditedXml, base: Base, link: Element, body: Body) -> Non
     wanted, inertial = base.wanted, link.first('inertial')
     assert inertial is not None
     _, rotation = pose_of_inertial(link)
-    edited.content(inertial, 'mass', [body.mass], 'kg', wanted.sources['mass'],
-                   [wanted.stds.get('mass', (None,))[0]], usual=[1.0])
+    edited.content(inertial, 'mass', [body.mass], 'kg', wanted.sources['mass'], usual=[1.0])
     pose = inertial.first('pose')
     if pose is None or not pose.text.strip():
         edited.content(inertial, 'pose', [*body.centre, 0, 0, 0], 'm', wanted.sources['centre'],
@@ -60,9 +59,8 @@ def _write_body(edited: EditedXml, base: Base, link: Element, body: Body) -> Non
     assert matrix is not None
     turned = rotation.T @ body.inertia @ rotation
     size = float(np.max(np.abs(turned)))
-    stds = spread(rotation, wanted.stds.get('inertia', (0.0, 0.0, 0.0)))
-    for (tag, at), std in zip(ENTRIES.items(), [*stds, None, None, None], strict=True):
-        edited.content(matrix, tag, [turned[at]], 'kg m2', wanted.sources['inertia'], [std],
+    for tag, at in ENTRIES.items():
+        edited.content(matrix, tag, [turned[at]], 'kg m2', wanted.sources['inertia'],
                        usual=[1.0 if at in MOMENTS else 0.0], size=size)
 
 

@@ -11,7 +11,7 @@ from quad_ident_ros.vehicle_files.bodies import Body
 from quad_ident_ros.vehicle_files.edit_xml import EditedXml
 from quad_ident_ros.vehicle_files.new_urdf import new
 from quad_ident_ros.vehicle_files.out_base import Base
-from quad_ident_ros.vehicle_files.out_body import body_for, ENTRIES, spread
+from quad_ident_ros.vehicle_files.out_body import body_for, ENTRIES
 from quad_ident_ros.vehicle_files.out_motors import HOLDS, write_motors
 from quad_ident_ros.vehicle_files.reading import Draft
 from quad_ident_ros.vehicle_files.target import Target
@@ -68,9 +68,7 @@ def _write_properties(edited: EditedXml, base: Base, properties: Element) -> Non
     """Have the properties of gym-pybullet-drones hold thrust, torque and limit."""
     wanted = base.wanted
     for name, value, key in (('kf', wanted.thrust, 'thrust'), ('km', wanted.torque, 'torque')):
-        std = wanted.stds.get(key, (0.0,))[0]
-        edited.attribute(properties, name, [value / PER_RPM], 'per rpm^2', wanted.sources[key],
-                         [std * value / PER_RPM or None])
+        edited.attribute(properties, name, [value / PER_RPM], 'per rpm^2', wanted.sources[key])
     if 'thrust2weight' not in properties.attributes:
         edited.lack(['speed_max'], 'the file has no thrust2weight')
         return
@@ -89,8 +87,7 @@ def _write_body(edited: EditedXml, base: Base, link: Link, body: Body) -> None:
     assert inertial is not None
     mass, moments = inertial.first('mass'), inertial.first('inertia')
     assert mass is not None and moments is not None
-    edited.attribute(mass, 'value', [body.mass], 'kg', wanted.sources['mass'],
-                     [wanted.stds.get('mass', (None,))[0]])
+    edited.attribute(mass, 'value', [body.mass], 'kg', wanted.sources['mass'])
     origin, frame = inertial.first('origin'), origin_of(inertial)
     if origin is not None:
         edited.attribute(origin, 'xyz', body.centre, 'm', wanted.sources['centre'],
@@ -103,10 +100,8 @@ def _write_body(edited: EditedXml, base: Base, link: Link, body: Body) -> None:
                         wanted.sources['centre'])
     turned = frame.rotation.T @ body.inertia @ frame.rotation
     size = float(np.max(np.abs(turned)))
-    stds = spread(link.pose.rotation @ frame.rotation,
-                  wanted.stds.get('inertia', (0.0, 0.0, 0.0)))
-    for (name, at), std in zip(ENTRIES.items(), [*stds, None, None, None], strict=True):
-        edited.attribute(moments, name, [turned[at]], 'kg m2', wanted.sources['inertia'], [std],
+    for name, at in ENTRIES.items():
+        edited.attribute(moments, name, [turned[at]], 'kg m2', wanted.sources['inertia'],
                          usual=(0.0,), size=size)
 
 

@@ -12,6 +12,7 @@ import numpy as np
 from quad_ident_ros import schema
 from quad_ident_ros.effects.registry import mapping, Values, vector
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.model.quantities import UNITS
 from quad_ident_ros.model.vehicle import Vehicle, vehicle_from_mapping
 from quad_ident_ros.vehicle_files.bodies import Body, check_body, principal_tilt
 
@@ -158,7 +159,18 @@ def finished(draft: Draft, kind: str, supplied: Mapping[str, Any] | None = None)
     except InputError as error:
         raise InputError(f'{error}{_read_from(str(error), draft)}') from None
     vehicle = replace(vehicle, effects=mapping(theta))
-    return Reading(draft.where, kind, vehicle, tuple(read), {}, tuple(draft.assumed))
+    return Reading(draft.where, kind, vehicle, tuple(read), {},
+                   (*draft.assumed, *_odd(vehicle, draft)))
+
+
+def _odd(vehicle: Vehicle, draft: Draft) -> list[str]:
+    """Return what to say of a number of rotors that no usual vehicle has."""
+    count = len(vehicle.rotors)
+    if count % 2 == 0:
+        return []
+    place = next((entry.place for entry in draft.read if entry.key == 'rotors'), '--set')
+    return [f'all {count} rotors of {place} carry the vehicle, an odd number: if one of them is '
+            'none, such as a guard or a spare, give it another name or take it out']
 
 
 def needed_vehicle(reading: Reading) -> Vehicle:
@@ -229,7 +241,7 @@ def _supply(draft: Draft, data: dict[str, Any], read: list[Entry], key: str, val
     else:
         data['rotors'] = [{**rotor, 'spin': spin}
                           for rotor, spin in zip(rotors, value, strict=True)]
-    read.append(Entry(key, value, '', '--set'))
+    read.append(Entry(key, value, UNITS.get(key, ''), '--set'))
 
 
 def _without_spins(rotors: Any) -> bool:

@@ -68,7 +68,7 @@ def read(source: Source) -> Draft:
     draft.assumed.append('the aerodynamics are on (`aero=True`, as usual in rotorpy)')
     if number(_NOISE, usual=0.0) > 0.0:
         draft.assumed.append(f'{_NOISE} ({place(_NOISE)}) is left out: noise of the rotor speeds '
-                             'is no effect')
+                             'is not an effect')
     return draft
 
 

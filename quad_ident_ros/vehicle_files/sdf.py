@@ -126,7 +126,7 @@ def _take_tree(draft: Draft, model: Element, tree: Tree) -> None:
               if joint.get('type') != 'fixed' and name not in
               [scope + plugin.joint for plugin, scope in plugins]]
     if moving:
-        draft.assumed.append(f'joints that move and are no rotors ({", ".join(moving[:5])}) are '
+        draft.assumed.append(f'joints that move and are not rotors ({", ".join(moving[:5])}) are '
                              'taken as fixed where they start')
     take_motors(draft, [plugin for plugin, _ in plugins], layout.spinning,
                 lambda element, tag: _place(draft, element, tag))

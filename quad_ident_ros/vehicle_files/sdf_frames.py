@@ -75,7 +75,7 @@ def pose_of(element: Element, tag: str = 'pose') -> tuple[Pose, str]:
     if child.get('rotation_format') == 'quat_xyzw':
         values = child.content(7)
         if not values[3:].any():
-            raise InputError(f'{child.where}: a quaternion of zeros is no rotation; correct it')
+            raise InputError(f'{child.where}: a quaternion of zeros is not a rotation; correct it')
         rotation = turned([values[6], *values[3:6]])
     else:
         values = child.content(6)
@@ -103,7 +103,7 @@ def _gather(tree: Tree, model: Element, scope: str, frame: str, include: Include
         name = element.get('name')
         if element.tag in ('link', 'frame', 'joint'):
             if not name or scope + name in tree.frames:
-                raise InputError(f'{element.where}: this name is there twice; give each link, '
+                raise InputError(f'{element.where}: this name appears twice; give each link, '
                                  'joint and frame one of its own')
             stated, parent = pose_of(element)
             if not parent and element.tag == 'joint':
@@ -136,6 +136,6 @@ def _nest(tree: Tree, element: Element, scope: str, full: Callable[[str], str],
     merged = element.get('merge') in ('true', '1')
     frame = f'{scope}_merged__{name}__model__' if merged else f'{scope}{name}'
     if frame in tree.frames:
-        raise InputError(f'{element.where}: a model {name[:SHOWN]!r} is there twice; name each')
+        raise InputError(f'{element.where}: a model {name[:SHOWN]!r} appears twice; name each')
     tree.frames[frame] = Frame(element, stated, full(parent))
     _gather(tree, inner, scope if merged else f'{scope}{name}::', frame, include, depth)

@@ -43,7 +43,7 @@ def text_of(path: str | Path) -> str:
     """Return the text of a file; InputError for what is none."""
     try:
         if not stat.S_ISREG(Path(path).stat().st_mode):
-            raise InputError(f'{path}: this is no file; name one')
+            raise InputError(f'{path}: this is not a file; name one')
         with open(path, 'rb') as file:
             data = file.read(MOST_BYTES + 1)
     except OSError as error:

@@ -13,7 +13,7 @@ import math
 from typing import Any
 
 from quad_ident_ros.model.motors import Motors, motors_from
-from quad_ident_ros.model.vehicle import Uncertainty, Vehicle
+from quad_ident_ros.model.vehicle import Vehicle
 from quad_ident_ros.vehicle_files.reading import Draft
 
 PER_SPEED = {'thrust_coefficient': -2, 'torque_coefficient': -2, 'rotor_inertia': -1,
@@ -38,15 +38,17 @@ def unit_of(draft: Draft, vehicle: Vehicle) -> float:
 
 
 def counted(vehicle: Vehicle, unit: float) -> Vehicle:
-    """Return the same vehicle with its rotor speeds counted in another unit, 1 for its rad/s."""
+    """
+    Return the same vehicle with its rotor speeds counted in another unit, 1 for its rad/s.
+
+    How well its numbers are known is left out.
+    """
     if unit == 1.0:
         return vehicle
     constants = {key: getattr(vehicle, key) * unit ** power for key, power in PER_SPEED.items()}
-    known: dict[str, Uncertainty] = {
-        key: std * unit ** PER_SPEED[key] if key in PER_SPEED and isinstance(std, float) else std
-        for key, std in vehicle.uncertainty.items()}
     effects = {name: _effect(name, values, unit) for name, values in vehicle.effects.items()}
-    return replace(vehicle, **constants, uncertainty=known, effects=effects, motors=None)
+    return replace(vehicle, **constants, uncertainty={}, covariance=None, effects=effects,
+                   motors=None)
 
 
 def _signals(motors: Motors) -> tuple[Any, ...]:

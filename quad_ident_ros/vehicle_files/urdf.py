@@ -127,7 +127,7 @@ def bodies_of(draft: Draft, links: dict[str, Link], rotors: Sequence[Link]) -> d
             draft.note(f'link {name}', body.mass, 'kg', link.element.place('inertial'))
             bodies[name] = body.placed(link.pose)
     for names, said in ((bare, 'links with shapes and no <inertial> are taken without mass'),
-                        (moving, 'links that move and are no rotors are taken as fixed where '
+                        (moving, 'links that move and are not rotors are taken as fixed where '
                          'they start')):
         if names:
             draft.assumed.append(f'{said}: {", ".join(names[:5])}')
@@ -140,7 +140,7 @@ def _take_bodies(draft: Draft, links: dict[str, Link], rotors: Sequence[Link]) -
     """Enter mass and inertia of all links, and return them as one."""
     whole = combined(list(bodies_of(draft, links, rotors).values()))
     base = next(link for link in links.values() if link.joint is None)
-    draft.take_body(whole, f'{base.element.place()} with all that hangs on it')
+    draft.take_body(whole, f'{base.element.place()} with all links attached to it')
     return whole
 
 

@@ -46,7 +46,7 @@ class Link:
         axis = (np.array([1.0, 0.0, 0.0]) if stated is None else
                 stated.numbers('xyz', 3, (1.0, 0.0, 0.0)))
         if stated is not None and not np.linalg.norm(axis) > SHORTEST:
-            raise InputError(f'{stated.where}: zeros are no axis; correct it')
+            raise InputError(f'{stated.where}: zeros are not an axis; correct it')
         return axis
 
 
@@ -62,12 +62,12 @@ def trees_of(root: Element) -> dict[str, dict[str, Link]]:
     for joint in _named(root, 'joint').values():
         for end in ('parent', 'child'):
             if _end(joint, end) not in links:
-                raise InputError(f'{joint.where}: its {end} {_end(joint, end)[:50]!r} is no link '
-                                 'of the robot')
+                raise InputError(f'{joint.where}: its {end} {_end(joint, end)[:50]!r} is not a '
+                                 'link of the robot')
         other = above.setdefault(_end(joint, 'child'), joint)
         if other is not joint:
-            raise InputError(f'{joint.where}: its child hangs on the joint in line {other.line} '
-                             'too; a URDF is a tree')
+            raise InputError(f'{joint.where}: its child is attached to the joint in line '
+                             f'{other.line} too; a URDF is a tree')
     trees: dict[str, dict[str, Link]] = {}
     for name in links:
         _place(name, links, above, trees)
@@ -89,7 +89,7 @@ def _place(name: str, links: dict[str, Element], above: dict[str, Element],
     at, place, seen = name, pose(), set()
     while at in above:
         if at in seen:
-            raise InputError(f'{above[at].where}: the links hang on one another in a circle')
+            raise InputError(f'{above[at].where}: the links form a circle')
         seen.add(at)
         place, at = origin_of(above[at]) @ place, _end(above[at], 'parent')
     trees.setdefault(at, {})[name] = Link(links[name], place, above.get(name),

@@ -30,8 +30,7 @@ class Wanted:
     kg/rad, thrust of a rotor lost per its speed and air velocity along its axis, and kg/m, won
     per square of that across it; flapping kg m/rad, moment per speed of a rotor and air velocity;
     wind (3,) m/s.
-    stds: relative standard errors of thrust and torque, standard errors of mass and of the moments
-    of inertia, by key; sources: what each comes from.
+    sources: what each comes from, by key.
     """
 
     mass: float
@@ -51,7 +50,6 @@ class Wanted:
     inflow: tuple[float, float]
     flapping: float
     wind: np.ndarray
-    stds: dict[str, tuple[float, ...]]
     sources: dict[str, str]
 
     @property
@@ -101,7 +99,7 @@ def wanted_of(vehicle: Vehicle, sag: float | None, holds: Collection[Key]) -> Wa
                 inflow.get('translational', 0.0) / len(vehicle.rotors)),
         flapping=effects.get('blade_flapping', {}).get('coefficient', 0.0) / speeds,
         wind=np.array([wind.get(axis, 0.0) for axis in 'xyz']),
-        stds=_stds(vehicle, moments), sources=_sources(vehicle, sag, holds))
+        sources=_sources(vehicle, sag, holds))
 
 
 def _drags(vehicle: Vehicle, holds: Collection[Key]) -> tuple[np.ndarray, np.ndarray]:
@@ -126,25 +124,6 @@ def _lags(effects: Values) -> tuple[float, float]:
     if 'rise' in lag or 'fall' in lag:
         return lag.get('rise', 0.0), lag.get('fall', 0.0)
     return lag.get('mean_lag', 0.0), lag.get('mean_lag', 0.0)
-
-
-def _stds(vehicle: Vehicle, moments: np.ndarray) -> dict[str, tuple[float, ...]]:
-    """Return the standard errors of what constants with one become."""
-    known = vehicle.uncertainty
-    found: dict[str, tuple[float, ...]] = {}
-    for key, name in (('thrust', 'thrust_coefficient'), ('torque', 'torque_coefficient')):
-        std = known.get(name)
-        if isinstance(std, float):
-            found[key] = (std / getattr(vehicle, name),)
-    for key in ('mass', 'speed_max'):
-        std = known.get(key)
-        if isinstance(std, float):
-            found[key] = (std,)
-    std = known.get('inertia')
-    if isinstance(std, tuple):
-        found['inertia'] = tuple((each or 0.0) * moment / value for each, moment, value in
-                                 zip(std, moments, vehicle.inertia, strict=True))
-    return found
 
 
 def _sources(vehicle: Vehicle, sag: float | None, holds: Collection[Key]) -> dict[str, str]:

@@ -174,6 +174,9 @@ def parse(path: str, text: str) -> Element:
     try:
         parser.Parse(text.encode('utf-8'), True)
     except expat.ExpatError as error:
-        raise InputError(f'{path}, line {error.lineno}: is no whole XML: '
+        if expat.ErrorString(error.code) == expat.errors.XML_ERROR_JUNK_AFTER_DOC_ELEMENT:
+            raise refuse(f'something follows the end of <{roots[0].tag}>; give a file for each '
+                         'vehicle') from None
+        raise InputError(f'{path}, line {error.lineno}: is not complete XML: '
                          f'{expat.ErrorString(error.code)}; save or copy it again') from None
     return roots[0]

@@ -50,9 +50,9 @@ def blackbox(rows, ended=True, **headers):
 
 def rows_of(record, motors, poles=14, start=7_000_000):
     """Return the rows of a record (FLU in ENU) at whole counts, and motors (N, 4) of outputs."""
-    from quad_ident_ros.data.frames import conjugate, multiply
+    from quad_ident_ros.model.attitude import conjugate, product
     half = np.sqrt(0.5)
-    q = multiply(conjugate([half, 0, 0, half]), record.stack('qw', 'qx', 'qy', 'qz'))
+    q = product(conjugate([half, 0, 0, half]), record.stack('qw', 'qx', 'qy', 'qz'))
     q = q * np.where(q[:, :1] < 0, -1, 1)
     count = len(record)
     rpm = record.stack('cmd1', 'cmd2', 'cmd3', 'cmd4') * 30 / np.pi

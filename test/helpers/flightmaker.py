@@ -11,9 +11,8 @@ from rosbags.typesys import get_typestore, Stores
 
 from quad_ident_ros.data.bag import BagWriter, serialize
 from quad_ident_ros.data.bag_file import read_bag_messages
-from quad_ident_ros.data.frames import conjugate, multiply
 from quad_ident_ros.data.record import FlightRecord
-from quad_ident_ros.model.attitude import rotation_matrix
+from quad_ident_ros.model.attitude import conjugate, product, rotation_matrix
 from quad_ident_ros.model.vehicle import vehicle_from_mapping
 
 VEHICLE = vehicle_from_mapping({
@@ -59,7 +58,7 @@ def attitude_at(t):
 def rate_at(t, step=1e-4):
     """Return the body rate (N, 3) of the flat trajectory at t, rad/s."""
     before, after = attitude_at(t - step)[0], attitude_at(t + step)[0]
-    return multiply(conjugate(before), after)[:, 1:] / step
+    return product(conjugate(before), after)[:, 1:] / step
 
 
 @cache
@@ -93,7 +92,7 @@ def flight(seconds=20.0, rate=100.0, noise=1.0, seed=0, start=0.0):
         values[name] = values[name] + noise * spread[name] * random.normal(size=len(t))
     turn = np.column_stack([np.ones(len(t)), 0.5 * np.radians(0.2) * noise
                             * random.normal(size=(len(t), 3))])
-    q = multiply(q, turn / np.linalg.norm(turn, axis=-1, keepdims=True))
+    q = product(q, turn / np.linalg.norm(turn, axis=-1, keepdims=True))
     gyro = rate_at(t) + noise * 0.02 * random.normal(size=(len(t), 3))
     force = np.column_stack([np.zeros((len(t), 2)), thrust])   # just after the command
     force += noise * 0.1 * random.normal(size=force.shape)

@@ -154,7 +154,7 @@ def test_a_value_of_no_type_is_refused_and_ends_nothing(graph, service, answered
     response = graph.call(service, f'identifier/{name}', service.Request(parameters=[message]))
     [result] = answered(response)
     assert not result.successful
-    assert result.reason.startswith('parameter seed: 200 is no type of a parameter')
+    assert result.reason.startswith('parameter seed: 200 is not the type of a parameter')
     assert running.get_parameter('seed').value == 0
     assert graph.set_parameter('identifier', 'seed', 3).successful
 

@@ -15,10 +15,10 @@ from rcl_interfaces.srv import ListParameters
 from std_msgs.msg import Float64MultiArray, String
 import yaml
 
-from quad_ident_ros.data.frames import rotate
+from quad_ident_ros.data.commands import with_commands
 from quad_ident_ros.data.record import EULER, FlightRecord, QUATERNION
 from quad_ident_ros.experiment import fly, load_experiment
-from quad_ident_ros.model.mixing import with_commands
+from quad_ident_ros.model.attitude import rotate
 from quad_ident_ros.model.motors import motors_from, MOTORS_OFF
 from quad_ident_ros.model.vehicle import load_vehicle, write_vehicle
 from quad_ident_ros.nodes.diagnoser import Diagnoser

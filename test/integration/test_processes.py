@@ -64,7 +64,7 @@ def test_bad_parameters_are_refused_in_one_line(processes):
 
 
 @pytest.mark.parametrize('words, said', [
-    (['--method', 'ls'], "'--method' is no option here: parameters are given as --ros-args -p"),
+    (['--method', 'ls'], "'--method' is not an option here: parameters are given as --ros-args"),
     (['--ros-args', '-p', 'method'], 'the ROS arguments cannot be used'),
     (['--ros-args', '--params-file', '/nowhere.yaml'], 'the ROS arguments cannot be used'),
 ])

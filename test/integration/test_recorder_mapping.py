@@ -211,7 +211,7 @@ def test_parameters_that_cannot_be_are_refused(graph, parameters, said):
 @pytest.mark.parametrize('name', ['/od om', '/odom/', '3odom'])
 def test_a_name_that_no_topic_can_have_is_refused(graph, tmp_path, name):
     (tmp_path / 'm.yaml').write_text(f'topics:\n  pose: {{topic: "{name}"}}\n')
-    with pytest.raises(InputError, match=f"m.yaml: topics: '{name}' is no name of a topic"):
+    with pytest.raises(InputError, match=f"m.yaml: topics: '{name}' is not the name of a topic"):
         graph.start(Recorder, {'mapping': str(tmp_path / 'm.yaml')})
 
 

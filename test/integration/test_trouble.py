@@ -10,10 +10,10 @@ from nav_msgs.msg import Odometry
 import pytest
 from std_msgs.msg import Float64MultiArray
 
-from quad_ident_ros.data.frames import conjugate, rotate
 from quad_ident_ros.data.record import QUATERNION
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.experiment import fly, load_experiment
+from quad_ident_ros.model.attitude import conjugate, rotate
 from quad_ident_ros.nodes.qos import latched, LOSSLESS
 from quad_ident_ros.nodes.recorder import Recorder
 from quad_ident_ros.nodes.simulator import Simulator

@@ -30,7 +30,7 @@ def quaternion(draft: Draft) -> None:
     if letters:
         q = draft.values(letters)
         if not is_unit(q):
-            draft.guess.doubts.append(f'q: {together(letters)} are no unit quaternion')
+            draft.guess.doubts.append(f'q: {together(letters)} are not a unit quaternion')
             return
         draft.take(QUATERNION, letters, role='pose', said='attitude')
         draft.attitude = unit_length(q)
@@ -87,7 +87,7 @@ def rates(draft: Draft) -> None:
                     'deg/s' if DEGREES[0] < ratio < DEGREES[1] else 'none')
     if unit == 'none':
         draft.guess.doubts.append(f'wx: {together(names)} are {ratio:.3g} times the rates of '
-                                  'the attitude, which is no unit')
+                                  'the attitude, which is not a unit')
         unit = 'rad/s'
     if not unit and _is_weight(values):
         return

@@ -7,13 +7,13 @@ import re
 
 import numpy as np
 
-from quad_ident_ros.data import frames
 from quad_ident_ros.data.columns import FORCE, POSITION, RATE, VELOCITY
 from quad_ident_ros.data.guess.draft import Draft, together
 from quad_ident_ros.data.guess.names import TURNING
 from quad_ident_ros.data.guess.series import ratio_of, unit_length
 from quad_ident_ros.data.mapping import factor_of
 from quad_ident_ros.gravity import GRAVITY
+from quad_ident_ros.model.attitude import rotate
 
 HOVERS = 0.6, 1.6       # of gravity: the usual specific force of what flies
 QUICK = 100.0           # m/s: multirotors do under 60, so faster ones are in mm
@@ -60,7 +60,7 @@ def forces(draft: Draft) -> None:
             return
     if usual < HOVERS[0]:
         draft.guess.said.append(f'{together(names)}: not taken, an acceleration without '
-                                'gravity is no specific force')
+                                'gravity is not a specific force')
         draft.taken(names, '')
         return
     draft.guess.doubts.append(f'ax: the unit of {together(names)}, {usual:.3g} as a rule')
@@ -136,7 +136,7 @@ def _by_velocity(draft: Draft, names: Sequence[str]) -> str:
         if factor / 2 < ratio < 2 * factor:
             return unit
     draft.guess.doubts.append(f'px: {together(names)} change {ratio:.3g} times as fast as '
-                              f'{together(given)} says, which is no unit')
+                              f'{together(given)} says, which is not a unit')
     return 'm'
 
 
@@ -145,7 +145,7 @@ def _off(draft: Draft, speed: np.ndarray) -> list[float] | None:
     if draft.attitude is None or draft.t is None:
         return None
     q = unit_length(draft.attitude)
-    readings = speed, frames.rotate(q, speed)
+    readings = speed, rotate(q, speed)
     with np.errstate(all='ignore'):
         dt = np.diff(draft.t)[:, None]
         if 'px' in draft.columns:
@@ -153,7 +153,7 @@ def _off(draft: Draft, speed: np.ndarray) -> list[float] | None:
             rest = [moved - 0.5 * (one[1:] + one[:-1]) * dt for one in readings]
         elif 'ax' in draft.columns:
             weight = np.array([0.0, 0.0, GRAVITY if draft.world == 'NED' else -GRAVITY])
-            force = frames.rotate(q, draft.scaled(FORCE)) + weight
+            force = rotate(q, draft.scaled(FORCE)) + weight
             rest = [np.diff(one, axis=0) - 0.5 * (force[1:] + force[:-1]) * dt
                     for one in readings]
         else:

@@ -4,7 +4,7 @@
 
 import numpy as np
 
-from quad_ident_ros.data import frames
+from quad_ident_ros.model.attitude import conjugate, product
 
 FEWEST = 10             # samples that a correlation takes
 UNIT, MOSTLY = 0.02, 0.95   # off the length 1, as of rounded ones; and the share that are so
@@ -53,6 +53,6 @@ def unit_length(q: np.ndarray) -> np.ndarray:
 
 def turned(q: np.ndarray, later: np.ndarray) -> np.ndarray:
     """Return the turns (N, 3) rad in the body from attitudes to later ones."""
-    turn = frames.multiply(frames.conjugate(q), later)
+    turn = product(conjugate(q), later)
     turn = turn * np.where(turn[:, :1] < 0, -1.0, 1.0)
     return 2.0 * turn[:, 1:]

@@ -13,10 +13,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from quad_ident_ros.data.frames import conjugate, continuous, multiply, rotate
 from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.quality.once import once
 from quad_ident_ros.data.quality.series import attitudes_of
+from quad_ident_ros.model.attitude import conjugate, continuous, product, rotate
 
 REACH = 0.1         # s, the largest lag looked for
 SPACING = 2         # samples of the second differences, which see most at a quarter of the rate
@@ -110,7 +110,7 @@ def _series(record):
     even = np.append(0, np.cumsum(np.abs(np.diff(t) - period) < EVEN * period))
     told = even[2 * n:] - even[:-2 * n] == 2 * n
     back = conjugate(q[n:-n])
-    turned = sum(2.0 * multiply(back, one)[:, 1:] for one in (q[2 * n:], q[:-2 * n]))
+    turned = sum(2.0 * product(back, one)[:, 1:] for one in (q[2 * n:], q[:-2 * n]))
     moved, given = _second(values), _second(squared)
     states = np.hstack([rotate(back, moved[:, :3]), rotate(back, moved[:, 3:6]), turned,
                         moved[:, 6:]])

@@ -4,11 +4,12 @@
 
 import numpy as np
 
-from quad_ident_ros.data.frames import body_vector, conjugate, rotate, world_vector
+from quad_ident_ros.data.frames import body_vector, world_vector
 from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.quality.once import once
 from quad_ident_ros.data.quality.series import correlation, explained, Grid, is_rather, WIDTH
 from quad_ident_ros.data.record import QUATERNION
+from quad_ident_ros.model.attitude import conjugate, rotate
 
 SURE, BETTER = 0.7, 0.3   # correlation that an explanation needs, and its lead
 STILL = 1e-6              # rad/s rms: an attitude that does not turn, but for rounding

@@ -5,12 +5,12 @@
 import numpy as np
 from scipy.ndimage import maximum_filter1d, median_filter, minimum_filter1d, uniform_filter1d
 
-from quad_ident_ros.data.frames import conjugate, continuous, multiply
 from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.quality.frames import best_reading, SURE
 from quad_ident_ros.data.quality.once import once
 from quad_ident_ros.data.quality.series import attitudes_of, correlation, Grid
 from quad_ident_ros.data.record import QUATERNION
+from quad_ident_ros.model.attitude import conjugate, continuous, product
 
 LONGEST = 0.15            # s, that a jump lasts
 FAR = 7.0                 # standard deviations of the noise from which on it is one,
@@ -74,7 +74,7 @@ def _off(t, attitudes, rates):
     q = continuous(attitudes / np.linalg.norm(attitudes, axis=-1, keepdims=True))
     steps = np.diff(t)
     period = float(np.median(steps))
-    turned = 2.0 * multiply(conjugate(q[:-1]), q[1:])[:, 1:]
+    turned = 2.0 * product(conjugate(q[:-1]), q[1:])[:, 1:]
     apart = turned - 0.5 * (rates[1:] + rates[:-1]) * steps[:, None]
     # Over lost rows the gyro leads on: a jump that begins or ends there is one all the same. What
     # it misses stays, and the median follows what stays.

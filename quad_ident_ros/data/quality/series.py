@@ -8,11 +8,16 @@ import numpy as np
 from scipy.ndimage import maximum_filter1d
 from scipy.signal import fftconvolve
 
-from quad_ident_ros.data.frames import conjugate, continuous, multiply, rotate
 from quad_ident_ros.data.record import EULER, QUATERNION
 from quad_ident_ros.data.streams import slerp
 from quad_ident_ros.gravity import GRAVITY
-from quad_ident_ros.model.attitude import quaternion_from_euler
+from quad_ident_ros.model.attitude import (
+    conjugate,
+    continuous,
+    product,
+    quaternion_from_euler,
+    rotate,
+)
 
 WIDTH = 0.2       # s, full width of the smoothing window
 GAP = 3.0         # median periods from which on a step in time is a gap
@@ -105,7 +110,7 @@ class Grid:
     def rate_of(self, attitude):
         """Return the smoothed body rate of attitudes (N, 4), (N, 3) rad/s."""
         q = continuous(attitude)
-        turn = multiply(conjugate(q[:-2]), q[2:])
+        turn = product(conjugate(q[:-2]), q[2:])
         length = np.linalg.norm(turn[:, 1:], axis=-1, keepdims=True)
         angle = 2.0 * np.arctan2(length, turn[:, :1])
         scale = np.divide(angle, length, out=np.full_like(length, 2.0), where=length > 1e-12)

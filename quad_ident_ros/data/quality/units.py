@@ -4,12 +4,11 @@
 
 import numpy as np
 
-from quad_ident_ros.data.frames import rotate
 from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.quality.series import correlation, Grid
 from quad_ident_ros.data.record import EULER, QUATERNION
 from quad_ident_ros.gravity import GRAVITY
-from quad_ident_ros.model.attitude import body_rate, quaternion_from_euler
+from quad_ident_ros.model.attitude import body_rate, quaternion_from_euler, rotate
 
 DEGREE = np.pi / 180
 RPM = 2 * np.pi / 60
@@ -56,7 +55,7 @@ def _other_size(one, other, where, these, those):
     if abs(sure) < CERTAIN or moved < MOVED or 1 / OFF < abs(slope) < OFF:
         return []
     return [Finding('scale', 'error', where,
-                    f'{these} are {abs(slope):.3g} times {those}, which is no unit',
+                    f'{these} are {abs(slope):.3g} times {those}, which is not a unit',
                     'see by what they are scaled where they are written')]
 
 
@@ -87,8 +86,8 @@ def euler_in_degrees(record, vehicle):
     slope = _tilted_by_degrees(grid, euler) if alone else None
     if slope is None:
         return []
-    found = [_in_degrees(f'the vehicle accelerates {slope:.2f} times as the angles tell, read as '
-                         'degrees')]
+    found = [_in_degrees(f'the vehicle accelerates {slope:.2f} times what the angles give, read '
+                         'as degrees')]
     return found + ([_gyro_in_degrees('they are those of angles in degrees')]
                     if reference is not None and abs(sure) >= SURE else [])
 

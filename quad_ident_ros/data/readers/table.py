@@ -168,12 +168,12 @@ def contents_of_table(table: Table, kind: str) -> list[Content]:
 
 
 def _doubtful(path: Path, table: Table, found: Guess) -> str:
-    """Return the message of a table that names and values do not tell."""
+    """Return the message of a table that names and values do not explain."""
     lines = flow(found.mapping)
     if len(lines) > 300:
         lines = lines[:lines.rindex(', ', 0, 300)] + ', ...}'
     texts = f' (of text: {shown(table.text, 5)})' if table.text else ''
-    return (f'{path}: not told: {"; ".join(found.doubts[:4])[:300]}; the columns are '
+    return (f'{path}: not recognised: {"; ".join(found.doubts[:4])[:300]}; the columns are '
             f'{shown(table.columns, 10)[:250]}{texts}; write a mapping such as {lines}, or begin '
             'one with: quad_ident info FILE --write-mapping map.yaml')
 

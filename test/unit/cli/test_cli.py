@@ -160,14 +160,14 @@ def test_a_vehicle_is_written_to_no_other_kind_of_file(call, flights, tmp_path, 
 # FLIGHT stands for a flight, FOLDER for an empty folder.
 BAD_CALLS = {
     'no such file': 'identify FOLDER/none.csv',
-    'a folder that is no bag': 'identify FOLDER',
+    'a folder that is not a bag': 'identify FOLDER',
     'no flight to look at': 'info FOLDER/none.csv',
     'a mapping that is not there': 'info FLIGHT --mapping FOLDER/none.yaml',
     'a format that is not written': 'convert FLIGHT FOLDER/out.txt',
     'no such experiment': 'simulate smal_angle',
     'no such vehicle': 'simulate small_angle --vehicle none',
     'unknown noise channel': 'simulate small_angle --noise atitude=1',
-    'noise that is no number': 'simulate small_angle --noise attitude=x',
+    'noise that is not a number': 'simulate small_angle --noise attitude=x',
     'noise below zero': 'simulate small_angle --noise attitude=-1',
     'noise without a value': 'simulate small_angle --noise attitude',
     'negative seed': 'identify FLIGHT --seed -1',
@@ -195,7 +195,9 @@ def test_bad_input_gets_one_line_and_exit_code_2(call, flights, tmp_path, capsys
     ('diagnos a.csv', 'diagnose'), ('identify a.csv --metod ls', '--method'),
     ('diagnose a.csv --vehicle hummingbrd', 'hummingbird'),
     ('diagnose a.csv --vehicle iris --effects rotor_drga', 'rotor_drag'),
-    ('fly figur8 --vehicle iris -o a.csv', 'figure8')])
+    ('fly figur8 --vehicle iris -o a.csv', 'figure8'),
+    ('export iris --to gazeboo -o a.sdf', 'gazebo'),
+    ('identify a.csv --trim recrd', 'record')])
 def test_a_wrong_name_is_told_with_the_one_that_may_be_meant(call, meant, capsys):
     try:
         code = main(call.split())
@@ -206,7 +208,14 @@ def test_a_wrong_name_is_told_with_the_one_that_may_be_meant(call, meant, capsys
     assert ': error: ' in last and last.endswith(f'did you mean {meant!r}?')
 
 
-@pytest.mark.parametrize('call', ['--nonsense', 'info a.csv --zzz', 'xyz'])
+def test_a_name_with_an_ending_is_that_of_a_file(capsys):
+    for call in ('vehicle quad.sdf', 'diagnose a.csv --vehicle quad.xml'):
+        assert main(call.split()) == 2
+        assert 'there is no such file' in capsys.readouterr().err
+
+
+@pytest.mark.parametrize('call', ['--nonsense', 'identify a.csv --trim zzz', 'info a.csv --zzz',
+                                  'xyz'])
 def test_a_name_like_no_other_is_refused_without_a_guess(call, capsys):
     with pytest.raises(SystemExit) as end:
         main(call.split())

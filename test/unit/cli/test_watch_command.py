@@ -28,7 +28,7 @@ def refusal(capsys, *words):
 
 
 def test_without_a_terminal(capsys):
-    assert re.match('quad_ident watch: error: this is no terminal: start it in one, ',
+    assert re.match('quad_ident watch: error: this is not a terminal: start it in one, ',
                     refusal(capsys))
 
 

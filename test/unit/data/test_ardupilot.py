@@ -189,7 +189,7 @@ def test_damage_is_passed_over(tmp_path):
     whole, head = dataflash(messages), len(dataflash(messages[:300]))
     read = load(file(tmp_path, whole[:head] + bytes(1000) + whole[head:-3]))
     assert len(read) >= len(SMALL) - 2
-    assert any('bytes of the log are no messages' in note for note in read.info['notes'])
+    assert any('bytes of the log are not messages' in note for note in read.info['notes'])
 
 
 def test_bad_logs_are_refused(tmp_path):

@@ -17,7 +17,7 @@ from quad_ident_ros.cli.main import main
 from quad_ident_ros.data.load import contents_of, load
 from quad_ident_ros.data.mapping import mapping_from
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.model.attitude import euler_from_quaternion
+from quad_ident_ros.model.attitude import conjugate, euler_from_quaternion, product, rotate
 
 DUTY = mapping_from({'actuators': {'kind': 'pwm', 'minimum': 0, 'maximum': 65535}}, 'm')
 MOTORS = 65535 * (SMALL.stack(*CMD) - 100) / 1600
@@ -77,7 +77,6 @@ def test_angles_are_read_with_the_sign_of_bitcrazes_pitch(tmp_path):
 
 def test_the_kalman_filters_velocity_is_turned_into_the_world(tmp_path):
     quaternion = SMALL.stack('qw', 'qx', 'qy', 'qz')
-    from quad_ident_ros.data.frames import conjugate, rotate
     body = rotate(conjugate(quaternion), SMALL.stack('vx', 'vy', 'vz'))
     names = [*(f'kalman.state{n}' for n in ('X', 'Y', 'Z', 'PX', 'PY', 'PZ')),
              *(f'kalman.q{k}' for k in range(4))]
@@ -91,8 +90,7 @@ def test_the_packed_state_is_read(tmp_path):
     """The largest entry of the quaternion is any of the four; the pitch rate has another sign."""
     q = SMALL.stack('qw', 'qx', 'qy', 'qz')
     turns = np.eye(4)[np.arange(len(q)) % 4]
-    from quad_ident_ros.data.frames import multiply
-    q = multiply(turns, q)
+    q = product(turns, q)
     rates = 1e3 * SMALL.stack('wx', 'wy', 'wz') * [1, -1, 1]
     names = ('quat(I)', 'rateRoll(h)', 'ratePitch(h)', 'rateYaw(h)', 'x(h)', 'y(h)', 'z(h)')
     rows = np.column_stack([packed(q), np.clip(rates, -32000, 32000),

@@ -10,9 +10,9 @@ from rosbags.rosbag2 import StoragePlugin, Writer
 from rosbags.typesys import get_types_from_msg, get_typestore, Stores
 
 from quad_ident_ros.data.bag import BagWriter, serialize
-from quad_ident_ros.data.frames import conjugate, multiply
 from quad_ident_ros.data.load import load
 from quad_ident_ros.data.mapping import mapping_from
+from quad_ident_ros.model.attitude import conjugate, product
 
 
 def test_a_mapped_bag_gives_the_flight(tmp_path):
@@ -27,8 +27,8 @@ def test_a_mapped_bag_gives_the_flight(tmp_path):
 
 def test_a_mapped_bag_in_ned_is_turned(tmp_path):
     q = SMALL.stack('qw', 'qx', 'qy', 'qz')
-    ned_q = multiply(conjugate([0.0, np.sqrt(0.5), np.sqrt(0.5), 0.0]),
-                     multiply(q, conjugate([0.0, 1.0, 0.0, 0.0])))
+    ned_q = product(conjugate([0.0, np.sqrt(0.5), np.sqrt(0.5), 0.0]),
+                     product(q, conjugate([0.0, 1.0, 0.0, 0.0])))
     turned = changed(SMALL, **{name: values for names, table in (
         (('px', 'py', 'pz'), ned(SMALL.stack('px', 'py', 'pz'))),
         (('vx', 'vy', 'vz'), ned(SMALL.stack('vx', 'vy', 'vz'))),

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from quad_ident_ros.data.frame_watch import FrameWatch
-from quad_ident_ros.data.frames import conjugate, rotate
 from quad_ident_ros.data.topics import raw_columns
 from quad_ident_ros.experiment import fly, load_experiment
+from quad_ident_ros.model.attitude import conjugate, rotate
 
 COLUMNS = raw_columns(('pose', 'twist'))
 FLIGHTS = load_experiment('closed_loop')

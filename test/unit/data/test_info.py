@@ -151,7 +151,7 @@ def test_a_mapping_to_begin_with_reads_the_table(tmp_path, capsys):
     out = tmp_path / 'm.yaml'
     assert info(capsys, path, '--write-mapping', out)[0] == FAULTY
     text = out.read_text()
-    assert '# not told by names and values: quaternion' in text and 'unit: us' in text
+    assert '# not recognised by names and values: quaternion' in text and 'unit: us' in text
     out.write_text(text.replace('quaternion: wxyz', 'quaternion: xyzw'))
     read = load(path, load_mapping(out))
     assert np.abs(read.columns['qw']).min() == 1.0 and len(q) == len(Q)

@@ -18,11 +18,11 @@ from quad_ident_ros.data.bag import BagWriter
 from quad_ident_ros.data.bag_file import read_bag_messages
 from quad_ident_ros.data.csv import read_csv, write_csv
 from quad_ident_ros.data.export import save, write_bag
-from quad_ident_ros.data.frames import rotate
 from quad_ident_ros.data.load import load
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.experiment import fly, load_experiment
+from quad_ident_ros.model.attitude import rotate
 
 
 @pytest.mark.parametrize('name', ['f.csv', 'f.csv.gz', 'f.mcap', 'folder'])

@@ -109,7 +109,7 @@ def test_samples_before_the_first_fix_are_left_out(tmp_path):
                               parameters()))
     read = load(path, vehicle=VEHICLE)
     assert read.has('px') and len(read) == len(SMALL) - fix
-    assert any(f'{fix} of {len(SMALL)} samples are no valid' in note
+    assert any(f'{fix} of {len(SMALL)} samples are not valid' in note
                for note in read.info['notes'])
 
 

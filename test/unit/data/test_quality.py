@@ -10,14 +10,13 @@ import pytest
 from quality_records import A, CMD, codes, named, P, Q, V, W
 from real import needs_real_flights, real_flight, real_vehicle
 
-from quad_ident_ros.data.frames import conjugate, multiply, rotate
 from quad_ident_ros.data.quality import clock_offset, findings, SEVERITIES
 from quad_ident_ros.data.quality.excitation import excitation
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.experiment import fly, load_experiment
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import FAULTY, MOCAP_IMU
-from quad_ident_ros.model.attitude import euler_from_quaternion
+from quad_ident_ros.model.attitude import conjugate, euler_from_quaternion, product, rotate
 from quad_ident_ros.model.vehicle import load_vehicle
 
 CLEAN = {
@@ -164,7 +163,7 @@ def test_jumps_of_the_attitude_are_found_and_counted():
     for first, angle in ((300, 4.0), (900, 3.0), (1500, -5.0)):
         half = np.radians(angle) / 2
         turn[first:first + 5] = np.cos(half), 0.0, np.sin(half), 0.0
-    jumping = named(Q, multiply(record.stack(*Q), turn))
+    jumping = named(Q, product(record.stack(*Q), turn))
     [finding] = findings(changed(record, **jumping), VEHICLE)
     assert finding.code == 'attitude_glitch' and finding.severity == 'warning'
     assert finding.message.startswith('3 times') and 't = 3.000 s' in finding.where
@@ -208,7 +207,7 @@ FAULTS = {
     'frame_ned, position and velocity only': lambda r: {
         **named(P, ned(r.stack(*P))), **named(V, ned(r.stack(*V)))},
     'frame_frd': lambda r: {
-        **named(Q, multiply(r.stack(*Q), np.array([0.0, 1.0, 0.0, 0.0]))),
+        **named(Q, product(r.stack(*Q), np.array([0.0, 1.0, 0.0, 0.0]))),
         **named(W, frd(r.stack(*W))), **named(A, frd(r.stack(*A)))},
     'frame_rate': lambda r: named(W, frd(r.stack(*W))),
     'quaternion_order': lambda r: named(Q, r.stack(*Q)[:, [1, 2, 3, 0]]),

@@ -8,9 +8,9 @@ import pytest
 from real import NANOBENCH, needs_real_flights
 
 from quad_ident_ros.data.csv import write_csv
-from quad_ident_ros.data.frames import multiply
 from quad_ident_ros.data.load import load, load_all
 from quad_ident_ros.data.split import jumps, split
+from quad_ident_ros.model.attitude import product
 
 WHOLE = flight(seconds=20.0)
 
@@ -25,7 +25,7 @@ def turned(record, at, by):
     """Return a record whose attitude is turned about the vertical from a time on, rad."""
     angle = np.where(record.t >= at, by, 0.0)
     turn = np.stack([np.cos(angle / 2), 0 * angle, 0 * angle, np.sin(angle / 2)], axis=-1)
-    q = multiply(turn, record.stack('qw', 'qx', 'qy', 'qz'))
+    q = product(turn, record.stack('qw', 'qx', 'qy', 'qz'))
     return changed(record, **dict(zip(('qw', 'qx', 'qy', 'qz'), q.T, strict=True)))
 
 

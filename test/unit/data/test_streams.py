@@ -6,9 +6,10 @@ from flightmaker import ned
 import numpy as np
 import pytest
 
-from quad_ident_ros.data.frames import attitude, rotate
+from quad_ident_ros.data.frames import attitude
 from quad_ident_ros.data.streams import HELD, join, slerp, SLOW, Stream
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.model.attitude import rotate
 
 
 def stream(t, between='interpolated', **columns):

@@ -319,7 +319,7 @@ def test_text_in_a_parquet_file_is_named(tmp_path):
     write(**{name: numbers})
     close(load(path))
     write(**{name: [*numbers[:3], 'three', *numbers[4:]]})
-    refused(path, f"row 4, column '{name}': 'three' is no number")
+    refused(path, f"row 4, column '{name}': 'three' is not a number")
     write(note=['text'] * len(FLIGHT))
     refused(path, "columns: px: column 'note' holds text; name one of numbers",
             mapping=mapping_from({'columns': {'t': 'timestamp', 'px': 'note'}}, 'm.yaml'))

@@ -11,11 +11,10 @@ from reader_checks import refused
 from table_files import FORCE, named, PLACE, Q, RATE, SPEED, table
 
 from quad_ident_ros.data.columns import from_euler
-from quad_ident_ros.data.frames import multiply
 from quad_ident_ros.data.load import load, load_all
 from quad_ident_ros.data.mapping import mapping_from
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.model.attitude import euler_from_quaternion
+from quad_ident_ros.model.attitude import euler_from_quaternion, product
 
 FLIGHT = flight(seconds=10.0, rate=100.0)
 T = FLIGHT.t
@@ -331,7 +330,7 @@ def test_frames_at_a_rate_that_is_not_said_are_asked_for_and_mapped(tmp_path):
 def test_motion_capture_with_z_up_is_not_guessed_wrongly(tmp_path, order, turned):
     """Letters tell the order of a quaternion; numbers do, or are asked for, never turned round."""
     yaw = from_euler(np.zeros(1), np.zeros(1), np.array([turned]))[0]
-    q = multiply(np.broadcast_to(yaw, (len(T), 4)), FLIGHT.stack(*Q))
+    q = product(np.broadcast_to(yaw, (len(T), 4)), FLIGHT.stack(*Q))
     place = FLIGHT.stack(*PLACE)
     letters = named([f'q{letter}' for letter in order], q[:, ['wxyz'.index(one) for one in order]])
     numbers = dict(zip(('q0', 'q1', 'q2', 'q3'), letters.values(), strict=True))

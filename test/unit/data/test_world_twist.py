@@ -6,12 +6,11 @@ from flightmaker import VEHICLE
 import numpy as np
 import pytest
 
-from quad_ident_ros.data.frames import conjugate, rotate
 from quad_ident_ros.data.quality import findings
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.experiment import fly, load_experiment
-from quad_ident_ros.model.attitude import quaternion_from_euler
+from quad_ident_ros.model.attitude import conjugate, quaternion_from_euler, rotate
 
 V, W, Q = ('vx', 'vy', 'vz'), ('wx', 'wy', 'wz'), ('qw', 'qx', 'qy', 'qz')
 TOLD = {'velocity_in_world', 'rate_in_world'}

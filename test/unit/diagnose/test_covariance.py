@@ -53,7 +53,7 @@ def test_a_covariance_is_read_back_as_it_was_written(tmp_path):
     ({'correlation': [[1, 0.5], [0.5]]}, 'correlation[1]: expected a list of 2 numbers'),
     ({'correlation': [[1, 0.5], [0.4, 1]]}, 'mass and rotor_drag.coefficient have 0.5 in row 1 '
                                             'and 0.4 in row 2: it is not symmetric'),
-    ({'correlation': [[2, 0.5], [0.5, 1]]}, '2 is no correlation'),
+    ({'correlation': [[2, 0.5], [0.5, 1]]}, '2 is not a correlation'),
     ({'correlation': [[0.9, 0.5], [0.5, 1]]}, '0.9 is that of mass with itself; it is 1'),
     ({'correlation': 'none'}, "got 'none'"),
     ({'parameters': {'mas': {'std': 1, 'unit': 'kg'}}}, "did you mean 'mass'?"),

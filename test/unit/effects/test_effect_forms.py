@@ -15,10 +15,10 @@ from quad_ident_ros.effects.inflow_momentum import AIR_DENSITY, induced_velocity
 from quad_ident_ros.effects.registry import EFFECTS, FORMS, from_entries, vector
 from quad_ident_ros.flight.fly import fly_closed_loop, FULL_VOLTAGE, LONGEST_STEP
 from quad_ident_ros.model.actuators import actuated
-from quad_ident_ros.model.attitude import rotation_matrix
+from quad_ident_ros.model.attitude import rotation_matrix, turn
 from quad_ident_ros.model.contribution import contribution
 from quad_ident_ros.model.dynamics import Course, course_of, predict, states_of
-from quad_ident_ros.model.sensors import recorded, turn, underlying
+from quad_ident_ros.model.sensors import recorded, underlying
 from quad_ident_ros.model.simulate import simulate
 from quad_ident_ros.model.vehicle import load_vehicle
 

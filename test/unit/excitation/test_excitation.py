@@ -189,7 +189,7 @@ def test_recorded_shows_nothing_of_a_file_that_is_no_record(tmp_path, content):
     path.write_text(content)
     for file in (path, tmp_path, '/dev/zero'):
         message = refused('recorded', file=str(file), column='u2')
-        assert 'is no flight record that can be read' in message and 'secret' not in message
+        assert 'is not a flight record that can be read' in message and 'secret' not in message
 
 
 @pytest.mark.parametrize(('kind', 'parameters', 'words'), [

@@ -20,8 +20,7 @@ from quad_ident_ros.flight.measure import (
     Sensors,
     Stream,
 )
-from quad_ident_ros.model.attitude import rotation_matrix
-from quad_ident_ros.model.sensors import turn
+from quad_ident_ros.model.attitude import rotation_matrix, turn
 
 COUNT = 20000
 T = np.arange(COUNT) / 100

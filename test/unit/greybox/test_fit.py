@@ -7,10 +7,11 @@ import json
 
 import numpy as np
 import pytest
+from scipy.stats import chi2
 
 from benchmarks.flights import FlightProblem, NAMES, NOISE, VEHICLE, with_constants
 from quad_ident_ros.cli.main import main
-from quad_ident_ros.data.commands import with_inputs
+from quad_ident_ros.data.commands import with_commands, with_inputs
 from quad_ident_ros.data.csv import write_csv
 from quad_ident_ros.data.quality import Finding, findings
 from quad_ident_ros.data.record import FlightRecord
@@ -26,8 +27,9 @@ from quad_ident_ros.greybox.linear import errors_along, linear_of, STEP, tangent
 from quad_ident_ros.greybox.normal import CHANCE, Normal, scatter_of
 from quad_ident_ros.greybox.parameters import INDEX, limits, nominal
 from quad_ident_ros.model.dynamics import course_of, STATES, states_of
-from quad_ident_ros.model.mixing import with_commands
+from quad_ident_ros.model.quantities import value_of
 from quad_ident_ros.model.vehicle import load_vehicle, write_vehicle
+from quad_ident_ros.vehicle_files.draws import draw
 
 DRAWS = 20
 KNOWN_MASS = NAMES[1:]
@@ -82,6 +84,46 @@ def test_every_start_converges_and_the_noise_comes_out(draws):
     noise = np.array([found.estimate.noise[0] for found in draws])
     # 2,000 samples a channel and draw: a standard error of 0.4 % of the mean over the draws.
     np.testing.assert_allclose(noise.mean(axis=0) / NOISE, 1.0, atol=0.016)
+
+
+@pytest.mark.slow
+def test_the_true_vehicle_is_as_far_from_the_written_one_as_its_covariance_says(problem, draws):
+    """Squared distances by the covariance in the vehicle file, of seven numbers each."""
+    distances = []
+    for found in draws:
+        vehicle = fitted_vehicle(found)
+        names = vehicle.covariance.names
+        off = [value_of(vehicle, name) - value_of(VEHICLE, name) for name in names]
+        distances.append(off @ np.linalg.solve(vehicle.covariance.matrix, off))
+    low, high = chi2.ppf([0.001, 0.999], len(KNOWN_MASS) * DRAWS)
+    assert low < sum(distances) < high
+
+
+def test_a_mass_known_to_two_percent_scales_what_goes_with_it(problem):
+    """Mass, thrust, torque, inertia and drag in proportion are one motion."""
+    exact = fit([problem.draw(0)], problem.start(0), KNOWN_MASS)
+    stated = dataclasses.replace(problem.start(0), uncertainty={'mass': 0.02})
+    vehicle = fitted_vehicle(fit([problem.draw(0)], stated, KNOWN_MASS))
+    assert set(vehicle.covariance.names) == {'mass', *KNOWN_MASS}
+    draws = draw(vehicle, 2000, seed=1)
+    shares = draws.values / draws.means
+    mass = shares[:, draws.names.index('mass')]
+    assert mass.std() == pytest.approx(0.02, rel=0.05)
+    for name, each in by_name(exact).items():
+        error = each.std / each.value
+        other = shares[:, draws.names.index(name)]
+        # The ratio to the mass is as sure as with an exact mass.
+        assert np.std(other / mass) == pytest.approx(error, rel=0.1)
+        assert other.std() == pytest.approx(np.hypot(error, 0.02), rel=0.1)
+
+
+def test_what_is_undetermined_or_at_a_bound_is_not_drawn(problem):
+    found = fit([problem.draw(0)], problem.start(0), NAMES)
+    assert set(fitted_vehicle(found).covariance.names) == set(KNOWN_MASS)
+    lagging = fit([problem.draw(0)], VEHICLE, ['thrust_coefficient', 'motor_lag'])
+    [lag] = [one for one in lagging.parameters if one.name == 'motor_lag.time_constant']
+    assert lag.status == 'bound'
+    assert fitted_vehicle(lagging).covariance.names == ('thrust_coefficient',)
 
 
 def test_all_eight_free_have_no_scale_and_it_is_said(problem):
@@ -285,6 +327,8 @@ def test_the_command_writes_table_data_and_vehicle(problem, tmp_path, capsys):
         assert written['parameters'][name]['value'] == place
     assert np.shape(written['covariance']['matrix']) == (7, 7)
     assert written['noise']['flight']['rate']['std'] == pytest.approx([0.02] * 3, rel=0.1)
+    assert main(['export', str(out), '--randomise', '3', '-o', str(tmp_path / 'drawn')]) == 0
+    assert len(list((tmp_path / 'drawn').glob('*.yaml'))) == 3
     assert written == as_data(fit([problem.draw(1)], load_vehicle(vehicle), KNOWN_MASS)) | {
         'flights': ['flight'], 'noise': written['noise']}
 
@@ -386,5 +430,8 @@ def test_effects_that_were_freed_are_in_the_vehicle_written(problem):
     vehicle = dataclasses.replace(vehicle, uncertainty={'mass': 0.01, 'thrust_coefficient': 1e-6})
     again = fitted_vehicle(fit([record], vehicle, ['thrust_coefficient']))
     assert again.uncertainty == {'mass': 0.01}
+    turned = dataclasses.replace(vehicle, uncertainty={'inertia': (1e-5, 2e-5, None)})
+    assert fitted_vehicle(fit([record], turned, ['inertia_x'])).uncertainty == {
+        'inertia': (None, 2e-5, None)}
     assert again.effects == vehicle.effects
     assert again.thrust_coefficient == pytest.approx(vehicle.thrust_coefficient, rel=0.01)

@@ -18,9 +18,8 @@ from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import SENSORS
 from quad_ident_ros.greybox.flights import flight_of, track_of
 from quad_ident_ros.greybox.nuisances import are_alike, nuisances, NuisanceValues
-from quad_ident_ros.model.attitude import rotation_matrix
+from quad_ident_ros.model.attitude import product, rotation_matrix, turn
 from quad_ident_ros.model.dynamics import STATES
-from quad_ident_ros.model.sensors import product, turn
 
 pytestmark = pytest.mark.slow
 EXPERIMENT = load_experiment('closed_loop')

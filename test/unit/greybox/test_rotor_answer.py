@@ -9,13 +9,13 @@ from flightmaker import flight
 import numpy as np
 import pytest
 
+from quad_ident_ros.data.commands import with_commands
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.diagnose.rules import RULES
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import MOCAP_IMU
 from quad_ident_ros.greybox.rotor_answer import rotor_answer, RotorAnswer, ruled_out_by
-from quad_ident_ros.model.mixing import with_commands
 from quad_ident_ros.model.vehicle import load_vehicle
 
 FLIGHT = flight(seconds=20.0, noise=0.0)

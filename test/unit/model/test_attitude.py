@@ -10,19 +10,25 @@ from scipy.spatial.transform import Rotation
 
 from quad_ident_ros.model.attitude import (
     body_rate,
+    conjugate,
+    continuous,
     euler_from_quaternion,
+    product,
     quaternion_from_euler,
+    rotate,
     rotation_matrix,
+    turn,
+    turned_on,
     unwrap_euler,
 )
 
 FAST = settings(deadline=None, max_examples=100)
-turn = st.floats(-10, 10)
+angle = st.floats(-10, 10)
 steep = st.floats(-1.5, 1.5)
 
 
 @FAST
-@given(turn, turn, turn)
+@given(angle, angle, angle)
 def test_conversions_agree_with_scipy(roll, pitch, yaw):
     other = Rotation.from_euler('ZYX', [yaw, pitch, roll])
     found = quaternion_from_euler([roll, pitch, yaw])
@@ -32,7 +38,7 @@ def test_conversions_agree_with_scipy(roll, pitch, yaw):
 
 
 @FAST
-@given(turn, steep, turn)
+@given(angle, steep, angle)
 def test_angles_come_back_up_to_whole_turns(roll, pitch, yaw):
     found = euler_from_quaternion(quaternion_from_euler([roll, pitch, yaw]))
     # asin has lost half the digits of the pitch at 1.5 rad, and no more.
@@ -41,7 +47,7 @@ def test_angles_come_back_up_to_whole_turns(roll, pitch, yaw):
 
 
 @FAST
-@given(turn, steep, turn)
+@given(angle, steep, angle)
 def test_q_and_minus_q_are_one_attitude(roll, pitch, yaw):
     quaternion = quaternion_from_euler([roll, pitch, yaw])
     assert (euler_from_quaternion(-quaternion) == euler_from_quaternion(quaternion)).all()
@@ -86,7 +92,7 @@ def test_unwrapping_starts_near_its_reference():
 
 
 @FAST
-@given(steep, steep, turn, st.tuples(turn, turn, turn))
+@given(steep, steep, angle, st.tuples(angle, angle, angle))
 def test_body_rate_is_that_of_the_turning_matrix(roll, pitch, yaw, euler_rate):
     # R^T R' = S(Omega): by central differences, whose error is of order (h |rate|)^2.
     assume(abs(pitch) < 1.5)
@@ -97,3 +103,29 @@ def test_body_rate_is_that_of_the_turning_matrix(roll, pitch, yaw, euler_rate):
     skew = rotation_matrix(quaternion_from_euler(euler)).T @ (ahead - behind) / (2 * step)
     found = body_rate(euler[None], np.array([euler_rate]))[0]
     assert np.allclose(found, [skew[2, 1], skew[0, 2], skew[1, 0]], atol=1e-6)
+
+
+@FAST
+@given(st.lists(angle, min_size=9, max_size=9))
+def test_products_are_turns_one_after_another(numbers):
+    first, second, vector = np.reshape(numbers, (3, 3))
+    one, two = Rotation.from_rotvec(first), Rotation.from_rotvec(second)
+    both = product(turn(first), turn(second))
+    assert np.allclose(rotation_matrix(both), (one * two).as_matrix(), atol=1e-13)
+    assert np.allclose(rotate(both, vector), (one * two).apply(vector), atol=1e-12)
+    assert np.allclose(product(both, conjugate(both)), [1, 0, 0, 0], atol=1e-14)
+    assert np.allclose(turned_on(turn([first, second]))[-1], both, atol=1e-14)
+
+
+def test_one_quaternion_is_multiplied_with_each_of_many():
+    many = np.random.default_rng(0).normal(size=(2, 3, 4))
+    half = [0, 0, 0, 1]
+    for place in np.ndindex(2, 3):
+        assert (product(half, many)[place] == product(half, many[place])).all()
+    assert product(half, half).tolist() == [-1, 0, 0, 0]
+
+
+def test_signs_are_continued_through_a_whole_turn():
+    path = turn(np.linspace(0, 2 * np.pi, 50)[:, None] * [0, 0, 1])
+    jumping = path * np.where(np.arange(50) % 3 == 1, -1, 1)[:, None]
+    assert np.allclose(continuous(jumping), path)

@@ -9,11 +9,11 @@ import pytest
 import yaml
 
 from quad_ident_ros import resources
+from quad_ident_ros.data.commands import with_commands
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.effects.registry import from_entries
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.experiment import fly, load_experiment
-from quad_ident_ros.model.mixing import with_commands
 from quad_ident_ros.model.vehicle import load_vehicle
 
 HEAVY = {'mass_offset': {'mass': 0.1}}

@@ -11,11 +11,10 @@ import numpy as np
 import pytest
 
 from quad_ident_ros.effects.registry import EFFECTS, NULL, SLICES, vector
-from quad_ident_ros.model.attitude import rotation_matrix
+from quad_ident_ros.model.attitude import product, rotation_matrix
 from quad_ident_ros.model.contribution import contribution
 from quad_ident_ros.model.dynamics import Course, predict
 from quad_ident_ros.model.rigid_body import derivatives, INPUT, rotor_table, vehicle_vector
-from quad_ident_ros.model.sensors import product
 from quad_ident_ros.model.vehicle import Rotor
 
 FAST = settings(deadline=None, max_examples=40)

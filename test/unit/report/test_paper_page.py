@@ -33,7 +33,7 @@ class Page(HTMLParser):
 
     def handle_starttag(self, name, attributes):
         for key, value in attributes:
-            if key in ('src', 'href'):
+            if key in ('src', 'href', 'xlink:href'):
                 self.references.append(value)
             if key == 'id':
                 self.anchors.add(value)
@@ -72,12 +72,13 @@ def text(written):
 @pytest.mark.slow
 def test_the_page_is_whole_and_needs_nothing_else(written, text):
     page = Page(text)
-    pictures = [value for value in page.references if value.startswith('data:image/png;base64,')]
-    assert len(pictures) == len(list(written[0].glob('*.png'))) == 1 + 2 * len(PRESETS)
-    links = {value for value in page.references if value.startswith('#')}
-    assert links == {f'#{anchor}' for anchor in page.anchors}
-    assert len(pictures) + len(links) == len(page.references)
-    assert 'url(' not in text and '@import' not in text and '<script' not in text
+    assert text.count('<svg ') == len(list(written[0].glob('*.svg'))) == 1 + 2 * len(PRESETS)
+    assert page.references and '<img' not in text
+    assert {one for one in page.references if not one.startswith('#')} == set()
+    assert {one[1:] for one in page.references} <= page.anchors
+    assert len(page.anchors) == text.count(' id="')     # no two are the same
+    assert text.count('url(') == text.count('url(#') and '@import' not in text
+    assert '<script' not in text
 
 
 @pytest.mark.slow

@@ -9,12 +9,12 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 
-from quad_ident_ros.report.svg import FONTS, inline
+from quad_ident_ros.report.svg import inline, SETTINGS
 
 
 @pytest.fixture
 def picture(tmp_path):
-    with rc_context(FONTS):
+    with rc_context(SETTINGS):
         figure, axis = plt.subplots()
         axis.plot(np.random.default_rng(0).normal(size=50), color='#d55e00')
         axis.set_title('1.23456 m')
@@ -39,3 +39,29 @@ def test_lines_stay_where_they_are_and_words_what_they_are(picture):
 def test_colours_are_those_of_the_page(picture):
     text = inline(picture, 'name', 'alt')
     assert '#d55e00' not in text and 'stroke: var(--before)' in text
+
+
+def test_ids_are_those_that_are_referred_to_and_of_this_picture(picture):
+    text = inline(picture, 'name', 'alt')
+    wanted = re.findall(r'(?:href="|url\()#([^")]+)', text)
+    assert wanted and set(re.findall(r'id="([^"]*)"', text)) == set(wanted)
+    assert all(one.startswith('name-') for one in wanted)
+
+
+def test_a_line_without_its_invisible_points_is_the_same_line(tmp_path):
+    """To a third of a point, on a curve with a thousand points."""
+    x = np.linspace(0.0, 1.0, 1000)
+    with rc_context(SETTINGS):
+        figure, axis = plt.subplots()
+        axis.plot(x, np.sin(20.0 * x), color='#d55e00')
+        figure.savefig(tmp_path / 'line.svg')
+        # In points, from below.
+        across, up = 72 / figure.dpi * axis.transData.transform(
+            np.stack([x, np.sin(20.0 * x)], axis=1)).T
+        height = 72 * figure.get_figheight()
+        plt.close(figure)
+    drawn = coordinates(inline(tmp_path / 'line.svg', 'name', 'alt')).reshape(-1, 2)
+    assert len(drawn) < 400
+    slope = np.gradient(up, across)
+    off = (np.interp(across, drawn[:, 0], height - drawn[:, 1]) - up) / np.hypot(1.0, slope)
+    assert np.abs(off).max() < 0.33

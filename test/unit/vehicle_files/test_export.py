@@ -17,6 +17,8 @@ from quad_ident_ros.cli.main import main
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.effects.registry import EFFECTS, FORMS
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.model.covariance import covariance_of_matrix
+from quad_ident_ros.model.quantities import with_values
 from quad_ident_ros.model.vehicle import write_vehicle
 from quad_ident_ros.vehicle_files.export import export, mean_left
 from quad_ident_ros.vehicle_files.load import read_vehicle
@@ -110,6 +112,33 @@ def test_lag_drag_and_thrust_go_into_the_motors_of_gazebo():
     assert stds['motorConstant>'] == pytest.approx(0.9e-7)
     assert stds['timeConstantUp>'] is None
     assert len(changed_lines(source.text, found.text)) == 4 * 3
+
+
+def test_what_a_diagnosis_knows_of_effects_becomes_standard_errors_of_the_numbers():
+    """A drag is shared by the hover speeds; the ratio of what errs alike is sure."""
+    source, vehicle = base('gazebo')
+    names = ('motor_lag.time_constant', 'rotor_drag.coefficient', 'thrust_coefficient',
+             'torque_coefficient')
+    drag, lag = 0.3, 0.04
+    values = np.array([lag, drag, 1.1 * vehicle.thrust_coefficient,
+                       1.2 * vehicle.torque_coefficient])
+    stds = values * [0.05, 0.02, 0.01, 0.01]
+    for tied in (0.0, 1.0):
+        table = np.eye(4)
+        table[2, 3] = table[3, 2] = tied
+        wanted = replace(with_values(replace(vehicle, effects={}), dict(
+            zip(names, values.tolist(), strict=True))),
+            covariance=covariance_of_matrix(names, table * np.outer(stds, stds)))
+        told = {change.place.split('<')[1]: change.std
+                for change in export(wanted, 'gazebo', source).changes}
+        assert told['timeConstantUp>'] == pytest.approx(0.05 * lag)
+        # The hover speed goes with the root of the thrust coefficient.
+        assert told['rotorDragCoefficient>'] == pytest.approx(
+            drag / (4 * wanted.hover_speed) * np.hypot(0.02, 0.005), rel=1e-3)
+        assert told['motorConstant>'] == pytest.approx(stds[2])
+        ratio = values[3] / values[2]
+        assert (told['momentConstant>'] or 0.0) == pytest.approx(
+            0.01 * ratio * np.sqrt(2 - 2 * tied), abs=1e-6 * ratio)
 
 
 def test_a_lag_that_the_vehicle_does_not_have_is_taken_out():
@@ -272,7 +301,8 @@ def test_the_command_says_what_it_does(tmp_path, capsys):
     assert 'not carried: gyro_bias (constant): ' in said and 'carried: motor_lag' in said
     assert main([*call, '--json', '-']) == 0
     data = json.loads(capsys.readouterr().out)
-    assert data['changes'][0]['std'] == 0.01 and data['changes'][0]['source'] == 'mass'
+    assert data['changes'][0]['std'] == pytest.approx(0.01)
+    assert data['changes'][0]['source'] == 'mass'
     assert [fate['name'] for fate in data['not_carried']] == ['gyro_bias']
     assert read_vehicle(Source('real.sdf', out.read_text())).vehicle.mass == pytest.approx(2.2)
 

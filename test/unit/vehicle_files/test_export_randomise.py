@@ -204,7 +204,8 @@ def test_what_cannot_be_drawn_is_said_in_one_line(words, said, file, tmp_path, m
 
 def test_a_vehicle_file_without_covariance_is_refused(tmp_path, capsys):
     assert main(['export', 'hummingbird', '--randomise', '2', '-o', str(tmp_path / 'out')]) == 2
-    assert 'its file has no covariance, which `quad_ident diagnose' in capsys.readouterr().err
+    said = capsys.readouterr().err
+    assert 'no covariance; `quad_ident diagnose` and `quad_ident fit` write' in said
 
 
 @pytest.mark.slow

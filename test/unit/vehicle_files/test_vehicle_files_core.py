@@ -158,8 +158,8 @@ def test_products_of_inertia_are_those_of_the_vehicle(tmp_path):
 
 
 @pytest.mark.parametrize('old, new, said', [
-    ("'mass': 1.0 / 2", "'mass': measured()", 'line 4: measured() is no number'),
-    ("'mass': 1.0 / 2", "'mass': 10 ** 10 ** 10", 'line 4: 10 ** 10 ** 10 is no number'),
+    ("'mass': 1.0 / 2", "'mass': measured()", 'line 4: measured() is not a number'),
+    ("'mass': 1.0 / 2", "'mass': 10 ** 10 ** 10", 'line 4: 10 ** 10 ** 10 is not a number'),
     ("'mass': 1.0 / 2", "'mass': -0.5", 'line 4: mass: -0.5 is out of range'),
     ("'k_m': 1e-7, ", '', 'has no k_m, which rotorpy needs; add it'),
     ("'Izz': 5e-3", "'Izz': 9e-3", 'line 5: no body has this inertia'),
@@ -167,10 +167,10 @@ def test_products_of_inertia_are_those_of_the_vehicle(tmp_path):
     ('[1, -1, 1, -1]', '[1, -1, 1]', 'rotor_directions: expected a list of 4'),
     ('[1, -1, 1, -1]', '[1, -1, 1, 2]', 'rotor_directions: 2.0 is not one of 1, -1'),
     ('[1, -1, 1, -1]', '[1, -1, 1, -1.5]', 'rotor_directions: -1.5 is not one of 1, -1'),
-    ("'mass': 1.0 / 2", "'mass': 10 ** 9 * 10 ** 9", 'line 4: 10 ** 9 * 10 ** 9 is no number'),
+    ("'mass': 1.0 / 2", "'mass': 10 ** 9 * 10 ** 9", 'line 4: 10 ** 9 * 10 ** 9 is not a number'),
     ("'tau_m': 0.02", "'tau_m': 3.0", 'motor_lag: time_constant: 3 is out of range'),
     ("'k_eta': 5e-6", "'k_eta': 5.0", 'thrust_coefficient: 5 N/(rad/s)^2 cannot be'),
-    ('quad_params = {', 'quad_params = {{', 'line 3: is no Python that can be parsed'),
+    ('quad_params = {', 'quad_params = {{', 'line 3: is not Python that can be parsed'),
 ])
 def test_a_bad_dictionary_is_refused_with_its_line(old, new, said):
     assert old in PARAMETERS
@@ -182,13 +182,14 @@ def test_a_bad_dictionary_is_refused_with_its_line(old, new, said):
     ('a = [1.0, 1.0]\n' + 'a = [a, a]\n' * 60, 'np.array(a)')])
 def test_a_python_file_that_grows_without_end_is_refused_at_once(first, value):
     text = first + PARAMETERS.replace("'mass': 1.0 / 2", f"'mass': {value}")
-    assert 'is no number that can be read without running the file' in refused(text, 'params.py')
+    said = refused(text, 'params.py')
+    assert 'is not a number that can be read without running the file' in said
 
 
 @pytest.mark.parametrize('change', ['d *= 2', 'd = measured()', 'for d in (1, 2): pass'])
 def test_a_name_that_is_changed_on_the_way_has_no_old_value(change):
     text = PARAMETERS.replace('d = 0.2', f'd = 0.2\n{change}')
-    assert ': d is no number that can be read' in refused(text, 'params.py')
+    assert ': d is not a number that can be read' in refused(text, 'params.py')
 
 
 @pytest.mark.parametrize('change', ["quad_params['mass'] = 0.6", "quad_params.update({'mass': 1})",

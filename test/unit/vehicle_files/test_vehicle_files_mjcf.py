@@ -141,7 +141,7 @@ def test_of_two_vehicles_one_is_named():
     (INERTIAL, '<geom type="mesh" mesh="frame" mass="1"/>', "the mesh 'frame', which is not read"),
     (INERTIAL, '', "<body name='quad'>: it has no mass; give it an <inertial>"),
     (INERTIAL, '<geom size="0.1" class="main" type="box"/>', 'size: a box has 3, got 1'),
-    ('</mujoco>', '', 'is no whole XML'),
+    ('</mujoco>', '', 'is not complete XML'),
     ('<mujoco model="test">', '<!DOCTYPE a [<!ENTITY b "c">]><mujoco model="test">', '(DTD)'),
     ('ctrlrange="0 13"', 'ctrlrange="0 0"', 'leave no thrust; correct ctrlrange'),
     ('autolimits="true"', 'settotalmass="abc"', "settotalmass[0]: expected a number, got 'abc'"),

@@ -3,6 +3,7 @@
 """Vehicles in SDF models of Gazebo."""
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -198,11 +199,15 @@ def test_of_two_vehicles_in_a_world_one_is_named():
     assert read_vehicle(Source('model.sdf', text.format(''.join(inner)), 'two')).vehicle == alone
 
 
-def test_seven_rotors_are_fine_and_tilted_ones_are_not():
+def test_seven_rotors_are_doubted_and_tilted_ones_refused():
     arms = [(0.3 * math.cos(angle), 0.3 * math.sin(angle))
             for angle in np.linspace(0, 2 * math.pi, 7, endpoint=False)]
     turns = ('cw', 'ccw', 'cw', 'ccw', 'cw', 'ccw', 'cw')
-    assert len(reading(model(bodies(arms=arms), motors(turns))).vehicle.rotors) == 7
+    odd = reading(model(bodies(arms=arms), motors(turns)))
+    assert len(odd.vehicle.rotors) == 7
+    [said] = [text for text in odd.assumed if 'odd number' in text]
+    assert re.match(r'all 7 rotors of line \d+: <plugin .* carry the vehicle', said)
+    assert not any('odd number' in text for text in reading(WHOLE).assumed)
     assert '45 deg off body z' in refused(model(bodies(tilt=math.pi / 4), motors()), 'model.sdf')
     assert any('3 deg off body z, is taken along it' in text for text in reading(
         model(bodies(tilt=math.radians(3)), motors())).assumed)
@@ -218,8 +223,8 @@ def test_seven_rotors_are_fine_and_tilted_ones_are_not():
     ('<turningDirection>cw', '<turningDirection>right', "'right' is neither cw nor ccw"),
     ('<motorConstant>8e-06', '<motorConstant>0', 'motorConstant: 0 cannot be'),
     ('<motorConstant>8e-06', '<motorConstant>9e-06', 'motorConstant is 8e-06, that of'),
-    ("<link name='rotor_0'>", "<link name='base_link'>", 'this name is there twice'),
-    ('</sdf>', '', 'is no whole XML'),
+    ("<link name='rotor_0'>", "<link name='base_link'>", 'this name appears twice'),
+    ('</sdf>', '', 'is not complete XML'),
     ('gz-sim-multicopter-motor-model-system', 'x', 'no model in it has a plugin'),
     ("<?xml version='1.0'?>", "<!DOCTYPE a [<!ENTITY b 'c'>]>", 'a document type (DTD) is not'),
 ])

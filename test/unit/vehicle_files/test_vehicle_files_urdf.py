@@ -166,9 +166,10 @@ def test_links_stand_where_yourdfpy_has_them():
      'line 2: <xacro:include> is not expanded; run `xacro'),
     ('value="1.5"', 'value="many"', "line 4: <mass>: value: expected a number, got 'many'"),
     ('izz="0.04"', 'izz="0.4"', "line 3: <link name='base_link'>: no body has this inertia"),
-    ('<parent link="base_link"/>', '<parent link="bse"/>', "its parent 'bse' is no link"),
+    ('<parent link="base_link"/>', '<parent link="bse"/>', "its parent 'bse' is not a link"),
     ('<link name="camera">', '<link name="base_link">', 'a name of its own for each link'),
-    ('</robot>', '', 'is no whole XML'),
+    ('</robot>', '', 'is not complete XML'),
+    ('</robot>', '</robot><robot name="other"/>', 'something follows the end of <robot>; give'),
     ('<?xml version="1.0"?>', '<!DOCTYPE a [<!ENTITY b "c">]>', '(DTD) is not read'),
     ('rpy="0.1 0.2 0.3"', 'rpy="0.1 0.2"', 'rpy: expected 3 numbers, got'),
 ])
@@ -190,7 +191,7 @@ def test_two_robots_in_a_file_and_circles_are_told():
     assert 'several vehicles are in it (base_link, camera)' in refused(text, 'drone.urdf')
     circle = drone().replace('</robot>', '<joint name="back" type="fixed"><parent link="camera"/>'
                              '<child link="base_link"/></joint></robot>')
-    assert 'hang on one another in a circle' in refused(circle, 'drone.urdf')
+    assert 'the links form a circle' in refused(circle, 'drone.urdf')
 
 
 def test_a_rotor_across_is_refused():
