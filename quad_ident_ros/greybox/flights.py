@@ -142,12 +142,13 @@ def guided(track: Track) -> Track:
 
     Attitudes that are off are interpolated between those around them.
     """
-    t, states = track.course.t, track.states.copy()
+    t, guide = track.course.t, track.states.copy()
     good = np.flatnonzero(track.seen[:, GROUPS['attitude']].all(axis=1))
-    q = continuous(states[good, 6:10])
+    q = continuous(guide[good, 6:10])
     q = np.stack([np.interp(t, t[good], column) for column in q.T], axis=1)
-    states[:, 6:10] = q / np.linalg.norm(q, axis=1, keepdims=True)
-    return replace(track, guide=states)
+    guide[:, 6:10] = q / np.linalg.norm(q, axis=1, keepdims=True)
+    # Where none is off these are the states, of which a long flight need not have two.
+    return replace(track, states=guide if len(good) == len(t) else track.states, guide=guide)
 
 
 def highest_voltage(records: Iterable[FlightRecord]) -> float | None:
