@@ -123,9 +123,10 @@ def flight_of(track: Track, segment: float = SEGMENT, every: float | None = None
     first = _starts(course.t, seen, period, count, step, round(WARM / period))
     if not len(first):
         longest = float(np.diff(course.t).max())
+        faster = (f', or one with a sample every {period:.3g} s where this has steps of '
+                  f'{longest:.3g} s' if longest > max(GAP * period, SHORT_GAP) else '')
         raise InputError(f'{track.name}: {course.t[-1]:.3g} s without a gap-free stretch of '
-                         f'{segment:g} s are too short; give a longer flight, or one with a '
-                         f'sample every {period:.3g} s where this has steps of {longest:.3g} s')
+                         f'{segment:g} s are too short; give a longer flight{faster}')
     return Flight(track.name, course, track.states, seen, period, track.clock, first, count,
                   guide=track.guide, force=track.force, levelled=track.levelled,
                   summed=track.summed)
