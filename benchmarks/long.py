@@ -4,6 +4,7 @@
 
 import os
 from pathlib import Path
+import re
 import subprocess
 import sys
 import tempfile
@@ -62,12 +63,12 @@ def run(size, bar):
             for path in Path(folder).glob('**/*.*'):
                 if path.suffix in ('.ulg', '.csv', '.mcap'):
                     path.unlink()
-    head = ('file', 'MB', 'info, CPU s', 'diagnose, CPU s', 'info, MB', 'diagnose, MB', 'verdict')
+    head = ('file', 'MB', 'info, CPU s', 'diagnose, CPU s', 'info, MB', 'diagnose, MB', 'effects')
     return f'{targets(goals)}\n\n{markdown(head, rows)}'
 
 
 def _spent(command, folder):
-    """Return CPU time s, highest memory MB and, of a diagnosis, the verdict of a process."""
+    """Return CPU time s, highest memory MB and, of a diagnosis, the effects that it names."""
     out = Path(folder, 'out.txt')
     with open(out, 'wb') as file:
         process = subprocess.Popen(command, cwd=ROOT, stdout=file, stderr=subprocess.STDOUT,
@@ -79,7 +80,7 @@ def _spent(command, folder):
         raise SystemExit(f'{" ".join(command)}: exit code {process.returncode}\n{text}')
     lines = [line for line in text.splitlines() if line.startswith('verdict')]
     return (usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024,
-            lines[0].partition(':')[2].strip() if lines else '')
+            ', '.join(re.findall(r'\((\w+)\), ', lines[0])) if lines else '')
 
 
 def _bytes(path):

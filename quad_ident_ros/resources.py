@@ -113,10 +113,12 @@ class _Loader(yaml.SafeLoader):
 
 
 def _text_of(path):
-    """Return the text of a file; raises InputError for a device and for one that is too long."""
+    """Return the text of a file; raises InputError for a device, a pipe and one too long."""
     mode = Path(path).stat().st_mode
     if stat.S_ISCHR(mode) or stat.S_ISBLK(mode):
         raise InputError(f'{path}: this is a device; name a file')
+    if stat.S_ISFIFO(mode):     # opening it may wait for ever, and it is read more than once
+        raise InputError(f'{path}: this is a pipe; save it to a file and name that')
     with open(path, 'rb') as file:
         data = file.read(MOST_BYTES + 1)
     what = kind_of(path) if len(data) > MOST_BYTES else ''

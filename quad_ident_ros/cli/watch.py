@@ -47,16 +47,19 @@ def run(options):
     if not all(stream.isatty() for stream in (sys.stdin, sys.stdout, sys.stderr)):
         raise InputError('this is not a terminal: start it in one, without a pipe or redirection '
                          '(with ssh: ssh -t HOST ...); `ros2 topic echo` prints the same topics')
+    missing = []
+    try:
+        from quad_ident_ros.nodes.watching import Watching
+    except ImportError as error:
+        missing.append(asking_for_ros(error))
     try:
         from quad_ident_ros.watch.view import WatchApp
     except ModuleNotFoundError as error:
         if (error.name or '').partition('.')[0] != 'textual':
             raise
-        raise InputError('the live view needs Textual, which is not installed: '
-                         "pip install 'quad_ident_ros[watch]'") from None
-    try:
-        from quad_ident_ros.nodes.watching import Watching
-    except ImportError as error:
-        raise InputError(asking_for_ros(error)) from None
+        missing.append('the live view needs Textual, which is not installed: '
+                       "pip install 'quad_ident_ros[watch]'")
+    if missing:
+        raise InputError('; '.join(missing))
     with Watching(options.namespace) as source:
         WatchApp(source).run()

@@ -64,8 +64,14 @@ class BagFile:
         if not self.path.exists():
             raise InputError(f'{path}: there is no such bag; give the path of a rosbag2 folder')
         if self.path.is_dir() and not (self.path / 'metadata.yaml').exists():
-            raise InputError(f'{path}: no bag, it has no metadata.yaml; give the path of a '
-                             'rosbag2 folder, or make the file with: ros2 bag reindex FOLDER')
+            inside = sorted(one.name for one in self.path.iterdir()
+                            if one.suffix in MAGIC.values())
+            instead = (f'give the file in it, {inside[0]}' if len(inside) == 1 else
+                       'give one of the files in it' if inside else
+                       'give the path of a rosbag2 folder')
+            raise InputError(f'{path}: this folder has no metadata.yaml, as where its recorder '
+                             f'was killed; {instead}, or make metadata.yaml with: ros2 bag '
+                             'reindex FOLDER')
         self.kind = kind_of(self.path)
         self._codecs = {}
         self._reader = None

@@ -44,7 +44,7 @@ def levelled(where: str, records: Sequence[FlightRecord], signals: Sequence[np.n
     Args: records of flights with the same motors; signals (N, n) of each; motors without a gain.
     Raises InputError where no thrust is to be seen.
     """
-    k, mass, ratios, told = vehicle.thrust_coefficient, _mass_to_carry(vehicle), [], []
+    k, mass, ratios, told = vehicle.thrust_coefficient, mass_to_carry(vehicle), [], []
     unit = replace(motors, gain=1.0)
     for record, values in zip(records, signals, strict=True):
         voltage = record.columns['vbat'] if motors.needs_voltage else None
@@ -66,7 +66,7 @@ def levelled(where: str, records: Sequence[FlightRecord], signals: Sequence[np.n
     return replace(motors, gain=gain), ' and '.join(dict.fromkeys(told))
 
 
-def _mass_to_carry(vehicle: Vehicle) -> float:
+def mass_to_carry(vehicle: Vehicle) -> float:
     """Return the mass, kg, that the nominal thrust carries by a vehicle file with its effects."""
     mass = vehicle.mass + vehicle.effects.get('mass_offset', {}).get('mass', 0.0)
     scale = vehicle.effects.get('thrust_scale', {})

@@ -59,15 +59,17 @@ class Frame:
         found = []
         for tangent, scale, basis, block in zip(self.slopes.tangents, self.scale, self.basis,
                                                 self.block, strict=True):
-            each = []
+            size = tangent.table.shape[1] - ERRORS
+            whole = np.zeros((2, block[-1] + 1, size, size))
             for begin in range(0, len(scale), AT_ONCE):
                 part = slice(begin, begin + AT_ONCE)
                 table = tangent.table[part, ERRORS:] * scale[part, None]
                 table -= (table @ basis[part]) @ basis[part].transpose(0, 2, 1)
                 halves = parts_of(table)
-                each.append(halves @ halves.transpose(0, 1, 3, 2))
-            whole = np.concatenate(each, axis=1)
-            found.append(np.stack([summed(half, block) for half in whole]))
+                each = halves @ halves.transpose(0, 1, 3, 2)
+                for k, number in enumerate(block[part]):
+                    whole[:, number] += each[:, k]
+            found.append(whole)
         return found
 
     def places(self, columns: Iterable[int]) -> list[int]:
@@ -159,13 +161,13 @@ def normal_at(frame: Frame, fit: Estimate, layout: Layout, distances: dict,
         along = np.pad(along, ((0, 0), (0, 1), (0, 0)))[:, None]    # the clock has no part in them
         # The last row and column are the residual's.
         each = np.zeros((found.slopes.shape[1], clock + 2, clock + 2))
-        each[:, :-1, :-1] = found.slopes.sum(axis=0)
+        np.sum(found.slopes, axis=0, out=each[:, :-1, :-1])
         each[:, :-1, -1] = each[:, -1, :-1] = found.cross.sum(axis=0)
         each[:, -1, -1] = found.power
         across = along.transpose(0, 1, 3, 2)
-        ties = np.sum(across @ np.concatenate([found.slopes, found.cross[..., None]], axis=3),
-                      axis=0)
-        inside = np.sum(across @ found.slopes @ along, axis=0) + np.eye(along.shape[3])
+        drawn = across @ found.slopes
+        ties = np.concatenate([drawn, across @ found.cross[..., None]], axis=3).sum(axis=0)
+        inside = np.sum(drawn @ along, axis=0) + np.eye(along.shape[3])
         each -= ties.transpose(0, 2, 1) @ np.linalg.solve(inside, ties)
         # The clock of the pose is free in each flight: it is taken out of the others.
         whole = each.sum(axis=0)

@@ -123,9 +123,10 @@ def flight_of(track: Track, segment: float = SEGMENT, every: float | None = None
     first = _starts(course.t, seen, period, count, step, round(WARM / period))
     if not len(first):
         longest = float(np.diff(course.t).max())
+        faster = (f', or one with a sample every {period:.3g} s where this has steps of '
+                  f'{longest:.3g} s' if longest > max(GAP * period, SHORT_GAP) else '')
         raise InputError(f'{track.name}: {course.t[-1]:.3g} s without a gap-free stretch of '
-                         f'{segment:g} s are too short; give a longer flight, or one with a '
-                         f'sample every {period:.3g} s where this has steps of {longest:.3g} s')
+                         f'{segment:g} s are too short; give a longer flight{faster}')
     return Flight(track.name, course, track.states, seen, period, track.clock, first, count,
                   guide=track.guide, force=track.force, levelled=track.levelled,
                   summed=track.summed)
@@ -142,12 +143,13 @@ def guided(track: Track) -> Track:
 
     Attitudes that are off are interpolated between those around them.
     """
-    t, states = track.course.t, track.states.copy()
+    t, guide = track.course.t, track.states.copy()
     good = np.flatnonzero(track.seen[:, GROUPS['attitude']].all(axis=1))
-    q = continuous(states[good, 6:10])
+    q = continuous(guide[good, 6:10])
     q = np.stack([np.interp(t, t[good], column) for column in q.T], axis=1)
-    states[:, 6:10] = q / np.linalg.norm(q, axis=1, keepdims=True)
-    return replace(track, guide=states)
+    guide[:, 6:10] = q / np.linalg.norm(q, axis=1, keepdims=True)
+    # Where none is off these are the states, of which a long flight need not have two.
+    return replace(track, states=guide if len(good) == len(t) else track.states, guide=guide)
 
 
 def highest_voltage(records: Iterable[FlightRecord]) -> float | None:

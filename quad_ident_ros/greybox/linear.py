@@ -3,7 +3,7 @@
 """Flights linearised in the parameters, with the initial states of all rollouts taken out."""
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
@@ -20,6 +20,7 @@ STEP = 1e-4                                             # of a parameter's usual
 WRENCH = tuple(range(SPLIT + registry.SLICES[registry.RESIDUAL_WRENCH.name].start,
                      SPLIT + registry.SLICES[registry.RESIDUAL_WRENCH.name].stop))
 AT_ONCE = 200_000   # samples, of the flight and of rollouts, that are held at once, 40 MB
+ROLLOUTS = 16       # that are put in units of the noise at once, 3 MB
 GROUND = [place for (name, _), part in registry.PLACES.items() if name == 'ground_effect'
           for place in range(part.start, part.stop)]
 
@@ -42,6 +43,11 @@ class Tangent:
     def drift(self) -> np.ndarray:
         """Return the change per second of an offset of the pose in time, (B, count + 1, 12)."""
         return self.table[:, -1].reshape(len(self.table), -1, ERRORS)
+
+    def of_rollouts(self, part: slice) -> 'Tangent':
+        """Return the Tangent of some of the rollouts."""
+        return replace(self, table=self.table[part],
+                       wrench=None if self.wrench is None else self.wrench[part])
 
     def weighed(self, scale: np.ndarray, clock: bool) -> np.ndarray:
         """Return the rows that count times scale (B, M), without the last one if not clock."""
@@ -231,6 +237,10 @@ class Whitening:
     kernel: np.ndarray
     share: np.ndarray
 
+    def of_rollouts(self, part: slice) -> 'Whitening':
+        """Return the Whitening of some of the rollouts."""
+        return Whitening(self.directions[part], self.kernel[part], self.share[part])
+
     def whitened(self, values: np.ndarray) -> np.ndarray:
         """Return values (B, K, M) made white."""
         return values - self._part(values, self.kernel)
@@ -271,10 +281,20 @@ def linear_of(tangent: Tangent, raw: np.ndarray, scale: np.ndarray, clock: bool 
     weight of each sample over its noise; clock as of linearise; white: that of the
     flight, or None where no slow force or moment is expected.
     """
-    batch = len(raw)
-    scale = np.broadcast_to(scale, raw.shape).reshape(batch, -1)
-    table = tangent.weighed(scale, clock)
-    error = raw.reshape(batch, -1) * scale
+    scale = np.broadcast_to(scale, raw.shape)
+    parts = [_linear_of(tangent.of_rollouts(part), raw[part], scale[part], clock,
+                        white and white.of_rollouts(part))
+             for part in (slice(begin, begin + ROLLOUTS) for begin in
+                          range(0, len(raw), ROLLOUTS))]
+    return Linear(*(np.concatenate([getattr(part, one.name) for part in parts])
+                    for one in fields(Linear)))
+
+
+def _linear_of(tangent: Tangent, raw: np.ndarray, scale: np.ndarray, clock: bool,
+               white: Whitening | None) -> Linear:
+    """Return the Linear of some rollouts."""
+    table = tangent.weighed(scale.reshape(len(raw), -1), clock)
+    error = (raw * scale).reshape(len(raw), -1)
     if white is not None:
         table, error = white.whitened(table), white.whitened(error[:, None])[:, 0]
     starts, slope = table[:, :ERRORS], table[:, ERRORS:]

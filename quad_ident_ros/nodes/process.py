@@ -17,7 +17,7 @@ from rclpy.utilities import remove_ros_args
 from quad_ident_ros import resources
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.nodes.parameter_files import is_for, names_in
-from quad_ident_ros.nodes.shared_memory import free_abandoned
+from quad_ident_ros.nodes.shared_memory import free_abandoned, HearingWatch
 from quad_ident_ros.nodes.start_news import StartNews
 
 try:
@@ -87,9 +87,10 @@ def _run(node_class, args, executor_class, warm_up):
         executor.add_node(node)
         if warm_up is not None:
             node.warm_up(warm_up)
-        news = StartNews(node)
+        news, hearing = StartNews(node), HearingWatch(node)
         while not stop and is_wanted():
             news.tell()
+            hearing.look()
             executor.spin_once(timeout_sec=0.1)
     finally:
         if node is not None:

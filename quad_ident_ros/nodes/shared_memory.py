@@ -1,6 +1,11 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Shared memory that FastDDS leaves where a node is killed: half a megabyte each, for ever."""
+"""
+Shared memory of FastDDS: what it leaves where a node is killed, and takes from one that lives.
+
+A killed node leaves half a megabyte, for ever. Who last lets go of what it listened on deletes
+that by its name, which the next node may have taken: it hears nothing then (its issue 5469).
+"""
 
 from contextlib import suppress
 import fcntl
@@ -13,6 +18,8 @@ FOLDER = Path('/dev/shm')
 SEGMENT = re.compile(r'fastrtps_[0-9a-f]{16}')
 LOCK = '_el'        # behind the name of a segment: the file that its process holds a lock on
 YOUNG = 5.0         # s, in which one that begins may not have its lock yet
+PORT = re.compile(r'fastrtps_port\d+')
+LOOK = 5.0          # s between two looks at what a node listens on, which take a millisecond
 
 
 def free_abandoned(folder=FOLDER):
@@ -44,3 +51,57 @@ def _freed(segment, lock):
     finally:
         os.close(held)
     return True
+
+
+def lost_ports(process=Path('/proc/self'), folder=FOLDER):
+    """
+    Return the files on which a process listens that are deleted, or somebody else's by now.
+
+    It holds a lock on a file beside each of them and has it mapped. None where the system has no
+    such list of what a process holds.
+    """
+    mapped, held = {}, set()
+    with suppress(OSError):
+        for line in (process / 'maps').read_text().splitlines():
+            name = Path(line.partition('/')[2].removesuffix(' (deleted)')).name
+            if PORT.fullmatch(name):
+                mapped[name] = int(line.split()[4])
+        for number in (process / 'fd').iterdir():
+            with suppress(OSError):
+                name = Path(os.readlink(number).removesuffix(' (deleted)')).name
+                held.add(name.removesuffix(LOCK) if name.endswith(LOCK) else '')
+    return [str(folder / name) for name in sorted(held & set(mapped))
+            if _inode(folder / name) != mapped[name]]
+
+
+def _inode(path):
+    """Return the number of a file, None where it is gone."""
+    try:
+        return path.stat().st_ino
+    except OSError:
+        return None
+
+
+class HearingWatch:
+    """Logs once that a node does not hear those that begin now. Args: node of rclpy."""
+
+    def __init__(self, node):
+        self._node, self._next, self._lost = node, time.monotonic() + LOOK, []
+
+    def look(self):
+        """
+        Look whether what the node listens on is still there, now and then until it is not.
+
+        Twice: for a moment it holds the file of another node, too, to see whether that lives.
+        """
+        if time.monotonic() < self._next:
+            return
+        before, self._lost = self._lost, lost_ports()
+        told = bool(self._lost) and self._lost == before
+        self._next = float('inf') if told else time.monotonic() + LOOK
+        if told:
+            self._node.get_logger().error(
+                f'no node that begins from now on is heard, and perhaps no other: '
+                f'{", ".join(self._lost)}, on which this node listens, was deleted by another '
+                'process, as happens after a kill -9 (FastDDS, issue 5469); start this node once '
+                'more')

@@ -56,6 +56,9 @@ def size_line(found: Diagnosis) -> str:
 
 def next_step(found: Diagnosis) -> str:
     """Return what to do with the verdict, as a sentence."""
+    if any(one['code'] == 'other_vehicle' for one in found.findings):
+        return ('Next: check the vehicle file, which seems to be that of another vehicle, as the '
+                'warning "vehicle file" says, and diagnose again.')
     if 'unknown' in found.verdict:
         return ('Next: the lines "unexplained" and "differs" say in which channel, regime and '
                 'flight the rest occurs.')

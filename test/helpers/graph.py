@@ -210,6 +210,10 @@ class Process:
                                            start_new_session=True,
                                            pass_fds=[holder.fileno()])
 
+    @property
+    def pid(self):
+        return self._popen.pid
+
     def errors(self):
         return self.log.read_text('utf-8', 'replace')
 

@@ -4,12 +4,19 @@
 
 import fcntl
 import os
+from pathlib import Path
 import time
 
 from std_msgs.msg import String
 
 from quad_ident_ros.nodes.qos import latched
-from quad_ident_ros.nodes.shared_memory import FOLDER, free_abandoned, SEGMENT
+from quad_ident_ros.nodes.shared_memory import (
+    FOLDER,
+    free_abandoned,
+    lost_ports,
+    PORT,
+    SEGMENT,
+)
 
 LONG_AGO = time.time() - 3600.0
 
@@ -49,6 +56,28 @@ def test_a_node_that_starts_frees_what_a_killed_one_left(graph, processes):
     graph.spin_until(lambda: len(statistics) > count, 'the next one')
     assert not left & segments()
     assert again.stop() == 0
+
+
+def test_a_node_that_has_become_deaf_says_so_once(graph, processes):
+    """Another process deletes what it listens on by its name, as FastDDS does after a kill -9."""
+    process = processes.start('recorder')
+    statistics = graph.listen(String, 'recorder/statistics', latched())
+    graph.spin_until(lambda: statistics, 'the recorder')
+    proc = Path('/proc', str(process.pid))
+    assert lost_ports(proc) == lost_ports() == []
+    mine = {Path(os.readlink(fd)).name.removesuffix('_el') for fd in (proc / 'fd').iterdir()
+            if os.path.islink(fd)}
+    ports = sorted(FOLDER / name for name in mine if PORT.fullmatch(name))
+    assert ports
+    ports[0].unlink()
+    assert lost_ports(proc) == [str(ports[0])]
+    ports[0].write_bytes(b'of another process')
+    assert lost_ports(proc) == [str(ports[0])]
+    graph.spin_until(lambda: 'start this node once more' in process.errors(), 'the error')
+    assert str(ports[0]) in process.errors()
+    assert process.stop() == 0
+    ports[0].unlink(missing_ok=True)
+    assert process.errors().count('start this node once more') == 1
 
 
 def _is_free(name):

@@ -43,9 +43,10 @@ CHECKS = (columns.known, columns.incomplete, columns.differentiated, columns.fro
           stale.marked, glitches.attitude,
           units.rates_in_degrees, units.euler_in_degrees, units.force_in_g,
           units.position_in_millimetres, units.speeds_in_rpm, *frames.CHECKS,
-          rotors.hover, rotors.size, rotors.count, rotors.order_and_spin, moments.unit,
-          thrust.carried, thrust.level, clock.attitude, clock.velocity, clock.commands,
-          ground.stands, gyro.bias, answer.commands, saturation.speeds, excitation.axes)
+          rotors.hover, rotors.size, rotors.count, thrust.carried, thrust.other_vehicle,
+          rotors.order_and_spin, moments.unit, thrust.level, clock.attitude, clock.velocity,
+          clock.commands, ground.stands, gyro.bias, answer.commands, saturation.speeds,
+          excitation.axes)
 
 TOLD = 'commands', 'logging', 'differentiated'
 """Codes of Findings that a diagnosis tells whatever their severity."""
@@ -102,9 +103,10 @@ def refuted(records, vehicle):
 
     Rotors do not change their places from one flight to the next: where one flight shows that
     order and spins are those of the vehicle file, something else turns the body in the others.
+    That the file is of another vehicle is then a warning, as it is by the thrust alone.
     """
     told = len(records) > 1 and any(rotors.confirmed(record, vehicle) for record in records)
-    return ('rotor_order', 'rotor_spin') if told else ()
+    return ('rotor_order', 'rotor_spin', 'other_vehicle') if told else ()
 
 
 def refuse_errors(record, found):

@@ -44,8 +44,9 @@ def stands(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     first = f't = {record.t[rests][0]:.3f} s'
     kept = _kept(record, rests)
     if not kept:
-        return [Finding('ground', 'error', first, 'the vehicle is on the ground all the time',
-                        'give a record of a flight')]
+        return [Finding('ground', 'error', first, 'the vehicle is on the ground all the time: the '
+                        f'commands never carry {vehicle.name}', 'give a record of a flight; if '
+                        'it flies in this one, name the vehicle that flew with --vehicle')]
     spans = ' and '.join(f't = {record.t[begin]:.3f} to {record.t[end]:.3f} s'
                          for begin, end in kept)
     return [Finding(

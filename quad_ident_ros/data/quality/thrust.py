@@ -2,15 +2,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """Whether the commands give about the thrust by which the vehicle flies."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from quad_ident_ros.data.cutting import without
-from quad_ident_ros.data.quality import units
+from quad_ident_ros.data.quality import rotors, units
 from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.quality.series import Grid
-from quad_ident_ros.data.thrust_level import BY_LOG, FULL_SPEED
+from quad_ident_ros.data.thrust_level import BY_LOG, FULL_SPEED, mass_to_carry
 
 APART = 10.0      # times too much or too little: no vehicle file is that wrong,
+OTHER = 2.0       # times by which no scale, thrust stand or battery is off: it is another vehicle
 LONGEST = 1.0     # s in all, in which motors may still follow
 MOVING = 0.2      # m/s: what stands on the ground needs no thrust
 FLYING = 0.5      # of the weight, from which on a thrust is needed
@@ -36,20 +39,13 @@ def level(record, vehicle):
 
 def carried(record, vehicle):
     """Find flights that the commands do not explain: they give far less thrust, or far more."""
-    names, grid = record.numbered('cmd'), Grid.of(record)
-    if (vehicle is None or grid is None or not names or not record.has('vx', 'vy', 'vz')
-            or units.speeds_in_rpm(record, vehicle)
-            or units.position_in_millimetres(record, vehicle)):
+    thrust = _Thrust.of(record, vehicle)
+    if thrust is None:
         return []
-    velocity = grid.signal('vx', 'vy', 'vz')
-    needed = np.linalg.norm(grid.derivative(velocity) + [0.0, 0.0, vehicle.gravity], axis=1)
-    speed = np.linalg.norm(grid.smooth(velocity), axis=1)
-    flying = grid.good & (speed > MOVING) & (needed > FLYING * vehicle.gravity)
-    given = vehicle.thrust_coefficient / vehicle.mass * np.sum(grid.held(*names) ** 2, axis=1)
-    found = []
-    for bad, what in ((given * APART < needed, 'less than a tenth of'),
-                      (given > APART * needed, 'more than ten times')):
-        off = flying & bad
+    names, grid, found = record.numbered('cmd'), thrust.grid, []
+    for bad, what in ((thrust.given * APART < thrust.needed, 'less than a tenth of'),
+                      (thrust.given > APART * thrust.needed, 'more than ten times')):
+        off = thrust.flying & bad
         if off.sum() * grid.period > LONGEST:
             found.append(Finding(
                 'thrust', 'error', f'{names[0]} to {names[-1]}, t = {grid.t[off][0]:.3f} s',
@@ -58,3 +54,46 @@ def carried(record, vehicle):
                 'vehicle file is of another vehicle',
                 without(grid.t, bad, 'record the commands that the rotors follow in rad/s')))
     return found
+
+
+def other_vehicle(record, vehicle):
+    """Find vehicle files of another vehicle: its thrust is off by a factor, its rotors may be."""
+    thrust = _Thrust.of(record, vehicle)
+    if thrust is None or thrust.flying.sum() * thrust.grid.period < LONGEST:
+        return []
+    ratio = float(np.median(thrust.given[thrust.flying] / thrust.needed[thrust.flying]))
+    if 1.0 / OTHER < ratio < OTHER or not 1.0 / APART < ratio < APART:
+        return []
+    wrong = rotors.order_and_spin(record, vehicle)
+    more = ', and they turn the body as rotors in other places would' if wrong else ''
+    return [Finding(
+        'other_vehicle', 'error' if wrong else 'warning', 'vehicle file',
+        f'the commands give {ratio:.2g} times the thrust by which {vehicle.name} flies{more}: '
+        'mass, thrust coefficient and inertia seem to be those of another vehicle',
+        'name the vehicle that flew with --vehicle, or weigh it and measure its thrust')]
+
+
+@dataclass(frozen=True, eq=False)
+class _Thrust:
+    """Thrust over mass (N,) m/s^2 at the times of a grid: given, needed, and where it flies."""
+
+    grid: Grid
+    given: np.ndarray
+    needed: np.ndarray
+    flying: np.ndarray
+
+    @classmethod
+    def of(cls, record, vehicle):
+        """Return that of a record with commands and velocity, None where units are off."""
+        names, grid = record.numbered('cmd'), Grid.of(record)
+        if (vehicle is None or grid is None or not names or not record.has('vx', 'vy', 'vz')
+                or units.speeds_in_rpm(record, vehicle)
+                or units.position_in_millimetres(record, vehicle)):
+            return None
+        velocity = grid.signal('vx', 'vy', 'vz')
+        needed = np.linalg.norm(grid.derivative(velocity) + [0.0, 0.0, vehicle.gravity], axis=1)
+        speed = np.linalg.norm(grid.smooth(velocity), axis=1)
+        given = (vehicle.thrust_coefficient / mass_to_carry(vehicle)
+                 * np.sum(grid.held(*names) ** 2, axis=1))
+        return cls(grid, given, needed,
+                   grid.good & (speed > MOVING) & (needed > FLYING * vehicle.gravity))

@@ -32,18 +32,33 @@ def test_without_a_terminal(capsys):
                     refusal(capsys))
 
 
-def test_without_textual_it_names_the_extra(capsys, monkeypatch, terminal):
+@pytest.fixture
+def without_textual(monkeypatch):
+    """Let Textual be missing."""
     for name in [name for name in sys.modules if name.partition('.')[0] == 'textual']:
         monkeypatch.delitem(sys.modules, name)
     monkeypatch.delitem(sys.modules, 'quad_ident_ros.watch.view', raising=False)
     monkeypatch.setitem(sys.modules, 'textual', None)
-    assert refusal(capsys).endswith("not installed: pip install 'quad_ident_ros[watch]'\n")
 
 
-def test_without_ros_it_says_where_to_get_it(capsys, monkeypatch, terminal):
-    pytest.importorskip('textual', reason="Textual is not installed: pip install '.[watch]'")
+@pytest.fixture
+def without_ros(monkeypatch):
+    """Let ROS 2 be missing."""
     for name in [name for name in sys.modules if name.startswith('quad_ident_ros.nodes')]:
         monkeypatch.delitem(sys.modules, name)
     for name in ('rclpy', 'diagnostic_msgs', 'diagnostic_msgs.msg'):
         monkeypatch.setitem(sys.modules, name, None)
-    assert 'ROS 2 is not installed' in refusal(capsys)
+
+
+def test_without_textual_it_names_the_extra(capsys, terminal, without_textual):
+    assert refusal(capsys).endswith("not installed: pip install 'quad_ident_ros[watch]'\n")
+
+
+def test_without_ros_it_says_where_to_get_it(capsys, terminal, without_ros):
+    pytest.importorskip('textual', reason="Textual is not installed: pip install '.[watch]'")
+    assert re.search('error: ROS 2 is not installed .*source ROS 2', refusal(capsys))
+
+
+def test_without_both_it_names_both_in_one_line(capsys, terminal, without_ros, without_textual):
+    said = refusal(capsys)
+    assert 'error: ROS 2 is not installed' in said and '[watch]' in said

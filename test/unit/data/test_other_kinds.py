@@ -149,7 +149,7 @@ def test_a_folder_names_what_is_in_it(tmp_path):
         (tmp_path / f'log_{k}.ulg').write_bytes(b'')
     refused(tmp_path, 'this is a folder', 'log_0.ulg, log_1.ulg, log_2.ulg, ...')
     (tmp_path / 'x_0.mcap').write_bytes(b'')
-    refused(tmp_path, 'ros2 bag reindex')
+    refused(tmp_path, 'give the file in it, x_0.mcap', 'ros2 bag reindex')
 
 
 def test_tables_are_told_by_their_content_too(tmp_path):

@@ -11,9 +11,12 @@ import pytest
 from quality_records import CMD, named
 from real import needs_real_flights, real_flight, real_vehicle
 
+from quad_ident_ros.cli.main import main
+from quad_ident_ros.data.csv import write_csv
 from quad_ident_ros.data.quality import cautions, findings, refuted
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.flight.fly import fly_closed_loop
+from quad_ident_ros.model.vehicle import load_vehicle, write_vehicle
 
 
 @pytest.mark.parametrize('order', [p for p in permutations(range(4)) if p != (0, 1, 2, 3)])
@@ -101,3 +104,58 @@ def test_an_order_that_another_flight_refutes_is_a_warning():
               if one['code'] == 'rotor_order']
     assert said['severity'] == 'warning' and said['flight'] == 'wrong'
     assert cautions(right, VEHICLE, refuted([wrong, right], VEHICLE)) == []
+
+
+OTHER = replace(VEHICLE, name='other', mass=1.5, speed_max=2500.0,
+                inertia=tuple(7 * one for one in VEHICLE.inertia))
+"""A vehicle of three times the mass, whose rotors have the same places."""
+
+
+@pytest.mark.parametrize('thrust', [0.4, 2.5])
+def test_a_vehicle_file_of_another_vehicle_is_told_by_its_thrust(thrust):
+    wrong = replace(VEHICLE, thrust_coefficient=thrust * VEHICLE.thrust_coefficient,
+                    speed_max=2500.0)
+    [finding] = findings(flight(), wrong)
+    assert finding.code == 'other_vehicle' and finding.severity == 'warning'
+    ratio = float(finding.message.split(' times')[0].rpartition(' ')[2])
+    assert ratio == pytest.approx(thrust, rel=0.05)
+    # Where the file says so itself, it is the vehicle that flew.
+    known = replace(wrong, effects={'thrust_scale': {'factor': 1.0 / thrust}})
+    assert findings(flight(), known) == ()
+
+
+@pytest.mark.parametrize('thrust', [0.6, 1.6])
+def test_a_payload_or_a_battery_makes_no_other_vehicle(thrust):
+    file = replace(VEHICLE, thrust_coefficient=thrust * VEHICLE.thrust_coefficient,
+                   speed_max=2500.0)
+    assert findings(flight(), file) == ()
+
+
+def test_info_and_diagnose_say_the_same_of_another_vehicle(tmp_path, capsys):
+    """A warning, or where the rotors are in other places as well an error, of the same words."""
+    paths = [str(tmp_path / f'{name}.csv') for name in 'ab']
+    for seed, path in enumerate(paths):
+        write_csv(path, flight(seconds=12.0, seed=seed))
+    write_vehicle(tmp_path / 'other.yaml', OTHER)
+    vehicle = ['--vehicle', str(tmp_path / 'other.yaml')]
+    assert main(['info', paths[0], *vehicle]) == 0
+    [line] = [line for line in capsys.readouterr().out.splitlines() if '[other_vehicle]' in line]
+    assert line.startswith('warning: vehicle file: the commands give 0.33 times the thrust')
+    said = line.partition(': ')[2].partition(';')[0]
+    assert main(['diagnose', *paths, *vehicle, '--effects', 'rotor_drag']) == 0
+    printed = capsys.readouterr().out
+    assert said in printed and 'Next: check the vehicle file' in printed
+    turned = replace(OTHER, rotors=tuple(OTHER.rotors[k] for k in (2, 0, 3, 1)))
+    write_vehicle(tmp_path / 'other.yaml', turned)
+    assert main(['info', paths[0], *vehicle]) == 3
+    line = next(line for line in capsys.readouterr().out.splitlines() if line.startswith('error'))
+    assert '[other_vehicle]' in line and 'in other places' in line
+    assert main(['diagnose', *paths, *vehicle]) == 2
+    said = line.partition(': ')[2].removesuffix(' [other_vehicle]')
+    assert said in capsys.readouterr().err
+
+
+def test_a_hover_with_the_file_of_a_heavier_vehicle_is_not_just_on_the_ground():
+    record = fly_closed_loop(load_vehicle('hummingbird'), {}, 'hover', duration=10.0)
+    [found] = [one for one in findings(record, load_vehicle('iris')) if one.code == 'ground']
+    assert 'never carry iris' in found.message and '--vehicle' in found.remedy

@@ -389,6 +389,14 @@ def test_a_flight_whose_times_are_in_milliseconds_is_refused_as_info_says(proble
         fit([record], VEHICLE, ['inertia_x'])
 
 
+def test_a_short_flight_without_a_gap_is_not_asked_for_more_samples(problem):
+    record = problem.clean
+    short = dataclasses.replace(record, t=record.t[:8], columns={
+        name: values[:8] for name, values in record.columns.items()})
+    with pytest.raises(InputError, match='too short; give a longer flight$'):
+        flight_of(track_of(short, VEHICLE))
+
+
 def test_angles_and_inputs_do_instead_of_quaternion_and_commands(problem):
     clean = with_inputs(problem.clean, VEHICLE)
     part = {name: values for name, values in clean.columns.items()

@@ -4,6 +4,7 @@
 
 import copy
 import dataclasses
+import os
 
 from hypothesis import example, given, HealthCheck, settings
 from hypothesis import strategies as st
@@ -412,6 +413,13 @@ def test_a_device_is_no_file():
     for path in ('/dev/zero', '/dev/null'):
         with pytest.raises(InputError, match=f'{path}: this is a device; name a file'):
             load_mapping(path)
+
+
+def test_a_pipe_is_refused_and_not_waited_for(tmp_path):
+    """One that nobody writes to was waited for; of `<(cat map.yaml)` nothing was left to read."""
+    os.mkfifo(tmp_path / 'map.yaml')
+    with pytest.raises(InputError, match='this is a pipe; save it to a file'):
+        load_mapping(tmp_path / 'map.yaml')
 
 
 def test_messages_stay_short_whatever_the_value():
