@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 import os
 from pathlib import Path
+import time
 from typing import Any
 import uuid
 
@@ -15,11 +16,12 @@ from pyarrow import dataset, parquet
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.greybox.errors import UNITS
 
+OLD = 3600.0    # s after which a file that is not whole belongs to a run that was killed
 UNFINISHED = '.unfinished'
 """The folder of files that are not whole yet, out of sight of groups/*.parquet and the like."""
 
-TEXT, NUMBER, WHOLE, YES = (pyarrow.string(), pyarrow.float64(), pyarrow.int32(),
-                            pyarrow.bool_())
+TEXT, NUMBER, WHOLE, LONG, YES = (pyarrow.string(), pyarrow.float64(), pyarrow.int32(),
+                                  pyarrow.int64(), pyarrow.bool_())
 TEXTS, NUMBERS = pyarrow.list_(TEXT), pyarrow.list_(NUMBER)
 TIME = pyarrow.timestamp('us', tz='UTC')
 _WHOSE = [('group', TEXT), ('vehicle', TEXT), ('configuration', TEXT), ('date', TIME)]
@@ -44,8 +46,25 @@ TABLES = {
         ('value', NUMBER), ('std', NUMBER)]),
     'covariances': pyarrow.schema([
         ('flight', TEXT), ('names', TEXTS), ('matrix', NUMBERS)]),
+    'files': pyarrow.schema([
+        ('path', TEXT), ('bytes', LONG), ('modified_ns', LONG), ('flight', TEXT),
+        ('hardware', TEXT), ('date', TIME), ('was_read', YES), ('reason', TEXT)]),
 }
 """The columns of each table; docs/fleet.md says what they are."""
+
+
+def prepare(out: str | Path) -> None:
+    """
+    Make the folder of a data set, and remove what killed runs did not finish.
+
+    Raises OSError.
+    """
+    aside = Path(out) / UNFINISHED
+    aside.mkdir(parents=True, exist_ok=True)
+    for entry in list(os.scandir(aside)):
+        with suppress(FileNotFoundError):      # of a run beside this one
+            if time.time() - entry.stat().st_mtime > OLD:
+                os.unlink(entry)
 
 
 def write_rows(out: str | Path, table: str, key: str, rows: Iterable[Mapping[str, Any]]) -> None:
@@ -77,6 +96,16 @@ def keys_of(out: str | Path, table: str) -> set[str]:
         return {entry.name.removesuffix('.parquet') for entry in entries
                 if entry.name.endswith('.parquet')}
     return set()
+
+
+def read_rows(out: str | Path, table: str, key: str,
+              columns: Sequence[str] | None = None) -> list[dict[str, Any]]:
+    """Return the rows of the file of a key, none where there is none or it is damaged."""
+    try:
+        return parquet.read_table(Path(out) / table / f'{key}.parquet', columns=columns,
+                                  schema=TABLES[table]).to_pylist()
+    except (OSError, pyarrow.ArrowException):
+        return []
 
 
 def remove(out: str | Path, table: str, key: str) -> None:
