@@ -20,7 +20,7 @@ IN_FLIGHT = 2       # tasks of each worker: one is worked on while the next is o
 AT_LEAST = 8        # tasks in flight where there are few workers, or none yet: more may join
 MEMORY = 0.8        # share of the machine's memory that all local workers together may have
 TICK = 0.25         # s, in which whoever follows the work is told that it still goes on
-GRACE = 5.0         # s from the end of a task's time to that of its process
+GRACE = 3.0         # s from the end of a task's time to that of its process
 TIMES = 'quad_ident_times'
 """The topic on which a worker says that the time of a task is over."""
 
