@@ -3,6 +3,7 @@
 """When a flight was flown: by text, the names of its file and folders, or its log."""
 
 from collections.abc import Mapping
+from contextlib import suppress
 from datetime import datetime, timezone
 from pathlib import Path
 import re
@@ -31,9 +32,9 @@ def date_in(name: str) -> datetime | None:
     if day is None:
         return None
     time = _TIME.match(name, day.end())
-    numbers = [*day.group(1, 3, 4), *(time.group(1, 3, 4) if time else ())]
+    year, month, number = map(int, day.group(1, 3, 4))
     try:
-        return datetime(*map(int, numbers), tzinfo=timezone.utc)     # type: ignore[arg-type]
+        return _at(datetime(year, month, number, tzinfo=timezone.utc), time)
     except ValueError:
         return None
 
@@ -56,12 +57,15 @@ def date_in_path(path: str | Path) -> datetime | None:
     parts = Path(path).parts[:-4:-1]
     found = [date for part in parts if (date := date_in(part)) is not None]
     # A log names its time alone where its folder names the day: 2026-05-14/08_30_12.ulg.
-    if len(found) and date_in(parts[0]) is None:
-        time = _TIME.match(parts[0])
-        if time:
-            try:
-                return found[0].replace(**dict(zip(('hour', 'minute', 'second'),
-                                                   map(int, time.group(1, 3, 4)), strict=True)))
-            except ValueError:
-                return found[0]
+    if found and date_in(parts[0]) is None:
+        with suppress(ValueError):
+            return _at(found[0], _TIME.match(parts[0]))
     return found[0] if found else None
+
+
+def _at(day: datetime, time: re.Match[str] | None) -> datetime:
+    """Return a day at a time, where there is one; raises ValueError for one that is none."""
+    if time is None:
+        return day
+    hour, minute, second = map(int, time.group(1, 3, 4))
+    return day.replace(hour=hour, minute=minute, second=second)

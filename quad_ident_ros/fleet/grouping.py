@@ -76,10 +76,10 @@ def groups_of(flights: Iterable[tuple[Listed, Looked]], nominal_of: Callable[[Li
         members.setdefault(place, []).append(
             Member(looked.path, looked.flight, date, listed.covariates))
     groups = []
-    for place, some in members.items():
+    for key, some in members.items():
         some.sort(key=lambda one: (one.date, one.path))
-        groups.append(Group(place[0], place[1], tuple(some), nominal[place], mapping, rules,
-                            _key(place, some, nominal[place], mapping, rules)))
+        groups.append(Group(key[0], key[1], tuple(some), nominal[key], mapping, rules,
+                            _key(key, some, nominal[key], mapping, rules)))
     return groups, again
 
 

@@ -124,9 +124,9 @@ def _in_folder(top: Path) -> Iterator[Listed]:
     """
     for path, nominal in _below(top, ''):
         between = path.relative_to(top).parts[:-1]
-        names = [name for name in between if not is_day(name)]
+        vehicle, configuration, *_ = *(name for name in between if not is_day(name)), '', ''
         day = next(filter(is_day, reversed(between)), '')
-        yield Listed(str(path), *(*names[:2], '', '')[:2], day=day, vehicle_file=nominal,
+        yield Listed(str(path), vehicle, configuration, day=day, vehicle_file=nominal,
                      folder=top.absolute().name)
 
 
