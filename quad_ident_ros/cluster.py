@@ -68,6 +68,10 @@ def cluster(scheduler: str | None = None, workers: int | None = None,
                              f'({_first_line(error)}); `dask scheduler` prints its address'
                              ) from None
         with client:
+            if max(client.ncores().values(), default=1) > 1:
+                raise InputError(f'--scheduler {scheduler}: its workers have several threads; '
+                                 'start them with --nthreads 1, because what hangs is ended with '
+                                 'its process')
             yield client
         return
     count = workers or dask.system.CPU_COUNT

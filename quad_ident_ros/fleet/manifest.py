@@ -13,7 +13,8 @@ from quad_ident_ros import schema
 from quad_ident_ros.data.readers.others import START
 from quad_ident_ros.data.readers.registry import READERS
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.fleet.dates import date_of, is_day
+from quad_ident_ros.fleet.dates import date_of
+from quad_ident_ros.fleet.folders import whose
 
 COLUMNS = ('path', 'vehicle', 'configuration', 'date', 'group', 'vehicle_file')
 """What the columns of a manifest are called; each further one has numbers: a covariate."""
@@ -117,15 +118,9 @@ def _entry(manifest: Path, line: int, names: Sequence[str], row: Sequence[str]) 
 
 
 def _in_folder(top: Path) -> Iterator[Listed]:
-    """
-    Yield the flights below a folder.
-
-    Of the folders between, the first that is no day is the vehicle, a second the configuration.
-    """
+    """Yield the flights below a folder, which the folders between say more of."""
     for path, nominal in _below(top, ''):
-        between = path.relative_to(top).parts[:-1]
-        vehicle, configuration, *_ = *(name for name in between if not is_day(name)), '', ''
-        day = next(filter(is_day, reversed(between)), '')
+        vehicle, configuration, day = whose(path.relative_to(top).parts[:-1])
         yield Listed(str(path), vehicle, configuration, day=day, vehicle_file=nominal,
                      folder=top.absolute().name)
 
