@@ -6,10 +6,12 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 import faulthandler
+from itertools import islice
 import logging
 import os
 import queue
 import threading
+from time import monotonic
 from typing import Any, Generic, TypeVar
 
 from quad_ident_ros.errors import InputError
@@ -115,28 +117,25 @@ def _results(client: Any, function: Callable[[Item], Any], items: Iterable[Item]
     waiting = iter(items)
     topic = f'{TIMES}-{id(flying)}-{client.id}'
     client.subscribe_topic(topic, lambda event: news.put((event[1], True)))
-    more = True
+    more, most, looked = True, 1, -float('inf')
     try:
         while more or flying:
-            room = max(AT_LEAST if each > 1 else 1, each * len(client.ncores())) - len(flying)
-            while more and room > 0:
-                try:
-                    item = next(waiting)
-                except StopIteration:
-                    more = False
-                    break
+            if monotonic() - looked > TICK:
+                looked = monotonic()
+                most = max(AT_LEAST if each > 1 else 1, each * len(client.ncores()))
+                on_tick()
+            for item in islice(waiting, max(0, most - len(flying))):
                 future = client.submit(_limited, function, item, time_limit, topic, pure=False)
                 flying[future.key] = item, future
                 future.add_done_callback(lambda one: news.put((one.key, False)))
-                room -= 1
-            on_tick()
-            with suppress(queue.Empty):
-                while flying:
-                    key, late = news.get(timeout=TICK)
-                    if key in flying:
-                        item, future = flying.pop(key)
-                        yield _done(client, item, future, late)
-                        break
+            more = more and len(flying) >= most
+            ended = {key: late for key, late in _all_of(news) if key in flying}
+            done = _done(client, {key: (*flying[key], late) for key, late in ended.items()})
+            for key in ended.keys() - done.keys():      # it is being done again, elsewhere
+                flying[key][1].add_done_callback(lambda one: news.put((one.key, False)))
+            for key in done:
+                del flying[key]
+            yield from done.values()
             if client.status == 'closed':
                 raise InputError('the connection to the scheduler was lost; start the command '
                                  'again: it goes on where it was')
@@ -146,20 +145,38 @@ def _results(client: Any, function: Callable[[Item], Any], items: Iterable[Item]
             future.cancel()
 
 
-def _done(client: Any, item: Item, future: Any, late: bool) -> Done[Item]:
+def _all_of(news: queue.SimpleQueue) -> Iterator[Any]:
+    """Yield what is in a queue, once there is something, or nothing after a TICK."""
+    with suppress(queue.Empty):
+        yield news.get(timeout=TICK)
+        while True:
+            yield news.get_nowait()
+
+
+def _done(client: Any, ended: dict[str, tuple[Item, Any, bool]]) -> dict[str, Done[Item]]:
+    """
+    Return {key: Done} of {key: (item, future, whether it was late)}.
+
+    What is lost with a worker that ended just after it is not done: Dask does it again.
+    """
     from distributed.scheduler import KilledWorker
-    if late:
-        future.cancel()
-        return Done(item, error=TimeOver())
-    try:
-        return Done(item, future.result())
-    except KilledWorker:
-        return Done(item, error=WorkerDied())
-    except Exception as error:
-        if future.status in ('lost', 'cancelled'):
+    found: dict[str, Done[Item]] = {}
+    finished = [one for _, one, late in ended.values() if not late and one.status == 'finished']
+    with suppress(Exception):       # of those that are lost; the others are there the next time
+        found = {one.key: Done(ended[one.key][0], value) for one, value in
+                 zip(finished, client.gather(finished), strict=True)}
+    for key, (item, future, late) in ended.items():
+        if late:
+            future.cancel()
+            found[key] = Done(item, error=TimeOver())
+        elif future.status == 'error':
+            error = future.exception()
+            found[key] = Done(item, error=WorkerDied() if isinstance(error, KilledWorker)
+                              else error)
+        elif future.status == 'cancelled':
             raise InputError('the scheduler has lost the work; start the command again: it goes '
-                             'on where it was') from None
-        return Done(item, error=error)
+                             'on where it was')
+    return found
 
 
 def _limited(function: Callable[[Item], Any], item: Item, seconds: float | None, topic: str

@@ -75,11 +75,13 @@ def groups_of(flights: Iterable[tuple[Listed, Looked]], nominal_of: Callable[[Li
         nominal.setdefault(place, nominal_of(listed))
         members.setdefault(place, []).append(
             Member(looked.path, looked.flight, date, listed.covariates))
+    texts = {id(one): vehicle_text(one) for one in {id(one): one for one in nominal.values()
+                                                    }.values()}
     groups = []
     for key, some in members.items():
         some.sort(key=lambda one: (one.date, one.path))
         groups.append(Group(key[0], key[1], tuple(some), nominal[key], mapping, rules,
-                            _key(key, some, nominal[key], mapping, rules)))
+                            _key(key, some, texts[id(nominal[key])], mapping, rules)))
     return groups, again
 
 
@@ -94,12 +96,12 @@ def _date(listed: Listed, looked: Looked) -> datetime:
             or date_in(listed.day) or date_of_file(looked))
 
 
-def _key(place: tuple[str, ...], members: list[Member], nominal: Vehicle,
-         mapping: Mapping | None, rules: Rules) -> str:
+def _key(place: tuple[str, ...], members: list[Member], nominal: str, mapping: Mapping | None,
+         rules: Rules) -> str:
     """Return a checksum of all that the result of a group depends on."""
     return _checksum({
         'version': __version__, 'rules': asdict(rules), 'mapping': mapping and asdict(mapping),
-        'vehicle': place[0], 'configuration': place[1], 'nominal': vehicle_text(nominal),
+        'vehicle': place[0], 'configuration': place[1], 'nominal': nominal,
         'flights': [[one.flight, one.date.isoformat(), one.covariates] for one in members]})
 
 

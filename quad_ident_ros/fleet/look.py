@@ -50,9 +50,8 @@ def look(one: Listed, mapping: Mapping | None = None) -> Looked:
     try:
         size, modified = _stamp(path)
         flight = _content(path)
-    except InputError as error:     # without content, its place stands for it
-        return Looked(str(path), 0, 0, hashlib.sha256(str(path).encode()).hexdigest(),
-                      reason=str(error))
+    except InputError as error:
+        return without_content(one, str(error))
     if not has_to_be_read(one):
         return Looked(str(path), size, modified, flight)
     try:
@@ -63,6 +62,12 @@ def look(one: Listed, mapping: Mapping | None = None) -> Looked:
     known = info.get('hardware') or {}
     name = ' '.join(str(value) for value in known.values())[:NAME_LENGTH]
     return Looked(str(path), size, modified, flight, name, date_in_log(info), True)
+
+
+def without_content(one: Listed, reason: str) -> Looked:
+    """Return what is known of a file that cannot be read: its place stands for its content."""
+    path = str(Path(one.path).resolve())
+    return Looked(path, 0, 0, hashlib.sha256(path.encode()).hexdigest(), reason=reason)
 
 
 def date_of_file(looked: Looked) -> datetime:

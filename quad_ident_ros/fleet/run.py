@@ -5,7 +5,6 @@
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache, partial
-import hashlib
 import json
 from pathlib import Path
 import random
@@ -17,7 +16,7 @@ from quad_ident_ros.data.mapping import load_mapping, Mapping
 from quad_ident_ros.diagnose.rules import RULES
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.fleet.grouping import Group, groups_of, rules_hash
-from quad_ident_ros.fleet.look import look, Looked, Looks
+from quad_ident_ros.fleet.look import look, Looked, Looks, without_content
 from quad_ident_ros.fleet.manifest import Listed, listed, VEHICLE_FILE
 from quad_ident_ros.fleet.store import keys_of, prepare, read_table
 from quad_ident_ros.fleet.superseded import remove_group, remove_trackings, superseded_by
@@ -37,6 +36,7 @@ from quad_ident_ros.model.vehicle import Vehicle
 from quad_ident_ros.vehicle_files.load import load_any_vehicle
 from quad_ident_ros.whole_file import write_whole
 
+AT_ONCE = 16    # flights that a task looks at: each is a matter of milliseconds
 TIME_LIMIT = 1800.0     # s of a group: a hundred times the usual one on a slow core
 LOOKING, DIAGNOSING, TRACKING = 'reading', 'diagnosing', 'tracking'
 
@@ -158,25 +158,31 @@ def _looked(client: Any, flights: Sequence[Listed], mapping: Mapping | None, out
     before = len(flights) - len(new)
     account = _Account(tell, Progress(LOOKING, len(flights), before, before))
     found: dict[int, Looked] = {}
-    for done in results(client, partial(_look, mapping), ((number, flights[number])
-                                                         for number in new),
-                        time_limit, account.tick):
-        number, one = done.item
-        if done.error is None:
-            found[number] = done.value
-            looks.add(done.value)
-        else:
-            reason = _reason(done.error, time_limit)
-            found[number] = Looked(
-                str(Path(one.path).resolve()), 0, 0,
-                hashlib.sha256(one.path.encode()).hexdigest(), reason=reason)
-        account.count()
+    alone: list[list[int]] = []
+    some = [new[k:k + AT_ONCE] for k in range(0, len(new), AT_ONCE)]
+    # Where one of several ends the worker or takes too long, each is looked at by itself.
+    for numbers in (some, alone):
+        items = (tuple((number, flights[number]) for number in each) for each in numbers)
+        for done in results(client, partial(_look, mapping), items, time_limit, account.tick):
+            rows: list[tuple[int, Looked]] = done.value
+            if done.error is not None:
+                reason = _reason(done.error, time_limit)
+                if numbers is some:
+                    alone += [[number] for number, _ in done.item]
+                    continue
+                rows = [(number, without_content(one, reason)) for number, one in done.item]
+            for number, seen in rows:
+                found[number] = seen
+                if done.error is None:
+                    looks.add(seen)
+                account.count()
     looks.flush()
     return [found[number] if one is None else one for number, one in enumerate(known)]
 
 
-def _look(mapping: Mapping | None, item: tuple[int, Listed]) -> Looked:
-    return look(item[1], mapping)
+def _look(mapping: Mapping | None, some: Iterable[tuple[int, Listed]]
+          ) -> list[tuple[int, Looked]]:
+    return [(number, look(one, mapping)) for number, one in some]
 
 
 def _diagnose_all(client: Any, groups: Sequence[Group], out: str | Path, time_limit: float,

@@ -12,7 +12,8 @@ from quad_ident_ros.data.counted import counted
 from quad_ident_ros.report.data import finite
 from quad_ident_ros.report.screen import progress_bar
 
-RARELY = 30.0   # s between two lines where standard error is no terminal
+OFTEN = 0.2     # s between two changes of the line, and
+RARELY = 30.0   # between two lines where standard error is no terminal
 
 
 class Reporter:
@@ -60,12 +61,14 @@ class Reporter:
                 'status': outcome.status, 'reason': outcome.reason, 'seconds': outcome.seconds,
                 'done': progress.done, 'total': progress.total, 'refused': progress.refused,
                 'failed': progress.failed, 'seconds_left': self._left(progress)})
+        if monotonic() - self._said < (RARELY if self._bar.disable else OFTEN):
+            return
+        self._said = monotonic()
         text = line(progress, monotonic() - self._begun)
         if not self._client.ncores():
             text += '; no worker has joined yet'
         self._bar.update(self._task, description=text, completed=progress.done)
-        if self._bar.disable and monotonic() - self._said > RARELY:
-            self._said = monotonic()
+        if self._bar.disable:
             self._note(text)
 
     def end(self, summary):
