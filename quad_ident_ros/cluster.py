@@ -3,13 +3,15 @@
 """Work on many processes, by Dask: those of this machine, or a cluster that is there already."""
 
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager, ExitStack, suppress
 from dataclasses import dataclass
 import faulthandler
 from itertools import islice
 import logging
+from multiprocessing import resource_tracker
 import os
 import queue
+import signal
 import threading
 from time import monotonic
 from typing import Any, Generic, TypeVar
@@ -80,12 +82,28 @@ def cluster(scheduler: str | None = None, workers: int | None = None,
     limit = memory or int(MEMORY * distributed.system.MEMORY_LIMIT / count)
     # A second worker is tried where one died: what is out of memory there is so everywhere.
     with dask.config.set({'distributed.scheduler.allowed-failures': 1,
-                          'distributed.worker.profile.enabled': False}), \
-            distributed.LocalCluster(
+                          'distributed.worker.profile.enabled': False}), ExitStack() as stack:
+        with _without_interrupt():
+            local = stack.enter_context(distributed.LocalCluster(
                 n_workers=count, threads_per_worker=1, memory_limit=limit, host='127.0.0.1',
-                dashboard_address=':0', silence_logs=logging.CRITICAL) as local, \
-            distributed.Client(local, set_as_default=False) as client:
+                dashboard_address=':0', silence_logs=logging.CRITICAL))
+            client = stack.enter_context(distributed.Client(local, set_as_default=False))
         yield client
+
+
+@contextmanager
+def _without_interrupt() -> Iterator[None]:
+    """
+    Keep Ctrl-C from threads that are started meanwhile, and so from processes that these start.
+
+    It reaches all processes in a terminal: workers are ended by the command, without tracebacks.
+    """
+    resource_tracker.ensure_running()   # it lets them through again in the thread that starts it
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def results(client: Any, function: Callable[[Item], Any], items: Iterable[Item],

@@ -142,6 +142,15 @@ def test_two_runs_at_once_do_every_flight_once(runs, folder):
     check_complete(folder, runs.out)
 
 
+def test_ctrl_c_ends_a_run_in_one_line(runs):
+    run = runs.fleet('--workers', '2', start_new_session=True)
+    next(lines_of(run))
+    os.killpg(run.pid, signal.SIGINT)   # a terminal sends it to all processes
+    _, errors = run.communicate(timeout=LONGEST)
+    assert run.returncode == 130 and errors.splitlines()[-1] == 'quad_ident fleet: interrupted'
+    assert 'Traceback' not in errors
+
+
 def test_a_full_disk_is_said_in_one_line_and_the_run_goes_on_later(runs, folder):
     full = runs.start('-c', LIMITED, str(folder), str(runs.out))
     code, _, errors = ended(full)
