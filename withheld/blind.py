@@ -55,4 +55,5 @@ def _write(one: tuple[Path, Path]) -> None:
 
 
 if __name__ == '__main__':
-    main(*sys.argv[1:])
+    from withheld import blind  # by the name that workers import it by
+    blind.main(*sys.argv[1:])
