@@ -8,7 +8,9 @@ import re
 from quad_ident_ros.errors import InputError
 
 DEFAULT_OUT = 'fleet'
-_BYTES = re.compile(r'(\d+(?:\.\d+)?) ?([kMGT]?)i?B?')
+FAULTY = 3
+"""Exit code where groups failed, which the next run tries again."""
+_BYTES = re.compile(r'(\d+(?:\.\d+)?) ?([kMGT]?)(i?)B?')
 
 
 def add(commands, said):
@@ -76,10 +78,6 @@ def run(options):
     return FAULTY if summary.groups['failed'] + summary.groups['timeout'] else 0
 
 
-FAULTY = 3
-"""Exit code where groups failed, which the next run tries again."""
-
-
 def _count(text):
     value = int(text) if text.isdecimal() else 0
     if value < 1:
@@ -89,7 +87,8 @@ def _count(text):
 
 def _bytes(text):
     match = _BYTES.fullmatch(text)
-    value = match and float(match[1]) * 1000 ** ' kMGT'.index(match[2] or ' ')
+    value = match and float(match[1]) * (1024 if match[3] else 1000) ** ' kMGT'.index(
+        match[2] or ' ')
     if not value or value < 1e8:
         raise argparse.ArgumentTypeError(f'expected a size from 100MB on, such as 2GB, got '
                                          f'{text!r}')
