@@ -82,8 +82,10 @@ def write_rows(out: str | Path, table: str, key: str, rows: Iterable[Mapping[str
                             compression='zstd')
         os.replace(aside, place)
     except OSError as error:
-        error.filename, error.filename2 = str(place), None
-        raise
+        if not error.errno:
+            raise
+        # With the file that was asked for, and without pyarrow's own words.
+        raise OSError(error.errno, os.strerror(error.errno), str(place)) from None
     finally:
         with suppress(OSError):
             aside.unlink(missing_ok=True)

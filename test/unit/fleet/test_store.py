@@ -3,7 +3,9 @@
 """What is written into the data set of a fleet comes back, whole or not at all."""
 
 from datetime import datetime, timezone
+import pickle
 
+from full_disk import file_size_limit
 import pytest
 
 pytest.importorskip('pyarrow', reason='the extra `fleet` is not installed')
@@ -51,6 +53,16 @@ def test_nothing_appears_where_it_cannot_be_written_whole(tmp_path):
         write_rows(tmp_path, 'flights', 'g', [FLIGHT | {'date': 'yesterday'}])
     assert keys_of(tmp_path, 'flights') == set()
     assert read_table(tmp_path, 'flights').num_rows == 0
+
+
+def test_a_full_disk_is_said_with_the_file_and_leaves_nothing(tmp_path):
+    with file_size_limit(500), pytest.raises(OSError, match='File too large') as caught:
+        write_rows(tmp_path, 'flights', 'g', [FLIGHT | {'path': 'long' * 1000}])
+    # As it comes from a worker:
+    error = pickle.loads(pickle.dumps(caught.value))
+    assert (error.filename, error.strerror) == (str(tmp_path / 'flights' / 'g.parquet'),
+                                                'File too large')
+    assert not [path for path in tmp_path.rglob('*') if path.is_file()]
 
 
 def test_columns_can_be_chosen(tmp_path):
