@@ -21,11 +21,14 @@ SECTIONS = {'p1': 'performance.md', 'p2': 'performance.md', 'p3': 'performance.m
             'scaling': 'performance.md', 'limit': 'performance.md', 'start': 'performance.md',
             'accuracy': 'accuracy.md', 'rollout': 'performance.md',
             'diagnosis': 'performance.md', 'graph': 'performance.md', 'long': 'performance.md',
+            'fleet': 'performance.md',
             'cautions': 'reliability.md', 'changes': 'reliability.md'}
-APART = ('accuracy', 'graph', 'long', 'cautions', 'changes')   # only where they are asked for
-INSTALLED = ('graph', 'long', 'cautions', 'changes')    # as the program is installed; see run
+# Only where they are asked for; as the program is installed, see run; on all cores.
+APART = ('accuracy', 'graph', 'long', 'fleet', 'cautions', 'changes')
+INSTALLED = ('graph', 'long', 'fleet', 'cautions', 'changes')
+ALL_CORES = ('graph', 'fleet')
 PACKAGES = ('numpy', 'scipy', 'numba', 'pyswarms', 'mealpy', 'nevergrad', 'cma', 'pymoo',
-            'sippy-unipi', 'rotorpy', 'mujoco', 'ros-jazzy-rclpy')
+            'sippy-unipi', 'rotorpy', 'distributed', 'pyarrow', 'mujoco', 'ros-jazzy-rclpy')
 
 
 def main(arguments=None):
@@ -47,8 +50,7 @@ def main(arguments=None):
     for name in INSTALLED:
         if name in options.sections and len(options.sections) > 1:
             parser.error(f'{name}: name it by itself, it needs no other library')
-    # The nodes run on all cores.
-    whole = options.sections == ['graph']
+    whole = options.sections[:1] in ([name] for name in ALL_CORES)
     if not whole:
         take_one_core()
     screen = Console(stderr=True)

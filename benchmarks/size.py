@@ -17,7 +17,8 @@ class Size:
     tell chance from fault; flight: s of each flight through the nodes; rollouts: calls of each
     kind of rollout; diagnoses: vehicles that are diagnosed; real_flights: that are diagnosed
     together; long_flight: s of each long one; clean_flights: of each noise that are checked;
-    change_flights: with a change of the vehicle, and as many without.
+    change_flights: with a change of the vehicle, and as many without; fleet_flights: that a fleet
+    has, light_flights: of a fleet that are refused at once.
     """
 
     draws: int = 30
@@ -35,9 +36,11 @@ class Size:
     long_flight: float = 1200.0
     clean_flights: int = 200
     change_flights: int = 100
+    fleet_flights: int = 40
+    light_flights: int = 10_000
 
 
 QUICK = Size(draws=3, share_draws=4, seconds=1.0, long_runs=1, long_budget=20_000,
              long_seconds=2.0, largest=50_000, accuracy_draws=(10, 20), flight=8.0,
              rollouts=3, diagnoses=3, real_flights=2, long_flight=60.0, clean_flights=4,
-             change_flights=4)
+             change_flights=4, fleet_flights=4, light_flights=200)

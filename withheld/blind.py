@@ -2,12 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """The diagnosing process: it is told a folder of flights, and knows nothing else of them."""
 
-from concurrent.futures import as_completed, ProcessPoolExecutor
 import json
 from pathlib import Path
 import sys
 import time
 
+from quad_ident_ros.cluster import cluster, results
 from quad_ident_ros.data.csv import read_csv
 from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.errors import InputError
@@ -42,13 +42,18 @@ def write_diagnosis(folder: Path, target: Path) -> None:
 def main(flights, found, jobs='1'):
     """Diagnose every case in the folder `flights` and write {its name}.json into `found`."""
     folders = sorted(path for path in Path(flights).iterdir() if path.is_dir())
-    waiting = [(folder, Path(found) / f'{folder.name}.json') for folder in folders]
-    with ProcessPoolExecutor(int(jobs)) as pool:
-        done = [pool.submit(write_diagnosis, *one) for one in waiting if not one[1].exists()]
-        for one in as_completed(done):
-            one.result()
+    every = [(folder, Path(found) / f'{folder.name}.json') for folder in folders]
+    with cluster(workers=int(jobs)) as client:
+        for done in results(client, _write, (one for one in every if not one[1].exists())):
+            if done.error is not None:
+                raise done.error
             print('done', flush=True)
 
 
+def _write(one: tuple[Path, Path]) -> None:
+    write_diagnosis(*one)
+
+
 if __name__ == '__main__':
-    main(*sys.argv[1:])
+    from withheld import blind  # by the name that workers import it by
+    blind.main(*sys.argv[1:])

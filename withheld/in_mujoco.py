@@ -9,13 +9,13 @@ models fly in MuJoCo along the flight held out, from the same starts. No label i
 """
 
 from collections.abc import Sequence
-from concurrent.futures import as_completed, ProcessPoolExecutor
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import mujoco
 import numpy as np
 
+from quad_ident_ros.cluster import cluster, results
 from quad_ident_ros.data.csv import read_csv
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.diagnose import gap as gaps
@@ -153,12 +153,14 @@ def fall_of(folder: Path) -> Fall:
 
 def falls_of(folders: Sequence[Path], jobs: int) -> list[Fall | str]:
     """Return the Fall of each case, or why it is refused, as they come."""
-    results: list[Fall | str] = []
-    with ProcessPoolExecutor(jobs) as pool:
-        for one in as_completed([pool.submit(_told, folder) for folder in folders]):
-            results.append(one.result())
-            print(_line(results[-1]), flush=True)
-    return results
+    found: list[Fall | str] = []
+    with cluster(workers=jobs) as client:
+        for done in results(client, _told, folders):
+            if done.error is not None:
+                raise done.error
+            found.append(done.value)
+            print(_line(found[-1]), flush=True)
+    return found
 
 
 def _told(folder: Path) -> Fall | str:

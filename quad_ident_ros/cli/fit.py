@@ -13,13 +13,10 @@ from quad_ident_ros.cli.options import (
     thrust_by_log,
     vehicle_from,
 )
-from quad_ident_ros.data.commands import with_commands
-from quad_ident_ros.data.quality import refuse_errors, refuse_unfit
-from quad_ident_ros.data.quality.ground import airborne, stands
-from quad_ident_ros.data.split import joined
 from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.greybox.cautions import cautions
 from quad_ident_ros.greybox.free import columns_of_names, EXCITATION
+from quad_ident_ros.greybox.taken_in import taken_in
 from quad_ident_ros.model.vehicle import write_vehicle
 from quad_ident_ros.report.data import write_json
 from quad_ident_ros.report.screen import console, progress_bar
@@ -71,15 +68,9 @@ def run(options):
         for number, path in enumerate(options.flights):
             bar.update(task, description=f'reading {path}',
                        completed=number / len(options.flights))
-            records += [with_commands(record, vehicle) for record in
-                        flights_from(path, options.mapping, vehicle, selection, by_log)]
+            records += flights_from(path, options.mapping, vehicle, selection, by_log)
         bar.update(task, description='looking for faults')
-        quality = []
-        for number, record in enumerate(records := joined(records)):
-            ground = stands(record, vehicle)
-            refuse_errors(record, ground)
-            records[number] = airborne(record, vehicle)
-            quality.append((*ground, *refuse_unfit(records[number], vehicle)))
+        records, quality = zip(*taken_in(records, vehicle), strict=True)
         found = fit(records, vehicle, names, lambda share: bar.update(
             task, description='fitting', completed=share))
     found = replace(found, findings=(*found.findings, *cautions(

@@ -19,6 +19,7 @@ COMMANDS = {
     'identify': 'fit K/((s+a)(s+b)) to recorded flights',
     'fit': 'estimate mass, inertia, drag, motor lag, ... from flights',
     'diagnose': 'say where the sim-to-real gap lies, what causes it, how far it shrinks',
+    'fleet': 'diagnose the flights of many vehicles, on all cores or a cluster',
     'vehicle': "read a vehicle from a simulator's file (MJCF, SDF, URDF, rotorpy, ...)",
     'export': "write a vehicle into a simulator's own file (SDF, MJCF, rotorpy, ...)",
     'info': 'say what is in a file or flight record, and what is wrong with it',
@@ -39,6 +40,7 @@ examples:
   quad_ident identify flights/*.csv --trim hover --initial-state rest
   quad_ident fit flight.csv --vehicle v.yaml --free inertia,thrust_coefficient,motor_lag
   quad_ident diagnose a.csv b.csv --vehicle v.yaml what the vehicle has beside its model
+  quad_ident fleet flights/ --vehicle v.yaml        the flights of many vehicles, on all cores
   quad_ident vehicle x500/model.sdf -o v.yaml      the vehicle that a simulator flies
   quad_ident export v.yaml --to gazebo --base model.sdf -o like_real.sdf
   quad_ident info flight.csv                       what is in a flight, and what is wrong

@@ -5,13 +5,12 @@
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from datetime import datetime, timezone
-import hashlib
 from pathlib import Path
 import shlex
 
+from quad_ident_ros.data.content import files_in, sha256_of
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.data.split import joined
-from quad_ident_ros.errors import InputError
 
 
 @dataclass(frozen=True)
@@ -46,23 +45,6 @@ def run_of(words: Sequence[str], paths: Iterable[str | Path]) -> Run:
 
     Raises InputError where a file cannot be read.
     """
-    files = [file for path in paths for file in _files(Path(path))]
+    files = [file for path in paths for file in files_in(Path(path))]
     return Run(datetime.now(timezone.utc).strftime('%Y-%m-%d %H:%M UTC'),
-               shlex.join(['quad_ident', *words]), {str(file): _sha256(file) for file in files})
-
-
-def _files(path: Path) -> list[Path]:
-    if path.is_dir():
-        return sorted(file for file in path.rglob('*') if file.is_file())
-    return [path] if path.is_file() else []     # a pipe can be read only once
-
-
-def _sha256(path: Path) -> str:
-    try:
-        with open(path, 'rb') as file:
-            whole = hashlib.sha256()
-            while chunk := file.read(1 << 20):
-                whole.update(chunk)
-    except OSError as error:
-        raise InputError(f'{path}: cannot be read: {error.strerror}') from None
-    return whole.hexdigest()
+               shlex.join(['quad_ident', *words]), {str(file): sha256_of(file) for file in files})

@@ -48,6 +48,8 @@ COMMON = (
              ((SIMULATOR, 'real_time_factor'),)),
     Argument('output', 'Folder for recordings; empty: nothing is written.', str,
              (('recorder', 'output'),)),
+    Argument('vehicle_name', 'Name of the vehicle: recordings go to the folder of its day in '
+             'output.', str, (('recorder', 'vehicle_name'),)),
     Argument('topics', "Topics that a row needs, for example ['odometry', 'imu', 'actuators'].",
              list, (('recorder', 'topics'),)),
     Argument('mapping', 'Mapping file for topics of other names and types.', str,

@@ -2,9 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a node records on disk: a failure is said once, and the run goes on in memory."""
 
+from datetime import datetime, timezone
 import time
 
 from quad_ident_ros.data.recording import Recording
+from quad_ident_ros.fleet.folders import folder_of
 
 FLUSH_PERIOD = 0.5   # s; a kill -9 loses at most this much of a recording, or
 OVERDUE = 0.6        # s while messages wait, which the timer waits behind; also s of flight: a
@@ -16,12 +18,14 @@ class OnDisk:
     """
     A Recording that the disk may refuse, or none yet, to which nothing is written then.
 
-    Args: output: the folder in which it is made; clock: of the node, for times of receipt; logger.
+    Args: output: the folder in which it is made, or, with the name of a vehicle, in that of its
+    day; clock: of the node, for times of receipt; logger.
     error: what the disk refused, or None.
     """
 
-    def __init__(self, output, clock, logger):
-        self._output, self._clock, self._logger = output, clock, logger
+    def __init__(self, output, vehicle, clock, logger):
+        self._output, self._vehicle = output, vehicle
+        self._clock, self._logger = clock, logger
         self._recording = None
         self._flushed = time.monotonic()
         self._first = self._newest = None
@@ -35,7 +39,10 @@ class OnDisk:
     def open(self, topics, types):
         """Begin a Recording; topics and types as it has them."""
         def make():
-            self._recording = Recording(self._output, topics, types)
+            # By the date of this machine: simulated time has none.
+            parent = self._output if not self._vehicle else folder_of(
+                self._output, self._vehicle, datetime.now(timezone.utc))
+            self._recording = Recording(parent, topics, types)
             self._logger.info(f'recording to {self._recording.folder}')
         self._try(make)
 

@@ -53,6 +53,7 @@ PARTING = 1.0        # s for listeners to take the last account before the node 
 HELP = f"""recorder: joins the topics of a flight into records, keeps and publishes them.
 
   ros2 run quad_ident_ros recorder --ros-args -p output:=flights
+  ros2 run quad_ident_ros recorder --ros-args -p output:=fleet -p vehicle_name:=seven
   ros2 run quad_ident_ros recorder --ros-args -p mapping:=topics.yaml
   ros2 run quad_ident_ros recorder --ros-args -p topics:="[odometry, imu, actuators]" \\
     -r odometry:=/odom -r imu:=/imu/data -r actuators:=/command/motor_speed
@@ -106,7 +107,8 @@ class Recorder(PackageNode):
         self._frames = FrameWatch()
         self._health = Health(self._topics, self._apart, self._silent)
         self._announced = None
-        self._disk = OnDisk(parameters['output'], self.get_clock(), self.get_logger())
+        self._disk = OnDisk(parameters['output'], parameters['vehicle_name'], self.get_clock(),
+                            self.get_logger())
         self._unreadable = None
         self._statistics = self.create_publisher(String, '~/statistics', latched())
         self._joined = self.create_publisher(UInt64, JOINED_TOPIC, 10)

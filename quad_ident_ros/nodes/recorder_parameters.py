@@ -5,6 +5,7 @@
 from quad_ident_ros.data.mapping import load_mapping
 from quad_ident_ros.data.topics import FLIGHT_TOPICS
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.fleet.folders import vehicle_name
 from quad_ident_ros.nodes.mapped import KNOWN, known_mapping, MappedTopics
 from quad_ident_ros.nodes.outlets import windows_of
 from quad_ident_ros.nodes.parameters import ParameterSpec
@@ -29,6 +30,9 @@ SPECS = (
                   'whose records go out on topics of their own: record_long=30,0.5.', fixed=True),
     ParameterSpec('output', '', 'Folder for recordings (a bag and CSV files in a new '
                   'recording_N); empty records in memory only.', fixed=True),
+    ParameterSpec('vehicle_name', '', 'Name of the vehicle: recordings go to the folder of its '
+                  'day in output, output/NAME/2026-05-14/recording_N, where `quad_ident fleet` '
+                  'takes them; empty: into output itself.', fixed=True),
 )
 
 
@@ -44,6 +48,11 @@ def mapped_topics(parameters):
 def validate(values):
     """Raise InputError where the parameters do not go together."""
     windows_of(values['windows'])
+    if values['vehicle_name']:
+        vehicle_name('parameter vehicle_name', values['vehicle_name'])
+        if not values['output']:
+            raise InputError('parameter vehicle_name: it names a folder in output, which is '
+                             'empty; set output, too')
     if not values['topics'] or len(set(values['topics'])) != len(values['topics']):
         raise InputError('parameter topics: name at least one topic, and each once')
     if 0 < sum(name in KNOWN for name in values['topics']) < len(values['topics']):

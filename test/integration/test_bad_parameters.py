@@ -89,7 +89,11 @@ FIXED = {
                  ('window_samples', 1, 'window_samples'),
                  ('window_seconds', 0.0, 'window_seconds'),
                  ('overlap', 1.0, 'overlap'),
-                 ('output', 3, 'parameter output: expected text, got 3')],
+                 ('output', 3, 'parameter output: expected text, got 3'),
+                 ('vehicle_name', 'seven', 'parameter vehicle_name: it names a folder in output'),
+                 ('vehicle_name', 'a/b', 'parameter vehicle_name: expected a name'),
+                 ('vehicle_name', '2026-05-14', 'expected a name that is no day'),
+                 ('vehicle_name', '..', 'begins with no dot')],
 }
 AT_START = [(node, *case) for cases in (VALUES, FIXED) for node, refused in cases.items()
             for case in refused]

@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the recorder writes: it is what was published, and it survives kill -9 and full disks."""
 
+from datetime import datetime, timedelta, timezone
+from pathlib import Path
 import shutil
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
@@ -13,8 +15,10 @@ from std_msgs.msg import Float64MultiArray, String
 
 from quad_ident_ros.data.bag_file import read_bag_messages
 from quad_ident_ros.data.csv import read_csv
+from quad_ident_ros.data.load import load_all
 from quad_ident_ros.data.replay import read_bag
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.fleet.manifest import listed
 from quad_ident_ros.nodes import on_disk
 from quad_ident_ros.nodes.demo import recording_of
 from quad_ident_ros.nodes.qos import latched
@@ -80,6 +84,23 @@ def test_each_recorder_has_a_folder_of_its_own(fast_graph, tmp_path):
         fast_graph.spin_until(lambda: recorder.counts.joined == 30, 'the samples')  # noqa: B023
         fast_graph.stop(recorder)
         assert len(read_csv(tmp_path / f'recording_{k}/flight_1.csv')) == 30
+
+
+def test_the_flights_of_a_named_vehicle_are_where_a_fleet_takes_them(fast_graph, tmp_path):
+    for _ in range(2):
+        recorder = fast_graph.start(Recorder, {'output': str(tmp_path), 'vehicle_name': 'seven'})
+        Vehicle(fast_graph).fly(30)
+        fast_graph.spin_until(lambda: recorder.counts.joined == 30, 'the samples')  # noqa: B023
+        fast_graph.stop(recorder)
+    flights = listed([str(tmp_path)])
+    today = datetime.now(timezone.utc).date()
+    assert [Path(one.path).name for one in flights] == ['recording_1', 'recording_2']
+    assert {one.vehicle for one in flights} == {'seven'}
+    # A test may run at midnight.
+    assert {one.day for one in flights} <= {f'{today}', f'{today - timedelta(days=1)}'}
+    for one in flights:
+        [record] = load_all(one.path)
+        assert len(record) == 30
 
 
 @pytest.mark.parametrize('seconds', [1.2, 2.4])

@@ -10,7 +10,7 @@ from quad_ident_ros.data.record import FlightRecord
 
 _SHOWN = 4      # flights of a vehicle that the message names
 _LETTERS = 40   # of an id
-_DATED = range(946684800 * 10 ** 9, 4102444800 * 10 ** 9)   # ns, 2000 to 2100: else no dates
+DATED = range(946684800 * 10 ** 9, 4102444800 * 10 ** 9)   # ns, 2000 to 2100: else no dates
 
 
 def vehicles(records: Sequence[FlightRecord]) -> list[dict]:
@@ -49,7 +49,7 @@ def days(records: Sequence[FlightRecord]) -> list[dict]:
     groups: dict[str, list[FlightRecord]] = {}
     for record in records:
         stamp = record.info.get('utc_ns') or record.info.get('start_ns')
-        if isinstance(stamp, int) and stamp in _DATED:
+        if isinstance(stamp, int) and stamp in DATED:
             day = datetime.fromtimestamp(stamp // 10 ** 9, timezone.utc).date().isoformat()
             groups.setdefault(day, []).append(record)
     if len(groups) < 2:

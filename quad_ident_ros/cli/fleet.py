@@ -1,0 +1,105 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""`quad_ident fleet`: diagnose the flights of many vehicles, and keep all results."""
+
+import argparse
+import re
+
+from quad_ident_ros.errors import InputError
+
+DEFAULT_OUT = 'fleet'
+FAULTY = 3
+"""Exit code where groups failed, which the next run tries again."""
+_BYTES = re.compile(r'(\d+(?:\.\d+)?) ?([kMGT]?)(i?)B?')
+
+
+def add(commands, said):
+    """Add the command to the parser; said: what it does."""
+    parser = commands.add_parser(
+        'fleet', help=said, formatter_class=argparse.RawDescriptionHelpFormatter,
+        description='Diagnose flights of many vehicles. Those of one vehicle, configuration and '
+                    'day are diagnosed together; all\nresults are kept in a folder of Parquet '
+                    'files, which pandas, polars and DuckDB read. What is done is not\ndone '
+                    'again: start the same command anew after new flights, or where it was '
+                    'interrupted.',
+        epilog='a folder: the first folder in it that is no day names the vehicle, a second one '
+               'the configuration;\n  without one the log does. The nominal vehicle is '
+               'vehicle.yaml in a folder of its flights, or --vehicle.\n'
+               'a manifest: a CSV table with the columns path, vehicle, configuration, date, '
+               'group, vehicle_file, of which only\n  path is needed; each other column is a '
+               'covariate (temperature_c, battery_cycles, ...).\n\n'
+               '  quad_ident fleet flights/ --vehicle quad.yaml\n'
+               '  quad_ident fleet manifest.csv --out all_of_2026 --json -\n'
+               '  quad_ident fleet flights/ --vehicle quad.yaml --scheduler tcp://10.0.0.5:8786\n'
+               '  duckdb -c "select vehicle, date, verdict from \'fleet/groups/*.parquet\'"\n\n'
+               'docs/fleet.md explains the folder, and how to use SSH, Slurm and Kubernetes.')
+    parser.add_argument('flights', nargs='+', metavar='FLIGHT|FOLDER|MANIFEST.csv',
+                        help='flights, folders of flights, or manifests')
+    parser.add_argument('--out', '-o', metavar='FOLDER', default=DEFAULT_OUT,
+                        help='the data set (default: %(default)s)')
+    parser.add_argument('--vehicle', help='vehicle name or file: the nominal one of flights '
+                        'that have none of their own')
+    parser.add_argument('--mapping', metavar='FILE', help='which topics and outputs of other '
+                        "people's records mean what (YAML)")
+    parser.add_argument('--json', metavar='FILE', help='write a line of JSON for each group as '
+                        'it is done, and one for the whole run; - prints them')
+    group = parser.add_argument_group('where the work is done')
+    group.add_argument('--scheduler', metavar='tcp://HOST:PORT', help='of a Dask cluster that is '
+                       'there (default: processes on this machine)')
+    group.add_argument('--workers', type=_count, metavar='N', help='processes on this machine '
+                       '(default: one for each core)')
+    group.add_argument('--memory', type=_bytes, metavar='SIZE', help='that each of them may '
+                       'have, for example 2GB (default: together 80 %% of that of the machine)')
+    group.add_argument('--time-limit', type=_seconds, metavar='SECONDS', help='of a group, after '
+                       'which it is given up (default: 1800)')
+    parser.set_defaults(run=run)
+
+
+def run(options):
+    """Diagnose the flights and say what came of it; 3 where a group failed."""
+    try:
+        from quad_ident_ros.fleet.run import run_fleet, TIME_LIMIT
+    except ModuleNotFoundError as error:
+        if (error.name or '').partition('.')[0] not in ('pyarrow', 'distributed', 'dask'):
+            raise
+        raise InputError(f"{error.name} is not installed: pip install 'quad_ident_ros[fleet]'"
+                         ) from None
+    from quad_ident_ros.cluster import cluster
+    from quad_ident_ros.report.fleet_run import Reporter
+    if options.scheduler and (options.workers or options.memory):
+        raise InputError('--workers, --memory: they are for processes on this machine; with '
+                         '--scheduler its own workers are used')
+    with cluster(options.scheduler, options.workers, options.memory) as client, \
+            Reporter(client, options.out, options.json) as reporter:
+        summary = run_fleet(client, options.flights, options.out, vehicle=options.vehicle,
+                            mapping=options.mapping, tell=reporter.tell,
+                            time_limit=options.time_limit or TIME_LIMIT)
+        reporter.end(summary)
+    return FAULTY if summary.groups['failed'] + summary.groups['timeout'] else 0
+
+
+def _count(text):
+    value = int(text) if text.isdecimal() else 0
+    if value < 1:
+        raise argparse.ArgumentTypeError(f'expected a whole number from 1 on, got {text!r}')
+    return value
+
+
+def _bytes(text):
+    match = _BYTES.fullmatch(text)
+    value = match and float(match[1]) * (1024 if match[3] else 1000) ** ' kMGT'.index(
+        match[2] or ' ')
+    if not value or value < 1e8:
+        raise argparse.ArgumentTypeError(f'expected a size from 100MB on, such as 2GB, got '
+                                         f'{text!r}')
+    return int(value)
+
+
+def _seconds(text):
+    try:
+        value = float(text)
+    except ValueError:
+        value = 0.0
+    if not 0.0 < value < float('inf'):
+        raise argparse.ArgumentTypeError(f'expected seconds above 0, got {text!r}')
+    return value

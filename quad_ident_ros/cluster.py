@@ -1,0 +1,234 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Work on many processes, by Dask: those of this machine, or a cluster that is there already."""
+
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager, ExitStack, suppress
+from dataclasses import dataclass
+import faulthandler
+from itertools import islice
+import logging
+from multiprocessing import resource_tracker
+import os
+import queue
+import signal
+import threading
+from time import monotonic
+from typing import Any, Generic, TypeVar
+
+from quad_ident_ros.errors import InputError
+
+Item = TypeVar('Item')
+
+IN_FLIGHT = 2       # tasks of each worker: one is worked on while the next is on its way
+AT_LEAST = 8        # tasks in flight where there are few workers, or none yet: more may join
+MEMORY = 0.8        # share of the machine's memory that all local workers together may have
+TICK = 0.25         # s, in which whoever follows the work is told that it still goes on
+GRACE = 3.0         # s from the end of a task's time to that of its process
+TIMES = 'quad_ident_times'
+"""The topic on which a worker says that the time of a task is over."""
+
+
+class TimeOver(Exception):
+    """A task took more than its time."""
+
+
+class WorkerDied(Exception):
+    """The process of each worker that began a task ended, as where the memory is not enough."""
+
+
+@dataclass(frozen=True)
+class Done(Generic[Item]):
+    """What came of an item: the value of the function, or the error that ended it."""
+
+    item: Item
+    value: Any = None
+    error: Exception | None = None
+
+
+@contextmanager
+def cluster(scheduler: str | None = None, workers: int | None = None,
+            memory: int | None = None) -> Iterator[Any]:
+    """
+    Give a dask.distributed.Client of workers on this machine, or of a scheduler.
+
+    Args: scheduler: address, tcp://HOST:PORT, of a cluster that is there; else workers: how many
+    processes (default: one for each core); memory: bytes of each (default: MEMORY of the
+    machine's, shared). A process that takes more is ended, and begins anew.
+    Raises InputError where Dask is not installed or the scheduler does not answer.
+    """
+    try:
+        import dask.system
+        import distributed
+    except ModuleNotFoundError as error:
+        raise InputError(f"{error.name} is not installed: pip install 'quad_ident_ros[fleet]'"
+                         ) from None
+    logging.getLogger('distributed').setLevel(logging.CRITICAL)     # we say what matters
+    if scheduler is not None:
+        try:
+            client = distributed.Client(scheduler, timeout='10s', set_as_default=False)
+        except (OSError, ValueError) as error:
+            raise InputError(f'--scheduler {scheduler}: no scheduler of Dask answers there '
+                             f'({_first_line(error)}); `dask scheduler` prints its address'
+                             ) from None
+        with client:
+            if max(client.ncores().values(), default=1) > 1:
+                raise InputError(f'--scheduler {scheduler}: its workers have several threads; '
+                                 'start them with --nthreads 1, because what hangs is ended with '
+                                 'its process')
+            yield client
+        return
+    count = workers or dask.system.CPU_COUNT
+    limit = memory or int(MEMORY * distributed.system.MEMORY_LIMIT / count)
+    # A second worker is tried where one died: what is out of memory there is so everywhere.
+    with dask.config.set({'distributed.scheduler.allowed-failures': 1,
+                          'distributed.worker.profile.enabled': False}), ExitStack() as stack:
+        with _without_interrupt():
+            local = stack.enter_context(distributed.LocalCluster(
+                n_workers=count, threads_per_worker=1, memory_limit=limit, host='127.0.0.1',
+                dashboard_address=':0', silence_logs=logging.CRITICAL))
+            client = stack.enter_context(distributed.Client(local, set_as_default=False))
+        yield client
+
+
+@contextmanager
+def _without_interrupt() -> Iterator[None]:
+    """
+    Keep Ctrl-C from threads that are started meanwhile, and so from processes that these start.
+
+    It reaches all processes in a terminal: workers are ended by the command, without tracebacks.
+    """
+    resource_tracker.ensure_running()   # it lets them through again in the thread that starts it
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def results(client: Any, function: Callable[[Item], Any], items: Iterable[Item],
+            time_limit: float | None = None,
+            on_tick: Callable[[], None] = lambda: None) -> Iterator[Done[Item]]:
+    """
+    Yield what a function makes of each item, in the order in which they are done.
+
+    No more than a few items are in flight for each worker, so that memory does not grow with
+    their number. A worker that dies takes none with it: its items are done elsewhere, and those
+    that ended several workers are tried once more when nothing else is in flight. Args:
+    time_limit: s of an item, after which its process is ended, and its error is a TimeOver;
+    on_tick is called a few times per second. Raises InputError where the scheduler is lost.
+    """
+    suspects: list[Item] = []
+    for done in _results(client, function, items, time_limit, on_tick, IN_FLIGHT):
+        if isinstance(done.error, WorkerDied):
+            suspects.append(done.item)
+        else:
+            yield done
+    yield from _results(client, function, suspects, time_limit, on_tick, 1)
+
+
+def _results(client: Any, function: Callable[[Item], Any], items: Iterable[Item],
+             time_limit: float | None, on_tick: Callable[[], None], each: int
+             ) -> Iterator[Done[Item]]:
+    news: queue.SimpleQueue = queue.SimpleQueue()
+    flying: dict[str, tuple[Item, Any]] = {}
+    waiting = iter(items)
+    topic = f'{TIMES}-{id(flying)}-{client.id}'
+    client.subscribe_topic(topic, lambda event: news.put((event[1], True)))
+    more, most, looked = True, 1, -float('inf')
+    try:
+        while more or flying:
+            if monotonic() - looked > TICK:
+                looked = monotonic()
+                most = max(AT_LEAST if each > 1 else 1, each * len(client.ncores()))
+                on_tick()
+            for item in islice(waiting, max(0, most - len(flying))):
+                future = client.submit(_limited, function, item, time_limit, topic, pure=False)
+                flying[future.key] = item, future
+                future.add_done_callback(lambda one: news.put((one.key, False)))
+            more = more and len(flying) >= most
+            ended = {key: late for key, late in _all_of(news) if key in flying}
+            done = _done(client, {key: (*flying[key], late) for key, late in ended.items()})
+            for key in ended.keys() - done.keys():      # it is being done again, elsewhere
+                flying[key][1].add_done_callback(lambda one: news.put((one.key, False)))
+            for key in done:
+                del flying[key]
+            yield from done.values()
+            if client.status == 'closed':
+                raise InputError('the connection to the scheduler was lost; start the command '
+                                 'again: it goes on where it was')
+    finally:
+        client.unsubscribe_topic(topic)
+        for _, future in flying.values():
+            future.cancel()
+
+
+def _all_of(news: queue.SimpleQueue) -> Iterator[Any]:
+    """Yield what is in a queue, once there is something, or nothing after a TICK."""
+    with suppress(queue.Empty):
+        yield news.get(timeout=TICK)
+        while True:
+            yield news.get_nowait()
+
+
+def _done(client: Any, ended: dict[str, tuple[Item, Any, bool]]) -> dict[str, Done[Item]]:
+    """
+    Return {key: Done} of {key: (item, future, whether it was late)}.
+
+    What is lost with a worker that ended just after it is not done: Dask does it again.
+    """
+    from distributed.scheduler import KilledWorker
+    found: dict[str, Done[Item]] = {}
+    finished = [one for _, one, late in ended.values() if not late and one.status == 'finished']
+    with suppress(Exception):       # of those that are lost; the others are there the next time
+        found = {one.key: Done(ended[one.key][0], value) for one, value in
+                 zip(finished, client.gather(finished), strict=True)}
+    for key, (item, future, late) in ended.items():
+        if late:
+            future.cancel()
+            found[key] = Done(item, error=TimeOver())
+        elif future.status == 'error':
+            error = future.exception()
+            found[key] = Done(item, error=WorkerDied() if isinstance(error, KilledWorker)
+                              else error)
+        elif future.status == 'cancelled':
+            raise InputError('the scheduler has lost the work; start the command again: it goes '
+                             'on where it was')
+    return found
+
+
+def _limited(function: Callable[[Item], Any], item: Item, seconds: float | None, topic: str
+             ) -> Any:
+    """
+    Return function(item), in a worker; its process is ended where that takes longer.
+
+    Nothing else ends what hangs in a library. Where it holds Python's lock, the C library does.
+    """
+    if seconds is None:
+        return function(item)
+    from distributed import get_worker
+    worker = get_worker()
+    key = worker.get_current_task()
+
+    def expire() -> None:
+        worker.log_event(topic, key)
+        over.wait(GRACE)        # for the message to be on its way
+        if not over.is_set():
+            os._exit(1)
+
+    over = threading.Event()
+    timer = threading.Timer(seconds, expire)
+    timer.daemon = True
+    timer.start()
+    with open(os.devnull, 'w') as nowhere:
+        faulthandler.dump_traceback_later(seconds + 2.0 * GRACE, exit=True, file=nowhere)
+        try:
+            return function(item)
+        finally:
+            faulthandler.cancel_dump_traceback_later()
+            over.set()
+            timer.cancel()
+
+
+def _first_line(error: BaseException) -> str:
+    return str(error).strip().partition('\n')[0] or type(error).__name__

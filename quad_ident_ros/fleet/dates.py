@@ -1,0 +1,71 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""When a flight was flown: by text, the names of its file and folders, or its log."""
+
+from collections.abc import Mapping
+from contextlib import suppress
+from datetime import datetime, timezone
+from pathlib import Path
+import re
+from typing import Any
+
+from quad_ident_ros.data.quality.fleet import DATED
+
+_DAY = re.compile(r'(?<!\d)(20\d\d)([-_]?)(\d\d)\2(\d\d)(?!\d)')
+_TIME = re.compile(r'[T_ -]?(\d\d)([-_:h]?)(\d\d)\2(\d\d)(?!\d)')
+
+
+def date_of(text: str) -> datetime | None:
+    """Return the time (UTC where no zone is said) that ISO 8601 text is, or None."""
+    text = text.strip()
+    try:    # Python 3.10 does not know the Z
+        found = datetime.fromisoformat(text[:-1] + '+00:00' if text.endswith('Z') else text)
+    except ValueError:
+        return None
+    return (found.astimezone(timezone.utc) if found.tzinfo
+            else found.replace(tzinfo=timezone.utc))
+
+
+def date_in(name: str) -> datetime | None:
+    """Return the day, and the time that follows it, in a name such as 2026-05-14_08-30-12.ulg."""
+    day = _DAY.search(name)
+    if day is None:
+        return None
+    time = _TIME.match(name, day.end())
+    year, month, number = map(int, day.group(1, 3, 4))
+    try:
+        return _at(datetime(year, month, number, tzinfo=timezone.utc), time)
+    except ValueError:
+        return None
+
+
+def is_day(name: str) -> bool:
+    """Return whether the name of a folder is a day and nothing else."""
+    return bool(_DAY.fullmatch(name)) and date_in(name) is not None
+
+
+def date_in_log(info: Mapping[str, Any]) -> datetime | None:
+    """Return when a flight began by the info of its record, or None where that is no date."""
+    stamp = info.get('utc_ns') or info.get('start_ns')
+    if isinstance(stamp, int) and stamp in DATED:
+        return datetime.fromtimestamp(stamp // 1000 * 1e-6, timezone.utc)
+    return None
+
+
+def date_in_path(path: str | Path) -> datetime | None:
+    """Return the date in the name of a file, or of its folder, the nearest first, or None."""
+    parts = Path(path).parts[:-4:-1]
+    found = [date for part in parts if (date := date_in(part)) is not None]
+    # A log names its time alone where its folder names the day: 2026-05-14/08_30_12.ulg.
+    if found and date_in(parts[0]) is None:
+        with suppress(ValueError):
+            return _at(found[0], _TIME.match(parts[0]))
+    return found[0] if found else None
+
+
+def _at(day: datetime, time: re.Match[str] | None) -> datetime:
+    """Return a day at a time, where there is one; raises ValueError for one that is none."""
+    if time is None:
+        return day
+    hour, minute, second = map(int, time.group(1, 3, 4))
+    return day.replace(hour=hour, minute=minute, second=second)

@@ -1,0 +1,110 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Flights of one vehicle, configuration and day, which are diagnosed together."""
+
+from collections.abc import Callable, Iterable
+from dataclasses import asdict, dataclass
+from datetime import datetime
+import hashlib
+import json
+
+from quad_ident_ros import __version__
+from quad_ident_ros.data.mapping import Mapping
+from quad_ident_ros.diagnose.rules import Rules
+from quad_ident_ros.fleet.dates import date_in, date_in_path
+from quad_ident_ros.fleet.look import date_of_file, Looked
+from quad_ident_ros.fleet.manifest import Listed
+from quad_ident_ros.model.vehicle import Vehicle, vehicle_text
+
+UNNAMED = 'vehicle'     # where neither manifest, folders nor log say which it is
+
+
+@dataclass(frozen=True)
+class Member:
+    """A flight of a group: its SHA-256, when it was flown, and the covariates of its manifest."""
+
+    path: str
+    flight: str
+    date: datetime
+    covariates: dict[str, float]
+
+
+@dataclass(frozen=True, eq=False)
+class Group:
+    """
+    Flights that are diagnosed together, the earliest first, and what with.
+
+    nominal: the vehicle that they are held against; key: of all that its result depends on.
+    """
+
+    vehicle: str
+    configuration: str
+    flights: tuple[Member, ...]
+    nominal: Vehicle
+    mapping: Mapping | None
+    rules: Rules
+    key: str
+    version: str = __version__
+
+    @property
+    def date(self) -> datetime:
+        """Return when the first flight was flown."""
+        return self.flights[0].date
+
+
+def groups_of(flights: Iterable[tuple[Listed, Looked]], nominal_of: Callable[[Listed], Vehicle],
+              mapping: Mapping | None, rules: Rules) -> tuple[list[Group], list[Listed]]:
+    """
+    Return the Groups of flights, and the flights left out: their content is there already.
+
+    nominal_of: the nominal vehicle of a flight; raises InputError where none is named.
+    """
+    seen: set[str] = set()
+    again: list[Listed] = []
+    members: dict[tuple[str, ...], list[Member]] = {}
+    nominal: dict[tuple[str, ...], Vehicle] = {}
+    for listed, looked in flights:
+        if looked.flight in seen:
+            again.append(listed)
+            continue
+        seen.add(looked.flight)
+        vehicle = listed.vehicle or looked.hardware or listed.folder or UNNAMED
+        date = _date(listed, looked)
+        day = listed.group or (date_in(listed.day) or date).date().isoformat()
+        place = vehicle, listed.configuration, day, listed.vehicle_file
+        nominal.setdefault(place, nominal_of(listed))
+        members.setdefault(place, []).append(
+            Member(looked.path, looked.flight, date, listed.covariates))
+    texts = {id(one): vehicle_text(one) for one in {id(one): one for one in nominal.values()
+                                                    }.values()}
+    groups = []
+    for key, some in members.items():
+        some.sort(key=lambda one: (one.date, one.path))
+        groups.append(Group(key[0], key[1], tuple(some), nominal[key], mapping, rules,
+                            _key(key, some, texts[id(nominal[key])], mapping, rules)))
+    return groups, again
+
+
+def rules_hash(rules: Rules) -> str:
+    """Return a checksum of the thresholds of a verdict."""
+    return _checksum(asdict(rules))
+
+
+def _date(listed: Listed, looked: Looked) -> datetime:
+    """Return when a flight was flown: by the manifest, the log, the names, or its file."""
+    return (listed.date or looked.date or date_in_path(listed.path)
+            or date_in(listed.day) or date_of_file(looked))
+
+
+def _key(place: tuple[str, ...], members: list[Member], nominal: str, mapping: Mapping | None,
+         rules: Rules) -> str:
+    """Return a checksum of all that the result of a group depends on."""
+    return _checksum({
+        'version': __version__, 'rules': asdict(rules), 'mapping': mapping and asdict(mapping),
+        'vehicle': place[0], 'configuration': place[1], 'nominal': nominal,
+        'flights': [[one.flight, one.date.isoformat(), one.covariates] for one in members]})
+
+
+def _checksum(data: object) -> str:
+    text = json.dumps(data, sort_keys=True, default=str)
+    return hashlib.sha256(text.encode()).hexdigest()

@@ -1,0 +1,165 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Which flights there are: named one by one, in a folder, or in a manifest."""
+
+from collections.abc import Iterable, Iterator, Sequence
+import csv
+from dataclasses import dataclass, field
+from datetime import datetime
+import os
+from pathlib import Path
+
+from quad_ident_ros import schema
+from quad_ident_ros.data.readers.others import START
+from quad_ident_ros.data.readers.registry import READERS
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.fleet.dates import date_of
+from quad_ident_ros.fleet.folders import whose
+
+COLUMNS = ('path', 'vehicle', 'configuration', 'date', 'group', 'vehicle_file')
+"""What the columns of a manifest are called; each further one has numbers: a covariate."""
+
+TABLES = ('.csv', '.csv.gz', '.tsv')    # the other kinds of flights are seen by their first bytes
+VEHICLE_FILE = 'vehicle.yaml'
+"""The nominal vehicle in the folder of its flights, or in one above."""
+
+
+@dataclass(frozen=True)
+class Listed:
+    """
+    A flight as it was named; '' and None: the log is asked.
+
+    folder: the name of the folder that was searched, which is the vehicle where nothing else says
+    which; group: what is diagnosed together instead of a day; vehicle_file: the nominal vehicle.
+    """
+
+    path: str
+    vehicle: str = ''
+    configuration: str = ''
+    date: datetime | None = None
+    day: str = ''
+    group: str = ''
+    vehicle_file: str = ''
+    folder: str = ''
+    covariates: dict[str, float] = field(default_factory=dict)
+
+
+def listed(names: Iterable[str]) -> list[Listed]:
+    """
+    Return the flights that paths of flights, folders and manifests stand for, each path once.
+
+    Raises InputError, for what is not there, too.
+    """
+    found: dict[str, Listed] = {}
+    for name in names:
+        path = Path(name)
+        if not path.exists():
+            raise InputError(f'{name}: there is no such file or folder; name flights, a folder of '
+                             'them or a manifest')
+        if _is_bag(path) or path.is_file() and not is_manifest(path):
+            some: Iterable[Listed] = [Listed(str(path), vehicle_file=_nominal_in(path.parent))]
+        else:
+            some = _in_folder(path) if path.is_dir() else _in_manifest(path)
+        for one in some:
+            found.setdefault(os.path.realpath(one.path), one)
+    if not found:
+        raise InputError(f'{", ".join(names)}: there is no flight in it; name a folder of tables '
+                         '(CSV, Parquet), bags or logs')
+    return list(found.values())
+
+
+def is_manifest(path: Path) -> bool:
+    """Return whether a file is a manifest: a CSV table with a column `path`."""
+    if path.suffix != '.csv':
+        return False
+    try:
+        with open(path, encoding='utf-8-sig', newline='') as file:
+            return 'path' in next(csv.reader([file.readline(START)]), [])
+    except (OSError, UnicodeDecodeError, csv.Error):
+        return False
+
+
+def _in_manifest(path: Path) -> Iterator[Listed]:
+    try:
+        with open(path, encoding='utf-8-sig', newline='') as file:
+            reader = csv.reader(file)
+            names = [name.strip() for name in next(reader)]
+            if len(set(names)) < len(names):
+                raise InputError(f'{path}, line 1: a column is named twice; name each once')
+            for row in reader:
+                if any(row):
+                    yield _entry(path, reader.line_num, names, row)
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        raise InputError(f'{path}: cannot be read: {error}; expected a table in UTF-8 with '
+                         'commas') from None
+
+
+def _entry(manifest: Path, line: int, names: Sequence[str], row: Sequence[str]) -> Listed:
+    where = f'{manifest}, line {line}'
+    if len(row) != len(names):
+        raise InputError(f'{where}: {len(row)} cells, but {len(names)} columns; write one cell '
+                         'for each')
+    cells = {name: cell.strip() for name, cell in zip(names, row, strict=True)}
+    if not cells['path']:
+        raise InputError(f'{where}, column path: it is empty; name a flight')
+    date = date_of(cells['date']) if cells.get('date') else None
+    if cells.get('date') and date is None:
+        raise InputError(f'{where}, column date: {schema.shown(cells["date"])} is no date; write '
+                         '2026-05-14 or 2026-05-14T08:30:00Z')
+    covariates = {name: schema.number(f'{where}, column {name}', cell)
+                  for name, cell in cells.items() if name not in COLUMNS and cell}
+    path = str(manifest.parent / cells['path'])
+    nominal = cells.get('vehicle_file', '')
+    beside = manifest.parent / nominal
+    return Listed(path, cells.get('vehicle', ''), cells.get('configuration', ''), date, '',
+                  cells.get('group', ''),
+                  str(beside) if nominal and beside.is_file() else nominal,
+                  manifest.absolute().parent.name, covariates)
+
+
+def _in_folder(top: Path) -> Iterator[Listed]:
+    """Yield the flights below a folder, which the folders between say more of."""
+    for path, nominal in _below(top, ''):
+        vehicle, configuration, day = whose(path.relative_to(top).parts[:-1])
+        yield Listed(str(path), vehicle, configuration, day=day, vehicle_file=nominal,
+                     folder=top.absolute().name)
+
+
+def _below(folder: Path, nominal: str) -> Iterator[tuple[Path, str]]:
+    """Yield (path, nominal vehicle file) of the flights below a folder, by name."""
+    try:
+        entries = sorted(os.scandir(folder), key=lambda entry: entry.name)
+    except OSError as error:
+        raise InputError(f'{folder}: cannot be read: {error.strerror}') from None
+    nominal = _nominal_in(folder) or nominal
+    for entry in entries:
+        path = Path(entry.path)
+        if entry.name.startswith('.'):
+            continue
+        if entry.is_dir() and not _is_bag(path):
+            yield from _below(path, nominal)
+        elif entry.is_dir() or entry.is_file() and _is_flight(path):
+            yield path, nominal
+
+
+def _is_bag(path: Path) -> bool:
+    """Return whether a folder is a bag of ROS 2, or a recording of the recorder with one."""
+    return any((path / place).is_file() for place in ('metadata.yaml', 'bag/metadata.yaml'))
+
+
+def _is_flight(path: Path) -> bool:
+    """Return whether a file in a folder is taken for a flight."""
+    if path.name.lower().endswith(TABLES):
+        return not is_manifest(path)
+    try:
+        with open(path, 'rb') as file:
+            start = file.read(START)
+    except OSError:
+        return True     # it is refused with its reason later
+    *others, _ = READERS    # the last one takes any text
+    return any(path.suffix in reader.suffixes or reader.tells(path, start) for reader in others)
+
+
+def _nominal_in(folder: Path) -> str:
+    """Return the nominal vehicle file in a folder, or ''."""
+    return str(folder / VEHICLE_FILE) if (folder / VEHICLE_FILE).is_file() else ''

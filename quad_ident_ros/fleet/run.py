@@ -1,0 +1,261 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""A run over the flights of a fleet: look at them, diagnose their groups, track their values."""
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache, partial
+import json
+from pathlib import Path
+import random
+from typing import Any
+
+from quad_ident_ros import __version__
+from quad_ident_ros.cluster import results, TimeOver, WorkerDied
+from quad_ident_ros.data.mapping import load_mapping, Mapping
+from quad_ident_ros.diagnose.rules import RULES
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.fleet.grouping import Group, groups_of, rules_hash
+from quad_ident_ros.fleet.look import look, Looked, Looks, without_content
+from quad_ident_ros.fleet.manifest import Listed, listed, VEHICLE_FILE
+from quad_ident_ros.fleet.store import keys_of, prepare, read_table
+from quad_ident_ros.fleet.superseded import remove_group, remove_trackings, superseded_by
+from quad_ident_ros.fleet.track import track, tracked_effects, Tracking
+from quad_ident_ros.fleet.work import (
+    DIAGNOSED,
+    DONE,
+    FAILED,
+    Outcome,
+    outcome_of,
+    REFUSED,
+    TIMEOUT,
+    work,
+    write,
+)
+from quad_ident_ros.model.vehicle import Vehicle
+from quad_ident_ros.vehicle_files.load import load_any_vehicle
+from quad_ident_ros.whole_file import write_whole
+
+AT_ONCE = 16    # flights that a task looks at: each is a matter of milliseconds
+TIME_LIMIT = 1800.0     # s of a group: a hundred times the usual one on a slow core
+LOOKING, DIAGNOSING, TRACKING = 'reading', 'diagnosing', 'tracking'
+
+
+@dataclass(frozen=True)
+class Progress:
+    """
+    How far a run is.
+
+    stage: of LOOKING (done and total are flights), DIAGNOSING (groups), TRACKING (groups); here:
+    done of these before the run; refused, failed: groups of the run that were not diagnosed, by
+    what is wrong with their flights and for other reasons; last: what has just been done.
+    """
+
+    stage: str
+    total: int
+    done: int = 0
+    here: int = 0
+    refused: int = 0
+    failed: int = 0
+    last: tuple[Group, Outcome] | None = None
+
+    def after(self, group: Group, outcome: Outcome) -> 'Progress':
+        """Return the Progress once a group is done."""
+        return replace(self, done=self.done + 1, last=(group, outcome),
+                       refused=self.refused + (outcome.status == REFUSED),
+                       failed=self.failed + (outcome.status in (FAILED, TIMEOUT)))
+
+
+@dataclass(frozen=True)
+class Summary:
+    """What a run has come to: flights, groups by status, and copies {path: of flights}."""
+
+    flights: int
+    groups: dict[str, int]
+    before: int
+    copies: tuple[str, ...]
+
+
+Tell = Callable[[Progress], None]
+
+
+class _Account:
+    """The Progress of a stage, and who is told of it."""
+
+    def __init__(self, tell: Tell, progress: Progress) -> None:
+        self.progress, self._tell = progress, tell
+
+    def tick(self) -> None:
+        """Tell how far it is, though nothing is new."""
+        self._tell(replace(self.progress, last=None))
+
+    def count(self, failed: int = 0) -> None:
+        """Count one more as done, or as failed."""
+        self.progress = replace(self.progress, done=self.progress.done + 1,
+                                failed=self.progress.failed + failed)
+        self._tell(self.progress)
+
+    def count_group(self, group: Group, outcome: Outcome) -> None:
+        """Count a group by its Outcome."""
+        self.progress = self.progress.after(group, outcome)
+        self._tell(self.progress)
+
+
+def run_fleet(client: Any, names: Sequence[str], out: str | Path, *, vehicle: str | None = None,
+              mapping: str | None = None, time_limit: float = TIME_LIMIT,
+              tell: Tell = lambda progress: None) -> Summary:
+    """
+    Diagnose the flights that names stand for, on a Dask client, into the data set `out`.
+
+    What is there already is not done again; groups that failed are. Args: names of flights,
+    folders and manifests; vehicle: nominal vehicle, name or file, of those that have none of their
+    own; mapping: file; time_limit: s of a group; tell is called with the Progress, a few times
+    per second. Raises InputError, and OSError where nothing can be written.
+    """
+    flights = listed(names)
+    nominal_of = partial(_nominal, vehicle, lru_cache(None)(load_any_vehicle))
+    for one in flights:     # before any work
+        nominal_of(one)
+    meaning = load_mapping(mapping) if mapping else None
+    prepare(out)
+    _write_options(out, flights, vehicle, mapping)
+    looked = _looked(client, flights, meaning, out, time_limit, tell)
+    groups, copies = groups_of(zip(flights, looked, strict=True), nominal_of, meaning, RULES)
+    before = _diagnose_all(client, groups, out, time_limit, tell)
+    _track_all(client, groups, out, time_limit, tell)
+    status = _statuses(out)
+    ended = [status.get(group.key) for group in groups]
+    return Summary(len(flights) - len(copies), {name: ended.count(name) for name in
+                                                (DIAGNOSED, REFUSED, FAILED, TIMEOUT)},
+                   before, tuple(one.path for one in copies))
+
+
+def _nominal(vehicle: str | None, load: Callable[[str], Vehicle], one: Listed) -> Vehicle:
+    """Return the nominal vehicle of a flight; raises InputError where none is named."""
+    name = one.vehicle_file or vehicle
+    if not name:
+        raise InputError(f'{one.path}: no nominal vehicle is named for it; give --vehicle FILE, '
+                         f'put a {VEHICLE_FILE} into the folder of its vehicle, or name one in '
+                         'the column vehicle_file of a manifest')
+    return load(name)
+
+
+def _write_options(out: str | Path, flights: Iterable[Listed], vehicle: str | None,
+                   mapping: str | None) -> None:
+    """Write how the data set is made, without times, so that the same run writes the same."""
+    vehicles = sorted({one.vehicle_file or str(vehicle) for one in flights})
+    data = {'schema': 'quad_ident/fleet/1', 'version': __version__, 'vehicles': vehicles,
+            'mapping': mapping, 'rules': rules_hash(RULES)}
+    write_whole(Path(out) / 'fleet.json', json.dumps(data, indent=2) + '\n')
+
+
+def _looked(client: Any, flights: Sequence[Listed], mapping: Mapping | None, out: str | Path,
+            time_limit: float, tell: Tell) -> list[Looked]:
+    """Return what is known of flights, in their order; what was seen before is not read again."""
+    looks = Looks(out)
+    known = [looks.known(one) for one in flights]
+    new = [number for number, one in enumerate(known) if one is None]
+    before = len(flights) - len(new)
+    account = _Account(tell, Progress(LOOKING, len(flights), before, before))
+    found: dict[int, Looked] = {}
+    alone: list[list[int]] = []
+    some = [new[k:k + AT_ONCE] for k in range(0, len(new), AT_ONCE)]
+    # Where one of several ends the worker or takes too long, each is looked at by itself.
+    for numbers in (some, alone):
+        items = (tuple((number, flights[number]) for number in each) for each in numbers)
+        for done in results(client, partial(_look, mapping), items, time_limit, account.tick):
+            rows: list[tuple[int, Looked]] = done.value
+            if done.error is not None:
+                reason = _reason(done.error, time_limit)
+                if numbers is some:
+                    alone += [[number] for number, _ in done.item]
+                    continue
+                rows = [(number, without_content(one, reason)) for number, one in done.item]
+            for number, seen in rows:
+                found[number] = seen
+                if done.error is None:
+                    looks.add(seen)
+                account.count()
+    looks.flush()
+    return [found[number] if one is None else one for number, one in enumerate(known)]
+
+
+def _look(mapping: Mapping | None, some: Iterable[tuple[int, Listed]]
+          ) -> list[tuple[int, Looked]]:
+    return [(number, look(one, mapping)) for number, one in some]
+
+
+def _diagnose_all(client: Any, groups: Sequence[Group], out: str | Path, time_limit: float,
+                  tell: Tell) -> int:
+    """Diagnose the groups that are not done, and return how many were."""
+    replaced = superseded_by(groups, out)
+    status = _statuses(out)
+    todo = [group for group in groups if status.get(group.key) not in DONE]
+    before = len(groups) - len(todo)
+    for group in groups:
+        if status.get(group.key) in DONE:
+            _remove(out, replaced.get(group.key, ()))
+    # Each run in an order of its own: two on one data set seldom do the same group at once.
+    random.shuffle(todo)
+    account = _Account(tell, Progress(DIAGNOSING, len(groups), before, before))
+    for done in results(client, partial(_work, out), todo, time_limit, account.tick):
+        group = done.item
+        outcome = done.value
+        if done.error is not None:
+            outcome = outcome_of(group, out) or Outcome(
+                TIMEOUT if isinstance(done.error, TimeOver) else FAILED,
+                _reason(done.error, time_limit), time_limit)
+            if outcome.status not in DONE:
+                write(group, out, outcome)
+        _remove(out, replaced.get(group.key, ()))
+        account.count_group(group, outcome)
+    return before
+
+
+def _work(out: str | Path, group: Group) -> Outcome:
+    return work(group, out)
+
+
+def _remove(out: str | Path, keys: Iterable[str]) -> None:
+    for key in keys:
+        remove_group(out, key)
+
+
+def _track_all(client: Any, groups: Sequence[Group], out: str | Path, time_limit: float,
+               tell: Tell) -> None:
+    """Fit the effects of each vehicle to its flights, where that is not done."""
+    effects = tracked_effects(read_table(out, 'effects', ['vehicle', 'effect', 'form', 'named']))
+    status = _statuses(out)
+    wanted = [Tracking(group, effects[group.vehicle]) for group in groups
+              if status.get(group.key) == DIAGNOSED and effects.get(group.vehicle)]
+    there = keys_of(out, 'covariances')
+    todo = [one for one in wanted if one.key not in there]
+    random.shuffle(todo)
+    before = len(wanted) - len(todo)
+    account = _Account(tell, Progress(TRACKING, len(wanted), before, before))
+    for done in results(client, partial(_track, out), todo, time_limit, account.tick):
+        if done.error is not None:
+            _reason(done.error, time_limit)
+        account.count(failed=int(done.error is not None))
+    remove_trackings(out, {group.key: '' for group in groups}
+                     | {one.group.key: one.key for one in wanted})
+
+
+def _track(out: str | Path, tracking: Tracking) -> None:
+    track(tracking, out)
+
+
+def _reason(error: Exception, time_limit: float) -> str:
+    """Return why a task has no result, in words; raises what no other task can escape either."""
+    if isinstance(error, TimeOver):
+        return f'it took more than {time_limit:g} s (--time-limit)'
+    if isinstance(error, WorkerDied):
+        return ('the process of each worker that began it ended: it may need more memory than a '
+                'worker has (--memory), or it hung in a library')
+    raise error
+
+
+def _statuses(out: str | Path) -> dict[str, str]:
+    """Return {key of a group: status} of a data set."""
+    table = read_table(out, 'groups', ['group', 'status'])
+    return dict(zip(table['group'].to_pylist(), table['status'].to_pylist(), strict=True))

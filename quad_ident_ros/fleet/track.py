@@ -1,0 +1,102 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The parameters of effects fitted to each flight by itself, so that a change has a date."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+import hashlib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow
+import pyarrow.compute as pc
+
+from quad_ident_ros.data.load import load_all
+from quad_ident_ros.effects.registry import EFFECTS
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.fleet.grouping import Group, Member
+from quad_ident_ros.fleet.store import write_rows
+from quad_ident_ros.greybox.fit import Fit, fit
+from quad_ident_ros.greybox.taken_in import taken_in
+
+MOST = 0.5      # share of the fleet's vehicles from which on an effect is compared in all of them
+
+
+@dataclass(frozen=True, eq=False)
+class Tracking:
+    """A Group, and the effects {effect: form} that are fitted to each of its flights."""
+
+    group: Group
+    effects: Mapping[str, str]
+
+    @property
+    def key(self) -> str:
+        """Return the key of its rows, which begins with that of the group."""
+        names = ' '.join(f'{effect} {form}' for effect, form in sorted(self.effects.items()))
+        return f'{self.group.key}-{hashlib.sha256(names.encode()).hexdigest()[:16]}'
+
+
+def tracked_effects(effects: pyarrow.Table) -> dict[str, dict[str, str]]:
+    """
+    Return {vehicle: {effect: form}} to track, of the table `effects` of a data set.
+
+    For each vehicle the effects that any of its groups names, and those that most vehicles have;
+    each in the form that its groups name it in most often, or else the fleet.
+    """
+    named = effects.filter(pc.field('named'))
+    counts = named.group_by(['vehicle', 'effect', 'form']).aggregate([([], 'count_all')])
+    by_vehicle: dict[str, dict[str, dict[str, int]]] = {
+        vehicle: {} for vehicle in effects['vehicle'].unique().to_pylist()}
+    for row in counts.to_pylist():
+        forms = by_vehicle[row['vehicle']].setdefault(row['effect'], {})
+        forms[row['form']] = row['count_all']
+    common: dict[str, dict[str, int]] = {}
+    for effect in EFFECTS:
+        having = [found[effect] for found in by_vehicle.values() if effect in found]
+        if having and len(having) >= MOST * len(by_vehicle):
+            common[effect] = {form: sum(one.get(form, 0) for one in having)
+                              for forms in having for form in forms}
+    return {vehicle: {effect: _usual(effect, forms) for effect, forms in {**common, **found
+                                                                          }.items()}
+            for vehicle, found in by_vehicle.items()}
+
+
+def track(tracking: Tracking, out: str | Path) -> None:
+    """
+    Fit the effects of a Tracking to each flight of its group and write the rows.
+
+    A flight that cannot be fitted has none. Raises OSError where nothing can be written.
+    """
+    group = tracking.group
+    names = [f'{effect}.{parameter.name}' for effect, form in tracking.effects.items()
+             for parameter in next(one for one in EFFECTS[effect].forms
+                                   if one.name == form).parameters]
+    parameters: list[dict[str, Any]] = []
+    covariances: list[dict[str, Any]] = []
+    for member in group.flights:
+        try:
+            records = [record for record, _ in taken_in(
+                load_all(member.path, group.mapping, group.nominal), group.nominal)]
+            found = fit(records, group.nominal, names)
+        except (InputError, ArithmeticError, np.linalg.LinAlgError):
+            continue
+        parameters += _values(found, member, group)
+        covariances.append({'flight': member.flight, 'names': list(found.names),
+                            'matrix': found.estimate.covariance.ravel().tolist()})
+    write_rows(out, 'parameters', tracking.key, parameters)
+    write_rows(out, 'covariances', tracking.key, covariances)
+
+
+def _usual(effect: str, forms: Mapping[str, int]) -> str:
+    """Return the form that is named most often, of equals the first of the effect."""
+    order = [form.name for form in EFFECTS[effect].forms]
+    return max(order, key=lambda name: (forms.get(name, 0), -order.index(name)))
+
+
+def _values(found: Fit, member: Member, group: Group) -> Sequence[dict[str, Any]]:
+    return [{'flight': member.flight, 'group': group.key, 'vehicle': group.vehicle,
+             'configuration': group.configuration, 'date': member.date,
+             'effect': one.name.partition('.')[0], 'parameter': one.name.partition('.')[2],
+             'unit': one.unit, 'value': one.value, 'std': one.std}
+            for one in found.parameters if one.value is not None]

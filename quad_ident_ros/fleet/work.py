@@ -1,0 +1,203 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The diagnosis of one group of flights, in a worker: flights in, rows of the data set out."""
+
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+import json
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+
+from quad_ident_ros import __version__
+from quad_ident_ros.data.load import load_all
+from quad_ident_ros.data.record import FlightRecord
+from quad_ident_ros.diagnose.diagnosis import diagnose
+from quad_ident_ros.diagnose.intake import take_in
+from quad_ident_ros.diagnose.result import Diagnosis
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.fleet.grouping import Group, Member, rules_hash
+from quad_ident_ros.fleet.store import read_rows, write_rows
+from quad_ident_ros.memory import give_back
+from quad_ident_ros.report.data import finite
+
+DIAGNOSED, REFUSED, FAILED, TIMEOUT = 'diagnosed', 'refused', 'failed', 'timeout'
+DONE = DIAGNOSED, REFUSED
+"""States of a group that is not tried again: the same flights would give the same."""
+
+FIRST = 1.0     # s of a flight over which its first and last voltage are taken
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What came of a group: its status, the reason ('' where it was diagnosed), and s of work."""
+
+    status: str
+    reason: str
+    seconds: float
+
+
+@dataclass(frozen=True, eq=False)
+class _Read:
+    """A flight of a group: its records, or why there are none."""
+
+    member: Member
+    records: tuple[FlightRecord, ...]
+    reason: str = ''
+
+
+def work(group: Group, out: str | Path) -> Outcome:
+    """
+    Diagnose a Group, write its rows into the data set, and return the Outcome.
+
+    One that another run has done meanwhile is not done again. A flight that cannot be diagnosed
+    is left out, with its reason. Raises OSError where nothing can be written.
+    """
+    if group.version != __version__:
+        raise InputError(f'the worker has version {__version__} of quad_ident_ros, the command '
+                         f'{group.version}; install the same one on all')
+    if (stored := outcome_of(group, out)) is not None:
+        return stored
+    begun = perf_counter()
+    reads = [_read(member, group) for member in group.flights]
+    found, reason = None, ''
+    try:
+        reads, found = _diagnosed(reads, group)
+        status = DIAGNOSED
+    except InputError as error:
+        status, reason = REFUSED, one_line(error)
+    except Exception as error:      # of a library: it takes no other group with it
+        status, reason = FAILED, f'{type(error).__name__}: {one_line(error)}'
+    outcome = Outcome(status, reason, perf_counter() - begun)
+    write(group, out, outcome, reads, found)
+    del reads, found
+    give_back()
+    return outcome
+
+
+def outcome_of(group: Group, out: str | Path) -> Outcome | None:
+    """Return the Outcome of a Group that is done, or None."""
+    rows = read_rows(out, 'groups', group.key, ['status', 'reason', 'seconds'])
+    return next((Outcome(**row) for row in rows if row['status'] in DONE), None)
+
+
+def write(group: Group, out: str | Path, outcome: Outcome, reads: Sequence[_Read] = (),
+          found: Diagnosis | None = None) -> None:
+    """
+    Write the rows of a group; the row in `groups`, which says that it is done, is the last.
+
+    reads: what was read of its flights, if that is known; found: its Diagnosis, if there is one.
+    """
+    whose = {'group': group.key, 'vehicle': group.vehicle, 'configuration': group.configuration}
+    dated = whose | {'date': group.date}
+    reads = reads or [_Read(member, ()) for member in group.flights]
+    used = [one for one in reads if not one.reason]
+    write_rows(out, 'flights', group.key, [
+        whose | _flight(one, outcome, found, len(used) > 1 and one is used[-1]) for one in reads])
+    if found is not None:
+        minor = [one.effect for one in found.minor]
+        write_rows(out, 'effects', group.key, [dated | {
+            'effect': one.effect, 'probability': one.probability,
+            'contribution': one.contribution, 'form': one.form,
+            'named': one.effect in found.verdict, 'minor': one.effect in minor}
+            for one in found.ranking])
+    write_rows(out, 'groups', group.key, [dated | {
+        'flights': len(group.flights), 'status': outcome.status, 'reason': outcome.reason,
+        'version': group.version, 'rules': rules_hash(group.rules), 'seconds': outcome.seconds,
+        'diagnosis': '', **(_verdict(found) if found else {})}])
+
+
+def one_line(error: Exception) -> str:
+    """Return the message of an error as one line."""
+    return ' '.join(str(error).split())
+
+
+def _read(member: Member, group: Group) -> _Read:
+    try:
+        return _Read(member, tuple(load_all(member.path, group.mapping, group.nominal)))
+    except InputError as error:
+        return _Read(member, (), one_line(error))
+    except Exception as error:      # of a library: it takes no other flight with it
+        return _Read(member, (), f'{member.path}: {type(error).__name__} while it was read')
+
+
+def _diagnosed(reads: list[_Read], group: Group) -> tuple[list[_Read], Diagnosis]:
+    """
+    Return the Diagnosis of what was read, and which flights are used; raises InputError.
+
+    Where together they are refused, those that are refused by themselves are left out.
+    """
+    some = [one for one in reads if not one.reason]
+    if not some:
+        raise InputError(reads[0].reason)
+    try:
+        return reads, _of(some, group)
+    except InputError as error:
+        refusals = {id(one): reason for one in some if (reason := _refusal(one, group))}
+        if not 0 < len(refusals) < len(some):
+            raise
+        first = error
+    reads = [_Read(one.member, (), refusals[id(one)]) if id(one) in refusals else one
+             for one in reads]
+    with suppress(InputError):
+        return reads, _of([one for one in reads if not one.reason], group)
+    raise first
+
+
+def _of(reads: Sequence[_Read], group: Group) -> Diagnosis:
+    return diagnose([record for one in reads for record in one.records], group.nominal,
+                    rules=group.rules)
+
+
+def _refusal(one: _Read, group: Group) -> str:
+    """Return why a flight is refused by itself, or ''."""
+    try:
+        take_in(one.records, group.nominal, None, group.rules)
+    except InputError as error:
+        return one_line(error)
+    return ''
+
+
+def _flight(one: _Read, outcome: Outcome, found: Diagnosis | None, last: bool) -> dict[str, Any]:
+    """Return the columns of a flight that are not those of its group."""
+    names = {record.info.get('name') for record in one.records}
+    t = [record.t for record in one.records]
+    return {
+        'flight': one.member.flight, 'path': one.member.path, 'date': one.member.date,
+        'duration_s': float(sum(each[-1] - each[0] for each in t)) if t else None,
+        'rate_hz': 1.0 / one.records[0].period() if t else None,
+        'held_out': last and found is not None,
+        'status': REFUSED if one.reason else outcome.status,
+        'reason': one.reason or outcome.reason,
+        'findings': [f'{each["where"]}: {each["message"]}' for each in
+                     (found.findings if found else ()) if each['flight'] in names],
+        'covariates': {**_battery(one.records), **one.member.covariates}}
+
+
+def _battery(records: Sequence[FlightRecord]) -> dict[str, float]:
+    """Return the voltage (V) at the beginning and end of a flight, where it was recorded."""
+    known = [record for record in records if record.has('vbat')]
+    if not known:
+        return {}
+    first, last = known[0], known[-1]
+    return {'battery_v_start': float(np.median(
+                first.columns['vbat'][first.t <= first.t[0] + FIRST])),
+            'battery_v_end': float(np.median(
+                last.columns['vbat'][last.t >= last.t[-1] - FIRST]))}
+
+
+def _verdict(found: Diagnosis) -> dict[str, Any]:
+    """Return the columns of a group that its Diagnosis fills."""
+    gap = found.gap
+    return {
+        'verdict': list(found.verdict), 'minor': [one.effect for one in found.minor],
+        **{f'gap_{when}_{name}': float(value)
+           for when, values in (('before', gap.before), ('after', gap.after),
+                                ('noise', gap.noise)) for name, value in values.items()},
+        'closed': gap.closed,
+        'findings': [f'{each["flight"]}: {each["where"]}: {each["message"]}'
+                     for each in found.findings],
+        'diagnosis': json.dumps(finite(found.as_data()), allow_nan=False)}

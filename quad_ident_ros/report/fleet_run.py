@@ -1,0 +1,159 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""A run over a fleet as it goes on: a line that a person follows, lines of JSON for a machine."""
+
+from contextlib import suppress
+from importlib.util import find_spec
+import json
+import sys
+from time import monotonic
+
+from quad_ident_ros.data.counted import counted
+from quad_ident_ros.report.data import finite
+from quad_ident_ros.report.screen import progress_bar
+
+OFTEN = 0.2     # s between two changes of the line, and
+RARELY = 30.0   # between two lines where standard error is no terminal
+
+
+class Reporter:
+    """
+    Says how far a run is, on standard error and as lines of JSON; to be used in a `with`.
+
+    Args: client of Dask; out: the data set; json: file, - for standard output, or None.
+    """
+
+    def __init__(self, client, out, json):
+        self._client, self._out, self._path = client, out, json
+        self._bar = progress_bar()
+        self._lines = None
+        self._stage = self._task = None
+        self._begun = self._said = 0.0
+
+    def __enter__(self):
+        """Name the data set, the workers and the dashboard."""
+        if self._path:
+            self._lines = (sys.stdout if self._path == '-'
+                           else open(self._path, 'w', encoding='utf-8'))
+        self._note(f'data set: {self._out}; {workers(self._client)}')
+        self._note(dashboard(self._client))
+        self._bar.start()
+        return self
+
+    def __exit__(self, kind, error, trace):
+        """Take the line away and close the file."""
+        self._bar.stop()
+        if self._lines not in (None, sys.stdout):
+            self._lines.close()
+
+    def tell(self, progress):
+        """Say how far the run is."""
+        if progress.stage != self._stage:
+            self._stage, self._begun = progress.stage, monotonic()
+            if self._task is not None:
+                self._bar.remove_task(self._task)
+            self._task = self._bar.add_task('', total=max(progress.total, 1))
+        if progress.last:
+            group, outcome = progress.last
+            self._write({
+                'group': group.key, 'vehicle': group.vehicle,
+                'configuration': group.configuration, 'date': group.date.isoformat(),
+                'status': outcome.status, 'reason': outcome.reason, 'seconds': outcome.seconds,
+                'done': progress.done, 'total': progress.total, 'refused': progress.refused,
+                'failed': progress.failed, 'seconds_left': self._left(progress)})
+        if monotonic() - self._said < (RARELY if self._bar.disable else OFTEN):
+            return
+        self._said = monotonic()
+        text = line(progress, monotonic() - self._begun)
+        if not self._client.ncores():
+            text += '; no worker has joined yet'
+        self._bar.update(self._task, description=text, completed=progress.done)
+        if self._bar.disable:
+            self._note(text)
+
+    def end(self, summary):
+        """Say what the run has come to."""
+        self._bar.stop()
+        groups = summary.groups
+        self._write({'schema': 'quad_ident/fleet_run/1', 'out': str(self._out),
+                     'flights': summary.flights, 'groups': groups, 'before': summary.before,
+                     'copies': list(summary.copies)})
+        if self._path != '-':
+            sys.stdout.write(summary_text(summary, self._out))
+
+    def _left(self, progress):
+        return seconds_left(progress, monotonic() - self._begun)
+
+    def _write(self, data):
+        if self._lines is not None:
+            self._lines.write(json.dumps(finite(data), allow_nan=False) + '\n')
+            self._lines.flush()
+
+    def _note(self, text):
+        print(text, file=sys.stderr)
+
+
+def line(progress, seconds):
+    """Return how far a Progress is after so many seconds of its stage, in one line."""
+    what = 'flights' if progress.stage == 'reading' else 'groups'
+    new = progress.done - progress.here
+    parts = [f'{progress.stage}: {progress.done} of {progress.total} {what}']
+    if new and seconds > 0.0:
+        parts.append(f'{60.0 * new / seconds:.3g} per minute')
+    left = seconds_left(progress, seconds)
+    if left is not None:
+        parts.append(f'{_span(left)} left')
+    parts += [f'{count} {name}' for name, count in (
+        ('refused', progress.refused), ('failed', progress.failed)) if count]
+    return ', '.join(parts)
+
+
+def seconds_left(progress, seconds):
+    """Return the time (s) that a stage still takes at its rate until now, None where unknown."""
+    new = progress.done - progress.here
+    return seconds * (progress.total - progress.done) / new if new else None
+
+
+def summary_text(summary, out):
+    """Return what a run has come to, as lines."""
+    groups = summary.groups
+    lines = [f'{counted(summary.flights, "flight")} in {counted(sum(groups.values()), "group")}: '
+             + ', '.join(f'{count} {said}' for said, count in (
+                 ('diagnosed', groups['diagnosed']), ('refused', groups['refused']),
+                 ('failed', groups['failed']), ('beyond the time limit', groups['timeout']))
+                 if count or said == 'diagnosed')
+             + (f' ({summary.before} of them before)' if summary.before else '')]
+    if summary.copies:
+        lines.append(f'{counted(len(summary.copies), "file")} left out, whose content is that of '
+                     f'another: {", ".join(summary.copies[:3])}'
+                     + (' ...' if len(summary.copies) > 3 else ''))
+    if groups['failed'] or groups['timeout']:
+        lines.append('the same command tries again what failed; the reasons are in the column '
+                     f'reason of {out}/groups')
+    return '\n'.join(lines) + '\n'
+
+
+def workers(client):
+    """Return how many workers a client has, and what memory each may have, in words."""
+    found = client.scheduler_info(n_workers=-1)['workers'].values()
+    if not found:
+        return 'no worker has joined yet'
+    memory = min(one['memory_limit'] for one in found)
+    bound = f', each up to {memory / 1e9:.3g} GB of memory' if memory else ''
+    return f'{counted(len(found), "worker")}{bound}'
+
+
+def dashboard(client):
+    """Return where the dashboard of Dask is, or how to have it, in words."""
+    link = None
+    with suppress(Exception):       # a scheduler may have none
+        link = client.dashboard_link
+    if link and find_spec('bokeh'):
+        return f"Dask's dashboard: {link}"
+    return "Dask's dashboard needs bokeh where the scheduler runs: pip install bokeh"
+
+
+def _span(seconds):
+    hours, rest = divmod(round(seconds), 3600)
+    return f'{hours} h {rest // 60} min' if hours else (
+        f'{rest // 60} min {rest % 60} s' if rest >= 60 else f'{rest} s')

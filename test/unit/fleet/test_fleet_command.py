@@ -1,0 +1,60 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What `quad_ident fleet` takes and says, without the work itself."""
+
+from dataclasses import replace
+
+import pytest
+
+from quad_ident_ros.cli.main import main, parser
+
+pytest.importorskip('pyarrow', reason="pyarrow is not installed: pip install '.[fleet]'")
+from quad_ident_ros.fleet.run import DIAGNOSING, Progress, Summary  # noqa: E402
+from quad_ident_ros.report.fleet_run import line, seconds_left, summary_text  # noqa: E402
+
+HALF = Progress(DIAGNOSING, total=100, done=50, here=20)
+
+
+def test_a_line_says_how_much_is_done_how_fast_and_what_went_wrong():
+    assert line(replace(HALF, refused=3, failed=1), 60.0) == (
+        'diagnosing: 50 of 100 groups, 30 per minute, 1 min 40 s left, 3 refused, 1 failed')
+    assert line(Progress(DIAGNOSING, 100, 20, 20), 5.0) == 'diagnosing: 20 of 100 groups'
+
+
+def test_the_time_left_counts_what_was_done_in_this_run_alone():
+    assert seconds_left(HALF, 60.0) == pytest.approx(100.0)     # 30 in 60 s, 50 to go
+    assert seconds_left(replace(HALF, done=100), 60.0) == 0.0
+    assert seconds_left(Progress(DIAGNOSING, 100, 20, 20), 60.0) is None
+
+
+def test_the_end_says_what_became_of_all_groups_and_what_to_do():
+    groups = {'diagnosed': 7, 'refused': 2, 'failed': 1, 'timeout': 0}
+    text = summary_text(Summary(12, groups, 4, ('b.csv',)), 'out')
+    assert text.splitlines() == [
+        '12 flights in 10 groups: 7 diagnosed, 2 refused, 1 failed (4 of them before)',
+        '1 file left out, whose content is that of another: b.csv',
+        'the same command tries again what failed; the reasons are in the column reason of '
+        'out/groups']
+
+
+@pytest.mark.parametrize('text, size', [('2GB', 2e9), ('500MB', 5e8), ('1.5 GiB', 1.5 * 2 ** 30)])
+def test_sizes_of_memory(text, size):
+    options = parser(['fleet'])[0].parse_args(['fleet', 'flights', '--memory', text])
+    assert options.memory == size
+
+
+@pytest.mark.parametrize('words, said', [
+    (['--memory', 'much'], "expected a size from 100MB on, such as 2GB, got 'much'"),
+    (['--memory', '5'], 'expected a size from 100MB on'),
+    (['--workers', '0'], 'expected a whole number from 1 on'),
+    (['--time-limit', '-1'], 'expected seconds above 0')])
+def test_bad_options_are_refused(words, said, capsys):
+    with pytest.raises(SystemExit):
+        main(['fleet', 'flights', *words])
+    assert said in capsys.readouterr().err
+
+
+def test_options_of_local_workers_do_not_go_with_a_scheduler(capsys):
+    assert main(['fleet', 'flights', '--scheduler', 'tcp://127.0.0.1:1', '--workers', '2']) == 2
+    assert '--workers, --memory: they are for processes on this machine' in (
+        capsys.readouterr().err)

@@ -1,0 +1,123 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What is known of flights, their groups, and the groups that new ones take the place of."""
+
+from dataclasses import replace
+from datetime import datetime, timezone
+
+import pytest
+
+from quad_ident_ros.diagnose.rules import RULES
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.fleet.manifest import Listed
+from quad_ident_ros.model.vehicle import load_vehicle
+
+pytest.importorskip('pyarrow', reason="pyarrow is not installed: pip install '.[fleet]'")
+from quad_ident_ros.fleet.grouping import groups_of  # noqa: E402
+from quad_ident_ros.fleet.look import look, Looks  # noqa: E402
+from quad_ident_ros.fleet.store import keys_of, write_rows  # noqa: E402
+from quad_ident_ros.fleet.superseded import remove_group, superseded_by  # noqa: E402
+
+QUAD = load_vehicle('hummingbird')
+
+
+def flight(folder, name, text='t,px\n0,1\n0.1,2\n', **known):
+    path = folder / name
+    path.write_text(text, encoding='utf-8')
+    return Listed(str(path), **{'vehicle': 'seven', 'day': '2026-05-14', **known})
+
+
+def grouped(flights, vehicle=QUAD, rules=RULES):
+    return groups_of([(one, look(one)) for one in flights], lambda one: vehicle, None, rules)
+
+
+def test_vehicle_configuration_and_day_make_a_group(tmp_path):
+    flights = [flight(tmp_path, f'{number}.csv', f'{number}', **known) for number, known in
+               enumerate([{}, {}, {'vehicle': 'eight'}, {'configuration': 'long'},
+                          {'day': '2026-05-15'}, {'group': 'gusts'}])]
+    groups, again = grouped(flights)
+    assert again == []
+    assert sorted(len(group.flights) for group in groups) == [1, 1, 1, 1, 2]
+    assert len({group.key for group in groups}) == 5
+
+
+def test_the_earliest_flight_comes_first_and_dates_the_group(tmp_path):
+    day = datetime(2026, 5, 14, tzinfo=timezone.utc)
+    flights = [flight(tmp_path, f'{hour}.csv', f'{hour}', date=day.replace(hour=hour))
+               for hour in (17, 9, 12)]
+    [group], _ = grouped(flights)
+    assert [one.date.hour for one in group.flights] == [9, 12, 17] and group.date.hour == 9
+
+
+def test_a_key_is_of_all_that_a_result_depends_on_and_of_nothing_else(tmp_path):
+    one = flight(tmp_path, 'a.csv', 'a')
+
+    def key(*flights, **more):
+        return grouped(flights or (one,), **more)[0][0].key
+
+    same = key()
+    moved = flight(tmp_path, 'b.csv', 'a')
+    assert key(moved) == same       # the same content at another place
+    others = [key(flight(tmp_path, 'c.csv', 'c')), key(one, flight(tmp_path, 'c.csv', 'c')),
+              key(vehicle=replace(QUAD, mass=2.0 * QUAD.mass)),
+              key(rules=replace(RULES, present=0.6)),
+              key(replace(one, covariates={'temperature_c': 20.0}))]
+    assert len({same, *others}) == 1 + len(others)
+
+
+def test_the_same_content_is_one_flight(tmp_path):
+    flights = [flight(tmp_path, name, 'a') for name in ('a.csv', 'b.csv')]
+    [group], again = grouped(flights)
+    assert len(group.flights) == 1 and again == flights[1:]
+
+
+def test_what_was_looked_at_is_known_until_it_changes(tmp_path):
+    one = flight(tmp_path, 'a.csv', 'a')
+    looks = Looks(tmp_path / 'out')
+    assert looks.known(one) is None
+    looks.add(look(one))
+    looks.flush()
+    assert Looks(tmp_path / 'out').known(one) == look(one)
+    changed = flight(tmp_path, 'a.csv', 'other')
+    assert Looks(tmp_path / 'out').known(changed) is None
+
+
+def test_a_file_that_cannot_be_opened_is_a_flight_with_a_reason(tmp_path):
+    assert 'a.csv' in look(Listed(str(tmp_path / 'a.csv'), vehicle='seven')).reason
+
+
+def stored(out, groups):
+    for group in groups:
+        for table in ('groups', 'flights'):
+            write_rows(out, table, group.key, [
+                {'group': group.key, 'flight': one.flight, 'path': one.path} if table == 'flights'
+                else {'group': group.key} for one in group.flights])
+
+
+def test_a_group_takes_the_place_of_those_with_its_flights(tmp_path):
+    one, other = (flight(tmp_path, f'{name}.csv', name) for name in 'ab')
+    before, _ = grouped([one])
+    stored(tmp_path / 'out', before)
+    after, _ = grouped([one, other])
+    assert superseded_by(after, tmp_path / 'out') == {after[0].key: [before[0].key]}
+    assert superseded_by(before, tmp_path / 'out') == {}
+    remove_group(tmp_path / 'out', before[0].key)
+    assert keys_of(tmp_path / 'out', 'flights') == set()
+
+
+def test_a_file_that_was_written_to_takes_the_place_of_what_it_was(tmp_path):
+    before, _ = grouped([flight(tmp_path, 'a.csv', 'half')])
+    stored(tmp_path / 'out', before)
+    after, _ = grouped([flight(tmp_path, 'a.csv', 'half and half')])
+    assert superseded_by(after, tmp_path / 'out') == {after[0].key: [before[0].key]}
+
+
+def test_no_flight_is_lost_with_a_group_that_had_others_too(tmp_path):
+    one, other = (flight(tmp_path, f'{name}.csv', name) for name in 'ab')
+    both, _ = grouped([one, other])
+    stored(tmp_path / 'out', both)
+    some, _ = grouped([one])
+    with pytest.raises(InputError, match=r'b\.csv: it was diagnosed together'):
+        superseded_by(some, tmp_path / 'out')
+    (tmp_path / 'b.csv').unlink()       # on purpose, then
+    assert superseded_by(some, tmp_path / 'out') == {some[0].key: [both[0].key]}

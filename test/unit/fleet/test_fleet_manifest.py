@@ -1,0 +1,117 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Which flights there are, whose they are, and which are diagnosed together."""
+
+from datetime import datetime, timezone
+import os
+
+import pytest
+
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.fleet.dates import date_in, date_in_path, date_of, is_day
+from quad_ident_ros.fleet.manifest import is_manifest, listed
+
+RECORD = 't,px\n0,1\n0.1,2\n'
+
+
+def write(path, text=RECORD):
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text, encoding='utf-8')
+    return path
+
+
+def utc(*numbers):
+    return datetime(*numbers, tzinfo=timezone.utc)
+
+
+@pytest.mark.parametrize('text, date', [
+    ('2026-05-14', utc(2026, 5, 14)), ('2026-05-14T08:30:00Z', utc(2026, 5, 14, 8, 30)),
+    ('2026-05-14 08:30:00', utc(2026, 5, 14, 8, 30)),
+    ('2026-05-14T08:30:00+02:00', utc(2026, 5, 14, 6, 30)), ('yesterday', None), ('', None)])
+def test_dates_of_text(text, date):
+    assert date_of(text) == date
+
+
+@pytest.mark.parametrize('name, date', [
+    ('log_2026-05-14_08-30-12.ulg', utc(2026, 5, 14, 8, 30, 12)),
+    ('20260514T083012.csv', utc(2026, 5, 14, 8, 30, 12)), ('2026_05_14.csv', utc(2026, 5, 14)),
+    ('2026-02-30.csv', None), ('log_12.csv', None), ('123420260514.csv', None)])
+def test_dates_in_names(name, date):
+    assert date_in(name) == date
+
+
+def test_the_time_of_a_log_goes_with_the_day_of_its_folder():
+    assert date_in_path('logs/2026-05-14/08_30_12.ulg') == utc(2026, 5, 14, 8, 30, 12)
+    assert date_in_path('logs/2026-05-14/99_30_12.ulg') == utc(2026, 5, 14)
+    assert date_in_path('logs/seven/a.ulg') is None
+    assert is_day('2026-05-14') and not is_day('2026-05-14_b') and not is_day('seven')
+
+
+def test_folders_name_vehicle_configuration_and_day(tmp_path):
+    for name in ('seven/2026-05-14/a.csv', 'eight/long_arms/2026-05-14/b.csv', 'c.csv',
+                 '2026-05-15/d.csv'):
+        write(tmp_path / name)
+    found = {os.path.basename(one.path): one for one in listed([str(tmp_path)])}
+    assert {name: (one.vehicle, one.configuration, one.day) for name, one in found.items()} == {
+        'a.csv': ('seven', '', '2026-05-14'), 'b.csv': ('eight', 'long_arms', '2026-05-14'),
+        'c.csv': ('', '', ''), 'd.csv': ('', '', '2026-05-15')}
+    assert {one.folder for one in found.values()} == {tmp_path.name}
+
+
+def test_the_nearest_vehicle_file_above_a_flight_is_its_nominal_one(tmp_path):
+    fleets, own = write(tmp_path / 'vehicle.yaml', 'a: 1'), write(
+        tmp_path / 'seven' / 'vehicle.yaml', 'a: 1')
+    for name in ('seven/2026-05-14/a.csv', 'eight/b.csv'):
+        write(tmp_path / name)
+    assert [one.vehicle_file for one in listed([str(tmp_path)])] == [str(fleets), str(own)]
+
+
+def test_a_bag_is_one_flight_and_what_is_no_flight_is_not_listed(tmp_path):
+    write(tmp_path / 'seven' / 'bag_1' / 'metadata.yaml', 'rosbag2_bagfile_information:')
+    write(tmp_path / 'seven' / 'bag_1' / 'bag_1_0.mcap', 'x')
+    write(tmp_path / 'seven' / 'recording_1' / 'bag' / 'metadata.yaml', 'x')
+    write(tmp_path / 'seven' / 'recording_1' / 'flight_1.csv')
+    write(tmp_path / 'seven' / 'notes.txt', 'windy')
+    write(tmp_path / 'seven' / '.hidden.csv')
+    write(tmp_path / 'fleet.csv', 'path,vehicle\nseven/bag_1,seven\n')
+    write(tmp_path / 'seven' / 'damaged.ulg', 'nothing of PX4')
+    assert [os.path.relpath(one.path, tmp_path) for one in listed([str(tmp_path)])] == [
+        'seven/bag_1', 'seven/damaged.ulg', 'seven/recording_1']
+
+
+def test_a_manifest_says_all_of_a_flight(tmp_path):
+    write(tmp_path / 'quad.yaml', 'a: 1')
+    manifest = write(tmp_path / 'm.csv', 'path,vehicle,date,group,vehicle_file,temperature_c\n'
+                     'a.csv,seven,2026-05-14T08:30:00Z,gusts,quad.yaml,21.5\n'
+                     'b.csv,eight,,,iris,\n')
+    assert is_manifest(manifest) and not is_manifest(write(tmp_path / 'a.csv'))
+    one, other = listed([str(manifest)])
+    assert one.path == str(tmp_path / 'a.csv') and one.covariates == {'temperature_c': 21.5}
+    assert (one.vehicle, one.group, one.date) == ('seven', 'gusts', utc(2026, 5, 14, 8, 30))
+    assert one.vehicle_file == str(tmp_path / 'quad.yaml')
+    assert (other.vehicle_file, other.date, other.covariates) == ('iris', None, {})
+
+
+@pytest.mark.parametrize('text, said', [
+    ('path,date\na.csv,soon\n', 'line 2, column date: .soon. is no date'),
+    ('path,temperature_c\na.csv,warm\n', 'line 2, column temperature_c: expected a number'),
+    ('path,vehicle\n,seven\n', 'line 2, column path: it is empty'),
+    ('path,vehicle\na.csv\n', 'line 2: 1 cells, but 2 columns'),
+    ('path,path\na.csv,b.csv\n', 'line 1: a column is named twice'),
+    ('path\n', 'there is no flight in it')])
+def test_what_is_wrong_with_a_manifest_is_said_with_its_place(tmp_path, text, said):
+    with pytest.raises(InputError, match=said) as caught:
+        listed([str(write(tmp_path / 'm.csv', text))])
+    assert '\n' not in str(caught.value)
+
+
+def test_a_flight_that_is_named_twice_is_one(tmp_path):
+    path = write(tmp_path / 'seven' / 'a.csv')
+    assert len(listed([str(path), str(tmp_path)])) == 1
+
+
+def test_what_is_not_there_is_said(tmp_path):
+    with pytest.raises(InputError, match='there is no such file or folder'):
+        listed([str(tmp_path / 'none')])
+    with pytest.raises(InputError, match='there is no flight in it'):
+        listed([str(tmp_path)])

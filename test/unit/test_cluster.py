@@ -1,0 +1,86 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Work on Dask: everything is done once, whatever becomes of the processes that do it."""
+
+from operator import length_hint
+import os
+import re
+import signal
+import time
+
+import pytest
+
+from quad_ident_ros.cluster import cluster, Done, results, TimeOver, WorkerDied
+from quad_ident_ros.errors import InputError
+
+pytest.importorskip('distributed', reason="Dask is not installed: pip install '.[fleet]'")
+pytestmark = [pytest.mark.slow, pytest.mark.xdist_group('dask')]
+
+LIMIT = 1.0     # s of a task; the others take milliseconds
+MEMORY = 400 * 2 ** 20
+
+
+def square(number):
+    return number * number
+
+
+def trouble(number):
+    """Do something else than return for some numbers."""
+    if number == 3:
+        os.kill(os.getpid(), signal.SIGKILL)
+    if number == 5:
+        time.sleep(1e6)
+    if number == 7:
+        raise InputError('seven is no number here')
+    if number == 11:
+        held = []
+        while True:
+            held.append(bytearray(10 ** 7))
+    return number
+
+
+def hang_with_the_lock(number):
+    """Hang where no other Python thread gets a turn."""
+    return re.match('(a+)+$', 'a' * 60 + 'b') if number else number
+
+
+@pytest.fixture(scope='module')
+def client():
+    with cluster(workers=2, memory=MEMORY) as client:
+        yield client
+
+
+def test_every_item_is_done_once(client):
+    found = sorted(done.value for done in results(client, square, range(300)))
+    assert found == [number * number for number in range(300)]
+
+
+def test_items_are_taken_as_they_are_needed(client):
+    """So that memory does not grow with their number."""
+    left = iter(range(200))
+    most = 0
+    for count, _ in enumerate(results(client, square, left), 1):
+        most = max(most, 200 - length_hint(left) - count)
+    assert count == 200 and most <= 8
+
+
+def test_what_ends_hangs_or_fills_a_worker_does_not_stop_the_rest(client):
+    found = {done.item: done for done in results(client, trouble, range(20), LIMIT)}
+    errors = {number: type(done.error) for number, done in found.items() if done.error}
+    assert errors == {3: WorkerDied, 5: TimeOver, 7: InputError, 11: WorkerDied}
+    assert str(found[7].error) == 'seven is no number here'
+    assert all(found[number] == Done(number, number) for number in range(20)
+               if number not in errors)
+
+
+def test_what_hangs_with_the_lock_of_python_is_ended_too(client):
+    found = {done.item: done for done in results(client, hang_with_the_lock, range(2), LIMIT)}
+    assert found[0].value == 0
+    assert isinstance(found[1].error, WorkerDied | TimeOver)
+
+
+def test_a_scheduler_that_is_not_there_is_said_in_one_line():
+    with pytest.raises(InputError, match=r'tcp://127\.0\.0\.1:1: no scheduler') as caught, \
+            cluster('tcp://127.0.0.1:1'):
+        pass
+    assert '\n' not in str(caught.value)
