@@ -3,10 +3,10 @@
 """
 Which terms a regression of values with standard errors needs, and how probable each one is.
 
-A value is normal about the sum of the terms, with its standard error and, beside it, a scatter that
-is the same for all values and is not known: standard errors that are too small make nothing sure.
-The evidence of a set of terms is a closed form at each scatter and width, and is summed over both
-(Bayesian model choice with conjugate priors; J. M. Bernardo and A. F. M. Smith, Bayesian Theory,
+A value is normal about the sum of the terms, with its standard error and, beside it, a scatter
+that is the same for all values and is not known: standard errors that are too small make nothing
+sure. The evidence of a set of terms is a closed form at each scatter and width, and is summed over
+both (Bayesian model choice with conjugate priors; J. M. Bernardo and A. F. M. Smith, Bayesian Theory,
 1994, section 6.1).
 """
 
@@ -25,8 +25,8 @@ LEAST, MOST = 0.05, 10.0
 """Standard errors, the least and the most scatter: less cannot be seen, more is a wrong error."""
 WIDTHS = (3.0, 30.0, 300.0)
 """
-Prior standard deviations of a term, in errors of one value: what concerns anybody is more than that
-error, and a wrong log may be off by hundreds.
+Prior standard deviations of a term, in errors of one value: what concerns anybody is more than
+that error, and a wrong log may be off by hundreds.
 """
 ALWAYS = 30.0
 """The same of the terms that are always in: covariates."""

@@ -113,7 +113,7 @@ def pooled(names: Sequence[str], values: np.ndarray, errors: np.ndarray, odd: fl
 
 
 def _oddness(model: Regression, chosen: Sequence[Term], place: int) -> float:
-    """Return the probability that a vehicle is odd, beside sets with some or none of the others."""
+    """Return the probability of being odd, beside sets with some or none of the others."""
     rest = tuple(term for term in chosen if term.number != place)
     fewer = [tuple(term for term in rest if term != one) for one in rest]
     without = max(map(model.score, (rest, *fewer, ())))

@@ -2,15 +2,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Drifts and changes along the flights of vehicles whose truth is known."""
 
+from fleets import series, steady
 import numpy as np
 import pytest
 from scipy.stats import binom
 
 from quad_ident_ros.fleet.history import histories, history, SURE
-from fleets import series, steady
 
 FALSE = (1.0 - SURE) / SURE
-"""Share of fleets without a change in which at most there is a false alarm: history.py says why."""
+"""Share of fleets without a change that have a false alarm, at most: history.py says why."""
 
 
 def alarms(found):

@@ -2,13 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Vehicles beside their sisters, against the truth of made fleets."""
 
+from fleets import steady
 import numpy as np
 import pytest
 from scipy.stats import binom
 
 from quad_ident_ros.fleet.history import histories, SURE
 from quad_ident_ros.fleet.sisters import pooled, sisters
-from fleets import steady
 
 ODD = 1.0 / 400
 NAMES = tuple(f'uav{k}' for k in range(20))

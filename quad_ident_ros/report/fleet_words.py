@@ -1,0 +1,160 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What a fleet's insight means, in plain words: what to look at first, and why."""
+
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from datetime import datetime
+
+from quad_ident_ros.effects.registry import EFFECTS, NULL, PLACE, titled
+from quad_ident_ros.fleet.history import Change, Drift
+from quad_ident_ros.fleet.insight import Event, Insight, Odd, Part, Presence
+
+WORSE, CHANGED, DIFFERS, MODEL, LOGS, SMALL = (
+    'gets worse', 'changed', 'differs from its sisters', 'the model is wrong', 'logs refused',
+    'small')
+"""Why something is worth a look, the most urgent first: a drift goes on."""
+NAMED = 5           # vehicles or parts that a sentence lists
+
+
+@dataclass(frozen=True)
+class Point:
+    """Something to look at: why, where (a vehicle, or all), and a sentence."""
+
+    why: str
+    where: str
+    text: str
+
+
+def points(found: Insight) -> tuple[Point, ...]:
+    """
+    Return what to look at, the most urgent first.
+
+    What drifts, what changed, which vehicles are odd, what the model lacks for all, which logs
+    cannot be used; last what is sure but in no verdict, for it hardly moves the vehicle.
+    """
+    groups: dict[str, list[Point]] = {why: [] for why in (WORSE, CHANGED, DIFFERS, MODEL, LOGS,
+                                                          SMALL)}
+    for event in sorted(found.events, key=lambda one: -one.date.timestamp()):
+        why = WORSE if event.kind == 'drift' else CHANGED
+        groups[why if event.material else SMALL].append(
+            Point(why, event.vehicle, event_line(event)))
+    since = {(event.vehicle, part.effect) for event in found.events for part in event.parts}
+    for odd in found.odd:
+        if (odd.sister.vehicle, odd.effect) in since:
+            continue    # it differs because it changed, which is said already
+        groups[DIFFERS if odd.material else SMALL].append(
+            Point(DIFFERS, odd.sister.vehicle, odd_line(odd)))
+    groups[MODEL] += [Point(MODEL, 'all', shared_line(one, found)) for one in found.present
+                      if one.shared]
+    groups[LOGS] += _logs(found)
+    return tuple(point for some in groups.values() for point in some)
+
+
+def event_line(event: Event) -> str:
+    """Return a sentence on what happened to a vehicle."""
+    first, others = event.parts[0], event.parts[1:NAMED]
+    if isinstance(first.change, Drift):
+        text = (f'{titled(first.effect)}: {first.parameter} '
+                f'{"rises" if first.change.per_week > 0 else "falls"} by '
+                f'{amount(first, abs(first.change.per_week), first.change.std)} a week')
+    else:
+        text = (f'from {day(event.date)} on, {titled(first.effect)} differs: {first.parameter} '
+                f'by {_signed(first)}; it was before flight {event.number} of {event.flights}')
+    if others:
+        text += ', with ' + ', '.join(
+            f'{part.effect} {part.parameter} {_signed(part)}' for part in others)
+    return f'{text} (probability {_probability(event.probability)})'
+
+
+def odd_line(odd: Odd) -> str:
+    """Return a sentence on a vehicle that differs from its sisters."""
+    one = odd.sister
+    return (f'{titled(odd.effect)}: {odd.parameter} is {one.value:.3g} ± {one.std:.2g}'
+            f'{_unit(odd.unit)}, that of its {odd.sisters} sisters {odd.mean:.3g}'
+            f'{_unit(odd.unit)} with a spread of {odd.spread:.2g}: {abs(one.spreads):.1f} times '
+            f'that (probability {_probability(one.odd)})')
+
+
+def shared_line(one: Presence, found: Insight) -> str:
+    """Return a sentence on an effect that most vehicles have."""
+    values = [f'{each.parameter} {each.mean:.3g} ± {each.spread:.2g}{_unit(each.unit)}'
+              for each in found.sisters
+              if (each.configuration, each.effect) == (one.configuration, one.effect)
+              and abs(each.mean - null_of(each.effect, each.parameter)) > 2 * each.spread]
+    share = ('' if one.contribution is None else
+             f'; without it {100 * one.contribution:.0f} % of the closable gap would remain')
+    return (f'{len(one.having)} of {one.vehicles} vehicles have {titled(one.effect)}'
+            + (f', {", ".join(values)} from vehicle to vehicle' if values else '') + share
+            + ': add it to the vehicle file')
+
+
+def null_of(effect: str, parameter: str) -> float:
+    """Return the value of a parameter at which there is no effect."""
+    return float(NULL[PLACE[effect, parameter]]) if (effect, parameter) in PLACE else 0.0
+
+
+def amount(part: Part, value: float, std: float) -> str:
+    """Return a size with its standard error: in per cent, where no effect is a factor of one."""
+    if part.unit == '1' and null_of(part.effect, part.parameter) == 1.0:
+        return f'{100 * value:.2g} ± {100 * std:.1g} %'
+    return f'{value:.3g} ± {std:.1g}{_unit(part.unit)}'
+
+
+def day(date: datetime) -> str:
+    """Return a date as 14 May 2026."""
+    return f'{date.day} {date:%B %Y}'
+
+
+def summary_line(found: Insight) -> str:
+    """Return a sentence on how much was looked at."""
+    count = sum(found.status.values())
+    refused = len(found.refused)
+    return (f'{found.flights} flights of {len(found.vehicles)} vehicles in {count} groups, '
+            f'{found.status.get("diagnosed", 0)} of them diagnosed; {refused} flights refused')
+
+
+def known_effect(name: str) -> str:
+    """Return the title of an effect, or its name where this version does not know it."""
+    return EFFECTS[name].title if name in EFFECTS else name
+
+
+def _logs(found: Insight) -> list[Point]:
+    """Return a Point for the vehicles whose logs are refused most often."""
+    if not found.refused:
+        return []
+    most = Counter(vehicle for vehicle, _, _ in found.refused).most_common(NAMED)
+    names = ', '.join(f'{vehicle} {count}' for vehicle, count in most)
+    count = len(found.refused)
+    return [Point(LOGS, most[0][0], f'{count} of {found.flights} flights '
+                  f'{"is" if count == 1 else "are"} refused: {names}'
+                  f'{" and others" if sum(n for _, n in most) < count else ""}; the first: '
+                  f'{found.refused[0][1]}: {found.refused[0][2]}')]
+
+
+def _signed(part: Part) -> str:
+    change = part.change
+    size = change.size if isinstance(change, Change) else change.per_week
+    text = amount(part, size, change.std)
+    return (text if text.startswith('-') else f'+{text}') + (
+        '' if isinstance(change, Change) else ' a week')
+
+
+def _probability(value: float) -> str:
+    return f'{value:.3f}' if value < 0.9995 else 'over 0.999'
+
+
+def _unit(unit: str) -> str:
+    return '' if unit in ('1', '') else f' {unit}'
+
+
+def listed(names: Sequence[str]) -> str:
+    """Return names with commas, of many the first ones and how many more."""
+    more = len(names) - NAMED
+    return ', '.join(names[:NAMED]) + (f' and {more} more' if more > 0 else '')
+
+
+def rows_of(some: Iterable[Point]) -> list[list[str]]:
+    """Return a numbered row of text for each Point."""
+    return [[str(number), one.where, one.why, one.text] for number, one in enumerate(some, 1)]
