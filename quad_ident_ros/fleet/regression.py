@@ -6,8 +6,8 @@ Which terms a regression of values with standard errors needs, and how probable 
 A value is normal about the sum of the terms, with its standard error and, beside it, a scatter
 that is the same for all values and is not known: standard errors that are too small make nothing
 sure. The evidence of a set of terms is a closed form at each scatter and width, and is summed over
-both (Bayesian model choice with conjugate priors; J. M. Bernardo and A. F. M. Smith, Bayesian Theory,
-1994, section 6.1).
+both (Bayesian model choice with conjugate priors; J. M. Bernardo and A. F. M. Smith, Bayesian
+Theory, 1994, section 6.1).
 """
 
 from collections.abc import Collection, Iterable

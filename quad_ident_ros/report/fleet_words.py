@@ -10,6 +10,7 @@ from datetime import datetime
 from quad_ident_ros.effects.registry import EFFECTS, NULL, PLACE, titled
 from quad_ident_ros.fleet.history import Change, Drift
 from quad_ident_ros.fleet.insight import Event, Insight, Odd, Part, Presence
+from quad_ident_ros.report.sizes import PER_CENT, sized
 
 WORSE, CHANGED, DIFFERS, MODEL, LOGS, SMALL = (
     'gets worse', 'changed', 'differs from its sisters', 'the model is wrong', 'logs refused',
@@ -58,7 +59,7 @@ def event_line(event: Event) -> str:
     if isinstance(first.change, Drift):
         text = (f'{titled(first.effect)}: {first.parameter} '
                 f'{"rises" if first.change.per_week > 0 else "falls"} by '
-                f'{amount(first, abs(first.change.per_week), first.change.std)} a week')
+                f'{sized(abs(first.change.per_week), first.change.std, unit_of(first))} a week')
     else:
         text = (f'from {day(event.date)} on, {titled(first.effect)} differs: {first.parameter} '
                 f'by {_signed(first)}; it was before flight {event.number} of {event.flights}')
@@ -71,15 +72,15 @@ def event_line(event: Event) -> str:
 def odd_line(odd: Odd) -> str:
     """Return a sentence on a vehicle that differs from its sisters."""
     one = odd.sister
-    return (f'{titled(odd.effect)}: {odd.parameter} is {one.value:.3g} ± {one.std:.2g}'
-            f'{_unit(odd.unit)}, that of its {odd.sisters} sisters {odd.mean:.3g}'
-            f'{_unit(odd.unit)} with a spread of {odd.spread:.2g}: {abs(one.spreads):.1f} times '
-            f'that (probability {_probability(one.odd)})')
+    return (f'{titled(odd.effect)}: {odd.parameter} is {sized(one.value, one.std, odd.unit)}, '
+            f'that of its {odd.sisters} sisters {sized(odd.mean, odd.spread, odd.unit)} from '
+            f'vehicle to vehicle: off by {abs(one.spreads):.1f} times that spread (probability '
+            f'{_probability(one.odd)})')
 
 
 def shared_line(one: Presence, found: Insight) -> str:
     """Return a sentence on an effect that most vehicles have."""
-    values = [f'{each.parameter} {each.mean:.3g} ± {each.spread:.2g}{_unit(each.unit)}'
+    values = [f'{each.parameter} {sized(each.mean, each.spread, each.unit)}'
               for each in found.sisters
               if (each.configuration, each.effect) == (one.configuration, one.effect)
               and abs(each.mean - null_of(each.effect, each.parameter)) > 2 * each.spread]
@@ -95,11 +96,10 @@ def null_of(effect: str, parameter: str) -> float:
     return float(NULL[PLACE[effect, parameter]]) if (effect, parameter) in PLACE else 0.0
 
 
-def amount(part: Part, value: float, std: float) -> str:
-    """Return a size with its standard error: in per cent, where no effect is a factor of one."""
-    if part.unit == '1' and null_of(part.effect, part.parameter) == 1.0:
-        return f'{100 * value:.2g} ± {100 * std:.1g} %'
-    return f'{value:.3g} ± {std:.1g}{_unit(part.unit)}'
+def unit_of(part: Part) -> str:
+    """Return the unit of a size: per cent, where no effect is a factor of one."""
+    whole = part.unit == '1' and null_of(part.effect, part.parameter) == 1.0
+    return PER_CENT if whole else part.unit
 
 
 def day(date: datetime) -> str:
@@ -136,17 +136,13 @@ def _logs(found: Insight) -> list[Point]:
 def _signed(part: Part) -> str:
     change = part.change
     size = change.size if isinstance(change, Change) else change.per_week
-    text = amount(part, size, change.std)
+    text = sized(size, change.std, unit_of(part))
     return (text if text.startswith('-') else f'+{text}') + (
         '' if isinstance(change, Change) else ' a week')
 
 
 def _probability(value: float) -> str:
     return f'{value:.3f}' if value < 0.9995 else 'over 0.999'
-
-
-def _unit(unit: str) -> str:
-    return '' if unit in ('1', '') else f' {unit}'
 
 
 def listed(names: Sequence[str]) -> str:
