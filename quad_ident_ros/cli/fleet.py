@@ -4,6 +4,7 @@
 
 import argparse
 import re
+import sys
 
 from quad_ident_ros.errors import InputError
 
@@ -43,6 +44,9 @@ def add(commands, said):
                         "people's records mean what (YAML)")
     parser.add_argument('--json', metavar='FILE', help='write a line of JSON for each group as '
                         'it is done, and one for the whole run; - prints them')
+    parser.add_argument('--report', metavar='FILE.html',
+                        help='write a page for a browser: what to look at first, vehicles by '
+                             'effects, every parameter over time, the gap')
     group = parser.add_argument_group('where the work is done')
     group.add_argument('--scheduler', metavar='tcp://HOST:PORT', help='of a Dask cluster that is '
                        'there (default: processes on this machine)')
@@ -58,6 +62,7 @@ def add(commands, said):
 def run(options):
     """Diagnose the flights and say what came of it; 3 where a group failed."""
     try:
+        from quad_ident_ros.fleet.insight import insight
         from quad_ident_ros.fleet.run import run_fleet, TIME_LIMIT
     except ModuleNotFoundError as error:
         if (error.name or '').partition('.')[0] not in ('pyarrow', 'distributed', 'dask'):
@@ -65,6 +70,8 @@ def run(options):
         raise InputError(f"{error.name} is not installed: pip install 'quad_ident_ros[fleet]'"
                          ) from None
     from quad_ident_ros.cluster import cluster
+    from quad_ident_ros.report import fleet_page
+    from quad_ident_ros.report.fleet import show_insight
     from quad_ident_ros.report.fleet_run import Reporter
     if options.scheduler and (options.workers or options.memory):
         raise InputError('--workers, --memory: they are for processes on this machine; with '
@@ -75,6 +82,12 @@ def run(options):
                             mapping=options.mapping, tell=reporter.tell,
                             time_limit=options.time_limit or TIME_LIMIT)
         reporter.end(summary)
+        found = insight(options.out)
+        reporter.tell_insight(found)
+    if options.json != '-':
+        show_insight(found, sys.stdout)
+    if options.report:
+        fleet_page.write(options.report, found)
     return FAULTY if summary.groups['failed'] + summary.groups['timeout'] else 0
 
 

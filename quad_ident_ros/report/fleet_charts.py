@@ -9,7 +9,7 @@ import numpy as np
 
 from quad_ident_ros.fleet.history import History, Series
 from quad_ident_ros.report.html import Markup
-from quad_ident_ros.report.sizes import handy, with_error
+from quad_ident_ros.report.sizes import with_error
 
 WIDE, HIGH = 260.0, 104.0       # px of a small picture
 LEFT, RIGHT, TOP, FOOT = 46.0, 6.0, 6.0, 18.0
@@ -17,14 +17,14 @@ FAR = 6.0           # times the usual distance from the course, beyond which a v
 BAR = 160.0         # px of a bar of gaps
 
 
-def small_multiple(one: History) -> Markup:
+def small_multiple(one: History, unit: str, factor: float) -> Markup:
     """
     Return the picture of a History: values with two standard errors, course, changes, odd flights.
 
-    Values that are far off are drawn at the edge.
+    Values that are far off are drawn at the edge. Args: unit that is shown, and what values (SI)
+    are multiplied by for it.
     """
     series = one.series
-    unit, factor = handy(series.unit, series.values[np.isfinite(series.values)])
     low, high = _limits(one)
     x, y = _place(series.t, (series.t[0], series.t[-1]), LEFT, WIDE - RIGHT), _scale(low, high)
     values = np.clip(series.values, low, high)
@@ -47,13 +47,12 @@ def small_multiple(one: History) -> Markup:
               _text(LEFT, HIGH - 4, 'start', _day(series.t[0])),
               _text(WIDE - RIGHT, HIGH - 4, 'end', _day(series.t[-1]))]
     return Markup(f'<svg class="small" viewBox="0 0 {WIDE:g} {HIGH:g}" role="img" aria-label="'
-                  f'{escape(said(one))}">{"".join(parts)}</svg>')
+                  f'{escape(said(one, unit, factor))}">{"".join(parts)}</svg>')
 
 
-def said(one: History) -> str:
+def said(one: History, unit: str, factor: float) -> str:
     """Return what a picture shows, for who does not see it."""
     series = one.series
-    unit, factor = handy(series.unit, (one.level,))
     told = [f'{series.vehicle}, {series.effect} {series.parameter} in {unit} over '
             f'{len(series.values)} flights: {with_error(factor * one.level, factor * one.std)} '
             'at the last']

@@ -6,6 +6,8 @@ from collections.abc import Sequence
 from html import escape
 from pathlib import Path
 
+import numpy as np
+
 from quad_ident_ros import __version__
 from quad_ident_ros.fleet.history import History, SURE
 from quad_ident_ros.fleet.insight import Insight
@@ -13,11 +15,14 @@ from quad_ident_ros.fleet.sisters import Sister, Sisters
 from quad_ident_ros.report.fleet import effect_rows, EFFECTS_HEAD
 from quad_ident_ros.report.fleet_charts import gap_bar, shown_first, small_multiple
 from quad_ident_ros.report.fleet_words import (
+    CHANGED,
+    DIFFERS,
     known_effect,
     null_of,
     Point,
     points,
     summary_line,
+    WORSE,
 )
 from quad_ident_ros.report.html import details, join, Markup, markup, table, tag, write_page
 from quad_ident_ros.report.sizes import handy, sized, with_error
@@ -25,7 +30,6 @@ from quad_ident_ros.report.sizes import handy, sized, with_error
 MOST = 600          # small pictures: a page with more takes seconds to open
 FAR, FARTHER = 2.0, 4.0     # spreads from the sisters from which on a cell is coloured
 GAP = 'velocity'
-KINDS = ('gets worse', 'changed', 'differs from its sisters')
 
 
 def write(path: str | Path, found: Insight) -> None:
@@ -42,12 +46,17 @@ def _first(some: Sequence[Point]) -> list:
     if not some:
         return [head, tag('p', 'Nothing drifts or has changed, and no vehicle differs from its '
                                'sisters.')]
-    rows = [[str(number), one.where,
-             tag('td', tag('span', one.why, f'tag {"no" if one.why == KINDS[0] else "part"}'),
-                 'text'), tag('td', one.text, 'prose')] for number, one in enumerate(some, 1)]
-    return [head, _live(table(['', 'vehicle', 'why', 'what'], rows, ('', 'text', 'text', 'text'),
-                              caption='The most urgent first: what drifts, what changed, which '
-                                      'vehicles are odd, what the model lacks'))]
+    items = join(Markup(
+        f'<li data-vehicle="{escape(one.where)}">' + join(
+            [tag('strong', one.where), tag('span', one.why, f'tag {_kind(one)}'), one.text], ' ')
+        + '</li>') for one in some)
+    return [head, tag('p', 'The most urgent first: what drifts, what changed, which vehicles are '
+                           'odd, what the model lacks for all, which logs are refused.'),
+            Markup(f'<ol class="first">{items}</ol>')]
+
+
+def _kind(one: Point) -> str:
+    return 'no' if one.why == WORSE else 'part' if one.why in (CHANGED, DIFFERS) else ''
 
 
 def _heat(found: Insight) -> list:
@@ -68,7 +77,7 @@ def _heat_of(configuration: str, some: Sequence[Sisters]) -> Markup:
     columns, names = [], sorted({one.vehicle for each in some for one in each.vehicles})
     units = []
     for each in some:
-        unit, factor = handy(each.unit, [one.value for one in each.vehicles])
+        unit, factor = handy(each.unit, _usual([one.value for one in each.vehicles]))
         units.append(unit)
         columns.append({one.vehicle: _cell(one, factor) for one in each.vehicles})
     head = ['vehicle', *(Markup(f'{escape(each.effect)}<br>{escape(each.parameter)}'
@@ -118,14 +127,22 @@ def _time(found: Insight) -> list:
             'upright lines are changes, crosses are flights that are off by themselves.')
     if left > 0:
         said += f' The {left} others, in which nothing happens, are left out.'
-    figures = join(_figure(one) for one in some[:MOST])
+    values: dict[tuple[str, str], list[float]] = {}
+    for one in some:
+        values.setdefault((one.series.effect, one.series.parameter), []).append(one.level)
+    figures = join(_figure(one, *handy(one.series.unit, _usual(values[
+        one.series.effect, one.series.parameter]))) for one in some[:MOST])
     return [tag('h2', 'Over time'), tag('p', said),
             Markup(f'<div class="multiples">{figures}</div>')]
 
 
-def _figure(one: History) -> Markup:
+def _usual(values: Sequence[float]) -> tuple[float]:
+    """Return the usual size of values: the unit of all vehicles is that of most."""
+    return (float(np.median(np.abs(values))),)
+
+
+def _figure(one: History, unit: str, factor: float) -> Markup:
     series = one.series
-    unit, _ = handy(series.unit, series.values)
     told = ' and '.join([*(['changed'] * bool(one.changes)), *(['drifts'] * bool(one.drift))])
     sign = tag('span', told, 'tag part') if told else ''
     caption = join([tag('strong', series.vehicle),
@@ -133,7 +150,8 @@ def _figure(one: History) -> Markup:
                     + (f', {unit}' if unit not in ('1', '') else ''), sign], ' ')
     return Markup(f'<figure data-vehicle="{escape(series.vehicle)}" data-effect="'
                   f'{escape(series.effect)}" data-event="{int(bool(told))}">'
-                  f'<figcaption>{caption}</figcaption>{small_multiple(one)}</figure>')
+                  f'<figcaption>{caption}</figcaption>{small_multiple(one, unit, factor)}'
+                  '</figure>')
 
 
 def _gap(found: Insight) -> list:

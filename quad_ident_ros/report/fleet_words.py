@@ -7,10 +7,11 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 
+from quad_ident_ros.data.counted import counted
 from quad_ident_ros.effects.registry import EFFECTS, NULL, PLACE, titled
 from quad_ident_ros.fleet.history import Change, Drift
 from quad_ident_ros.fleet.insight import Event, Insight, Odd, Part, Presence
-from quad_ident_ros.report.sizes import PER_CENT, sized
+from quad_ident_ros.report.sizes import handy, PER_CENT, sized, with_error
 
 WORSE, CHANGED, DIFFERS, MODEL, LOGS, SMALL = (
     'gets worse', 'changed', 'differs from its sisters', 'the model is wrong', 'logs refused',
@@ -40,13 +41,13 @@ def points(found: Insight) -> tuple[Point, ...]:
     for event in sorted(found.events, key=lambda one: -one.date.timestamp()):
         why = WORSE if event.kind == 'drift' else CHANGED
         groups[why if event.material else SMALL].append(
-            Point(why, event.vehicle, event_line(event)))
+            Point(why, event.vehicle, event_line(event) + _small(event.material)))
     since = {(event.vehicle, part.effect) for event in found.events for part in event.parts}
     for odd in found.odd:
         if (odd.sister.vehicle, odd.effect) in since:
             continue    # it differs because it changed, which is said already
         groups[DIFFERS if odd.material else SMALL].append(
-            Point(DIFFERS, odd.sister.vehicle, odd_line(odd)))
+            Point(DIFFERS, odd.sister.vehicle, odd_line(odd) + _small(odd.material)))
     groups[MODEL] += [Point(MODEL, 'all', shared_line(one, found)) for one in found.present
                       if one.shared]
     groups[LOGS] += _logs(found)
@@ -62,7 +63,8 @@ def event_line(event: Event) -> str:
                 f'{sized(abs(first.change.per_week), first.change.std, unit_of(first))} a week')
     else:
         text = (f'from {day(event.date)} on, {titled(first.effect)} differs: {first.parameter} '
-                f'by {_signed(first)}; it was before flight {event.number} of {event.flights}')
+                f'by {_signed(first)}; flight {event.number} of {event.flights} is the first '
+                'after it')
     if others:
         text += ', with ' + ', '.join(
             f'{part.effect} {part.parameter} {_signed(part)}' for part in others)
@@ -72,10 +74,13 @@ def event_line(event: Event) -> str:
 def odd_line(odd: Odd) -> str:
     """Return a sentence on a vehicle that differs from its sisters."""
     one = odd.sister
-    return (f'{titled(odd.effect)}: {odd.parameter} is {sized(one.value, one.std, odd.unit)}, '
-            f'that of its {odd.sisters} sisters {sized(odd.mean, odd.spread, odd.unit)} from '
-            f'vehicle to vehicle: off by {abs(one.spreads):.1f} times that spread (probability '
-            f'{_probability(one.odd)})')
+    unit, factor = handy(odd.unit, (one.value, odd.mean))
+    mine, theirs = (with_error(factor * value, factor * std)
+                    for value, std in ((one.value, one.std), (odd.mean, odd.spread)))
+    shown = '' if unit in ('1', '') else f' {unit}'
+    return (f'{titled(odd.effect)}: {odd.parameter} is {mine}{shown}, that of its {odd.sisters} '
+            f'sisters {theirs}{shown} from vehicle to vehicle: off by {abs(one.spreads):.1f} '
+            f'times that spread (probability {_probability(one.odd)})')
 
 
 def shared_line(one: Presence, found: Insight) -> str:
@@ -109,10 +114,9 @@ def day(date: datetime) -> str:
 
 def summary_line(found: Insight) -> str:
     """Return a sentence on how much was looked at."""
-    count = sum(found.status.values())
-    refused = len(found.refused)
-    return (f'{found.flights} flights of {len(found.vehicles)} vehicles in {count} groups, '
-            f'{found.status.get("diagnosed", 0)} of them diagnosed; {refused} flights refused')
+    return (f'{counted(found.flights, "flight")} of {counted(len(found.vehicles), "vehicle")} in '
+            f'{counted(sum(found.status.values()), "group")}, {found.status.get("diagnosed", 0)} '
+            f'of them diagnosed; {counted(len(found.refused), "flight")} refused')
 
 
 def known_effect(name: str) -> str:
@@ -131,6 +135,10 @@ def _logs(found: Insight) -> list[Point]:
                   f'{"is" if count == 1 else "are"} refused: {names}'
                   f'{" and others" if sum(n for _, n in most) < count else ""}; the first: '
                   f'{found.refused[0][1]}: {found.refused[0][2]}')]
+
+
+def _small(material: bool) -> str:
+    return '' if material else '; no verdict names it, so it matters little'
 
 
 def _signed(part: Part) -> str:

@@ -44,13 +44,14 @@
   // ---- filter ----
 
   const figures = all('.multiples figure');
+  const items = all('.first > li').map(row => ({row, name: row.dataset.vehicle.toLowerCase()}));
   // Rows of tables with a column of vehicles: {row, the vehicle's name}.
-  const rows = all('.sortable table').flatMap(table => {
+  const rows = [...items, ...all('.sortable table').flatMap(table => {
     const place = all('thead tr:first-child > *', table).findIndex(
       head => head.textContent.trim() === 'vehicle');
     return place < 0 ? [] : [...table.tBodies[0].rows].map(
       row => ({row, name: row.cells[place].textContent.trim().toLowerCase()}));
-  });
+  })];
   const first = document.querySelector('h2');
   if (!first || !rows.length) return;
 

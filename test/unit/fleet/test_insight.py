@@ -61,6 +61,7 @@ def test_the_list_begins_with_what_gets_worse(found):
     # Thrust is in no verdict here: its drift is sure, but hardly moves the vehicle.
     assert (some[-1].where, some[-1].why) == ('uav5', 'gets worse')
     assert 'falls by' in some[-1].text and '% a week' in some[-1].text
+    assert 'matters little' in some[-1].text
 
 
 def test_the_data_is_json_of_its_schema(found):
