@@ -6,6 +6,7 @@ from datetime import datetime, timedelta, timezone
 
 import numpy as np
 
+from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.fleet.history import Series
 from quad_ident_ros.fleet.store import write_rows
 
@@ -86,8 +87,9 @@ def _write(out, name, known, temperatures, refused):
             'status': 'refused' if number in bad else 'diagnosed',
             'reason': 'this is not text' if number in bad else '', 'findings': [],
             'covariates': {'temperature_c': float(temperatures[number])}} for number in numbers])
-        effects = [{'effect': effect, 'probability': 0.97, 'contribution': 0.3, 'form': 'linear',
-                    'named': True, 'minor': False} for effect in ('rotor_drag', 'com_offset')]
+        effects = [{'effect': effect, 'probability': 0.97, 'contribution': 0.3,
+                    'form': EFFECTS[effect].forms[0].name, 'named': True, 'minor': False}
+                   for effect in ('rotor_drag', 'com_offset')]
         write_rows(out, 'effects', key, [dated | one for one in effects])
         gaps = {f'gap_{when}_{group}': size for group in ('position', 'velocity', 'attitude',
                                                           'rate')
