@@ -13,6 +13,7 @@ from quad_ident_ros.fleet.history import Series
 KNOWN = 0.5         # share of a series' flights from which on a covariate counts in it
 PER_COVARIATE = 4   # flights that a series needs for each covariate: fewer would explain anything
 FIT = 'diagnosed'
+OUTCOME = '_end'     # of names of covariates that a flight makes: a weak rotor empties a battery
 
 Row = Mapping[str, Any]
 
@@ -55,7 +56,8 @@ def _series(rows: Sequence[Row], usual: Mapping[str, Mapping[str, float]]) -> Se
 
 def _usual(covariates: Mapping[str, Mapping[str, float]]) -> dict[str, dict[str, float]]:
     """Return {flight: {covariate: value}}, centred and in standard deviations of the fleet."""
-    names = sorted({name for values in covariates.values() for name in values})
+    names = sorted({name for values in covariates.values() for name in values
+                    if not name.endswith(OUTCOME)})
     scaled: dict[str, dict[str, float]] = {flight: {} for flight in covariates}
     for name in names:
         known = {flight: float(values[name]) for flight, values in covariates.items()

@@ -21,7 +21,7 @@ def taught(tmp_path_factory):
 
 
 def test_presence_is_the_mean_over_vehicles_with_some_doubt(taught):
-    """Eight vehicles of 0.97 each and DOUBT vehicles of the usual presence; groups do not count."""
+    """Eight vehicles of 0.97 each, DOUBT of the usual presence; groups do not count."""
     assert taught['rotor_drag'].present == pytest.approx(
         (8 * 0.97 + DOUBT * RULES.usual_presence) / (8 + DOUBT))
     assert set(taught) == {'rotor_drag', 'com_offset'}
@@ -44,4 +44,5 @@ def test_forms_that_were_named_are_likelier(taught):
     """All vehicles name the usual form: its share is more than before, the others have some."""
     forms = taught['rotor_drag'].forms
     assert sum(forms.values()) == pytest.approx(1.0)
-    assert forms[EFFECTS['rotor_drag'].forms[0].name] > RULES.usual_form and min(forms.values()) > 0.0
+    assert forms[EFFECTS['rotor_drag'].forms[0].name] > RULES.usual_form
+    assert min(forms.values()) > 0.0
