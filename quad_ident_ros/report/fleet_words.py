@@ -91,9 +91,12 @@ def shared_line(one: Presence, found: Insight) -> str:
               and abs(each.mean - null_of(each.effect, each.parameter)) > 2 * each.spread]
     share = ('' if one.contribution is None else
              f'; without it {100 * one.contribution:.0f} % of the closable gap would remain')
-    return (f'{len(one.having)} of {one.vehicles} vehicles have {titled(one.effect)}'
-            + (f', {", ".join(values)} from vehicle to vehicle' if values else '') + share
-            + ': add it to the vehicle file')
+    told = (f', {", ".join(values)} from vehicle to vehicle' if values else
+            ', each with values of its own')
+    remedy = ('add it to the vehicle file' if values else
+              'give each vehicle a file of its own with what its diagnosis finds')
+    return (f'{len(one.having)} of {one.vehicles} vehicles have {titled(one.effect)}{told}{share}'
+            f': {remedy}')
 
 
 def null_of(effect: str, parameter: str) -> float:
@@ -134,7 +137,7 @@ def _logs(found: Insight) -> list[Point]:
     return [Point(LOGS, most[0][0], f'{count} of {found.flights} flights '
                   f'{"is" if count == 1 else "are"} refused: {names}'
                   f'{" and others" if sum(n for _, n in most) < count else ""}; the first: '
-                  f'{found.refused[0][1]}: {found.refused[0][2]}')]
+                  f'{found.refused[0][2]}')]
 
 
 def _small(material: bool) -> str:

@@ -58,6 +58,10 @@ def test_the_list_begins_with_what_gets_worse(found):
     assert [one.where for one in some][:2] == ['uav3', 'uav7']
     assert some[0].text.startswith('from 3 June 2026 on, offset of the centre of mass')
     assert 'mm' in some[0].text
+    shared = {one.text.partition('(')[2].partition(')')[0]: one.text for one in some
+              if one.why == 'the model is wrong'}
+    assert shared['rotor_drag'].endswith('add it to the vehicle file')
+    assert 'each with values of its own' in shared['com_offset']
     # Thrust is in no verdict here: its drift is sure, but hardly moves the vehicle.
     assert (some[-1].where, some[-1].why) == ('uav5', 'gets worse')
     assert 'falls by' in some[-1].text and '% a week' in some[-1].text
