@@ -2,9 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a fleet tells that a flight cannot, as typed values and as data."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import asdict, dataclass
-from datetime import datetime, timezone
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +12,8 @@ import pyarrow
 
 from quad_ident_ros import __version__
 from quad_ident_ros.effects.registry import EFFECTS
-from quad_ident_ros.fleet.history import Change, Drift, histories, History
+from quad_ident_ros.fleet.events import Event, events
+from quad_ident_ros.fleet.history import histories, History
 from quad_ident_ros.fleet.series import series_of
 from quad_ident_ros.fleet.sisters import Sister, Sisters, sisters
 from quad_ident_ros.fleet.store import read_table
@@ -21,43 +21,8 @@ from quad_ident_ros.greybox.errors import UNITS
 
 SCHEMA = 'quad_ident/insight/1'
 DIAGNOSED = 'diagnosed'
-SAME = 2            # flights apart within which changes of a vehicle have one cause
 MOST = 0.5          # share of vehicles from which on an effect is that of the model
 STAGES = 'before', 'after', 'noise'
-
-
-@dataclass(frozen=True)
-class Part:
-    """A parameter that changes or drifts in an Event; level: what it is at the last flight."""
-
-    effect: str
-    parameter: str
-    unit: str
-    change: Change | Drift
-    level: float
-
-
-@dataclass(frozen=True)
-class Event:
-    """
-    Something that happened to a vehicle: parameters that changed at about one flight, or a drift.
-
-    flight: name of the first one after the change (of a drift the first of all), number: of it
-    among the flights that were fitted, from 1; date: of it; last_before: of the flight before;
-    material: some group of the vehicle has one of the effects in its verdict.
-    """
-
-    vehicle: str
-    configuration: str
-    kind: str
-    flight: str
-    number: int
-    flights: int
-    date: datetime
-    last_before: datetime | None
-    parts: tuple[Part, ...]
-    probability: float
-    material: bool
 
 
 @dataclass(frozen=True)
@@ -111,13 +76,15 @@ class Insight:
     """
     What the results of a fleet tell together.
 
-    status {of groups: how many}; refused ((vehicle, path or group, reason), ...).
+    status {of groups: how many}; refused, suspect ((vehicle, file, reason), ...): flights that
+    were not diagnosed, and those that were but stand apart from the others of their vehicle.
     """
 
     vehicles: tuple[str, ...]
     flights: int
     status: dict[str, int]
     refused: tuple[tuple[str, str, str], ...]
+    suspect: tuple[tuple[str, str, str], ...]
     events: tuple[Event, ...]
     odd: tuple[Odd, ...]
     present: tuple[Presence, ...]
@@ -131,6 +98,7 @@ class Insight:
             'schema': SCHEMA, 'version': __version__, 'vehicles': list(self.vehicles),
             'flights': self.flights, 'status': dict(self.status),
             'refused': [list(one) for one in self.refused],
+            'suspect': [list(one) for one in self.suspect],
             'events': [asdict(one) | {'date': one.date.isoformat(), 'last_before':
                                       one.last_before and one.last_before.isoformat()}
                        for one in self.events],
@@ -157,58 +125,39 @@ def insight_of(groups: pyarrow.Table, flights: pyarrow.Table, effects: pyarrow.T
     status: dict[str, int] = {}
     for row in rows:
         status[row['status']] = status.get(row['status'], 0) + 1
+    flown = flights.to_pylist()
     refused = tuple((row['vehicle'], Path(row['path']).name, row['reason'])
-                    for row in flights.to_pylist() if row['status'] != DIAGNOSED)
+                    for row in flown if row['status'] != DIAGNOSED)
     return Insight(tuple(sorted({row['vehicle'] for row in rows})), flights.num_rows, status,
-                   tuple(sorted(refused)), events(found, named), _odd(beside, named),
-                   presence(effects), _gaps(rows), found, beside)
+                   tuple(sorted(refused)), _suspect(flown, found), events(found, named),
+                   _odd(beside, named), presence(effects), _gaps(rows), found, beside)
 
 
-def events(found: Iterable[History], named: set[tuple[str, str]]) -> tuple[Event, ...]:
+def _suspect(flights: Iterable[dict], found: Iterable[History]
+             ) -> tuple[tuple[str, str, str], ...]:
     """
-    Return the Events of histories; named: (vehicle, effect) of all verdicts.
+    Return (vehicle, file, reason) of diagnosed flights that stand apart from their vehicle's.
 
-    Changes of a vehicle at about one flight are one event, and so are drifts of one.
+    A parameter of theirs is off by itself, or they cannot be fitted while others can.
     """
-    of_vehicle: dict[tuple[str, str], list[History]] = {}
+    off: dict[str, list[str]] = {}
+    fitted: dict[str, set[str]] = {}
     for one in found:
-        of_vehicle.setdefault((one.series.configuration, one.series.vehicle), []).append(one)
+        fitted.setdefault(one.series.vehicle, set()).update(one.series.flights)
+        for place in one.odd:
+            off.setdefault(one.series.flights[place], []).append(
+                f'{one.series.effect} {one.series.parameter}')
     made = []
-    for (configuration, vehicle), some in of_vehicle.items():
-        t = np.unique(np.concatenate([one.series.t for one in some]))
-        changes = sorted(((int(np.searchsorted(t, one.series.t[change.place])), one, change)
-                          for one in some for change in one.changes), key=lambda row: row[0])
-        while changes:
-            # The surest dates those that happen with it.
-            place = max(changes, key=lambda row: abs(row[2].size) / row[2].std)[0]
-            same = [row for row in changes if abs(row[0] - place) <= SAME]
-            changes = [row for row in changes if row not in same]
-            made.append(_event(vehicle, configuration, 'change', t, place,
-                               [row[1:] for row in same], named))
-        if drifting := [(one, one.drift) for one in some if one.drift is not None]:
-            made.append(_event(vehicle, configuration, 'drift', t, 0, drifting, named))
-    return tuple(made)
-
-
-def _event(vehicle: str, configuration: str, kind: str, t: np.ndarray, place: int,
-           some: Sequence[tuple[History, Any]], named: set[tuple[str, str]]) -> Event:
-    def surely(row: tuple[History, Any]) -> float:
-        size = row[1].size if isinstance(row[1], Change) else row[1].per_week
-        return -abs(size) / row[1].std
-
-    some = sorted(some, key=surely)
-    series = some[0][0].series
-    at = int(np.searchsorted(series.t, t[place]))
-    parts = tuple(Part(one.series.effect, one.series.parameter, one.series.unit, change,
-                       one.level) for one, change in some)
-    return Event(vehicle, configuration, kind, series.flights[min(at, len(series.t) - 1)],
-                 place + 1, len(t), _date(t[place]), _date(t[place - 1]) if place else None, parts,
-                 max(part.change.probability for part in parts),
-                 any((vehicle, part.effect) in named for part in parts))
-
-
-def _date(seconds: float) -> datetime:
-    return datetime.fromtimestamp(float(seconds), timezone.utc)
+    for row in flights:
+        if row['status'] != DIAGNOSED or row['vehicle'] not in fitted:
+            continue
+        if row['flight'] in off:
+            made.append((row['vehicle'], Path(row['path']).name,
+                         f'off by itself: {", ".join(off[row["flight"]])}'))
+        elif row['flight'] not in fitted[row['vehicle']]:
+            made.append((row['vehicle'], Path(row['path']).name,
+                         'cannot be fitted by itself, while others of the vehicle can'))
+    return tuple(sorted(made))
 
 
 def _odd(beside: Iterable[Sisters], named: set[tuple[str, str]]) -> tuple[Odd, ...]:

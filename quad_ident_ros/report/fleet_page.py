@@ -51,7 +51,7 @@ def _first(some: Sequence[Point]) -> list:
             [tag('strong', one.where), tag('span', one.why, f'tag {_kind(one)}'), one.text], ' ')
         + '</li>') for one in some)
     return [head, tag('p', 'The most urgent first: what drifts, what changed, which vehicles are '
-                           'odd, what the model lacks for all, which logs are refused.'),
+                           'odd, what the model lacks for all, which logs are no good.'),
             Markup(f'<ol class="first">{items}</ol>')]
 
 
@@ -174,14 +174,16 @@ def _gap(found: Insight) -> list:
 
 
 def _logs(found: Insight) -> list:
-    if not found.refused:
-        return []
-    rows = [[vehicle, name, tag('td', reason, 'prose')] for vehicle, name, reason in
-            found.refused]
-    return [tag('h2', 'Logs'), details(
-        f'{len(found.refused)} of {found.flights} flights are refused',
-        _live(table(['vehicle', 'flight', 'reason'], rows, ('text', 'text', 'text'),
-                    caption='Flights that are refused')))]
+    parts = []
+    for some, said, caption in (
+            (found.refused, 'refused', 'Flights that are refused'),
+            (found.suspect, 'to check', 'Flights that stand apart from others of the vehicle')):
+        if some:
+            rows = [[vehicle, name, tag('td', reason, 'prose')] for vehicle, name, reason in some]
+            parts.append(details(f'{len(some)} of {found.flights} flights are {said}', _live(
+                table(['vehicle', 'flight', 'reason'], rows, ('text', 'text', 'text'),
+                      caption=caption))))
+    return [tag('h2', 'Logs'), *parts] if parts else []
 
 
 def _live(content: Markup) -> Markup:

@@ -9,13 +9,14 @@ from datetime import datetime
 
 from quad_ident_ros.data.counted import counted
 from quad_ident_ros.effects.registry import EFFECTS, NULL, PLACE, titled
+from quad_ident_ros.fleet.events import Event, Part
 from quad_ident_ros.fleet.history import Change, Drift
-from quad_ident_ros.fleet.insight import Event, Insight, Odd, Part, Presence
+from quad_ident_ros.fleet.insight import Insight, Odd, Presence
 from quad_ident_ros.report.sizes import handy, PER_CENT, sized, with_error
 
-WORSE, CHANGED, DIFFERS, MODEL, LOGS, SMALL = (
+WORSE, CHANGED, DIFFERS, MODEL, LOGS, SUSPECT, SMALL = (
     'gets worse', 'changed', 'differs from its sisters', 'the model is wrong', 'logs refused',
-    'small')
+    'logs to check', 'small')
 """Why something is worth a look, the most urgent first: a drift goes on."""
 NAMED = 5           # vehicles or parts that a sentence lists
 
@@ -34,10 +35,11 @@ def points(found: Insight) -> tuple[Point, ...]:
     Return what to look at, the most urgent first.
 
     What drifts, what changed, which vehicles are odd, what the model lacks for all, which logs
-    cannot be used; last what is sure but in no verdict, for it hardly moves the vehicle.
+    cannot be used, or look wrong; last what is sure but in no verdict, for it hardly moves the
+    vehicle.
     """
     groups: dict[str, list[Point]] = {why: [] for why in (WORSE, CHANGED, DIFFERS, MODEL, LOGS,
-                                                          SMALL)}
+                                                          SUSPECT, SMALL)}
     for event in sorted(found.events, key=lambda one: -one.date.timestamp()):
         why = WORSE if event.kind == 'drift' else CHANGED
         groups[why if event.material else SMALL].append(
@@ -51,6 +53,7 @@ def points(found: Insight) -> tuple[Point, ...]:
     groups[MODEL] += [Point(MODEL, 'all', shared_line(one, found)) for one in found.present
                       if one.shared]
     groups[LOGS] += _logs(found)
+    groups[SUSPECT] += _suspect(found)
     return tuple(point for some in groups.values() for point in some)
 
 
@@ -142,6 +145,16 @@ def _logs(found: Insight) -> list[Point]:
 
 def _small(material: bool) -> str:
     return '' if material else '; no verdict names it, so it matters little'
+
+
+def _suspect(found: Insight) -> list[Point]:
+    """Return a Point for the flights that stand apart from others of their vehicle."""
+    if not found.suspect:
+        return []
+    names = listed([f'{vehicle} {file}' for vehicle, file, _ in found.suspect])
+    return [Point(SUSPECT, found.suspect[0][0],
+                  f'{counted(len(found.suspect), "flight")} differ from all others of the same '
+                  f'vehicle, and changed nothing: {names}; look at their logs')]
 
 
 def _signed(part: Part) -> str:

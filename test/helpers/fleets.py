@@ -45,11 +45,12 @@ TRACKED = {('rotor_drag', 'coefficient'): ('kg/s', 0.06, 0.004, 0.001),
 GROUPS = 5          # flights of a vehicle that were diagnosed together
 
 
-def data_set(out, *, vehicles=8, flights=20, seed=1, steps=(), slopes=(), odd=()):
+def data_set(out, *, vehicles=8, flights=20, seed=1, steps=(), slopes=(), odd=(), wrong=()):
     """
     Write the data set of a fleet into a folder: its values, without a flight that was flown.
 
-    steps: (vehicle, effect, parameter, flight, size); slopes: (..., per week); odd: (..., size).
+    wrong, steps: (vehicle, effect, parameter, flight, size), of a flight and from it on; slopes:
+    (..., per week); odd: (..., size).
     The first flight of the first vehicle is refused.
     """
     rng = np.random.default_rng(seed)
@@ -62,6 +63,9 @@ def data_set(out, *, vehicles=8, flights=20, seed=1, steps=(), slopes=(), odd=()
             for one, *what, number, size in steps:
                 if (one, tuple(what)) == (name, key):
                     values[number:] += size
+            for one, *what, number, size in wrong:
+                if (one, tuple(what)) == (name, key):
+                    values[number] += size
             for one, *what, slope in slopes:
                 if (one, tuple(what)) == (name, key):
                     values += slope * 3.0 / 7.0 * np.arange(flights)

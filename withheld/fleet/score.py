@@ -92,20 +92,23 @@ def text_of(result: dict) -> str:
                  f'that are not: {len(result["false_odd"])}')
     lines += [f'  false: {one}' for one in (*result['false_events'], *result['false_odd'])]
     logs = result['logs']
-    lines.append(f'wrong logs: {logs["refused"]} of {logs["wrong"]} refused; right logs refused: '
-                 f'{logs["right_refused"]}; not refused: {logs["not_refused"]}')
+    lines.append(f'wrong logs: {logs["refused"]} of {logs["wrong"]} refused, '
+                 f'{logs["suspect"]} to check, {logs["unnoticed"] or "none"} unnoticed; right '
+                 f'logs: {logs["right_refused"]} refused, {logs["right_suspect"]} to check')
     return '\n'.join(lines)
 
 
 def _logs(truth: dict, insight: dict) -> dict:
-    refused = {f'{vehicle}/{Path(name).stem.rpartition("_")[2]}'
-               for vehicle, name, _ in insight['refused']}
+    refused, suspect = ({f'{vehicle}/{Path(name).stem.rpartition("_")[2]}'
+                         for vehicle, name, _ in insight[kind]} for kind in ('refused', 'suspect'))
     wrong = truth['spoilt']
     kept: dict[str, int] = {}
-    for place in set(wrong) - refused:
+    for place in set(wrong) - refused - suspect:
         kept[wrong[place]] = kept.get(wrong[place], 0) + 1
     return {'wrong': len(wrong), 'refused': len(refused & set(wrong)),
-            'right_refused': len(refused - set(wrong)), 'not_refused': kept}
+            'suspect': len(suspect & set(wrong)), 'unnoticed': kept,
+            'right_refused': len(refused - set(wrong)),
+            'right_suspect': len(suspect - set(wrong))}
 
 
 def _effects(event: dict) -> list[str]:

@@ -18,6 +18,7 @@ from quad_ident_ros.report.fleet_words import points
 
 STEP = ('uav3', 'com_offset', 'x', 11, 4e-3)
 SLOPE = ('uav5', 'thrust_scale', 'factor', -0.01)
+WRONG = ('uav2', 'com_offset', 'x', 13, 0.05)
 ODD = ('uav7', 'rotor_drag', 'coefficient', 0.08)
 
 
@@ -25,7 +26,7 @@ ODD = ('uav7', 'rotor_drag', 'coefficient', 0.08)
 def found(tmp_path_factory):
     """Return the insight of a fleet with a change, a drift, an odd vehicle and a bad log."""
     out = tmp_path_factory.mktemp('fleet')
-    data_set(out, steps=[STEP], slopes=[SLOPE], odd=[ODD])
+    data_set(out, steps=[STEP], slopes=[SLOPE], odd=[ODD], wrong=[WRONG])
     return insight(out)
 
 
@@ -48,6 +49,12 @@ def test_refused_flights_take_no_part(found):
     assert found.refused == (('uav1', '0.csv', 'this is not text'),)
     assert all('uav1/0' not in one.series.flights for one in found.histories)
     assert found.flights == 160 and found.status == {'diagnosed': 32}
+
+
+def test_a_flight_that_is_off_by_itself_is_to_be_checked(found):
+    """A wrong log is no change of the vehicle; it is named with what is off."""
+    assert ('uav2', '13.csv', 'off by itself: com_offset x') in found.suspect
+    assert all(event.vehicle != 'uav2' for event in found.events)
 
 
 def test_the_list_begins_with_what_gets_worse(found):

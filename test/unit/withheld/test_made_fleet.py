@@ -96,9 +96,11 @@ def odd(vehicle, effect):
 
 TRUTH = {'changes': {'a': ['com_offset', 'x', 4e-3, 12]}, 'seed': 1, 'flights': 60,
          'drifts': {'b': ['thrust_scale', 'factor', -0.004]},
-         'odd': {'c': ['motor_lag', 'time_constant', 0.02]}, 'spoilt': {'a/03': 'cut'}}
+         'odd': {'c': ['motor_lag', 'time_constant', 0.02]},
+         'spoilt': {'a/03': 'cut', 'b/04': 'late'}}
 NUMBERS = {f'{vehicle}{number}': (vehicle, number) for vehicle in 'abcd' for number in range(30)}
 RIGHT = {'vehicles': list('abcd'), 'refused': [['a', 'flight_03.csv', 'too short']],
+         'suspect': [['b', 'flight_04.csv', 'off'], ['b', 'flight_05.csv', 'off']],
          'events': [event('a', 'a13', 'com_offset'), event('b', 'b0', 'mass_offset', 'drift')],
          'odd': [odd('c', 'motor_lag'), odd('a', 'com_offset')]}
 
@@ -107,7 +109,8 @@ def test_an_insight_that_is_right_passes():
     """A change one flight late, a drift by its ratio, an odd vehicle, a wrong log refused."""
     result = score(TRUTH, RIGHT, NUMBERS)
     assert passed(result)
-    assert result['logs'] == {'wrong': 1, 'refused': 1, 'right_refused': 0, 'not_refused': {}}
+    assert result['logs'] == {'wrong': 2, 'refused': 1, 'suspect': 1, 'unnoticed': {},
+                              'right_refused': 0, 'right_suspect': 1}
 
 
 @pytest.mark.parametrize('wrong', [
