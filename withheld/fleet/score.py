@@ -117,4 +117,3 @@ def _effects(event: dict) -> list[str]:
 
 def _alike(effect: str) -> str:
     return ALIKE.get(effect, effect)
-

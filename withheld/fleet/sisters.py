@@ -27,9 +27,9 @@ from withheld.seal import seal
 POOL = ('motor_lag', 'actuation_delay', 'rotor_drag', 'body_drag', 'inflow', 'thrust_scale',
         'inertia_mismatch', 'com_offset', 'rotor_gyro', 'blade_flapping')
 """Effects that a make may have; any other may be named by mistake."""
-OFTEN = (0.9, 0.9, 0.9, 0.4, 0.4, 0.1)
-"""Shares of the vehicles of a make that have each of its six effects; the others none has."""
-SIZES = 0.1, 0.7        # of the usual size of a parameter: from what hardly shows on
+OFTEN = (0.9, 0.9, 0.4, 0.1)
+"""Shares of the vehicles of a make that have each of its four effects; the others none has."""
+SIZES = 0.3, 1.0        # of the usual size of a parameter: two short flights show some hardly
 SPREAD = 0.15           # from vehicle to vehicle, share of it
 FLIGHTS, SECONDS, RATE = 2, 8.0, 100.0
 
