@@ -59,6 +59,7 @@ def test_odd_vehicles_are_named_and_do_not_widen_the_spread():
     assert found[3].off == pytest.approx(3.0, abs=0.6) and found[3].spreads > 5.0
 
 
+@pytest.mark.slow
 def test_false_odd_vehicles_are_as_rare_as_stated():
     """Among fleets whose vehicles are alike, an odd one is rarer than 5.3 %."""
     rng = np.random.default_rng(4)
