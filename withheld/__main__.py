@@ -3,7 +3,6 @@
 """Fly realities, diagnose them blindly, open the labels: `./run withheld`."""
 
 import argparse
-from concurrent.futures import ThreadPoolExecutor
 import datetime
 import json
 import os
@@ -13,18 +12,15 @@ import subprocess
 import sys
 import tempfile
 
-from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
-
 from withheld.cases import SETS
 from withheld.page import keep
+from withheld.processes import follow, key_from, progress, THREADS
 from withheld.score import score
 from withheld.seal import unseal
 from withheld.table import markdown
 
 ROOT = Path(__file__).resolve().parents[1]
 DOCUMENT = ROOT / 'docs' / 'withheld.md'
-THREADS = dict.fromkeys(('OMP_NUM_THREADS', 'OPENBLAS_NUM_THREADS', 'MKL_NUM_THREADS'), '1')
 
 DESCRIPTION = """\
 Check the diagnosis on flights whose effects are withheld from it.
@@ -156,7 +152,7 @@ def run(options, work):
     flights, found = work / 'flights', work / 'found'
     flights.mkdir()
     found.mkdir()
-    with tempfile.TemporaryDirectory(prefix='sealed-') as vault, _bar() as bar:
+    with tempfile.TemporaryDirectory(prefix='sealed-') as vault, progress() as bar:
         sealed = Path(vault) / 'labels'
         key = fly(options, flights, sealed, bar)
         diagnose(flights, found, bar, options.jobs)
@@ -175,42 +171,12 @@ def fly(options, flights, sealed, bar):
     return key_from(command, bar)
 
 
-def key_from(command, bar):
-    """Run a command with `--key` and a pipe of its own; return what it writes there."""
-    read, write = os.pipe()
-    process = subprocess.Popen([*command, '--key', str(write)], stdout=subprocess.PIPE, text=True,
-                               pass_fds=(write,), env={**os.environ, **THREADS})
-    os.close(write)
-    # A pipe holds less than the key of many labels: it is read while the process goes on.
-    with os.fdopen(read, 'rb') as pipe, ThreadPoolExecutor(1) as reader:
-        key = reader.submit(pipe.read)
-        follow(process, bar, 'flying realities')
-        return key.result()
-
-
 def diagnose(flights, found, bar, jobs=1):
     """Have the flights diagnosed by a process that is told of them and of nothing else."""
     process = subprocess.Popen(
         [sys.executable, '-m', 'withheld.blind', str(flights), str(found), str(jobs)],
         stdout=subprocess.PIPE, text=True, cwd=flights, env={**os.environ, **THREADS})
     follow(process, bar, 'diagnosing them', sum(1 for _ in flights.iterdir()))
-
-
-def follow(process, bar, title, total=None):
-    """Show the lines of a process as progress; raises CalledProcessError where it fails."""
-    task = bar.add_task(title, total=total)
-    with process:
-        for count, line in enumerate(process.stdout, 1):
-            parts = line.split()
-            bar.update(task, completed=count, total=total or int(parts[-1]))
-    if process.returncode:
-        raise subprocess.CalledProcessError(process.returncode, title)
-
-
-def _bar():
-    return Progress(TextColumn('{task.description}'), BarColumn(),
-                    TextColumn('{task.completed} of {task.total}'), TimeElapsedColumn(),
-                    console=Console(stderr=True))
 
 
 def _version():

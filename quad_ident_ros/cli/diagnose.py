@@ -21,6 +21,7 @@ from quad_ident_ros.closed_loop.controller import controller_of
 from quad_ident_ros.closed_loop.controller import INTERFACE as OF_CONTROLLERS
 from quad_ident_ros.data.split import joined
 from quad_ident_ros.diagnose.diagnosis import diagnose
+from quad_ident_ros.diagnose.priors import load_priors
 from quad_ident_ros.diagnose.provenance import Run, run_of
 from quad_ident_ros.diagnose.rules import RULES
 from quad_ident_ros.effects.registry import EFFECTS
@@ -78,6 +79,9 @@ def add(commands, said):
                         help='gap beyond the noise that does not matter half a second ahead, for '
                              f'example {EXAMPLE}; never less than {100 * RULES.noise_share:.0f} '
                              f'%% of what the noise makes (default: {usual})')
+    parser.add_argument('--priors', metavar='FILE', help='what a fleet of such vehicles has '
+                        'taught: how often each effect is there and how large; written by '
+                        '`quad_ident fleet --out-priors`')
     parser.add_argument('--simulator', metavar='FILE.py:NAME',
                         help='a class of yours that flies the nominal vehicle: its gap, where it '
                              'lies, and how far it shrinks with the effects named around it; '
@@ -109,6 +113,8 @@ def run(options):
     """Read the flights, diagnose, and show what came of it."""
     rules = RULES if options.tolerance is None else rules_from(options.tolerance.split(','),
                                                                '--tolerance')
+    if options.priors is not None:
+        rules = replace(rules, priors=load_priors(options.priors))
     if options.residual and not options.out_vehicle:
         raise InputError('--residual: it is written into a vehicle file; name one with '
                          '--out-vehicle FILE.yaml')
@@ -151,5 +157,5 @@ def run(options):
 def _run_of(options: argparse.Namespace) -> Run:
     """Return the Run of this command on the files that it has read."""
     given = [options.vehicle] if Path(options.vehicle).is_file() else []
-    others = [path for path in (options.hold_out, options.mapping) if path]
+    others = [path for path in (options.hold_out, options.mapping, options.priors) if path]
     return run_of(options.words, [*options.flights, *others, *given])

@@ -3,8 +3,12 @@
 """`quad_ident fleet`: diagnose the flights of many vehicles, and keep all results."""
 
 import argparse
+from dataclasses import replace
 import re
+import sys
 
+from quad_ident_ros.diagnose.priors import load_priors, write_priors
+from quad_ident_ros.diagnose.rules import RULES
 from quad_ident_ros.errors import InputError
 
 DEFAULT_OUT = 'fleet'
@@ -43,6 +47,14 @@ def add(commands, said):
                         "people's records mean what (YAML)")
     parser.add_argument('--json', metavar='FILE', help='write a line of JSON for each group as '
                         'it is done, and one for the whole run; - prints them')
+    parser.add_argument('--report', metavar='FILE.html',
+                        help='write a page for a browser: what to look at first, vehicles by '
+                             'effects, every parameter over time, the gap')
+    parser.add_argument('--out-priors', metavar='FILE.yaml',
+                        help='write how often each effect is there, how large and how exact, for '
+                             '--priors of `diagnose` and `fleet`')
+    parser.add_argument('--priors', metavar='FILE', help='diagnose with what another fleet has '
+                        'taught; verdicts that use priors teach none')
     group = parser.add_argument_group('where the work is done')
     group.add_argument('--scheduler', metavar='tcp://HOST:PORT', help='of a Dask cluster that is '
                        'there (default: processes on this machine)')
@@ -58,23 +70,42 @@ def add(commands, said):
 def run(options):
     """Diagnose the flights and say what came of it; 3 where a group failed."""
     try:
+        from quad_ident_ros.fleet.insight import insight
+        from quad_ident_ros.fleet.priors import learned
         from quad_ident_ros.fleet.run import run_fleet, TIME_LIMIT
+        from quad_ident_ros.fleet.store import read_table
     except ModuleNotFoundError as error:
         if (error.name or '').partition('.')[0] not in ('pyarrow', 'distributed', 'dask'):
             raise
         raise InputError(f"{error.name} is not installed: pip install 'quad_ident_ros[fleet]'"
                          ) from None
     from quad_ident_ros.cluster import cluster
+    from quad_ident_ros.report import fleet_page
+    from quad_ident_ros.report.fleet import show_insight
     from quad_ident_ros.report.fleet_run import Reporter
     if options.scheduler and (options.workers or options.memory):
         raise InputError('--workers, --memory: they are for processes on this machine; with '
                          '--scheduler its own workers are used')
+    if options.priors and options.out_priors:
+        raise InputError('--out-priors: verdicts that use --priors would repeat what they were '
+                         'told; run without --priors, into another --out')
+    rules = RULES if options.priors is None else replace(RULES,
+                                                         priors=load_priors(options.priors))
     with cluster(options.scheduler, options.workers, options.memory) as client, \
             Reporter(client, options.out, options.json) as reporter:
         summary = run_fleet(client, options.flights, options.out, vehicle=options.vehicle,
-                            mapping=options.mapping, tell=reporter.tell,
+                            mapping=options.mapping, rules=rules, tell=reporter.tell,
                             time_limit=options.time_limit or TIME_LIMIT)
         reporter.end(summary)
+        found = insight(options.out)
+        reporter.tell_insight(found)
+    if options.json != '-':
+        show_insight(found, sys.stdout)
+    if options.report:
+        fleet_page.write(options.report, found)
+    if options.out_priors:
+        write_priors(options.out_priors, learned(read_table(options.out, 'effects'),
+                                                 found.histories), len(found.vehicles))
     return FAULTY if summary.groups['failed'] + summary.groups['timeout'] else 0
 
 

@@ -8,11 +8,12 @@ from pathlib import Path
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.vehicle import check_ending
 
-INPUTS = ('flight', 'flights', 'hold_out', 'mapping', 'vehicle', 'experiment', 'base')
-FILES_READ = ('mapping', 'base')
+INPUTS = ('flight', 'flights', 'hold_out', 'mapping', 'priors', 'vehicle', 'experiment', 'base')
+FILES_READ = ('mapping', 'priors', 'base')
 """Names of the options that name files read, and never folders or what is shipped by name."""
-OUTPUTS = ('out', 'output', 'out_vehicle', 'json', 'report', 'picture', 'write_mapping')
-FILES = ('out_vehicle', 'json', 'report', 'picture', 'write_mapping')
+OUTPUTS = ('out', 'output', 'out_vehicle', 'out_priors', 'json', 'report', 'picture',
+           'write_mapping')
+FILES = ('out_vehicle', 'out_priors', 'json', 'report', 'picture', 'write_mapping')
 """Names of the options, of any command, that name files read, written, and never folders."""
 PAGES = ('.html', '.htm')
 

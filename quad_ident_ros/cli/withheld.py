@@ -28,10 +28,13 @@ def run(options):
     if not (ROOT / 'withheld' / '__main__.py').is_file():
         raise InputError('the check is not installed with the package: get the source of '
                          'quad_ident_ros and start it there as `./run withheld`')
-    asks = {'-h', '--help'} & set(options.arguments)
+    module, arguments = 'withheld', options.arguments
+    if arguments[:1] == ['fleet']:      # a check of its own, which needs no other package
+        module, arguments = 'withheld.fleet', arguments[1:]
+    asks = {'-h', '--help'} & set(arguments) or module == 'withheld.fleet'
     if not asks and importlib.util.find_spec('rotorpy') is None:
         raise InputError('the check flies with rotorpy, which is not here: start it as '
                          '`./run withheld`, which installs it beside .venv')
     search = os.pathsep.join([str(ROOT), *filter(None, [os.environ.get('PYTHONPATH')])])
-    return subprocess.run([sys.executable, '-m', 'withheld', *options.arguments],
+    return subprocess.run([sys.executable, '-m', module, *arguments],
                           env={**os.environ, 'PYTHONPATH': search}).returncode

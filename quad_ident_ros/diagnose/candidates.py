@@ -18,6 +18,8 @@ from quad_ident_ros.model.vehicle import Vehicle
 SCALES = tuple(INDEX[name] for name in (*FACTORS['thrust_coefficient'], 'mass_offset.mass'))
 """Columns that scale thrust over mass."""
 
+FORMS_SEEN = 10     # vehicles' worth of doubt, by which a form is rarer that a fleet never named
+
 
 @dataclass(frozen=True)
 class Candidate:
@@ -75,7 +77,7 @@ def candidates(flights: list, vehicle: Vehicle, rules: Rules,
                 found.append(Candidate(name, f'{name} {form.name}', columns, form.name,
                                        form is forms[0],
                                        len(form.parameters) <= len(forms[0].parameters),
-                                       _share(form is forms[0], len(forms), rules)))
+                                       _share(name, form, forms, rules)))
     return tuple(found)
 
 
@@ -98,11 +100,16 @@ def _without_height(flights: Sequence[Flight]) -> bool:
     return any('position' in flight.summed for flight in flights)
 
 
-def _share(usual: bool, count: int, rules: Rules) -> float:
-    """Return a form's part of the prior probability of its effect, which has so many."""
-    if count == 1:
+def _share(name: str, form: Form, forms: Sequence[Form], rules: Rules) -> float:
+    """Return a form's part of the prior probability of its effect, of the forms that it has."""
+    if len(forms) == 1:
         return 1.0
-    return rules.usual_form if usual else (1.0 - rules.usual_form) / (count - 1)
+    shares = [rules.usual_form if one is forms[0]
+              else (1.0 - rules.usual_form) / (len(forms) - 1) for one in forms]
+    if name in rules.priors and rules.priors[name].forms:
+        shares = [rules.priors[name].forms.get(one.name, 0.0) or share / FORMS_SEEN
+                  for one, share in zip(forms, shares, strict=True)]
+    return shares[forms.index(form)] / sum(shares)
 
 
 def nuisance_candidates(vehicle: Vehicle, tracks: list) -> tuple[Candidate, ...]:

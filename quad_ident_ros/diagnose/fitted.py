@@ -18,7 +18,7 @@ from quad_ident_ros.greybox.estimate import Estimate, estimate
 from quad_ident_ros.greybox.flights import Flight
 from quad_ident_ros.greybox.linear import Slopes
 from quad_ident_ros.greybox.nuisances import NuisanceValues
-from quad_ident_ros.greybox.parameters import limits, nominal, prior_sizes, SPLIT
+from quad_ident_ros.greybox.parameters import INDEX, limits, nominal, prior_sizes, SPLIT
 from quad_ident_ros.model.vehicle import Vehicle
 
 FIT_STEPS = 5       # of Gauss and Newton, of the search: sets start near where they end
@@ -82,6 +82,21 @@ def distances_of(chosen: tuple, fit: Estimate, vehicle: Vehicle) -> dict:
             for cause in chosen}
 
 
+def prior_deviations(vehicle: Vehicle, rules: Rules) -> np.ndarray:
+    """
+    Return the standard deviations (Z,), SI, of the prior about the nominal vehicle.
+
+    Where a fleet knows how large an effect is, twice that, within the usual ones and a tenth of
+    these: the next vehicle may have more than its sisters.
+    """
+    wide = prior_sizes(vehicle, rules.prior_width)
+    for effect, prior in rules.priors.items():
+        for parameter, size in prior.sizes.items():
+            column = INDEX[f'{effect}.{parameter}']
+            wide[column] = min(wide[column], max(2.0 * size, 0.1 * wide[column]))
+    return wide
+
+
 def size_grids(vehicle: Vehicle, noise: list, rules: Rules) -> tuple:
     """
     Return rising sizes of an unexplained force (N) and moment (N m), 0 first.
@@ -106,7 +121,7 @@ def fitted_of(chosen: tuple, fit: Estimate, vehicle: Vehicle, frame: Frame,
     blocks = blocks_at(frame, fit, distances_of(chosen, fit, vehicle))
     value, sizes = fitted_sizes(blocks, rules.form_error, grids, quadratic.scatter, start)
     distance = np.append((fit.z - nominal(vehicle))[fit.columns], fit.nuisances.values)
-    prior = block_diag(np.diag(prior_sizes(vehicle, rules.prior_width)[fit.columns] ** -2.0),
+    prior = block_diag(np.diag(prior_deviations(vehicle, rules)[fit.columns] ** -2.0),
                        fit.nuisances.precision)
     places = [row for cause in chosen for row in rows[cause]]
     block = np.ix_(places, places)

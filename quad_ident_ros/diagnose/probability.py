@@ -53,7 +53,8 @@ def probabilities(posterior: dict, weights: dict, rules: Rules) -> dict[str, flo
     sets that have them, in whichever form.
     Args: posterior {candidate: ...} of the Selection; weights {candidate: Weight}.
     """
-    there = {cause.effect: presence(weight, rules) for cause, weight in weights.items()}
+    there = {cause.effect: presence(weight, rules, rules.shift(cause.effect))
+             for cause, weight in weights.items()}
     return by_effect(posterior) | there
 
 
@@ -78,9 +79,11 @@ def by_effect(posterior: dict) -> dict[str, float]:
     return found
 
 
-def presence(weight: Weight, rules: Rules) -> float:
+def presence(weight: Weight, rules: Rules, shift: float = 0.0) -> float:
     """
     Return the probability that an effect of the best set is present.
+
+    shift: what is known of the effect before looking, see Rules.shift.
 
     The root of its contribution is as its size: a gap grows with the square of what is small
     beside the rest of it. Of standard errors the logarithm counts: ten more tell little where
@@ -88,5 +91,5 @@ def presence(weight: Weight, rules: Rules) -> float:
     """
     base, share, far, beside = rules.calibration
     value = (base + share * np.sqrt(np.clip(weight.contribution, 0.0, 1.0))
-             + far * np.log1p(weight.distance) + beside * weight.companions)
+             + far * np.log1p(weight.distance) + beside * weight.companions + shift)
     return float(1.0 / (1.0 + np.exp(-value)))

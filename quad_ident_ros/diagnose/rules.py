@@ -3,6 +3,9 @@
 """Every threshold of a verdict, with its reason; docs/method.md shows where each acts."""
 
 from dataclasses import dataclass, field
+from math import exp
+
+from quad_ident_ros.diagnose.priors import EffectPrior, log_odds
 
 
 @dataclass(frozen=True)
@@ -45,6 +48,9 @@ class Rules:
         times the noise.
       untried: log evidence, beside the best set, that the linear model alone may give a set: it
         has been wrong by more.
+      priors: what a fleet knows of each effect instead, by name; without one: nothing.
+      usual_presence: share of the vehicles that an effect is present in, from which that of a
+        fleet differs: one to three of some seventeen in the flights of `calibration`.
     Discrepancy (see discrepancy.py):
       form_error: relative error of an effect's formula. Published laws of one effect differ from
         one another by 10 to 30 % over the range in which they are used.
@@ -116,6 +122,8 @@ class Rules:
     alike: float = 3.0
     worth: float = 0.01
     untried: float = -2.0
+    priors: dict[str, EffectPrior] = field(default_factory=dict)
+    usual_presence: float = 0.1
     form_error: float = 0.2
     form_time: float = 1.0
     horizon: float = 0.5
@@ -142,6 +150,15 @@ class Rules:
     regime: float = 0.35
     unexplained: float = 0.58
     differs: float = 2.0
+
+    def shift(self, effect: str) -> float:
+        """Return by how much a fleet raises the log odds that an effect is present."""
+        known = self.priors.get(effect)
+        return 0.0 if known is None else log_odds(known.present) - log_odds(self.usual_presence)
+
+    def odds(self, effect: str) -> float:
+        """Return the probability that an effect is present, before looking."""
+        return 1.0 / (1.0 + exp(-log_odds(self.prior_odds) - self.shift(effect)))
 
     def least(self, group: str, noise: float) -> float:
         """Return the gap of a group of outputs below which shares of it mean nothing."""

@@ -16,6 +16,7 @@ from quad_ident_ros.diagnose.fitted import (
     Fitted,
     fitted_of,
     out_of_bounds,
+    prior_deviations,
     refitted,
     size_grids,
     within_bounds,
@@ -33,7 +34,7 @@ from quad_ident_ros.greybox.linear import errors_along
 from quad_ident_ros.greybox.noise import quick_noise, whole_noise
 from quad_ident_ros.greybox.normal import scatter_of
 from quad_ident_ros.greybox.nuisances import are_alike, Layout, NuisanceValues, trim_wrench
-from quad_ident_ros.greybox.parameters import limits, nominal, prior_sizes
+from quad_ident_ros.greybox.parameters import limits, nominal
 from quad_ident_ros.memory import give_back
 from quad_ident_ros.model.vehicle import Vehicle
 
@@ -210,7 +211,7 @@ class _Search:
                            tuple(grid[k] for grid, k in zip(grids, sizes, strict=True)),
                            self.rules)
         lower, upper, _ = limits(self.vehicle)
-        wide = prior_sizes(self.vehicle, self.rules.prior_width)[self.columns]
+        wide = prior_deviations(self.vehicle, self.rules)[self.columns]
         null = nominal(self.vehicle)[self.columns]
         beyond = np.full(everyone.values.size, np.inf)
         # Without candidates there is nothing whose gradient could scatter.

@@ -13,7 +13,7 @@ from typing import Any
 from quad_ident_ros import __version__
 from quad_ident_ros.cluster import results, TimeOver, WorkerDied
 from quad_ident_ros.data.mapping import load_mapping, Mapping
-from quad_ident_ros.diagnose.rules import RULES
+from quad_ident_ros.diagnose.rules import RULES, Rules
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.fleet.grouping import Group, groups_of, rules_hash
 from quad_ident_ros.fleet.look import look, Looked, Looks, without_content
@@ -102,15 +102,16 @@ class _Account:
 
 
 def run_fleet(client: Any, names: Sequence[str], out: str | Path, *, vehicle: str | None = None,
-              mapping: str | None = None, time_limit: float = TIME_LIMIT,
-              tell: Tell = lambda progress: None) -> Summary:
+              mapping: str | None = None, rules: Rules = RULES,
+              time_limit: float = TIME_LIMIT, tell: Tell = lambda progress: None) -> Summary:
     """
     Diagnose the flights that names stand for, on a Dask client, into the data set `out`.
 
     What is there already is not done again; groups that failed are. Args: names of flights,
     folders and manifests; vehicle: nominal vehicle, name or file, of those that have none of their
-    own; mapping: file; time_limit: s of a group; tell is called with the Progress, a few times
-    per second. Raises InputError, and OSError where nothing can be written.
+    own; mapping: file; rules: thresholds of the verdicts; time_limit: s of a group; tell is
+    called with the Progress, a few times per second. Raises InputError, and OSError where nothing
+    can be written.
     """
     flights = listed(names)
     nominal_of = partial(_nominal, vehicle, lru_cache(None)(load_any_vehicle))
@@ -118,9 +119,9 @@ def run_fleet(client: Any, names: Sequence[str], out: str | Path, *, vehicle: st
         nominal_of(one)
     meaning = load_mapping(mapping) if mapping else None
     prepare(out)
-    _write_options(out, flights, vehicle, mapping)
+    _write_options(out, flights, vehicle, mapping, rules)
     looked = _looked(client, flights, meaning, out, time_limit, tell)
-    groups, copies = groups_of(zip(flights, looked, strict=True), nominal_of, meaning, RULES)
+    groups, copies = groups_of(zip(flights, looked, strict=True), nominal_of, meaning, rules)
     before = _diagnose_all(client, groups, out, time_limit, tell)
     _track_all(client, groups, out, time_limit, tell)
     status = _statuses(out)
@@ -141,11 +142,11 @@ def _nominal(vehicle: str | None, load: Callable[[str], Vehicle], one: Listed) -
 
 
 def _write_options(out: str | Path, flights: Iterable[Listed], vehicle: str | None,
-                   mapping: str | None) -> None:
+                   mapping: str | None, rules: Rules) -> None:
     """Write how the data set is made, without times, so that the same run writes the same."""
     vehicles = sorted({one.vehicle_file or str(vehicle) for one in flights})
     data = {'schema': 'quad_ident/fleet/1', 'version': __version__, 'vehicles': vehicles,
-            'mapping': mapping, 'rules': rules_hash(RULES)}
+            'mapping': mapping, 'rules': rules_hash(rules)}
     write_whole(Path(out) / 'fleet.json', json.dumps(data, indent=2) + '\n')
 
 

@@ -13,6 +13,7 @@ import pyarrow
 import pyarrow.compute as pc
 
 from quad_ident_ros.data.load import load_all
+from quad_ident_ros.effects.base import Parameter
 from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.fleet.grouping import Group, Member
@@ -41,8 +42,10 @@ def tracked_effects(effects: pyarrow.Table) -> dict[str, dict[str, str]]:
     """
     Return {vehicle: {effect: form}} to track, of the table `effects` of a data set.
 
-    For each vehicle the effects that any of its groups names, and those that most vehicles have;
-    each in the form that its groups name it in most often, or else the fleet.
+    For each vehicle the effects that most vehicles have, and those that any of its groups names;
+    each in the form that its groups name it in most often, or else the fleet. A single flight does
+    not determine effects that look alike together: of these the one that most vehicles have is
+    tracked, or else the one that is named more often.
     """
     named = effects.filter(pc.field('named'))
     counts = named.group_by(['vehicle', 'effect', 'form']).aggregate([([], 'count_all')])
@@ -57,9 +60,21 @@ def tracked_effects(effects: pyarrow.Table) -> dict[str, dict[str, str]]:
         if having and len(having) >= MOST * len(by_vehicle):
             common[effect] = {form: sum(one.get(form, 0) for one in having)
                               for forms in having for form in forms}
-    return {vehicle: {effect: _usual(effect, forms) for effect, forms in {**common, **found
-                                                                          }.items()}
+    return {vehicle: {effect: _usual(effect, {**common, **found}[effect])
+                      for effect in _apart(common, found)}
             for vehicle, found in by_vehicle.items()}
+
+
+def _apart(common: Mapping[str, Mapping[str, int]], found: Mapping[str, Mapping[str, int]]
+           ) -> list[str]:
+    """Return the common effects, and of a vehicle's other ones those that look like none kept."""
+    kept = list(common)
+    for effect in sorted(set(found) - set(common), key=lambda name: -sum(found[name].values())):
+        alike = {one for one in kept if one in EFFECTS[effect].confused_with
+                 or effect in EFFECTS[one].confused_with}
+        if not alike:
+            kept.append(effect)
+    return sorted(kept, key=list(EFFECTS).index)
 
 
 def track(tracking: Tracking, out: str | Path) -> None:
@@ -70,8 +85,7 @@ def track(tracking: Tracking, out: str | Path) -> None:
     """
     group = tracking.group
     names = [f'{effect}.{parameter.name}' for effect, form in tracking.effects.items()
-             for parameter in next(one for one in EFFECTS[effect].forms
-                                   if one.name == form).parameters]
+             for parameter in _parameters(effect, form, len(group.nominal.rotors))]
     parameters: list[dict[str, Any]] = []
     covariances: list[dict[str, Any]] = []
     for member in group.flights:
@@ -86,6 +100,12 @@ def track(tracking: Tracking, out: str | Path) -> None:
                             'matrix': found.estimate.covariance.ravel().tolist()})
     write_rows(out, 'parameters', tracking.key, parameters)
     write_rows(out, 'covariances', tracking.key, covariances)
+
+
+def _parameters(effect: str, form: str, rotors: int) -> Sequence[Parameter]:
+    """Return the parameters of a form, of one with a parameter per rotor those of the rotors."""
+    parameters = next(one for one in EFFECTS[effect].forms if one.name == form).parameters
+    return parameters[:rotors] if EFFECTS[effect].per_rotor else parameters
 
 
 def _usual(effect: str, forms: Mapping[str, int]) -> str:

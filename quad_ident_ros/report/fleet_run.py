@@ -81,6 +81,10 @@ class Reporter:
         if self._path != '-':
             sys.stdout.write(summary_text(summary, self._out))
 
+    def tell_insight(self, found):
+        """Write an Insight as the last line of JSON."""
+        self._write(found.as_data())
+
     def _left(self, progress):
         return seconds_left(progress, monotonic() - self._begun)
 

@@ -99,16 +99,22 @@ def web(name):
     return files('quad_ident_ros.report').joinpath('web', name).read_text(encoding='utf-8')
 
 
-def write_page(path, title, body):
-    """Write a page of HTML; raises InputError where the file cannot be written."""
+def write_page(path, title, body, also=''):
+    """
+    Write a page of HTML; raises InputError where the file cannot be written.
+
+    also: name of a further style and script in web/, for pages of one kind.
+    """
     body = markup(body)
     moving = SCRIPT_DATA in body
-    style = web('page.css') + (web('uPlot.min.css') if moving else '')
+    style = (web('page.css') + (web('uPlot.min.css') if moving else '')
+             + (web(f'{also}.css') if also else ''))
+    script = f'\n<script>\n{web(f"{also}.js")}</script>\n' if also else ''
     text = (f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">\n'
             f'<meta name="viewport" content="width=device-width, initial-scale=1">\n'
             f'<title>{escape(title)}</title>\n<style>\n{style}</style></head>\n<body>\n'
             f'<main>{tag("h1", title)}\n{body}\n</main>{_scripts() if moving else ""}'
-            '</body></html>\n')
+            f'{script}</body></html>\n')
     try:
         write_whole(path, text)
     except OSError as error:

@@ -1,19 +1,21 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""The pages of `diagnose --report` and `paper` in a real browser."""
+"""The pages of `diagnose --report`, `fleet --report` and `paper` in a real browser."""
 
 import json
 import re
 
 from browser import chromium, cut_in_print, opened, printed, violations, WIDTHS
+from fleets import data_set
 import pytest
 
 from quad_ident_ros.cli.main import main
 from quad_ident_ros.diagnose.diagnosis import diagnose
+from quad_ident_ros.fleet.insight import insight
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import MOCAP_IMU
 from quad_ident_ros.model.vehicle import load_vehicle
-from quad_ident_ros.report import gap_page
+from quad_ident_ros.report import fleet_page, gap_page
 
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group('browser')]
 
@@ -44,7 +46,17 @@ def paper(browser, tmp_path_factory):
     return folder / 'paper.html'
 
 
-@pytest.fixture(params=['gap', 'paper'])
+@pytest.fixture(scope='module')
+def fleet(browser, tmp_path_factory):
+    """Return the page of a fleet with a change and an odd vehicle."""
+    folder = tmp_path_factory.mktemp('fleet')
+    data_set(folder, vehicles=12, steps=[('uav3', 'com_offset', 'x', 11, 4e-3)],
+             odd=[('uav7', 'rotor_drag', 'coefficient', 0.08)])
+    fleet_page.write(folder / 'fleet.html', insight(folder))
+    return folder / 'fleet.html'
+
+
+@pytest.fixture(params=['gap', 'paper', 'fleet'])
 def path(request):
     return request.getfixturevalue(request.param)
 
@@ -237,3 +249,41 @@ def test_the_colours_of_the_charts_follow_those_of_the_page(browser, gap):
         light = at_rest(page)
         page.emulate_media(color_scheme='dark')
         assert all(one != other for one, other in zip(at_rest(page), light, strict=True))
+
+
+VEHICLES = """() => [...[...document.querySelectorAll('table')].find(
+  one => one.caption.textContent.startsWith('Parameters')).tBodies[0].rows]
+  .filter(row => row.checkVisibility()).map(row => row.cells[0].textContent)"""
+SHOWN = """() => [...document.querySelectorAll('.multiples figure')]
+  .filter(one => one.checkVisibility()).length"""
+
+
+def test_a_fleet_is_filtered_by_vehicle_effect_and_what_happened(browser, fleet):
+    """Rows, pictures and the list show what is asked for, and all again once nothing is."""
+    with opened(browser, fleet) as (page, *_):
+        assert len(page.evaluate(VEHICLES)) == 12 and page.evaluate(SHOWN) == 36
+        page.get_by_role('searchbox').fill('uav3')
+        assert page.evaluate(VEHICLES) == ['uav3'] and page.evaluate(SHOWN) == 3
+        assert page.locator('.first > li:visible').all_inner_texts()[0].startswith('uav3 changed')
+        page.get_by_role('combobox').select_option('com_offset')
+        assert page.evaluate(SHOWN) == 1
+        page.get_by_role('searchbox').fill('')
+        page.get_by_role('combobox').select_option('')
+        page.get_by_label('only changes and drifts').check()
+        assert page.evaluate(SHOWN) == 1
+        assert page.get_by_role('status').inner_text() == '1 of 36 pictures'
+        page.get_by_label('only changes and drifts').uncheck()
+        assert page.evaluate(SHOWN) == 36
+
+
+def test_a_table_of_a_fleet_is_sorted_by_keys(browser, fleet):
+    """A title is reached by keys; Enter sorts by numbers, and once more the other way round."""
+    with opened(browser, fleet) as (page, *_):
+        title = page.get_by_role('button', name=re.compile('rotor_drag'))
+        title.focus()
+        page.keyboard.press('Enter')
+        assert page.evaluate(VEHICLES)[-1] == 'uav7'
+        page.keyboard.press('Enter')
+        assert page.evaluate(VEHICLES)[0] == 'uav7'
+        head = page.get_by_role('columnheader', name=re.compile('rotor_drag'))
+        assert head.get_attribute('aria-sort') == 'descending'

@@ -1,0 +1,220 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+A parameter of a vehicle along its flights: whether it drifts, and at which flight it changed.
+
+A value is a level, a slope over time, steps, covariates (battery, temperature, season), and a
+scatter between flights that is estimated with them; single flights may be off. The posterior over
+the flight at which a step happened is that of a Bayesian change point (A. F. M. Smith, Biometrika
+62, 1975). Before looking, one change or drift is expected in all series together, so that a fleet
+with more vehicles, parameters or flights gives no more false alarms: an event of probability
+SURE or more has a false one among all series in at most (1 - SURE) / SURE of the fleets without
+any, whatever their size (Markov's inequality for Bayes factors; R. Royall, JASA 95, 2000).
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.special import logsumexp
+
+from quad_ident_ros.fleet.regression import Posterior, Regression, Term, Terms
+
+SURE = 0.95
+"""Probability from which on a change, a drift or an odd vehicle is reported."""
+EVENTS = 1.0
+"""Changes and drifts, as many of each, that are expected in all series before looking."""
+MOST_OFTEN = 0.01
+"""Probability of a change per flight, and of a drift, at most: where there are few series."""
+ODD = 0.02
+"""Probability that a single flight is off: a wrong log that its own checks do not find."""
+LEAST = 4
+"""Flights from which on a history is looked at: three cannot tell an odd one from a change."""
+INSIDE = 0.95       # of the posterior of the flight, between the first and the last that it may be
+DAY, WEEK, YEAR = 86400.0, 7 * 86400.0, 365.25 * 86400.0      # s
+STEP, SLOPE, SINGLE = 'step', 'slope', 'single'
+
+
+@dataclass(frozen=True, eq=False)
+class Series:
+    """
+    The values of a parameter of a vehicle along its flights, in the order of time.
+
+    t (N,) s; flights: N names; values, errors (N,): standard errors; covariates (N, A), each zero
+    for the usual flight of the fleet and about one for an unusual one, under their names.
+    """
+
+    vehicle: str
+    configuration: str
+    effect: str
+    parameter: str
+    unit: str
+    t: np.ndarray
+    flights: tuple[str, ...]
+    values: np.ndarray
+    errors: np.ndarray
+    covariates: np.ndarray
+    names: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Change:
+    """
+    A step of a parameter, `size` with its standard error.
+
+    place: number of the first flight after it in the series; first, last: of those that it may
+    have been, with 95 %; probability that there is a change or a drift, at whichever flight;
+    otherwise: probability that it is a drift instead.
+    """
+
+    place: int
+    first: int
+    last: int
+    probability: float
+    otherwise: float
+    size: float
+    std: float
+
+
+@dataclass(frozen=True)
+class Drift:
+    """
+    A slope of a parameter, per week, with its standard error.
+
+    probability that there is a drift or a change; otherwise: that it is a change instead.
+    """
+
+    per_week: float
+    std: float
+    probability: float
+    otherwise: float
+
+
+@dataclass(frozen=True, eq=False)
+class History:
+    """
+    What a Series says.
+
+    odd: numbers of the flights that are off by themselves; level, std: what the parameter is at
+    the last flight, of usual covariates; scatter: between flights, beside the standard errors;
+    course (N,): level, slope and steps along the flights.
+    """
+
+    series: Series
+    changes: tuple[Change, ...]
+    drift: Drift | None
+    odd: tuple[int, ...]
+    level: float
+    std: float
+    scatter: float
+    course: np.ndarray
+
+
+def histories(series: Sequence[Series]) -> tuple[History, ...]:
+    """Return the History of each Series; what is expected before looking is shared among all."""
+    places = sum(max(len(one.values) - 1, 0) for one in series)
+    change = min(EVENTS / 2.0 / max(places, 1), MOST_OFTEN)
+    drift = min(EVENTS / 2.0 / max(len(series), 1), MOST_OFTEN)
+    return tuple(history(one, change, drift) for one in series)
+
+
+def history(series: Series, change: float, drift: float) -> History:
+    """
+    Return the History of a Series.
+
+    Args: change: probability of a change between two flights, drift: of a drift, before looking.
+    """
+    always = _with_season(series)
+    terms = _terms(series, change, drift)
+    model = Regression(series.values, series.errors, always, terms)
+    _, chosen = model.search() if len(series.values) >= LEAST else (0.0, ())
+    known = model.posterior(chosen)
+    before = 1 + always.shape[1]
+    changes, slope, odd = [], None, []
+    for number, term in enumerate(chosen):
+        kind, place = terms.kind[term.number], int(terms.place[term.number])
+        value, error = _coefficient(known, before + number)
+        if kind == SINGLE:
+            odd.append(place)
+            continue
+        probability, otherwise = _probability(model, chosen, term)
+        if probability < SURE:
+            continue
+        if kind == SLOPE:
+            weeks = _half_span(series.t) / WEEK
+            slope = Drift(value / weeks, error / weeks, probability, otherwise)
+        else:
+            first, last = _between(model, chosen, term)
+            changes.append(Change(place, first, last, probability, otherwise, value, error))
+    lasting = [0, *(before + number for number, term in enumerate(chosen)
+                    if terms.kind[term.number] != SINGLE)]
+    design = model.design(chosen)[:, lasting]
+    row = design[-1]
+    return History(series, tuple(sorted(changes, key=lambda one: one.place)), slope,
+                   tuple(sorted(odd)), float(row @ known.mean[lasting]),
+                   float(np.sqrt(row @ known.covariance[np.ix_(lasting, lasting)] @ row)),
+                   known.scatter, design @ known.mean[lasting])
+
+
+def _terms(series: Series, change: float, drift: float) -> Terms:
+    """Return a step before each flight but the first, a slope, and each flight by itself."""
+    count, t = len(series.values), series.t
+    steps = np.tri(count)[:, 1:]
+    slope = (t - 0.5 * (t[0] + t[-1])) / _half_span(t)
+    slopes = slope[:, None] if np.ptp(t) > 0.0 else np.zeros((count, 0))
+    kinds = [STEP] * (count - 1) + [SLOPE] * slopes.shape[1] + [SINGLE] * count
+    odds = {kind: np.log(share / (1.0 - share)) for kind, share in
+            ((STEP, change), (SLOPE, drift), (SINGLE, ODD))}
+    return Terms(np.column_stack([steps, slopes, np.eye(count)]),
+                 np.array([odds[kind] for kind in kinds]), np.array(kinds),
+                 np.concatenate([np.arange(1, count), np.zeros(slopes.shape[1], int),
+                                 np.arange(count)]))
+
+
+def _with_season(series: Series) -> np.ndarray:
+    """
+    Return the covariates (N, A), with a season of a year where the flights span one.
+
+    Over less than a whole year a season and a drift are the same.
+    """
+    if np.ptp(series.t) < YEAR:
+        return series.covariates
+    angle = 2.0 * np.pi * series.t / YEAR
+    return np.column_stack([series.covariates, np.sin(angle), np.cos(angle)])
+
+
+def _half_span(t: np.ndarray) -> float:
+    return max(0.5 * float(t[-1] - t[0]), 1e-9)
+
+
+def _coefficient(known: Posterior, place: int) -> tuple[float, float]:
+    return float(known.mean[place]), float(np.sqrt(known.covariance[place, place]))
+
+
+def _probability(model: Regression, chosen: Sequence[Term], term: Term) -> tuple[float, float]:
+    """
+    Return how probable it is that something lasting is where a term is, and that it is no such.
+
+    Beside the best set that explains it by single flights, with or without the other terms; a step
+    counts wherever it may have been, and a slope in place of a step counts, too.
+    """
+    rest = tuple(one for one in chosen if one != term)
+    without = max(model.search(rest, (SINGLE,))[0], model.search((), (SINGLE,))[0])
+    kinds = model.terms.kind
+    lasting = kinds != SINGLE
+    gains = model.gains(rest)
+    other = gains[lasting & (kinds != kinds[term.number])]
+    share = np.exp(logsumexp(other) - logsumexp(gains[lasting])) if other.size else 0.0
+    return model.probability(np.flatnonzero(lasting), chosen, term, without), float(share)
+
+
+def _between(model: Regression, chosen: Sequence[Term], term: Term) -> tuple[int, int]:
+    """Return the first and the last flight at which a step may have happened."""
+    rest = tuple(one for one in chosen if one != term)
+    steps = model.terms.kind == STEP
+    gains = logsumexp(model.gains(rest)[steps], axis=1)
+    share = np.cumsum(np.exp(gains - logsumexp(gains)))
+    places = model.terms.place[steps]
+    edge = 0.5 * (1.0 - INSIDE)
+    first, last = (int(np.searchsorted(share, part)) for part in (edge, 1.0 - edge))
+    return int(places[first]), int(places[min(last, len(places) - 1)])

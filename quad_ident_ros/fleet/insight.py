@@ -1,0 +1,210 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What a fleet tells that a flight cannot, as typed values and as data."""
+
+from collections.abc import Iterable
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow
+
+from quad_ident_ros import __version__
+from quad_ident_ros.effects.registry import EFFECTS
+from quad_ident_ros.fleet.events import Event, events
+from quad_ident_ros.fleet.history import histories, History
+from quad_ident_ros.fleet.series import series_of
+from quad_ident_ros.fleet.sisters import Sister, Sisters, sisters
+from quad_ident_ros.fleet.store import read_table
+from quad_ident_ros.greybox.errors import UNITS
+
+SCHEMA = 'quad_ident/insight/1'
+DIAGNOSED = 'diagnosed'
+MOST = 0.5          # share of vehicles from which on an effect is that of the model
+STAGES = 'before', 'after', 'noise'
+
+
+@dataclass(frozen=True)
+class Odd:
+    """A vehicle that differs from its sisters in a parameter, of which they have `mean`."""
+
+    configuration: str
+    effect: str
+    parameter: str
+    unit: str
+    mean: float
+    spread: float
+    sisters: int
+    sister: Sister
+    material: bool
+
+
+@dataclass(frozen=True)
+class Presence:
+    """
+    An effect in a fleet.
+
+    having: vehicles, of `vehicles` that have been diagnosed, in whose verdicts it is most of the
+    time; probability: mean over the vehicles; contribution: median where it is named; shared:
+    most vehicles have it, so that the model is wrong and not a vehicle.
+    """
+
+    configuration: str
+    effect: str
+    having: tuple[str, ...]
+    vehicles: int
+    probability: float
+    contribution: float | None
+    shared: bool
+
+
+@dataclass(frozen=True)
+class FleetGap:
+    """The gap of a vehicle's groups, {group of outputs: (median, lower, upper quartile)}."""
+
+    vehicle: str
+    configuration: str
+    groups: int
+    before: dict
+    after: dict
+    noise: dict
+
+
+@dataclass(frozen=True, eq=False)
+class Insight:
+    """
+    What the results of a fleet tell together.
+
+    status {of groups: how many}; refused, suspect ((vehicle, file, reason), ...): flights that
+    were not diagnosed, and those that were but stand apart from the others of their vehicle.
+    """
+
+    vehicles: tuple[str, ...]
+    flights: int
+    status: dict[str, int]
+    refused: tuple[tuple[str, str, str], ...]
+    suspect: tuple[tuple[str, str, str], ...]
+    events: tuple[Event, ...]
+    odd: tuple[Odd, ...]
+    present: tuple[Presence, ...]
+    gaps: tuple[FleetGap, ...]
+    histories: tuple[History, ...]
+    sisters: tuple[Sisters, ...]
+
+    def as_data(self) -> dict[str, Any]:
+        """Return the insight as data for JSON."""
+        return {
+            'schema': SCHEMA, 'version': __version__, 'vehicles': list(self.vehicles),
+            'flights': self.flights, 'status': dict(self.status),
+            'refused': [list(one) for one in self.refused],
+            'suspect': [list(one) for one in self.suspect],
+            'events': [asdict(one) | {'date': one.date.isoformat(), 'last_before':
+                                      one.last_before and one.last_before.isoformat()}
+                       for one in self.events],
+            'odd': [asdict(one) for one in self.odd],
+            'effects': [asdict(one) for one in self.present],
+            'gaps': [asdict(one) for one in self.gaps],
+            'vehicles_by_parameter': [asdict(one) for one in self.sisters]}
+
+
+def insight(out: str | Path) -> Insight:
+    """Return the Insight of the data set in a folder; raises InputError where it is unreadable."""
+    groups, effects = read_table(out, 'groups'), read_table(out, 'effects')
+    flights, parameters = read_table(out, 'flights'), read_table(out, 'parameters')
+    return insight_of(groups, flights, effects, parameters)
+
+
+def insight_of(groups: pyarrow.Table, flights: pyarrow.Table, effects: pyarrow.Table,
+               parameters: pyarrow.Table) -> Insight:
+    """Return the Insight of the tables of a data set."""
+    rows = groups.to_pylist()
+    found = histories(series_of(parameters, flights))
+    beside = sisters(found)
+    named = {(row['vehicle'], effect) for row in rows for effect in row['verdict'] or ()}
+    status: dict[str, int] = {}
+    for row in rows:
+        status[row['status']] = status.get(row['status'], 0) + 1
+    flown = flights.to_pylist()
+    refused = tuple((row['vehicle'], Path(row['path']).name, row['reason'])
+                    for row in flown if row['status'] != DIAGNOSED)
+    return Insight(tuple(sorted({row['vehicle'] for row in rows})), flights.num_rows, status,
+                   tuple(sorted(refused)), _suspect(flown, found), events(found, named),
+                   _odd(beside, named), presence(effects), _gaps(rows), found, beside)
+
+
+def _suspect(flights: Iterable[dict], found: Iterable[History]
+             ) -> tuple[tuple[str, str, str], ...]:
+    """
+    Return (vehicle, file, reason) of diagnosed flights that stand apart from their vehicle's.
+
+    A parameter of theirs is off by itself, or they cannot be fitted while others can.
+    """
+    off: dict[str, list[str]] = {}
+    fitted: dict[str, set[str]] = {}
+    for one in found:
+        fitted.setdefault(one.series.vehicle, set()).update(one.series.flights)
+        for place in one.odd:
+            off.setdefault(one.series.flights[place], []).append(
+                f'{one.series.effect} {one.series.parameter}')
+    made = []
+    for row in flights:
+        if row['status'] != DIAGNOSED or row['vehicle'] not in fitted:
+            continue
+        if row['flight'] in off:
+            made.append((row['vehicle'], Path(row['path']).name,
+                         f'off by itself: {", ".join(off[row["flight"]])}'))
+        elif row['flight'] not in fitted[row['vehicle']]:
+            made.append((row['vehicle'], Path(row['path']).name,
+                         'cannot be fitted by itself, while others of the vehicle can'))
+    return tuple(sorted(made))
+
+
+def _odd(beside: Iterable[Sisters], named: set[tuple[str, str]]) -> tuple[Odd, ...]:
+    found = [Odd(one.configuration, one.effect, one.parameter, one.unit, one.mean, one.spread,
+                 len(one.vehicles) - 1, sister, (sister.vehicle, one.effect) in named)
+             for one in beside for sister in one.odd]
+    return tuple(sorted(found, key=lambda one: -abs(one.sister.spreads)))
+
+
+def presence(effects: pyarrow.Table) -> tuple[Presence, ...]:
+    """Return the Presence of each effect, the most frequent first."""
+    of_effect: dict[tuple[str, str], dict[str, list[dict]]] = {}
+    for row in effects.to_pylist():
+        of_effect.setdefault((row['configuration'], row['effect']), {}).setdefault(
+            row['vehicle'], []).append(row)
+    made = []
+    for (configuration, effect), vehicles in of_effect.items():
+        if effect not in EFFECTS:
+            continue
+        having = tuple(sorted(
+            vehicle for vehicle, rows in vehicles.items()
+            if np.mean([row['named'] for row in rows]) >= MOST))
+        parts = [row['contribution'] for rows in vehicles.values() for row in rows
+                 if row['named'] and row['contribution'] is not None]
+        made.append(Presence(
+            configuration, effect, having, len(vehicles),
+            float(np.mean([np.mean([row['probability'] for row in rows])
+                           for rows in vehicles.values()])),
+            float(np.median(parts)) if parts else None,
+            len(vehicles) > 1 and len(having) > MOST * len(vehicles)))
+    return tuple(sorted(made, key=lambda one: (-len(one.having), -one.probability)))
+
+
+def _gaps(rows: Iterable[dict]) -> tuple[FleetGap, ...]:
+    of_vehicle: dict[tuple[str, str], list[dict]] = {}
+    for row in rows:
+        if row['status'] == DIAGNOSED:
+            of_vehicle.setdefault((row['vehicle'], row['configuration']), []).append(row)
+    return tuple(FleetGap(*key, len(some), *(
+        {name: _quartiles([row[f'gap_{stage}_{name}'] for row in some]) for name in UNITS}
+        for stage in STAGES)) for key, some in sorted(of_vehicle.items()))
+
+
+def _quartiles(values: Iterable[float | None]) -> tuple[float, float, float] | None:
+    """Return median, lower and upper quartile of what is known, None where nothing is."""
+    known = [value for value in values if value is not None]
+    if not known:
+        return None
+    low, middle, high = np.quantile(known, (0.25, 0.5, 0.75))
+    return float(middle), float(low), float(high)

@@ -1,0 +1,180 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What a fleet's insight means, in plain words: what to look at first, and why."""
+
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from datetime import datetime
+
+from quad_ident_ros.data.counted import counted
+from quad_ident_ros.effects.registry import EFFECTS, NULL, PLACE, titled
+from quad_ident_ros.fleet.events import Event, Part
+from quad_ident_ros.fleet.history import Change, Drift
+from quad_ident_ros.fleet.insight import Insight, Odd, Presence
+from quad_ident_ros.report.sizes import handy, PER_CENT, sized, with_error
+
+WORSE, CHANGED, DIFFERS, MODEL, LOGS, SUSPECT, SMALL = (
+    'gets worse', 'changed', 'differs from its sisters', 'the model is wrong', 'logs refused',
+    'logs to check', 'small')
+"""Why something is worth a look, the most urgent first: a drift goes on."""
+NAMED = 5           # vehicles or parts that a sentence lists
+
+
+@dataclass(frozen=True)
+class Point:
+    """Something to look at: why, where (a vehicle, or all), and a sentence."""
+
+    why: str
+    where: str
+    text: str
+
+
+def points(found: Insight) -> tuple[Point, ...]:
+    """
+    Return what to look at, the most urgent first.
+
+    What drifts, what changed, which vehicles are odd, what the model lacks for all, which logs
+    cannot be used, or look wrong; last what is sure but in no verdict, for it hardly moves the
+    vehicle.
+    """
+    groups: dict[str, list[Point]] = {why: [] for why in (WORSE, CHANGED, DIFFERS, MODEL, LOGS,
+                                                          SUSPECT, SMALL)}
+    for event in sorted(found.events, key=lambda one: -one.date.timestamp()):
+        why = WORSE if event.kind == 'drift' else CHANGED
+        groups[why if event.material else SMALL].append(
+            Point(why, event.vehicle, event_line(event) + _small(event.material)))
+    since = {(event.vehicle, part.effect) for event in found.events for part in event.parts}
+    for odd in found.odd:
+        if (odd.sister.vehicle, odd.effect) in since:
+            continue    # it differs because it changed, which is said already
+        groups[DIFFERS if odd.material else SMALL].append(
+            Point(DIFFERS, odd.sister.vehicle, odd_line(odd) + _small(odd.material)))
+    groups[MODEL] += [Point(MODEL, 'all', shared_line(one, found)) for one in found.present
+                      if one.shared]
+    groups[LOGS] += _logs(found)
+    groups[SUSPECT] += _suspect(found)
+    return tuple(point for some in groups.values() for point in some)
+
+
+def event_line(event: Event) -> str:
+    """Return a sentence on what happened to a vehicle."""
+    first, others = event.parts[0], event.parts[1:NAMED]
+    if isinstance(first.change, Drift):
+        text = (f'{titled(first.effect)}: {first.parameter} '
+                f'{"rises" if first.change.per_week > 0 else "falls"} by '
+                f'{sized(abs(first.change.per_week), first.change.std, unit_of(first))} a week')
+    else:
+        text = (f'from {day(event.date)} on, {titled(first.effect)} differs: {first.parameter} '
+                f'by {_signed(first)}; flight {event.number} of {event.flights} is the first '
+                'after it')
+    if others:
+        text += ', with ' + ', '.join(
+            f'{part.effect} {part.parameter} {_signed(part)}' for part in others)
+    return f'{text} (probability {_probability(event.probability)})'
+
+
+def odd_line(odd: Odd) -> str:
+    """Return a sentence on a vehicle that differs from its sisters."""
+    one = odd.sister
+    unit, factor = handy(odd.unit, (one.value, odd.mean))
+    mine, theirs = (with_error(factor * value, factor * std)
+                    for value, std in ((one.value, one.std), (odd.mean, odd.spread)))
+    shown = '' if unit in ('1', '') else f' {unit}'
+    return (f'{titled(odd.effect)}: {odd.parameter} is {mine}{shown}, that of its {odd.sisters} '
+            f'sisters {theirs}{shown} from vehicle to vehicle: off by {abs(one.spreads):.1f} '
+            f'times that spread (probability {_probability(one.odd)})')
+
+
+def shared_line(one: Presence, found: Insight) -> str:
+    """Return a sentence on an effect that most vehicles have."""
+    values = [f'{each.parameter} {sized(each.mean, each.spread, each.unit)}'
+              for each in found.sisters
+              if (each.configuration, each.effect) == (one.configuration, one.effect)
+              and abs(each.mean - null_of(each.effect, each.parameter)) > 2 * each.spread]
+    share = ('' if one.contribution is None else
+             f'; without it {100 * one.contribution:.0f} % of the closable gap would remain')
+    told = (f', {", ".join(values)} from vehicle to vehicle' if values else
+            ', each with values of its own')
+    remedy = ('add it to the vehicle file' if values else
+              'give each vehicle a file of its own with what its diagnosis finds')
+    return (f'{len(one.having)} of {one.vehicles} vehicles have {titled(one.effect)}{told}{share}'
+            f': {remedy}')
+
+
+def null_of(effect: str, parameter: str) -> float:
+    """Return the value of a parameter at which there is no effect."""
+    return float(NULL[PLACE[effect, parameter]]) if (effect, parameter) in PLACE else 0.0
+
+
+def unit_of(part: Part) -> str:
+    """Return the unit of a size: per cent, where no effect is a factor of one."""
+    whole = part.unit == '1' and null_of(part.effect, part.parameter) == 1.0
+    return PER_CENT if whole else part.unit
+
+
+def day(date: datetime) -> str:
+    """Return a date as 14 May 2026."""
+    return f'{date.day} {date:%B %Y}'
+
+
+def summary_line(found: Insight) -> str:
+    """Return a sentence on how much was looked at."""
+    return (f'{counted(found.flights, "flight")} of {counted(len(found.vehicles), "vehicle")} in '
+            f'{counted(sum(found.status.values()), "group")}, {found.status.get("diagnosed", 0)} '
+            f'of them diagnosed; {counted(len(found.refused), "flight")} refused')
+
+
+def known_effect(name: str) -> str:
+    """Return the title of an effect, or its name where this version does not know it."""
+    return EFFECTS[name].title if name in EFFECTS else name
+
+
+def _logs(found: Insight) -> list[Point]:
+    """Return a Point for the vehicles whose logs are refused most often."""
+    if not found.refused:
+        return []
+    most = Counter(vehicle for vehicle, _, _ in found.refused).most_common(NAMED)
+    names = ', '.join(f'{vehicle} {count}' for vehicle, count in most)
+    count = len(found.refused)
+    return [Point(LOGS, most[0][0], f'{count} of {found.flights} flights '
+                  f'{"is" if count == 1 else "are"} refused: {names}'
+                  f'{" and others" if sum(n for _, n in most) < count else ""}; the first: '
+                  f'{found.refused[0][2]}')]
+
+
+def _small(material: bool) -> str:
+    return '' if material else '; no verdict names it, so it matters little'
+
+
+def _suspect(found: Insight) -> list[Point]:
+    """Return a Point for the flights that stand apart from others of their vehicle."""
+    if not found.suspect:
+        return []
+    names = listed([f'{vehicle} {file}' for vehicle, file, _ in found.suspect])
+    return [Point(SUSPECT, found.suspect[0][0],
+                  f'{counted(len(found.suspect), "flight")} differ from all others of the same '
+                  f'vehicle, and changed nothing: {names}; look at their logs')]
+
+
+def _signed(part: Part) -> str:
+    change = part.change
+    size = change.size if isinstance(change, Change) else change.per_week
+    text = sized(size, change.std, unit_of(part))
+    return (text if text.startswith('-') else f'+{text}') + (
+        '' if isinstance(change, Change) else ' a week')
+
+
+def _probability(value: float) -> str:
+    return f'{value:.3f}' if value < 0.9995 else 'over 0.999'
+
+
+def listed(names: Sequence[str]) -> str:
+    """Return names with commas, of many the first ones and how many more."""
+    more = len(names) - NAMED
+    return ', '.join(names[:NAMED]) + (f' and {more} more' if more > 0 else '')
+
+
+def rows_of(some: Iterable[Point]) -> list[list[str]]:
+    """Return a numbered row of text for each Point."""
+    return [[str(number), one.where, one.why, one.text] for number, one in enumerate(some, 1)]

@@ -1,0 +1,128 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What the data set of a fleet tells, in values, in words and on the page."""
+
+from datetime import timedelta
+import io
+import json
+
+from fleets import data_set, START
+import pytest
+
+from quad_ident_ros.fleet.insight import insight
+from quad_ident_ros.fleet.store import write_rows
+from quad_ident_ros.report.data import finite
+from quad_ident_ros.report.fleet import show_insight
+from quad_ident_ros.report.fleet_page import write
+from quad_ident_ros.report.fleet_words import points
+
+STEP = ('uav3', 'com_offset', 'x', 11, 4e-3)
+SLOPE = ('uav5', 'thrust_scale', 'factor', -0.01)
+WRONG = ('uav2', 'com_offset', 'x', 13, 0.05)
+ODD = ('uav7', 'rotor_drag', 'coefficient', 0.08)
+
+
+@pytest.fixture(scope='module')
+def found(tmp_path_factory):
+    """Return the insight of a fleet with a change, a drift, an odd vehicle and a bad log."""
+    out = tmp_path_factory.mktemp('fleet')
+    data_set(out, steps=[STEP], slopes=[SLOPE], odd=[ODD], wrong=[WRONG])
+    return insight(out)
+
+
+def test_what_happened_is_found_and_dated(found):
+    """One change, one drift, one odd vehicle, one shared effect, and nothing else."""
+    change, = (event for event in found.events if event.kind == 'change')
+    drift, = (event for event in found.events if event.kind == 'drift')
+    assert change.vehicle == 'uav3' and change.flight == 'uav3/11'
+    assert change.date == START + timedelta(days=33)
+    assert change.parts[0].change.size == pytest.approx(4e-3, rel=0.1)
+    assert drift.vehicle == 'uav5'
+    assert drift.parts[0].change.per_week == pytest.approx(-0.01, rel=0.1)
+    assert 'uav7' in {one.sister.vehicle for one in found.odd if one.effect == 'rotor_drag'}
+    assert {one.sister.vehicle for one in found.odd} <= {'uav3', 'uav5', 'uav7'}
+    assert {one.effect for one in found.present if one.shared} == {'rotor_drag', 'com_offset'}
+
+
+def test_refused_flights_take_no_part(found):
+    """The first flight of the first vehicle is listed with its reason and is in no series."""
+    assert found.refused == (('uav1', '0.csv', 'this is not text'),)
+    assert all('uav1/0' not in one.series.flights for one in found.histories)
+    assert found.flights == 160 and found.status == {'diagnosed': 32}
+
+
+def test_a_flight_that_is_off_by_itself_is_to_be_checked(found):
+    """A wrong log is no change of the vehicle; it is named with what is off."""
+    assert ('uav2', '13.csv', 'off by itself: com_offset x') in found.suspect
+    assert all(event.vehicle != 'uav2' for event in found.events)
+
+
+def test_the_list_begins_with_what_gets_worse(found):
+    """Drifts come before changes, these before odd vehicles, then the model and the logs."""
+    some = points(found)
+    assert [one.why for one in some][:3] == ['changed', 'differs from its sisters',
+                                             'the model is wrong']
+    assert [one.where for one in some][:2] == ['uav3', 'uav7']
+    assert some[0].text.startswith('from 3 June 2026 on, offset of the centre of mass')
+    assert 'mm' in some[0].text
+    shared = {one.text.partition('(')[2].partition(')')[0]: one.text for one in some
+              if one.why == 'the model is wrong'}
+    assert shared['rotor_drag'].endswith('add it to the vehicle file')
+    assert 'each with values of its own' in shared['com_offset']
+    # Thrust is in no verdict here: its drift is sure, but hardly moves the vehicle.
+    assert (some[-1].where, some[-1].why) == ('uav5', 'gets worse')
+    assert 'falls by' in some[-1].text and '% a week' in some[-1].text
+    assert 'matters little' in some[-1].text
+
+
+def test_the_data_is_json_of_its_schema(found):
+    """as_data() has plain values alone, and the same events."""
+    data = json.loads(json.dumps(finite(found.as_data()), allow_nan=False))
+    assert data['schema'] == 'quad_ident/insight/1'
+    assert [event['vehicle'] for event in data['events']] == [
+        event.vehicle for event in found.events]
+
+
+def test_the_terminal_shows_the_list_first(found):
+    """The list stands above the tables, and no line of it is cut."""
+    stream = io.StringIO()
+    show_insight(found, stream)
+    text = stream.getvalue()
+    assert text.index('what to look at first') < text.index('uav3') < text.index('effects in')
+    assert '160 flights of 8 vehicles' in text
+
+
+def test_the_page_has_every_vehicle_and_loads_nothing(found, tmp_path):
+    """Each vehicle has its row, each series its picture; there is no address of a network."""
+    page = tmp_path / 'fleet.html'
+    write(page, found)
+    text = page.read_text(encoding='utf-8')
+    assert text.count('<figure data-vehicle=') == len(found.histories) == 24
+    assert text.count('<svg class="small"') == 24
+    assert 'http://' not in text and 'https://' not in text
+
+
+def test_a_fleet_without_a_flight_that_was_fitted_has_a_page(tmp_path):
+    """All groups refused: the page says so and has no empty tables."""
+    write_rows(tmp_path, 'groups', 'a', [{
+        'group': 'a', 'vehicle': 'uav1', 'configuration': '', 'date': START, 'flights': 1,
+        'status': 'refused', 'reason': 'too short'}])
+    write_rows(tmp_path, 'flights', 'a', [{
+        'flight': 'f', 'path': 'f.csv', 'group': 'a', 'vehicle': 'uav1', 'configuration': '',
+        'date': START, 'status': 'refused', 'reason': 'too short'}])
+    found = insight(tmp_path)
+    write(tmp_path / 'fleet.html', found)
+    show_insight(found, io.StringIO())
+    assert found.events == () and found.status == {'refused': 1}
+    assert points(found)[0].text.startswith('1 of 1 flights is refused')
+
+
+def test_names_are_text_on_the_page(tmp_path):
+    """A vehicle may be called as it likes: its name is no markup."""
+    data_set(tmp_path / 'set', vehicles=2, flights=5)
+    write_rows(tmp_path / 'set', 'flights', 'x', [{
+        'flight': 'x', 'path': 'x.csv', 'group': 'x', 'vehicle': '<b>"x', 'configuration': '',
+        'date': START, 'status': 'refused', 'reason': '<script>'}])
+    write(tmp_path / 'fleet.html', insight(tmp_path / 'set'))
+    text = (tmp_path / 'fleet.html').read_text(encoding='utf-8')
+    assert '<b>"x' not in text and '<td class="prose"><script>' not in text
