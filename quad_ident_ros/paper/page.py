@@ -95,8 +95,8 @@ def _conclusions(claims):
         _heading('conclusions', 'Conclusions'),
         tag('p', 'A claim holds if it is true in all cases, holds in part if it is true in some, '
                  'and does not hold if it is true in none. A claim about everything (equations '
-                 'that are the same, a space that contains all solutions, the smallest of all errors, '
-                 'no better method) does not hold if a single case refutes it.'),
+                 'that are the same, a space that contains all solutions, the smallest of all '
+                 'errors, no better method) does not hold if a single case refutes it.'),
         tag('p', 'For claims that one method is better than another, each experiment, search and '
                  'pair of methods is a case; cases in which the opposite is true are counted '
                  'beside. A method is better if the 95 % interval of the probability that it ends '
