@@ -16,7 +16,8 @@ from pyarrow import dataset, parquet
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.greybox.errors import UNITS
 
-OLD = 3600.0    # s after which a file that is not whole belongs to a run that was killed
+TOGETHER = 200      # files that are read at once: each takes 0.1 MB meanwhile
+OLD = 3600.0        # s after which a file that is not whole belongs to a run that was killed
 UNFINISHED = '.unfinished'
 """The folder of files that are not whole yet, out of sight of groups/*.parquet and the like."""
 
@@ -126,7 +127,10 @@ def read_table(out: str | Path, table: str,
     folder = Path(out) / table
     files = sorted(f'{folder / key}.parquet' for key in keys_of(out, table))
     try:
-        return dataset.dataset(files, schema=TABLES[table], format='parquet').to_table(columns)
+        return pyarrow.concat_tables([
+            dataset.dataset(files[k:k + TOGETHER], schema=TABLES[table], format='parquet'
+                            ).to_table(columns)
+            for k in range(0, max(1, len(files)), TOGETHER)]).combine_chunks()
     except FileNotFoundError:       # another run has replaced it meanwhile
         return read_table(out, table, columns)
     except (OSError, pyarrow.ArrowException) as error:

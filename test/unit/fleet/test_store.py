@@ -11,6 +11,7 @@ import pytest
 pytest.importorskip('pyarrow', reason='the extra `fleet` is not installed')
 
 from quad_ident_ros.errors import InputError  # noqa: E402
+from quad_ident_ros.fleet import store  # noqa: E402
 from quad_ident_ros.fleet.store import keys_of, read_table, TABLES, write_rows  # noqa: E402
 
 DAY = datetime(2026, 5, 14, 8, 30, tzinfo=timezone.utc)
@@ -32,6 +33,14 @@ def test_the_same_key_is_the_same_file(tmp_path):
     assert keys_of(tmp_path, 'flights') == {'g', 'h'}
     assert sorted(read_table(tmp_path, 'flights', ['path'])['path'].to_pylist()) == [
         'a.csv', 'after']
+
+
+@pytest.mark.parametrize('together', [1, 2, 5, 6])
+def test_all_files_are_read_however_many_at_once(tmp_path, monkeypatch, together):
+    monkeypatch.setattr(store, 'TOGETHER', together)
+    for number in range(5):
+        write_rows(tmp_path, 'flights', f'{number}', [FLIGHT | {'path': f'{number}'}])
+    assert sorted(read_table(tmp_path, 'flights')['path'].to_pylist()) == list('01234')
 
 
 @pytest.mark.parametrize('table', TABLES)
