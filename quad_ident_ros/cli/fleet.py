@@ -96,9 +96,9 @@ def run(options):
         summary = run_fleet(client, options.flights, options.out, vehicle=options.vehicle,
                             mapping=options.mapping, rules=rules, tell=reporter.tell,
                             time_limit=options.time_limit or TIME_LIMIT)
-        reporter.end(summary)
         found = insight(options.out)
         reporter.tell_insight(found)
+        reporter.end(summary)
     if options.json != '-':
         show_insight(found, sys.stdout)
     if options.report:

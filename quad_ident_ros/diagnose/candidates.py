@@ -106,10 +106,12 @@ def _share(name: str, form: Form, forms: Sequence[Form], rules: Rules) -> float:
         return 1.0
     shares = [rules.usual_form if one is forms[0]
               else (1.0 - rules.usual_form) / (len(forms) - 1) for one in forms]
-    if name in rules.priors and rules.priors[name].forms:
-        shares = [rules.priors[name].forms.get(one.name, 0.0) or share / FORMS_SEEN
+    known = rules.priors[name].forms if name in rules.priors else {}
+    if known:
+        shares = [known.get(one.name, share / FORMS_SEEN)
                   for one, share in zip(forms, shares, strict=True)]
-    return shares[forms.index(form)] / sum(shares)
+        shares = [share / sum(shares) for share in shares]
+    return shares[forms.index(form)]
 
 
 def nuisance_candidates(vehicle: Vehicle, tracks: list) -> tuple[Candidate, ...]:

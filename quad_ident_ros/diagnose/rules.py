@@ -158,6 +158,8 @@ class Rules:
 
     def odds(self, effect: str) -> float:
         """Return the probability that an effect is present, before looking."""
+        if effect not in self.priors:
+            return self.prior_odds
         return 1.0 / (1.0 + exp(-log_odds(self.prior_odds) - self.shift(effect)))
 
     def least(self, group: str, noise: float) -> float:

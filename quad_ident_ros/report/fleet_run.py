@@ -82,7 +82,7 @@ class Reporter:
             sys.stdout.write(summary_text(summary, self._out))
 
     def tell_insight(self, found):
-        """Write an Insight as the last line of JSON."""
+        """Write an Insight as a line of JSON."""
         self._write(found.as_data())
 
     def _left(self, progress):

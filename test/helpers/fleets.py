@@ -8,7 +8,6 @@ import numpy as np
 
 from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.fleet.history import Series
-from quad_ident_ros.fleet.store import write_rows
 
 DAY = 86400.0
 START = datetime(2026, 5, 1, 8, 0, tzinfo=timezone.utc)
@@ -78,6 +77,7 @@ def data_set(out, *, vehicles=8, flights=20, seed=1, steps=(), slopes=(), odd=()
 
 def _write(out, name, known, temperatures, refused):
     """Write the rows of a vehicle."""
+    from quad_ident_ros.fleet.store import write_rows  # its pyarrow is an extra
     flights = len(temperatures)
     dates = [START + timedelta(days=3.0 * number) for number in range(flights)]
     for group in range(-(-flights // GROUPS)):

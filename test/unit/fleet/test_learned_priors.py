@@ -7,9 +7,11 @@ import pytest
 
 from quad_ident_ros.diagnose.rules import RULES
 from quad_ident_ros.effects.registry import EFFECTS
-from quad_ident_ros.fleet.insight import insight
-from quad_ident_ros.fleet.priors import DOUBT, learned
-from quad_ident_ros.fleet.store import read_table
+
+pytest.importorskip('pyarrow', reason="pyarrow is not installed: pip install '.[fleet]'")
+from quad_ident_ros.fleet.insight import insight  # noqa: E402
+from quad_ident_ros.fleet.priors import DOUBT, learned  # noqa: E402
+from quad_ident_ros.fleet.store import read_table  # noqa: E402
 
 
 @pytest.fixture(scope='module')

@@ -6,11 +6,13 @@ from datetime import timedelta
 
 from fleets import START
 import numpy as np
-import pyarrow
 import pytest
 
-from quad_ident_ros.fleet.series import series_of
-from quad_ident_ros.fleet.store import TABLES
+pytest.importorskip('pyarrow', reason="pyarrow is not installed: pip install '.[fleet]'")
+import pyarrow  # noqa: E402
+
+from quad_ident_ros.fleet.series import series_of  # noqa: E402
+from quad_ident_ros.fleet.store import TABLES  # noqa: E402
 
 
 def tables(values, stds, covariates, status='diagnosed'):

@@ -2,10 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Which effects are followed from flight to flight."""
 
-import pyarrow
 import pytest
 
-from quad_ident_ros.fleet.track import tracked_effects
+pytest.importorskip('pyarrow', reason="pyarrow is not installed: pip install '.[fleet]'")
+import pyarrow  # noqa: E402
+
+from quad_ident_ros.fleet.track import tracked_effects  # noqa: E402
 
 
 def tracked(**named):
