@@ -158,8 +158,8 @@ def test_bad_gzip(tmp_path, content):
 def test_no_file(tmp_path):
     """Paths of nothing, of a folder, or of a device are refused."""
     for path, part in [(tmp_path / 'none.csv', 'no such file'), (tmp_path, 'not a file'),
-                       (tmp_path / 'none' / 'a.csv.gz', 'no such file'), ('/dev/null', 'not a file'),
-                       (tmp_path / ('x' * 300), 'x')]:
+                       (tmp_path / 'none' / 'a.csv.gz', 'no such file'),
+                       ('/dev/null', 'not a file'), (tmp_path / ('x' * 300), 'x')]:
         with pytest.raises(InputError, match=part) as caught:
             read_csv(path)
         assert str(path) in str(caught.value)
