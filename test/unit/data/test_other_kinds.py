@@ -144,7 +144,7 @@ def test_what_is_no_file_is_told_and_never_waited_for(tmp_path):
 
 
 def test_a_folder_names_what_is_in_it(tmp_path):
-    refused(tmp_path, 'this is a folder', 'not a file')
+    refused(tmp_path, 'this is a folder', 'no file')
     for k in range(5):
         (tmp_path / f'log_{k}.ulg').write_bytes(b'')
     refused(tmp_path, 'this is a folder', 'log_0.ulg, log_1.ulg, log_2.ulg, ...')
