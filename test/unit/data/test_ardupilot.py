@@ -146,7 +146,7 @@ def test_an_instance_is_chosen_by_the_mapping(tmp_path):
     ('APM:Rover V2.5', 'Rover'), ('ArduSub V4.1', 'ArduSub'), ('Blimp V4', 'Blimp')])
 def test_vehicles_that_are_no_multirotor_are_refused_and_told(tmp_path, banner, name):
     path = file(tmp_path, copter(SMALL, OUTPUTS, banner=banner))
-    refused(path, f'a log of {name}', 'no multirotor')
+    refused(path, f'a log of {name}', 'not a multirotor')
     assert len(contents_of(path)[1]) > 5
     vtol = copter(SMALL, OUTPUTS, banner='ArduPlane V4') + [('PARM', (1, 'Q_ENABLE', 1))]
     refused(file(tmp_path, vtol), 'VTOL')

@@ -112,7 +112,7 @@ def test_a_flight_cut_anywhere_gives_its_first_samples(tmp_path):
     (b't;pz\n0;1\n1;2\n', ['line 1', "'t'", 'comma']),
     (b't,pz,pz\n0,1,1\n1,2,2\n', ['line 1', "'pz'", 'twice']),
     (b't,t\n0,0\n1,1\n', ['line 1', "'t'", 'twice']),
-    (b't,p\x07z\n0,0\n1,1\n', ['line 1', 'no column name']),
+    (b't,p\x07z\n0,0\n1,1\n', ['line 1', 'not a column name']),
     (b't,pz\n0,1\n\n1\n2,3\n', ['line 4', '1 cells', 'has 2']),
     (b't,pz\n0,1\n1,2,3\n', ['line 3', '3 cells', 'has 2']),
     (b't,pz\n0,1,5\n1,2,3\n', ['line 2', '3 cells', 'has 2']),
@@ -157,9 +157,9 @@ def test_bad_gzip(tmp_path, content):
 
 def test_no_file(tmp_path):
     """Paths of nothing, of a folder, or of a device are refused."""
-    for path, part in [(tmp_path / 'none.csv', 'no such file'), (tmp_path, 'no file'),
-                       (tmp_path / 'none' / 'a.csv.gz', 'no such file'), ('/dev/null', 'no file'),
-                       (tmp_path / ('x' * 300), 'x')]:
+    for path, part in [(tmp_path / 'none.csv', 'no such file'), (tmp_path, 'not a file'),
+                       (tmp_path / 'none' / 'a.csv.gz', 'no such file'),
+                       ('/dev/null', 'not a file'), (tmp_path / ('x' * 300), 'x')]:
         with pytest.raises(InputError, match=part) as caught:
             read_csv(path)
         assert str(path) in str(caught.value)

@@ -73,7 +73,7 @@ def test_records_can_be_copied_and_sent_to_other_processes():
     ([0], ['1 sample']),
     ([], ['0 samples']),
     ([[0, 1]], ["'t'", 'shape']),
-    (['a', 'b'], ["'t'", 'no numbers']),
+    (['a', 'b'], ["'t'", 'not numbers']),
 ])
 def test_bad_times(times, parts):
     """Times that do not increase strictly are refused, with their place."""
@@ -87,7 +87,7 @@ def test_bad_times(times, parts):
     ('qw', [0, -np.inf, 1], ['sample 1', "'qw'", 'inf']),
     ('pz', [0, 1], ["'pz'", 'shape', '3']),
     ('pz', np.zeros((3, 1)), ["'pz'", 'shape']),
-    ('extra', ['a', 'b', 'c'], ["'extra'", 'no numbers']),
+    ('extra', ['a', 'b', 'c'], ["'extra'", 'not numbers']),
     ('t', [0, 1, 2], ['repeat t']),
     ('', [0, 1, 2], ['column name']),
     (' a', [0, 1, 2], ['column name']),

@@ -202,9 +202,9 @@ def test_sizes_that_are_no_unit_are_doubted(tmp_path):
     same(load(table(tmp_path, found | {f'p{axis}': 100.0 * found[f'p{axis}'] for axis in 'xyz'})),
          PLACE)
     refused(table(tmp_path, found | {f'gyro_{axis}': 1000.0 * found[f'gyro_{axis}']
-                                     for axis in 'xyz'}), 'wx', 'no unit')
+                                     for axis in 'xyz'}), 'wx', 'not a unit')
     refused(table(tmp_path, found | {f'p{axis}': 1e5 * found[f'p{axis}'] for axis in 'xyz'}),
-            'px', 'no unit')
+            'px', 'not a unit')
 
 
 def test_a_time_that_begins_anew_begins_another_recording(tmp_path):
