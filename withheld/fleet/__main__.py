@@ -60,6 +60,13 @@ def main(arguments: list[str] | None = None) -> int:
         result = run(options, work)
         if options.keep:
             shutil.copytree(work, options.keep)
+    except subprocess.CalledProcessError as error:      # it has said why
+        print(f'quad_ident withheld fleet: error: {error.cmd}: a process ended with '
+              f'{error.returncode}', file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        print('quad_ident withheld fleet: interrupted', file=sys.stderr)
+        return 130
     finally:
         shutil.rmtree(work)
     if options.json == '-':
