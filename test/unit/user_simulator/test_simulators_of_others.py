@@ -115,9 +115,9 @@ def test_the_exported_model_flies_there_as_the_vehicle_file_does_in_ours(simulat
     for group, ours in gaps_of(vehicle, tracks, nominal(vehicle)).items():
         curved = simulator is drone_models and group == 'rate'
         assert in_simulator[group] == pytest.approx(ours, rel=CURVED if curved else WITHIN)
-    # The nominal model is farther off: the numbers that were written matter.
+    # The nominal model is off by far more than that: the numbers that were written matter.
     without = gaps_of(nominal_one, tracks, nominal(nominal_one))
-    assert without['velocity'] > 1.5 * in_simulator['velocity']
+    assert without['velocity'] > (1.0 + 5.0 * WITHIN) * in_simulator['velocity']
 
 
 @pytest.fixture(scope='module', params=[rotorpy, mujoco, drone_models],
