@@ -28,7 +28,7 @@ def test_a_mapped_bag_gives_the_flight(tmp_path):
 def test_a_mapped_bag_in_ned_is_turned(tmp_path):
     q = SMALL.stack('qw', 'qx', 'qy', 'qz')
     ned_q = product(conjugate([0.0, np.sqrt(0.5), np.sqrt(0.5), 0.0]),
-                     product(q, conjugate([0.0, 1.0, 0.0, 0.0])))
+                    product(q, conjugate([0.0, 1.0, 0.0, 0.0])))
     turned = changed(SMALL, **{name: values for names, table in (
         (('px', 'py', 'pz'), ned(SMALL.stack('px', 'py', 'pz'))),
         (('vx', 'vy', 'vz'), ned(SMALL.stack('vx', 'vy', 'vz'))),

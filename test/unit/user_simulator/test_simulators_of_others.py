@@ -48,30 +48,33 @@ def drone_models():
     return f'{file}:cf21B_500', 'drone_models_crazyflie.py:Crazyflie'
 
 
+PARAMETERS = """    def parameters(self):
+        given = load_params('first_principles', 'cf21B_500')
+        with open('FOLDER/real.toml', 'rb') as file:
+            given |= tomllib.load(file)['cf21B_500']
+        given['J_inv'] = np.linalg.inv(given['J'])
+        inner = dynamics.__wrapped__
+        known = inner.__kwdefaults__ or inner.__code__.co_varnames
+        return {key: np.asarray(given[key]) for key in given if key in known}
+
+    def step_many"""
+EXPORTED = {    # what an example takes from its library, and from the written file instead
+    'from rotorpy.vehicles.hummingbird_params import quad_params':
+    'from runpy import run_path\nquad_params = run_path("FOLDER/real_params.py")["quad_params"]',
+    'from drone_models import parametrize':
+    'from functools import partial\nimport tomllib\nfrom drone_models.core import load_params',
+    "parametrize(dynamics, 'cf21B_500')": 'partial(dynamics, **self.parameters())',
+    '    def step_many': PARAMETERS}
+
+
 def written(simulator, found, folder):
     """Write an exported file and the example that flies it; return the class for --simulator."""
     name = {'rotorpy': 'real_params.py', 'mujoco': 'quadrotor.xml', 'drone_models': 'real.toml'}
     (folder / name[simulator.__name__]).write_text(found.text, encoding='utf-8')
     example, _, made = simulator()[1].partition(':')
     text = (FOLDER / example).read_text(encoding='utf-8')
-    for old, new in {
-            'from rotorpy.vehicles.hummingbird_params import quad_params':
-                'from runpy import run_path\n'
-                f'quad_params = run_path({str(folder / "real_params.py")!r})["quad_params"]',
-            'from drone_models import parametrize':
-                'from functools import partial\nimport tomllib\n'
-                'from drone_models.core import load_params',
-            "parametrize(dynamics, 'cf21B_500')": 'partial(dynamics, **self.parameters())',
-            '    def step_many':
-                '    def parameters(self):\n'
-                '        given = load_params("first_principles", "cf21B_500")\n'
-                f'        with open({str(folder / "real.toml")!r}, "rb") as file:\n'
-                '            given |= tomllib.load(file)["cf21B_500"]\n'
-                '        given["J_inv"] = np.linalg.inv(given["J"])\n'
-                '        known = dynamics.__wrapped__.__kwdefaults__ or '
-                'dynamics.__wrapped__.__code__.co_varnames\n'
-                '        return {key: np.asarray(given[key]) for key in given if key in known}\n\n'
-                '    def step_many'}.items():
+    for old, new in EXPORTED.items():
+        new = new.replace('FOLDER', str(folder))
         text = text.replace(old, new, 1)
     (folder / example).write_text(text, encoding='utf-8')
     return f'{folder / example}:{made}'
@@ -115,9 +118,9 @@ def test_the_exported_model_flies_there_as_the_vehicle_file_does_in_ours(simulat
     for group, ours in gaps_of(vehicle, tracks, nominal(vehicle)).items():
         curved = simulator is drone_models and group == 'rate'
         assert in_simulator[group] == pytest.approx(ours, rel=CURVED if curved else WITHIN)
-    # The nominal model is farther off: the numbers that were written matter.
+    # The nominal model is off by far more than that: the numbers that were written matter.
     without = gaps_of(nominal_one, tracks, nominal(nominal_one))
-    assert without['velocity'] > 1.5 * in_simulator['velocity']
+    assert without['velocity'] > (1.0 + 5.0 * WITHIN) * in_simulator['velocity']
 
 
 @pytest.fixture(scope='module', params=[rotorpy, mujoco, drone_models],
