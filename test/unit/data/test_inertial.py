@@ -123,7 +123,7 @@ def test_nothing_is_reckoned_over_a_gap():
 
 def test_flights_with_and_without_a_pose_do_not_mix():
     whole, lone = flown(duration=5.0), bare(flown(seed=1, duration=5.0))
-    with pytest.raises(InputError, match='neither position nor velocity.*apart'):
+    with pytest.raises(InputError, match='neither position nor velocity.*separately'):
         diagnose([whole, lone, replace(lone, info={'name': 'third'}, t=lone.t + 1.0)], IRIS)
 
 

@@ -143,7 +143,9 @@ def test_two_runs_at_once_do_every_flight_once(runs, folder):
 
 
 def test_ctrl_c_ends_a_run_in_one_line(runs):
-    run = runs.fleet('--workers', '2', start_new_session=True)
+    # What is started in the background of a shell without a terminal ignores SIGINT.
+    run = runs.fleet('--workers', '2', start_new_session=True,
+                     preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler))
     next(lines_of(run))
     os.killpg(run.pid, signal.SIGINT)   # a terminal sends it to all processes
     _, errors = run.communicate(timeout=LONGEST)
