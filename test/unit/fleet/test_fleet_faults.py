@@ -173,15 +173,20 @@ if __name__ == '__main__':
 """
 
 
-def test_what_takes_too_long_is_recorded_and_tried_again(runs, folder):
-    code, whole, errors = ended(runs.fleet('--workers', '2', '--time-limit', '0.3'))
+def test_what_takes_too_long_is_recorded_and_tried_again(runs, tmp_path):
+    # What is done within the grace of a few seconds counts as done: two minutes take longer.
+    runs.folder = tmp_path / 'long'
+    write_csv(runs.folder / 'vehicle_0' / '2026-05-14' / 'flight.csv', fly_closed_loop(
+        load_vehicle('hummingbird'), {}, 'lissajous', duration=120.0, seed=0,
+        noise=SENSORS['mocap_imu']))
+    code, whole, errors = ended(runs.fleet('--workers', '1', '--time-limit', '0.5'))
     assert code == 3, errors
-    assert whole['groups']['timeout'] > 0
+    assert whole['groups']['timeout'] == 1
     reasons = read_table(runs.out, 'groups', ['reason'])['reason'].to_pylist()
-    assert 'it took more than 0.3 s (--time-limit)' in reasons
-    code, whole, errors = ended(runs.fleet('--workers', '2'))
+    assert reasons == ['it took more than 0.5 s (--time-limit)']
+    code, whole, errors = ended(runs.fleet('--workers', '1'))
     assert code == 0, errors
-    check_complete(folder, runs.out)
+    assert read_table(runs.out, 'groups', ['status'])['status'].to_pylist() == ['diagnosed']
 
 
 def test_what_is_done_is_not_done_again_and_new_flights_are(runs, folder, tmp_path):
