@@ -9,8 +9,8 @@ import pytest
 from quad_ident_ros.cli.main import main, parser
 
 pytest.importorskip('pyarrow', reason="pyarrow is not installed: pip install '.[fleet]'")
-from quad_ident_ros.fleet.run import DIAGNOSING, Progress, Summary  # noqa: E402
-from quad_ident_ros.report.fleet_run import line, seconds_left, summary_text  # noqa: E402
+from quad_ident_ros.fleet.run import DIAGNOSING, Progress, Summary  # noqa: E402, I100
+from quad_ident_ros.report.fleet_run import line, seconds_left, summary_text  # noqa: E402, I100
 
 HALF = Progress(DIAGNOSING, total=100, done=50, here=20)
 

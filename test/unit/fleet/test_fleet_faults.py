@@ -19,7 +19,7 @@ from quad_ident_ros.flight.measure import SENSORS
 from quad_ident_ros.model.vehicle import load_vehicle
 
 pytest.importorskip('distributed', reason="Dask is not installed: pip install '.[fleet]'")
-from quad_ident_ros.fleet.store import read_table  # noqa: E402
+from quad_ident_ros.fleet.store import read_table  # noqa: E402, I100
 
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group('dask')]
 

@@ -13,10 +13,10 @@ from quad_ident_ros.fleet.manifest import Listed
 from quad_ident_ros.model.vehicle import load_vehicle
 
 pytest.importorskip('pyarrow', reason="pyarrow is not installed: pip install '.[fleet]'")
-from quad_ident_ros.fleet.grouping import groups_of  # noqa: E402
-from quad_ident_ros.fleet.look import look, Looks  # noqa: E402
-from quad_ident_ros.fleet.store import keys_of, write_rows  # noqa: E402
-from quad_ident_ros.fleet.superseded import remove_group, superseded_by  # noqa: E402
+from quad_ident_ros.fleet.grouping import groups_of  # noqa: E402, I100
+from quad_ident_ros.fleet.look import look, Looks  # noqa: E402, I100
+from quad_ident_ros.fleet.store import keys_of, write_rows  # noqa: E402, I100
+from quad_ident_ros.fleet.superseded import remove_group, superseded_by  # noqa: E402, I100
 
 QUAD = load_vehicle('hummingbird')
 

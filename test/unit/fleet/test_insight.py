@@ -12,11 +12,11 @@ import pytest
 from quad_ident_ros.report.data import finite
 
 pytest.importorskip('pyarrow', reason="pyarrow is not installed: pip install '.[fleet]'")
-from quad_ident_ros.fleet.insight import insight  # noqa: E402
-from quad_ident_ros.fleet.store import write_rows  # noqa: E402
-from quad_ident_ros.report.fleet import show_insight  # noqa: E402
-from quad_ident_ros.report.fleet_page import write  # noqa: E402
-from quad_ident_ros.report.fleet_words import points  # noqa: E402
+from quad_ident_ros.fleet.insight import insight  # noqa: E402, I100
+from quad_ident_ros.fleet.store import write_rows  # noqa: E402, I100
+from quad_ident_ros.report.fleet import show_insight  # noqa: E402, I100
+from quad_ident_ros.report.fleet_page import write  # noqa: E402, I100
+from quad_ident_ros.report.fleet_words import points  # noqa: E402, I100
 
 STEP = ('uav3', 'com_offset', 'x', 11, 4e-3)
 SLOPE = ('uav5', 'thrust_scale', 'factor', -0.01)

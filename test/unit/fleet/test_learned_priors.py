@@ -9,9 +9,9 @@ from quad_ident_ros.diagnose.rules import RULES
 from quad_ident_ros.effects.registry import EFFECTS
 
 pytest.importorskip('pyarrow', reason="pyarrow is not installed: pip install '.[fleet]'")
-from quad_ident_ros.fleet.insight import insight  # noqa: E402
-from quad_ident_ros.fleet.priors import DOUBT, learned  # noqa: E402
-from quad_ident_ros.fleet.store import read_table  # noqa: E402
+from quad_ident_ros.fleet.insight import insight  # noqa: E402, I100
+from quad_ident_ros.fleet.priors import DOUBT, learned  # noqa: E402, I100
+from quad_ident_ros.fleet.store import read_table  # noqa: E402, I100
 
 
 @pytest.fixture(scope='module')

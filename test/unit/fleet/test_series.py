@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 pytest.importorskip('pyarrow', reason="pyarrow is not installed: pip install '.[fleet]'")
-import pyarrow  # noqa: E402
+import pyarrow  # noqa: E402, I100
 
-from quad_ident_ros.fleet.series import series_of  # noqa: E402
-from quad_ident_ros.fleet.store import TABLES  # noqa: E402
+from quad_ident_ros.fleet.series import series_of  # noqa: E402, I100
+from quad_ident_ros.fleet.store import TABLES  # noqa: E402, I100
 
 
 def tables(values, stds, covariates, status='diagnosed'):

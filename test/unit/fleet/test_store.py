@@ -10,9 +10,9 @@ import pytest
 
 pytest.importorskip('pyarrow', reason='the extra `fleet` is not installed')
 
-from quad_ident_ros.errors import InputError  # noqa: E402
-from quad_ident_ros.fleet import store  # noqa: E402
-from quad_ident_ros.fleet.store import keys_of, read_table, TABLES, write_rows  # noqa: E402
+from quad_ident_ros.errors import InputError  # noqa: E402, I100
+from quad_ident_ros.fleet import store  # noqa: E402, I100
+from quad_ident_ros.fleet.store import keys_of, read_table, TABLES, write_rows  # noqa: E402, I100
 
 DAY = datetime(2026, 5, 14, 8, 30, tzinfo=timezone.utc)
 FLIGHT = {'flight': 'f', 'path': 'a.csv', 'group': 'g', 'vehicle': 'seven', 'date': DAY,

@@ -5,9 +5,9 @@
 import pytest
 
 pytest.importorskip('pyarrow', reason="pyarrow is not installed: pip install '.[fleet]'")
-import pyarrow  # noqa: E402
+import pyarrow  # noqa: E402, I100
 
-from quad_ident_ros.fleet.track import tracked_effects  # noqa: E402
+from quad_ident_ros.fleet.track import tracked_effects  # noqa: E402, I100
 
 
 def tracked(**named):

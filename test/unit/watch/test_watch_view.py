@@ -25,7 +25,7 @@ from quad_ident_ros.watch.state import (
 )
 
 pytest.importorskip('textual', reason="Textual is not installed: pip install '.[watch]'")
-from quad_ident_ros.watch.view import WatchApp  # noqa: E402
+from quad_ident_ros.watch.view import WatchApp  # noqa: E402, I100
 
 NEVER_SILENT = 1e12     # steady time of a node that has just been heard, s
 SIZES = [(80, 24), (120, 40)]
