@@ -11,27 +11,46 @@ from quad_ident_ros.diagnose.fitted import Fitted
 from quad_ident_ros.diagnose.probability import by_effect
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.diagnose.selection import Selection
+from quad_ident_ros.effects.registry import EFFECTS, PARAMETERS
+from quad_ident_ros.greybox.parameters import SPLIT
+
+RESPONSE = {'delay': 1.0, 'lag': 0.5}
+"""Periods that a delay, or a lag but for a seventh of it, takes where it is over in one."""
 
 
-def doubts_of(selection: Selection, named: Sequence[Candidate], rules: Rules
+def doubts_of(selection: Selection, named: Sequence[Candidate], rules: Rules, period: float
               ) -> dict[Candidate, Fitted]:
     """
     Return the causes between which the flights of a Selection cannot tell; none where they can.
 
     Those of the named ones whose effects are not sure, and those that may be there in their place,
-    each with the Fitted set that speaks for it: {cause: Fitted}.
+    each with the Fitted set that speaks for it: {cause: Fitted}. period: s between samples.
     """
     total = by_effect(selection.posterior)
     present = {cause.effect for cause in named}
-    others = [cause for cause in selection.posterior
-              if cause.effect not in present and total[cause.effect] > rules.doubt]
+    others = [cause for cause in selection.posterior if cause.effect not in present]
     found: dict[Candidate, Fitted] = {}
     for cause in named:
-        rivals = ({} if total[cause.effect] >= 1.0 - rules.doubt else
-                  rivals_of(selection, cause, others, rules))
+        rivals = {}
+        for other, fitted in rivals_of(selection, cause, others, rules).items():
+            alike = (is_between_samples(cause, selection.best, period)
+                     and is_between_samples(other, fitted, period))
+            doubt = rules.between_samples if alike else rules.doubt
+            if total[cause.effect] < 1.0 - doubt and total[other.effect] > doubt:
+                rivals[other] = fitted
         if rivals:
             found |= {cause: selection.best, **rivals}
     return found
+
+
+def is_between_samples(cause: Candidate, fitted: Fitted, period: float) -> bool:
+    """Return whether a cause is a delay or a lag that is over before the next sample."""
+    kind = EFFECTS[cause.effect].actuator
+    columns = list(cause.columns)
+    # That of a limited slew depends on how far the speed is from its command.
+    if kind is None or any(PARAMETERS[column - SPLIT][1].unit != 's' for column in columns):
+        return False
+    return float(np.sum(fitted.estimate.z[columns])) <= RESPONSE[kind] * period
 
 
 def rivals_of(selection: Selection, cause: Candidate, others: Sequence[Candidate], rules: Rules
@@ -40,16 +59,17 @@ def rivals_of(selection: Selection, cause: Candidate, others: Sequence[Candidate
     top = max(one.evidence for one in selection.fitted)
     weights = [np.exp(max(one.evidence - top, -700.0)) for one in selection.fitted]
 
-    def share(other: Candidate, there: bool) -> float:
-        """Return the probability of another cause, given whether the cause is there."""
+    def odds(other: Candidate, there: bool) -> float:
+        """Return the odds of another cause, given whether the cause is there."""
         given = [(weight, other in one.causes) for weight, one in
                  zip(weights, selection.fitted, strict=True) if (cause in one.causes) == there]
-        return sum(weight for weight, has in given if has) / sum((weight for weight, _ in given),
-                                                                 1e-300)
+        having, lacking = (sum(weight for weight, has in given if has == which)
+                           for which in (True, False))
+        return float(having / max(lacking, 1e-300))
 
     found = {}
     for other in others:
         sets = [one for one in selection.fitted if other in one.causes and cause not in one.causes]
-        if sets and share(other, False) > rules.instead * share(other, True):
+        if sets and odds(other, False) > rules.instead * odds(other, True):
             found[other] = max(sets, key=lambda one: one.evidence)
     return found

@@ -11,7 +11,6 @@ import pytest
 
 from quad_ident_ros.diagnose.candidates import Candidate
 from quad_ident_ros.diagnose.diagnosis import diagnose
-from quad_ident_ros.diagnose.doubts import doubts_of
 from quad_ident_ros.diagnose.evidence import Quadratic
 from quad_ident_ros.diagnose.fly_next import fly_next, separation, visibility
 from quad_ident_ros.diagnose.rules import RULES
@@ -204,31 +203,3 @@ def test_an_effect_beside_another_that_looks_alike_is_less_visible():
     assert alone == pytest.approx(1000.0)
     beside = visibility(information, selection, [b], [a], RULES)['thrust_scale']
     assert beside == pytest.approx(1000.0 * np.sqrt(1.0 - 0.99 ** 2), rel=1e-3)
-
-
-def selected(*sets, posterior):
-    """Return a selection of sets of causes by their log-evidence, the best first."""
-    fitted = [SimpleNamespace(causes=causes, evidence=evidence) for causes, evidence in sets]
-    return SimpleNamespace(best=fitted[0], fitted=fitted, posterior=posterior)
-
-
-MASS, THRUST, BIAS = pair(0.0).rows
-
-
-def test_only_what_stands_in_its_place_is_a_rival():
-    """The rate's bias is there or not with either of the two, and so is no rival."""
-    sets = [((MASS,), 0.0), ((THRUST,), -0.4), ((MASS, BIAS), -0.1), ((THRUST, BIAS), -0.5),
-            ((), -90.0)]
-    unsure = selected(*sets, posterior={MASS: 0.6, THRUST: 0.4, BIAS: 0.5})
-    doubts = doubts_of(unsure, (MASS,), RULES)
-    assert list(doubts) == [MASS, THRUST]
-    assert [fit.causes for fit in doubts.values()] == [(MASS,), (THRUST,)]
-    sure = selected(*sets, posterior={MASS: 0.95, THRUST: 0.2, BIAS: 0.5})
-    assert not doubts_of(sure, (MASS,), RULES)
-
-
-def test_which_rotor_is_weak_is_no_doubt_between_effects():
-    one, other = (Candidate('rotor_fault', f'rotor_fault {j}', (INDEX[f'rotor_fault.loss_{j}'],))
-                  for j in (1, 2))
-    found = selected(((one,), 0.0), ((other,), -0.1), posterior={one: 0.5, other: 0.5})
-    assert not doubts_of(found, (one,), RULES)
