@@ -30,11 +30,22 @@ REALITY = {'rotor_drag': {'coefficient': 0.3}, 'motor_lag': {'time_constant': 0.
 
 
 @pytest.fixture(scope='module')
-def track():
+def record():
     """Fly a vehicle that has what no simulator here has."""
-    record = fly_closed_loop(BARE, REALITY, 'low_passes', duration=8.0, seed=1,
-                             noise=SENSORS['mocap_imu'])
+    return fly_closed_loop(BARE, REALITY, 'low_passes', duration=8.0, seed=1,
+                           noise=SENSORS['mocap_imu'])
+
+
+@pytest.fixture(scope='module')
+def track(record):
     return track_of(record, BARE, highest_voltage([record]))
+
+
+@pytest.fixture(scope='module')
+def short(record):
+    """Return what a simulator that steps one vehicle at a time follows in a few seconds."""
+    part = record.slice(200, 450)      # rows of 10 ms
+    return track_of(part, BARE, highest_voltage([record]))
 
 
 def simulator(name, vehicle=BARE):
@@ -55,9 +66,9 @@ def apart(track, vehicle, z, flown):
 @pytest.mark.parametrize('name, vehicle', [
     ('Many', BARE), ('ManyLagged', LAGGED), ('One', BARE), ('OneLagged', LAGGED),
     ('OnePushed', BARE), ('ManyPushed', BARE)])
-def test_a_simulator_of_the_nominal_vehicle_has_the_gap_of_our_model(track, name, vehicle):
+def test_a_simulator_of_the_nominal_vehicle_has_the_gap_of_our_model(short, name, vehicle):
     with simulator(name, vehicle) as flown:
-        off, ours = apart(track, vehicle, nominal(vehicle), flown)
+        off, ours = apart(short, vehicle, nominal(vehicle), flown)
     for group, value in off.items():
         assert value < 1e-3 * ours[group]
 
@@ -87,12 +98,12 @@ def test_each_effect_around_a_simulator_does_what_it_does_in_our_model(track, ef
     ({'rise': 0.02, 'fall': 0.05}, 'ManyLagged'), ({'time_constant': 0.02}, 'ManyLagged'),
     ({'slew': 1e-5, 'time_constant': 0.04}, 'ManyLagged'), ({}, 'ManyLagged'),
     ({'mean_lag': 0.03, 'inner_lag': 0.02}, 'ManyLagged')])
-def test_motors_of_another_law_take_the_place_of_the_simulator_s(track, motors, name):
+def test_motors_of_another_law_take_the_place_of_the_simulator_s(short, motors, name):
     effects = {'motor_lag': motors, 'rotor_drag': {'coefficient': 0.2}}
     z = with_effects(LAGGED, effects)
     with simulator(name, LAGGED) as flown:
-        off, _ = apart(track, LAGGED, z, flown)
-        change = apart(track, LAGGED, nominal(LAGGED), lambda *args: flown(
+        off, _ = apart(short, LAGGED, z, flown)
+        change = apart(short, LAGGED, nominal(LAGGED), lambda *args: flown(
             args[0], LAGGED, z, *args[3:]))[0]
     for group, value in off.items():
         assert value < 0.02 * change[group]
@@ -129,13 +140,13 @@ def test_slow_records_are_flown_in_finer_steps():
 
 
 @pytest.mark.slow
-def test_several_processes_fly_what_one_does(track, monkeypatch):
+def test_several_processes_fly_what_one_does(short, monkeypatch):
     with simulator('One') as flown:
-        alone = ends(track, BARE, with_effects(BARE, REALITY), 0.1, flown)
+        alone = ends(short, BARE, with_effects(BARE, REALITY), 0.1, flown)
     monkeypatch.setattr(processes, 'WORTH', 0.0)
     monkeypatch.setattr(processes.os, 'sched_getaffinity', lambda _: {0, 1})
     with simulator('One') as flown:
-        together = ends(track, BARE, with_effects(BARE, REALITY), 0.1, flown)
+        together = ends(short, BARE, with_effects(BARE, REALITY), 0.1, flown)
     np.testing.assert_array_equal(together.errors, alone.errors)
 
 
