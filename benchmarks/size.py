@@ -36,7 +36,7 @@ class Size:
     long_flight: float = 1200.0
     clean_flights: int = 200
     change_flights: int = 100
-    fleet_flights: int = 40
+    fleet_flights: int = 100
     light_flights: int = 10_000
 
 

@@ -15,6 +15,7 @@ from pyarrow import dataset, parquet
 
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.greybox.errors import UNITS
+from quad_ident_ros.memory import give_back
 
 TOGETHER = 200      # files that are read at once: each takes 0.1 MB meanwhile
 OLD = 3600.0        # s after which a file that is not whole belongs to a run that was killed
@@ -127,7 +128,7 @@ def read_table(out: str | Path, table: str,
     folder = Path(out) / table
     files = sorted(f'{folder / key}.parquet' for key in keys_of(out, table))
     try:
-        return pyarrow.concat_tables([
+        rows = pyarrow.concat_tables([
             dataset.dataset(files[k:k + TOGETHER], schema=TABLES[table], format='parquet'
                             ).to_table(columns)
             for k in range(0, max(1, len(files)), TOGETHER)]).combine_chunks()
@@ -136,6 +137,8 @@ def read_table(out: str | Path, table: str,
     except (OSError, pyarrow.ArrowException) as error:
         raise InputError(f'{folder}: cannot be read: {_short(error)}; remove the file that it '
                          'names and start the run again, which makes it anew') from None
+    give_back()     # what opening thousands of files took
+    return rows
 
 
 def _short(error: Exception) -> str:
