@@ -86,6 +86,7 @@ def test_bursts_are_told_and_gaps_and_even_samples_are_none():
     assert 'bursts' not in checked(FLIGHT)[0]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('rows', [60, 99, 150, 600])
 def test_pauses_between_takes_are_gaps_and_no_bursts(rows):
     for count in (2 * rows, 8 * rows):

@@ -32,6 +32,7 @@ from quad_ident_ros.model.attitude import euler_from_quaternion
 from quad_ident_ros.model.vehicle import load_vehicle
 from quad_ident_ros.report.closed_loop import loop_rows
 
+pytestmark = pytest.mark.slow
 BARE = load_vehicle('hummingbird')
 TRUTH = {'rotor_drag': {'coefficient': 0.3}, 'motor_lag': {'time_constant': 0.05}}
 NONE = vector({}, BARE)
@@ -186,7 +187,6 @@ def test_a_lag_of_the_motors_costs_bandwidth_in_height():
     assert bands[0] > bands[1] > bands[2]
 
 
-@pytest.mark.slow
 def test_a_controller_of_a_user_flies_the_vehicle():
     # It has no integrals: a payload pulls it down until the thrust that the error of the height
     # asks for, mass times 4 / s^2 times that, carries the payload.
@@ -268,7 +268,6 @@ def test_of_a_flight_in_which_an_estimator_was_reset_the_longest_part_is_followe
     np.testing.assert_array_equal(whole.wanted, alone.wanted)
 
 
-@pytest.mark.slow
 def test_the_command_tells_the_closed_loop_in_table_json_and_page(tmp_path, capsys):
     for k, course in enumerate(('steps', 'lissajous', 'figure8')):
         write_csv(tmp_path / f'{k}.csv', flight(course, 'mocap_imu', seed=k, duration=8.0))

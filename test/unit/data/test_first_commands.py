@@ -57,6 +57,7 @@ FILES = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('kind', FILES)
 def test_what_is_typed_first_ends_in_no_traceback(tmp_path, monkeypatch, capsys, kind):
     """`info`, with a vehicle, with a mapping that it wrote itself, and `diagnose` without any."""

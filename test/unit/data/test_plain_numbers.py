@@ -23,6 +23,7 @@ def table(separator=',', columns=COLUMNS):
     return values, '\n'.join([names, *lines, ''])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(('name', 'read', 'separator'), [
     ('flight.csv', read_csv, ','), ('flight.csv.gz', read_csv, ','),
     ('table.txt', read_text, ';')])

@@ -19,6 +19,7 @@ from quad_ident_ros.report.ceiling import ceiling_line, residual_line
 from quad_ident_ros.report.diagnosis import far_rows
 from quad_ident_ros.report.received import diagnosis_from
 
+pytestmark = pytest.mark.slow
 NOMINAL = load_vehicle('hummingbird')
 COURSES = ('figure8', 'lissajous', 'steps', 'lissajous')     # the last one is held out
 DRAG = {'rotor_drag': {'coefficient': 0.3 * NOMINAL.mass}}
@@ -47,7 +48,6 @@ def explained():
     return diagnose(flights(NOMINAL, DRAG), NOMINAL, effects=EFFECTS)
 
 
-@pytest.mark.slow
 def test_where_effects_explain_all_the_ceiling_is_what_they_close(explained):
     ceiling = explained.ceiling
     assert explained.verdict == ('rotor_drag',)
@@ -55,7 +55,6 @@ def test_where_effects_explain_all_the_ceiling_is_what_they_close(explained):
     assert abs(ceiling.given_attitude.closed - explained.gap_given_attitude.closed) < 0.02
 
 
-@pytest.mark.slow
 def test_noise_alone_has_no_ceiling():
     one = diagnose(flights(NOMINAL, {}), NOMINAL, effects=EFFECTS)
     assert one.verdict == ('none',)
@@ -64,7 +63,6 @@ def test_noise_alone_has_no_ceiling():
     assert one.ceiling.open_loop.after == one.gap.after
 
 
-@pytest.mark.slow
 def test_a_force_that_no_effect_has_is_under_the_ceiling(found):
     assert 'unknown' in found.verdict
     for closed, ceiling in ((found.gap.closed, found.ceiling.open_loop),
@@ -122,7 +120,6 @@ def test_the_written_vehicle_flies_a_third_flight_closer(found):
     assert gaps['vehicle']['velocity'] < 0.5 * gaps['nominal']['velocity']
 
 
-@pytest.mark.slow
 def test_a_nominal_vehicle_that_has_the_function_has_nothing_unknown(strange, found):
     """The next diagnosis is of what remains: the function is a part of the nominal model."""
     known = replace(found.corrected(NOMINAL), residual=found.residual)
@@ -131,7 +128,6 @@ def test_a_nominal_vehicle_that_has_the_function_has_nothing_unknown(strange, fo
     assert again.corrected(known).residual == found.residual
 
 
-@pytest.mark.slow
 def test_a_new_function_does_what_that_of_the_vehicle_file_did_too():
     """It is flown in place of the old one: with half of the truth known it learns the whole."""
     real = flights(replace(NOMINAL, residual=times(2.0, STRANGE)), {})
@@ -159,7 +155,6 @@ def command(tmp_path, records, *more):
             ','.join(EFFECTS), *more]
 
 
-@pytest.mark.slow
 def test_the_command_writes_it_and_the_verdict_is_the_same(tmp_path, capsys, strange):
     out, plain = tmp_path / 'real.yaml', tmp_path / 'plain.yaml'
     told = []
@@ -176,7 +171,6 @@ def test_the_command_writes_it_and_the_verdict_is_the_same(tmp_path, capsys, str
     assert replace(real, residual=None) == named
 
 
-@pytest.mark.slow
 def test_the_command_refuses_it_where_it_gains_nothing(tmp_path, capsys):
     out = tmp_path / 'real.yaml'
     assert main(command(tmp_path, flights(NOMINAL, DRAG), '--out-vehicle', str(out),

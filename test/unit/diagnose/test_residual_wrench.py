@@ -81,6 +81,7 @@ def test_what_noise_makes_is_the_error_that_is_told(hover):
                                np.sqrt(np.mean(found.errors ** 2, axis=0)), rtol=0.15)
 
 
+@pytest.mark.slow
 def test_the_accelerometer_shows_small_forces_more_clearly(hover, felt):
     with_it, without = (residual_wrench(track_of(one, VEHICLE), VEHICLE, nominal(VEHICLE), NOISE)
                         for one in (felt, hover))
@@ -102,6 +103,7 @@ def test_a_wave_has_its_size_by_the_accelerometer(felt):
     assert rms == pytest.approx(whole * np.sinc(3.0 * 0.2), rel=0.1)
 
 
+@pytest.mark.slow
 def test_an_offset_of_the_accelerometer_is_no_force(felt):
     shifted = replace(felt, columns=felt.columns | {'ax': felt.columns['ax'] + 0.5})
     one, other = (residual_wrench(track_of(record, VEHICLE), VEHICLE, nominal(VEHICLE), NOISE)

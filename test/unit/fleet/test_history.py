@@ -18,6 +18,7 @@ def alarms(found):
     return sum(len(one.changes) + (one.drift is not None) for one in found)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(('count', 'told', 'scatter'), [
     (30, 1.0, 0.0), (30, 0.1, 1.0), (12, 0.01, 0.5), (8, 0.1, 1.0), (5, 1.0, 1.0)])
 def test_false_alarms_are_as_rare_as_stated(count, told, scatter):

@@ -14,6 +14,7 @@ ODD = 1.0 / 400
 NAMES = tuple(f'uav{k}' for k in range(20))
 
 
+@pytest.mark.slow
 def test_pooling_lowers_the_error_and_its_intervals_hold_the_truth():
     """Over many fleets the pooled values are nearer the truth, and 95 % of intervals hold it."""
     rng = np.random.default_rng(1)

@@ -41,6 +41,7 @@ def test_every_vehicle_stays_on_every_course(vehicle, name):
     assert record.columns['pz'].min() > 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('vehicle', VEHICLES.values(), ids=lambda vehicle: vehicle.name)
 @pytest.mark.parametrize('effect', EFFECTS)
 def test_every_effect_is_flown_through(vehicle, effect):

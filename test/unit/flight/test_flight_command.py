@@ -74,6 +74,7 @@ def test_bad_input_is_one_line(arguments, hint, tmp_path, capsys):
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.slow
 def test_an_empty_battery_keeps_a_voltage():
     """In an hour of hover it fell far below zero."""
     record = fly_closed_loop(load_vehicle('paper_quadrotor'), {}, 'hover', duration=600.0,

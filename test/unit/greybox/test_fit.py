@@ -99,6 +99,7 @@ def test_the_true_vehicle_is_as_far_from_the_written_one_as_its_covariance_says(
     assert low < sum(distances) < high
 
 
+@pytest.mark.slow
 def test_a_mass_known_to_two_percent_scales_what_goes_with_it(problem):
     """Mass, thrust, torque, inertia and drag in proportion are one motion."""
     exact = fit([problem.draw(0)], problem.start(0), KNOWN_MASS)

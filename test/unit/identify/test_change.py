@@ -100,6 +100,7 @@ def alarms(flight, stride=25, window=500):
     return found
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('tilt', [0.0, TILT])
 @pytest.mark.parametrize('seed', range(3))
 def test_a_payload_of_30_percent_is_found_within_2_s_also_in_lateral_flight(seed, tilt):

@@ -71,6 +71,7 @@ def fits_of(system, inputs, poles):
     return {method: [result[method].outputs['phi'] for result in results] for method in SWARMS}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(('system', 'inputs', 'poles'), [
     ('stable', 'prbs', 'auto'), ('integrating', 'step', 'auto'),
     ('double_integrator', 'prbs', 'auto'), ('unstable', 'step', 'auto'),

@@ -35,6 +35,7 @@ CASES = [case for case in product(TRUTHS, ('step', 'prbs'), (True, False))
          if case != ('third order', 'step', False)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(('truth', 'kind', 'at_rest'), CASES)
 def test_the_order_of_the_truth_is_named(truth, kind, at_rest):
     better = []

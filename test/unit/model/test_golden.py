@@ -70,6 +70,7 @@ def test_printed_equations(t, tolerance):
     assert (printed_errors(None, t) < tolerance).all()
 
 
+@pytest.mark.slow
 def test_printed_equations_need_their_step():
     # With 1e-4 s, enough for the derived equations, psi after 1 s is off by 6 rad.
     assert LONGEST_STEP['paper'] == 1e-5

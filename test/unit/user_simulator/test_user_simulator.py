@@ -77,6 +77,7 @@ def test_a_simulator_of_the_nominal_vehicle_has_the_gap_of_our_model(short, name
 ALONG = {'wind': {'rotor_drag': {'coefficient': 0.3}}}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('name', ['Many', 'ManyPushed'])
 @pytest.mark.parametrize('effect', EFFECTS)
 def test_each_effect_around_a_simulator_does_what_it_does_in_our_model(track, effect, name):

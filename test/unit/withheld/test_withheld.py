@@ -577,6 +577,7 @@ def test_the_diagnosing_process_is_not_told_where_the_labels_are(tmp_path, monke
                                if not target.startswith('/proc/')}
 
 
+@pytest.mark.slow
 def test_cases_are_diagnosed_side_by_side_and_each_once(tmp_path, capsys):
     from withheld import blind
     flights, found = tmp_path / 'flights', tmp_path / 'found'
