@@ -5,6 +5,8 @@
 import sys
 
 from quad_ident_ros.interrupted import end_on_interrupt
+from quad_ident_ros.linear_algebra_threads import use_one
 
+use_one()
 if sys.argv[:1] == ['-m']:  # `python -m quad_ident_ros.nodes.NAME`, whose module comes next
     end_on_interrupt()
