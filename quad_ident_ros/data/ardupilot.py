@@ -15,7 +15,8 @@ from quad_ident_ros.data import frames
 from quad_ident_ros.data.autopilot import known_names, outputs_stream, unit_quaternions
 from quad_ident_ros.data.dataflash import read_messages
 from quad_ident_ros.data.modes import modes_from
-from quad_ident_ros.data.motor_order import about_motors, quad
+from quad_ident_ros.data.motor_layouts import directions
+from quad_ident_ros.data.motor_order import about_motors
 from quad_ident_ros.data.readers.base import content_of
 from quad_ident_ros.data.record import FlightRecord, QUATERNION
 from quad_ident_ros.data.streams import INTERPOLATED, join, SLOW, Stream
@@ -42,8 +43,8 @@ _PLACES = {(1, 0): '1 right, 2 left, 3 front, 4 rear',
            (1, 1): '1 front right, 2 rear left, 3 front left, 4 rear right'}
 """Where motors are, by FRAME_CLASS and FRAME_TYPE; quad plus and quad X."""
 
-_ROTORS = {(1, 0): quad((0, -1), (0, 1), (1, 0), (-1, 0)),
-           (1, 1): quad((1, -1), (-1, 1), (1, 1), (-1, -1))}
+_LAYOUTS = {(1, 0): 'quad +', (1, 1): 'quad x', (2, 0): 'hexa +', (2, 1): 'hexa x',
+            (3, 0): 'octo +', (3, 1): 'octo x', (4, 0): 'coaxial octo +', (4, 1): 'coaxial octo x'}
 
 _BOARD = re.compile(r'([\w-]+) ((?:[0-9A-F]{8} ?){3})')     # name, and serial number of its chip
 _MOTOR = re.compile(r'SERVO([1-9]|[12][0-9]|3[0-2])_FUNCTION')
@@ -344,7 +345,8 @@ def _rotors(messages, channels, notes):
 def _about_motors(parameters, channels):
     """Return what is known of the motors, for the info of a record."""
     frame = tuple(parameters.get(name) for name in ('FRAME_CLASS', 'FRAME_TYPE'))
-    rotors = _ROTORS.get(frame, ()) if len(channels) == 4 else ()
+    rotors = directions(_LAYOUTS[frame]) if frame in _LAYOUTS else ()
+    rotors = rotors if len(rotors) == len(channels) else ()
     return about_motors(rotors, "ArduPilot's order for FRAME_CLASS and FRAME_TYPE", 'pwm',
                         ardupilot_curve(parameters) if channels else None)
 
@@ -355,7 +357,8 @@ def _order_notes(parameters, known):
     if known and frame in _PLACES:
         notes.append(f"motors are in ArduPilot's order: {_PLACES[frame]}")
     elif known and None not in frame:
+        named = f' ({_LAYOUTS[frame]})' if frame in _LAYOUTS else ''
         notes.append(f"motors are in ArduPilot's order for FRAME_CLASS {frame[0]:g}, FRAME_TYPE "
-                     f'{frame[1]:g}')
+                     f'{frame[1]:g}{named}')
     told = [f'{name} {parameters[name]:g}' for name in _MAP if name in parameters]
     return [*notes, *([f'the map of the motors is: {", ".join(told)}'] if told else [])]

@@ -12,7 +12,9 @@ from scipy.optimize import linear_sum_assignment
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.vehicle import Rotor, Vehicle
 
-NEAR = math.radians(30)     # rotors of a hexacopter are 60 deg apart
+NEAR = math.radians(30)     # of a rotor of a quadrotor; less where rotors are closer together
+NEIGHBOUR = 0.45    # of the angle to the next rotor: a frame turned by half of it is another one
+ABOVE = math.radians(5)     # rotors that are closer in direction are above each other
 
 
 def order_of(where: str | Path, rotors: Sequence[Rotor], source: str,
@@ -38,9 +40,10 @@ def order_of(where: str | Path, rotors: Sequence[Rotor], source: str,
     # A sense of turning that differs decides only among motors in one direction.
     rows, columns = linear_sum_assignment(angles + 0.01 * turning)
     order = tuple(int(columns[k]) + 1 for k in np.argsort(rows))
+    near = _near(rotors)
     for k, motor in enumerate(order):
         away = angles[k, motor - 1]
-        if away > NEAR:
+        if away > near:
             raise InputError(
                 f'{where}: rotors[{k}] of {vehicle.name} at {_place(vehicle.rotors[k])} has no '
                 f'motor of the log ({source}) in its direction, the nearest, motor '
@@ -53,6 +56,14 @@ def order_of(where: str | Path, rotors: Sequence[Rotor], source: str,
                 f'motor {motor} of the log ({source}), which lies there, has {spin:+d}; '
                 'correct the spin in the vehicle file, or give the order in a mapping')
     return order
+
+
+def _near(rotors: Sequence[Rotor]) -> float:
+    """Return the angle (rad) by which the directions of a rotor and of its motor may differ."""
+    around = np.sort(_direction(rotors))
+    apart = np.diff([*around, around[0] + 2 * np.pi])
+    apart = apart[apart > ABOVE]
+    return min(NEAR, NEIGHBOUR * float(apart.min())) if len(apart) else NEAR
 
 
 def about_motors(rotors: Sequence[Rotor] = (), source: str = '', kind: str = '',

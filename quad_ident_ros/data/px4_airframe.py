@@ -9,6 +9,7 @@ from typing import TypeAlias
 
 import numpy as np
 
+from quad_ident_ros.data.motor_layouts import layout
 from quad_ident_ros.model.vehicle import Rotor
 
 Parameters: TypeAlias = Mapping[str, int | float]
@@ -25,9 +26,14 @@ OTHERS = {1: 'a fixed wing', 3: 'a coaxial helicopter', 4: 'a helicopter', 7: 'a
           **dict.fromkeys(range(19, 26), 'a VTOL')}
 """MAV_TYPE of MAVLink."""
 
-# Directions (forward, right) and senses of turning of motors 1.. where the parameters name none.
-QUAD_X = ((1, 1, 1), (-1, -1, 1), (1, -1, -1), (-1, 1, -1))
-QUAD_PLUS = ((0, 1, 1), (0, -1, 1), (1, 0, -1), (-1, 0, -1))
+OLDER = {2: ((5, 'quad +'), (0, 'quad x')),
+         13: ((7, 'hexa +'), (11, ''), (0, 'hexa x')),
+         14: ((9, 'octo +'), (12, 'coaxial octo x'), (0, 'octo x'))}
+"""
+MAV_TYPE -> thousands of SYS_AUTOSTART and the layout of these airframes, 0 for all others.
+
+Their layouts are those of PX4 1.12 and earlier, which has no CA_ROTOR*; '' for none of ours.
+"""
 
 
 @dataclass(frozen=True)
@@ -84,14 +90,19 @@ def motors_of(parameters: Parameters) -> Motors | None:
             unit = all(abs(abs(value) - 1.0) < 1e-6 for rotor in rotors
                        for value in rotor.position[:2])
             return Motors(tuple(rotors), float(np.mean(ratios)), not unit, 'CA_ROTOR*')
+    return _older(parameters)
+
+
+def _older(parameters: Parameters) -> Motors | None:
+    """Return the Motors of an airframe by its name, whose parameters say no places, or None."""
+    kind = int(_number(parameters, 'MAV_TYPE', -1))
     start = int(_number(parameters, 'SYS_AUTOSTART', 0))
-    if int(_number(parameters, 'MAV_TYPE', -1)) != 2:
+    name = next((name for thousands, name in OLDER.get(kind, ())
+                 if thousands in (0, start // 1000)), '')
+    if not name:
         return None
-    layout = QUAD_PLUS if 5000 <= start < 6000 else QUAD_X
-    half = math.sqrt(0.5) if layout is QUAD_X else 1.0
-    return Motors(tuple(Rotor((x * half, -y * half, 0.0), -turning) for x, y, turning in layout),
-                  math.nan, False, f'MAV_TYPE 2, SYS_AUTOSTART {start}: quad '
-                  f'{"+" if layout is QUAD_PLUS else "x"}')
+    return Motors(layout(name), math.nan, False,
+                  f'MAV_TYPE {kind}, SYS_AUTOSTART {start}: {name}')
 
 
 def bank_of(parameters: Parameters, count: int, names: Sequence[str] = BANKS) -> str:
