@@ -25,8 +25,8 @@ MOTIVE = ('world: Motive has y up unless it is told otherwise: export with Z up 
 _HEAD = 20      # lines in which the first numbers come
 MOST_COLUMNS = 4096    # wide logs have hundreds; each costs the guess a look
 _FEW = 0.1      # of the cells of a column: with more text it is one of text
-_DATE = re.compile(r'[12]\d{3}-\d\d-\d\d[T ]\d\d:\d\d:\d\d(\.\d+)?(Z|[+-]00:?00)?$')
-"""A time of day in UTC, or without a zone, as ISO 8601 writes it."""
+_DATE = re.compile(r'[12]\d{3}-\d\d-\d\d[T ]\d\d:\d\d:\d\d([.,]\d+)?(Z|[+-]00:?00)?$')
+"""A time of day in UTC, or without a zone, as ISO 8601 writes it: decimals after , or ."""
 
 _MISSING = frozenset(('none', 'null', 'n/a', 'na', '-', '--'))
 
@@ -252,7 +252,7 @@ def _refuse_doubled(path: Path, line: int, names: list[str]) -> None:
 
 def _seconds(cells: Sequence[str]) -> np.ndarray:
     """Return the seconds since 1970 (N,) of times of day, nan for an empty cell."""
-    plain = [re.sub(r'(Z|[+-]00:?00)$', '', cell) or 'NaT' for cell in cells]
+    plain = [re.sub(r'(Z|[+-]00:?00)$', '', cell).replace(',', '.') or 'NaT' for cell in cells]
     stamps = np.array(plain, 'datetime64[ns]')
     seconds = stamps.astype(np.int64) * 1e-9
     return np.where(np.isnat(stamps), np.nan, seconds)

@@ -19,6 +19,7 @@ HOVERS = 0.6, 1.6       # of gravity: the usual specific force of what flies
 QUICK = 100.0           # m/s: multirotors do under 60, so faster ones are in mm
 BELOW = 0.3             # of the greatest depth or height that the other one may be: ground is 0
 BETTER = 1.5            # times that the wrong axes are further off than the right ones
+NEAREST = 10 ** 0.5     # times; units are ten times apart, and drag makes a path bend less
 SPAN = 0.5              # s, over which noise of single samples counts for little
 
 
@@ -33,7 +34,7 @@ def vectors(draft: Draft) -> None:
 
 
 def positions(draft: Draft) -> None:
-    """Take the position, in the unit that name or velocity tell."""
+    """Take the position, in the unit that name, velocity or tilt tell."""
     names = draft.found[POSITION]
     if names is None or any(name not in draft.free for name in names):
         return
@@ -43,7 +44,7 @@ def positions(draft: Draft) -> None:
             speed = np.linalg.norm(np.diff(draft.values(names), axis=0), axis=1) / draft.dt()
         speed = speed[np.isfinite(speed) & (speed > 0)]
         unit = 'mm' if len(speed) and np.quantile(speed, 0.9) > QUICK else 'm'
-        unit = _by_velocity(draft, names) or unit
+        unit = _by_velocity(draft, names) or _by_tilt(draft, names) or unit
     draft.take(POSITION, names, unit or 'm', role='pose', said=f'position in {unit or "m"}')
 
 
@@ -138,6 +139,32 @@ def _by_velocity(draft: Draft, names: Sequence[str]) -> str:
     draft.guess.doubts.append(f'px: {together(names)} change {ratio:.3g} times as fast as '
                               f'{together(given)} says, which is not a unit')
     return 'm'
+
+
+def _by_tilt(draft: Draft, names: Sequence[str]) -> str:
+    """
+    Return the unit of positions that bend as a thrust that tilts makes them, '' if not told.
+
+    What hovers accelerates by g times the tangent of its tilt.
+    """
+    if draft.attitude is None:
+        return ''
+    w, x, y, z = draft.attitude.T
+    up = 1 - 2 * (x ** 2 + y ** 2)
+    leaning = GRAVITY * np.stack([2 * (x * z + w * y), 2 * (y * z - w * x)], axis=-1) / up[:, None]
+    dt = np.append(draft.dt(), 0.0)[:, None]
+    for _ in range(2):      # to a velocity, to a position
+        leaning = np.cumsum(np.nan_to_num(leaning) * dt, axis=0)
+    width = max(1, round(SPAN / max(float(np.nanmedian(draft.dt())), 1e-6)))
+    if len(leaning) < 4 * width:
+        return ''
+    bent = [one[2 * width:] - 2 * one[width:-width] + one[:-2 * width]
+            for one in (draft.values(names)[:, :2], leaning)]
+    ratio = ratio_of(*bent)
+    if ratio is None:
+        return ''
+    return next((unit for unit, factor in (('m', 1.0), ('cm', 100.0), ('mm', 1000.0))
+                 if factor / NEAREST < ratio < factor * NEAREST), '')
 
 
 def _off(draft: Draft, speed: np.ndarray) -> list[float] | None:

@@ -167,15 +167,31 @@ def test_names_with_frames_and_units_in_powers_are_known(tmp_path):
     assert not read.has('wx')
 
 
-def test_dates_are_times(tmp_path):
+@pytest.mark.parametrize('separator, point', [(',', '.'), (';', ',')])
+def test_dates_are_times(tmp_path, separator, point):
     stamps = np.datetime64('2026-03-01T10:00:00') + np.round(1e6 * T).astype('timedelta64[us]')
     rows = zip(stamps.astype(str), FLIGHT.stack(*PLACE, *Q).tolist(), strict=True)
     path = tmp_path / 'dates.csv'
-    path.write_text('time,x,y,z,qw,qx,qy,qz\n' + ''.join(
-        f'{stamp}Z,{",".join(map(repr, row))}\n' for stamp, row in rows))
+    path.write_text('time,x,y,z,qw,qx,qy,qz\n'.replace(',', separator) + ''.join(
+        separator.join([f'{stamp}Z', *map(repr, row)]).replace('.', point) + '\n'
+        for stamp, row in rows))
     read = load(path)
     same(read, PLACE, Q)
     assert read.info['start_ns'] == 1772359200 * 10 ** 9
+
+
+@pytest.mark.parametrize('velocity', [False, True])
+@pytest.mark.parametrize('unit, factor', [('m', 1.0), ('cm', 100.0), ('mm', 1000.0)])
+def test_the_unit_of_positions_is_told_by_the_tilt(tmp_path, unit, factor, velocity):
+    """A velocity in body axes is not how the position changes; 1 m/s is 100 cm/s or 1000 mm/s."""
+    record = flight(seconds=6.0, noise=0.3)
+    found = {'time': record.t, **named(('x', 'y', 'z'), factor * record.stack(*PLACE)),
+             **named(('qw', 'qx', 'qy', 'qz'), record.stack(*Q))}
+    if velocity:
+        found |= named(('vel_x', 'vel_y', 'vel_z'), world_velocity_in_body(record))
+    read = load(table(tmp_path, found))
+    np.testing.assert_allclose(read.stack(*PLACE), record.stack(*PLACE), atol=1e-9)
+    assert f'position in {unit};' in '; '.join(read.info['notes'])
 
 
 def test_a_time_of_any_name_is_told_by_its_steps_and_a_count_is_none(tmp_path):
