@@ -184,7 +184,8 @@ GEOMS = """
 
 @pytest.mark.parametrize('before', [
     '', '<compiler angle="radian" eulerseq="ZYX"/>', '<compiler inertiafromgeom="true"/>',
-    '<compiler eulerseq="zxz" inertiagrouprange="0 3"/>', '<compiler settotalmass="2.5"/>'])
+    '<compiler eulerseq="zxz" inertiagrouprange="0 3"/>', '<compiler settotalmass="2.5"/>',
+    '<compiler boundmass="2" boundinertia="0.03"/>'])
 @pytest.mark.parametrize('body', [
     GEOMS, INERTIAL + GEOMS,
     '<inertial pos="0.01 0.02 0.03" mass="1" fullinertia="0.02 0.03 0.04 0.001 -0.002 0.003"/>',
