@@ -86,7 +86,7 @@ def _parts(model: Model, element: Element, place: Pose, inherited: str) -> Itera
         elif child.tag == 'body':
             below.append((frame, child, held))
     body, source = _inertia(model, element, geoms)
-    body = _bounded(model, body)
+    body = _bounded(model, element, body)
     remark = check_body(element.where, body)
     yield Part(element, body.placed(place), place, tuple(joints), sites, source, remark)
     for frame, child, held in below:
@@ -108,13 +108,15 @@ def _inertia(model: Model, element: Element, geoms: list[tuple[Pose, Element]]
     return (NOTHING, '') if stated is None else (_stated(model, stated), 'inertial')
 
 
-def _bounded(model: Model, body: Body) -> Body:
+def _bounded(model: Model, element: Element, body: Body) -> Body:
     """Return a body with the least mass and principal moments that the compiler lets it have."""
     [mass], [moment] = model.setting('boundmass', (0.0,)), model.setting('boundinertia', (0.0,))
     if body.mass >= mass and not moment > 0.0:
         return body
+    # MuJoCo has the centre of a body without mass as far from its origin as that from its parent.
+    centre = body.centre if body.mass > 0.0 else model.pose_of(element).position
     moments, axes = np.linalg.eigh(body.inertia)
-    return Body(max(body.mass, mass), body.centre,
+    return Body(max(body.mass, mass), centre,
                 axes @ np.diag(np.maximum(moments, moment)) @ axes.T)
 
 

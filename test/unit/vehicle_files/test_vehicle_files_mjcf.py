@@ -187,7 +187,7 @@ GEOMS = """
     '<compiler eulerseq="zxz" inertiagrouprange="0 3"/>', '<compiler settotalmass="2.5"/>',
     '<compiler boundmass="2" boundinertia="0.03"/>'])
 @pytest.mark.parametrize('body', [
-    GEOMS, INERTIAL + GEOMS,
+    GEOMS, INERTIAL + GEOMS, GEOMS + '<body name="tag" pos="0.1 0.2 0.3"><site name="t"/></body>',
     '<inertial pos="0.01 0.02 0.03" mass="1" fullinertia="0.02 0.03 0.04 0.001 -0.002 0.003"/>',
     '<inertial pos="0 0 0.1" mass="1" diaginertia="0.02 0.03 0.04" xyaxes="1 1 0 0 1 1"/>',
     '<inertial pos="0 0 0.1" mass="1" diaginertia="0.02 0.03 0.04" zaxis="1 2 3"/>'])
