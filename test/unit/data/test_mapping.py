@@ -49,6 +49,21 @@ def test_the_lines_of_the_table_of_the_nodes_are_a_mapping():
         assert {'pose', 'rate', 'specific_force', 'commands'} <= set(found.topics)
 
 
+def test_the_table_of_the_readme_names_the_topics_of_that_of_the_nodes():
+    root = Path(__file__).parents[3]
+    table = (root / 'README.md').read_text('utf-8').split('| `actuators` |\n')[1].split('\n\n')[0]
+    longer = (root / 'docs' / 'nodes.md').read_text(encoding='utf-8').splitlines()
+    rows = table.splitlines()[1:]
+    assert len(rows) == 4
+    for row in rows:
+        _, system, *cells, outputs, _ = (cell.strip() for cell in row.split('|'))
+        [whole] = [line for line in longer if line.startswith(f'| {system} |')]
+        topics = [re.findall(r'`(/\S+)`', cell) for cell in cells]
+        assert [len(named) for named in topics] == [1, 1, 1, 1], row
+        assert all(f'{{topic: {topic}' in whole for [topic] in topics), row
+        assert outputs.strip('`') in whole, row
+
+
 @pytest.mark.parametrize('data, said', [
     ({'topics': {'rate': {'topic': '/a', 'unit': 'deg'}}}, 'deg/s'),
     ({'topics': {'rotors': {'topic': '/a', 'unit': 'deg/s'}}}, 'rpm'),
