@@ -39,6 +39,10 @@ def guessed(path, bag, mapping):
     found = {role: _best(role, topics, first) for role in ROLES}
     if found['pose'][0]:
         found['position'] = found['attitude'] = [], []
+    if bag.recovered and not topics:
+        raise InputError(f'{path}: this bag ends before its first message is whole, as where its '
+                         'recorder was killed at once or the file was not copied whole; copy it '
+                         'again')
     if not any(found[role][0] for role in MOTION):
         raise InputError(f'{path}: no topic of this bag is known to be a state of a vehicle; it '
                          f'has {_listed(topics)}; say which is what in a mapping file '

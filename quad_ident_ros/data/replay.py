@@ -100,7 +100,8 @@ def read_bag(path):
                         for topic in bag.topics)
         if empty:
             raise InputError(f'{path}: has the topics of a flight and no message on them yet: its '
-                             'recorder heard none, or ended within its first second')
+                             'recorder heard none, or ended within its first second, or the file '
+                             'was not copied whole')
         raise InputError(f'{path}: has none of the topics {", ".join(FLIGHT_TOPICS)}; for those '
                          'of others give a mapping file (--mapping)')
     samples = [(space, name, message if name == RUN_TOPIC else _sample(path, name, message))

@@ -38,6 +38,9 @@ COARSE = 0.025      # s between samples; lags and delays of motors are of this s
 PROFILE = ('set SDLOG_PROFILE to 25 (default set, system identification and high rate) and log '
            'again')
 
+CUT_OFF = ('the log ends within a message, as where it was not copied whole or power was lost: '
+           'what came after is missing')
+
 _LATEST = 2 ** 63 // 1000 - 1   # us, of a stamp that fits into ns
 
 
@@ -67,6 +70,7 @@ def read_ulog(path: str | Path, mapping: Mapping | None = None,
             for name in (*TOPICS, *STATES, RECEIVER)}
     refuse_others(path, log, data['vehicle_status'])
     notes = [*(['parts of the log are damaged and left out'] if log.file_corruption else []),
+             *([CUT_OFF] if log.cut_off else []),
              *([f'{counted(len(log.dropouts), "dropout")} while logging'] if log.dropouts else [])]
     commands: list[str] = []
     logging: list[str] = []

@@ -57,8 +57,14 @@ class _Damaged(Reason):
     """The parser does not get on."""
 
 
-class _Log(ULog):
-    """A ULog that does not expand formats too large for any message."""
+class Log(ULog):
+    """
+    A ULog that does not expand formats too large for any message.
+
+    cut_off: whether it ends within a message.
+    """
+
+    cut_off = False
 
     class _MessageAddLogged(ULog._MessageAddLogged):
 
@@ -82,8 +88,8 @@ def _size(name, formats, depth):
     return total
 
 
-def parse(path: Path, topics: Sequence[str] = ()) -> ULog:
-    """Return the ULog of a path with the samples of some topics; raises InputError."""
+def parse(path: Path, topics: Sequence[str] = ()) -> Log:
+    """Return the Log of a path with the samples of some topics; raises InputError."""
     try:
         with open(path, 'rb') as file:
             data = file.read()
@@ -96,15 +102,15 @@ def parse(path: Path, topics: Sequence[str] = ()) -> ULog:
                          'it from the vehicle again') from None
 
 
-def _parsed(content: _Content, topics: Collection[str]) -> ULog:
+def _parsed(content: _Content, topics: Collection[str]) -> Log:
     """Return what the parser makes of a log."""
     # It prints what it finds damaged; that is kept in file_corruption.
     with contextlib.redirect_stdout(io.StringIO()):
-        return _Log(content, list(topics))
+        return Log(content, list(topics))
 
 
-def _whole(data: bytes, topics: Collection[str]) -> ULog | None:
-    """Return the ULog of the bytes of a log, or None where these are not plainly whole."""
+def _whole(data: bytes, topics: Collection[str]) -> Log | None:
+    """Return the Log of the bytes of a log, or None where these are not plainly whole."""
     messages = walk(data)
     begins = {}     # of the samples of each subscription
     for kind, at, size in messages.others:
@@ -132,6 +138,7 @@ def _whole(data: bytes, topics: Collection[str]) -> ULog | None:
             return None
         rows = rows_of(data, messages.data[mine] + 2, kind.itemsize).view(kind)[:, 0]
         topic.data = {name: rows[name] for name in kind.names}
+    log.cut_off = messages.cut
     return log
 
 

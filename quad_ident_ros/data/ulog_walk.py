@@ -21,7 +21,8 @@ class Messages:
 
     data (N,): where those with samples begin, after their heads; numbers, sizes (N,): the
     subscriptions that these are of, and their bytes; others: (kind, begin, size) of the rest;
-    whole: whether there is nothing after them but the begin of one that is cut off.
+    whole: whether there is nothing after them but the begin of one that is cut off; cut: whether
+    there is such a begin.
     """
 
     data: np.ndarray
@@ -29,6 +30,7 @@ class Messages:
     sizes: np.ndarray
     others: list[tuple[int, int, int]]
     whole: bool
+    cut: bool
 
 
 def walk(data: bytes) -> Messages:
@@ -52,7 +54,7 @@ def walk(data: bytes) -> Messages:
     begins = np.array(places, np.int64)
     content = np.frombuffer(data, np.uint8)
     return Messages(begins, *(_words(content, begins + offset) for offset in (0, -3)),
-                    others, whole)
+                    others, whole, whole and at - HEADER.size < end)
 
 
 def _words(content: np.ndarray, places: np.ndarray) -> np.ndarray:

@@ -53,6 +53,14 @@ def test_the_mapping_to_begin_with_reads_what_is_read_without_it(tmp_path):
         np.testing.assert_array_equal(mapped.columns[name], values)
 
 
+def test_a_bag_that_was_not_copied_whole_says_so_without_any_message(tmp_path):
+    others_bag(tmp_path / 'bag', FLIGHT)
+    [file] = (tmp_path / 'bag').glob('*.mcap')
+    cut = tmp_path / 'cut.mcap'
+    cut.write_bytes(file.read_bytes()[:file.stat().st_size // 2])   # within its one chunk
+    refused(cut, 'ends before its first message is whole', 'copy it again')
+
+
 def test_lists_of_a_laboratory_are_named_as_outputs(tmp_path, types):
     speeds = FLIGHT.stack(*CMD)
     pwm = np.round(1000 + (speeds - 100) / 1.6).astype(np.uint16)

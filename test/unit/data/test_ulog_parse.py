@@ -15,8 +15,10 @@ from pyulog import ULog
 from reader_checks import log, SMALL
 from real import SHARED
 
-from quad_ident_ros.data.ulog import STATES, TOPICS
+from quad_ident_ros.data.load import load
+from quad_ident_ros.data.ulog import CUT_OFF, STATES, TOPICS
 from quad_ident_ros.data.ulog_parse import parse
+from quad_ident_ros.data.ulog_walk import walk
 from quad_ident_ros.errors import InputError
 
 WANTED = (*TOPICS, *STATES)
@@ -49,6 +51,17 @@ def message(kind, body):
 def test_what_follows_the_samples_changes_nothing(tmp_path, tail):
     for data in (WHOLE + tail, WHOLE + tail + WHOLE[-60:]):
         assert_same(parse(log(tmp_path, data), WANTED), by_pyulog(data))
+
+
+@pytest.mark.parametrize('kept', [0.5, 0.7, 0.9, 0.99])
+def test_a_log_that_ends_within_a_message_says_so(tmp_path, kept):
+    """And is read up to there; one that ends between two messages is as whole as any."""
+    inside = round(kept * len(WHOLE))
+    last = int(np.max(walk(WHOLE[:inside]).data))
+    whole = last + struct.unpack_from('<H', WHOLE, last - 3)[0]
+    between, within = (load(log(tmp_path, WHOLE[:end])) for end in (whole, whole + 2))
+    assert len(between) == len(within) < len(SMALL)
+    assert within.info['notes'] == [CUT_OFF, *between.info['notes']]
 
 
 def test_damaged_logs_are_what_pyulog_makes_of_them(tmp_path):
