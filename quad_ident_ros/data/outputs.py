@@ -10,6 +10,7 @@ import numpy as np
 
 from quad_ident_ros.data.commands import with_arm
 from quad_ident_ros.data.mapping import Actuators, actuators_from, chosen_outputs, motors_of
+from quad_ident_ros.data.measured_speeds import by_measured
 from quad_ident_ros.data.motor_order import order_of, rotors_of
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.data.signal_kind import described, kinds_of
@@ -70,10 +71,11 @@ def commanded(records: Sequence[FlightRecord], vehicle: Vehicle | None,
 
 @dataclass(frozen=True)
 class _Map:
-    """Motors, whose gain may not be known, and how they are told, for notes."""
+    """Motors, whose gain may not be known, how they are told, and whether their shape is."""
 
     motors: Motors
     said: str
+    shaped: bool = True
 
 
 def _with_commands(records: list[FlightRecord], vehicle: Vehicle | None,
@@ -96,10 +98,15 @@ def _with_commands(records: list[FlightRecord], vehicle: Vehicle | None,
     thrust = 1.0 if vehicle is None else vehicle.thrust_coefficient
     if not motors.whole:
         assert vehicle is not None
-        motors, by = levelled(where, records, signals, motors, vehicle)
-        info[FULL_SPEED] = full_speed(motors, thrust)
-        said += (f'{_said(motors)}; the gain is that by which thrust carries the weight of '
-                 f'{vehicle.name} ({by})')
+        measured = by_measured(records, signals,
+                               motors if made.shaped else replace(motors, gives=''), thrust)
+        if measured is not None:
+            motors, by = measured, 'is that of the measured rotor speeds'
+        else:
+            motors, told = levelled(where, records, signals, motors, vehicle)
+            info[FULL_SPEED] = full_speed(motors, thrust)
+            by = f'is that by which thrust carries the weight of {vehicle.name} ({told})'
+        said += f'{_said(motors)}; the gain {by}'
     done = []
     for record, values in zip(records, signals, strict=True):
         voltage = record.columns['vbat'] if motors.needs_voltage else None
@@ -186,7 +193,7 @@ def _map_of(where: str, about: dict, values: np.ndarray, vehicle: Vehicle | None
     motors = completed(told, vehicle.thrust_coefficient, vehicle.speed_min, vehicle.speed_max)
     kind = about['kind'] if vehicle.motors is None and curve is not None else told.kind
     said = f'commands: outputs taken for {described(kind)}, {how}; '
-    return _Map(motors, said + (_said(motors) if motors.whole else ''))
+    return _Map(motors, said + (_said(motors) if motors.whole else ''), bool(told.gives))
 
 
 def _curve_of(record: FlightRecord, vehicle: Vehicle | None,

@@ -166,35 +166,6 @@ def thrust_factor(parameters: Parameters) -> float:
     return factor if 0.0 < factor <= 1.0 else 0.0
 
 
-def measured_map(signal: np.ndarray, speed: np.ndarray) -> tuple[str, tuple[float, float]] | None:
-    """
-    Return (curve, (low, high)) of the map from signal to rotor speed by measured speeds, or None.
-
-    Args: signal (n, m) of 0 to 1; speed (n, m) rad/s at the same times, of turning rotors.
-    The curve is linear (speed) or thrust (its square), whichever leaves less unexplained.
-    """
-    use = np.isfinite(signal) & np.isfinite(speed) & (signal > 0.05) & (speed > 0)
-    x, y = signal[use], speed[use]
-    # 50 samples over a fifth of the range: fewer do not show which of the two curves it is.
-    if len(x) < 50 or np.ptp(x) < 0.2 or np.ptp(y) < 1e-9:
-        return None
-    best = None
-    for curve in ('linear', 'thrust'):
-        values = y if curve == 'linear' else y ** 2
-        slope, offset = np.polyfit(x, values, 1)
-        high, low = offset + slope, max(offset, 0.0)
-        if curve == 'thrust':
-            high, low = math.sqrt(max(high, 0.0)), math.sqrt(low)
-            fitted = np.sqrt(np.maximum(offset + slope * x, 0.0))
-        else:
-            fitted = offset + slope * x
-        rest = float(np.std(y - fitted))
-        if high > low and (best is None or rest < best[0]):
-            best = rest, curve, (low, high)
-    # Speeds that the signal explains to a third of their spread are its answer.
-    return None if best is None or best[0] > np.std(y) / 3 else best[1:]
-
-
 def _number(parameters: Parameters, name: str, default: float = math.nan) -> float:
     value = parameters.get(name, default)
     return float(value) if isinstance(value, int | float) and math.isfinite(value) else default

@@ -10,10 +10,10 @@ from typing import TypeAlias
 import numpy as np
 
 from quad_ident_ros.data.mapping import Actuators, rotor_speeds
+from quad_ident_ros.data.measured_speeds import measured_map
 from quad_ident_ros.data.motor_order import order_of
 from quad_ident_ros.data.px4_airframe import (
     channels_of,
-    measured_map,
     Motors,
     Parameters,
     signal_limits,

@@ -60,6 +60,44 @@ def test_the_gain_of_a_thrust_curve_of_known_power_is_found_as_well():
     np.testing.assert_allclose(read.stack(*CMD), SPEEDS, rtol=1e-3)
 
 
+ROTORS = ('rotor1', 'rotor2', 'rotor3', 'rotor4')
+
+
+def moving(low=0.15, high=0.9):
+    """Return shares of full speed (N, 4) over a range that shows the shape of a map."""
+    turn = np.stack([np.sin(2.1 * FLIGHT.t + k) for k in range(4)], axis=-1)
+    return 0.5 * (low + high) + 0.5 * (high - low) * turn
+
+
+@pytest.mark.parametrize('offset, power', [(0.0, 1.0), (120.0, 1.0), (0.0, 2.0)])
+def test_speeds_that_were_measured_beside_the_signal_tell_the_map(offset, power):
+    """Not the weight: whether thrust and mass fit each other can then be seen."""
+    share = moving()
+    signal = ((share * FULL - offset) / (FULL - offset)) ** power
+    measured = dict(zip(ROTORS, (share * FULL).T, strict=True))
+    [read] = commanded([told(signal, **measured)], UNLIMITED)
+    np.testing.assert_allclose(read.stack(*CMD), share * FULL, rtol=1e-6)
+    assert FULL_SPEED not in read.info
+    assert 'of the measured rotor speeds' in read.info['notes'][-1]
+    assert not [one for one in findings(read, UNLIMITED) if one.code == 'thrust_level']
+
+
+def test_measured_speeds_tell_the_gain_of_a_curve_of_known_power():
+    vehicle = replace(UNLIMITED, motors=motors_from('v', {
+        'kind': 'percent', 'thrust': {'exponent': 1.4}}))
+    share = moving()
+    measured = dict(zip(ROTORS, (share * FULL).T, strict=True))
+    [read] = commanded([told(100 * share ** (2 / 1.4), **measured)], vehicle)
+    np.testing.assert_allclose(read.stack(*CMD), share * FULL, rtol=1e-6)
+
+
+def test_measured_speeds_that_do_not_follow_the_signal_leave_the_level_to_the_weight():
+    noise = 900 + 100 * np.random.default_rng(1).normal(size=(len(FLIGHT), 4))
+    measured = dict(zip(ROTORS, noise.T, strict=True))
+    [read] = commanded([told(SPEEDS / FULL, **measured)], UNLIMITED)
+    assert read.info[FULL_SPEED] == pytest.approx(FULL, rel=1e-3)
+
+
 def test_ground_time_and_an_emptying_battery_do_not_move_the_level():
     """Idle motors on the ground carry nothing: those windows are left out."""
     ground = np.arange(len(FLIGHT)) < len(FLIGHT) // 4
