@@ -3,6 +3,7 @@
 """A class in a user's Python file: made, called, and its errors told."""
 
 from collections.abc import Callable
+from contextlib import redirect_stdout
 import importlib.util
 import inspect
 from pathlib import Path
@@ -56,9 +57,14 @@ class UserClass:
         return found if callable(found) else None
 
     def call(self, what: str, function: Callable, *args: Any) -> Any:
-        """Return what a function of the user's file returns; InputError for what it raises."""
+        """
+        Return what a function of the user's file returns; InputError for what it raises.
+
+        What it prints goes to the standard error: the output may be data (--json -).
+        """
         try:
-            return function(*args)
+            with redirect_stdout(sys.stderr):
+                return function(*args)
         except (Exception, SystemExit) as error:
             lines = [entry.lineno for entry in traceback.extract_tb(error.__traceback__)
                      if Path(entry.filename) == self.path]

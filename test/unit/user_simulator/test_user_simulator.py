@@ -203,6 +203,15 @@ def test_what_is_wrong_with_a_simulator_is_one_line_with_its_place(tmp_path, tex
     assert len(message) < 500
 
 
+def test_what_a_simulator_prints_does_not_get_into_the_data(tmp_path, capsys):
+    path = tmp_path / 'mine.py'
+    path.write_text('print("read")\n' + BEGIN + '    def step(self, commands, dt):\n'
+                    '        print("stepped")\n        return self.x\n')
+    Simulator(f'{path}:Sim', BARE)
+    printed = capsys.readouterr()
+    assert printed.out == '' and {'read', 'stepped'} <= set(printed.err.split())
+
+
 @pytest.mark.parametrize('spec, said', [
     ('mine.py', '--simulator mine.py: expected FILE.py:NAME'),
     ('mine.txt:Sim', 'expected FILE.py:NAME'),
