@@ -17,6 +17,7 @@ _SHOWN = 3          # files of a folder that its message names
 
 _GIVE = 'give the log, the bag or the table of a flight'
 _UNPACK = 'unpack it and give the file of the flight that is in it'
+_WRITE = 'write the flight from there as CSV (writetable)'
 _GPS = 'it has no rates and no commands; give the log that it was made from'
 
 _MAGIC = (
@@ -30,8 +31,8 @@ _MAGIC = (
     (b'\x28\xb5\x2f\xfd', 'a file packed by zstd', _UNPACK),
     (b'\x7fELF', 'a program', _GIVE),
     (b'\xd0\xcf\x11\xe0', 'a document of Microsoft Office', 'save the sheet as CSV'),
-    (b'MATLAB 5.0 MAT-file', 'a MAT file of MATLAB',
-     'write the flight from there as CSV (writetable)'),
+    (b'MATLAB 5.0 MAT-file', 'a MAT file of MATLAB', _WRITE),
+    (b'MATLAB 7.3 MAT-file', 'a MAT file of MATLAB', _WRITE),
     (b'\x89HDF', 'an HDF5 file', 'write the flight from there as CSV or Parquet'),
     (b'\x93NUMPY', 'an array of NumPy', 'write it as CSV with a header that names the columns'),
     (b'version https://git-lfs', 'a pointer of Git LFS, not the file itself',

@@ -75,6 +75,8 @@ KINDS = {
     'elf': (b'\x7fELF\x02\x01' + bytes(40), 'a program', 'give the log'),
     'excel': (b'\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1', 'Microsoft Office', 'as CSV'),
     'matlab': (b'MATLAB 5.0 MAT-file, x'.ljust(128, b'\0'), 'MATLAB', 'as CSV'),
+    'matlab_hdf5': (b'MATLAB 7.3 MAT-file, x'.ljust(512, b'\0') + b'\x89HDF\r\n\x1a\n', 'MATLAB',
+                    'as CSV'),
     'hdf5': (b'\x89HDF\r\n\x1a\n' + bytes(40), 'HDF5', 'CSV or Parquet'),
     'numpy': (b'\x93NUMPY\x01\0', 'NumPy', 'as CSV'),
     'lfs': (b'version https://git-lfs.github.com/spec/v1\noid sha256:ab\n', 'Git LFS', 'pull'),
