@@ -11,6 +11,8 @@ from quad_ident_ros.data.limits import most
 from quad_ident_ros.data.tabular import left_out, MOST_COLUMNS, noted, numbers_in, Table
 from quad_ident_ros.errors import InputError
 
+MOST_ENTRIES = 16   # of a list in a cell: a pose with its attitude has 7, a matrix 16
+
 
 def read_parquet(path: Path) -> Table:
     """Return the Table of a Parquet file; raises InputError, ModuleNotFoundError for pyarrow."""
@@ -33,6 +35,10 @@ def read_parquet(path: Path) -> Table:
             if not name.isprintable() or not name.strip() or name.strip() in columns:
                 continue
             values = _numbers(pyarrow, column)
+            entries = _entries(pyarrow, column)
+            if entries is not None:
+                columns |= {f'{name.strip()}[{k}]': entry for k, entry in enumerate(entries)}
+                continue
             if values is None and _is_text(pyarrow, column.type):
                 cells = [(cell or '').strip() for cell in column.to_pylist()]
                 values = numbers_in(path, name, cells, False, lambda k: f'row {k + 1}')
@@ -56,16 +62,33 @@ def _is_text(pyarrow: Any, kind: Any) -> bool:
     return bool(pyarrow.types.is_string(kind) or pyarrow.types.is_large_string(kind))
 
 
+def _entries(pyarrow: Any, column: Any) -> np.ndarray | None:
+    """Return the entries (n, N) of a column of lists of n numbers each, or None for others."""
+    types = pyarrow.types
+    if not (types.is_list(column.type) or types.is_large_list(column.type)
+            or types.is_fixed_size_list(column.type)) or column.null_count or not len(column):
+        return None
+    one = column.combine_chunks()
+    one = one if isinstance(one, pyarrow.Array) else one.chunk(0)
+    values = one.flatten()
+    count, rest = divmod(len(values), len(one))
+    if rest or not 0 < count <= MOST_ENTRIES or (
+            np.asarray(one.value_lengths()) != count).any():
+        return None
+    numbers = _numbers(pyarrow, values)
+    return None if numbers is None else numbers.reshape(-1, count).T
+
+
 def _numbers(pyarrow: Any, column: Any) -> np.ndarray | None:
     """Return the values of a column as float, or None where they are no numbers."""
     kind = column.type
-    if pyarrow.types.is_timestamp(kind):
+    if pyarrow.types.is_timestamp(kind) or pyarrow.types.is_duration(kind):
         column, factor = column.cast(pyarrow.int64()), {
             's': 1e9, 'ms': 1e6, 'us': 1e3, 'ns': 1.0}[kind.unit]
     elif (pyarrow.types.is_integer(kind) or pyarrow.types.is_floating(kind)
-          or pyarrow.types.is_boolean(kind)):
+          or pyarrow.types.is_boolean(kind) or pyarrow.types.is_decimal(kind)):
         factor = 1.0
     else:
         return None
-    values = column.cast(pyarrow.float64(), safe=False).to_numpy()
+    values = column.cast(pyarrow.float64(), safe=False).to_numpy(zero_copy_only=False)
     return np.array(values, float) * factor

@@ -15,6 +15,7 @@ from quad_ident_ros.data.mapping import Column, factor_of, Mapping
 from quad_ident_ros.data.tabular import Table
 
 OVER = 0.1              # s over which turns are compared, so that noise of samples counts little
+SHORTEST = 3            # letters of a name that is counted
 SAME = 0.98             # correlation of two streams of one quantity, as raw and filtered
 
 
@@ -114,15 +115,8 @@ class Draft:
 
     def trio(self, group: Sequence[str], entries: str) -> list[str] | None:
         """Return the columns of a group of axes, of one prefix, or None."""
-        found = {}
-        for name in self.free:
-            for axis in entries:
-                match = re.search(AXES[group].format(axis), self.names[name])
-                if match and not (group in (FORCE, VELOCITY) and TURNED.search(
-                        self.names[name])):
-                    prefix = self.names[name][:match.start(2)]
-                    found.setdefault((prefix, match.group(2)), {}).setdefault(axis, name)
-        whole = sorted((axes for axes in found.values() if len(axes) == len(entries)),
+        whole = sorted((axes for axes in self._by_prefix(group, entries).values()
+                        if len(axes) == len(entries)),
                        key=lambda axes: sum(len(self.names[name]) for name in axes.values()))
         self.guess.candidates.setdefault(group, []).extend(
             [axes[axis] for axis in entries] for axes in whole)
@@ -137,6 +131,31 @@ class Draft:
             if all(letter in by_name for letter in bare):
                 return [by_name[letter] for letter in bare]
         return None
+
+    def numbered(self, group: Sequence[str]) -> list[str] | None:
+        """
+        Return the three columns of a group that are counted from 0 or 1, or None.
+
+        A fourth of that name is none of an axis, and letters that are counted may be anything.
+        """
+        for (_, stem), axes in self._by_prefix(group, '01234').items():
+            counted = ''.join(sorted(axes))
+            if len(stem) >= SHORTEST and counted in ('012', '123'):
+                return [axes[axis] for axis in counted]
+        return None
+
+    def _by_prefix(self, group: Sequence[str], entries: str
+                   ) -> dict[tuple[str, str], dict[str, str]]:
+        """Return the columns whose names are of a group: what is before them, axis -> name."""
+        found: dict[tuple[str, str], dict[str, str]] = {}
+        for name in self.free:
+            for axis in entries:
+                match = re.search(AXES[group].format(axis), self.names[name])
+                if match and not (group in (FORCE, VELOCITY) and TURNED.search(
+                        self.names[name])):
+                    prefix = self.names[name][:match.start(2)]
+                    found.setdefault((prefix, match.group(2)), {}).setdefault(axis, name)
+        return found
 
     def _same(self, group: Sequence[str], one: list[str], other: list[str]) -> bool:
         """Return whether the first of two trios is the plain one, or both tell the same."""

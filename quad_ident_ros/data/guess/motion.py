@@ -25,7 +25,7 @@ SPAN = 0.5              # s, over which noise of single samples counts for littl
 
 def vectors(draft: Draft) -> None:
     """Find the trios first: one that is found is not taken for another."""
-    draft.found = {group: draft.trio(group, 'xyz')
+    draft.found = {group: draft.trio(group, 'xyz') or draft.numbered(group)
                    for group in (POSITION, VELOCITY, RATE, FORCE)}
     if draft.found[RATE] is None:
         turning = [draft.one(rf'(^|_){axis}_?(rate|speed|vel)$') for axis in TURNING]

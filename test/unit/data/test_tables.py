@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tables of others: columns by a mapping, and by guess where nothing is in doubt."""
 
+from decimal import Decimal
 import gzip
 import random
 import sys
@@ -303,6 +304,44 @@ def test_parquet_is_read_by_the_same_rules(tmp_path):
     assert 'note' in said(load(path)) and contents_of(path)[1][0].samples == len(FLIGHT)
     path.write_bytes(path.read_bytes()[:-100])
     refused(path, 'Parquet')
+
+
+def test_columns_of_other_types_in_parquet_are_numbers(tmp_path):
+    """Durations, decimals, and lists of a few numbers, as pandas and NumPy make them."""
+    pyarrow = pytest.importorskip('pyarrow', reason='pyarrow is not installed')
+    from pyarrow import parquet
+    columns = {name: pyarrow.array(values) for name, values in others().items()
+               if not name.startswith('pos_')}
+    columns['timestamp'] = pyarrow.array(np.round(1e9 * FLIGHT.t).astype('timedelta64[ns]'))
+    columns['vbat'] = pyarrow.array([Decimal(f'{volts:.3f}') for volts in others()['vbat']])
+    columns['position'] = pyarrow.array(FLIGHT.stack(*PLACE).tolist())
+    columns['tags'] = pyarrow.array([[1.0] * (k % 3) for k in range(len(FLIGHT))])
+    path = tmp_path / 'f.parquet'
+    parquet.write_table(pyarrow.table(columns), path)
+    read = load(path)
+    close(read)
+    np.testing.assert_allclose(read.t - read.t[0], FLIGHT.t, atol=1e-9)
+    np.testing.assert_allclose(read.columns['vbat'], FLIGHT.columns['vbat'], atol=1e-3)
+    assert 'columns of text are left out: tags' in said(read)
+
+
+def test_axes_that_are_counted_are_known_unless_there_is_a_fourth(tmp_path):
+    """As ulog2csv writes the topics of PX4; four of a name are rotors."""
+
+    def counted(name, values):
+        return named([f'{name}[{k}]' for k in range(values.shape[1])], values)
+
+    columns = {'timestamp': np.round(1e6 * FLIGHT.t + 5e6),
+               **counted('position', ned(FLIGHT.stack(*PLACE))),
+               **counted('q', ned_attitude(FLIGHT.stack(*Q))),
+               **counted('velocity', ned(FLIGHT.stack(*SPEED))),
+               **counted('angular_velocity', frd(FLIGHT.stack(*RATE))),
+               **counted('accelerometer_m_s2', frd(FLIGHT.stack(*FORCE)))}
+    close(load(table(tmp_path, columns)))
+    speeds = np.stack([FLIGHT.columns[f'cmd{k}'] for k in range(1, 5)], axis=-1)
+    columns = {'time': FLIGHT.t, **named(PLACE, FLIGHT.stack(*PLACE)),
+               **named(Q, FLIGHT.stack(*Q)), **counted('omega', speeds)}
+    assert not load(table(tmp_path, columns)).has('wx')
 
 
 def test_text_in_a_parquet_file_is_named(tmp_path):
