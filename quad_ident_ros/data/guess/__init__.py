@@ -14,7 +14,7 @@ import numpy as np
 from quad_ident_ros.data.guess import attitude, clock, motion, motors, programs
 from quad_ident_ros.data.guess.draft import Draft, Guess
 from quad_ident_ros.data.mapping import Mapping
-from quad_ident_ros.data.tabular import Table
+from quad_ident_ros.data.tabular import shown, Table
 
 STEPS = (clock.time, programs.blackbox_decode, programs.vicon, motion.vectors, attitude.quaternion,
          attitude.angles, attitude.rates, motion.positions, motion.forces, motion.axes,
@@ -39,6 +39,8 @@ def guess(table: Table, given: Mapping | None = None) -> Guess:
             step(made)
     made.guess.mapping = Mapping({}, made.world, made.body, {}, given.actuators, made.columns,
                                  made.order, given.separator)
+    if made.free:
+        made.guess.said.append(f'not taken for anything: {shown(made.free)}')
     made.guess.doubts += table.doubts
     if not made.guess.roles:
         made.guess.doubts.append('no column is a position, velocity, attitude, rate or specific '

@@ -9,11 +9,13 @@ import numpy as np
 from quad_ident_ros.data.guess.draft import Draft
 from quad_ident_ros.data.guess.names import (
     BATTERY,
+    COMMANDED,
     CORNER,
     CORNERS,
     CRAZYFLIE,
     FORCES,
     MOTOR,
+    REPORTED,
     SPEED,
 )
 from quad_ident_ros.data.mapping import factor_of
@@ -22,6 +24,7 @@ from quad_ident_ros.data.record import INPUTS
 from quad_ident_ros.data.signal_kind import kinds_of, TITLES
 
 AROUND = (1, -1), (-1, -1), (-1, 1), (1, 1)     # forward, left: front right to front left
+SPEEDS = 'rad/s', 'rpm'
 SLOWEST = 20.0          # rad/s or rpm: no rotor that flies turns more slowly
 FEWEST, MOST = 3, 12    # motors
 CELLS = 2.0, 100.0      # V: one cell that is empty, to over 20 in series; more is in mV
@@ -29,11 +32,15 @@ CELLS = 2.0, 100.0      # V: one cell that is empty, to over 20 in series; more 
 
 def motors(draft: Draft) -> None:
     """Take the commands, or outputs to the motors, and measured rotor speeds."""
-    measured = _numbered(draft, SPEED)
+    speeds, signals = _numbered(draft, SPEED), _numbered(draft, MOTOR)
+    asked = [names for names in speeds if COMMANDED.search(draft.names[names[0]])]
+    others = [names for names in signals if not draft.unit_of(names, SPEEDS)]
+    reported = [names for names in signals if names not in others
+                and not COMMANDED.search(draft.names[names[0]])
+                and (others or REPORTED.search(draft.names[names[0]]))]
+    measured = next((names for names in (*speeds, *reported) if names not in asked), None)
     if measured:
-        values = draft.logged(measured)
-        unit = draft.unit_of(measured, ('rad/s', 'rpm')) or (
-            'rpm' if any('rpm' in draft.names[name] for name in measured) else 'rad/s')
+        values, unit = draft.logged(measured), _unit_of(draft, measured)
         if np.nanmin(values) >= 0 and np.nanmedian(values) > SLOWEST:
             draft.take([f'rotor{k}' for k in range(1, len(measured) + 1)], measured, unit,
                        role='rotors', said=f'measured rotor speeds in {unit}')
@@ -42,14 +49,15 @@ def motors(draft: Draft) -> None:
         draft.take(INPUTS, INPUTS, role='commands', said='thrust and moments, for the other '
                    'columns have the names of a flight record')
         return
-    names = _numbered(draft, MOTOR) or _corners(draft)
+    names = next((names for names in (*asked, *signals) if names not in reported), None)
+    names = names or _corners(draft)
     if not names:
         return
     values = draft.logged(names)
     kinds = kinds_of(values)
     if FORCES.search(draft.names[names[0]]) and list(kinds) != ['normalised']:
         return
-    unit = draft.unit_of(names, ('rad/s', 'rpm'))
+    unit = _unit_of(draft, names) if names in asked else draft.unit_of(names, SPEEDS)
     if unit:
         draft.take([f'cmd{k}' for k in range(1, len(names) + 1)], names, unit,
                    role='commands', said=f'rotor speed commands in {unit}')
@@ -72,16 +80,22 @@ def battery(draft: Draft) -> None:
         draft.take(('vbat',), (name,), unit, role='battery', said=f'battery in {unit}')
 
 
-def _numbered(draft: Draft, pattern: re.Pattern) -> list[str] | None:
-    """Return the columns of 3 to 12 numbers from 0 or 1 on, of one name, or None."""
-    groups = {}
+def _unit_of(draft: Draft, names: list[str]) -> str:
+    """Return the unit of rotor speeds by their names, rad/s where these say none."""
+    return draft.unit_of(names, SPEEDS) or (
+        'rpm' if any('rpm' in draft.names[name] for name in names) else 'rad/s')
+
+
+def _numbered(draft: Draft, pattern: re.Pattern) -> list[list[str]]:
+    """Return the columns of 3 to 12 numbers from 0 or 1 on, by name, the shortest name first."""
+    groups: dict[tuple[str, str], dict[int, str]] = {}
     for name in draft.free:
         match = pattern.search(draft.names[name])
         if match:
-            groups.setdefault(draft.names[name][:match.start(3)], {})[
+            groups.setdefault((draft.names[name][:match.start(3)], draft.units[name]), {})[
                 int(match.group(3))] = name
     whole = []
-    for prefix, group in groups.items():
+    for (prefix, _), group in groups.items():
         first = min(group)
         count = next(k for k in range(len(group) + 1) if first + k not in group)
         names = [group[first + k] for k in range(count)]
@@ -90,7 +104,7 @@ def _numbered(draft: Draft, pattern: re.Pattern) -> list[str] | None:
             names.pop()     # channels that nothing is on
         if first in (0, 1) and FEWEST <= len(names) <= MOST:
             whole.append((len(prefix), names))
-    return min(whole)[1] if whole else None
+    return [names for _, names in sorted(whole)]
 
 
 def _corners(draft: Draft) -> list[str] | None:

@@ -46,9 +46,19 @@ PITCH_DOWN = re.compile(r'(stabilizer|state_estimate)_pitch')
 
 TIME = re.compile(r'(^|_)(t|time|timestamp|time_?stamp|stamp|ts|zeit|elapsed|clock|'
                   r'rosbagtimestamp)$')
-MOTOR = re.compile(r'(^|_)(cmd|motor_cmd|m|mot|motor|motors|motor_m|pwm|esc|u|output|outputs|'
-                   r'control|actuator|throttle|thrust|duty|rc_?out|servo)(?:_(?:data|control|'
-                   r'output|velocities|angular_velocities))?_?(\d{1,2})$')
+_WORDS = 'pwm|cmd|command|req|out|output|duty|throttle|value'
+MOTOR = re.compile(r'(^|_)(cmd|command|motor_cmd|m|mot|mot_m|motor|motors|motor_m|pwm|dshot|esc|u|'
+                   r'output|outputs|control|actuator|action|throttle|thrust|duty|rc_?out|rcou_c|servo)'
+                   rf'(?:_(?:data|control|velocities|angular_velocities|{_WORDS}))?_?(\d{{1,2}})$')
+COMMANDED = re.compile(r'(^|_)(cmds?|commands?|commanded|req)(_|$)')
+"""Of rotor speeds that are asked for, not measured."""
+
+REPORTED = re.compile(r'(^|_)esc_?\d')
+"""Of motors whose speeds, where they are told as such, a speed controller has measured."""
+
+_AFTER = re.compile(rf'_?(\d{{1,2}})_(speed|vel|velocity|{_WORDS})$')
+"""What stands behind the number of a motor, and belongs before it: m1_pwm."""
+
 CORNERS = {'front_right': r'(fr|front_?right)', 'rear_right': r'(rr|br|(rear|back)_?right)',
            'rear_left': r'(rl|bl|(rear|back)_?left)', 'front_left': r'(fl|front_?left)'}
 CORNER = r'(^|_)(m|mot|motor|pwm|esc|rotor|cmd|motor_cmd|output|u|thrust)s?_?{}$'
@@ -60,8 +70,9 @@ CRAZYFLIE = re.compile(r'motor_m[1-4]')
 FORCES = re.compile(r'(^|_)thrust_?\d')
 """Of commands that may be forces, unless they are shares of full thrust."""
 
-SPEED = re.compile(r'(^|_)(r|rotor|rotor_speed|motor_rpm|rpm|erpm|motor_speed|esc_rpm|propeller|'
-                   r'omega_m|rotor_vel|rotor_velocities)_?(\d{1,2})$')
+SPEED = re.compile(r'(^|_)(r|(?<!_)[nw]|omega|omega_m|rotor|rotor_speed|rotor_vel|'
+                   r'rotor_velocities|motor_rpm|motor_speed|rpm|erpm|esc_rpm|esc_speed|prop|'
+                   r'prop_speed|propeller)(?:_(?:meas|measured|actual|feedback))?_?(\d{1,2})$')
 BATTERY = re.compile(r'(^|_)(vbat|vbatt|v_bat|bat_v|battery|battery_voltage|voltage|vbat_latest|'
                      r'battery_v|bat_volt|supply_voltage)$')
 
@@ -78,4 +89,5 @@ def plain(name: str) -> tuple[str, str]:
     match = ENDING.search(name)
     if not said and match and len(name) > len(match.group()):
         name, said = name[:match.start()], match.group(1)
+    name = _AFTER.sub(r'_\2_\1', name)
     return name, UNITS.get(said, said)

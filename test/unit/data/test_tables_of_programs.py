@@ -261,6 +261,33 @@ def test_thrusts_are_commands_where_they_are_shares_of_the_full_one(tmp_path):
     assert not load(table(tmp_path, found | newton)).has('output1')
 
 
+@pytest.mark.parametrize(('signals', 'speeds'), [
+    ('motor{}', 'motor{}_rpm'), ('pwm_{}', 'esc{}_rpm'), ('m{}_out', 'm{}_rpm'),
+    ('rcou.C{}', 'rotor{}_speed_rpm'), ('cmd_rpm_{}', 'rpm_{}'), ('rpm_cmd_{}', 'rpm_meas_{}'),
+    ('command{}_rpm', 'omega{}')])
+@pytest.mark.parametrize('first', [True, False])
+def test_signals_and_measured_speeds_are_told_apart(tmp_path, signals, speeds, first):
+    """Whichever comes first in the table, also where they differ by a unit alone."""
+    rpm = 30 / np.pi * FLIGHT.stack(*CMD)
+    by_speed = 'rpm' in signals
+    asked = {signals.format(k): values for k, values in enumerate(
+        (rpm if by_speed else (FLIGHT.stack(*CMD) - 100) / 1600).T, 1)}
+    seen = {speeds.format(k): values for k, values in enumerate(
+        (0.97 * rpm if 'rpm' in speeds else 0.97 * FLIGHT.stack(*CMD)).T, 1)}
+    read = load(table(tmp_path, {
+        'time': T, **columns('gyro_', 'xyz', RATE), **columns('accel_', 'xyz', FORCE),
+        **(asked | seen if first else seen | asked)}), vehicle=VEHICLE)
+    np.testing.assert_allclose(read.stack(*CMD), FLIGHT.stack(*CMD), rtol=1e-9)
+    np.testing.assert_allclose(read.stack('rotor1', 'rotor2', 'rotor3', 'rotor4'),
+                               0.97 * FLIGHT.stack(*CMD), rtol=1e-9)
+
+
+def test_columns_that_nothing_was_made_of_are_named(tmp_path):
+    found = {'time': T, **columns('gyro_', 'xyz', RATE), 'fuel': 0.5 * T, 'setpoint_x': T}
+    notes = '; '.join(load(table(tmp_path, found)).info['notes'])
+    assert 'not taken for anything: fuel' in notes and 'setpoint_x' not in notes
+
+
 def test_a_flight_on_the_ground_keeps_its_four_motors(tmp_path):
     record = changed(FLIGHT, **dict.fromkeys(CMD, 0.0 * T))
     found = {'time': T, **columns('gyro_', 'xyz', RATE), **named(
