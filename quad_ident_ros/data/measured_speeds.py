@@ -11,6 +11,9 @@ import numpy as np
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.model.motors import Motors, rotor_speeds, shares
 
+FEWEST = 50         # samples
+FOLLOWS = 0.5       # correlation with the signal; motors that lag follow it by less than 1
+
 
 def measured_map(signal: np.ndarray, speed: np.ndarray) -> tuple[str, tuple[float, float]] | None:
     """
@@ -22,7 +25,7 @@ def measured_map(signal: np.ndarray, speed: np.ndarray) -> tuple[str, tuple[floa
     use = np.isfinite(signal) & np.isfinite(speed) & (signal > 0.05) & (speed > 0)
     x, y = signal[use], speed[use]
     # 50 samples over a fifth of the range: fewer do not show which of the two curves it is.
-    if len(x) < 50 or np.ptp(x) < 0.2 or np.ptp(y) < 1e-9:
+    if len(x) < FEWEST or np.ptp(x) < 0.2 or np.ptp(y) < 1e-9:
         return None
     best = None
     for curve in ('linear', 'thrust'):
@@ -56,21 +59,23 @@ def by_measured(records: Sequence[FlightRecord], signals: Sequence[np.ndarray], 
         return None
     speeds = np.concatenate([record.stack(*record.numbered('rotor')) for record, _ in pairs])
     share = shares(np.concatenate([values for _, values in pairs]), motors.minimum, motors.maximum)
-    found = measured_map(share, speeds)
-    if found is None:
-        return None
-    if not motors.gives:
+    found = None if motors.gives else measured_map(share, speeds)
+    if found is not None:
         curve, (low, high) = found
         if curve == 'linear':
             return replace(motors, gives='speed', offset=low, gain=high - low)
         k = thrust_coefficient
         return replace(motors, gives='thrust', offset=k * low ** 2,
                        gain=k * (high ** 2 - low ** 2))
-    unit = replace(motors, gain=1.0)
+    # In hover alone the shape is not to be seen, and the level is.
+    unit = replace(motors, gain=1.0, gives=motors.gives or 'speed')
     given = np.concatenate([
         rotor_speeds(unit, values, thrust_coefficient,
                      record.columns['vbat'] if motors.needs_voltage else None)
         for record, values in pairs])
     turning = (given > 0) & (speeds > 0)
-    ratio = float(np.median(speeds[turning] / given[turning]))
-    return replace(motors, gain=ratio if motors.gives == 'speed' else ratio ** 2)
+    x, y = given[turning], speeds[turning]
+    if len(x) < FEWEST or not np.std(x) * np.std(y) > 0 or np.corrcoef(x, y)[0, 1] < FOLLOWS:
+        return None
+    ratio = float(np.median(y / x))
+    return replace(unit, gain=ratio if unit.gives == 'speed' else ratio ** 2)

@@ -18,6 +18,8 @@ STILL = 0.2         # m/s: slower stands, or hovers
 IDLE = 0.5          # of the weight, or of the usual thrust if that is less: nothing hovers with it
 LEAST = 0.3         # s: whatever falls for that long with half the thrust is faster than STILL
 CLEAR = 0.05        # m above the height of standing where the ground is left
+LASTS = 1.0         # s of a flight at the height of a stand, such as from a hand: what takes off
+                    # or lands is past CLEAR sooner
 CARRIED = 3.0       # m/s: what is faster is in no hand, and its drag may hold it up
 FALLING = 0.5       # of g: with less force on it the vehicle falls, and flies
 LIFT = 0.8          # of the usual thrust, of which a full battery gives a tenth more and the
@@ -108,6 +110,9 @@ def standing(record: FlightRecord, vehicle: Vehicle) -> np.ndarray:
     height = record.columns['pz'] if record.has('pz') else None
     period = record.period()
     low = ~moving & (thrust < LIFT * usual)
+    flying = np.zeros(len(record), bool)
+    for first, last in _runs(moving & (thrust > LIFT * usual)):
+        flying[first:last + 1] = (last - first) * period > LASTS
     for first, last in _runs(~moving & (thrust < IDLE * usual)):
         # In samples, too: a gap in the record is no time on the ground.
         if min(record.t[last] - record.t[first], (last - first) * period) < LEAST:
@@ -116,7 +121,7 @@ def standing(record: FlightRecord, vehicle: Vehicle) -> np.ndarray:
             begin, end = _around(low, first, last)
             grounded[begin:_moves_from(record, first, last, end)] = True
             continue
-        near = np.abs(height - np.median(height[first:last + 1])) < CLEAR
+        near = (np.abs(height - np.median(height[first:last + 1])) < CLEAR) & ~flying
         for begin, end in _runs(near):
             if begin <= last and end >= first:
                 grounded[min(begin, first):max(end, last) + 1] = True

@@ -17,7 +17,7 @@ from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.flight.fly import fly_closed_loop
-from quad_ident_ros.flight.measure import MOCAP_IMU
+from quad_ident_ros.flight.measure import CLEAN, MOCAP_IMU
 
 STAND = 2.0     # s
 
@@ -175,6 +175,20 @@ def test_what_is_held_in_a_hand_above_the_flight_is_no_flight(flight):
     whole = changed(whole, pz=np.where(held, flight.columns['pz'].max() + 1.5,
                                        whole.columns['pz']))
     assert len(airborne(whole, VEHICLE)) == len(flight)
+
+
+@pytest.mark.parametrize('noise', ['clean', 'mocap_imu'])
+def test_a_flight_at_the_height_of_the_stand_is_kept(noise):
+    """From a hand, a stand or a string, along a path that does not change its height."""
+    flown = fly_closed_loop(VEHICLE, {}, 'circle', duration=12.0, seed=3,
+                            noise=MOCAP_IMU if noise == 'mocap_imu' else CLEAN)
+    assert np.ptp(flown.columns['pz']) < 0.1
+    whole = grounded(flown, idle=0.0)
+    height = np.concatenate([np.full(200, flown.columns['pz'][0]), flown.columns['pz'],
+                             np.full(200, flown.columns['pz'][-1])])
+    part = airborne(replace(whole, columns={**whole.columns, 'pz': height}), VEHICLE)
+    assert part.t[0] == pytest.approx(STAND, abs=1.0)
+    assert part.t[-1] == pytest.approx(STAND + 12.0, abs=1.0)
 
 
 def test_a_hover_amid_brisk_flight_is_no_standing(flight):
