@@ -48,7 +48,8 @@ TIME = re.compile(r'(^|_)(t|time|timestamp|time_?stamp|stamp|ts|zeit|elapsed|clo
                   r'rosbagtimestamp)$')
 _WORDS = 'pwm|cmd|command|req|out|output|duty|throttle|value'
 MOTOR = re.compile(r'(^|_)(cmd|command|motor_cmd|m|mot|mot_m|motor|motors|motor_m|pwm|dshot|esc|u|'
-                   r'output|outputs|control|actuator|action|throttle|thrust|duty|rc_?out|rcou_c|servo)'
+                   r'output|outputs|control|actuator|action|throttle|thrust|duty|rc_?out|rcou_c|'
+                   r'servo)'
                    rf'(?:_(?:data|control|velocities|angular_velocities|{_WORDS}))?_?(\d{{1,2}})$')
 COMMANDED = re.compile(r'(^|_)(cmds?|commands?|commanded|req)(_|$)')
 """Of rotor speeds that are asked for, not measured."""
