@@ -11,12 +11,14 @@ import logging
 from multiprocessing import resource_tracker
 import os
 import queue
+import re
 import signal
 import threading
 from time import monotonic
 from typing import Any, Generic, TypeVar
 
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.schema import shown
 
 Item = TypeVar('Item')
 
@@ -27,6 +29,7 @@ TICK = 0.25         # s, in which whoever follows the work is told that it still
 GRACE = 3.0         # s from the end of a task's time to that of its process
 TIMES = 'quad_ident_times'
 """The topic on which a worker says that the time of a task is over."""
+_ADDRESS = re.compile(r'((tcp|tls|ws|wss|ucx)://)?(\[[\da-f:.]+\]|[^/:\s]+):\d+', re.IGNORECASE)
 
 
 class TimeOver(Exception):
@@ -65,6 +68,7 @@ def cluster(scheduler: str | None = None, workers: int | None = None,
                          ) from None
     logging.getLogger('distributed').setLevel(logging.CRITICAL)     # we say what matters
     if scheduler is not None:
+        _check_address(scheduler, distributed.Security())
         try:
             client = distributed.Client(scheduler, timeout='10s', set_as_default=False)
         except (OSError, ValueError) as error:
@@ -86,9 +90,20 @@ def cluster(scheduler: str | None = None, workers: int | None = None,
         with _without_interrupt():
             local = stack.enter_context(distributed.LocalCluster(
                 n_workers=count, threads_per_worker=1, memory_limit=limit, host='127.0.0.1',
-                dashboard_address=':0', silence_logs=logging.CRITICAL))
+                dashboard_address='127.0.0.1:0', silence_logs=logging.CRITICAL))
             client = stack.enter_context(distributed.Client(local, set_as_default=False))
         yield client
+
+
+def _check_address(scheduler: str, security: Any) -> None:
+    """Raise InputError for what a Client takes for no address: when closed, it would hang."""
+    if not _ADDRESS.fullmatch(scheduler):
+        raise InputError(f'--scheduler {shown(scheduler)}: expected tcp://HOST:PORT, as '
+                         '`dask scheduler` prints it')
+    if (scheduler.lower().startswith('tls:')
+            and security.get_connection_args('client').get('ssl_context') is None):
+        raise InputError(f'--scheduler {scheduler}: TLS needs certificates; name them in the '
+                         'configuration of Dask (distributed.comm.tls), or use tcp://')
 
 
 @contextmanager
