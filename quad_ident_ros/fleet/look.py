@@ -12,7 +12,7 @@ from quad_ident_ros.data.content import files_in, sha256_of
 from quad_ident_ros.data.load import load_all
 from quad_ident_ros.data.mapping import Mapping
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.fleet.dates import date_in_log, date_in_path
+from quad_ident_ros.fleet.dates import date_in_log, is_time_in_path
 from quad_ident_ros.fleet.manifest import Listed
 from quad_ident_ros.fleet.store import read_table, write_rows
 from quad_ident_ros.schema import NAME_LENGTH
@@ -40,8 +40,8 @@ class Looked:
 
 
 def has_to_be_read(one: Listed) -> bool:
-    """Return whether neither names nor manifest say of what vehicle and day a flight is."""
-    return not one.vehicle or not (one.group or one.day or one.date or date_in_path(one.path))
+    """Return whether neither names nor manifest say whose a flight is, and at what time it was."""
+    return not one.vehicle or not (one.date or is_time_in_path(one.path))
 
 
 def look(one: Listed, mapping: Mapping | None = None) -> Looked:

@@ -4,9 +4,12 @@
 
 from dataclasses import replace
 from datetime import datetime, timezone
+from pathlib import Path
 
 import pytest
+from reader_checks import SMALL
 
+from quad_ident_ros.data.export import write_bag
 from quad_ident_ros.diagnose.rules import RULES
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.fleet.manifest import Listed
@@ -14,7 +17,7 @@ from quad_ident_ros.model.vehicle import load_vehicle
 
 pytest.importorskip('pyarrow', reason="pyarrow is not installed: pip install '.[fleet]'")
 from quad_ident_ros.fleet.grouping import groups_of  # noqa: E402, I100
-from quad_ident_ros.fleet.look import look, Looks  # noqa: E402, I100
+from quad_ident_ros.fleet.look import has_to_be_read, look, Looks  # noqa: E402, I100
 from quad_ident_ros.fleet.store import keys_of, write_rows  # noqa: E402, I100
 from quad_ident_ros.fleet.superseded import remove_group, superseded_by  # noqa: E402, I100
 
@@ -47,6 +50,23 @@ def test_the_earliest_flight_comes_first_and_dates_the_group(tmp_path):
                for hour in (17, 9, 12)]
     [group], _ = grouped(flights)
     assert [one.date.hour for one in group.flights] == [9, 12, 17] and group.date.hour == 9
+
+
+def test_flights_of_a_day_without_a_time_are_in_the_order_of_their_names(tmp_path):
+    names = [f'log_{number}.csv' for number in range(1, 13)]
+    [group], _ = grouped([flight(tmp_path, name, name) for name in reversed(names)])
+    assert [Path(one.path).name for one in group.flights] == names
+
+
+def test_a_log_is_asked_for_the_time_that_a_day_does_not_say(tmp_path):
+    log = tmp_path / 'bag_1'
+    start = datetime(2026, 5, 14, 8, 30, 12, tzinfo=timezone.utc)
+    write_bag(log, replace(SMALL, info={'start_ns': int(start.timestamp()) * 10 ** 9}))
+    for known in ({'day': '2026-05-14'}, {'group': 'gusts'}):
+        [group], _ = grouped([Listed(str(log), vehicle='seven', **known)])
+        assert group.date == start
+    assert not has_to_be_read(Listed('2026-05-14/08_30_12.ulg', vehicle='seven'))
+    assert not has_to_be_read(Listed('a.ulg', vehicle='seven', date=start))
 
 
 def test_a_key_is_of_all_that_a_result_depends_on_and_of_nothing_else(tmp_path):

@@ -27,7 +27,8 @@ def utc(*numbers):
 @pytest.mark.parametrize('text, date', [
     ('2026-05-14', utc(2026, 5, 14)), ('2026-05-14T08:30:00Z', utc(2026, 5, 14, 8, 30)),
     ('2026-05-14 08:30:00', utc(2026, 5, 14, 8, 30)),
-    ('2026-05-14T08:30:00+02:00', utc(2026, 5, 14, 6, 30)), ('yesterday', None), ('', None)])
+    ('2026-05-14T08:30:00+02:00', utc(2026, 5, 14, 6, 30)), ('yesterday', None), ('', None),
+    ('0001-01-01T00:00:00+14:00', None)])
 def test_dates_of_text(text, date):
     assert date_of(text) == date
 
