@@ -72,7 +72,7 @@ def run(options):
     try:
         from quad_ident_ros.fleet.insight import insight
         from quad_ident_ros.fleet.priors import learned
-        from quad_ident_ros.fleet.run import run_fleet, TIME_LIMIT
+        from quad_ident_ros.fleet.run import COMPARING, Progress, run_fleet, TIME_LIMIT
         from quad_ident_ros.fleet.store import read_table
     except ModuleNotFoundError as error:
         if (error.name or '').partition('.')[0] not in ('pyarrow', 'distributed', 'dask'):
@@ -96,7 +96,8 @@ def run(options):
         summary = run_fleet(client, options.flights, options.out, vehicle=options.vehicle,
                             mapping=options.mapping, rules=rules, tell=reporter.tell,
                             time_limit=options.time_limit or TIME_LIMIT)
-        found = insight(options.out)
+        found = insight(options.out, lambda done, total: reporter.tell(
+            Progress(COMPARING, total, done)))
         reporter.tell_insight(found)
         reporter.end(summary)
     if options.json != '-':

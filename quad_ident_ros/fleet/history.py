@@ -12,7 +12,7 @@ SURE or more has a false one among all series in at most (1 - SURE) / SURE of th
 any, whatever their size (Markov's inequality for Bayes factors; R. Royall, JASA 95, 2000).
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -112,12 +112,21 @@ class History:
     course: np.ndarray
 
 
-def histories(series: Sequence[Series]) -> tuple[History, ...]:
-    """Return the History of each Series; what is expected before looking is shared among all."""
+def histories(series: Sequence[Series], on_progress: Callable[[int, int], None] = (
+        lambda done, total: None)) -> tuple[History, ...]:
+    """
+    Return the History of each Series; what is expected before looking is shared among all.
+
+    on_progress is called with how many are done, of how many.
+    """
     places = sum(max(len(one.values) - 1, 0) for one in series)
     change = min(EVENTS / 2.0 / max(places, 1), MOST_OFTEN)
     drift = min(EVENTS / 2.0 / max(len(series), 1), MOST_OFTEN)
-    return tuple(history(one, change, drift) for one in series)
+    made = []
+    for one in series:
+        made.append(history(one, change, drift))
+        on_progress(len(made), len(series))
+    return tuple(made)
 
 
 def history(series: Series, change: float, drift: float) -> History:

@@ -38,7 +38,7 @@ from quad_ident_ros.whole_file import write_whole
 
 AT_ONCE = 16    # flights that a task looks at: each is a matter of milliseconds
 TIME_LIMIT = 1800.0     # s of a group: a hundred times the usual one on a slow core
-LOOKING, DIAGNOSING, TRACKING = 'reading', 'diagnosing', 'tracking'
+LOOKING, DIAGNOSING, TRACKING, COMPARING = 'reading', 'diagnosing', 'tracking', 'comparing'
 
 
 @dataclass(frozen=True)
@@ -46,9 +46,10 @@ class Progress:
     """
     How far a run is.
 
-    stage: of LOOKING (done and total are flights), DIAGNOSING (groups), TRACKING (groups); here:
-    done of these before the run; refused, failed: groups of the run that were not diagnosed, by
-    what is wrong with their flights and for other reasons; last: what has just been done.
+    stage: of LOOKING (done and total are flights), DIAGNOSING, TRACKING (groups), COMPARING
+    (parameters of vehicles); here: done of these before the run; refused, failed: groups of the
+    run that were not diagnosed, by what is wrong with their flights and for other reasons; last:
+    what has just been done.
     """
 
     stage: str

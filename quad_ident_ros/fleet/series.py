@@ -10,10 +10,10 @@ import pyarrow
 
 from quad_ident_ros.fleet.dates import in_order
 from quad_ident_ros.fleet.history import Series
+from quad_ident_ros.fleet.work import DIAGNOSED
 
 KNOWN = 0.5         # share of a series' flights from which on a covariate counts in it
 PER_COVARIATE = 4   # flights that a series needs for each covariate: fewer would explain anything
-FIT = 'diagnosed'
 OUTCOME = '_end'     # of names of covariates that a flight makes: a weak rotor empties a battery
 
 Row = Mapping[str, Any]
@@ -31,7 +31,7 @@ def series_of(parameters: pyarrow.Table, flights: pyarrow.Table) -> tuple[Series
     together: dict[tuple[str, ...], dict[str, Row]] = {}
     for row in parameters.to_pylist():
         flight = of_flight.get(row['flight'], {})
-        if row['value'] is not None and flight.get('status', FIT) == FIT:
+        if row['value'] is not None and flight.get('status', DIAGNOSED) == DIAGNOSED:
             key = tuple(row[name] for name in ('configuration', 'effect', 'parameter', 'vehicle'))
             together.setdefault(key, {})[row['flight']] = {**row, 'path': flight.get('path') or ''}
     some = {key: sorted(rows.values(), key=lambda row: (*in_order(row['date'], row['path']),

@@ -130,7 +130,7 @@ def read_table(out: str | Path, table: str,
     try:
         rows = pyarrow.concat_tables([
             dataset.dataset(files[k:k + TOGETHER], schema=TABLES[table], format='parquet'
-                            ).to_table(columns)
+                            ).to_table(columns and list(columns))
             for k in range(0, max(1, len(files)), TOGETHER)]).combine_chunks()
     except FileNotFoundError:       # another run has replaced it meanwhile
         return read_table(out, table, columns)

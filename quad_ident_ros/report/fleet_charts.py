@@ -7,7 +7,9 @@ from html import escape
 
 import numpy as np
 
+from quad_ident_ros.data.counted import counted
 from quad_ident_ros.fleet.history import History, Series
+from quad_ident_ros.report.fleet_words import with_configuration
 from quad_ident_ros.report.html import Markup
 from quad_ident_ros.report.sizes import with_error
 
@@ -53,15 +55,16 @@ def small_multiple(one: History, unit: str, factor: float) -> Markup:
 def said(one: History, unit: str, factor: float) -> str:
     """Return what a picture shows, for who does not see it."""
     series = one.series
-    told = [f'{series.vehicle}, {series.effect} {series.parameter} in {unit} over '
-            f'{len(series.values)} flights: {with_error(factor * one.level, factor * one.std)} '
-            'at the last']
+    told = [f'{with_configuration(series.vehicle, series.configuration)}, {series.effect} '
+            f'{series.parameter} in {unit} over {counted(len(series.values), "flight")}: '
+            f'{with_error(factor * one.level, factor * one.std)} at the last']
     told += [f'it changes before flight {change.place + 1} by {factor * change.size:.3g}'
              for change in one.changes]
     if one.drift:
         told.append(f'it drifts by {factor * one.drift.per_week:.3g} a week')
     if one.odd:
-        told.append(f'{len(one.odd)} flights are off by themselves')
+        told.append(f'{counted(len(one.odd), "flight")} off by '
+                    f'{"itself" if len(one.odd) == 1 else "themselves"}')
     return '; '.join(told)
 
 

@@ -14,6 +14,8 @@ from quad_ident_ros.report.screen import progress_bar
 
 OFTEN = 0.2     # s between two changes of the line, and
 RARELY = 30.0   # between two lines where standard error is no terminal
+UNITS = {'reading': 'flights', 'comparing': 'parameters of vehicles'}
+"""What a stage of a run counts, if not groups."""
 
 
 class Reporter:
@@ -99,7 +101,7 @@ class Reporter:
 
 def line(progress, seconds):
     """Return how far a Progress is after so many seconds of its stage, in one line."""
-    what = 'flights' if progress.stage == 'reading' else 'groups'
+    what = UNITS.get(progress.stage, 'groups')
     new = progress.done - progress.here
     parts = [f'{progress.stage}: {progress.done} of {progress.total} {what}']
     if new and seconds > 0.0:

@@ -9,7 +9,7 @@ import pytest
 from quad_ident_ros.cli.main import main, parser
 
 pytest.importorskip('pyarrow', reason="pyarrow is not installed: pip install '.[fleet]'")
-from quad_ident_ros.fleet.run import DIAGNOSING, Progress, Summary  # noqa: E402, I100
+from quad_ident_ros.fleet.run import COMPARING, DIAGNOSING, Progress, Summary  # noqa: E402, I100
 from quad_ident_ros.report.fleet_run import line, seconds_left, summary_text  # noqa: E402, I100
 
 HALF = Progress(DIAGNOSING, total=100, done=50, here=20)
@@ -19,6 +19,8 @@ def test_a_line_says_how_much_is_done_how_fast_and_what_went_wrong():
     assert line(replace(HALF, refused=3, failed=1), 60.0) == (
         'diagnosing: 50 of 100 groups, 30 per minute, 1 min 40 s left, 3 refused, 1 failed')
     assert line(Progress(DIAGNOSING, 100, 20, 20), 5.0) == 'diagnosing: 20 of 100 groups'
+    assert line(Progress(COMPARING, 40, 10), 5.0) == (
+        'comparing: 10 of 40 parameters of vehicles, 120 per minute, 15 s left')
 
 
 def test_the_time_left_counts_what_was_done_in_this_run_alone():

@@ -5,6 +5,9 @@
 from datetime import timedelta
 import io
 import json
+import os
+import subprocess
+import sys
 
 from fleets import data_set, START
 import pytest
@@ -16,7 +19,7 @@ from quad_ident_ros.fleet.insight import insight  # noqa: E402, I100
 from quad_ident_ros.fleet.store import write_rows  # noqa: E402, I100
 from quad_ident_ros.report.fleet import show_insight  # noqa: E402, I100
 from quad_ident_ros.report.fleet_page import write  # noqa: E402, I100
-from quad_ident_ros.report.fleet_words import points  # noqa: E402, I100
+from quad_ident_ros.report.fleet_words import nothing_line, points, summary_line  # noqa: E402, I100
 
 STEP = ('uav3', 'com_offset', 'x', 11, 4e-3)
 SLOPE = ('uav5', 'thrust_scale', 'factor', -0.01)
@@ -128,3 +131,79 @@ def test_names_are_text_on_the_page(tmp_path):
     write(tmp_path / 'fleet.html', insight(tmp_path / 'set'))
     text = (tmp_path / 'fleet.html').read_text(encoding='utf-8')
     assert '<b>"x' not in text and '<td class="prose"><script>' not in text
+
+
+def test_a_drift_towards_no_effect_does_not_get_worse(tmp_path):
+    """A drag that falls does; it is no less sure, and no more urgent than a change."""
+    data_set(tmp_path, slopes=[('uav5', 'rotor_drag', 'coefficient', -0.004)],
+             steps=[('uav5', 'rotor_drag', 'coefficient', 0, 0.1)])
+    why, = {one.why for one in points(insight(tmp_path)) if one.where == 'uav5'
+            and 'a week' in one.text}
+    assert why == 'drifts'
+
+
+def test_what_failed_is_not_called_refused(tmp_path):
+    """The next run tries it again, and its log may be right."""
+    row = {'vehicle': 'uav1', 'configuration': '', 'date': START}
+    for name, status in (('a', 'failed'), ('b', 'timeout'), ('c', 'refused')):
+        write_rows(tmp_path, 'groups', name, [row | {'group': name, 'status': status}])
+        write_rows(tmp_path, 'flights', name, [row | {
+            'flight': name, 'path': f'{name}.csv', 'status': status, 'reason': f'{name} it is'}])
+    found = insight(tmp_path)
+    assert found.refused == (('uav1', 'c.csv', 'c it is'),)
+    assert [one[1] for one in found.failed] == ['a.csv', 'b.csv']
+    assert [one.text for one in points(found)] == [
+        '2 of 3 flights are not diagnosed, which the next run tries again: uav1 2; the first: '
+        'a it is', '1 of 3 flights is refused: uav1 1; the first: c it is']
+    assert '1 flight refused, 2 not diagnosed' in summary_line(found)
+
+
+def test_vehicles_are_named_with_their_configuration(tmp_path):
+    """What holds for one of several configurations is not said of all."""
+    data_set(tmp_path, steps=[STEP], configuration='long')
+    found = insight(tmp_path)
+    texts = {one.where: one.text for one in points(found)}
+    assert 'uav3 (long)' in texts and texts['all'].startswith('8 of 8 (long) vehicles have')
+    stream = io.StringIO()
+    show_insight(found, stream)
+    assert '8 of 8 (long)' in stream.getvalue()
+    write(tmp_path / 'fleet.html', found)
+    assert '<strong>uav3 (long)</strong>' in (tmp_path / 'fleet.html').read_text(encoding='utf-8')
+
+
+@pytest.mark.parametrize(('vehicles', 'flights', 'said'), [
+    (5, 3, 'No vehicle has the 4 flights from which on a change can be seen, and no vehicle '
+     'differs from its sisters'),
+    (2, 8, 'Nothing drifts or has changed, and an odd vehicle can be seen among 4 or more')])
+def test_what_cannot_be_seen_is_not_denied(tmp_path, vehicles, flights, said):
+    data_set(tmp_path, vehicles=vehicles, flights=flights)
+    assert nothing_line(insight(tmp_path)) == said
+
+
+@pytest.mark.slow
+def test_whole_diagnoses_are_left_on_the_disk(tmp_path):
+    """Those of a fleet take gigabytes, and tell nothing here that the other columns do not."""
+    size, count = 10 ** 6, 20
+    for number in range(count):
+        write_rows(tmp_path, 'groups', f'{number}', [{
+            'group': f'{number}', 'vehicle': 'uav1', 'configuration': '', 'date': START,
+            'status': 'diagnosed', 'diagnosis': 'x' * size}])
+    most = subprocess.run([sys.executable, '-c', MOST, str(tmp_path)], check=True, text=True,
+                          stdout=subprocess.PIPE, env={**os.environ, 'PYTHONPATH':
+                                                       os.pathsep.join(sys.path)}).stdout
+    assert int(most) < size * count / 4
+
+
+MOST = """
+import pyarrow, sys
+from quad_ident_ros.fleet.insight import insight
+assert insight(sys.argv[1]).status == {'diagnosed': 20}
+print(pyarrow.default_memory_pool().max_memory())
+"""
+
+
+def test_how_far_it_is_can_be_followed(tmp_path):
+    data_set(tmp_path, vehicles=2, flights=5)
+    told = []
+    insight(tmp_path, lambda done, total: told.append((done, total)))
+    assert told == [(number, 6) for number in range(1, 7)]
