@@ -107,7 +107,8 @@ def run(options):
     if options.out_priors:
         write_priors(options.out_priors, learned(read_table(options.out, 'effects'),
                                                  found.histories), len(found.vehicles))
-    return FAULTY if summary.groups['failed'] + summary.groups['timeout'] else 0
+    groups = summary.groups
+    return FAULTY if groups['failed'] or groups['timeout'] or summary.untracked else 0
 
 
 def _count(text):

@@ -69,12 +69,18 @@ class Progress:
 
 @dataclass(frozen=True)
 class Summary:
-    """What a run has come to: flights, groups by status, and copies {path: of flights}."""
+    """
+    What a run has come to: flights, {status: groups}, and paths of copies of flights.
+
+    before: groups that were done; untracked: reasons of the groups to whose single flights nothing
+    could be fitted, which the next run tries again.
+    """
 
     flights: int
     groups: dict[str, int]
     before: int
     copies: tuple[str, ...]
+    untracked: tuple[str, ...] = ()
 
 
 Tell = Callable[[Progress], None]
@@ -124,12 +130,12 @@ def run_fleet(client: Any, names: Sequence[str], out: str | Path, *, vehicle: st
     looked = _looked(client, flights, meaning, out, time_limit, tell)
     groups, copies = groups_of(zip(flights, looked, strict=True), nominal_of, meaning, rules)
     before = _diagnose_all(client, groups, out, time_limit, tell)
-    _track_all(client, groups, out, time_limit, tell)
+    untracked = _track_all(client, groups, out, time_limit, tell)
     status = _statuses(out)
     ended = [status.get(group.key) for group in groups]
     return Summary(len(flights) - len(copies), {name: ended.count(name) for name in
                                                 (DIAGNOSED, REFUSED, FAILED, TIMEOUT)},
-                   before, tuple(one.path for one in copies))
+                   before, tuple(one.path for one in copies), untracked)
 
 
 def _nominal(vehicle: str | None, load: Callable[[str], Vehicle], one: Listed) -> Vehicle:
@@ -224,8 +230,8 @@ def _remove(out: str | Path, keys: Iterable[str]) -> None:
 
 
 def _track_all(client: Any, groups: Sequence[Group], out: str | Path, time_limit: float,
-               tell: Tell) -> None:
-    """Fit the effects of each vehicle to its flights, where that is not done."""
+               tell: Tell) -> tuple[str, ...]:
+    """Fit the effects of each vehicle to its flights; return why groups failed, for each one."""
     effects = tracked_effects(read_table(out, 'effects', ['vehicle', 'effect', 'form', 'named']))
     status = _statuses(out)
     wanted = [Tracking(group, effects[group.vehicle]) for group in groups
@@ -235,12 +241,15 @@ def _track_all(client: Any, groups: Sequence[Group], out: str | Path, time_limit
     random.shuffle(todo)
     before = len(wanted) - len(todo)
     account = _Account(tell, Progress(TRACKING, len(wanted), before, before))
+    reasons, failed = [], set()
     for done in results(client, partial(_track, out), todo, time_limit, account.tick):
         if done.error is not None:
-            _reason(done.error, time_limit)
+            reasons.append(_reason(done.error, time_limit))
+            failed.add(done.item.group.key)     # what earlier runs fitted to its flights stays
         account.count(failed=int(done.error is not None))
-    remove_trackings(out, {group.key: '' for group in groups}
-                     | {one.group.key: one.key for one in wanted})
+    kept = {group.key: '' for group in groups} | {one.group.key: one.key for one in wanted}
+    remove_trackings(out, {key: new for key, new in kept.items() if key not in failed})
+    return tuple(reasons)
 
 
 def _track(out: str | Path, tracking: Tracking) -> None:

@@ -79,7 +79,7 @@ class Reporter:
         groups = summary.groups
         self._write({'schema': 'quad_ident/fleet_run/1', 'out': str(self._out),
                      'flights': summary.flights, 'groups': groups, 'before': summary.before,
-                     'copies': list(summary.copies)})
+                     'copies': list(summary.copies), 'untracked': list(summary.untracked)})
         if self._path != '-':
             sys.stdout.write(summary_text(summary, self._out))
 
@@ -133,6 +133,9 @@ def summary_text(summary, out):
         lines.append(f'{counted(len(summary.copies), "file")} left out, whose content is that of '
                      f'another: {", ".join(summary.copies[:3])}'
                      + (' ...' if len(summary.copies) > 3 else ''))
+    if summary.untracked:
+        lines.append(f'{counted(len(summary.untracked), "group")} without values of single '
+                     f'flights: {summary.untracked[0]}; the same command tries again')
     if groups['failed'] or groups['timeout']:
         lines.append('the same command tries again what failed; the reasons are in the column '
                      f'reason of {out}/groups')

@@ -39,6 +39,13 @@ def test_the_end_says_what_became_of_all_groups_and_what_to_do():
         'out/groups']
 
 
+def test_the_end_says_which_groups_have_no_values_of_single_flights():
+    groups = {'diagnosed': 7, 'refused': 0, 'failed': 0, 'timeout': 0}
+    assert summary_text(Summary(12, groups, 0, (), ('it took long',) * 2), 'out').splitlines() == [
+        '12 flights in 7 groups: 7 diagnosed', '2 groups without values of single flights: it '
+        'took long; the same command tries again']
+
+
 @pytest.mark.parametrize('text, size', [('2GB', 2e9), ('500MB', 5e8), ('1.5 GiB', 1.5 * 2 ** 30)])
 def test_sizes_of_memory(text, size):
     options = parser(['fleet'])[0].parse_args(['fleet', 'flights', '--memory', text])
