@@ -71,9 +71,8 @@ def run(options):
     """Diagnose the flights and say what came of it; 3 where a group failed."""
     try:
         from quad_ident_ros.fleet.insight import insight
-        from quad_ident_ros.fleet.priors import learned
+        from quad_ident_ros.fleet.priors import effects_without_priors, learned
         from quad_ident_ros.fleet.run import COMPARING, Progress, run_fleet, TIME_LIMIT
-        from quad_ident_ros.fleet.store import read_table
     except ModuleNotFoundError as error:
         if (error.name or '').partition('.')[0] not in ('pyarrow', 'distributed', 'dask'):
             raise
@@ -105,8 +104,9 @@ def run(options):
     if options.report:
         fleet_page.write(options.report, found)
     if options.out_priors:
-        write_priors(options.out_priors, learned(read_table(options.out, 'effects'),
-                                                 found.histories), len(found.vehicles))
+        effects = effects_without_priors(options.out)
+        write_priors(options.out_priors, learned(effects, found.histories),
+                     len(effects['vehicle'].unique()))
     groups = summary.groups
     return FAULTY if groups['failed'] or groups['timeout'] or summary.untracked else 0
 
