@@ -79,23 +79,25 @@ class Looks:
     """
     What earlier runs on a data set saw of files, so that those that stay are not read again.
 
-    A file is the same where its path, size and time of change are.
+    A file is the same where its path, size and time of change are. One that could not be read is
+    read again: a mapping or another version may do it.
     """
 
     def __init__(self, out: str | Path) -> None:
         self._out = out
-        self._known = {row['path']: Looked(**row) for row in read_table(out, 'files').to_pylist()}
+        rows = sorted(read_table(out, 'files').to_pylist(), key=lambda row: row['was_read'])
+        self._known = {(row['path'], row['bytes'], row['modified_ns']): Looked(**row)
+                       for row in rows if not row['reason']}
         self._new: list[Looked] = []
 
     def known(self, one: Listed) -> Looked | None:
         """Return what is known of a flight, or None."""
         path = Path(one.path).resolve()
-        found = self._known.get(str(path))
         try:
-            same = found is not None and _stamp(path) == (found.bytes, found.modified_ns)
+            found = self._known.get((str(path), *_stamp(path)))
         except InputError:
             return None
-        return found if same and found and (found.was_read or not has_to_be_read(one)) else None
+        return found if found and (found.was_read or not has_to_be_read(one)) else None
 
     def add(self, looked: Looked) -> None:
         """Keep what was seen of a file."""

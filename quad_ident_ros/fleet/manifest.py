@@ -20,6 +20,7 @@ COLUMNS = ('path', 'vehicle', 'configuration', 'date', 'group', 'vehicle_file')
 """What the columns of a manifest are called; each further one has numbers: a covariate."""
 
 TABLES = ('.csv', '.csv.gz', '.tsv')    # the other kinds of flights are seen by their first bytes
+BAGS = '.mcap', '.db3'      # in the folder of a bag, which has its name
 VEHICLE_FILE = 'vehicle.yaml'
 """The nominal vehicle in the folder of its flights, or in one above."""
 
@@ -120,7 +121,10 @@ def _entry(manifest: Path, line: int, names: Sequence[str], row: Sequence[str]) 
 def _in_folder(top: Path) -> Iterator[Listed]:
     """Yield the flights below a folder, which the folders between say more of."""
     for path, nominal in _below(top, ''):
-        vehicle, configuration, day = whose(path.relative_to(top).parts[:-1])
+        folders = path.relative_to(top).parts[:-1]
+        if _is_of_open_bag(path):
+            folders = folders[:-1]
+        vehicle, configuration, day = whose(folders)
         yield Listed(str(path), vehicle, configuration, day=day, vehicle_file=nominal,
                      folder=top.absolute().name)
 
@@ -145,6 +149,11 @@ def _below(folder: Path, nominal: str) -> Iterator[tuple[Path, str]]:
 def _is_bag(path: Path) -> bool:
     """Return whether a folder is a bag of ROS 2, or a recording of the recorder with one."""
     return any((path / place).is_file() for place in ('metadata.yaml', 'bag/metadata.yaml'))
+
+
+def _is_of_open_bag(path: Path) -> bool:
+    """Return whether a file lies in the folder of a bag of ROS 2 that is still recorded to."""
+    return path.suffix in BAGS and path.name.startswith(f'{path.parent.name}_')
 
 
 def _is_flight(path: Path) -> bool:

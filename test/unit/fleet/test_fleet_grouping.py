@@ -92,14 +92,23 @@ def test_the_same_content_is_one_flight(tmp_path):
 
 
 def test_what_was_looked_at_is_known_until_it_changes(tmp_path):
-    one = flight(tmp_path, 'a.csv', 'a')
+    text = 't,px\n0,1\n0.1,2\n'
+    for more in ('', '0.2,3\n', '0.2,3\n0.3,4\n'):     # a log that grows
+        one = flight(tmp_path, 'a.csv', text + more)
+        looks = Looks(tmp_path / 'out')
+        assert looks.known(one) is None
+        looks.add(look(one))
+        looks.flush()
+        assert Looks(tmp_path / 'out').known(one) == look(one)
+
+
+def test_what_could_not_be_read_is_read_again(tmp_path):
+    """With a mapping, say, by which its log says when it was flown."""
+    one = flight(tmp_path, 'a.csv', 'nothing of a flight')
     looks = Looks(tmp_path / 'out')
-    assert looks.known(one) is None
     looks.add(look(one))
     looks.flush()
-    assert Looks(tmp_path / 'out').known(one) == look(one)
-    changed = flight(tmp_path, 'a.csv', 'other')
-    assert Looks(tmp_path / 'out').known(changed) is None
+    assert Looks(tmp_path / 'out').known(one) is None
 
 
 def test_a_file_that_cannot_be_opened_is_a_flight_with_a_reason(tmp_path):
@@ -129,6 +138,17 @@ def test_a_file_that_was_written_to_takes_the_place_of_what_it_was(tmp_path):
     before, _ = grouped([flight(tmp_path, 'a.csv', 'half')])
     stored(tmp_path / 'out', before)
     after, _ = grouped([flight(tmp_path, 'a.csv', 'half and half')])
+    assert superseded_by(after, tmp_path / 'out') == {after[0].key: [before[0].key]}
+
+
+def test_a_bag_takes_the_place_of_the_file_in_it_that_was_read_while_it_was_recorded(tmp_path):
+    bag, other = tmp_path / 'bag_1', flight(tmp_path, 'b.csv', 'b')
+    bag.mkdir()
+    before, _ = grouped([flight(bag, 'bag_1_0.mcap', 'half'), other])
+    stored(tmp_path / 'out', before)
+    flight(bag, 'bag_1_0.mcap', 'half and half')
+    flight(bag, 'metadata.yaml', 'rosbag2_bagfile_information:')
+    after, _ = grouped([Listed(str(bag), vehicle='seven', day='2026-05-14'), other])
     assert superseded_by(after, tmp_path / 'out') == {after[0].key: [before[0].key]}
 
 

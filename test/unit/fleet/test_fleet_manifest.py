@@ -80,6 +80,12 @@ def test_a_bag_is_one_flight_and_what_is_no_flight_is_not_listed(tmp_path):
         'seven/bag_1', 'seven/damaged.ulg', 'seven/recording_1']
 
 
+def test_a_bag_that_is_still_recorded_to_is_no_configuration(tmp_path):
+    write(tmp_path / 'seven' / '2026-05-14' / 'bag_1' / 'bag_1_0.mcap', 'x')
+    one, = listed([str(tmp_path)])
+    assert (one.vehicle, one.configuration, one.day) == ('seven', '', '2026-05-14')
+
+
 def test_a_manifest_says_all_of_a_flight(tmp_path):
     write(tmp_path / 'quad.yaml', 'a: 1')
     manifest = write(tmp_path / 'm.csv', 'path,vehicle,date,group,vehicle_file,temperature_c\n'
