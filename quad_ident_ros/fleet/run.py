@@ -200,9 +200,7 @@ def _diagnose_all(client: Any, groups: Sequence[Group], out: str | Path, time_li
     status = _statuses(out)
     todo = [group for group in groups if status.get(group.key) not in DONE]
     before = len(groups) - len(todo)
-    for group in groups:
-        if status.get(group.key) in DONE:
-            _remove(out, replaced.get(group.key, ()))
+    _remove_replaced(out, replaced, status)
     # Each run in an order of its own: two on one data set seldom do the same group at once.
     random.shuffle(todo)
     account = _Account(tell, Progress(DIAGNOSING, len(groups), before, before))
@@ -215,8 +213,11 @@ def _diagnose_all(client: Any, groups: Sequence[Group], out: str | Path, time_li
                 _reason(done.error, time_limit), time_limit)
             if outcome.status not in DONE:
                 write(group, out, outcome)
-        _remove(out, replaced.get(group.key, ()))
+        for key in replaced.get(group.key, ()):
+            remove_group(out, key)
         account.count_group(group, outcome)
+    # A run beside this one may have come to an end with some of these flights meanwhile.
+    _remove_replaced(out, superseded_by(groups, out), _statuses(out))
     return before
 
 
@@ -224,9 +225,13 @@ def _work(out: str | Path, group: Group) -> Outcome:
     return work(group, out)
 
 
-def _remove(out: str | Path, keys: Iterable[str]) -> None:
-    for key in keys:
-        remove_group(out, key)
+def _remove_replaced(out: str | Path, replaced: dict[str, list[str]], status: dict[str, str]
+                     ) -> None:
+    """Remove what groups take the place of, where they are done."""
+    for key, others in replaced.items():
+        if status.get(key) in DONE:
+            for other in others:
+                remove_group(out, other)
 
 
 def _track_all(client: Any, groups: Sequence[Group], out: str | Path, time_limit: float,
