@@ -120,7 +120,7 @@ def _entry(manifest: Path, line: int, names: Sequence[str], row: Sequence[str]) 
 
 def _in_folder(top: Path) -> Iterator[Listed]:
     """Yield the flights below a folder, which the folders between say more of."""
-    for path, nominal in _below(top, ''):
+    for path, nominal in _below(top, '', frozenset()):
         folders = path.relative_to(top).parts[:-1]
         if _is_of_open_bag(path):
             folders = folders[:-1]
@@ -129,8 +129,13 @@ def _in_folder(top: Path) -> Iterator[Listed]:
                      folder=top.absolute().name)
 
 
-def _below(folder: Path, nominal: str) -> Iterator[tuple[Path, str]]:
-    """Yield (path, nominal vehicle file) of the flights below a folder, by name."""
+def _below(folder: Path, nominal: str, above: frozenset[str]) -> Iterator[tuple[Path, str]]:
+    """
+    Yield (path, nominal vehicle file) of the flights below a folder, by name.
+
+    above: the folders that it is in, to which a link in it does not lead back.
+    """
+    within = above | {os.path.realpath(folder)}
     try:
         entries = sorted(os.scandir(folder), key=lambda entry: entry.name)
     except OSError as error:
@@ -140,9 +145,10 @@ def _below(folder: Path, nominal: str) -> Iterator[tuple[Path, str]]:
         path = Path(entry.path)
         if entry.name.startswith('.'):
             continue
-        if entry.is_dir() and not _is_bag(path):
-            yield from _below(path, nominal)
-        elif entry.is_dir() or entry.is_file() and _is_flight(path):
+        if path.is_dir() and not _is_bag(path):
+            if os.path.realpath(path) not in within:
+                yield from _below(path, nominal, within)
+        elif path.is_dir() or path.is_file() and _is_flight(path):
             yield path, nominal
 
 

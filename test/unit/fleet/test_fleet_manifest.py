@@ -86,6 +86,15 @@ def test_a_bag_that_is_still_recorded_to_is_no_configuration(tmp_path):
     assert (one.vehicle, one.configuration, one.day) == ('seven', '', '2026-05-14')
 
 
+def test_links_that_lead_back_or_nowhere_end_nothing(tmp_path):
+    flight = write(tmp_path / 'seven' / 'a.csv')
+    (tmp_path / 'seven' / 'all').symlink_to(tmp_path)
+    (tmp_path / 'seven' / 'itself').symlink_to(tmp_path / 'seven' / 'itself')
+    (tmp_path / 'seven' / 'gone.csv').symlink_to(tmp_path / 'nowhere.csv')
+    (tmp_path / 'eight').symlink_to(tmp_path / 'seven')
+    assert [os.path.realpath(one.path) for one in listed([str(tmp_path)])] == [str(flight)]
+
+
 def test_a_manifest_says_all_of_a_flight(tmp_path):
     write(tmp_path / 'quad.yaml', 'a: 1')
     manifest = write(tmp_path / 'm.csv', 'path,vehicle,date,group,vehicle_file,temperature_c\n'
