@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from datetime import datetime
 import os
 from pathlib import Path
+import re
 
 from quad_ident_ros import schema
 from quad_ident_ros.data.readers.others import START
@@ -70,26 +71,35 @@ def listed(names: Iterable[str]) -> list[Listed]:
 
 
 def is_manifest(path: Path) -> bool:
-    """Return whether a file is a manifest: a CSV table with a column `path`."""
+    """Return whether a file is a manifest: a CSV table with a column `path`, however written."""
     if path.suffix != '.csv':
         return False
     try:
         with open(path, encoding='utf-8-sig', newline='') as file:
-            return 'path' in next(csv.reader([file.readline(START)]), [])
-    except (OSError, UnicodeDecodeError, csv.Error):
+            names = re.split('[,;\t]', file.readline(START).lower())
+    except (OSError, UnicodeDecodeError):
         return False
+    return 'path' in (name.strip(' "\r\n') for name in names)
 
 
 def _in_manifest(path: Path) -> Iterator[Listed]:
     try:
         with open(path, encoding='utf-8-sig', newline='') as file:
-            reader = csv.reader(file)
+            reader = csv.reader(file, skipinitialspace=True)
             names = [name.strip() for name in next(reader)]
+            if 'path' not in names:
+                raise InputError(f'{path}, line 1: there is no column `path`; write the names as '
+                                 f'{",".join(COLUMNS)}, with commas, of which only path is needed')
             if len(set(names)) < len(names):
                 raise InputError(f'{path}, line 1: a column is named twice; name each once')
+            found: dict[str, Listed] = {}
             for row in reader:
                 if any(row):
-                    yield _entry(path, reader.line_num, names, row)
+                    one = _entry(path, reader.line_num, names, row)
+                    if found.setdefault(one.path, one) != one:
+                        raise InputError(f'{path}, line {reader.line_num}: {one.path} is named '
+                                         'above already, with other values; name each flight once')
+            yield from found.values()
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         raise InputError(f'{path}: cannot be read: {error}; expected a table in UTF-8 with '
                          'commas') from None
@@ -107,8 +117,8 @@ def _entry(manifest: Path, line: int, names: Sequence[str], row: Sequence[str]) 
     if cells.get('date') and date is None:
         raise InputError(f'{where}, column date: {schema.shown(cells["date"])} is no date; write '
                          '2026-05-14 or 2026-05-14T08:30:00Z')
-    covariates = {name: schema.number(f'{where}, column {name}', cell)
-                  for name, cell in cells.items() if name not in COLUMNS and cell}
+    covariates = {name: _covariate(where, name, cell) for name, cell in cells.items()
+                  if name not in COLUMNS and cell}
     path = str(manifest.parent / cells['path'])
     nominal = cells.get('vehicle_file', '')
     beside = manifest.parent / nominal
@@ -116,6 +126,15 @@ def _entry(manifest: Path, line: int, names: Sequence[str], row: Sequence[str]) 
                   cells.get('group', ''),
                   str(beside) if nominal and beside.is_file() else nominal,
                   manifest.absolute().parent.name, covariates)
+
+
+def _covariate(where: str, name: str, cell: str) -> float:
+    """Return the number in a cell of a column that is none of COLUMNS; raises InputError."""
+    try:
+        return schema.number(f'{where}, column {name}', cell)
+    except InputError as error:
+        raise InputError(f'{error}: columns other than {", ".join(COLUMNS)} are covariates; leave '
+                         'it out or correct its name') from None
 
 
 def _in_folder(top: Path) -> Iterator[Listed]:

@@ -114,11 +114,21 @@ def test_a_manifest_says_all_of_a_flight(tmp_path):
     ('path,vehicle\n,seven\n', 'line 2, column path: it is empty'),
     ('path,vehicle\na.csv\n', 'line 2: 1 cells, but 2 columns'),
     ('path,path\na.csv,b.csv\n', 'line 1: a column is named twice'),
+    ('path,notes\na.csv,windy\n', 'column notes: expected a number, got .windy.: columns other'),
+    ('vehicle;path\nseven;a.csv\n', 'line 1: there is no column `path`; .* with commas'),
+    ('Path,vehicle\na.csv,seven\n', 'line 1: there is no column `path`'),
+    ('path,vehicle\na.csv,seven\na.csv,eight\n', 'line 3: .*a.csv is named above already'),
     ('path\n', 'there is no flight in it')])
 def test_what_is_wrong_with_a_manifest_is_said_with_its_place(tmp_path, text, said):
     with pytest.raises(InputError, match=said) as caught:
         listed([str(write(tmp_path / 'm.csv', text))])
     assert '\n' not in str(caught.value)
+
+
+def test_spaces_beside_commas_and_lines_that_repeat_do_no_harm(tmp_path):
+    manifest = write(tmp_path / 'm.csv', 'vehicle, "path" \nseven, a.csv\n\nseven, a.csv\n')
+    one, = listed([str(manifest)])
+    assert (one.path, one.vehicle) == (str(tmp_path / 'a.csv'), 'seven')
 
 
 def test_a_flight_that_is_named_twice_is_one(tmp_path):
