@@ -3,6 +3,7 @@
 """The Series of a data set: each parameter of each vehicle along its flights, with covariates."""
 
 from collections.abc import Iterable, Mapping, Sequence
+import math
 from typing import Any
 
 import numpy as np
@@ -31,7 +32,8 @@ def series_of(parameters: pyarrow.Table, flights: pyarrow.Table) -> tuple[Series
     together: dict[tuple[str, ...], dict[str, Row]] = {}
     for row in parameters.to_pylist():
         flight = of_flight.get(row['flight'], {})
-        if row['value'] is not None and flight.get('status', DIAGNOSED) == DIAGNOSED:
+        known = row['value'] is not None and math.isfinite(row['value'])
+        if known and flight.get('status', DIAGNOSED) == DIAGNOSED:
             key = tuple(row[name] for name in ('configuration', 'effect', 'parameter', 'vehicle'))
             together.setdefault(key, {})[row['flight']] = {**row, 'path': flight.get('path') or ''}
     some = {key: sorted(rows.values(), key=lambda row: (*in_order(row['date'], row['path']),
@@ -68,8 +70,9 @@ def _series(rows: Sequence[Row], usual: Mapping[str, Mapping[str, float]],
 
 
 def _error(row: Row) -> float:
-    """Return the standard error of a value, 0 where it is at a bound."""
-    return float(row['std'] or 0.0)
+    """Return the standard error of a value, 0 where it is at a bound or has none."""
+    error = float(row['std'] or 0.0)
+    return error if math.isfinite(error) else 0.0
 
 
 def _usual(covariates: Mapping[str, Mapping[str, float]]) -> dict[str, dict[str, float]]:

@@ -51,6 +51,13 @@ def test_a_value_at_a_bound_has_the_usual_error():
     assert series_of(*tables([0.0, 0.0, 0.0], [None, None, 0.0], none)) == ()
 
 
+def test_what_is_no_number_takes_no_part():
+    """A fit without an end, of whatever library, spoils no other flight."""
+    one, = series_of(*tables([1.0, np.nan, 3.0, 4.0], [0.1, 0.1, np.inf, 0.3], [{}] * 4))
+    assert list(one.values) == [1.0, 3.0, 4.0]
+    assert list(one.errors) == pytest.approx([0.1, 0.2, 0.3])
+
+
 def test_few_flights_have_no_room_for_covariates():
     """With two flights a covariate would explain all that there is."""
     one, = series_of(*tables([1.0, 2.0], [0.1, 0.1], [{'a': 0.0}, {'a': 1.0}]))
