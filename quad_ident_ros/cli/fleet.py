@@ -51,8 +51,8 @@ def add(commands, said):
                         help='write a page for a browser: what to look at first, vehicles by '
                              'effects, every parameter over time, the gap')
     parser.add_argument('--out-priors', metavar='FILE.yaml',
-                        help='write how often each effect is present, how large and how exact, for '
-                             '--priors of `diagnose` and `fleet`')
+                        help='write how often each effect is present, how large and how exact, '
+                             'for --priors of `diagnose` and `fleet`')
     parser.add_argument('--priors', metavar='FILE', help='diagnose with what another fleet has '
                         'taught; verdicts that use priors teach none')
     group = parser.add_argument_group('where the work is done')
