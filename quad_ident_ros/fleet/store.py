@@ -59,8 +59,10 @@ def prepare(out: str | Path) -> None:
     """
     Make the folder of a data set, and remove what killed runs did not finish.
 
-    Raises OSError.
+    Raises InputError where there is a file in its place, and OSError.
     """
+    if Path(out).is_file():
+        raise InputError(f'{out}: this is a file; a data set is a folder, name another')
     aside = Path(out) / UNFINISHED
     aside.mkdir(parents=True, exist_ok=True)
     for entry in list(os.scandir(aside)):

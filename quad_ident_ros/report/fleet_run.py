@@ -5,6 +5,7 @@
 from contextlib import suppress
 from importlib.util import find_spec
 import json
+from pathlib import Path
 import sys
 from time import monotonic
 
@@ -34,9 +35,11 @@ class Reporter:
 
     def __enter__(self):
         """Name the data set, the workers and the dashboard."""
-        if self._path:
-            self._lines = (sys.stdout if self._path == '-'
-                           else open(self._path, 'w', encoding='utf-8'))
+        if self._path == '-':
+            self._lines = sys.stdout
+        elif self._path:
+            Path(self._path).parent.mkdir(parents=True, exist_ok=True)
+            self._lines = open(self._path, 'w', encoding='utf-8')
         self._note(f'data set: {self._out}; {workers(self._client)}')
         self._note(dashboard(self._client))
         self._bar.start()

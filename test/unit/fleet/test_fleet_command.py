@@ -3,6 +3,7 @@
 """What `quad_ident fleet` takes and says, without the work itself."""
 
 from dataclasses import replace
+import json
 
 import pytest
 
@@ -10,7 +11,7 @@ from quad_ident_ros.cli.main import main, parser
 
 pytest.importorskip('pyarrow', reason="pyarrow is not installed: pip install '.[fleet]'")
 from quad_ident_ros.fleet.run import COMPARING, DIAGNOSING, Progress, Summary  # noqa: E402, I100
-from quad_ident_ros.report.fleet_run import line, seconds_left, summary_text  # noqa: E402, I100
+from quad_ident_ros.report.fleet_run import line, Reporter, seconds_left, summary_text  # noqa: E402, I100
 
 HALF = Progress(DIAGNOSING, total=100, done=50, here=20)
 
@@ -44,6 +45,18 @@ def test_the_end_says_which_groups_have_no_values_of_single_flights():
     assert summary_text(Summary(12, groups, 0, (), ('it took long',) * 2), 'out').splitlines() == [
         '12 flights in 7 groups: 7 diagnosed', '2 groups without values of single flights: it '
         'took long; the same command tries again']
+
+
+def test_lines_for_a_machine_go_into_a_folder_that_is_made(tmp_path):
+    class Client:
+        def scheduler_info(self, **_):
+            return {'workers': {}}
+
+    with Reporter(Client(), tmp_path, tmp_path / 'new' / 'lines.json') as reporter:
+        reporter.end(Summary(0, dict.fromkeys(('diagnosed', 'refused', 'failed', 'timeout'), 0),
+                             0, ()))
+    line, = (tmp_path / 'new' / 'lines.json').read_text(encoding='utf-8').splitlines()
+    assert json.loads(line)['schema'] == 'quad_ident/fleet_run/1'
 
 
 @pytest.mark.parametrize('text, size', [('2GB', 2e9), ('500MB', 5e8), ('1.5 GiB', 1.5 * 2 ** 30)])
