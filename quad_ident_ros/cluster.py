@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, ExitStack, suppress
 from dataclasses import dataclass
 import faulthandler
+from importlib.util import find_spec
 from itertools import islice
 import logging
 from multiprocessing import resource_tracker
@@ -18,6 +19,7 @@ from time import monotonic
 from typing import Any, Generic, TypeVar
 
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.resources import PACKAGE
 from quad_ident_ros.schema import shown
 
 Item = TypeVar('Item')
@@ -80,6 +82,7 @@ def cluster(scheduler: str | None = None, workers: int | None = None,
                 raise InputError(f'--scheduler {scheduler}: its workers have several threads; '
                                  'start them with --nthreads 1, because what hangs is ended with '
                                  'its process')
+            _check_packages(client, scheduler)
             yield client
         return
     count = workers or dask.system.CPU_COUNT
@@ -104,6 +107,17 @@ def _check_address(scheduler: str, security: Any) -> None:
             and security.get_connection_args('client').get('ssl_context') is None):
         raise InputError(f'--scheduler {scheduler}: TLS needs certificates; name them in the '
                          'configuration of Dask (distributed.comm.tls), or use tcp://')
+
+
+def _check_packages(client: Any, scheduler: str) -> None:
+    """Raise InputError where the scheduler or a worker has no such package: it would end."""
+    known = {'the scheduler': client.run_on_scheduler(find_spec, PACKAGE),
+             **client.run(find_spec, PACKAGE)}
+    lacking = [name for name, spec in known.items() if spec is None]
+    if lacking:
+        raise InputError(f'--scheduler {scheduler}: {PACKAGE} is not installed for {lacking[0]}'
+                         + (f' and {len(lacking) - 1} more' if len(lacking) > 1 else '')
+                         + '; install the same version where scheduler and workers are started')
 
 
 @contextmanager

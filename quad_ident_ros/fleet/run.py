@@ -6,19 +6,21 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache, partial
 import json
+import os
 from pathlib import Path
 import random
 from typing import Any
 
 from quad_ident_ros import __version__
 from quad_ident_ros.cluster import results, TimeOver, WorkerDied
+from quad_ident_ros.data.counted import counted
 from quad_ident_ros.data.mapping import load_mapping, Mapping
 from quad_ident_ros.diagnose.rules import RULES, Rules
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.fleet.grouping import Group, groups_of, rules_hash
 from quad_ident_ros.fleet.look import look, Looked, Looks, without_content
 from quad_ident_ros.fleet.manifest import Listed, listed, VEHICLE_FILE
-from quad_ident_ros.fleet.store import keys_of, prepare, read_table
+from quad_ident_ros.fleet.store import keys_of, missing, prepare, read_table
 from quad_ident_ros.fleet.superseded import remove_group, remove_trackings, superseded_by
 from quad_ident_ros.fleet.track import track, tracked_effects, Tracking
 from quad_ident_ros.fleet.work import (
@@ -38,6 +40,7 @@ from quad_ident_ros.whole_file import write_whole
 
 AT_ONCE = 16    # flights that a task looks at: each is a matter of milliseconds
 TIME_LIMIT = 1800.0     # s of a group: a hundred times the usual one on a slow core
+SHOWN_AFTER = 90.0      # s; NFS shows an old list of a folder for up to 60 (acdirmax, nfs(5))
 LOOKING, DIAGNOSING, TRACKING, COMPARING = 'reading', 'diagnosing', 'tracking', 'comparing'
 
 
@@ -120,7 +123,9 @@ def run_fleet(client: Any, names: Sequence[str], out: str | Path, *, vehicle: st
     called with the Progress, a few times per second. Raises InputError, and OSError where nothing
     can be written.
     """
-    flights = listed(names)
+    # Workers are started in folders of their own.
+    out = Path(out).absolute()
+    flights = [replace(one, path=os.path.abspath(one.path)) for one in listed(names)]
     nominal_of = partial(_nominal, vehicle, lru_cache(None)(load_any_vehicle))
     for one in flights:     # before any work
         nominal_of(one)
@@ -130,6 +135,7 @@ def run_fleet(client: Any, names: Sequence[str], out: str | Path, *, vehicle: st
     looked = _looked(client, flights, meaning, out, time_limit, tell)
     groups, copies = groups_of(zip(flights, looked, strict=True), nominal_of, meaning, rules)
     before = _diagnose_all(client, groups, out, time_limit, tell)
+    _check_written(groups, out)
     untracked = _track_all(client, groups, out, time_limit, tell)
     status = _statuses(out)
     ended = [status.get(group.key) for group in groups]
@@ -219,6 +225,15 @@ def _diagnose_all(client: Any, groups: Sequence[Group], out: str | Path, time_li
     # A run beside this one may have come to an end with some of these flights meanwhile.
     _remove_replaced(out, superseded_by(groups, out), _statuses(out))
     return before
+
+
+def _check_written(groups: Sequence[Group], out: Path) -> None:
+    """Raise InputError where results of groups that are done are not in the data set."""
+    lost = missing(out, 'groups', {group.key for group in groups}, SHOWN_AFTER)
+    if lost:
+        raise InputError(f'{out}: the results of {counted(len(lost), "group")} are not in it, but '
+                         'where the workers see this path; name a folder that they share with '
+                         'this machine')
 
 
 def _work(out: str | Path, group: Group) -> Outcome:

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The data set of a fleet: tables of Parquet files, each file whole and named by a key."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from contextlib import suppress
 import os
 from pathlib import Path
@@ -102,6 +102,14 @@ def keys_of(out: str | Path, table: str) -> set[str]:
         return {entry.name.removesuffix('.parquet') for entry in entries
                 if entry.name.endswith('.parquet')}
     return set()
+
+
+def missing(out: str | Path, table: str, keys: Collection[str], seconds: float) -> set[str]:
+    """Return the keys whose files do not appear in a table within so many seconds."""
+    end = time.monotonic() + seconds
+    while (lost := set(keys) - keys_of(out, table)) and time.monotonic() < end:
+        time.sleep(min(1.0, seconds))
+    return lost
 
 
 def read_rows(out: str | Path, table: str, key: str,

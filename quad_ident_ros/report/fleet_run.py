@@ -71,7 +71,7 @@ class Reporter:
         self._said = monotonic()
         text = line(progress, monotonic() - self._begun)
         if not self._client.ncores():
-            text += '; no worker has joined yet'
+            text += '; waiting for a worker to join'
         self._bar.update(self._task, description=text, completed=progress.done)
         if self._bar.disable:
             self._note(text)
@@ -149,7 +149,7 @@ def workers(client):
     """Return how many workers a client has, and what memory each may have, in words."""
     found = client.scheduler_info(n_workers=-1)['workers'].values()
     if not found:
-        return 'no worker has joined yet'
+        return 'waiting for a worker to join'
     memory = min(one['memory_limit'] for one in found)
     bound = f', each up to {memory / 1e9:.3g} GB of memory' if memory else ''
     return f'{counted(len(found), "worker")}{bound}'

@@ -105,3 +105,13 @@ def test_what_is_no_address_of_a_scheduler_is_refused_at_once(address):
 def test_tls_without_certificates_is_refused_at_once():
     with pytest.raises(InputError, match='TLS needs certificates'), cluster('tls://host:8786'):
         pass
+
+
+def test_a_cluster_without_the_package_is_refused(client, monkeypatch):
+    """Its workers would end one after the other, and the run would wait for others."""
+    with cluster(client.scheduler.address):
+        pass
+    monkeypatch.setattr('quad_ident_ros.cluster.PACKAGE', 'a_package_that_nobody_has')
+    with pytest.raises(InputError, match=r'not installed for the scheduler and \d more'), \
+            cluster(client.scheduler.address):
+        pass

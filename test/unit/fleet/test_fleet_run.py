@@ -1,11 +1,12 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""A run over a fleet beside another one, with diagnoses that take no time."""
+"""A run over a fleet beside another one, and on workers elsewhere, with short diagnoses."""
 
 
 import pytest
 
 from quad_ident_ros.cluster import Done
+from quad_ident_ros.errors import InputError
 
 pytest.importorskip('pyarrow', reason="pyarrow is not installed: pip install '.[fleet]'")
 from quad_ident_ros.fleet import run  # noqa: E402, I100
@@ -40,3 +41,44 @@ def test_two_runs_of_which_one_has_more_flights_leave_each_flight_once(tmp_path,
     run.run_fleet(None, [str(tmp_path / 'flights')], tmp_path, vehicle='hummingbird')
     assert sorted(path[-5:] for path in read_table(tmp_path, 'flights')['path'].to_pylist()) == [
         'a.csv', 'b.csv']
+
+
+@pytest.fixture
+def flight(tmp_path, monkeypatch):
+    """Write a flight that is refused at once, and go to the folder that it is in."""
+    path = tmp_path / 'here' / 'flights' / 'seven' / '2026-05-14' / 'a.csv'
+    path.parent.mkdir(parents=True)
+    path.write_text('t,px\n0,1\n0.1,2\n', encoding='utf-8')
+    (tmp_path / 'elsewhere').mkdir()
+    monkeypatch.chdir(tmp_path / 'here')
+    return path
+
+
+def elsewhere(monkeypatch, folder, function):
+    """Have the work done as by workers that are started in another folder."""
+    def results(_, given, items, *__):
+        for item in items:
+            with monkeypatch.context() as there:
+                there.chdir(folder)
+                value = function(given, item)
+            yield Done(item, value)
+
+    monkeypatch.setattr(run, 'results', results)
+
+
+def test_workers_in_another_folder_use_the_flights_and_data_set_that_are_meant(
+        flight, tmp_path, monkeypatch):
+    elsewhere(monkeypatch, tmp_path / 'elsewhere', lambda given, item: given(item))
+    summary = run.run_fleet(None, ['flights'], 'fleet', vehicle='hummingbird')
+    assert summary.groups['refused'] == 1
+    assert read_table('fleet', 'flights')['path'].to_pylist() == [str(flight)]
+    assert 'are too short' in read_table('fleet', 'groups')['reason'].to_pylist()[0]
+
+
+def test_results_that_are_written_somewhere_else_are_missed(flight, tmp_path, monkeypatch):
+    """As by workers in containers that have a folder of their own under this path."""
+    elsewhere(monkeypatch, tmp_path, lambda given, item: (
+        Outcome('diagnosed', '', 1.0) if isinstance(item, Group) else given(item)))
+    monkeypatch.setattr(run, 'SHOWN_AFTER', 0.0)
+    with pytest.raises(InputError, match='results of 1 group are not in it'):
+        run.run_fleet(None, ['flights'], 'fleet', vehicle='hummingbird')
