@@ -28,7 +28,7 @@ def small_multiple(one: History, unit: str, factor: float) -> Markup:
     """
     series = one.series
     low, high = _limits(one)
-    x, y = _place(series.t, (series.t[0], series.t[-1]), LEFT, WIDE - RIGHT), _scale(low, high)
+    x, y = _along(series), _scale(low, high)
     values = np.clip(series.values, low, high)
     ends = [np.clip(series.values + side * 2.0 * series.errors, low, high) for side in (-1, 1)]
     odd = set(one.odd)
@@ -98,6 +98,12 @@ def _course(one: History, x: np.ndarray, y) -> str:
     first = {change.place for change in one.changes}
     return ''.join(f'{"M" if k == 0 or k in first else "L"}{x[k]:.1f} {y(value):.1f}'
                    for k, value in enumerate(one.course))
+
+
+def _along(series: Series) -> np.ndarray:
+    """Return where flights are (px), by time, or one beside the other where dates are equal."""
+    t = series.t if np.all(np.diff(series.t) > 0.0) else np.arange(len(series.t), dtype=float)
+    return _place(t, (t[0], t[-1]), LEFT, WIDE - RIGHT)
 
 
 def _place(values: np.ndarray, span: tuple[float, float], first: float, last: float

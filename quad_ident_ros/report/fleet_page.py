@@ -82,7 +82,8 @@ def _heat_of(configuration: str, some: Sequence[Sisters]) -> Markup:
     for each in some:
         unit, factor = handy(each.unit, _usual([one.value for one in each.vehicles]))
         units.append(unit)
-        columns.append({one.vehicle: _cell(one, factor) for one in each.vehicles})
+        columns.append({one.vehicle: _cell(one, factor, len(each.vehicles) > 1)
+                        for one in each.vehicles})
     head = ['vehicle', *(Markup(f'{escape(each.effect)}<br>{escape(each.parameter)}'
                                 + (f', {escape(unit)}' if unit not in ('1', '') else ''))
                          for each, unit in zip(some, units, strict=True))]
@@ -91,13 +92,14 @@ def _heat_of(configuration: str, some: Sequence[Sisters]) -> Markup:
     return _live(table(head, rows, caption=caption))
 
 
-def _cell(one: Sister, factor: float) -> Markup:
+def _cell(one: Sister, factor: float, has_sisters: bool) -> Markup:
     away = abs(one.spreads)
     kind = 'no' if away >= FARTHER else 'part' if away >= FAR else ''
     star = ' *' if one.odd >= SURE else ''
     attribute = f' class="{kind}"' if kind else ''
-    title = f'{one.spreads:+.1f} spreads from its sisters'
-    return Markup(f'<td{attribute} data-value="{one.value:.6g}" title="{title}">'
+    if has_sisters:
+        attribute += f' title="{one.spreads:+.1f} spreads from its sisters"'
+    return Markup(f'<td{attribute} data-value="{one.value:.6g}">'
                   f'{with_error(factor * one.value, factor * one.std)}{star}</td>')
 
 
@@ -106,7 +108,8 @@ def _effects(found: Insight) -> list:
     shared = [[with_configuration(known_effect(each.effect), each.configuration), each.parameter,
                sized(each.mean, each.mean_std, each.unit), sized(each.spread, 0.0, each.unit),
                str(len(each.vehicles)), str(len(each.odd))] for each in found.sisters
-              if abs(each.mean - null_of(each.effect, each.parameter)) > 2.0 * each.mean_std]
+              if len(each.vehicles) > 1
+              and abs(each.mean - null_of(each.effect, each.parameter)) > 2.0 * each.mean_std]
     parts = [tag('h2', 'What all share')]
     if rows:
         parts.append(_live(table(EFFECTS_HEAD, rows, ('text', '', '', '', 'text'),
@@ -184,7 +187,8 @@ def _logs(found: Insight) -> list:
             (found.suspect, 'to check', 'Flights that stand apart from others of the vehicle')):
         if some:
             rows = [[vehicle, name, tag('td', reason, 'prose')] for vehicle, name, reason in some]
-            parts.append(details(f'{len(some)} of {found.flights} flights are {said}', _live(
+            verb = 'is' if len(some) == 1 else 'are'
+            parts.append(details(f'{len(some)} of {found.flights} flights {verb} {said}', _live(
                 table(['vehicle', 'flight', 'reason'], rows, ('text', 'text', 'text'),
                       caption=caption))))
     return [tag('h2', 'Logs'), *parts] if parts else []

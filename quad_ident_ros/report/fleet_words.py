@@ -128,6 +128,7 @@ def shared_line(one: Presence, found: Insight) -> str:
     values = [f'{each.parameter} {sized(each.mean, each.spread, each.unit)}'
               for each in found.sisters
               if (each.configuration, each.effect) == (one.configuration, one.effect)
+              and len(each.vehicles) > 1
               and abs(each.mean - null_of(each.effect, each.parameter)) > 2 * each.spread]
     share = ('' if one.contribution is None else
              f'; without it {100 * one.contribution:.0f} % of the closable gap would remain')

@@ -6,18 +6,22 @@ from datetime import timedelta
 import io
 import json
 import os
+import re
 import subprocess
 import sys
 
-from fleets import data_set, START
+from fleets import data_set, series, START
+import numpy as np
 import pytest
 
 from quad_ident_ros.report.data import finite
 
 pytest.importorskip('pyarrow', reason="pyarrow is not installed: pip install '.[fleet]'")
+from quad_ident_ros.fleet.history import histories  # noqa: E402, I100
 from quad_ident_ros.fleet.insight import insight  # noqa: E402, I100
 from quad_ident_ros.fleet.store import write_rows  # noqa: E402, I100
 from quad_ident_ros.report.fleet import show_insight  # noqa: E402, I100
+from quad_ident_ros.report.fleet_charts import small_multiple  # noqa: E402, I100
 from quad_ident_ros.report.fleet_page import write  # noqa: E402, I100
 from quad_ident_ros.report.fleet_words import nothing_line, points, summary_line  # noqa: E402, I100
 
@@ -140,6 +144,26 @@ def test_a_drift_towards_no_effect_does_not_get_worse(tmp_path):
     why, = {one.why for one in points(insight(tmp_path)) if one.where == 'uav5'
             and 'a week' in one.text}
     assert why == 'drifts'
+
+
+def test_a_fleet_of_one_vehicle_has_its_values_on_the_page(tmp_path):
+    """There is nobody to compare it with, and it is no less there."""
+    data_set(tmp_path, vehicles=1, flights=6)
+    found = insight(tmp_path)
+    assert not found.odd and len(found.sisters) == 3
+    write(tmp_path / 'fleet.html', found)
+    text = (tmp_path / 'fleet.html').read_text(encoding='utf-8')
+    assert text.count('<td data-value=') == 3 and 'from its sisters"' not in text
+    assert 'Mean and spread' not in text
+
+
+def test_flights_of_one_date_stand_beside_one_another(tmp_path):
+    """As of logs whose folder says the day and nothing else the time."""
+    one = series(np.arange(5.0), 0.1, days=np.zeros(5))
+    found, = histories([one])
+    dots = re.search('class="dots" d="([^"]*)"', small_multiple(found, '', 1.0))[1]
+    places = [float(place) for place in re.findall(r'M([\d.]+) ', dots)]
+    assert len(places) == 5 and np.all(np.diff(places) > 30.0)
 
 
 def test_what_failed_is_not_called_refused(tmp_path):
