@@ -71,6 +71,7 @@ def run(options):
     """Diagnose the flights and say what came of it; 3 where a group failed."""
     try:
         from quad_ident_ros.fleet.insight import insight
+        from quad_ident_ros.fleet.plan import planned
         from quad_ident_ros.fleet.priors import effects_without_priors, learned
         from quad_ident_ros.fleet.run import COMPARING, Progress, run_fleet, TIME_LIMIT
     except ModuleNotFoundError as error:
@@ -90,10 +91,10 @@ def run(options):
                          'told; run without --priors, into another --out')
     rules = RULES if options.priors is None else replace(RULES,
                                                          priors=load_priors(options.priors))
+    plan = planned(options.flights, vehicle=options.vehicle, mapping=options.mapping, rules=rules)
     with cluster(options.scheduler, options.workers, options.memory) as client, \
             Reporter(client, options.out, options.json) as reporter:
-        summary = run_fleet(client, options.flights, options.out, vehicle=options.vehicle,
-                            mapping=options.mapping, rules=rules, tell=reporter.tell,
+        summary = run_fleet(client, plan, options.out, tell=reporter.tell,
                             time_limit=options.time_limit or TIME_LIMIT)
         found = insight(options.out, lambda done, total: reporter.tell(
             Progress(COMPARING, total, done)))

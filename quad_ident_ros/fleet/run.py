@@ -4,22 +4,20 @@
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache, partial
+from functools import partial
 import json
-import os
 from pathlib import Path
 import random
 from typing import Any
 
-from quad_ident_ros import __version__
 from quad_ident_ros.cluster import results, TimeOver, WorkerDied
 from quad_ident_ros.data.counted import counted
-from quad_ident_ros.data.mapping import load_mapping, Mapping
-from quad_ident_ros.diagnose.rules import RULES, Rules
+from quad_ident_ros.data.mapping import Mapping
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.fleet.grouping import Group, groups_of, rules_hash
+from quad_ident_ros.fleet.grouping import Group, groups_of
 from quad_ident_ros.fleet.look import look, Looked, Looks, without_content
-from quad_ident_ros.fleet.manifest import Listed, listed, VEHICLE_FILE
+from quad_ident_ros.fleet.manifest import Listed
+from quad_ident_ros.fleet.plan import Plan
 from quad_ident_ros.fleet.store import keys_of, missing, prepare, read_table
 from quad_ident_ros.fleet.superseded import remove_group, remove_trackings, superseded_by
 from quad_ident_ros.fleet.track import track, tracked_effects, Tracking
@@ -34,8 +32,6 @@ from quad_ident_ros.fleet.work import (
     work,
     write,
 )
-from quad_ident_ros.model.vehicle import Vehicle
-from quad_ident_ros.vehicle_files.load import load_any_vehicle
 from quad_ident_ros.whole_file import write_whole
 
 AT_ONCE = 16    # flights that a task looks at: each is a matter of milliseconds
@@ -111,56 +107,29 @@ class _Account:
         self._tell(self.progress)
 
 
-def run_fleet(client: Any, names: Sequence[str], out: str | Path, *, vehicle: str | None = None,
-              mapping: str | None = None, rules: Rules = RULES,
-              time_limit: float = TIME_LIMIT, tell: Tell = lambda progress: None) -> Summary:
+def run_fleet(client: Any, plan: Plan, out: str | Path, *, time_limit: float = TIME_LIMIT,
+              tell: Tell = lambda progress: None) -> Summary:
     """
-    Diagnose the flights that names stand for, on a Dask client, into the data set `out`.
+    Diagnose the flights of a Plan, on a Dask client, into the data set `out`.
 
-    What is there already is not done again; groups that failed are. Args: names of flights,
-    folders and manifests; vehicle: nominal vehicle, name or file, of those that have none of their
-    own; mapping: file; rules: thresholds of the verdicts; time_limit: s of a group; tell is
-    called with the Progress, a few times per second. Raises InputError, and OSError where nothing
-    can be written.
+    What is there already is not done again; groups that failed are. Args: time_limit: s of a
+    group; tell is called with the Progress, a few times per second. Raises InputError, and OSError
+    where nothing can be written.
     """
-    # Workers are started in folders of their own.
-    out = Path(out).absolute()
-    flights = [replace(one, path=os.path.abspath(one.path)) for one in listed(names)]
-    nominal_of = partial(_nominal, vehicle, lru_cache(None)(load_any_vehicle))
-    for one in flights:     # before any work
-        nominal_of(one)
-    meaning = load_mapping(mapping) if mapping else None
+    out = Path(out).absolute()      # workers are started in folders of their own
     prepare(out)
-    _write_options(out, flights, vehicle, mapping, rules)
-    looked = _looked(client, flights, meaning, out, time_limit, tell)
-    groups, copies = groups_of(zip(flights, looked, strict=True), nominal_of, meaning, rules)
+    write_whole(out / 'fleet.json', json.dumps(plan.origin, indent=2) + '\n')
+    looked = _looked(client, plan.flights, plan.mapping, out, time_limit, tell)
+    groups, copies = groups_of(zip(plan.flights, looked, strict=True), plan.nominal_of,
+                               plan.mapping, plan.rules)
     before = _diagnose_all(client, groups, out, time_limit, tell)
     _check_written(groups, out)
     untracked = _track_all(client, groups, out, time_limit, tell)
     status = _statuses(out)
     ended = [status.get(group.key) for group in groups]
-    return Summary(len(flights) - len(copies), {name: ended.count(name) for name in
-                                                (DIAGNOSED, REFUSED, FAILED, TIMEOUT)},
+    return Summary(len(plan.flights) - len(copies), {name: ended.count(name) for name in
+                                                     (DIAGNOSED, REFUSED, FAILED, TIMEOUT)},
                    before, tuple(one.path for one in copies), untracked)
-
-
-def _nominal(vehicle: str | None, load: Callable[[str], Vehicle], one: Listed) -> Vehicle:
-    """Return the nominal vehicle of a flight; raises InputError where none is named."""
-    name = one.vehicle_file or vehicle
-    if not name:
-        raise InputError(f'{one.path}: no nominal vehicle is named for it; give --vehicle FILE, '
-                         f'put a {VEHICLE_FILE} into the folder of its vehicle, or name one in '
-                         'the column vehicle_file of a manifest')
-    return load(name)
-
-
-def _write_options(out: str | Path, flights: Iterable[Listed], vehicle: str | None,
-                   mapping: str | None, rules: Rules) -> None:
-    """Write how the data set is made, without times, so that the same run writes the same."""
-    vehicles = sorted({one.vehicle_file or str(vehicle) for one in flights})
-    data = {'schema': 'quad_ident/fleet/1', 'version': __version__, 'vehicles': vehicles,
-            'mapping': mapping, 'rules': rules_hash(rules)}
-    write_whole(Path(out) / 'fleet.json', json.dumps(data, indent=2) + '\n')
 
 
 def _looked(client: Any, flights: Sequence[Listed], mapping: Mapping | None, out: str | Path,

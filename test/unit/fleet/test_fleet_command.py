@@ -76,6 +76,16 @@ def test_bad_options_are_refused(words, said, capsys):
     assert said in capsys.readouterr().err
 
 
+def test_bad_input_is_said_before_any_worker_is_started(tmp_path, capsys):
+    (tmp_path / 'a.csv').write_text('t,px\n0,1\n', encoding='utf-8')
+    for words, said in (([str(tmp_path / 'none')], 'no such file or folder'),
+                        ([str(tmp_path)], 'no nominal vehicle is named'),
+                        ([str(tmp_path), '--vehicle', 'humingbird'], 'did you mean')):
+        assert main(['fleet', *words]) == 2
+        error, = capsys.readouterr().err.splitlines()
+        assert said in error
+
+
 def test_options_of_local_workers_do_not_go_with_a_scheduler(capsys):
     assert main(['fleet', 'flights', '--scheduler', 'tcp://127.0.0.1:1', '--workers', '2']) == 2
     assert '--workers, --memory: they are for processes on this machine' in (

@@ -11,6 +11,7 @@ from quad_ident_ros.errors import InputError
 pytest.importorskip('pyarrow', reason="pyarrow is not installed: pip install '.[fleet]'")
 from quad_ident_ros.fleet import run  # noqa: E402, I100
 from quad_ident_ros.fleet.grouping import Group  # noqa: E402, I100
+from quad_ident_ros.fleet.plan import planned  # noqa: E402, I100
 from quad_ident_ros.fleet.store import read_table  # noqa: E402, I100
 from quad_ident_ros.fleet.work import Outcome, write  # noqa: E402, I100
 
@@ -35,10 +36,10 @@ def test_two_runs_of_which_one_has_more_flights_leave_each_flight_once(tmp_path,
 
     def narrow():
         monkeypatch.setattr(run, 'results', results)
-        run.run_fleet(None, [str(folder / 'a.csv')], tmp_path, vehicle='hummingbird')
+        run.run_fleet(None, planned([str(folder / 'a.csv')], vehicle='hummingbird'), tmp_path)
 
     monkeypatch.setattr(run, 'results', lambda *some: results(*some, other=narrow))
-    run.run_fleet(None, [str(tmp_path / 'flights')], tmp_path, vehicle='hummingbird')
+    run.run_fleet(None, planned([str(tmp_path / 'flights')], vehicle='hummingbird'), tmp_path)
     assert sorted(path[-5:] for path in read_table(tmp_path, 'flights')['path'].to_pylist()) == [
         'a.csv', 'b.csv']
 
@@ -69,7 +70,7 @@ def elsewhere(monkeypatch, folder, function):
 def test_workers_in_another_folder_use_the_flights_and_data_set_that_are_meant(
         flight, tmp_path, monkeypatch):
     elsewhere(monkeypatch, tmp_path / 'elsewhere', lambda given, item: given(item))
-    summary = run.run_fleet(None, ['flights'], 'fleet', vehicle='hummingbird')
+    summary = run.run_fleet(None, planned(['flights'], vehicle='hummingbird'), 'fleet')
     assert summary.groups['refused'] == 1
     assert read_table('fleet', 'flights')['path'].to_pylist() == [str(flight)]
     assert 'are too short' in read_table('fleet', 'groups')['reason'].to_pylist()[0]
@@ -81,4 +82,4 @@ def test_results_that_are_written_somewhere_else_are_missed(flight, tmp_path, mo
         Outcome('diagnosed', '', 1.0) if isinstance(item, Group) else given(item)))
     monkeypatch.setattr(run, 'SHOWN_AFTER', 0.0)
     with pytest.raises(InputError, match='results of 1 group are not in it'):
-        run.run_fleet(None, ['flights'], 'fleet', vehicle='hummingbird')
+        run.run_fleet(None, planned(['flights'], vehicle='hummingbird'), 'fleet')

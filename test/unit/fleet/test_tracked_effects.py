@@ -15,6 +15,7 @@ import pyarrow  # noqa: E402, I100
 from quad_ident_ros.fleet import run, track  # noqa: E402, I100
 from quad_ident_ros.fleet.grouping import groups_of  # noqa: E402, I100
 from quad_ident_ros.fleet.look import look  # noqa: E402, I100
+from quad_ident_ros.fleet.plan import planned  # noqa: E402, I100
 from quad_ident_ros.fleet.store import keys_of, write_rows  # noqa: E402, I100
 from quad_ident_ros.fleet.track import tracked_effects, Tracking  # noqa: E402, I100
 
@@ -81,8 +82,8 @@ def test_a_group_whose_values_took_too_long_is_counted_and_keeps_those_of_before
     before = f'{group.key}-before'
     write_rows(tmp_path, 'covariances', before, [])
     monkeypatch.setattr(run, 'results', results)
-    summary = run.run_fleet(None, [str(tmp_path / 'flights')], tmp_path, vehicle='hummingbird',
-                            time_limit=7.0)
+    plan = planned([str(tmp_path / 'flights')], vehicle='hummingbird')
+    summary = run.run_fleet(None, plan, tmp_path, time_limit=7.0)
     assert summary.groups['diagnosed'] == 1
     assert summary.untracked == ('it took more than 7 s (--time-limit)',)
     assert keys_of(tmp_path, 'covariances') == {before}
