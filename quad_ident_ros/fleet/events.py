@@ -28,15 +28,17 @@ class Event:
     """
     Something that happened to a vehicle: parameters that changed at about one flight, or a drift.
 
-    flight: name of the first one after the change (of a drift the first of all), number: of it
-    among the flights that were fitted, from 1; date: of it; last_before: of the flight before;
-    material: some group of the vehicle has one of the effects in its verdict.
+    flight, file: names of the first one after the change (of a drift the first of all), by
+    content and of its file; number: of it among the flights that were fitted, from 1; date: of it;
+    last_before: of the flight before; material: some group of the vehicle has one of the effects
+    in its verdict.
     """
 
     vehicle: str
     configuration: str
     kind: str
     flight: str
+    file: str
     number: int
     flights: int
     date: datetime
@@ -85,8 +87,8 @@ def _event(kind: str, dates: Mapping[int, float], some: Sequence[tuple[History, 
     number = int(series.numbers[place])
     parts = tuple(Part(one.series.effect, one.series.parameter, one.series.unit, change,
                        one.level) for one, change in some)
-    return Event(series.vehicle, series.configuration, kind, series.flights[place], number + 1,
-                 len(dates), _date(dates[number]),
+    return Event(series.vehicle, series.configuration, kind, series.flights[place],
+                 series.files[place], number + 1, len(dates), _date(dates[number]),
                  _date(dates[number - 1]) if isinstance(change, Change) else None, parts,
                  max(part.change.probability for part in parts),
                  any((series.vehicle, part.effect) in named for part in parts))

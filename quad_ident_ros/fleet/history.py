@@ -40,9 +40,10 @@ class Series:
     """
     The values of a parameter of a vehicle along its flights, in the order of time.
 
-    t (N,) s; flights: N names; numbers (N,): of each among the flights of the vehicle that were
-    fitted, from 0; values, errors (N,): standard errors; covariates (N, A), each zero for the
-    usual flight of the fleet and about one for an unusual one, under their names.
+    t (N,) s; flights, files: N names, of content and of files; numbers (N,): of each among the
+    flights of the vehicle that were fitted, from 0; values, errors (N,): standard errors;
+    covariates (N, A), each zero for the usual flight of the fleet and about one for an unusual
+    one, under their names.
     """
 
     vehicle: str
@@ -52,6 +53,7 @@ class Series:
     unit: str
     t: np.ndarray
     flights: tuple[str, ...]
+    files: tuple[str, ...]
     numbers: np.ndarray
     values: np.ndarray
     errors: np.ndarray

@@ -4,6 +4,7 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 import math
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -62,6 +63,7 @@ def _series(rows: Sequence[Row], usual: Mapping[str, Mapping[str, float]],
     columns, covariates = _covariates(names, usual)
     return Series(first['vehicle'], first['configuration'], first['effect'], first['parameter'],
                   first['unit'], np.array([row['date'].timestamp() for row in rows]), names,
+                  tuple(Path(row['path']).name for row in rows),
                   np.array([numbers[first['configuration'], first['vehicle'], name]
                             for name in names]),
                   np.array([row['value'] for row in rows], float),

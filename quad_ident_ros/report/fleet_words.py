@@ -103,8 +103,8 @@ def event_line(event: Event) -> str:
                 f'{sized(abs(first.change.per_week), first.change.std, unit_of(first))} a week')
     else:
         text = (f'from {day(event.date)} on, {titled(first.effect)} differs: {first.parameter} '
-                f'by {_signed(first)}; flight {event.number} of {event.flights} is the first '
-                'after it')
+                f'by {_signed(first)}; {event.file}, flight {event.number} of '
+                f'{event.flights}, is the first after it')
     if others:
         text += ', with ' + ', '.join(
             f'{part.effect} {part.parameter} {_signed(part)}' for part in others)

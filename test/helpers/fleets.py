@@ -21,7 +21,8 @@ def series(values, errors, *, days=None, covariates=None, vehicle='uav1', effect
     days = 3.0 * np.arange(count) if days is None else days
     covariates = np.zeros((count, 0)) if covariates is None else np.asarray(covariates, float)
     return Series(vehicle, 'plain', effect, parameter, unit, DAY * np.asarray(days, float),
-                  tuple(f'flight {k}' for k in range(count)), np.arange(count), values,
+                  tuple(f'flight {k}' for k in range(count)),
+                  tuple(f'{k}.csv' for k in range(count)), np.arange(count), values,
                   np.broadcast_to(np.asarray(errors, float), (count,)), covariates,
                   tuple(f'covariate {k}' for k in range(covariates.shape[1])))
 

@@ -73,7 +73,7 @@ def test_the_list_begins_with_what_gets_worse(found):
                                              'the model is wrong']
     assert [one.where for one in some][:2] == ['uav3', 'uav7']
     assert some[0].text.startswith('from 3 June 2026 on, offset of the centre of mass')
-    assert 'mm' in some[0].text
+    assert 'mm' in some[0].text and '; 11.csv, flight 12 of 20, is the first' in some[0].text
     shared = {one.text.partition('(')[2].partition(')')[0]: one.text for one in some
               if one.why == 'the model is wrong'}
     assert shared['rotor_drag'].endswith('add it to the vehicle file')
