@@ -84,7 +84,8 @@ def _heat_of(configuration: str, some: Sequence[Sisters]) -> Markup:
         units.append(unit)
         columns.append({one.vehicle: _cell(one, factor, len(each.vehicles) > 1)
                         for one in each.vehicles})
-    head = ['vehicle', *(Markup(f'{escape(each.effect)}<br>{escape(each.parameter)}'
+    head = ['vehicle', *(Markup(f'<span title="{escape(known_effect(each.effect))}">'
+                                f'{escape(each.effect)}</span><br>{escape(each.parameter)}'
                                 + (f', {escape(unit)}' if unit not in ('1', '') else ''))
                          for each, unit in zip(some, units, strict=True))]
     rows = [[name, *(column.get(name, tag('td', '')) for column in columns)] for name in names]
@@ -141,6 +142,10 @@ def _time(found: Insight) -> list:
             Markup(f'<div class="multiples">{figures}</div>')]
 
 
+def _title(effect: str) -> str:
+    return f'{known_effect(effect)} ({effect})'
+
+
 def _usual(values: Sequence[float]) -> tuple[float]:
     """Return the usual size of values: the unit of all vehicles is that of most."""
     return (float(np.median(np.abs(values))),)
@@ -154,7 +159,8 @@ def _figure(one: History, unit: str, factor: float) -> Markup:
                     f'{series.effect} {series.parameter}'
                     + (f', {unit}' if unit not in ('1', '') else ''), sign], ' ')
     return Markup(f'<figure data-vehicle="{escape(series.vehicle)}" data-effect="'
-                  f'{escape(series.effect)}" data-event="{int(bool(told))}">'
+                  f'{escape(series.effect)}" data-title="{escape(_title(series.effect))}" '
+                  f'data-event="{int(bool(told))}">'
                   f'<figcaption>{caption}</figcaption>{small_multiple(one, unit, factor)}'
                   '</figure>')
 

@@ -63,8 +63,9 @@
 
   const text = element('input', {type: 'search', autocomplete: 'off'});
   const effect = element('select', {}, element('option', {value: ''}, 'all'));
-  for (const name of [...new Set(figures.map(one => one.dataset.effect))].sort()) {
-    effect.append(element('option', {value: name}, name));
+  const titles = new Map(figures.map(one => [one.dataset.effect, one.dataset.title]));
+  for (const [name, title] of [...titles].sort()) {
+    effect.append(element('option', {value: name}, title));
   }
   const happened = element('input', {type: 'checkbox'});
   const told = element('span', {class: 'second', role: 'status'});

@@ -265,7 +265,7 @@ def test_a_fleet_is_filtered_by_vehicle_effect_and_what_happened(browser, fleet)
         page.get_by_role('searchbox').fill('uav3')
         assert page.evaluate(VEHICLES) == ['uav3'] and page.evaluate(SHOWN) == 3
         assert page.locator('.first > li:visible').all_inner_texts()[0].startswith('uav3 changed')
-        page.get_by_role('combobox').select_option('com_offset')
+        page.get_by_role('combobox').select_option('offset of the centre of mass (com_offset)')
         assert page.evaluate(SHOWN) == 1
         page.get_by_role('searchbox').fill('')
         page.get_by_role('combobox').select_option('')
