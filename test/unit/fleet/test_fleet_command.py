@@ -11,7 +11,12 @@ from quad_ident_ros.cli.main import main, parser
 
 pytest.importorskip('pyarrow', reason="pyarrow is not installed: pip install '.[fleet]'")
 from quad_ident_ros.fleet.run import COMPARING, DIAGNOSING, Progress, Summary  # noqa: E402, I100
-from quad_ident_ros.report.fleet_run import line, Reporter, seconds_left, summary_text  # noqa: E402, I100
+from quad_ident_ros.report.fleet_run import (  # noqa: E402, I100
+    line,
+    Reporter,
+    seconds_left,
+    summary_text,
+)
 
 HALF = Progress(DIAGNOSING, total=100, done=50, here=20)
 
@@ -49,6 +54,7 @@ def test_the_end_says_which_groups_have_no_values_of_single_flights():
 
 def test_lines_for_a_machine_go_into_a_folder_that_is_made(tmp_path):
     class Client:
+
         def scheduler_info(self, **_):
             return {'workers': {}}
 

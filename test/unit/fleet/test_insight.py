@@ -23,7 +23,11 @@ from quad_ident_ros.fleet.store import write_rows  # noqa: E402, I100
 from quad_ident_ros.report.fleet import show_insight  # noqa: E402, I100
 from quad_ident_ros.report.fleet_charts import small_multiple  # noqa: E402, I100
 from quad_ident_ros.report.fleet_page import write  # noqa: E402, I100
-from quad_ident_ros.report.fleet_words import nothing_line, points, summary_line  # noqa: E402, I100
+from quad_ident_ros.report.fleet_words import (  # noqa: E402, I100
+    nothing_line,
+    points,
+    summary_line,
+)
 
 STEP = ('uav3', 'com_offset', 'x', 11, 4e-3)
 SLOPE = ('uav5', 'thrust_scale', 'factor', -0.01)
