@@ -67,7 +67,7 @@ def look(one: Listed, mapping: Mapping | None = None) -> Looked:
 def without_content(one: Listed, reason: str) -> Looked:
     """Return what is known of a file that cannot be read: its place stands for its content."""
     path = str(Path(one.path).resolve())
-    return Looked(path, 0, 0, hashlib.sha256(path.encode()).hexdigest(), reason=reason)
+    return Looked(path, 0, 0, hashlib.sha256(os.fsencode(path)).hexdigest(), reason=reason)
 
 
 def date_of_file(looked: Looked) -> datetime:
@@ -109,8 +109,8 @@ class Looks:
         """Write what was seen into the data set."""
         if self._new:
             rows = [asdict(one) for one in self._new]
-            key = hashlib.sha256('\n'.join(sorted(f'{one.path} {one.flight}'
-                                                  for one in self._new)).encode()).hexdigest()
+            names = sorted(f'{one.path} {one.flight}' for one in self._new)
+            key = hashlib.sha256(os.fsencode('\n'.join(names))).hexdigest()
             write_rows(self._out, 'files', key, rows)
             self._new = []
 
@@ -129,4 +129,4 @@ def _content(path: Path) -> str:
     if not path.is_dir():
         return sha256_of(path)
     files = (f'{file.relative_to(path)} {sha256_of(file)}' for file in files_in(path))
-    return hashlib.sha256('\n'.join(files).encode()).hexdigest()
+    return hashlib.sha256(os.fsencode('\n'.join(files))).hexdigest()

@@ -75,14 +75,16 @@ def write_rows(out: str | Path, table: str, key: str, rows: Iterable[Mapping[str
     """
     Write rows {column: value} as the file of a key in a table; it takes the place of an older one.
 
-    A column that a row does not have is null. Raises OSError with the name of the file.
+    A column that a row does not have is null; what is no Unicode in the name of a file is written
+    by its code. Raises OSError with the name of the file.
     """
     place = Path(out) / table / f'{key}.parquet'
     aside = Path(out) / UNFINISHED / f'{uuid.uuid4().hex}.parquet'
     try:
         for folder in (place.parent, aside.parent):
             folder.mkdir(parents=True, exist_ok=True)
-        parquet.write_table(pyarrow.Table.from_pylist(list(rows), schema=TABLES[table]), aside,
+        plain = [{name: _plain(value) for name, value in row.items()} for row in rows]
+        parquet.write_table(pyarrow.Table.from_pylist(plain, schema=TABLES[table]), aside,
                             compression='zstd')
         os.replace(aside, place)
     except OSError as error:
@@ -150,6 +152,13 @@ def read_table(out: str | Path, table: str,
     give_back()     # what opening thousands of files took, also from Arrow
     pyarrow.default_memory_pool().release_unused()
     return rows
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, list):
+        return [_plain(one) for one in value]
+    return (value.encode('utf-8', 'backslashreplace').decode('utf-8') if isinstance(value, str)
+            else value)
 
 
 def _short(error: Exception) -> str:

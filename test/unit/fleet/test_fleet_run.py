@@ -3,6 +3,8 @@
 """A run over a fleet beside another one, and on workers elsewhere, with short diagnoses."""
 
 
+import os
+
 import pytest
 
 from quad_ident_ros.cluster import Done
@@ -74,6 +76,17 @@ def test_workers_in_another_folder_use_the_flights_and_data_set_that_are_meant(
     assert summary.groups['refused'] == 1
     assert read_table('fleet', 'flights')['path'].to_pylist() == [str(flight)]
     assert 'are too short' in read_table('fleet', 'groups')['reason'].to_pylist()[0]
+
+
+def test_a_name_that_is_no_text_stops_nothing(flight, tmp_path, monkeypatch):
+    """As of files from a disk with names in another encoding."""
+    os.rename(flight, os.fsencode(flight.parent) + b'/bad\xff.csv')
+    elsewhere(monkeypatch, tmp_path, lambda given, item: given(item))
+    for _ in range(2):
+        summary = run.run_fleet(None, planned(['flights'], vehicle='hummingbird'), 'fleet')
+        assert summary.groups['refused'] == 1
+        assert read_table('fleet', 'flights')['path'].to_pylist() == [
+            str(flight.parent / 'bad\\udcff.csv')]
 
 
 def test_results_that_are_written_somewhere_else_are_missed(flight, tmp_path, monkeypatch):
