@@ -48,6 +48,7 @@ def test_a_link_stays_a_link(tmp_path):
     write_json(link, [1])
     assert link.is_symlink() and target.read_text() == '[\n  1\n]\n'
 
+
 def test_a_name_of_a_file_that_is_no_unicode_is_written_by_its_code(tmp_path):
     """As of a log from a disk with names in another encoding."""
     name = os.fsdecode(b'bad\xff.csv')
