@@ -191,7 +191,7 @@ def _diagnose_all(client: Any, groups: Sequence[Group], out: str | Path, time_li
         for key in replaced.get(group.key, ()):
             remove_group(out, key)
         account.count_group(group, outcome)
-    if todo:    # a run beside this one may have come to an end with some of these flights meanwhile
+    if todo:    # a run beside this one may have ended with some of these flights meanwhile
         _remove_replaced(out, superseded_by(groups, out), _statuses(out))
     return before
 
