@@ -131,7 +131,8 @@ def shared_line(one: Presence, found: Insight) -> str:
               and len(each.vehicles) > 1
               and abs(each.mean - null_of(each.effect, each.parameter)) > 2 * each.spread]
     share = ('' if one.contribution is None else
-             f'; without it {100 * one.contribution:.0f} % of the closable gap would remain')
+             f'; without it {100 * min(one.contribution, 1.0):.0f} % of the closable gap would '
+             'remain')
     told = (f', {", ".join(values)} from vehicle to vehicle' if values else
             ', each with values of its own')
     remedy = ('add it to the vehicle file' if values else
