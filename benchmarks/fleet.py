@@ -64,6 +64,7 @@ def run(size, bar):
 
 def timed(flights, out, workers):
     """Return s of a run on so many workers, and {who: MB (early, at the end)}."""
+    from quad_ident_ros.fleet.plan import planned
     from quad_ident_ros.fleet.run import DIAGNOSING, run_fleet
     seen = {}
     with cluster(workers=workers) as client:
@@ -75,7 +76,7 @@ def timed(flights, out, workers):
                 seen.update(resident(client))
 
         begun = perf_counter()
-        run_fleet(client, [str(flights)], out, vehicle=VEHICLE, tell=tell)
+        run_fleet(client, planned([str(flights)], vehicle=VEHICLE), out, tell=tell)
         seconds = perf_counter() - begun
         after = resident(client)
     return seconds, {who: (seen[who], after[who]) for who in after}

@@ -6,17 +6,21 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, ExitStack, suppress
 from dataclasses import dataclass
 import faulthandler
+from importlib.util import find_spec
 from itertools import islice
 import logging
 from multiprocessing import resource_tracker
 import os
 import queue
+import re
 import signal
 import threading
 from time import monotonic
 from typing import Any, Generic, TypeVar
 
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.resources import PACKAGE
+from quad_ident_ros.schema import shown
 
 Item = TypeVar('Item')
 
@@ -27,6 +31,7 @@ TICK = 0.25         # s, in which whoever follows the work is told that it still
 GRACE = 3.0         # s from the end of a task's time to that of its process
 TIMES = 'quad_ident_times'
 """The topic on which a worker says that the time of a task is over."""
+_ADDRESS = re.compile(r'((tcp|tls|ws|wss|ucx)://)?(\[[\da-f:.]+\]|[^/:\s]+):\d+', re.IGNORECASE)
 
 
 class TimeOver(Exception):
@@ -65,6 +70,7 @@ def cluster(scheduler: str | None = None, workers: int | None = None,
                          ) from None
     logging.getLogger('distributed').setLevel(logging.CRITICAL)     # we say what matters
     if scheduler is not None:
+        _check_address(scheduler, distributed.Security())
         try:
             client = distributed.Client(scheduler, timeout='10s', set_as_default=False)
         except (OSError, ValueError) as error:
@@ -76,6 +82,7 @@ def cluster(scheduler: str | None = None, workers: int | None = None,
                 raise InputError(f'--scheduler {scheduler}: its workers have several threads; '
                                  'start them with --nthreads 1, because what hangs is ended with '
                                  'its process')
+            _check_packages(client, scheduler)
             yield client
         return
     count = workers or dask.system.CPU_COUNT
@@ -86,9 +93,31 @@ def cluster(scheduler: str | None = None, workers: int | None = None,
         with _without_interrupt():
             local = stack.enter_context(distributed.LocalCluster(
                 n_workers=count, threads_per_worker=1, memory_limit=limit, host='127.0.0.1',
-                dashboard_address=':0', silence_logs=logging.CRITICAL))
+                dashboard_address='127.0.0.1:0', silence_logs=logging.CRITICAL))
             client = stack.enter_context(distributed.Client(local, set_as_default=False))
         yield client
+
+
+def _check_address(scheduler: str, security: Any) -> None:
+    """Raise InputError for what a Client takes for no address: when closed, it would hang."""
+    if not _ADDRESS.fullmatch(scheduler):
+        raise InputError(f'--scheduler {shown(scheduler)}: expected tcp://HOST:PORT, as '
+                         '`dask scheduler` prints it')
+    if (scheduler.lower().startswith('tls:')
+            and security.get_connection_args('client').get('ssl_context') is None):
+        raise InputError(f'--scheduler {scheduler}: TLS needs certificates; name them in the '
+                         'configuration of Dask (distributed.comm.tls), or use tcp://')
+
+
+def _check_packages(client: Any, scheduler: str) -> None:
+    """Raise InputError where the scheduler or a worker has no such package: it would end."""
+    known = {'the scheduler': client.run_on_scheduler(find_spec, PACKAGE),
+             **client.run(find_spec, PACKAGE)}
+    lacking = [name for name, spec in known.items() if spec is None]
+    if lacking:
+        raise InputError(f'--scheduler {scheduler}: {PACKAGE} is not installed for {lacking[0]}'
+                         + (f' and {len(lacking) - 1} more' if len(lacking) > 1 else '')
+                         + '; install the same version where scheduler and workers are started')
 
 
 @contextmanager

@@ -12,14 +12,15 @@ def write_whole(path: str | Path, text: str) -> None:
     """
     Write a text file, into a new folder if there is none; what was there stays if it fails.
 
-    What is no regular file, such as a pipe, is written to as it is. Raises OSError.
+    What is no regular file, such as a pipe, is written to as it is. What is no Unicode in the name
+    of a file is written by its code. Raises OSError.
     """
     path = Path(path).resolve()   # of a link, the file that it leads to
     if path.exists() and not path.is_file():
-        path.write_text(text, encoding='utf-8')
+        path.write_text(text, encoding='utf-8', errors='backslashreplace')
         return
     with replacing(path) as temporary:
-        temporary.write_text(text, encoding='utf-8')
+        temporary.write_text(text, encoding='utf-8', errors='backslashreplace')
 
 
 @contextmanager

@@ -80,7 +80,7 @@ def add(commands, said):
                              f'example {EXAMPLE}; never less than {100 * RULES.noise_share:.0f} '
                              f'%% of what the noise makes (default: {usual})')
     parser.add_argument('--priors', metavar='FILE', help='what a fleet of such vehicles has '
-                        'taught: how often each effect is there and how large; written by '
+                        'taught: how often each effect is present and how large; written by '
                         '`quad_ident fleet --out-priors`')
     parser.add_argument('--simulator', metavar='FILE.py:NAME',
                         help='a class of yours that flies the nominal vehicle: its gap, where it '

@@ -51,8 +51,8 @@ def add(commands, said):
                         help='write a page for a browser: what to look at first, vehicles by '
                              'effects, every parameter over time, the gap')
     parser.add_argument('--out-priors', metavar='FILE.yaml',
-                        help='write how often each effect is there, how large and how exact, for '
-                             '--priors of `diagnose` and `fleet`')
+                        help='write how often each effect is present, how large and how exact, '
+                             'for --priors of `diagnose` and `fleet`')
     parser.add_argument('--priors', metavar='FILE', help='diagnose with what another fleet has '
                         'taught; verdicts that use priors teach none')
     group = parser.add_argument_group('where the work is done')
@@ -71,9 +71,9 @@ def run(options):
     """Diagnose the flights and say what came of it; 3 where a group failed."""
     try:
         from quad_ident_ros.fleet.insight import insight
-        from quad_ident_ros.fleet.priors import learned
-        from quad_ident_ros.fleet.run import run_fleet, TIME_LIMIT
-        from quad_ident_ros.fleet.store import read_table
+        from quad_ident_ros.fleet.plan import planned
+        from quad_ident_ros.fleet.priors import effects_without_priors, learned
+        from quad_ident_ros.fleet.run import COMPARING, Progress, run_fleet, TIME_LIMIT
     except ModuleNotFoundError as error:
         if (error.name or '').partition('.')[0] not in ('pyarrow', 'distributed', 'dask'):
             raise
@@ -91,12 +91,13 @@ def run(options):
                          'told; run without --priors, into another --out')
     rules = RULES if options.priors is None else replace(RULES,
                                                          priors=load_priors(options.priors))
+    plan = planned(options.flights, vehicle=options.vehicle, mapping=options.mapping, rules=rules)
     with cluster(options.scheduler, options.workers, options.memory) as client, \
             Reporter(client, options.out, options.json) as reporter:
-        summary = run_fleet(client, options.flights, options.out, vehicle=options.vehicle,
-                            mapping=options.mapping, rules=rules, tell=reporter.tell,
+        summary = run_fleet(client, plan, options.out, tell=reporter.tell,
                             time_limit=options.time_limit or TIME_LIMIT)
-        found = insight(options.out)
+        found = insight(options.out, lambda done, total: reporter.tell(
+            Progress(COMPARING, total, done)))
         reporter.tell_insight(found)
         reporter.end(summary)
     if options.json != '-':
@@ -104,9 +105,11 @@ def run(options):
     if options.report:
         fleet_page.write(options.report, found)
     if options.out_priors:
-        write_priors(options.out_priors, learned(read_table(options.out, 'effects'),
-                                                 found.histories), len(found.vehicles))
-    return FAULTY if summary.groups['failed'] + summary.groups['timeout'] else 0
+        effects = effects_without_priors(options.out)
+        write_priors(options.out_priors, learned(effects, found.histories),
+                     len(effects['vehicle'].unique()))
+    groups = summary.groups
+    return FAULTY if groups['failed'] or groups['timeout'] or summary.untracked else 0
 
 
 def _count(text):

@@ -10,7 +10,7 @@ from typing import Any
 
 import yaml
 
-from quad_ident_ros import schema
+from quad_ident_ros import resources, schema
 from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.whole_file import write_whole
@@ -42,13 +42,7 @@ Priors = dict[str, EffectPrior]
 
 def load_priors(path: str | Path) -> Priors:
     """Return the priors in a file; raises InputError where it is none."""
-    try:
-        data = yaml.safe_load(Path(path).read_text(encoding='utf-8'))
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f'{path}: cannot be read: {error}; give a file that `quad_ident fleet '
-                         '--out-priors` has written') from None
-    except yaml.YAMLError as error:
-        raise InputError(f'{path}: this is not YAML: {" ".join(str(error).split())}') from None
+    data = resources.read_yaml(path)
     schema.check_keys(str(path), data, ('schema', 'vehicles', 'effects'))
     if data.get('schema') != SCHEMA:
         raise InputError(f'{path}: schema: expected {SCHEMA}; give a file that `quad_ident fleet '

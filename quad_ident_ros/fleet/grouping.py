@@ -11,7 +11,7 @@ import json
 from quad_ident_ros import __version__
 from quad_ident_ros.data.mapping import Mapping
 from quad_ident_ros.diagnose.rules import Rules
-from quad_ident_ros.fleet.dates import date_in, date_in_path
+from quad_ident_ros.fleet.dates import date_in, date_in_path, in_order
 from quad_ident_ros.fleet.look import date_of_file, Looked
 from quad_ident_ros.fleet.manifest import Listed
 from quad_ident_ros.model.vehicle import Vehicle, vehicle_text
@@ -79,7 +79,7 @@ def groups_of(flights: Iterable[tuple[Listed, Looked]], nominal_of: Callable[[Li
                                                     }.values()}
     groups = []
     for key, some in members.items():
-        some.sort(key=lambda one: (one.date, one.path))
+        some.sort(key=lambda one: in_order(one.date, one.path))
         groups.append(Group(key[0], key[1], tuple(some), nominal[key], mapping, rules,
                             _key(key, some, texts[id(nominal[key])], mapping, rules)))
     return groups, again

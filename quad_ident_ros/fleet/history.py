@@ -12,7 +12,7 @@ SURE or more has a false one among all series in at most (1 - SURE) / SURE of th
 any, whatever their size (Markov's inequality for Bayes factors; R. Royall, JASA 95, 2000).
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -40,8 +40,10 @@ class Series:
     """
     The values of a parameter of a vehicle along its flights, in the order of time.
 
-    t (N,) s; flights: N names; values, errors (N,): standard errors; covariates (N, A), each zero
-    for the usual flight of the fleet and about one for an unusual one, under their names.
+    t (N,) s; flights, files: N names, of content and of files; numbers (N,): of each among the
+    flights of the vehicle that were fitted, from 0; values, errors (N,): standard errors;
+    covariates (N, A), each zero for the usual flight of the fleet and about one for an unusual
+    one, under their names.
     """
 
     vehicle: str
@@ -51,6 +53,8 @@ class Series:
     unit: str
     t: np.ndarray
     flights: tuple[str, ...]
+    files: tuple[str, ...]
+    numbers: np.ndarray
     values: np.ndarray
     errors: np.ndarray
     covariates: np.ndarray
@@ -110,12 +114,21 @@ class History:
     course: np.ndarray
 
 
-def histories(series: Sequence[Series]) -> tuple[History, ...]:
-    """Return the History of each Series; what is expected before looking is shared among all."""
+def histories(series: Sequence[Series], on_progress: Callable[[int, int], None] = (
+        lambda done, total: None)) -> tuple[History, ...]:
+    """
+    Return the History of each Series; what is expected before looking is shared among all.
+
+    on_progress is called with how many are done, of how many.
+    """
     places = sum(max(len(one.values) - 1, 0) for one in series)
     change = min(EVENTS / 2.0 / max(places, 1), MOST_OFTEN)
     drift = min(EVENTS / 2.0 / max(len(series), 1), MOST_OFTEN)
-    return tuple(history(one, change, drift) for one in series)
+    made = []
+    for one in series:
+        made.append(history(one, change, drift))
+        on_progress(len(made), len(series))
+    return tuple(made)
 
 
 def history(series: Series, change: float, drift: float) -> History:

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a fleet tells that a flight cannot, as typed values and as data."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Collection, Iterable
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -17,12 +17,16 @@ from quad_ident_ros.fleet.history import histories, History
 from quad_ident_ros.fleet.series import series_of
 from quad_ident_ros.fleet.sisters import Sister, Sisters, sisters
 from quad_ident_ros.fleet.store import read_table
+from quad_ident_ros.fleet.work import DIAGNOSED, FAILED, REFUSED, TIMEOUT
 from quad_ident_ros.greybox.errors import UNITS
 
 SCHEMA = 'quad_ident/insight/1'
-DIAGNOSED = 'diagnosed'
 MOST = 0.5          # share of vehicles from which on an effect is that of the model
 STAGES = 'before', 'after', 'noise'
+GROUPS = ('vehicle', 'configuration', 'status', 'verdict',
+          *(f'gap_{stage}_{name}' for stage in STAGES for name in UNITS))
+FLIGHTS = 'flight', 'path', 'vehicle', 'status', 'reason', 'covariates'
+"""The columns that are looked at: whole diagnoses of a fleet take gigabytes."""
 
 
 @dataclass(frozen=True)
@@ -76,14 +80,16 @@ class Insight:
     """
     What the results of a fleet tell together.
 
-    status {of groups: how many}; refused, suspect ((vehicle, file, reason), ...): flights that
-    were not diagnosed, and those that were but stand apart from the others of their vehicle.
+    status {of groups: how many}; refused, failed, suspect ((vehicle, file, reason), ...): flights
+    whose log cannot be used, those that were not diagnosed for another reason or ran out of time,
+    and those that were but stand apart from the others of their vehicle.
     """
 
     vehicles: tuple[str, ...]
     flights: int
     status: dict[str, int]
     refused: tuple[tuple[str, str, str], ...]
+    failed: tuple[tuple[str, str, str], ...]
     suspect: tuple[tuple[str, str, str], ...]
     events: tuple[Event, ...]
     odd: tuple[Odd, ...]
@@ -98,6 +104,7 @@ class Insight:
             'schema': SCHEMA, 'version': __version__, 'vehicles': list(self.vehicles),
             'flights': self.flights, 'status': dict(self.status),
             'refused': [list(one) for one in self.refused],
+            'failed': [list(one) for one in self.failed],
             'suspect': [list(one) for one in self.suspect],
             'events': [asdict(one) | {'date': one.date.isoformat(), 'last_before':
                                       one.last_before and one.last_before.isoformat()}
@@ -108,29 +115,33 @@ class Insight:
             'vehicles_by_parameter': [asdict(one) for one in self.sisters]}
 
 
-def insight(out: str | Path) -> Insight:
-    """Return the Insight of the data set in a folder; raises InputError where it is unreadable."""
-    groups, effects = read_table(out, 'groups'), read_table(out, 'effects')
-    flights, parameters = read_table(out, 'flights'), read_table(out, 'parameters')
-    return insight_of(groups, flights, effects, parameters)
+def insight(out: str | Path, on_progress: Callable[[int, int], None] = lambda done, total: None
+            ) -> Insight:
+    """
+    Return the Insight of the data set in a folder; raises InputError where it is unreadable.
 
-
-def insight_of(groups: pyarrow.Table, flights: pyarrow.Table, effects: pyarrow.Table,
-               parameters: pyarrow.Table) -> Insight:
-    """Return the Insight of the tables of a data set."""
-    rows = groups.to_pylist()
-    found = histories(series_of(parameters, flights))
+    on_progress is called with how many parameters of vehicles have been looked at, of how many.
+    """
+    effects, parameters = read_table(out, 'effects'), read_table(out, 'parameters')
+    flights = read_table(out, 'flights', FLIGHTS)
+    rows = read_table(out, 'groups', GROUPS).to_pylist()
+    found = histories(series_of(parameters, flights), on_progress)
     beside = sisters(found)
     named = {(row['vehicle'], effect) for row in rows for effect in row['verdict'] or ()}
     status: dict[str, int] = {}
     for row in rows:
         status[row['status']] = status.get(row['status'], 0) + 1
     flown = flights.to_pylist()
-    refused = tuple((row['vehicle'], Path(row['path']).name, row['reason'])
-                    for row in flown if row['status'] != DIAGNOSED)
     return Insight(tuple(sorted({row['vehicle'] for row in rows})), flights.num_rows, status,
-                   tuple(sorted(refused)), _suspect(flown, found), events(found, named),
-                   _odd(beside, named), presence(effects), _gaps(rows), found, beside)
+                   _unused(flown, (REFUSED,)), _unused(flown, (FAILED, TIMEOUT)),
+                   _suspect(flown, found), events(found, named), _odd(beside, named),
+                   presence(effects), _gaps(rows), found, beside)
+
+
+def _unused(flights: Iterable[dict], status: Collection[str]) -> tuple[tuple[str, str, str], ...]:
+    """Return (vehicle, file, reason) of the flights of a status."""
+    return tuple(sorted((row['vehicle'], Path(row['path']).name, row['reason'])
+                        for row in flights if row['status'] in status))
 
 
 def _suspect(flights: Iterable[dict], found: Iterable[History]

@@ -12,7 +12,7 @@ from quad_ident_ros.data.content import files_in, sha256_of
 from quad_ident_ros.data.load import load_all
 from quad_ident_ros.data.mapping import Mapping
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.fleet.dates import date_in_log, date_in_path
+from quad_ident_ros.fleet.dates import date_in_log, is_time_in_path
 from quad_ident_ros.fleet.manifest import Listed
 from quad_ident_ros.fleet.store import read_table, write_rows
 from quad_ident_ros.schema import NAME_LENGTH
@@ -40,8 +40,8 @@ class Looked:
 
 
 def has_to_be_read(one: Listed) -> bool:
-    """Return whether neither names nor manifest say of what vehicle and day a flight is."""
-    return not one.vehicle or not (one.group or one.day or one.date or date_in_path(one.path))
+    """Return whether neither names nor manifest say whose a flight is, and at what time it was."""
+    return not one.vehicle or not (one.date or is_time_in_path(one.path))
 
 
 def look(one: Listed, mapping: Mapping | None = None) -> Looked:
@@ -67,7 +67,7 @@ def look(one: Listed, mapping: Mapping | None = None) -> Looked:
 def without_content(one: Listed, reason: str) -> Looked:
     """Return what is known of a file that cannot be read: its place stands for its content."""
     path = str(Path(one.path).resolve())
-    return Looked(path, 0, 0, hashlib.sha256(path.encode()).hexdigest(), reason=reason)
+    return Looked(path, 0, 0, hashlib.sha256(os.fsencode(path)).hexdigest(), reason=reason)
 
 
 def date_of_file(looked: Looked) -> datetime:
@@ -79,23 +79,25 @@ class Looks:
     """
     What earlier runs on a data set saw of files, so that those that stay are not read again.
 
-    A file is the same where its path, size and time of change are.
+    A file is the same where its path, size and time of change are. One that could not be read is
+    read again: a mapping or another version may do it.
     """
 
     def __init__(self, out: str | Path) -> None:
         self._out = out
-        self._known = {row['path']: Looked(**row) for row in read_table(out, 'files').to_pylist()}
+        rows = sorted(read_table(out, 'files').to_pylist(), key=lambda row: row['was_read'])
+        self._known = {(row['path'], row['bytes'], row['modified_ns']): Looked(**row)
+                       for row in rows if not row['reason']}
         self._new: list[Looked] = []
 
     def known(self, one: Listed) -> Looked | None:
         """Return what is known of a flight, or None."""
         path = Path(one.path).resolve()
-        found = self._known.get(str(path))
         try:
-            same = found is not None and _stamp(path) == (found.bytes, found.modified_ns)
+            found = self._known.get((str(path), *_stamp(path)))
         except InputError:
             return None
-        return found if same and found and (found.was_read or not has_to_be_read(one)) else None
+        return found if found and (found.was_read or not has_to_be_read(one)) else None
 
     def add(self, looked: Looked) -> None:
         """Keep what was seen of a file."""
@@ -107,8 +109,8 @@ class Looks:
         """Write what was seen into the data set."""
         if self._new:
             rows = [asdict(one) for one in self._new]
-            key = hashlib.sha256('\n'.join(sorted(f'{one.path} {one.flight}'
-                                                  for one in self._new)).encode()).hexdigest()
+            names = sorted(f'{one.path} {one.flight}' for one in self._new)
+            key = hashlib.sha256(os.fsencode('\n'.join(names))).hexdigest()
             write_rows(self._out, 'files', key, rows)
             self._new = []
 
@@ -127,4 +129,4 @@ def _content(path: Path) -> str:
     if not path.is_dir():
         return sha256_of(path)
     files = (f'{file.relative_to(path)} {sha256_of(file)}' for file in files_in(path))
-    return hashlib.sha256('\n'.join(files).encode()).hexdigest()
+    return hashlib.sha256(os.fsencode('\n'.join(files))).hexdigest()

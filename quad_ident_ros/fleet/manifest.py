@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from datetime import datetime
 import os
 from pathlib import Path
+import re
 
 from quad_ident_ros import schema
 from quad_ident_ros.data.readers.others import START
@@ -20,6 +21,7 @@ COLUMNS = ('path', 'vehicle', 'configuration', 'date', 'group', 'vehicle_file')
 """What the columns of a manifest are called; each further one has numbers: a covariate."""
 
 TABLES = ('.csv', '.csv.gz', '.tsv')    # the other kinds of flights are seen by their first bytes
+BAGS = '.mcap', '.db3'      # in the folder of a bag, which has its name
 VEHICLE_FILE = 'vehicle.yaml'
 """The nominal vehicle in the folder of its flights, or in one above."""
 
@@ -69,26 +71,35 @@ def listed(names: Iterable[str]) -> list[Listed]:
 
 
 def is_manifest(path: Path) -> bool:
-    """Return whether a file is a manifest: a CSV table with a column `path`."""
+    """Return whether a file is a manifest: a CSV table with a column `path`, however written."""
     if path.suffix != '.csv':
         return False
     try:
         with open(path, encoding='utf-8-sig', newline='') as file:
-            return 'path' in next(csv.reader([file.readline(START)]), [])
-    except (OSError, UnicodeDecodeError, csv.Error):
+            names = re.split('[,;\t]', file.readline(START).lower())
+    except (OSError, UnicodeDecodeError):
         return False
+    return 'path' in (name.strip(' "\r\n') for name in names)
 
 
 def _in_manifest(path: Path) -> Iterator[Listed]:
     try:
         with open(path, encoding='utf-8-sig', newline='') as file:
-            reader = csv.reader(file)
+            reader = csv.reader(file, skipinitialspace=True)
             names = [name.strip() for name in next(reader)]
+            if 'path' not in names:
+                raise InputError(f'{path}, line 1: there is no column `path`; write the names as '
+                                 f'{",".join(COLUMNS)}, with commas, of which only path is needed')
             if len(set(names)) < len(names):
                 raise InputError(f'{path}, line 1: a column is named twice; name each once')
+            found: dict[str, Listed] = {}
             for row in reader:
                 if any(row):
-                    yield _entry(path, reader.line_num, names, row)
+                    one = _entry(path, reader.line_num, names, row)
+                    if found.setdefault(one.path, one) != one:
+                        raise InputError(f'{path}, line {reader.line_num}: {one.path} is named '
+                                         'above already, with other values; name each flight once')
+            yield from found.values()
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         raise InputError(f'{path}: cannot be read: {error}; expected a table in UTF-8 with '
                          'commas') from None
@@ -106,8 +117,8 @@ def _entry(manifest: Path, line: int, names: Sequence[str], row: Sequence[str]) 
     if cells.get('date') and date is None:
         raise InputError(f'{where}, column date: {schema.shown(cells["date"])} is no date; write '
                          '2026-05-14 or 2026-05-14T08:30:00Z')
-    covariates = {name: schema.number(f'{where}, column {name}', cell)
-                  for name, cell in cells.items() if name not in COLUMNS and cell}
+    covariates = {name: _covariate(where, name, cell) for name, cell in cells.items()
+                  if name not in COLUMNS and cell}
     path = str(manifest.parent / cells['path'])
     nominal = cells.get('vehicle_file', '')
     beside = manifest.parent / nominal
@@ -117,16 +128,33 @@ def _entry(manifest: Path, line: int, names: Sequence[str], row: Sequence[str]) 
                   manifest.absolute().parent.name, covariates)
 
 
+def _covariate(where: str, name: str, cell: str) -> float:
+    """Return the number in a cell of a column that is none of COLUMNS; raises InputError."""
+    try:
+        return schema.number(f'{where}, column {name}', cell)
+    except InputError as error:
+        raise InputError(f'{error}: columns other than {", ".join(COLUMNS)} are covariates; leave '
+                         'it out or correct its name') from None
+
+
 def _in_folder(top: Path) -> Iterator[Listed]:
     """Yield the flights below a folder, which the folders between say more of."""
-    for path, nominal in _below(top, ''):
-        vehicle, configuration, day = whose(path.relative_to(top).parts[:-1])
+    for path, nominal in _below(top, '', frozenset()):
+        folders = path.relative_to(top).parts[:-1]
+        if _is_of_open_bag(path):
+            folders = folders[:-1]
+        vehicle, configuration, day = whose(folders)
         yield Listed(str(path), vehicle, configuration, day=day, vehicle_file=nominal,
                      folder=top.absolute().name)
 
 
-def _below(folder: Path, nominal: str) -> Iterator[tuple[Path, str]]:
-    """Yield (path, nominal vehicle file) of the flights below a folder, by name."""
+def _below(folder: Path, nominal: str, above: frozenset[str]) -> Iterator[tuple[Path, str]]:
+    """
+    Yield (path, nominal vehicle file) of the flights below a folder, by name.
+
+    above: the folders that it is in, to which a link in it does not lead back.
+    """
+    within = above | {os.path.realpath(folder)}
     try:
         entries = sorted(os.scandir(folder), key=lambda entry: entry.name)
     except OSError as error:
@@ -136,15 +164,21 @@ def _below(folder: Path, nominal: str) -> Iterator[tuple[Path, str]]:
         path = Path(entry.path)
         if entry.name.startswith('.'):
             continue
-        if entry.is_dir() and not _is_bag(path):
-            yield from _below(path, nominal)
-        elif entry.is_dir() or entry.is_file() and _is_flight(path):
+        if path.is_dir() and not _is_bag(path):
+            if os.path.realpath(path) not in within:
+                yield from _below(path, nominal, within)
+        elif path.is_dir() or path.is_file() and _is_flight(path):
             yield path, nominal
 
 
 def _is_bag(path: Path) -> bool:
     """Return whether a folder is a bag of ROS 2, or a recording of the recorder with one."""
     return any((path / place).is_file() for place in ('metadata.yaml', 'bag/metadata.yaml'))
+
+
+def _is_of_open_bag(path: Path) -> bool:
+    """Return whether a file lies in the folder of a bag of ROS 2 that is still recorded to."""
+    return path.suffix in BAGS and path.name.startswith(f'{path.parent.name}_')
 
 
 def _is_flight(path: Path) -> bool:

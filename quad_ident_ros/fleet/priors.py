@@ -3,14 +3,19 @@
 """What a fleet teaches of each effect: how often it is there, how large, in which form."""
 
 from collections.abc import Iterable
+from pathlib import Path
 
 import numpy as np
 import pyarrow
+import pyarrow.compute as pc
 
 from quad_ident_ros.diagnose.priors import bounded, EffectPrior, Priors
 from quad_ident_ros.diagnose.rules import RULES, Rules
 from quad_ident_ros.effects.registry import EFFECTS, NULL, PLACE
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.fleet.grouping import rules_hash
 from quad_ident_ros.fleet.history import History
+from quad_ident_ros.fleet.store import read_table
 
 DOUBT = 4.0
 """
@@ -19,16 +24,31 @@ as not in the fifth.
 """
 
 
+def effects_without_priors(out: str | Path, rules: Rules = RULES) -> pyarrow.Table:
+    """
+    Return the table `effects` of a data set, of the verdicts by usual rules alone.
+
+    Those that used priors would repeat what they were told. Raises InputError where there is none.
+    """
+    groups = read_table(out, 'groups', ['group', 'rules'])
+    usual = groups.filter(pc.field('rules') == rules_hash(rules))['group']
+    effects = read_table(out, 'effects')
+    found = effects.filter(pc.is_in(effects['group'], value_set=usual.combine_chunks()))
+    if not found.num_rows:
+        raise InputError(f'{out}: no flight was diagnosed without --priors, so that there is '
+                         'nothing to learn from; run without them, into another --out')
+    return found
+
+
 def learned(effects: pyarrow.Table, found: Iterable[History], rules: Rules = RULES) -> Priors:
     """
     Return what a fleet teaches, {effect: EffectPrior}.
 
     Args: effects: the table of a data set; found: histories of its parameters. How often an effect
-    is there is the mean of its probability over the vehicles, with DOUBT vehicles of
-    Rules.usual_presence beside them; each vehicle counts once, however often it flew.
+    is there is the mean of its probability over the vehicles whose flights can show it, with DOUBT
+    vehicles of Rules.usual_presence beside them; each vehicle counts once, however often it flew.
     """
     rows = effects.to_pylist()
-    vehicles = {row['vehicle'] for row in rows}
     probability: dict[str, dict[str, list[float]]] = {}
     forms: dict[str, dict[str, set[str]]] = {}
     for row in rows:
@@ -39,7 +59,7 @@ def learned(effects: pyarrow.Table, found: Iterable[History], rules: Rules = RUL
     some = tuple(found)
     return {name: EffectPrior(
         bounded((float(sum(map(np.mean, probability[name].values())))
-                 + DOUBT * rules.usual_presence) / (len(vehicles) + DOUBT)),
+                 + DOUBT * rules.usual_presence) / (len(probability[name]) + DOUBT)),
         _forms(name, {form: len(those) for form, those in forms.get(name, {}).items()}, rules),
         _sizes(name, some), _exactness(name, some, rules))
         for name in EFFECTS if name in probability}

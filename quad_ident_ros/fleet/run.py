@@ -4,21 +4,21 @@
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache, partial
+from functools import partial
 import json
 from pathlib import Path
 import random
 from typing import Any
 
-from quad_ident_ros import __version__
 from quad_ident_ros.cluster import results, TimeOver, WorkerDied
-from quad_ident_ros.data.mapping import load_mapping, Mapping
-from quad_ident_ros.diagnose.rules import RULES, Rules
+from quad_ident_ros.data.counted import counted
+from quad_ident_ros.data.mapping import Mapping
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.fleet.grouping import Group, groups_of, rules_hash
+from quad_ident_ros.fleet.grouping import Group, groups_of
 from quad_ident_ros.fleet.look import look, Looked, Looks, without_content
-from quad_ident_ros.fleet.manifest import Listed, listed, VEHICLE_FILE
-from quad_ident_ros.fleet.store import keys_of, prepare, read_table
+from quad_ident_ros.fleet.manifest import Listed
+from quad_ident_ros.fleet.plan import Plan
+from quad_ident_ros.fleet.store import keys_of, missing, prepare, read_table
 from quad_ident_ros.fleet.superseded import remove_group, remove_trackings, superseded_by
 from quad_ident_ros.fleet.track import track, tracked_effects, Tracking
 from quad_ident_ros.fleet.work import (
@@ -32,13 +32,12 @@ from quad_ident_ros.fleet.work import (
     work,
     write,
 )
-from quad_ident_ros.model.vehicle import Vehicle
-from quad_ident_ros.vehicle_files.load import load_any_vehicle
 from quad_ident_ros.whole_file import write_whole
 
 AT_ONCE = 16    # flights that a task looks at: each is a matter of milliseconds
 TIME_LIMIT = 1800.0     # s of a group: a hundred times the usual one on a slow core
-LOOKING, DIAGNOSING, TRACKING = 'reading', 'diagnosing', 'tracking'
+SHOWN_AFTER = 90.0      # s; NFS shows an old list of a folder for up to 60 (acdirmax, nfs(5))
+LOOKING, DIAGNOSING, TRACKING, COMPARING = 'reading', 'diagnosing', 'tracking', 'comparing'
 
 
 @dataclass(frozen=True)
@@ -46,9 +45,10 @@ class Progress:
     """
     How far a run is.
 
-    stage: of LOOKING (done and total are flights), DIAGNOSING (groups), TRACKING (groups); here:
-    done of these before the run; refused, failed: groups of the run that were not diagnosed, by
-    what is wrong with their flights and for other reasons; last: what has just been done.
+    stage: of LOOKING (done and total are flights), DIAGNOSING, TRACKING (groups), COMPARING
+    (parameters of vehicles); here: done of these before the run; refused, failed: groups of the
+    run that were not diagnosed, by what is wrong with their flights and for other reasons; last:
+    what has just been done.
     """
 
     stage: str
@@ -68,12 +68,18 @@ class Progress:
 
 @dataclass(frozen=True)
 class Summary:
-    """What a run has come to: flights, groups by status, and copies {path: of flights}."""
+    """
+    What a run has come to: flights, {status: groups}, and paths of copies of flights.
+
+    before: groups that were done; untracked: reasons of the groups to whose single flights nothing
+    could be fitted, which the next run tries again.
+    """
 
     flights: int
     groups: dict[str, int]
     before: int
     copies: tuple[str, ...]
+    untracked: tuple[str, ...] = ()
 
 
 Tell = Callable[[Progress], None]
@@ -101,53 +107,29 @@ class _Account:
         self._tell(self.progress)
 
 
-def run_fleet(client: Any, names: Sequence[str], out: str | Path, *, vehicle: str | None = None,
-              mapping: str | None = None, rules: Rules = RULES,
-              time_limit: float = TIME_LIMIT, tell: Tell = lambda progress: None) -> Summary:
+def run_fleet(client: Any, plan: Plan, out: str | Path, *, time_limit: float = TIME_LIMIT,
+              tell: Tell = lambda progress: None) -> Summary:
     """
-    Diagnose the flights that names stand for, on a Dask client, into the data set `out`.
+    Diagnose the flights of a Plan, on a Dask client, into the data set `out`.
 
-    What is there already is not done again; groups that failed are. Args: names of flights,
-    folders and manifests; vehicle: nominal vehicle, name or file, of those that have none of their
-    own; mapping: file; rules: thresholds of the verdicts; time_limit: s of a group; tell is
-    called with the Progress, a few times per second. Raises InputError, and OSError where nothing
-    can be written.
+    What is there already is not done again; groups that failed are. Args: time_limit: s of a
+    group; tell is called with the Progress, a few times per second. Raises InputError, and OSError
+    where nothing can be written.
     """
-    flights = listed(names)
-    nominal_of = partial(_nominal, vehicle, lru_cache(None)(load_any_vehicle))
-    for one in flights:     # before any work
-        nominal_of(one)
-    meaning = load_mapping(mapping) if mapping else None
+    out = Path(out).absolute()      # workers are started in folders of their own
     prepare(out)
-    _write_options(out, flights, vehicle, mapping, rules)
-    looked = _looked(client, flights, meaning, out, time_limit, tell)
-    groups, copies = groups_of(zip(flights, looked, strict=True), nominal_of, meaning, rules)
+    write_whole(out / 'fleet.json', json.dumps(plan.origin, indent=2) + '\n')
+    looked = _looked(client, plan.flights, plan.mapping, out, time_limit, tell)
+    groups, copies = groups_of(zip(plan.flights, looked, strict=True), plan.nominal_of,
+                               plan.mapping, plan.rules)
     before = _diagnose_all(client, groups, out, time_limit, tell)
-    _track_all(client, groups, out, time_limit, tell)
+    _check_written(groups, out)
+    untracked = _track_all(client, groups, out, time_limit, tell)
     status = _statuses(out)
     ended = [status.get(group.key) for group in groups]
-    return Summary(len(flights) - len(copies), {name: ended.count(name) for name in
-                                                (DIAGNOSED, REFUSED, FAILED, TIMEOUT)},
-                   before, tuple(one.path for one in copies))
-
-
-def _nominal(vehicle: str | None, load: Callable[[str], Vehicle], one: Listed) -> Vehicle:
-    """Return the nominal vehicle of a flight; raises InputError where none is named."""
-    name = one.vehicle_file or vehicle
-    if not name:
-        raise InputError(f'{one.path}: no nominal vehicle is named for it; give --vehicle FILE, '
-                         f'put a {VEHICLE_FILE} into the folder of its vehicle, or name one in '
-                         'the column vehicle_file of a manifest')
-    return load(name)
-
-
-def _write_options(out: str | Path, flights: Iterable[Listed], vehicle: str | None,
-                   mapping: str | None, rules: Rules) -> None:
-    """Write how the data set is made, without times, so that the same run writes the same."""
-    vehicles = sorted({one.vehicle_file or str(vehicle) for one in flights})
-    data = {'schema': 'quad_ident/fleet/1', 'version': __version__, 'vehicles': vehicles,
-            'mapping': mapping, 'rules': rules_hash(rules)}
-    write_whole(Path(out) / 'fleet.json', json.dumps(data, indent=2) + '\n')
+    return Summary(len(plan.flights) - len(copies), {name: ended.count(name) for name in
+                                                     (DIAGNOSED, REFUSED, FAILED, TIMEOUT)},
+                   before, tuple(one.path for one in copies), untracked)
 
 
 def _looked(client: Any, flights: Sequence[Listed], mapping: Mapping | None, out: str | Path,
@@ -193,9 +175,7 @@ def _diagnose_all(client: Any, groups: Sequence[Group], out: str | Path, time_li
     status = _statuses(out)
     todo = [group for group in groups if status.get(group.key) not in DONE]
     before = len(groups) - len(todo)
-    for group in groups:
-        if status.get(group.key) in DONE:
-            _remove(out, replaced.get(group.key, ()))
+    _remove_replaced(out, replaced, status)
     # Each run in an order of its own: two on one data set seldom do the same group at once.
     random.shuffle(todo)
     account = _Account(tell, Progress(DIAGNOSING, len(groups), before, before))
@@ -208,23 +188,39 @@ def _diagnose_all(client: Any, groups: Sequence[Group], out: str | Path, time_li
                 _reason(done.error, time_limit), time_limit)
             if outcome.status not in DONE:
                 write(group, out, outcome)
-        _remove(out, replaced.get(group.key, ()))
+        for key in replaced.get(group.key, ()):
+            remove_group(out, key)
         account.count_group(group, outcome)
+    if todo:    # a run beside this one may have ended with some of these flights meanwhile
+        _remove_replaced(out, superseded_by(groups, out), _statuses(out))
     return before
+
+
+def _check_written(groups: Sequence[Group], out: Path) -> None:
+    """Raise InputError where results of groups that are done are not in the data set."""
+    lost = missing(out, 'groups', {group.key for group in groups}, SHOWN_AFTER)
+    if lost:
+        raise InputError(f'{out}: the results of {counted(len(lost), "group")} are not in it, but '
+                         'where the workers see this path; name a folder that they share with '
+                         'this machine')
 
 
 def _work(out: str | Path, group: Group) -> Outcome:
     return work(group, out)
 
 
-def _remove(out: str | Path, keys: Iterable[str]) -> None:
-    for key in keys:
-        remove_group(out, key)
+def _remove_replaced(out: str | Path, replaced: dict[str, list[str]], status: dict[str, str]
+                     ) -> None:
+    """Remove what groups take the place of, where they are done."""
+    for key, others in replaced.items():
+        if status.get(key) in DONE:
+            for other in others:
+                remove_group(out, other)
 
 
 def _track_all(client: Any, groups: Sequence[Group], out: str | Path, time_limit: float,
-               tell: Tell) -> None:
-    """Fit the effects of each vehicle to its flights, where that is not done."""
+               tell: Tell) -> tuple[str, ...]:
+    """Fit the effects of each vehicle to its flights; return why groups failed, for each one."""
     effects = tracked_effects(read_table(out, 'effects', ['vehicle', 'effect', 'form', 'named']))
     status = _statuses(out)
     wanted = [Tracking(group, effects[group.vehicle]) for group in groups
@@ -234,12 +230,15 @@ def _track_all(client: Any, groups: Sequence[Group], out: str | Path, time_limit
     random.shuffle(todo)
     before = len(wanted) - len(todo)
     account = _Account(tell, Progress(TRACKING, len(wanted), before, before))
+    reasons, failed = [], set()
     for done in results(client, partial(_track, out), todo, time_limit, account.tick):
         if done.error is not None:
-            _reason(done.error, time_limit)
+            reasons.append(_reason(done.error, time_limit))
+            failed.add(done.item.group.key)     # what earlier runs fitted to its flights stays
         account.count(failed=int(done.error is not None))
-    remove_trackings(out, {group.key: '' for group in groups}
-                     | {one.group.key: one.key for one in wanted})
+    kept = {group.key: '' for group in groups} | {one.group.key: one.key for one in wanted}
+    remove_trackings(out, {key: new for key, new in kept.items() if key not in failed})
+    return tuple(reasons)
 
 
 def _track(out: str | Path, tracking: Tracking) -> None:

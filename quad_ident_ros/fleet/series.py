@@ -2,17 +2,20 @@
 # SPDX-License-Identifier: Apache-2.0
 """The Series of a data set: each parameter of each vehicle along its flights, with covariates."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+import math
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pyarrow
 
+from quad_ident_ros.fleet.dates import in_order
 from quad_ident_ros.fleet.history import Series
+from quad_ident_ros.fleet.work import DIAGNOSED
 
 KNOWN = 0.5         # share of a series' flights from which on a covariate counts in it
 PER_COVARIATE = 4   # flights that a series needs for each covariate: fewer would explain anything
-FIT = 'diagnosed'
 OUTCOME = '_end'     # of names of covariates that a flight makes: a weak rotor empties a battery
 
 Row = Mapping[str, Any]
@@ -27,31 +30,51 @@ def series_of(parameters: pyarrow.Table, flights: pyarrow.Table) -> tuple[Series
     """
     of_flight = {row['flight']: row for row in flights.to_pylist()}
     usual = _usual({name: dict(row['covariates'] or ()) for name, row in of_flight.items()})
-    together: dict[tuple[str, ...], list[Row]] = {}
+    together: dict[tuple[str, ...], dict[str, Row]] = {}
     for row in parameters.to_pylist():
-        flight = of_flight.get(row['flight'])
-        if row['value'] is not None and (flight is None or flight['status'] == FIT):
+        flight = of_flight.get(row['flight'], {})
+        known = row['value'] is not None and math.isfinite(row['value'])
+        if known and flight.get('status', DIAGNOSED) == DIAGNOSED:
             key = tuple(row[name] for name in ('configuration', 'effect', 'parameter', 'vehicle'))
-            together.setdefault(key, []).append(row)
-    made = []
-    for key in sorted(together):
-        rows = sorted(together[key], key=lambda row: (row['date'], row['flight']))
-        if (one := _series(rows, usual)) is not None:
-            made.append(one)
-    return tuple(made)
+            together.setdefault(key, {})[row['flight']] = {**row, 'path': flight.get('path') or ''}
+    some = {key: sorted(rows.values(), key=lambda row: (*in_order(row['date'], row['path']),
+                                                        row['flight']))
+            for key, rows in sorted(together.items())
+            if any(_error(row) > 0.0 for row in rows.values())}
+    numbers = _numbers(some.values())
+    return tuple(_series(rows, usual, numbers) for rows in some.values())
 
 
-def _series(rows: Sequence[Row], usual: Mapping[str, Mapping[str, float]]) -> Series | None:
-    errors = np.array([row['std'] or np.nan for row in rows], float)
-    errors[~(errors > 0.0)] = np.nan
-    if np.isnan(errors).all():
-        return None
+def _numbers(series: Iterable[Sequence[Row]]) -> dict[tuple[str, str, str], int]:
+    """Return {(configuration, vehicle, flight): number among those fitted, by time}."""
+    flown: dict[tuple[str, str], dict[str, tuple]] = {}
+    for rows in series:
+        for row in rows:
+            flown.setdefault((row['configuration'], row['vehicle']), {})[row['flight']] = (
+                *in_order(row['date'], row['path']), row['flight'])
+    return {(*whose, flight): number for whose, some in flown.items()
+            for number, flight in enumerate(sorted(some, key=some.__getitem__))}
+
+
+def _series(rows: Sequence[Row], usual: Mapping[str, Mapping[str, float]],
+            numbers: Mapping[tuple[str, str, str], int]) -> Series:
+    errors = np.array([_error(row) for row in rows])
     first, names = rows[0], tuple(row['flight'] for row in rows)
     columns, covariates = _covariates(names, usual)
     return Series(first['vehicle'], first['configuration'], first['effect'], first['parameter'],
                   first['unit'], np.array([row['date'].timestamp() for row in rows]), names,
+                  tuple(Path(row['path']).name for row in rows),
+                  np.array([numbers[first['configuration'], first['vehicle'], name]
+                            for name in names]),
                   np.array([row['value'] for row in rows], float),
-                  np.where(np.isnan(errors), np.nanmedian(errors), errors), columns, covariates)
+                  np.where(errors > 0.0, errors, np.median(errors[errors > 0.0])), columns,
+                  covariates)
+
+
+def _error(row: Row) -> float:
+    """Return the standard error of a value, 0 where it is at a bound or has none."""
+    error = float(row['std'] or 0.0)
+    return error if math.isfinite(error) else 0.0
 
 
 def _usual(covariates: Mapping[str, Mapping[str, float]]) -> dict[str, dict[str, float]]:
@@ -71,15 +94,16 @@ def _usual(covariates: Mapping[str, Mapping[str, float]]) -> dict[str, dict[str,
 
 def _covariates(flights: Sequence[str], usual: Mapping[str, Mapping[str, float]]
                 ) -> tuple[np.ndarray, tuple[str, ...]]:
-    """Return the covariates (N, A) of flights and their names; what is not known is usual."""
+    """Return the covariates (N, A) of flights and their names; what is not known is the mean."""
     known: dict[str, int] = {}
     for flight in flights:
         for name in usual.get(flight, {}):
             known[name] = known.get(name, 0) + 1
     names = sorted((name for name, count in known.items() if count >= KNOWN * len(flights)),
                    key=lambda name: (-known[name], name))[:len(flights) // PER_COVARIATE]
-    table = np.array([[usual.get(flight, {}).get(name, 0.0) for name in names]
+    table = np.array([[usual.get(flight, {}).get(name, np.nan) for name in names]
                       for flight in flights]).reshape(len(flights), len(names))
+    table = np.where(np.isnan(table), np.nanmean(table, axis=0), table)
     moving = np.ptp(table, axis=0) > 0.0 if len(flights) else np.zeros(0, bool)
     return table[:, moving], tuple(name for name, moves in zip(names, moving, strict=True)
                                    if moves)

@@ -68,16 +68,15 @@ class Sisters:
 
 
 def sisters(found: Sequence[History]) -> tuple[Sisters, ...]:
-    """Return the Sisters of each parameter and configuration that two vehicles have, at least."""
+    """Return the Sisters of each parameter and configuration, also of a vehicle that has none."""
     together: dict[tuple, list[History]] = {}
     for one in found:
         key = one.series.configuration, one.series.effect, one.series.parameter
         together.setdefault(key, []).append(one)
-    groups = {key: some for key, some in together.items() if len(some) > 1}
-    count = sum(map(len, groups.values()))
+    count = sum(len(some) for some in together.values() if len(some) > 1)
     odd = min(EVENTS / max(count, 1), MOST_OFTEN)
     made = []
-    for (configuration, effect, parameter), some in groups.items():
+    for (configuration, effect, parameter), some in together.items():
         mean, mean_std, spread, vehicles = pooled(
             tuple(one.series.vehicle for one in some), np.array([one.level for one in some]),
             np.array([one.std for one in some]), odd)
@@ -94,6 +93,10 @@ def pooled(names: Sequence[str], values: np.ndarray, errors: np.ndarray, odd: fl
     Args: values, errors (V,); odd: probability that a vehicle is odd, before looking.
     """
     count = len(values)
+    if count == 1:
+        value, error = float(values[0]), float(errors[0])
+        return value, error, 0.0, (Sister(names[0], value, error, value, error, 0.0, error, 0.0,
+                                          0.0),)
     terms = Terms(np.eye(count), np.full(count, np.log(odd / (1.0 - odd))),
                   np.full(count, 'odd'), np.arange(count))
     model = Regression(values, errors, np.zeros((count, 0)), terms)

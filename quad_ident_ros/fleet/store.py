@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The data set of a fleet: tables of Parquet files, each file whole and named by a key."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from contextlib import suppress
 import os
 from pathlib import Path
@@ -17,7 +17,7 @@ from quad_ident_ros.errors import InputError
 from quad_ident_ros.greybox.errors import UNITS
 from quad_ident_ros.memory import give_back
 
-TOGETHER = 200      # files that are read at once: each takes 0.1 MB meanwhile
+TOGETHER = 20       # files that are read at once: each takes 0.1 MB meanwhile
 OLD = 3600.0        # s after which a file that is not whole belongs to a run that was killed
 UNFINISHED = '.unfinished'
 """The folder of files that are not whole yet, out of sight of groups/*.parquet and the like."""
@@ -59,8 +59,10 @@ def prepare(out: str | Path) -> None:
     """
     Make the folder of a data set, and remove what killed runs did not finish.
 
-    Raises OSError.
+    Raises InputError where there is a file in its place, and OSError.
     """
+    if Path(out).is_file():
+        raise InputError(f'{out}: this is a file; a data set is a folder, name another')
     aside = Path(out) / UNFINISHED
     aside.mkdir(parents=True, exist_ok=True)
     for entry in list(os.scandir(aside)):
@@ -73,14 +75,16 @@ def write_rows(out: str | Path, table: str, key: str, rows: Iterable[Mapping[str
     """
     Write rows {column: value} as the file of a key in a table; it takes the place of an older one.
 
-    A column that a row does not have is null. Raises OSError with the name of the file.
+    A column that a row does not have is null; what is no Unicode in the name of a file is written
+    by its code. Raises OSError with the name of the file.
     """
     place = Path(out) / table / f'{key}.parquet'
     aside = Path(out) / UNFINISHED / f'{uuid.uuid4().hex}.parquet'
     try:
         for folder in (place.parent, aside.parent):
             folder.mkdir(parents=True, exist_ok=True)
-        parquet.write_table(pyarrow.Table.from_pylist(list(rows), schema=TABLES[table]), aside,
+        plain = [{name: _plain(value) for name, value in row.items()} for row in rows]
+        parquet.write_table(pyarrow.Table.from_pylist(plain, schema=TABLES[table]), aside,
                             compression='zstd')
         os.replace(aside, place)
     except OSError as error:
@@ -100,6 +104,14 @@ def keys_of(out: str | Path, table: str) -> set[str]:
         return {entry.name.removesuffix('.parquet') for entry in entries
                 if entry.name.endswith('.parquet')}
     return set()
+
+
+def missing(out: str | Path, table: str, keys: Collection[str], seconds: float) -> set[str]:
+    """Return the keys whose files do not appear in a table within so many seconds."""
+    end = time.monotonic() + seconds
+    while (lost := set(keys) - keys_of(out, table)) and time.monotonic() < end:
+        time.sleep(min(1.0, seconds))
+    return lost
 
 
 def read_rows(out: str | Path, table: str, key: str,
@@ -130,15 +142,23 @@ def read_table(out: str | Path, table: str,
     try:
         rows = pyarrow.concat_tables([
             dataset.dataset(files[k:k + TOGETHER], schema=TABLES[table], format='parquet'
-                            ).to_table(columns)
+                            ).to_table(columns and list(columns))
             for k in range(0, max(1, len(files)), TOGETHER)]).combine_chunks()
     except FileNotFoundError:       # another run has replaced it meanwhile
         return read_table(out, table, columns)
     except (OSError, pyarrow.ArrowException) as error:
         raise InputError(f'{folder}: cannot be read: {_short(error)}; remove the file that it '
                          'names and start the run again, which makes it anew') from None
-    give_back()     # what opening thousands of files took
+    give_back()     # what opening thousands of files took, also from Arrow
+    pyarrow.default_memory_pool().release_unused()
     return rows
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, list):
+        return [_plain(one) for one in value]
+    return (value.encode('utf-8', 'backslashreplace').decode('utf-8') if isinstance(value, str)
+            else value)
 
 
 def _short(error: Exception) -> str:

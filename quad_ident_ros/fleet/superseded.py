@@ -21,8 +21,8 @@ def superseded_by(groups: Iterable[Group], out: str | Path) -> dict[str, list[st
     Return {key of a group: keys in the data set that it takes the place of}.
 
     These are groups with the same flights, by content or path, of an earlier version, vehicle file
-    or set of flights. Raises InputError where one has other flights, too, which are still there:
-    they would be lost.
+    or set of flights; of a bag that was still recorded to, the file in it was the flight. Raises
+    InputError where one has other flights, too, which are still there: they would be lost.
     """
     planned = {group.key: group for group in groups}
     place = {name: key for key, group in planned.items() for flight in group.flights
@@ -35,8 +35,8 @@ def superseded_by(groups: Iterable[Group], out: str | Path) -> dict[str, list[st
                 rows[row['group']].append((row['flight'], row['path']))
     found: dict[str, list[str]] = defaultdict(list)
     for old, flights in rows.items():
-        new = [next((place[name] for name in flight if name in place), None)
-               for flight in flights]
+        new = [next((place[name] for name in (flight, path, *map(str, Path(path).parents))
+                     if name in place), None) for flight, path in flights]
         if not any(new):
             continue
         for (_, path), key in zip(flights, new, strict=True):

@@ -53,7 +53,7 @@ PARTING = 1.0        # s for listeners to take the last account before the node 
 HELP = f"""recorder: joins the topics of a flight into records, keeps and publishes them.
 
   ros2 run quad_ident_ros recorder --ros-args -p output:=flights
-  ros2 run quad_ident_ros recorder --ros-args -p output:=fleet -p vehicle_name:=seven
+  ros2 run quad_ident_ros recorder --ros-args -p output:=flights -p vehicle_name:=seven
   ros2 run quad_ident_ros recorder --ros-args -p mapping:=topics.yaml
   ros2 run quad_ident_ros recorder --ros-args -p topics:="[odometry, imu, actuators]" \\
     -r odometry:=/odom -r imu:=/imu/data -r actuators:=/command/motor_speed

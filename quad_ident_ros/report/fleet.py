@@ -5,7 +5,16 @@
 from typing import TextIO
 
 from quad_ident_ros.fleet.insight import Insight
-from quad_ident_ros.report.fleet_words import known_effect, listed, points, rows_of, summary_line
+from quad_ident_ros.report.fleet_words import (
+    known_effect,
+    listed,
+    nothing_line,
+    of_vehicles,
+    points,
+    rows_of,
+    summary_line,
+    with_configuration,
+)
 from quad_ident_ros.report.screen import console, say, table_of
 
 POINTS = ('', 'vehicle', 'why', 'what')
@@ -19,8 +28,7 @@ def show_insight(found: Insight, stream: TextIO) -> None:
     screen = console(stream)
     say(screen, summary_line(found))
     some = points(found)
-    say(screen, 'what to look at first' if some else
-        'nothing drifts or has changed, and no vehicle differs from its sisters', 'bold')
+    say(screen, 'what to look at first' if some else nothing_line(found), 'bold')
     if some:
         screen.print(table_of(POINTS, rows_of(some), ('',)))
     rows = effect_rows(found)
@@ -35,7 +43,7 @@ def show_insight(found: Insight, stream: TextIO) -> None:
 def effect_rows(found: Insight) -> list[list[str]]:
     """Return a row for each effect that is at all probable."""
     return [[f'{known_effect(one.effect)} ({one.effect})',
-             f'{len(one.having)} of {one.vehicles}', f'{one.probability:.2f}',
+             of_vehicles(one), f'{one.probability:.2f}',
              '' if one.contribution is None else f'{100 * one.contribution:.0f} %',
              'most: the model is wrong' if one.shared else listed(one.having)]
             for one in found.present if one.having or one.probability >= SHOWN]
@@ -43,6 +51,6 @@ def effect_rows(found: Insight) -> list[list[str]]:
 
 def gap_rows(found: Insight) -> list[list[str]]:
     """Return a row of the gap of the velocity for each vehicle."""
-    return [[one.vehicle, str(one.groups), *(
+    return [[with_configuration(one.vehicle, one.configuration), str(one.groups), *(
         '' if stage['velocity'] is None else f'{stage["velocity"][0]:.3g}'
         for stage in (one.before, one.after, one.noise))] for one in found.gaps]

@@ -7,7 +7,9 @@ from html import escape
 
 import numpy as np
 
+from quad_ident_ros.data.counted import counted
 from quad_ident_ros.fleet.history import History, Series
+from quad_ident_ros.report.fleet_words import with_configuration
 from quad_ident_ros.report.html import Markup
 from quad_ident_ros.report.sizes import with_error
 
@@ -26,7 +28,7 @@ def small_multiple(one: History, unit: str, factor: float) -> Markup:
     """
     series = one.series
     low, high = _limits(one)
-    x, y = _place(series.t, (series.t[0], series.t[-1]), LEFT, WIDE - RIGHT), _scale(low, high)
+    x, y = _along(series), _scale(low, high)
     values = np.clip(series.values, low, high)
     ends = [np.clip(series.values + side * 2.0 * series.errors, low, high) for side in (-1, 1)]
     odd = set(one.odd)
@@ -53,15 +55,16 @@ def small_multiple(one: History, unit: str, factor: float) -> Markup:
 def said(one: History, unit: str, factor: float) -> str:
     """Return what a picture shows, for who does not see it."""
     series = one.series
-    told = [f'{series.vehicle}, {series.effect} {series.parameter} in {unit} over '
-            f'{len(series.values)} flights: {with_error(factor * one.level, factor * one.std)} '
-            'at the last']
+    told = [f'{with_configuration(series.vehicle, series.configuration)}, {series.effect} '
+            f'{series.parameter} in {unit} over {counted(len(series.values), "flight")}: '
+            f'{with_error(factor * one.level, factor * one.std)} at the last']
     told += [f'it changes before flight {change.place + 1} by {factor * change.size:.3g}'
              for change in one.changes]
     if one.drift:
         told.append(f'it drifts by {factor * one.drift.per_week:.3g} a week')
     if one.odd:
-        told.append(f'{len(one.odd)} flights are off by themselves')
+        told.append(f'{counted(len(one.odd), "flight")} off by '
+                    f'{"itself" if len(one.odd) == 1 else "themselves"}')
     return '; '.join(told)
 
 
@@ -95,6 +98,12 @@ def _course(one: History, x: np.ndarray, y) -> str:
     first = {change.place for change in one.changes}
     return ''.join(f'{"M" if k == 0 or k in first else "L"}{x[k]:.1f} {y(value):.1f}'
                    for k, value in enumerate(one.course))
+
+
+def _along(series: Series) -> np.ndarray:
+    """Return where flights are (px), by time, or one beside the other where dates are equal."""
+    t = series.t if np.all(np.diff(series.t) > 0.0) else np.arange(len(series.t), dtype=float)
+    return _place(t, (t[0], t[-1]), LEFT, WIDE - RIGHT)
 
 
 def _place(values: np.ndarray, span: tuple[float, float], first: float, last: float

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from quad_ident_ros import __version__
+from quad_ident_ros.data.counted import counted
 from quad_ident_ros.fleet.history import History, SURE
 from quad_ident_ros.fleet.insight import Insight
 from quad_ident_ros.fleet.sisters import Sister, Sisters
@@ -18,10 +19,12 @@ from quad_ident_ros.report.fleet_words import (
     CHANGED,
     DIFFERS,
     known_effect,
+    nothing_line,
     null_of,
     Point,
     points,
     summary_line,
+    with_configuration,
     WORSE,
 )
 from quad_ident_ros.report.html import details, join, Markup, markup, table, tag, write_page
@@ -34,24 +37,24 @@ GAP = 'velocity'
 
 def write(path: str | Path, found: Insight) -> None:
     """Write the page of an Insight; raises InputError where the file cannot be written."""
-    some = points(found)
-    body = [tag('p', summary_line(found) + '.', 'lead'), *_first(some), *_heat(found),
+    body = [tag('p', summary_line(found) + '.', 'lead'), *_first(found), *_heat(found),
             *_effects(found), *_time(found), *_gap(found), *_logs(found),
             tag('p', f'Made by quad_ident_ros {__version__}.', 'second')]
-    write_page(path, f'Fleet of {len(found.vehicles)} vehicles', join(body), also='fleet')
+    title = f'Fleet of {counted(len(found.vehicles), "vehicle")}'
+    write_page(path, title, join(body), also='fleet')
 
 
-def _first(some: Sequence[Point]) -> list:
-    head = tag('h2', 'What to look at first')
+def _first(found: Insight) -> list:
+    some, head = points(found), tag('h2', 'What to look at first')
     if not some:
-        return [head, tag('p', 'Nothing drifts or has changed, and no vehicle differs from its '
-                               'sisters.')]
+        return [head, tag('p', f'{nothing_line(found)}.')]
     items = join(Markup(
         f'<li data-vehicle="{escape(one.where)}">' + join(
             [tag('strong', one.where), tag('span', one.why, f'tag {_kind(one)}'), one.text], ' ')
         + '</li>') for one in some)
-    return [head, tag('p', 'The most urgent first: what drifts, what changed, which vehicles are '
-                           'odd, what the model lacks for all, which logs are no good.'),
+    return [head, tag('p', 'The most urgent first: what gets worse, what changed, which vehicles '
+                           'differ from their sisters, what the model lacks for all, and logs '
+                           'that are refused or look wrong.'),
             Markup(f'<ol class="first">{items}</ol>')]
 
 
@@ -79,8 +82,10 @@ def _heat_of(configuration: str, some: Sequence[Sisters]) -> Markup:
     for each in some:
         unit, factor = handy(each.unit, _usual([one.value for one in each.vehicles]))
         units.append(unit)
-        columns.append({one.vehicle: _cell(one, factor) for one in each.vehicles})
-    head = ['vehicle', *(Markup(f'{escape(each.effect)}<br>{escape(each.parameter)}'
+        columns.append({one.vehicle: _cell(one, factor, len(each.vehicles) > 1)
+                        for one in each.vehicles})
+    head = ['vehicle', *(Markup(f'<span title="{escape(known_effect(each.effect))}">'
+                                f'{escape(each.effect)}</span><br>{escape(each.parameter)}'
                                 + (f', {escape(unit)}' if unit not in ('1', '') else ''))
                          for each, unit in zip(some, units, strict=True))]
     rows = [[name, *(column.get(name, tag('td', '')) for column in columns)] for name in names]
@@ -88,23 +93,24 @@ def _heat_of(configuration: str, some: Sequence[Sisters]) -> Markup:
     return _live(table(head, rows, caption=caption))
 
 
-def _cell(one: Sister, factor: float) -> Markup:
+def _cell(one: Sister, factor: float, has_sisters: bool) -> Markup:
     away = abs(one.spreads)
     kind = 'no' if away >= FARTHER else 'part' if away >= FAR else ''
     star = ' *' if one.odd >= SURE else ''
     attribute = f' class="{kind}"' if kind else ''
-    title = f'{one.spreads:+.1f} spreads from its sisters'
-    return Markup(f'<td{attribute} data-value="{one.value:.6g}" title="{title}">'
+    if has_sisters:
+        attribute += f' title="{one.spreads:+.1f} spreads from its sisters"'
+    return Markup(f'<td{attribute} data-value="{one.value:.6g}">'
                   f'{with_error(factor * one.value, factor * one.std)}{star}</td>')
 
 
 def _effects(found: Insight) -> list:
     rows = effect_rows(found)
-    shared = [[known_effect(each.effect), each.parameter, sized(each.mean, each.mean_std,
-                                                                each.unit),
-               sized(each.spread, 0.0, each.unit), str(len(each.vehicles)),
-               str(len(each.odd))] for each in found.sisters
-              if abs(each.mean - null_of(each.effect, each.parameter)) > 2.0 * each.mean_std]
+    shared = [[with_configuration(known_effect(each.effect), each.configuration), each.parameter,
+               sized(each.mean, each.mean_std, each.unit), sized(each.spread, 0.0, each.unit),
+               str(len(each.vehicles)), str(len(each.odd))] for each in found.sisters
+              if len(each.vehicles) > 1
+              and abs(each.mean - null_of(each.effect, each.parameter)) > 2.0 * each.mean_std]
     parts = [tag('h2', 'What all share')]
     if rows:
         parts.append(_live(table(EFFECTS_HEAD, rows, ('text', '', '', '', 'text'),
@@ -136,6 +142,10 @@ def _time(found: Insight) -> list:
             Markup(f'<div class="multiples">{figures}</div>')]
 
 
+def _title(effect: str) -> str:
+    return f'{known_effect(effect)} ({effect})'
+
+
 def _usual(values: Sequence[float]) -> tuple[float]:
     """Return the usual size of values: the unit of all vehicles is that of most."""
     return (float(np.median(np.abs(values))),)
@@ -145,11 +155,12 @@ def _figure(one: History, unit: str, factor: float) -> Markup:
     series = one.series
     told = ' and '.join([*(['changed'] * bool(one.changes)), *(['drifts'] * bool(one.drift))])
     sign = tag('span', told, 'tag part') if told else ''
-    caption = join([tag('strong', series.vehicle),
+    caption = join([tag('strong', with_configuration(series.vehicle, series.configuration)),
                     f'{series.effect} {series.parameter}'
                     + (f', {unit}' if unit not in ('1', '') else ''), sign], ' ')
     return Markup(f'<figure data-vehicle="{escape(series.vehicle)}" data-effect="'
-                  f'{escape(series.effect)}" data-event="{int(bool(told))}">'
+                  f'{escape(series.effect)}" data-title="{escape(_title(series.effect))}" '
+                  f'data-event="{int(bool(told))}">'
                   f'<figcaption>{caption}</figcaption>{small_multiple(one, unit, factor)}'
                   '</figure>')
 
@@ -162,7 +173,8 @@ def _gap(found: Insight) -> list:
     rows = []
     for one in known:
         before, after, noise = (stage[GAP][0] for stage in (one.before, one.after, one.noise))
-        rows.append([one.vehicle, str(one.groups), f'{before:.3g}', f'{after:.3g}',
+        rows.append([with_configuration(one.vehicle, one.configuration), str(one.groups),
+                     f'{before:.3g}', f'{after:.3g}',
                      f'{noise:.3g}', gap_bar(before, after, noise, most)])
     return [tag('h2', 'The gap'),
             tag('p', markup('Error of the velocity half a second ahead, median of the groups of '
@@ -176,11 +188,13 @@ def _gap(found: Insight) -> list:
 def _logs(found: Insight) -> list:
     parts = []
     for some, said, caption in (
+            (found.failed, 'not diagnosed', 'Flights that the next run tries again'),
             (found.refused, 'refused', 'Flights that are refused'),
             (found.suspect, 'to check', 'Flights that stand apart from others of the vehicle')):
         if some:
             rows = [[vehicle, name, tag('td', reason, 'prose')] for vehicle, name, reason in some]
-            parts.append(details(f'{len(some)} of {found.flights} flights are {said}', _live(
+            verb = 'is' if len(some) == 1 else 'are'
+            parts.append(details(f'{len(some)} of {found.flights} flights {verb} {said}', _live(
                 table(['vehicle', 'flight', 'reason'], rows, ('text', 'text', 'text'),
                       caption=caption))))
     return [tag('h2', 'Logs'), *parts] if parts else []

@@ -5,6 +5,7 @@
 from contextlib import suppress
 from importlib.util import find_spec
 import json
+from pathlib import Path
 import sys
 from time import monotonic
 
@@ -14,6 +15,8 @@ from quad_ident_ros.report.screen import progress_bar
 
 OFTEN = 0.2     # s between two changes of the line, and
 RARELY = 30.0   # between two lines where standard error is no terminal
+UNITS = {'reading': 'flights', 'comparing': 'parameters of vehicles'}
+"""What a stage of a run counts, if not groups."""
 
 
 class Reporter:
@@ -32,9 +35,11 @@ class Reporter:
 
     def __enter__(self):
         """Name the data set, the workers and the dashboard."""
-        if self._path:
-            self._lines = (sys.stdout if self._path == '-'
-                           else open(self._path, 'w', encoding='utf-8'))
+        if self._path == '-':
+            self._lines = sys.stdout
+        elif self._path:
+            Path(self._path).parent.mkdir(parents=True, exist_ok=True)
+            self._lines = open(self._path, 'w', encoding='utf-8')
         self._note(f'data set: {self._out}; {workers(self._client)}')
         self._note(dashboard(self._client))
         self._bar.start()
@@ -66,7 +71,7 @@ class Reporter:
         self._said = monotonic()
         text = line(progress, monotonic() - self._begun)
         if not self._client.ncores():
-            text += '; no worker has joined yet'
+            text += '; waiting for a worker to join'
         self._bar.update(self._task, description=text, completed=progress.done)
         if self._bar.disable:
             self._note(text)
@@ -77,7 +82,7 @@ class Reporter:
         groups = summary.groups
         self._write({'schema': 'quad_ident/fleet_run/1', 'out': str(self._out),
                      'flights': summary.flights, 'groups': groups, 'before': summary.before,
-                     'copies': list(summary.copies)})
+                     'copies': list(summary.copies), 'untracked': list(summary.untracked)})
         if self._path != '-':
             sys.stdout.write(summary_text(summary, self._out))
 
@@ -99,7 +104,7 @@ class Reporter:
 
 def line(progress, seconds):
     """Return how far a Progress is after so many seconds of its stage, in one line."""
-    what = 'flights' if progress.stage == 'reading' else 'groups'
+    what = UNITS.get(progress.stage, 'groups')
     new = progress.done - progress.here
     parts = [f'{progress.stage}: {progress.done} of {progress.total} {what}']
     if new and seconds > 0.0:
@@ -131,6 +136,9 @@ def summary_text(summary, out):
         lines.append(f'{counted(len(summary.copies), "file")} left out, whose content is that of '
                      f'another: {", ".join(summary.copies[:3])}'
                      + (' ...' if len(summary.copies) > 3 else ''))
+    if summary.untracked:
+        lines.append(f'{counted(len(summary.untracked), "group")} without values of single '
+                     f'flights: {summary.untracked[0]}; the same command tries again')
     if groups['failed'] or groups['timeout']:
         lines.append('the same command tries again what failed; the reasons are in the column '
                      f'reason of {out}/groups')
@@ -141,7 +149,7 @@ def workers(client):
     """Return how many workers a client has, and what memory each may have, in words."""
     found = client.scheduler_info(n_workers=-1)['workers'].values()
     if not found:
-        return 'no worker has joined yet'
+        return 'waiting for a worker to join'
     memory = min(one['memory_limit'] for one in found)
     bound = f', each up to {memory / 1e9:.3g} GB of memory' if memory else ''
     return f'{counted(len(found), "worker")}{bound}'

@@ -9,14 +9,15 @@ from datetime import datetime
 
 from quad_ident_ros.data.counted import counted
 from quad_ident_ros.effects.registry import EFFECTS, NULL, PLACE, titled
+from quad_ident_ros.fleet import history, sisters
 from quad_ident_ros.fleet.events import Event, Part
 from quad_ident_ros.fleet.history import Change, Drift
 from quad_ident_ros.fleet.insight import Insight, Odd, Presence
 from quad_ident_ros.report.sizes import handy, PER_CENT, sized, with_error
 
-WORSE, CHANGED, DIFFERS, MODEL, LOGS, SUSPECT, SMALL = (
-    'gets worse', 'changed', 'differs from its sisters', 'the model is wrong', 'logs refused',
-    'logs to check', 'small')
+WORSE, CHANGED, DRIFTS, DIFFERS, MODEL, FAILED, LOGS, SUSPECT, SMALL = (
+    'gets worse', 'changed', 'drifts', 'differs from its sisters', 'the model is wrong',
+    'not diagnosed', 'logs refused', 'logs to check', 'small')
 """Why something is worth a look, the most urgent first: a drift goes on."""
 NAMED = 5           # vehicles or parts that a sentence lists
 
@@ -34,27 +35,63 @@ def points(found: Insight) -> tuple[Point, ...]:
     """
     Return what to look at, the most urgent first.
 
-    What drifts, what changed, which vehicles are odd, what the model lacks for all, which logs
-    cannot be used, or look wrong; last what is sure but in no verdict, for it hardly moves the
-    vehicle.
+    What drifts away from the model, what changed, what drifts towards it, which vehicles are odd,
+    what the model lacks for all, which flights were not diagnosed, which logs cannot be used, or
+    look wrong; last what is sure but in no verdict, for it hardly moves the vehicle.
     """
-    groups: dict[str, list[Point]] = {why: [] for why in (WORSE, CHANGED, DIFFERS, MODEL, LOGS,
-                                                          SUSPECT, SMALL)}
+    groups: dict[str, list[Point]] = {why: [] for why in (WORSE, CHANGED, DRIFTS, DIFFERS, MODEL,
+                                                          FAILED, LOGS, SUSPECT, SMALL)}
     for event in sorted(found.events, key=lambda one: -one.date.timestamp()):
-        why = WORSE if event.kind == 'drift' else CHANGED
+        why = _why(event)
         groups[why if event.material else SMALL].append(
-            Point(why, event.vehicle, event_line(event) + _small(event.material)))
-    since = {(event.vehicle, part.effect) for event in found.events for part in event.parts}
+            Point(why, with_configuration(event.vehicle, event.configuration),
+                  event_line(event) + _small(event.material)))
+    since = {(event.configuration, event.vehicle, part.effect)
+             for event in found.events for part in event.parts}
     for odd in found.odd:
-        if (odd.sister.vehicle, odd.effect) in since:
+        if (odd.configuration, odd.sister.vehicle, odd.effect) in since:
             continue    # it differs because it changed, which is said already
         groups[DIFFERS if odd.material else SMALL].append(
-            Point(DIFFERS, odd.sister.vehicle, odd_line(odd) + _small(odd.material)))
+            Point(DIFFERS, with_configuration(odd.sister.vehicle, odd.configuration),
+                  odd_line(odd) + _small(odd.material)))
     groups[MODEL] += [Point(MODEL, 'all', shared_line(one, found)) for one in found.present
                       if one.shared]
-    groups[LOGS] += _logs(found)
+    groups[FAILED] += _logs(found, FAILED)
+    groups[LOGS] += _logs(found, LOGS)
     groups[SUSPECT] += _suspect(found)
     return tuple(point for some in groups.values() for point in some)
+
+
+def with_configuration(name: str, configuration: str) -> str:
+    """Return the name of a vehicle with that of its configuration, if it has one."""
+    return f'{name} ({configuration})' if configuration else name
+
+
+def of_vehicles(one: Presence) -> str:
+    """Return how many vehicles have an effect, and of which configuration they are."""
+    return f'{len(one.having)} of {with_configuration(str(one.vehicles), one.configuration)}'
+
+
+def _why(event: Event) -> str:
+    """Return why an event is worth a look: a drift away from no effect is one for the worse."""
+    first = event.parts[0]
+    if isinstance(first.change, Change):
+        return CHANGED
+    away = first.level - null_of(first.effect, first.parameter)
+    return WORSE if away * first.change.per_week > 0.0 else DRIFTS
+
+
+def nothing_line(found: Insight) -> str:
+    """Return what to say where there is no Point, and whether there could be one."""
+    if not found.histories:
+        return 'No effect is followed over time, because no verdict names one'
+    over_time = any(len(one.series.values) >= history.LEAST for one in found.histories)
+    beside = any(len(one.vehicles) >= sisters.LEAST for one in found.sisters)
+    return ', and '.join((
+        'Nothing drifts or has changed' if over_time else
+        f'No vehicle has the {history.LEAST} flights from which on a change can be seen',
+        'no vehicle differs from its sisters' if beside else
+        f'an odd vehicle can be seen among {sisters.LEAST} or more'))
 
 
 def event_line(event: Event) -> str:
@@ -66,8 +103,8 @@ def event_line(event: Event) -> str:
                 f'{sized(abs(first.change.per_week), first.change.std, unit_of(first))} a week')
     else:
         text = (f'from {day(event.date)} on, {titled(first.effect)} differs: {first.parameter} '
-                f'by {_signed(first)}; flight {event.number} of {event.flights} is the first '
-                'after it')
+                f'by {_signed(first)}; {event.file}, flight {event.number} of '
+                f'{event.flights}, is the first after it')
     if others:
         text += ', with ' + ', '.join(
             f'{part.effect} {part.parameter} {_signed(part)}' for part in others)
@@ -91,15 +128,16 @@ def shared_line(one: Presence, found: Insight) -> str:
     values = [f'{each.parameter} {sized(each.mean, each.spread, each.unit)}'
               for each in found.sisters
               if (each.configuration, each.effect) == (one.configuration, one.effect)
+              and len(each.vehicles) > 1
               and abs(each.mean - null_of(each.effect, each.parameter)) > 2 * each.spread]
     share = ('' if one.contribution is None else
-             f'; without it {100 * one.contribution:.0f} % of the closable gap would remain')
+             f'; without it {100 * min(one.contribution, 1.0):.0f} % of the closable gap would '
+             'remain')
     told = (f', {", ".join(values)} from vehicle to vehicle' if values else
             ', each with values of its own')
     remedy = ('add it to the vehicle file' if values else
               'give each vehicle a file of its own with what its diagnosis finds')
-    return (f'{len(one.having)} of {one.vehicles} vehicles have {titled(one.effect)}{told}{share}'
-            f': {remedy}')
+    return (f'{of_vehicles(one)} vehicles have {titled(one.effect)}{told}{share}: {remedy}')
 
 
 def null_of(effect: str, parameter: str) -> float:
@@ -122,7 +160,8 @@ def summary_line(found: Insight) -> str:
     """Return a sentence on how much was looked at."""
     return (f'{counted(found.flights, "flight")} of {counted(len(found.vehicles), "vehicle")} in '
             f'{counted(sum(found.status.values()), "group")}, {found.status.get("diagnosed", 0)} '
-            f'of them diagnosed; {counted(len(found.refused), "flight")} refused')
+            f'of them diagnosed; {counted(len(found.refused), "flight")} refused'
+            + (f', {len(found.failed)} not diagnosed' if found.failed else ''))
 
 
 def known_effect(name: str) -> str:
@@ -130,17 +169,19 @@ def known_effect(name: str) -> str:
     return EFFECTS[name].title if name in EFFECTS else name
 
 
-def _logs(found: Insight) -> list[Point]:
-    """Return a Point for the vehicles whose logs are refused most often."""
-    if not found.refused:
+def _logs(found: Insight, why: str) -> list[Point]:
+    """Return a Point for the vehicles whose flights are refused, or not diagnosed, most often."""
+    some, said = ((found.refused, 'refused') if why == LOGS else
+                  (found.failed, 'not diagnosed, which the next run tries again'))
+    if not some:
         return []
-    most = Counter(vehicle for vehicle, _, _ in found.refused).most_common(NAMED)
+    most = Counter(vehicle for vehicle, _, _ in some).most_common(NAMED)
     names = ', '.join(f'{vehicle} {count}' for vehicle, count in most)
-    count = len(found.refused)
-    return [Point(LOGS, most[0][0], f'{count} of {found.flights} flights '
-                  f'{"is" if count == 1 else "are"} refused: {names}'
+    count = len(some)
+    return [Point(why, most[0][0], f'{count} of {found.flights} flights '
+                  f'{"is" if count == 1 else "are"} {said}: {names}'
                   f'{" and others" if sum(n for _, n in most) < count else ""}; the first: '
-                  f'{found.refused[0][2]}')]
+                  f'{some[0][2]}')]
 
 
 def _small(material: bool) -> str:

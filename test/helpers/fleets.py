@@ -21,7 +21,8 @@ def series(values, errors, *, days=None, covariates=None, vehicle='uav1', effect
     days = 3.0 * np.arange(count) if days is None else days
     covariates = np.zeros((count, 0)) if covariates is None else np.asarray(covariates, float)
     return Series(vehicle, 'plain', effect, parameter, unit, DAY * np.asarray(days, float),
-                  tuple(f'flight {k}' for k in range(count)), values,
+                  tuple(f'flight {k}' for k in range(count)),
+                  tuple(f'{k}.csv' for k in range(count)), np.arange(count), values,
                   np.broadcast_to(np.asarray(errors, float), (count,)), covariates,
                   tuple(f'covariate {k}' for k in range(covariates.shape[1])))
 
@@ -44,7 +45,8 @@ TRACKED = {('rotor_drag', 'coefficient'): ('kg/s', 0.06, 0.004, 0.001),
 GROUPS = 5          # flights of a vehicle that were diagnosed together
 
 
-def data_set(out, *, vehicles=8, flights=20, seed=1, steps=(), slopes=(), odd=(), wrong=()):
+def data_set(out, *, vehicles=8, flights=20, seed=1, steps=(), slopes=(), odd=(), wrong=(),
+             configuration=''):
     """
     Write the data set of a fleet into a folder: its values, without a flight that was flown.
 
@@ -72,17 +74,17 @@ def data_set(out, *, vehicles=8, flights=20, seed=1, steps=(), slopes=(), odd=()
                 if (one, tuple(what)) == (name, key):
                     values += size
             known[key][name] = values
-        _write(out, name, known, temperatures, vehicle == 0)
+        _write(out, name, configuration, known, temperatures, vehicle == 0)
 
 
-def _write(out, name, known, temperatures, refused):
+def _write(out, name, configuration, known, temperatures, refused):
     """Write the rows of a vehicle."""
     from quad_ident_ros.fleet.store import write_rows  # its pyarrow is an extra
     flights = len(temperatures)
     dates = [START + timedelta(days=3.0 * number) for number in range(flights)]
     for group in range(-(-flights // GROUPS)):
         key, numbers = f'{name}-{group}', range(group * GROUPS, min((group + 1) * GROUPS, flights))
-        whose = {'group': key, 'vehicle': name, 'configuration': ''}
+        whose = {'group': key, 'vehicle': name, 'configuration': configuration}
         dated = whose | {'date': dates[numbers[0]]}
         bad = {0} if refused and group == 0 else set()
         write_rows(out, 'flights', key, [dated | {

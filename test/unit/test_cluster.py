@@ -50,6 +50,15 @@ def client():
         yield client
 
 
+def test_no_other_machine_reaches_the_processes_of_this_one(client):
+    """Whoever reaches a scheduler of Dask can run code in it."""
+    import psutil  # comes with Dask
+    here = psutil.Process()
+    open_to = {one.laddr.ip for process in (here, *here.children(recursive=True))
+               for one in process.net_connections('tcp') if one.status == psutil.CONN_LISTEN}
+    assert open_to == {'127.0.0.1'}
+
+
 def test_every_item_is_done_once(client):
     found = sorted(done.value for done in results(client, square, range(300)))
     assert found == [number * number for number in range(300)]
@@ -84,3 +93,25 @@ def test_a_scheduler_that_is_not_there_is_said_in_one_line():
             cluster('tcp://127.0.0.1:1'):
         pass
     assert '\n' not in str(caught.value)
+
+
+@pytest.mark.parametrize('address', ['10.0.0.5', 'tcp://', 'tcp://host', 'http://host:8786', '',
+                                     'tcp://host:8786/status', 'scheduler.json'])
+def test_what_is_no_address_of_a_scheduler_is_refused_at_once(address):
+    with pytest.raises(InputError, match='expected tcp://HOST:PORT'), cluster(address):
+        pass
+
+
+def test_tls_without_certificates_is_refused_at_once():
+    with pytest.raises(InputError, match='TLS needs certificates'), cluster('tls://host:8786'):
+        pass
+
+
+def test_a_cluster_without_the_package_is_refused(client, monkeypatch):
+    """Its workers would end one after the other, and the run would wait for others."""
+    with cluster(client.scheduler.address):
+        pass
+    monkeypatch.setattr('quad_ident_ros.cluster.PACKAGE', 'a_package_that_nobody_has')
+    with pytest.raises(InputError, match=r'not installed for the scheduler and \d more'), \
+            cluster(client.scheduler.address):
+        pass

@@ -1,6 +1,9 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Results on a full disk: what was there before stays."""
+"""Results on a full disk, where what was there before stays, and of odd names."""
+
+import json
+import os
 
 from full_disk import file_size_limit
 import pytest
@@ -44,3 +47,12 @@ def test_a_link_stays_a_link(tmp_path):
     link.symlink_to(target)
     write_json(link, [1])
     assert link.is_symlink() and target.read_text() == '[\n  1\n]\n'
+
+
+def test_a_name_of_a_file_that_is_no_unicode_is_written_by_its_code(tmp_path):
+    """As of a log from a disk with names in another encoding."""
+    name = os.fsdecode(b'bad\xff.csv')
+    write_page(tmp_path / 'out.html', name, name)
+    assert 'bad\\udcff.csv' in (tmp_path / 'out.html').read_text(encoding='utf-8')
+    write_json(tmp_path / 'out.json', {'name': name})
+    assert json.loads((tmp_path / 'out.json').read_text(encoding='utf-8')) == {'name': name}

@@ -14,15 +14,21 @@
 
   // ---- sort ----
 
-  // A number where a cell has one, so that 9 comes before 10, else its text.
+  const {compare: inOrder} = new Intl.Collator('en', {numeric: true});    // uav9 before uav10
+
+  // The number of a cell of numbers, else its text.
   function value(cell) {
-    const number = parseFloat(cell.dataset.value ?? cell.textContent);
-    return Number.isNaN(number) ? cell.textContent.trim().toLowerCase() : number;
+    const text = cell.textContent.trim();
+    const number = cell.matches('th, .text, .prose') ? NaN
+      : parseFloat(cell.dataset.value ?? text);
+    return Number.isNaN(number) ? text : number;
   }
 
-  function compare(one, other) {
-    if (typeof one === typeof other) return one < other ? -1 : Number(one > other);
-    return typeof one === 'number' ? -1 : 1;
+  // Cells without a value come last, whichever way the others go.
+  function compare(one, other, sign) {
+    if (one === '' || other === '') return Number(one === '') - Number(other === '');
+    return sign * (typeof one === 'number' && typeof other === 'number' ? one - other
+      : inOrder(one, other));
   }
 
   for (const table of all('.sortable table')) {
@@ -36,7 +42,7 @@
         head.setAttribute('aria-sort', rising ? 'ascending' : 'descending');
         const place = head.cellIndex, sign = rising ? 1 : -1;
         body.append(...[...body.rows].sort(
-          (one, other) => sign * compare(value(one.cells[place]), value(other.cells[place]))));
+          (one, other) => compare(value(one.cells[place]), value(other.cells[place]), sign)));
       });
     }
   }
@@ -57,8 +63,9 @@
 
   const text = element('input', {type: 'search', autocomplete: 'off'});
   const effect = element('select', {}, element('option', {value: ''}, 'all'));
-  for (const name of [...new Set(figures.map(one => one.dataset.effect))].sort()) {
-    effect.append(element('option', {value: name}, name));
+  const titles = new Map(figures.map(one => [one.dataset.effect, one.dataset.title]));
+  for (const [name, title] of [...titles].sort()) {
+    effect.append(element('option', {value: name}, title));
   }
   const happened = element('input', {type: 'checkbox'});
   const told = element('span', {class: 'second', role: 'status'});

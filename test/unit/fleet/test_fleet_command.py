@@ -3,14 +3,20 @@
 """What `quad_ident fleet` takes and says, without the work itself."""
 
 from dataclasses import replace
+import json
 
 import pytest
 
 from quad_ident_ros.cli.main import main, parser
 
 pytest.importorskip('pyarrow', reason="pyarrow is not installed: pip install '.[fleet]'")
-from quad_ident_ros.fleet.run import DIAGNOSING, Progress, Summary  # noqa: E402, I100
-from quad_ident_ros.report.fleet_run import line, seconds_left, summary_text  # noqa: E402, I100
+from quad_ident_ros.fleet.run import COMPARING, DIAGNOSING, Progress, Summary  # noqa: E402, I100
+from quad_ident_ros.report.fleet_run import (  # noqa: E402, I100
+    line,
+    Reporter,
+    seconds_left,
+    summary_text,
+)
 
 HALF = Progress(DIAGNOSING, total=100, done=50, here=20)
 
@@ -19,6 +25,8 @@ def test_a_line_says_how_much_is_done_how_fast_and_what_went_wrong():
     assert line(replace(HALF, refused=3, failed=1), 60.0) == (
         'diagnosing: 50 of 100 groups, 30 per minute, 1 min 40 s left, 3 refused, 1 failed')
     assert line(Progress(DIAGNOSING, 100, 20, 20), 5.0) == 'diagnosing: 20 of 100 groups'
+    assert line(Progress(COMPARING, 40, 10), 5.0) == (
+        'comparing: 10 of 40 parameters of vehicles, 120 per minute, 15 s left')
 
 
 def test_the_time_left_counts_what_was_done_in_this_run_alone():
@@ -37,6 +45,26 @@ def test_the_end_says_what_became_of_all_groups_and_what_to_do():
         'out/groups']
 
 
+def test_the_end_says_which_groups_have_no_values_of_single_flights():
+    groups = {'diagnosed': 7, 'refused': 0, 'failed': 0, 'timeout': 0}
+    assert summary_text(Summary(12, groups, 0, (), ('it took long',) * 2), 'out').splitlines() == [
+        '12 flights in 7 groups: 7 diagnosed', '2 groups without values of single flights: it '
+        'took long; the same command tries again']
+
+
+def test_lines_for_a_machine_go_into_a_folder_that_is_made(tmp_path):
+    class Client:
+
+        def scheduler_info(self, **_):
+            return {'workers': {}}
+
+    with Reporter(Client(), tmp_path, tmp_path / 'new' / 'lines.json') as reporter:
+        reporter.end(Summary(0, dict.fromkeys(('diagnosed', 'refused', 'failed', 'timeout'), 0),
+                             0, ()))
+    line, = (tmp_path / 'new' / 'lines.json').read_text(encoding='utf-8').splitlines()
+    assert json.loads(line)['schema'] == 'quad_ident/fleet_run/1'
+
+
 @pytest.mark.parametrize('text, size', [('2GB', 2e9), ('500MB', 5e8), ('1.5 GiB', 1.5 * 2 ** 30)])
 def test_sizes_of_memory(text, size):
     options = parser(['fleet'])[0].parse_args(['fleet', 'flights', '--memory', text])
@@ -52,6 +80,16 @@ def test_bad_options_are_refused(words, said, capsys):
     with pytest.raises(SystemExit):
         main(['fleet', 'flights', *words])
     assert said in capsys.readouterr().err
+
+
+def test_bad_input_is_said_before_any_worker_is_started(tmp_path, capsys):
+    (tmp_path / 'a.csv').write_text('t,px\n0,1\n', encoding='utf-8')
+    for words, said in (([str(tmp_path / 'none')], 'no such file or folder'),
+                        ([str(tmp_path)], 'no nominal vehicle is named'),
+                        ([str(tmp_path), '--vehicle', 'humingbird'], 'did you mean')):
+        assert main(['fleet', *words]) == 2
+        error, = capsys.readouterr().err.splitlines()
+        assert said in error
 
 
 def test_options_of_local_workers_do_not_go_with_a_scheduler(capsys):

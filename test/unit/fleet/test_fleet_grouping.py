@@ -4,9 +4,12 @@
 
 from dataclasses import replace
 from datetime import datetime, timezone
+from pathlib import Path
 
 import pytest
+from reader_checks import SMALL
 
+from quad_ident_ros.data.export import write_bag
 from quad_ident_ros.diagnose.rules import RULES
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.fleet.manifest import Listed
@@ -14,7 +17,7 @@ from quad_ident_ros.model.vehicle import load_vehicle
 
 pytest.importorskip('pyarrow', reason="pyarrow is not installed: pip install '.[fleet]'")
 from quad_ident_ros.fleet.grouping import groups_of  # noqa: E402, I100
-from quad_ident_ros.fleet.look import look, Looks  # noqa: E402, I100
+from quad_ident_ros.fleet.look import has_to_be_read, look, Looks  # noqa: E402, I100
 from quad_ident_ros.fleet.store import keys_of, write_rows  # noqa: E402, I100
 from quad_ident_ros.fleet.superseded import remove_group, superseded_by  # noqa: E402, I100
 
@@ -49,6 +52,23 @@ def test_the_earliest_flight_comes_first_and_dates_the_group(tmp_path):
     assert [one.date.hour for one in group.flights] == [9, 12, 17] and group.date.hour == 9
 
 
+def test_flights_of_a_day_without_a_time_are_in_the_order_of_their_names(tmp_path):
+    names = [f'log_{number}.csv' for number in range(1, 13)]
+    [group], _ = grouped([flight(tmp_path, name, name) for name in reversed(names)])
+    assert [Path(one.path).name for one in group.flights] == names
+
+
+def test_a_log_is_asked_for_the_time_that_a_day_does_not_say(tmp_path):
+    log = tmp_path / 'bag_1'
+    start = datetime(2026, 5, 14, 8, 30, 12, tzinfo=timezone.utc)
+    write_bag(log, replace(SMALL, info={'start_ns': int(start.timestamp()) * 10 ** 9}))
+    for known in ({'day': '2026-05-14'}, {'group': 'gusts'}):
+        [group], _ = grouped([Listed(str(log), vehicle='seven', **known)])
+        assert group.date == start
+    assert not has_to_be_read(Listed('2026-05-14/08_30_12.ulg', vehicle='seven'))
+    assert not has_to_be_read(Listed('a.ulg', vehicle='seven', date=start))
+
+
 def test_a_key_is_of_all_that_a_result_depends_on_and_of_nothing_else(tmp_path):
     one = flight(tmp_path, 'a.csv', 'a')
 
@@ -72,14 +92,23 @@ def test_the_same_content_is_one_flight(tmp_path):
 
 
 def test_what_was_looked_at_is_known_until_it_changes(tmp_path):
-    one = flight(tmp_path, 'a.csv', 'a')
+    text = 't,px\n0,1\n0.1,2\n'
+    for more in ('', '0.2,3\n', '0.2,3\n0.3,4\n'):     # a log that grows
+        one = flight(tmp_path, 'a.csv', text + more)
+        looks = Looks(tmp_path / 'out')
+        assert looks.known(one) is None
+        looks.add(look(one))
+        looks.flush()
+        assert Looks(tmp_path / 'out').known(one) == look(one)
+
+
+def test_what_could_not_be_read_is_read_again(tmp_path):
+    """With a mapping, say, by which its log says when it was flown."""
+    one = flight(tmp_path, 'a.csv', 'nothing of a flight')
     looks = Looks(tmp_path / 'out')
-    assert looks.known(one) is None
     looks.add(look(one))
     looks.flush()
-    assert Looks(tmp_path / 'out').known(one) == look(one)
-    changed = flight(tmp_path, 'a.csv', 'other')
-    assert Looks(tmp_path / 'out').known(changed) is None
+    assert Looks(tmp_path / 'out').known(one) is None
 
 
 def test_a_file_that_cannot_be_opened_is_a_flight_with_a_reason(tmp_path):
@@ -109,6 +138,17 @@ def test_a_file_that_was_written_to_takes_the_place_of_what_it_was(tmp_path):
     before, _ = grouped([flight(tmp_path, 'a.csv', 'half')])
     stored(tmp_path / 'out', before)
     after, _ = grouped([flight(tmp_path, 'a.csv', 'half and half')])
+    assert superseded_by(after, tmp_path / 'out') == {after[0].key: [before[0].key]}
+
+
+def test_a_bag_takes_the_place_of_the_file_in_it_that_was_read_while_it_was_recorded(tmp_path):
+    bag, other = tmp_path / 'bag_1', flight(tmp_path, 'b.csv', 'b')
+    bag.mkdir()
+    before, _ = grouped([flight(bag, 'bag_1_0.mcap', 'half'), other])
+    stored(tmp_path / 'out', before)
+    flight(bag, 'bag_1_0.mcap', 'half and half')
+    flight(bag, 'metadata.yaml', 'rosbag2_bagfile_information:')
+    after, _ = grouped([Listed(str(bag), vehicle='seven', day='2026-05-14'), other])
     assert superseded_by(after, tmp_path / 'out') == {after[0].key: [before[0].key]}
 
 

@@ -27,7 +27,8 @@ def utc(*numbers):
 @pytest.mark.parametrize('text, date', [
     ('2026-05-14', utc(2026, 5, 14)), ('2026-05-14T08:30:00Z', utc(2026, 5, 14, 8, 30)),
     ('2026-05-14 08:30:00', utc(2026, 5, 14, 8, 30)),
-    ('2026-05-14T08:30:00+02:00', utc(2026, 5, 14, 6, 30)), ('yesterday', None), ('', None)])
+    ('2026-05-14T08:30:00+02:00', utc(2026, 5, 14, 6, 30)), ('yesterday', None), ('', None),
+    ('0001-01-01T00:00:00+14:00', None)])
 def test_dates_of_text(text, date):
     assert date_of(text) == date
 
@@ -79,6 +80,21 @@ def test_a_bag_is_one_flight_and_what_is_no_flight_is_not_listed(tmp_path):
         'seven/bag_1', 'seven/damaged.ulg', 'seven/recording_1']
 
 
+def test_a_bag_that_is_still_recorded_to_is_no_configuration(tmp_path):
+    write(tmp_path / 'seven' / '2026-05-14' / 'bag_1' / 'bag_1_0.mcap', 'x')
+    one, = listed([str(tmp_path)])
+    assert (one.vehicle, one.configuration, one.day) == ('seven', '', '2026-05-14')
+
+
+def test_links_that_lead_back_or_nowhere_end_nothing(tmp_path):
+    flight = write(tmp_path / 'seven' / 'a.csv')
+    (tmp_path / 'seven' / 'all').symlink_to(tmp_path)
+    (tmp_path / 'seven' / 'itself').symlink_to(tmp_path / 'seven' / 'itself')
+    (tmp_path / 'seven' / 'gone.csv').symlink_to(tmp_path / 'nowhere.csv')
+    (tmp_path / 'eight').symlink_to(tmp_path / 'seven')
+    assert [os.path.realpath(one.path) for one in listed([str(tmp_path)])] == [str(flight)]
+
+
 def test_a_manifest_says_all_of_a_flight(tmp_path):
     write(tmp_path / 'quad.yaml', 'a: 1')
     manifest = write(tmp_path / 'm.csv', 'path,vehicle,date,group,vehicle_file,temperature_c\n'
@@ -98,11 +114,21 @@ def test_a_manifest_says_all_of_a_flight(tmp_path):
     ('path,vehicle\n,seven\n', 'line 2, column path: it is empty'),
     ('path,vehicle\na.csv\n', 'line 2: 1 cells, but 2 columns'),
     ('path,path\na.csv,b.csv\n', 'line 1: a column is named twice'),
+    ('path,notes\na.csv,windy\n', 'column notes: expected a number, got .windy.: columns other'),
+    ('vehicle;path\nseven;a.csv\n', 'line 1: there is no column `path`; .* with commas'),
+    ('Path,vehicle\na.csv,seven\n', 'line 1: there is no column `path`'),
+    ('path,vehicle\na.csv,seven\na.csv,eight\n', 'line 3: .*a.csv is named above already'),
     ('path\n', 'there is no flight in it')])
 def test_what_is_wrong_with_a_manifest_is_said_with_its_place(tmp_path, text, said):
     with pytest.raises(InputError, match=said) as caught:
         listed([str(write(tmp_path / 'm.csv', text))])
     assert '\n' not in str(caught.value)
+
+
+def test_spaces_beside_commas_and_lines_that_repeat_do_no_harm(tmp_path):
+    manifest = write(tmp_path / 'm.csv', 'vehicle, "path" \nseven, a.csv\n\nseven, a.csv\n')
+    one, = listed([str(manifest)])
+    assert (one.path, one.vehicle) == (str(tmp_path / 'a.csv'), 'seven')
 
 
 def test_a_flight_that_is_named_twice_is_one(tmp_path):

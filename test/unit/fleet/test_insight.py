@@ -5,18 +5,29 @@
 from datetime import timedelta
 import io
 import json
+import os
+import re
+import subprocess
+import sys
 
-from fleets import data_set, START
+from fleets import data_set, series, START
+import numpy as np
 import pytest
 
 from quad_ident_ros.report.data import finite
 
 pytest.importorskip('pyarrow', reason="pyarrow is not installed: pip install '.[fleet]'")
+from quad_ident_ros.fleet.history import histories  # noqa: E402, I100
 from quad_ident_ros.fleet.insight import insight  # noqa: E402, I100
 from quad_ident_ros.fleet.store import write_rows  # noqa: E402, I100
 from quad_ident_ros.report.fleet import show_insight  # noqa: E402, I100
+from quad_ident_ros.report.fleet_charts import small_multiple  # noqa: E402, I100
 from quad_ident_ros.report.fleet_page import write  # noqa: E402, I100
-from quad_ident_ros.report.fleet_words import points  # noqa: E402, I100
+from quad_ident_ros.report.fleet_words import (  # noqa: E402, I100
+    nothing_line,
+    points,
+    summary_line,
+)
 
 STEP = ('uav3', 'com_offset', 'x', 11, 4e-3)
 SLOPE = ('uav5', 'thrust_scale', 'factor', -0.01)
@@ -66,7 +77,7 @@ def test_the_list_begins_with_what_gets_worse(found):
                                              'the model is wrong']
     assert [one.where for one in some][:2] == ['uav3', 'uav7']
     assert some[0].text.startswith('from 3 June 2026 on, offset of the centre of mass')
-    assert 'mm' in some[0].text
+    assert 'mm' in some[0].text and '; 11.csv, flight 12 of 20, is the first' in some[0].text
     shared = {one.text.partition('(')[2].partition(')')[0]: one.text for one in some
               if one.why == 'the model is wrong'}
     assert shared['rotor_drag'].endswith('add it to the vehicle file')
@@ -128,3 +139,99 @@ def test_names_are_text_on_the_page(tmp_path):
     write(tmp_path / 'fleet.html', insight(tmp_path / 'set'))
     text = (tmp_path / 'fleet.html').read_text(encoding='utf-8')
     assert '<b>"x' not in text and '<td class="prose"><script>' not in text
+
+
+def test_a_drift_towards_no_effect_does_not_get_worse(tmp_path):
+    """A drag that falls does; it is no less sure, and no more urgent than a change."""
+    data_set(tmp_path, slopes=[('uav5', 'rotor_drag', 'coefficient', -0.004)],
+             steps=[('uav5', 'rotor_drag', 'coefficient', 0, 0.1)])
+    why, = {one.why for one in points(insight(tmp_path)) if one.where == 'uav5'
+            and 'a week' in one.text}
+    assert why == 'drifts'
+
+
+def test_a_fleet_of_one_vehicle_has_its_values_on_the_page(tmp_path):
+    """There is nobody to compare it with, and it is no less there."""
+    data_set(tmp_path, vehicles=1, flights=6)
+    found = insight(tmp_path)
+    assert not found.odd and len(found.sisters) == 3
+    write(tmp_path / 'fleet.html', found)
+    text = (tmp_path / 'fleet.html').read_text(encoding='utf-8')
+    assert text.count('<td data-value=') == 3 and 'from its sisters"' not in text
+    assert 'Mean and spread' not in text
+
+
+def test_flights_of_one_date_stand_beside_one_another(tmp_path):
+    """As of logs whose folder says the day and nothing else the time."""
+    one = series(np.arange(5.0), 0.1, days=np.zeros(5))
+    found, = histories([one])
+    dots = re.search('class="dots" d="([^"]*)"', small_multiple(found, '', 1.0))[1]
+    places = [float(place) for place in re.findall(r'M([\d.]+) ', dots)]
+    assert len(places) == 5 and np.all(np.diff(places) > 30.0)
+
+
+def test_what_failed_is_not_called_refused(tmp_path):
+    """The next run tries it again, and its log may be right."""
+    row = {'vehicle': 'uav1', 'configuration': '', 'date': START}
+    for name, status in (('a', 'failed'), ('b', 'timeout'), ('c', 'refused')):
+        write_rows(tmp_path, 'groups', name, [row | {'group': name, 'status': status}])
+        write_rows(tmp_path, 'flights', name, [row | {
+            'flight': name, 'path': f'{name}.csv', 'status': status, 'reason': f'{name} it is'}])
+    found = insight(tmp_path)
+    assert found.refused == (('uav1', 'c.csv', 'c it is'),)
+    assert [one[1] for one in found.failed] == ['a.csv', 'b.csv']
+    assert [one.text for one in points(found)] == [
+        '2 of 3 flights are not diagnosed, which the next run tries again: uav1 2; the first: '
+        'a it is', '1 of 3 flights is refused: uav1 1; the first: c it is']
+    assert '1 flight refused, 2 not diagnosed' in summary_line(found)
+
+
+def test_vehicles_are_named_with_their_configuration(tmp_path):
+    """What holds for one of several configurations is not said of all."""
+    data_set(tmp_path, steps=[STEP], configuration='long')
+    found = insight(tmp_path)
+    texts = {one.where: one.text for one in points(found)}
+    assert 'uav3 (long)' in texts and texts['all'].startswith('8 of 8 (long) vehicles have')
+    stream = io.StringIO()
+    show_insight(found, stream)
+    assert '8 of 8 (long)' in stream.getvalue()
+    write(tmp_path / 'fleet.html', found)
+    assert '<strong>uav3 (long)</strong>' in (tmp_path / 'fleet.html').read_text(encoding='utf-8')
+
+
+@pytest.mark.parametrize(('vehicles', 'flights', 'said'), [
+    (5, 3, 'No vehicle has the 4 flights from which on a change can be seen, and no vehicle '
+     'differs from its sisters'),
+    (2, 8, 'Nothing drifts or has changed, and an odd vehicle can be seen among 4 or more')])
+def test_what_cannot_be_seen_is_not_denied(tmp_path, vehicles, flights, said):
+    data_set(tmp_path, vehicles=vehicles, flights=flights)
+    assert nothing_line(insight(tmp_path)) == said
+
+
+@pytest.mark.slow
+def test_whole_diagnoses_are_left_on_the_disk(tmp_path):
+    """Those of a fleet take gigabytes, and tell nothing here that the other columns do not."""
+    size, count = 10 ** 6, 20
+    for number in range(count):
+        write_rows(tmp_path, 'groups', f'{number}', [{
+            'group': f'{number}', 'vehicle': 'uav1', 'configuration': '', 'date': START,
+            'status': 'diagnosed', 'diagnosis': 'x' * size}])
+    most = subprocess.run([sys.executable, '-c', MOST, str(tmp_path)], check=True, text=True,
+                          stdout=subprocess.PIPE, env={**os.environ, 'PYTHONPATH':
+                                                       os.pathsep.join(sys.path)}).stdout
+    assert int(most) < size * count / 4
+
+
+MOST = """
+import pyarrow, sys
+from quad_ident_ros.fleet.insight import insight
+assert insight(sys.argv[1]).status == {'diagnosed': 20}
+print(pyarrow.default_memory_pool().max_memory())
+"""
+
+
+def test_how_far_it_is_can_be_followed(tmp_path):
+    data_set(tmp_path, vehicles=2, flights=5)
+    told = []
+    insight(tmp_path, lambda done, total: told.append((done, total)))
+    assert told == [(number, 6) for number in range(1, 7)]

@@ -2,16 +2,21 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a fleet teaches, against a data set whose truth is known."""
 
-from fleets import data_set, TRACKED
+from dataclasses import replace
+
+from fleets import data_set, START, TRACKED
 import pytest
 
+from quad_ident_ros.diagnose.priors import EffectPrior
 from quad_ident_ros.diagnose.rules import RULES
 from quad_ident_ros.effects.registry import EFFECTS
+from quad_ident_ros.errors import InputError
 
 pytest.importorskip('pyarrow', reason="pyarrow is not installed: pip install '.[fleet]'")
+from quad_ident_ros.fleet.grouping import rules_hash  # noqa: E402, I100
 from quad_ident_ros.fleet.insight import insight  # noqa: E402, I100
-from quad_ident_ros.fleet.priors import DOUBT, learned  # noqa: E402, I100
-from quad_ident_ros.fleet.store import read_table  # noqa: E402, I100
+from quad_ident_ros.fleet.priors import DOUBT, effects_without_priors, learned  # noqa: E402, I100
+from quad_ident_ros.fleet.store import read_table, remove, write_rows  # noqa: E402, I100
 
 
 @pytest.fixture(scope='module')
@@ -27,6 +32,32 @@ def test_presence_is_the_mean_over_vehicles_with_some_doubt(taught):
     assert taught['rotor_drag'].present == pytest.approx(
         (8 * 0.97 + DOUBT * RULES.usual_presence) / (8 + DOUBT))
     assert set(taught) == {'rotor_drag', 'com_offset'}
+
+
+def test_what_the_flights_of_a_vehicle_cannot_show_is_not_taken_for_absent(tmp_path):
+    """Without position and velocity, drag has no row: such a vehicle says nothing of it."""
+    data_set(tmp_path)
+    for number in range(30):
+        write_rows(tmp_path, 'effects', f'blind {number}', [{
+            'group': f'blind {number}', 'vehicle': f'blind {number}', 'configuration': '',
+            'date': START, 'effect': 'motor_lag', 'probability': 0.0, 'named': False}])
+    found = learned(read_table(tmp_path, 'effects'), ())
+    assert found['rotor_drag'].present == pytest.approx(
+        (8 * 0.97 + DOUBT * RULES.usual_presence) / (8 + DOUBT))
+
+
+def test_verdicts_that_used_priors_teach_none(tmp_path):
+    """Also those of an earlier run on the same data set."""
+    given = replace(RULES, priors={'wind': EffectPrior(0.5)})
+    for name, rules, effect in (('a', RULES, 'rotor_drag'), ('b', given, 'wind')):
+        whose = {'group': name, 'vehicle': name, 'configuration': '', 'date': START}
+        write_rows(tmp_path, 'effects', name, [whose | {'effect': effect, 'probability': 0.9}])
+        write_rows(tmp_path, 'groups', name, [whose | {
+            'rules': rules_hash(rules), 'status': 'diagnosed'}])
+    assert effects_without_priors(tmp_path)['effect'].to_pylist() == ['rotor_drag']
+    remove(tmp_path, 'groups', 'a')
+    with pytest.raises(InputError, match='nothing to learn from'):
+        effects_without_priors(tmp_path)
 
 
 def test_sizes_are_those_of_the_vehicles(taught):

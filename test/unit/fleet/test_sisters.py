@@ -86,4 +86,5 @@ def test_sisters_are_of_one_configuration():
     found = sisters(histories(fleet))
     assert len(found) == 1 and len(found[0].vehicles) == 5
     assert found[0].mean == pytest.approx(3.0, abs=4 * found[0].mean_std)
-    assert sisters(histories(fleet[:1])) == ()
+    alone, = sisters(histories(fleet[:1]))
+    assert len(alone.vehicles) == 1 and not alone.odd and alone.spread == 0.0

@@ -26,6 +26,12 @@ def test_rows_come_back_and_what_a_row_does_not_have_is_null(tmp_path):
         **dict.fromkeys(TABLES['flights'].names), **FLIGHT}
 
 
+def test_a_file_is_no_data_set(tmp_path):
+    (tmp_path / 'a.csv').write_text('t', encoding='utf-8')
+    with pytest.raises(InputError, match='this is a file'):
+        store.prepare(tmp_path / 'a.csv')
+
+
 def test_the_same_key_is_the_same_file(tmp_path):
     for name in ('before', 'after'):
         write_rows(tmp_path, 'flights', 'g', [FLIGHT | {'path': name}])

@@ -1,13 +1,23 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Which effects are followed from flight to flight."""
+"""Which effects are followed from flight to flight, and what becomes of flights that cannot be."""
 
 import pytest
+
+from quad_ident_ros.cluster import Done, TimeOver
+from quad_ident_ros.diagnose.rules import RULES
+from quad_ident_ros.fleet.manifest import listed
+from quad_ident_ros.model.vehicle import load_vehicle
 
 pytest.importorskip('pyarrow', reason="pyarrow is not installed: pip install '.[fleet]'")
 import pyarrow  # noqa: E402, I100
 
-from quad_ident_ros.fleet.track import tracked_effects  # noqa: E402, I100
+from quad_ident_ros.fleet import run, track  # noqa: E402, I100
+from quad_ident_ros.fleet.grouping import groups_of  # noqa: E402, I100
+from quad_ident_ros.fleet.look import look  # noqa: E402, I100
+from quad_ident_ros.fleet.plan import planned  # noqa: E402, I100
+from quad_ident_ros.fleet.store import keys_of, write_rows  # noqa: E402, I100
+from quad_ident_ros.fleet.track import tracked_effects, Tracking  # noqa: E402, I100
 
 
 def tracked(**named):
@@ -32,3 +42,48 @@ def test_of_two_alike_the_one_that_is_named_more_often_is_tracked():
     """Where no other vehicle has either, the verdicts decide."""
     found = tracked(a='com_offset rotor_fault rotor_fault', b='motor_lag', c='motor_lag')
     assert found['a'] == {'rotor_fault', 'motor_lag'}
+
+
+@pytest.fixture
+def group(tmp_path):
+    """Return a group of one flight, which is diagnosed and has drag in its verdict."""
+    path = tmp_path / 'flights' / 'seven' / '2026-05-14' / 'a.csv'
+    path.parent.mkdir(parents=True)
+    path.write_text('t,px\n0,1\n0.1,2\n', encoding='utf-8')
+    vehicle = load_vehicle('hummingbird')
+    flight, = listed([str(tmp_path / 'flights')])
+    [one], _ = groups_of([(flight, look(flight))], lambda _: vehicle, None, RULES)
+    whose = {'group': one.key, 'vehicle': 'seven', 'configuration': '', 'date': one.date}
+    write_rows(tmp_path, 'flights', one.key, [whose | {
+        'flight': one.flights[0].flight, 'path': str(path), 'status': 'diagnosed'}])
+    write_rows(tmp_path, 'effects', one.key, [whose | {
+        'effect': 'rotor_drag', 'probability': 0.9, 'form': 'by_speed', 'named': True}])
+    write_rows(tmp_path, 'groups', one.key, [whose | {'status': 'diagnosed'}])
+    return one
+
+
+def test_a_library_that_fails_on_a_flight_takes_no_other_with_it(group, tmp_path, monkeypatch):
+    def failing(*_):
+        raise IndexError('somewhere in a library')
+
+    monkeypatch.setattr(track, 'load_all', failing)
+    tracking = Tracking(group, {'rotor_drag': 'by_speed'})
+    track.track(tracking, tmp_path)
+    assert keys_of(tmp_path, 'covariances') == {tracking.key}
+
+
+def test_a_group_whose_values_took_too_long_is_counted_and_keeps_those_of_before(
+        group, tmp_path, monkeypatch):
+    def results(_, function, items, *__):
+        for item in items:
+            yield (Done(item, error=TimeOver()) if isinstance(item, Tracking)
+                   else Done(item, function(item)))
+
+    before = f'{group.key}-before'
+    write_rows(tmp_path, 'covariances', before, [])
+    monkeypatch.setattr(run, 'results', results)
+    plan = planned([str(tmp_path / 'flights')], vehicle='hummingbird')
+    summary = run.run_fleet(None, plan, tmp_path, time_limit=7.0)
+    assert summary.groups['diagnosed'] == 1
+    assert summary.untracked == ('it took more than 7 s (--time-limit)',)
+    assert keys_of(tmp_path, 'covariances') == {before}

@@ -265,7 +265,7 @@ def test_a_fleet_is_filtered_by_vehicle_effect_and_what_happened(browser, fleet)
         page.get_by_role('searchbox').fill('uav3')
         assert page.evaluate(VEHICLES) == ['uav3'] and page.evaluate(SHOWN) == 3
         assert page.locator('.first > li:visible').all_inner_texts()[0].startswith('uav3 changed')
-        page.get_by_role('combobox').select_option('com_offset')
+        page.get_by_role('combobox').select_option('offset of the centre of mass (com_offset)')
         assert page.evaluate(SHOWN) == 1
         page.get_by_role('searchbox').fill('')
         page.get_by_role('combobox').select_option('')
@@ -287,3 +287,20 @@ def test_a_table_of_a_fleet_is_sorted_by_keys(browser, fleet):
         assert page.evaluate(VEHICLES)[0] == 'uav7'
         head = page.get_by_role('columnheader', name=re.compile('rotor_drag'))
         assert head.get_attribute('aria-sort') == 'descending'
+
+
+def test_names_are_sorted_as_people_count_and_what_is_not_known_comes_last(browser, fleet):
+    """Vehicle 9 comes before vehicle 10; a cell without a value is neither large nor small."""
+    with opened(browser, fleet) as (page, *_):
+        page.evaluate("document.querySelector('.sortable tbody tr:nth-child(3) > td').remove()")
+        page.evaluate("document.querySelector('.sortable tbody tr:nth-child(3)').insertCell(1)")
+        empty = page.evaluate(VEHICLES)[2]
+        title = page.get_by_role('button', name=re.compile('^vehicle')).first
+        title.click()
+        assert page.evaluate(VEHICLES) == [f'uav{number}' for number in range(1, 13)]
+        title.click()
+        assert page.evaluate(VEHICLES)[0] == 'uav12'
+        first = page.locator('.sortable thead button').nth(1)
+        for _ in range(2):
+            first.click()
+            assert page.evaluate(VEHICLES)[-1] == empty
