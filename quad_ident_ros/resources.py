@@ -102,7 +102,26 @@ def read_yaml(path):
 
 
 class _Loader(yaml.SafeLoader):
-    """One that does not merge mappings without end: nine levels of nine would be 4e8 keys."""
+    """
+    One that refuses a key that is there twice, and mappings that are merged without end.
+
+    PyYAML takes the last value of such a key in silence. Nine levels of nine merged mappings
+    would be 4e8 keys.
+    """
+
+    def compose_mapping_node(self, anchor):
+        """Return the node of a mapping; raises YAMLError where it has a key twice."""
+        node = super().compose_mapping_node(anchor)
+        lines = {}
+        for key, _ in node.value:
+            if isinstance(key, yaml.ScalarNode):
+                name = key.tag, key.value
+                if name in lines:
+                    raise yaml.MarkedYAMLError(
+                        problem=f'{schema.shown(key.value)} is there twice, first in line '
+                        f'{lines[name]}; remove one of them', problem_mark=key.start_mark)
+                lines[name] = key.start_mark.line + 1
+        return node
 
     def flatten_mapping(self, node):
         """Merge what `<<` names into a mapping; raises YAMLError where that is too much."""

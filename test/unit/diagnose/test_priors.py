@@ -41,6 +41,7 @@ def test_a_file_is_read_as_it_was_written(tmp_path):
 
 @pytest.mark.parametrize(('text', 'said'), [
     ('a: [', 'not YAML'), ('day: 2026-13-45', 'cannot be read'), ('[' * 5000, 'cannot be read'),
+    ('a: 1\na: 2', 'twice'),
     ('schema: other', 'schema'), ('- 1', 'expected `key: value`'),
     ('schema: quad_ident/priors/1\neffects: {drag: {present: 1}}', 'drag'),
     ('schema: quad_ident/priors/1\neffects: {rotor_drag: {present: 2}}', 'out of range'),

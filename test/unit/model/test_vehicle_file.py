@@ -384,6 +384,8 @@ def test_no_name_is_an_error_of_another_kind(name):
     (b'mass: 0b_', 'cannot be read'), (b'[' * 5000, 'cannot be read'),
     (b'mass: !!int ""', 'cannot be read'), (b'mass: !!python/object:os.system 1', 'is not YAML'),
     (b'mass: 2001-01-01', "'name' is missing"),
+    (b'mass: 1\nname: a\nmass: 2', "line 3: is not YAML: 'mass' is there twice, first in line 1"),
+    (b'effects: {wind: {x: 1, y: 2, x: 3}}', "'x' is there twice"),
     (b'mass: ' + b'9' * 5000, 'cannot be read'),
     (b'mass: 0x' + b'f' * 5000, 'a whole number of about 6021 digits'),
     (b'? 0x' + b'f' * 5000 + b'\n: 1', 'a whole number of about 6021 digits'),
