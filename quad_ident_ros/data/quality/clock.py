@@ -13,6 +13,7 @@ from quad_ident_ros.data.quality.frames import best_reading
 from quad_ident_ros.data.quality.glitches import jumps
 from quad_ident_ros.data.quality.once import once
 from quad_ident_ros.data.quality.series import Grid
+from quad_ident_ros.model.attitude import conjugate, rotate
 
 WINDOW = 4.0      # s, of one estimate
 REACH = 0.5       # s, the largest offset looked for
@@ -27,6 +28,7 @@ ANSWER = 1.0      # s, within which the motion may answer to errors of the attit
 SEVERAL = 5.0     # standard errors from which on an offset or a drift of the states is one: the
                   # motion answers to errors of the attitude, which shifts it by one or two of them
 MANY = 4.0        # and one of the commands, whose errors know nothing of the motion
+LONGEST_LAG = 0.1 # s, of motors; those of multirotors take 0.02 to 0.05
 FEW = 0.05        # share of samples that may be left out, as their attitude is off
 SCATTER = 4.0     # mean square of errors over standard errors from which on they wander
 
@@ -101,13 +103,24 @@ def command_offset(record):
     Return the ClockOffset of the accelerometer against the commands, or None.
 
     Thrust, the sum of the squared commands, is compared with the specific force along z. The lag
-    of the motors is part of it.
+    of the motors is part of it. A force of the air along z follows the velocity, which comes a
+    quarter of a period after the thrust: what it may explain says nothing of the offset.
     """
     grid, names = Grid.of(record), record.numbered('cmd')
     if grid is None or not names or not record.has('ax', 'ay', 'az'):
         return None
     thrust = np.sum(grid.held(*names) ** 2, axis=1, keepdims=True)
-    return _offset(grid, grid.smooth(grid.signal('az')), grid.smooth(thrust))
+    return _offset(grid, grid.smooth(grid.signal('az')), grid.smooth(thrust), beside=_air(grid))
+
+
+def _air(grid):
+    """Return what forces of the air along body z are in proportion to, (N, 3); (N, 0) if none."""
+    _, attitude = best_reading(grid.record)
+    if attitude is None or not grid.record.has('vx', 'vy', 'vz'):
+        return np.zeros((len(grid.t), 0))
+    x, y, z = rotate(conjugate(attitude), grid.smooth(grid.signal('vx', 'vy', 'vz'))).T
+    # Drag of rotors and inflow, drag of the body, translational lift.
+    return np.stack([z, np.sqrt(x * x + y * y + z * z) * z, x * x + y * y], axis=-1)
 
 
 def _centred(signal):
@@ -115,12 +128,25 @@ def _centred(signal):
     return signal - signal.mean(axis=0)
 
 
-def _offset(grid, late, early, answers=False):
+def _without(beside):
+    """Return the function that takes the mean and signals (N, m) out of others, (N, k)."""
+    basis = np.linalg.qr(_centred(beside))[0] if beside.shape[1] else beside
+
+    def rest(signal):
+        centred = _centred(signal)
+        return centred - basis @ (basis.T @ centred)
+
+    return rest
+
+
+def _offset(grid, late, early, answers=False, beside=None):
     """
     Return the ClockOffset of one signal (N, k) against another on a grid, or None.
 
-    answers: the motion may answer to the errors of the late one.
+    answers: the motion may answer to the errors of the late one. beside (N, m): signals that the
+    late one may have in it as well.
     """
+    beside = np.zeros((len(grid.t), 0)) if beside is None else beside
     reach = round(REACH / grid.period)
     whole = _whole_shift(late, early, grid.good, reach)
     if whole is None:
@@ -130,11 +156,12 @@ def _offset(grid, late, early, answers=False):
     count = max(1, int(grid.good.sum() // width))
     found = []
     for part in np.array_split(np.flatnonzero(grid.good), count):
-        estimate = _refined(grid.t[part], spline, late[part], slopes[part],
-                            whole * grid.period, grid.period)
+        estimate = _refined(grid.t[part], spline, late[part], slopes[part], whole * grid.period,
+                            grid.period, _without(beside[part]))
         if estimate is not None:
             found.append((grid.t[part].mean(), *estimate))
-    if not found:
+    # Beside other signals a window may tell one by chance: most have to.
+    if not found or (beside.shape[1] and 2 * len(found) <= count):
         return None
     t, offsets, stds = np.array(found).T
     middle = (grid.t[0] + grid.t[-1]) / 2
@@ -169,15 +196,16 @@ def _whole_shift(late, early, good, reach):
     return best - reach if alike[best] > SURE else None
 
 
-def _refined(t, spline, late, slopes, start, period):
+def _refined(t, spline, late, slopes, start, period, rest_of):
     """
     Return the offset and its standard error in a window, or None.
 
-    Args: t (N,) s; spline of the early signal; late (N, k) and its slopes; start, period s.
+    Args: t (N,) s; spline of the early signal; late (N, k) and its slopes; start, period s;
+    rest_of: of a signal, without its mean and what it may have beside the early one, _without.
     """
-    target, offset = _centred(late), start
+    target, offset = rest_of(late), start
     for _ in range(8):
-        model, slope = _centred(spline(t - offset)), _centred(-spline(t - offset, 1))
+        model, slope = rest_of(spline(t - offset)), rest_of(-spline(t - offset, 1))
         power = np.sum(model ** 2)
         if not power > 0:
             return None
@@ -195,7 +223,7 @@ def _refined(t, spline, late, slopes, start, period):
     if _alike(model, target) < SURE:
         return None
     # A ramp or noise has no shape that an offset would move: both must have the same.
-    other = _centred(slopes)
+    other = rest_of(slopes)
     other -= model * np.sum(other * model) / power
     if _alike(-gain * slope, other) < SHAPE:
         return None
@@ -308,7 +336,7 @@ def commands(record, vehicle):
     if found is None:
         return []
     early = found.offset < -max(MANY * found.std, 0.005)
-    if not early and found.offset < max(0.1, MANY * found.std):
+    if not early and found.offset < LONGEST_LAG + MANY * found.std:
         return []
     return [Finding(
         'command_offset', 'warning', 'commands against accelerometer',

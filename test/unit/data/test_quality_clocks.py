@@ -85,10 +85,28 @@ def test_commands_that_act_before_they_are_given_are_found():
     assert 'command_offset' in codes(record)
 
 
+@pytest.mark.parametrize('effects', [
+    {'rotor_drag': {'x': 0.3, 'y': 0.3, 'z': 0.3}},
+    {'body_drag': {'horizontal': 0.1, 'vertical': 0.1}},
+    {'inflow': {'axial': 0.3, 'translational': 0.03}}], ids=lambda effects: [*effects][0])
+@pytest.mark.parametrize('trajectory', ['lissajous', 'figure8'])
+def test_a_force_of_the_air_along_z_is_no_early_thrust(trajectory, effects):
+    """It follows the velocity, a quarter of a period after the thrust of a smooth path."""
+    record = fly_closed_loop(load_vehicle('hummingbird'), effects, trajectory, duration=20.0,
+                             seed=1, noise=MOCAP_IMU)
+    clock = command_offset(record)
+    assert 'command_offset' not in codes(record)
+    assert clock is None or abs(clock.offset) < 4 * clock.std
+
+
 def test_the_lag_of_motors_is_no_fault():
     record = late(flight(), (*P, *V, *Q, *W, *A), 0.04)
     assert abs(command_offset(record).offset - 0.04) < 0.008
     assert 'command_offset' not in codes(record)
+
+
+def test_a_thrust_later_than_motors_take_is_found():
+    assert 'command_offset' in codes(late(flight(), (*P, *V, *Q, *W, *A), 0.25))
 
 
 @needs_real_flights
