@@ -3,7 +3,8 @@
 """
 The quality of a flight record: what is wrong with it, and how to mend it.
 
-One file per subject, each with checks (record, vehicle or None) -> findings, entered in CHECKS.
+One file per subject, each with checks (record, vehicle or None) -> findings, entered in
+COLUMNS or COMPARISONS.
 """
 
 from dataclasses import replace
@@ -36,24 +37,27 @@ from quad_ident_ros.data.quality.clock import (
 from quad_ident_ros.data.quality.finding import as_caution, Finding, SEVERITIES
 from quad_ident_ros.errors import InputError
 
-CHECKS = (columns.known, columns.incomplete, columns.differentiated, columns.frozen,
-          columns.dead, columns.quaternions, columns.possible, columns.negative, timing.slow,
-          timing.bursts, timing.gaps, timing.duplicates, timing.truncated, timing.reader_notes,
-          stale.held,
-          stale.marked, glitches.attitude,
-          units.rates_in_degrees, units.euler_in_degrees, units.force_in_g,
-          units.position_in_millimetres, units.speeds_in_rpm, *frames.CHECKS,
-          rotors.hover, rotors.size, rotors.count, thrust.carried, thrust.other_vehicle,
-          rotors.order_and_spin, moments.unit, thrust.level, clock.attitude, clock.velocity,
-          clock.commands, ground.stands, gyro.bias, answer.commands, saturation.speeds,
-          excitation.axes)
+COLUMNS = (columns.known, columns.incomplete, columns.differentiated, columns.frozen,
+           columns.dead, columns.quaternions, columns.possible, columns.negative, timing.slow,
+           timing.bursts, timing.gaps, timing.duplicates, timing.truncated, timing.reader_notes,
+           rotors.count)
+"""Checks of columns by themselves."""
+
+COMPARISONS = (stale.held, stale.marked, glitches.attitude,
+               units.rates_in_degrees, units.euler_in_degrees, units.force_in_g,
+               units.position_in_millimetres, units.speeds_in_rpm, *frames.CHECKS,
+               rotors.hover, rotors.size, thrust.carried, thrust.other_vehicle,
+               rotors.order_and_spin, moments.unit, thrust.level, clock.attitude, clock.velocity,
+               clock.commands, ground.stands, gyro.bias, answer.commands, saturation.speeds,
+               excitation.axes)
+"""Checks of columns against each other, which one impossible value would decide."""
 
 TOLD = 'commands', 'logging', 'differentiated'
 """Codes of Findings that a diagnosis tells whatever their severity."""
 
-__all__ = ['cautions', 'CHECKS', 'clock_offset', 'ClockOffset', 'command_offset', 'Finding',
-           'findings', 'gravest_first', 'refuse_errors', 'refuse_unfit', 'refuted', 'SEVERITIES',
-           'velocity_offset']
+__all__ = ['cautions', 'COLUMNS', 'COMPARISONS', 'clock_offset', 'ClockOffset', 'command_offset',
+           'Finding', 'findings', 'gravest_first', 'refuse_errors', 'refuse_unfit', 'refuted',
+           'SEVERITIES', 'velocity_offset']
 
 
 def findings(record, vehicle=None):
@@ -64,7 +68,9 @@ def findings(record, vehicle=None):
     of saturation, of the unit of rotor speeds, nor of the order and spin of the rotors.
     """
     with np.errstate(all='ignore'):   # values so large that nothing can be said of them
-        found = [finding for check in CHECKS for finding in check(record, vehicle)]
+        found = [finding for check in COLUMNS for finding in check(record, vehicle)]
+        believable = columns.believable(record)
+        found += [finding for check in COMPARISONS for finding in check(believable, vehicle)]
     return gravest_first(found)
 
 

@@ -7,10 +7,12 @@ import numpy as np
 from quad_ident_ros.data.cutting import without
 from quad_ident_ros.data.differentiated import DIFFERENTIATED, HALF, missing_motion
 from quad_ident_ros.data.quality.finding import Finding
-from quad_ident_ros.data.record import QUATERNION, unit
+from quad_ident_ros.data.record import EULER, FlightRecord, QUATERNION, unit
 
 GROUPS = (('px', 'py', 'pz'), ('vx', 'vy', 'vz'), QUATERNION, ('wx', 'wy', 'wz'))
 """Columns of the motion, of which one alone is of little use, but the height."""
+
+FORCE = ('ax', 'ay', 'az')
 
 PAIRED = dict(zip(('position', 'velocity', 'attitude', 'rate'), GROUPS, strict=True))
 
@@ -144,9 +146,7 @@ def possible(record, vehicle):
     """Find values that are too large for any flight, whatever the unit."""
     found = []
     for name, values in record.columns.items():
-        if unit(name) is None:
-            continue
-        bad = np.abs(values) > LARGEST.get(unit(name), LARGEST_OTHER)
+        bad = _too_large(name, values)
         if bad.any():
             first = int(np.argmax(bad))
             found.append(Finding(
@@ -154,3 +154,21 @@ def possible(record, vehicle):
                 f'{values[first]:.3g} {unit(name)} is not of a flight ({int(bad.sum())} such '
                 'samples)', without(record.t, bad, f'see what writes {name}')))
     return found
+
+
+def believable(record):
+    """Return a record without the signals that hold a value which no flight has."""
+    spoilt = {name for name, values in record.columns.items() if _too_large(name, values).any()}
+    if not spoilt:
+        return record
+    signals = (*GROUPS, EULER, FORCE, record.numbered('cmd'), record.numbered('rotor'))
+    spoilt.update(*(names for names in signals if spoilt.intersection(names)))
+    return FlightRecord(record.t, {name: values for name, values in record.columns.items()
+                                   if name not in spoilt}, record.info)
+
+
+def _too_large(name, values):
+    """Return where a column (N,) holds what no flight has, (N,) bool; unknown ones never do."""
+    if unit(name) is None:
+        return np.zeros(len(values), bool)
+    return np.abs(values) > LARGEST.get(unit(name), LARGEST_OTHER)

@@ -30,8 +30,8 @@ def slow(record, vehicle):
         'slow', 'error', 't',
         f'a sample every {period:.4g} s is too slow to see a vehicle fly; at least every '
         f'{SLOWEST:g} s is needed',
-        't is in seconds: divide it by 1000 where it is in ms, by 1e6 where it is in us; if it '
-        'is right, record faster')]
+        't is in seconds: divide it by 1000 where it is in ms, by 1e6 where it is in us, by 1e9 '
+        'where it is in ns; if it is right, record faster')]
 
 
 def bursts(record, vehicle):

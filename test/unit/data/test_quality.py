@@ -342,6 +342,13 @@ def test_values_that_no_flight_has_are_found_and_their_place_is_named(fault):
     assert finding.severity == severity and 't = 0.0' in finding.where
 
 
+@pytest.mark.parametrize('name', [*P, *V, *W, *A, *CMD])
+def test_one_value_that_no_flight_has_says_nothing_of_units_and_frames(name):
+    record = changed(flight(), **one(flight(), name, 300, 1e300))
+    assert [(finding.code, finding.where.split(',')[0]) for finding in findings(record, VEHICLE)
+            if finding.severity != 'info'] == [('impossible', name)]
+
+
 def test_nothing_but_time_and_unknown_columns_is_no_flight():
     for columns in ({}, {'PX': flight().columns['px']}):
         [finding] = findings(FlightRecord(flight().t, columns), VEHICLE)
