@@ -128,9 +128,9 @@ def lacking(record: FlightRecord, vehicle: Vehicle) -> tuple[Finding, ...]:
             states_of(with_position(record))
     except InputError as error:
         name = record.info.get('source') or record.info.get('name', 'flight')
-        why = str(error).removeprefix(name).lstrip(':, ')
-        return Finding('lacking', 'warning', 'columns', 'diagnose and fit refuse this flight: it '
-                       f'{why}', ''),
+        why = str(error).removeprefix(f'{name}: ').replace(f'{name} has', 'it has', 1)
+        return Finding('lacking', 'warning', 'columns',
+                       f'diagnose and fit refuse this flight: {why}', ''),
     return ()
 
 

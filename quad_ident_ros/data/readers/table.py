@@ -145,10 +145,10 @@ def contents(path: Path) -> list[Content]:
     record = read_csv(path, spoilt=True)
     fields = [name if unit(name) is None else f'{name} ({unit(name)})'
               for name in record.columns]
-    stamps = ((record.t - record.t[0]) * 1e9).round().astype('int64')
     roles = [role for column, role in ROLES.items() if record.has(column)]
-    found: list[Content] = [content_of('rows', 'CSV', stamps, 0, fields, roles)]
-    return found
+    # In s throughout: nanoseconds that stand for seconds are more than 64 bits hold.
+    return [Content('rows', 'CSV', len(record), 0.0, float(record.t[-1] - record.t[0]),
+                    1.0 / record.period(), tuple(fields), tuple(roles))]
 
 
 def contents_of_table(table: Table, kind: str) -> list[Content]:

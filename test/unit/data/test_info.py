@@ -132,6 +132,23 @@ def test_a_flight_that_a_diagnosis_refuses_is_told_with_a_vehicle(tmp_path, caps
         assert words in capsys.readouterr().err
 
 
+def test_a_sample_that_a_diagnosis_refuses_is_told_in_a_sentence():
+    columns = {name: np.where(np.arange(len(SHORT)) == 300, 0.0, values) if name in Q else values
+               for name, values in SHORT.columns.items()}
+    [told] = lacking(type(SHORT)(SHORT.t, columns), VEHICLE)
+    assert told.message.startswith('diagnose and fit refuse this flight: sample 300: the quat')
+
+
+def test_stamps_in_ns_are_told_as_such(tmp_path, capsys):
+    """They are seconds of 2000 years, more than 64 bits of nanoseconds hold."""
+    write_csv(tmp_path / 'f.csv', type(SHORT)(1e9 * (SHORT.t + 60.0), SHORT.columns))
+    code, data = info(capsys, tmp_path / 'f.csv')
+    [stream], [told] = data['streams'], [one for one in data['findings'] if one['code'] == 'slow']
+    assert code == FAULTY and 'ns' in told['remedy']
+    assert stream['duration_s'] == pytest.approx(1e9 * np.ptp(SHORT.t))
+    assert stream['samples'] == len(SHORT)
+
+
 def test_a_part_of_thrust_and_moments_is_told_by_what_is_missing():
     columns = {name: values for name, values in SHORT.columns.items() if name not in CMD}
     columns |= dict.fromkeys(('u2', 'u3', 'u4'), np.zeros(len(SHORT)))
