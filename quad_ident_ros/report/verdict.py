@@ -13,6 +13,7 @@ from quad_ident_ros.diagnose.result import (
     Value,
 )
 from quad_ident_ros.effects.registry import titled
+from quad_ident_ros.greybox.nuisances import CLOCK
 
 NOTHING_TO_CLOSE = 'the velocity gap is not above the noise, so there is nothing to close'
 
@@ -20,8 +21,10 @@ NOTHING_TO_CLOSE = 'the velocity gap is not above the noise, so there is nothing
 def verdict_line(found: Diagnosis) -> str:
     """Return the verdict as a sentence without its full stop."""
     if found.verdict == ('none',):
-        return ('none: the nominal vehicle explains the flights to within noise and tolerance, '
-                'so no effect is named')
+        names = ', '.join(_needed(found))
+        beside = f', with {names} estimated for each flight,' if names else ''
+        return (f'none: the nominal vehicle{beside} explains the flights to within noise and '
+                'tolerance, so no effect is named')
     if found.undetermined:
         certain = f'; certain: {_listed(found.sure)}' if found.sure else ''
         return ('undetermined: the flights cannot tell between '
@@ -68,6 +71,8 @@ def next_step(found: Diagnosis) -> str:
     if _named(found):
         return ('Next: "--out-vehicle FILE" writes the vehicle with these effects, and '
                 '"quad_ident export FILE" puts them into your simulator.')
+    if _needed(found):
+        return _mend_flights(found)
     return 'Next: nothing; the simulation matches these flights.'
 
 
@@ -108,6 +113,23 @@ def sentence(text: str) -> str:
 def _named(found: Diagnosis) -> list[Ranked]:
     rows = {row.effect: row for row in found.ranking}
     return [rows[name] for name in found.verdict if name in rows]
+
+
+def _needed(found: Diagnosis) -> tuple[str, ...]:
+    """Return the nuisances without which the nominal vehicle is off by more than the tolerance."""
+    gap = found.gap
+    off = any(gap.before[name] ** 2 - gap.before_own[name] ** 2 > tolerance ** 2
+              for name, tolerance in found.tolerance.items())
+    return tuple(found.nuisances or ()) if off else ()
+
+
+def _mend_flights(found: Diagnosis) -> str:
+    """Return what to do where the nominal vehicle needs nuisances to explain the flights."""
+    hidden = (found.nuisances or {}).get(CLOCK, {}).get('hidden_delay')
+    delay = (f'; a delay of the commands of up to {1e3 * hidden:.0f} ms may be among them'
+             if hidden else '')
+    return (f'Next: mend {", ".join(_needed(found))} of the flights: without the estimates, which '
+            f'"--verbose" shows, the simulation does not match them{delay}.')
 
 
 def _them(found: Diagnosis) -> str:

@@ -297,6 +297,29 @@ def test_the_verdict_of_nothing_known_names_no_effect(terminal, found):
     assert 'the simulation matches these flights' in step
 
 
+def test_a_vehicle_that_needs_a_clock_offset_is_not_said_to_match(terminal, page, found):
+    """Without it the gap is above the tolerance, and the commands may be late instead."""
+    clock = {'clock_offset': {'what': 'late', 'unit': 's', 'values': [[0.046], [0.041]],
+                              'held_out': [0.039], 'hidden_delay': 0.067}}
+    changes = {'verdict': ('none',), 'fly_next': None, 'nuisances': clock, 'findings': ()}
+    own = found.gap.before_own
+
+    def said(above):
+        before = {name: (own[name] ** 2 + (above * tolerance) ** 2) ** 0.5
+                  for name, tolerance in found.tolerance.items()}
+        gap = replace(found.gap, before=before, without={})
+        verdict, _, step, *_ = terminal(gap=gap, **changes).splitlines()
+        assert step in unescape(page(gap=gap, **changes))
+        return verdict, step
+
+    verdict, step = said(above=1.1)
+    assert verdict.startswith('verdict: none: the nominal vehicle, with clock_offset estimated')
+    assert 'does not match' in step and '67 ms' in step and 'clock_offset' in step
+    verdict, step = said(above=0.9)
+    assert verdict.startswith('verdict: none: the nominal vehicle explains')
+    assert 'nothing; the simulation matches' in step
+
+
 def test_text_from_records_is_no_markup(page):
     assert 'height &lt;5 m' in page(unknown=(Unexplained('Fz', 'height <5 m', 0.4, (0.0, 0.0),
                                                          0.03, 'N'),))
