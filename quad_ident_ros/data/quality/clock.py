@@ -28,7 +28,7 @@ ANSWER = 1.0      # s, within which the motion may answer to errors of the attit
 SEVERAL = 5.0     # standard errors from which on an offset or a drift of the states is one: the
                   # motion answers to errors of the attitude, which shifts it by one or two of them
 MANY = 4.0        # and one of the commands, whose errors know nothing of the motion
-LONGEST_LAG = 0.1 # s, of motors; those of multirotors take 0.02 to 0.05
+LONGEST_LAG = 0.1  # s, of motors; those of multirotors take 0.02 to 0.05
 FEW = 0.05        # share of samples that may be left out, as their attitude is off
 SCATTER = 4.0     # mean square of errors over standard errors from which on they wander
 

@@ -159,18 +159,19 @@ def _motion(grid, attitude):
         # The thrust is then only known to lie along z of the body: what tells is its tilt.
         speeding, force = speeding[:, :2], force[:, :2]
     sure = correlation(speeding, force)[0]
-    if sure > SURE:
-        return []   # a height below zero is then no more than another origin
+    turned = [Finding('frame_sign', 'error', f'p{axis}, v{axis}',
+                      f'the velocity along {axis} changes the other way than the tilt and the '
+                      'thrust say', f'turn the sign of p{axis} and v{axis}, or the attitude')
+              for axis in _opposed(speeding, force)]
+    if sure > SURE:     # a height below zero is then no more than another origin
+        return turned if grid.record.has('ax', 'ay', 'az') else []
     if sure < -SURE:
         return [Finding('frame_ned', 'error', 'position, velocity, attitude, rate',
                         'the thrust pushes down: the world axes are NED and those of the body FRD',
                         'turn the world into ENU (x east, y north, z up) and the body into FLU')]
     swapped = speeding[:, [1, 0]] if speeding.shape[1] == 2 else world_vector(speeding, 'NED')
     if correlation(swapped, force)[0] < max(SURE, sure + BETTER):
-        return [Finding('frame_sign', 'error', f'p{axis}, v{axis}',
-                        f'the velocity along {axis} changes the other way than the tilt and the '
-                        'thrust say', f'turn the sign of p{axis} and v{axis}, or the attitude')
-                for axis in _opposed(speeding, force)] or _height(grid.record)
+        return turned or _height(grid.record)
     return [Finding('frame_ned', 'error', 'position, velocity',
                     'the velocity changes as the specific force says only where it is read as '
                     'NED', 'turn position and velocity into ENU (x east, y north, z up)')]

@@ -32,6 +32,7 @@ GRAVE = {
     'frame_sign, height': (('pz',), np.negative),
     'frame_sign, speed': (('vx',), np.negative),
     'frame_sign, mirrored': (('px', 'vx'), np.negative),
+    'frame_sign, z down alone': (('pz', 'vz'), np.negative),
     'frame_sign, gyro': (('wy',), np.negative),
     'negative, speeds': (CMD, np.negative),
     'thrust, none': (CMD, lambda values: 1e-3 * values),
