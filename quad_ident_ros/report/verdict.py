@@ -12,6 +12,7 @@ from quad_ident_ros.diagnose.result import (
     Ranked,
     Value,
 )
+from quad_ident_ros.diagnose.rules import RULES
 from quad_ident_ros.effects.registry import titled
 from quad_ident_ros.greybox.nuisances import CLOCK
 
@@ -36,6 +37,11 @@ def verdict_line(found: Diagnosis) -> str:
     share = (f'{100 * max(found.gap.closed, 0.0):.0f} % of the velocity gap above the noise'
              if above_noise(found.gap) else 'part of the gap' if unknown else 'the gap')
     share += ', and the rest is unknown' if unknown else ''
+    if is_uncertain(found):
+        best = '; '.join(f'{titled(row.effect)}, {values_of(row)}, probability '
+                         f'{row.probability:.2g}' for row in named)
+        return (f'uncertain: the best known explanation of {share} is less likely than '
+                f'something else that acts alike: {best}')
     if len(named) == 1:
         return f'{titled(named[0].effect)}, {values_of(named[0])}, explains {share}'
     return f'{len(named)} effects explain {share}: ' + '; '.join(
@@ -68,12 +74,21 @@ def next_step(found: Diagnosis) -> str:
     if found.fly_next:
         return ('Next: fly what the table "what to fly next" proposes, and diagnose again with '
                 'the new flights.')
+    if is_uncertain(found):
+        return ('Next: fly again, longer and with more motion, and diagnose all flights: these '
+                'do not show what it is, which may be nothing that has a name here.')
     if _named(found):
         return ('Next: "--out-vehicle FILE" writes the vehicle with these effects, and '
                 '"quad_ident export FILE" puts them into your simulator.')
     if _needed(found):
         return _mend_flights(found)
     return 'Next: nothing; the simulation matches these flights.'
+
+
+def is_uncertain(found: Diagnosis) -> bool:
+    """Whether each effect that a verdict names is less likely present than not."""
+    named = _named(found)
+    return bool(named) and all(row.probability < RULES.present for row in named)
 
 
 def above_noise(gap: Gap | GapGivenAttitude | GapInSimulator) -> bool:

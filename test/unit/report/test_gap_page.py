@@ -286,6 +286,20 @@ def test_each_of_several_effects_is_told_with_its_size(terminal, found):
     assert size.startswith('With these effects, ')
 
 
+def test_effects_that_are_less_likely_than_not_are_no_certain_verdict(terminal, found):
+    first, second = (replace(row, probability=value) for row, value in zip(
+        found.ranking[:2], (0.37, 0.16), strict=True))
+    names = first.effect, second.effect
+    verdict, _, step, *_ = terminal(verdict=names, ranking=(first, second),
+                                    fly_next=None).splitlines()
+    assert verdict.startswith('verdict: uncertain: the best known explanation of ')
+    assert 'probability 0.37' in verdict and verdict.endswith('probability 0.16')
+    assert step.startswith('Next: fly again') and '--out-vehicle' not in step
+    likely = replace(first, probability=0.6)
+    verdict = terminal(verdict=names, ranking=(likely, second)).splitlines()[0]
+    assert verdict.startswith('verdict: 2 effects explain ')
+
+
 def test_the_verdict_of_nothing_known_names_no_effect(terminal, found):
     gap = replace(found.gap, without={})
     unknown, size, step, *_ = terminal(verdict=('unknown',), gap=gap).splitlines()
