@@ -54,24 +54,6 @@ def other_actuators(best: tuple, causes: Sequence[Candidate], z: np.ndarray, veh
     return found
 
 
-def of_one_ratio(best: tuple, causes: Sequence[Candidate], z: np.ndarray, vehicle: Vehicle
-                 ) -> list[tuple[tuple, np.ndarray]]:
-    """
-    Return [(set, vector)] with others that change the same ratio in the place of a set's one.
-
-    As thrust curves in the place of a mass: what takes over all of it is far for a slope.
-    """
-    found = []
-    for cause in effects_in(best):
-        ratio = EFFECTS[cause.effect].ratio
-        for other in causes:
-            if ratio is not None and EFFECTS[other.effect].ratio == ratio and other != cause:
-                start = z.copy()
-                start[list(cause.columns)] = nominal(vehicle)[list(cause.columns)]
-                found.append((key_of((other, *(one for one in best if one != cause))), start))
-    return found
-
-
 def _swapped(chosen: tuple, top: tuple) -> bool:
     """Return whether sets differ by one effect, in whose place there is another candidate."""
     apart = set(chosen) ^ set(top)

@@ -22,7 +22,7 @@ from quad_ident_ros.diagnose.fitted import (
     within_bounds,
 )
 from quad_ident_ros.diagnose.frame import blocks_at, Frame, frame_at, normal_at
-from quad_ident_ros.diagnose.promising import of_one_ratio, other_actuators, promising, REFITS
+from quad_ident_ros.diagnose.promising import other_actuators, promising, REFITS
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.diagnose.selection import posteriors, Selection
 from quad_ident_ros.diagnose.standard_errors import joint_of
@@ -63,7 +63,6 @@ def select(flights: list[Flight], vehicle: Vehicle, causes: tuple[Candidate, ...
                               on_progress(done + rest * share))
             if turn == PASSES or not search.weigh_anew():
                 break
-    search.try_in_place(of_one_ratio)
     search.settle()
     on_progress(1.0)
     return search.selection()
@@ -248,13 +247,9 @@ class _Search:
                                          len(self.flights))
             everyone.values.flat[:] = distances[len(self.columns):]
             self.fit(chosen, start, everyone, self.frame.slopes.starts)
-        self.try_in_place(other_actuators)
-
-    def try_in_place(self, others: Callable[..., list[tuple[tuple, np.ndarray]]]) -> None:
-        """Fit the best set with others in the place of some of its causes."""
         best = self.best_key()
         fit = self.tried[best]
-        for chosen, start in others(best, self.causes, fit.z, self.vehicle):
+        for chosen, start in other_actuators(best, self.causes, fit.z, self.vehicle):
             if chosen not in self.tried:
                 self.fit(chosen, start, fit.nuisances, fit.starts)
 

@@ -11,7 +11,7 @@ import pytest
 from quad_ident_ros.diagnose import select as selecting
 from quad_ident_ros.diagnose.candidates import Candidate, candidates, nuisance_candidates
 from quad_ident_ros.diagnose.fitted import Fitted, refitted
-from quad_ident_ros.diagnose.promising import of_one_ratio, other_actuators
+from quad_ident_ros.diagnose.promising import other_actuators
 from quad_ident_ros.diagnose.rules import RULES
 from quad_ident_ros.diagnose.select import _Search
 from quad_ident_ros.diagnose.selection import posteriors, Selection
@@ -191,19 +191,3 @@ def test_from_a_delay_that_does_the_work_of_a_lag_the_lag_is_found():
     # Both have one parameter: in variances of the noise, far more than chance leaves.
     same = fit(late.z, (causes['actuation_delay'],), found.noise)
     assert same.cost > found.cost + 30.0
-
-
-def test_in_the_place_of_a_mass_each_thrust_curve_is_tried_beside_the_rest():
-    """From a vehicle that is 7 % heavier the slopes do not tell how well a curve would do."""
-    vehicle = load_vehicle('hummingbird')
-    causes = candidates([], vehicle, RULES)
-    mass, drag = (next(one for one in causes if one.effect == name)
-                  for name in ('mass_offset', 'rotor_drag'))
-    z = nominal(vehicle)
-    z[INDEX['mass_offset.mass']], z[INDEX['rotor_drag.coefficient']] = 0.04, 0.2
-    found = of_one_ratio((drag, mass), causes, z, vehicle)
-    assert {cause.label for chosen, _ in found for cause in chosen} == {
-        drag.label, *(one.label for one in causes if one.effect == 'thrust_scale')}
-    for _, start in found:
-        assert start[INDEX['mass_offset.mass']] == 0.0
-        assert start[INDEX['rotor_drag.coefficient']] == 0.2
