@@ -135,7 +135,8 @@ def test_known_truth_as_three_processes(graph, processes, tmp_path):
             np.testing.assert_allclose(read.t, published.t, rtol=0, atol=1e-12)
             assert list(read.columns) == list(published.columns)
             for name, values in published.columns.items():
-                np.testing.assert_array_equal(read.columns[name], values)
+                # An angle's last digit depends on how many are computed from quaternions at once.
+                np.testing.assert_allclose(read.columns[name], values, rtol=1e-14, atol=1e-16)
     again = identify(from_bag, Settings(seed=SEED))
     for name, fit in again.methods.items():
         np.testing.assert_allclose(parameter_table(fit), table_of(results.each[name][0]),
