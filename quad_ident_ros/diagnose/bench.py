@@ -80,11 +80,6 @@ class Bench:
         """Return the time (s) ahead at which effects are judged."""
         return gaps.horizon_of(self.flights, self.rules)
 
-    @property
-    def period(self) -> float:
-        """Return the longest usual time (s) between two samples of the flights learnt from."""
-        return max(float(np.median(np.diff(flight.course.t))) for flight in self.flights)
-
     def model(self, chosen: tuple, estimate: Estimate, fixed: np.ndarray | None = None) -> Model:
         """
         Return the Model of a set and its Estimate.

@@ -11,46 +11,27 @@ from quad_ident_ros.diagnose.fitted import Fitted
 from quad_ident_ros.diagnose.probability import by_effect
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.diagnose.selection import Selection
-from quad_ident_ros.effects.registry import EFFECTS, PARAMETERS
-from quad_ident_ros.greybox.parameters import SPLIT
-
-RESPONSE = {'delay': 1.0, 'lag': 0.5}
-"""Periods that a delay, or a lag but for a seventh of it, takes where it is over in one."""
 
 
-def doubts_of(selection: Selection, named: Sequence[Candidate], rules: Rules, period: float
+def doubts_of(selection: Selection, named: Sequence[Candidate], rules: Rules
               ) -> dict[Candidate, Fitted]:
     """
     Return the causes between which the flights of a Selection cannot tell; none where they can.
 
     Those of the named ones whose effects are not sure, and those that may be there in their place,
-    each with the Fitted set that speaks for it: {cause: Fitted}. period: s between samples.
+    each with the Fitted set that speaks for it: {cause: Fitted}.
     """
     total = by_effect(selection.posterior)
     present = {cause.effect for cause in named}
-    others = [cause for cause in selection.posterior if cause.effect not in present]
+    others = [cause for cause in selection.posterior
+              if cause.effect not in present and total[cause.effect] > rules.doubt]
     found: dict[Candidate, Fitted] = {}
     for cause in named:
-        rivals = {}
-        for other, fitted in rivals_of(selection, cause, others, rules).items():
-            alike = (is_between_samples(cause, selection.best, period)
-                     and is_between_samples(other, fitted, period))
-            doubt = rules.between_samples if alike else rules.doubt
-            if total[cause.effect] < 1.0 - doubt and total[other.effect] > doubt:
-                rivals[other] = fitted
+        rivals = ({} if total[cause.effect] >= 1.0 - rules.doubt else
+                  rivals_of(selection, cause, others, rules))
         if rivals:
             found |= {cause: selection.best, **rivals}
     return found
-
-
-def is_between_samples(cause: Candidate, fitted: Fitted, period: float) -> bool:
-    """Return whether a cause is a delay or a lag that is over before the next sample."""
-    kind = EFFECTS[cause.effect].actuator
-    columns = list(cause.columns)
-    # That of a limited slew depends on how far the speed is from its command.
-    if kind is None or any(PARAMETERS[column - SPLIT][1].unit != 's' for column in columns):
-        return False
-    return float(np.sum(fitted.estimate.z[columns])) <= RESPONSE[kind] * period
 
 
 def rivals_of(selection: Selection, cause: Candidate, others: Sequence[Candidate], rules: Rules

@@ -73,10 +73,8 @@ class Rules:
       half: share of the closable gap from which on the effects that matter are named although each
         of them is less probable than that, if nothing else is: most of it has their cause.
       doubt: probability of a rival from which on it is not ruled out; an effect of 1 - doubt is
-        sure. between_samples: that between a delay and a lag that are both over before the next
-        sample, where the flights show little and logs nothing of when a command arrives: only
-        very strong evidence counts. instead: how many times the odds of a rival must be greater
-        without an effect than with it.
+        sure. instead: how many times the odds of a rival must be greater without an effect than
+        with it.
       material: share of the closable gap that an effect must close to be in the verdict: less is
         below what a change of the weather or of a battery does.
       lost: share of the floor of the tolerance that must be lost, too: as much as a material share
@@ -135,7 +133,6 @@ class Rules:
     present: float = 0.5
     half: float = 0.5
     doubt: float = 0.12
-    between_samples: float = 1.0 / 150.0
     instead: float = 2.0
     calibration: tuple[float, float, float, float] = (-6.08, 5.07, 1.53, 0.5)
     companion: tuple[float, float] = (0.1, 3.0)

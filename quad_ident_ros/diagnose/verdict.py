@@ -44,8 +44,7 @@ def verdict_of(bench: Bench, judged: Judgement, causes: tuple,
     # A flight that differs vetoes `none`; effects are what the others show, and it is named.
     unknown = (bool(judged.unexplained or judged.stand_ins)
                or not named and any(one.differs for one in checks))
-    doubts = {} if unknown else doubts_of(
-        bench.selection, tuple(named), rules, bench.period)
+    doubts = {} if unknown else doubts_of(bench.selection, tuple(named), rules)
     total = told_apart(judged.probability, bench.selection.posterior,
                        [cause for cause in named if cause in doubts])
     minor = tuple(Minor(cause.effect, total[cause.effect], judged.weights[cause].contribution)
