@@ -237,8 +237,12 @@ def _doubt(where: str, values: np.ndarray, kinds: Sequence[str]) -> InputError:
     what = (f'could be {" or ".join(map(described, kinds))};' if kinds else
             'are of no kind that is known by its size, nor rotor speeds near those of hover; give '
             'the vehicle that flew, or')
-    line = ('{kind: ' + kinds[0] + '}' if kinds else
-            '{kind: pwm, minimum: ..., maximum: ...}')
+    if kinds:
+        line = '{kind: ' + kinds[0] + '}'
+    elif -1.001 <= low < 0 and high <= 1.001:
+        line = '{kind: normalised, minimum: -1, maximum: 1}'
+    else:
+        line = '{kind: pwm, minimum: ..., maximum: ...}'
     return InputError(f'{where}: the outputs, {low:.6g} to {high:.6g}, {what} write into the '
                       f'vehicle file what they are, such as motors: {line}, or into a mapping as '
                       f'actuators: {line}; kinds are {", ".join(KINDS)}')

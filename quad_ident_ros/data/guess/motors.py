@@ -24,8 +24,8 @@ from quad_ident_ros.data.record import INPUTS
 from quad_ident_ros.data.signal_kind import kinds_of, TITLES
 
 AROUND = (1, -1), (-1, -1), (-1, 1), (1, 1)     # forward, left: front right to front left
-SPEEDS = 'rad/s', 'rpm'
-SLOWEST = 20.0          # rad/s or rpm: no rotor that flies turns more slowly
+SPEEDS = 'rad/s', 'rpm', 'krpm'
+SLOWEST = 20.0          # rad/s: no rotor that flies turns more slowly
 FEWEST, MOST = 3, 12    # motors
 CELLS = 2.0, 100.0      # V: one cell that is empty, to over 20 in series; more is in mV
 
@@ -41,7 +41,7 @@ def motors(draft: Draft) -> None:
     measured = next((names for names in (*speeds, *reported) if names not in asked), None)
     if measured:
         values, unit = draft.logged(measured), _unit_of(draft, measured)
-        if np.nanmin(values) >= 0 and np.nanmedian(values) > SLOWEST:
+        if np.nanmin(values) >= 0 and np.nanmedian(values) * factor_of('rotor1', unit) > SLOWEST:
             draft.take([f'rotor{k}' for k in range(1, len(measured) + 1)], measured, unit,
                        role='rotors', said=f'measured rotor speeds in {unit}')
     if set(INPUTS) <= set(draft.free) and all(column.names == (role,)
@@ -82,8 +82,8 @@ def battery(draft: Draft) -> None:
 
 def _unit_of(draft: Draft, names: list[str]) -> str:
     """Return the unit of rotor speeds by their names, rad/s where these say none."""
-    return draft.unit_of(names, SPEEDS) or (
-        'rpm' if any('rpm' in draft.names[name] for name in names) else 'rad/s')
+    said = (unit for unit in ('krpm', 'rpm') if any(unit in draft.names[name] for name in names))
+    return draft.unit_of(names, SPEEDS) or next(said, 'rad/s')
 
 
 def _numbered(draft: Draft, pattern: re.Pattern) -> list[list[str]]:

@@ -8,8 +8,8 @@ from quad_ident_ros.data.columns import FORCE, POSITION, RATE, VELOCITY
 from quad_ident_ros.data.record import QUATERNION
 
 UNIT = re.compile(r'[\[(]\s*([^\])]*)\s*[\])]\s*$')
-ENDING = re.compile(r'_(ns|us|usec|ms|msec|s|sec|secs|seconds|mm|cm|m|deg|rad|dps|radps|rpm|g|'
-                    r'mv|v)$')
+ENDING = re.compile(r'_(ns|us|usec|ms|msec|s|sec|secs|seconds|mm|cm|m|deg|rad|dps|radps|rpm|krpm|'
+                    r'g|mv|v)$')
 UNITS = {'usec': 'us', 'µs': 'us', 'msec': 'ms', 'sec': 's', 'secs': 's', 'seconds': 's',
          'dps': 'deg/s', '°/s': 'deg/s', 'degps': 'deg/s', 'radps': 'rad/s', '°': 'deg',
          'degrees': 'deg', 'radians': 'rad', 'm/s2': 'm/s^2', 'm/s²': 'm/s^2', 'm/s/s': 'm/s^2',
@@ -72,7 +72,7 @@ FORCES = re.compile(r'(^|_)thrust_?\d')
 """Of commands that may be forces, unless they are shares of full thrust."""
 
 SPEED = re.compile(r'(^|_)(r|(?<!_)[nw]|omega|omega_m|rotor|rotor_speed|rotor_vel|'
-                   r'rotor_velocities|motor_rpm|motor_speed|rpm|erpm|esc_rpm|esc_speed|prop|'
+                   r'rotor_velocities|motor_k?rpm|motor_speed|k?rpm|erpm|esc_rpm|esc_speed|prop|'
                    r'prop_speed|propeller)(?:_(?:meas|measured|actual|feedback))?_?(\d{1,2})$')
 BATTERY = re.compile(r'(^|_)(vbat|vbatt|v_bat|bat_v|battery|battery_voltage|voltage|vbat_latest|'
                      r'battery_v|bat_volt|supply_voltage)$')

@@ -83,6 +83,19 @@ def test_pwm_and_dshot_that_hover_alike_are_refused(tmp_path):
     refused(with_outputs(tmp_path, values), 'PWM, 1000 to 2000 or DSHOT', vehicle=heavy)
 
 
+def test_signals_from_minus_one_to_one_are_not_taken_for_0_to_1(tmp_path):
+    """Their lower half would read as motors that are off."""
+    strong = replace(VEHICLE, speed_max=2500.0)
+    path = with_outputs(tmp_path, (SPEEDS - 100) / 1200 - 1)
+    refused(path, 'are of no kind', '{kind: normalised, minimum: -1, maximum: 1}', vehicle=strong)
+    told = Actuators(kind='normalised', minimum=-1.0, maximum=1.0)
+    read = commanded([load(path)], strong, told)[0]
+    np.testing.assert_allclose(read.stack(*CMD), SPEEDS, rtol=1e-9)
+    motors = motors_from('v', {'kind': 'normalised', 'minimum': -1, 'maximum': 1})
+    read = load(path, vehicle=replace(strong, motors=motors))
+    np.testing.assert_allclose(read.stack(*CMD), SPEEDS, rtol=1e-9)
+
+
 @pytest.mark.parametrize('factor', [1.0, 30 / np.pi])
 def test_speeds_and_rpm_are_told_by_the_hover_speed(tmp_path, factor):
     read = load(with_outputs(tmp_path, SPEEDS * factor), vehicle=VEHICLE)
@@ -198,6 +211,7 @@ def test_kinds_without_a_vehicle_are_by_size_alone():
              (300, 1700): 'dshot'}
     for values, kind in kinds.items():
         assert kinds_of(np.array(values)) == (kind,)
+    assert kinds_of(np.array([-1.0, 0.3, 0.9, -0.001])) == ('normalised',)
     assert kinds_of(np.zeros(3)) == () and kinds_of(np.array([np.nan, -1.0])) == ()
 
 

@@ -264,11 +264,11 @@ def test_thrusts_are_commands_where_they_are_shares_of_the_full_one(tmp_path):
 @pytest.mark.parametrize(('signals', 'speeds'), [
     ('motor{}', 'motor{}_rpm'), ('pwm_{}', 'esc{}_rpm'), ('m{}_out', 'm{}_rpm'),
     ('rcou.C{}', 'rotor{}_speed_rpm'), ('cmd_rpm_{}', 'rpm_{}'), ('rpm_cmd_{}', 'rpm_meas_{}'),
-    ('command{}_rpm', 'omega{}')])
+    ('command{}_rpm', 'omega{}'), ('cmd{}_krpm', 'rotor{}_krpm'), ('m{}_out', 'krpm_{}')])
 @pytest.mark.parametrize('first', [True, False])
 def test_signals_and_measured_speeds_are_told_apart(tmp_path, signals, speeds, first):
     """Whichever comes first in the table, also where they differ by a unit alone."""
-    rpm = 30 / np.pi * FLIGHT.stack(*CMD)
+    rpm = 30 / np.pi * FLIGHT.stack(*CMD) * (1e-3 if 'krpm' in speeds else 1.0)
     by_speed = 'rpm' in signals
     asked = {signals.format(k): values for k, values in enumerate(
         (rpm if by_speed else (FLIGHT.stack(*CMD) - 100) / 1600).T, 1)}
