@@ -13,7 +13,7 @@ from quad_ident_ros.data.mapping import Actuators, actuators_from, chosen_output
 from quad_ident_ros.data.measured_speeds import by_measured
 from quad_ident_ros.data.motor_order import order_of, rotors_of
 from quad_ident_ros.data.record import FlightRecord
-from quad_ident_ros.data.signal_kind import described, kinds_of
+from quad_ident_ros.data.signal_kind import described, kinds_of, MANY
 from quad_ident_ros.data.thrust_curve import said as curve_said
 from quad_ident_ros.data.thrust_curve import share_of_thrust
 from quad_ident_ros.data.thrust_level import FULL_SPEED, full_speed, levelled
@@ -33,7 +33,7 @@ ACTUATORS = 'actuators'
 """Info of a live record: what its outputs are, as the section of a mapping says it."""
 BY_MOTORS = 'by_motors'
 """Info of a record: its commands are as uncertain as the vehicle file says that its motors are."""
-BEYOND, MANY = 0.05, 0.01   # of the range and of the samples: more is another kind of signal
+BEYOND = 0.05       # of the range: what is further out is another kind of signal
 
 
 def commanded(records: Sequence[FlightRecord], vehicle: Vehicle | None,

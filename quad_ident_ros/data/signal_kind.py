@@ -9,6 +9,7 @@ from quad_ident_ros.model.motors import KINDS, TO_SPEED
 PWM = 800.0, 2200.0     # us, between which pulses to motors lie
 LEAST = 0.1             # of full throttle, which a flight exceeds for a tenth of the time
 BACKWARDS = -0.999, -0.01   # of signals from -1 to 1; -1 alone may stand for off, -0.01 be noise
+MANY = 0.01             # of the signals: fewer out of a range are glitches, more another kind
 LEAST_DUTY = 10000.0    # a sixth of 65535: less lifts nothing
 NEAR_HOVER = 0.75, 1.33  # of the hover speed: thrust coefficients are off by less than half
 APART = 1.15            # times in speed, a third in thrust: vehicle files may err by less
@@ -23,8 +24,8 @@ def kinds_of(values: np.ndarray, hover: float | None = None,
     """
     Return the kinds (of KINDS) that values may be, the likeliest first.
 
-    Values of 0 and less are motors that are off; where signals of the size 1 are below it too,
-    their range is another one, which only the user knows.
+    Values of 0 and less are motors that are off; where signals of 1 and less are often
+    below 0, they have another range, which their size does not tell.
     Args: values, any shape; hover: rad/s, the hover speed of the vehicle, or None; ends: its
     lowest and highest speed, rad/s, by which PWM and DSHOT of the same size are told apart.
     """
@@ -34,8 +35,8 @@ def kinds_of(values: np.ndarray, hover: float | None = None,
     low, high, usual = float(on.min()), float(on.max()), float(np.median(on))
     whole = bool(np.all(on == np.round(on)))
     if high <= 1.001:
-        signed = ((values > BACKWARDS[0]) & (values < BACKWARDS[1])).any()
-        return () if signed else ('normalised',)
+        below = np.mean((values > BACKWARDS[0]) & (values < BACKWARDS[1]))
+        return () if below > MANY else ('normalised',)
     if 2.0 < high <= 100.001:
         return ('percent',)
     found = []

@@ -188,8 +188,8 @@ def _is_numbers(row: str, separator: str, comma: bool) -> bool:
     return len(cells) > 1 and numbers + dates >= max(2, 0.5 * sum(map(bool, cells)))
 
 
-_UNITS = frozenset('s sec ms us ns m mm cm m/s mm/s cm/s rad deg rad/s deg/s dps rpm g mg m/s2 '
-                   'm/s^2 m/s² v mv us pwm % 1 - n'.split())
+_UNITS = frozenset('s sec ms us ns m mm cm m/s mm/s cm/s rad deg rad/s deg/s dps rpm krpm g mg '
+                   'm/s2 m/s^2 m/s² v mv us pwm % 1 - n'.split())
 
 
 def _is_units(cells: list[str]) -> bool:
