@@ -11,10 +11,9 @@ import time
 from std_srvs.srv import Trigger
 
 from benchmarks import load
-from quad_ident_ros.data.csv import read_csv
-from quad_ident_ros.data.replay import read_bag
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.nodes.launched import Launched
+from soak.loss import lost
 from soak.rig import Finding, slowness, Watch
 
 NODES = ('recorder', 'identifier', 'diagnoser', 'simulator')
@@ -129,20 +128,3 @@ def flies(watch: Watch) -> bool:
         watch.flown = time.monotonic()      # it has time to begin
         watch.start.call_async(Trigger.Request())
     return not landed
-
-
-def lost(recording: Path, newest: int) -> float:
-    """
-    Return how much of a recording is not on disk, s.
-
-    Args: recording: its folder; newest: the stamp of the newest row that it had, ns. Raises
-    InputError where bag or CSV cannot be read.
-    """
-    flights = read_bag(recording / 'bag')
-    bag = flights[-1].info['start_ns'] + round(1e9 * flights[-1].t[-1])
-    tables = sorted(recording.glob('flight_*.csv'),
-                    key=lambda path: int(path.stem.rpartition('_')[2]))
-    table = read_csv(tables[-1])
-    # The table begins with the first sample of the bag.
-    rows = flights[-1].info['start_ns'] + round(1e9 * (table.t[-1] - table.t[0]))
-    return max(newest - bag, newest - rows, 0) * 1e-9
