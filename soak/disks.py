@@ -56,7 +56,8 @@ WRITTEN = {
     'demo': ('in/kept', 'demo -o in'),
     'demo --gap': ('in/kept', 'demo --gap -o in'),
 }
-# Runs a command, which meets what happens just when it opens or renames its first file in `in`.
+# Runs a command, which meets what happens just when it opens or renames its first file in `in`
+# after it has tried whether it may.
 CHILD = """
 import os
 import shutil
@@ -64,11 +65,11 @@ import subprocess
 import sys
 
 place, event, what = sys.argv[1:4]
-happened = False
+tried = happened = False
 
 def hook(name, values):
     global happened
-    if happened or name != event or not isinstance(values[0], str | os.PathLike):
+    if not tried or happened or name != event or not isinstance(values[0], str | os.PathLike):
         return
     if name == 'open' and not values[2] & (os.O_WRONLY | os.O_RDWR):
         return
@@ -79,8 +80,15 @@ def hook(name, values):
         else:
             subprocess.run(['mount', '-o', 'remount,ro', place], check=True)
 
+def check_outputs(options):
+    global tried
+    check(options)
+    tried = True
+
 sys.addaudithook(hook)
+from quad_ident_ros.cli import outputs
 from quad_ident_ros.cli.main import main
+check, outputs.check_outputs = outputs.check_outputs, check_outputs
 code = main(sys.argv[4:])
 sys.exit(code if happened else 99)
 """

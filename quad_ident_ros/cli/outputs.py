@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """What no command may write to."""
 
-import os
 from pathlib import Path
+import tempfile
 
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.vehicle import check_ending
@@ -40,10 +40,8 @@ def check_outputs(options):
         for folder in Path(output).parents:
             if folder.exists() and not folder.is_dir():
                 raise InputError(f'{output}: {folder} is a file, no folder; give another path')
-        nearest = next(folder for folder in place.parents if folder.exists())
-        if not os.access(nearest, os.W_OK):
-            raise InputError(f'{output}: nothing can be written into {nearest}; give another '
-                             'path, or see to its permissions')
+        if not place.exists() or place.is_file() or place.is_dir():     # no device, no pipe
+            _try_to_write(output, place)
     for output in _named(options, FILES):
         if Path(output).is_dir():
             raise InputError(f'{output}: this is a folder; name a file')
@@ -63,6 +61,23 @@ def refuse_overwriting(output, inputs):
         if given.exists() and any(place.samefile(given) for place in places):
             raise InputError(f'{output}: this would write over {given}, which is read; give '
                              'another name')
+
+
+def _try_to_write(output, place):
+    """
+    Raise InputError where no file can be made in the folder that is to hold an output.
+
+    Permissions do not tell: root has them all. The file's name is as long as the temporary one of
+    whole_file.replacing.
+    """
+    folder, name = (place, '') if place.is_dir() else (
+        next(one for one in place.parents if one.exists()), place.name)
+    try:
+        with tempfile.NamedTemporaryFile(dir=folder, prefix=f'.{name}'):
+            pass
+    except OSError as error:
+        raise InputError(f'{output}: cannot be written into {folder}: {error.strerror}; give '
+                         'another path, or see to its permissions') from None
 
 
 def _named(options, names):

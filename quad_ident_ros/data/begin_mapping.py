@@ -22,6 +22,7 @@ from quad_ident_ros.data.record import unit
 from quad_ident_ros.data.signal_kind import kinds_of
 from quad_ident_ros.data.tabular import read_text
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.whole_file import write_whole
 
 _NUMBERED = re.compile(r'(\w+)(?: (\d+)|\[(\d+)\])?')     # of PX4, of ArduPilot
 BAGS = ('rosbag1', 'rosbag2')
@@ -49,13 +50,11 @@ def begin_mapping(out: str | Path, path: str | Path, streams: Sequence[Content])
         text = table_text(path, found.mapping, found.doubts, list(table.columns))
     else:
         text = names_text(path, *_outputs(path), _instances(streams))
-    try:
-        out.parent.mkdir(parents=True, exist_ok=True)
-        with open(out, 'x', encoding='utf-8') as file:
-            file.write(text)
-    except FileExistsError:
+    if out.exists():
         raise InputError(f'{out}: there is such a file, which may have been edited; name '
-                         'another') from None
+                         'another')
+    try:
+        write_whole(out, text)
     except OSError as error:
         raise InputError(f'{out}: cannot be written: {error.strerror}') from None
 

@@ -15,6 +15,7 @@ from quad_ident_ros.data.ulog_parse import parse
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.gravity import GRAVITY
 from quad_ident_ros.model.vehicle import Vehicle, vehicle_from_mapping
+from quad_ident_ros.whole_file import write_whole
 
 FULL = 1000.0       # rad/s at full signal where no rpm is logged; only thrust over mass counts
 STATUS = 'vehicle_status'
@@ -58,8 +59,7 @@ def vehicle_of_log(path: Path, mapping: Mapping | None = None) -> Vehicle:
     if not file.exists():
         text = _text(path, motors, coefficient, ratio, speeds, measured)
         try:
-            with open(file, 'x', encoding='utf-8') as out:
-                out.write(text)
+            write_whole(file, text)
         except OSError as error:
             raise InputError(f'{file}: cannot be written: {error.strerror}') from None
         raise InputError(f'{file}: written with what the log knows; a log does not have '

@@ -9,7 +9,7 @@ import pytest
 from reader_checks import SMALL
 
 from quad_ident_ros.cli.main import main
-from quad_ident_ros.cli.outputs import check_outputs
+from quad_ident_ros.cli.outputs import check_outputs, OUTPUTS
 from quad_ident_ros.data.csv import write_csv
 from quad_ident_ros.errors import InputError
 
@@ -60,8 +60,47 @@ def test_folders_that_are_not_there_are_made(tmp_path, monkeypatch, words):
     assert place.is_file() or any(place.iterdir())
 
 
-def test_a_folder_without_permission_is_told_before_the_work(tmp_path, monkeypatch):
-    monkeypatch.setattr('os.access', lambda place, mode: Path(place) != tmp_path)
-    with pytest.raises(InputError, match=f'nothing can be written into {tmp_path};'):
-        check_outputs(Namespace(report=str(tmp_path / 'new' / 'a.html')))
-    check_outputs(Namespace(report=str(tmp_path.parent / 'a.html')))
+@pytest.fixture
+def closed():
+    """Return a folder in which not even root, who has all permissions, can make a file."""
+    folder = Path('/proc')
+    if not folder.is_dir():
+        pytest.skip('no such folder here')
+    return folder
+
+
+@pytest.mark.parametrize('option', OUTPUTS)
+@pytest.mark.parametrize('name', ['a', 'new/a'])
+def test_a_folder_that_cannot_be_written_to_is_told_before_the_work(closed, option, name):
+    ending = {'report': '.html', 'out_vehicle': '.yaml'}.get(option, '')
+    with pytest.raises(InputError, match=f'cannot be written into {closed}: '):
+        check_outputs(Namespace(**{option: f'{closed}/{name}{ending}'}))
+
+
+def test_a_folder_to_write_into_is_tried_itself(closed):
+    with pytest.raises(InputError, match=f'cannot be written into {closed}: '):
+        check_outputs(Namespace(output=str(closed)))
+
+
+def test_a_name_too_long_for_the_disk_is_told_before_the_work(tmp_path):
+    with pytest.raises(InputError, match='File name too long; give another path'):
+        check_outputs(Namespace(json=str(tmp_path / ('a' * 250))))
+
+
+def test_what_is_tried_leaves_nothing_behind(tmp_path):
+    check_outputs(Namespace(report=str(tmp_path / 'new' / 'a.html'), output=str(tmp_path / 'b')))
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize('device', ['/dev/null', '/dev/stdout'])
+def test_a_device_is_written_to_as_it_is(device):
+    check_outputs(Namespace(json=device))
+
+
+@pytest.mark.parametrize(('command', 'words'), [
+    ('diagnose', ['f.csv', '--vehicle', 'iris', '--out-vehicle']),
+    ('fit', ['f.csv', '--vehicle', 'iris', '--free', 'mass', '--out-vehicle'])])
+def test_a_vehicle_is_not_sought_where_it_cannot_be_written(closed, capsys, command, words):
+    """The flight is not there either: what is said first is what is known first."""
+    assert main([command, *words, f'{closed}/real.yaml']) == 2
+    assert f'real.yaml: cannot be written into {closed}: ' in capsys.readouterr().err

@@ -6,6 +6,7 @@ import json
 
 from dataflash_files import copter, dataflash, TYPES
 from flightmaker import changed, flight, px4_samples, ulog, VEHICLE
+from full_disk import file_size_limit
 from hypothesis import given
 from hypothesis import strategies as st
 import numpy as np
@@ -182,6 +183,17 @@ def test_a_mapping_to_begin_with_of_a_log_is_one(tmp_path, capsys):
     assert info(capsys, path, '--write-mapping', out)[0] == 0
     assert load_all(path, load_mapping(out))
     assert 'actuators' in out.read_text()
+
+
+def test_on_a_full_disk_no_part_of_a_mapping_stays(tmp_path, capsys):
+    """It would keep the next try from writing it."""
+    write_csv(tmp_path / 'f.csv', SHORT)
+    out = tmp_path / 'm.yaml'
+    with file_size_limit(64):
+        assert main(['info', str(tmp_path / 'f.csv'), '--write-mapping', str(out)]) == 2
+    assert 'm.yaml: cannot be written: File too large' in capsys.readouterr().err
+    assert [one.name for one in tmp_path.iterdir()] == ['f.csv']
+    assert info(capsys, tmp_path / 'f.csv', '--write-mapping', out)[0] == 0
 
 
 def test_the_mapping_of_a_log_names_its_kind_outputs_and_instances(tmp_path, capsys):

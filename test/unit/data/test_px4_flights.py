@@ -10,6 +10,7 @@ import random
 import struct
 
 from flightmaker import flight, frd, ned, ned_attitude, px4_samples, ulog, VEHICLE
+from full_disk import file_size_limit
 import numpy as np
 from px4_files import (
     controls,
@@ -356,6 +357,14 @@ def test_fit_takes_the_vehicle_file_beside_a_log(tmp_path, capsys):
     path = log(tmp_path, log_of(SMALL, motors=controls(SMALL)))
     assert main(['fit', str(path), '--vehicle', 'auto', '--free', 'inertia']) == 2
     assert str(tmp_path / 'log_vehicle.yaml') in capsys.readouterr().err
+
+
+def test_on_a_full_disk_no_part_of_a_vehicle_file_stays(tmp_path, capsys):
+    path = log(tmp_path, log_of(SMALL, motors=controls(SMALL)))
+    with file_size_limit(64):
+        assert main(['diagnose', str(path), '--vehicle', 'auto']) == 2
+    assert 'log_vehicle.yaml: cannot be written: File too large' in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == [path]
 
 
 def test_a_diagnosis_without_a_vehicle_says_what_the_log_could_fill_in(tmp_path, capsys):
