@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from itertools import combinations
 import math
 from typing import TYPE_CHECKING
 
@@ -22,6 +23,8 @@ GRAVITIES = (0.01, 30.0)    # m/s^2: an asteroid, and Jupiter has 24.8
 FARTHEST = 100.0            # m of a rotor from the centre of mass; tips stay below sound
 SHORTEST_ARM = 1e-3         # m
 MOST_ROTORS = 64
+ONE_PLACE = 0.01            # of an arm between two rotors: less is the same place, typed twice
+BALANCED = 0.1              # of an arm from the axis to the middle of all rotors
 SPEEDS = (1.0, 1e5)         # rad/s at hover: 10 rpm and a million
 GYRATION = (0.01, 5.0)      # radius, in arms: what flies is neither a needle nor a long boom
 FLAT = 10.0     # times the sum of the other two: of a rigid body it is 1, estimates are not exact
@@ -43,10 +46,34 @@ def refuse_absurd(where: str, vehicle: Vehicle) -> None:
         if not low <= value <= high:
             raise InputError(f'{where}: {key}: {value:.6g} {unit} cannot be, expected '
                              f'{low:.3g} to {high:.3g}: {why}')
+    _refuse_one_place(where, vehicle)
     for key, std, most in _deviations(vehicle):
         if std > most:
             raise InputError(f'{where}: {key}: std: {std:.6g} says nothing of it; expected at '
                              f'most {most:.3g}')
+
+
+def _refuse_one_place(where: str, vehicle: Vehicle) -> None:
+    """
+    Raise InputError for two rotors at one place that are not coaxial.
+
+    Files often leave out the height between coaxial rotors. But those turn against one another,
+    and with them the rotors are around the centre of mass all the same.
+    """
+    arm = vehicle.arm_length
+    middle = math.hypot(*np.mean([one.position[:2] for one in vehicle.rotors], axis=0))
+    for (i, one), (j, other) in combinations(enumerate(vehicle.rotors), 2):
+        if math.dist(one.position, other.position) >= ONE_PLACE * arm:
+            continue
+        if one.spin == other.spin:
+            why = 'and turn the same way: coaxial rotors turn against one another'
+        elif middle > BALANCED * arm:
+            why = f'and the middle of all rotors is {middle:.2g} m from the centre of mass'
+        else:
+            continue
+        place = ', '.join(f'{value:g}' for value in one.position)
+        raise InputError(f'{where}: rotors[{i}] and rotors[{j}] are at one place, [{place}] m, '
+                         f'{why}; give each its own place and spin')
 
 
 def _ranges(vehicle: Vehicle) -> Iterator[tuple[str, float, float, float, str, str]]:

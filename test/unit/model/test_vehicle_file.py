@@ -224,8 +224,9 @@ def vehicles(draw):
         draw(st.text(st.characters(categories=('L', 'N')), min_size=1, max_size=20)), mass,
         (0.01 * mass,) * 3, gravity, thrust,
         draw(st.floats(1e-3, 1.0)) * thrust,
-        tuple(Rotor((draw(place), draw(place), draw(place)), draw(st.sampled_from([1, -1])))
-              for _ in range(count)),
+        # Two at one place are refused.
+        tuple(Rotor((draw(place), draw(place), 0.1 * k), draw(st.sampled_from([1, -1])))
+              for k in range(count)),
         draw(st.floats(0, 1e-3)), draw(small), draw(triples),
         tuple(1e-3 * mass * one for one in draw(triples)), lowest,
         draw(st.just(float('inf')) | st.floats(101, 1e5)),
@@ -331,6 +332,32 @@ ABSURD = [
 @pytest.mark.parametrize(('values', 'words'), ABSURD, ids=str)
 def test_a_constant_that_no_multirotor_has_is_refused_with_what_it_would_mean(values, words):
     assert words in refused(changed(**values))
+
+
+def at(*places):
+    """Return the rotors of a vehicle file at places x, y, z and with spins."""
+    return {'rotors': [{'position': [x, y, z], 'spin': spin} for x, y, z, spin in places]}
+
+
+X, Y = (0.2, -0.2), (0.15, -0.15)
+CROSS = [(X[0], Y[1], 0, -1), (X[1], Y[1], 0, 1), (X[1], Y[0], 0, -1)]     # without front left
+
+
+@pytest.mark.parametrize(('rotors', 'words'), [
+    (at(CROSS[0], *CROSS), 'rotors[0] and rotors[1] are at one place, [0.2, -0.15, 0] m, and turn '
+     'the same way: coaxial rotors'),
+    (at((0.2, -0.1501, 0, 1), *CROSS), 'rotors[0] and rotors[1] are at one place, [0.2, -0.1501, '
+     '0] m, and the middle of all rotors is 0.075 m from the centre of mass; give each its own')])
+def test_two_rotors_at_one_place_are_refused(rotors, words):
+    assert words in refused(changed(**rotors))
+
+
+@pytest.mark.parametrize('rotors', [
+    at(*((x, y, 0, spin) for x in X for y in Y for spin in (1, -1))),       # an octo of four pairs
+    at((0.2, 0.15, 0, 1), (0.2, -0.15, 0, -1), (-0.2, 0, 0, 1), (-0.2, 0, 0, -1)),  # a Y4
+    at(*((x, y, z, 1) for x in X for y in Y for z in (0, 0.05)))], ids=['x8', 'y4', 'above'])
+def test_coaxial_rotors_without_their_height_are_taken(rotors):
+    vehicle_from_mapping(changed(**rotors), 'v.yaml')
 
 
 numbers = st.floats(allow_nan=False, allow_infinity=False) | st.floats(1e-6, 1e3)
