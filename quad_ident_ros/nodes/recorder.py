@@ -33,20 +33,19 @@ from quad_ident_ros.nodes.mapped import message_class
 from quad_ident_ros.nodes.messages import diagnostics_message
 from quad_ident_ros.nodes.node import PackageNode
 from quad_ident_ros.nodes.on_disk import FLUSH_PERIOD, OnDisk
-from quad_ident_ros.nodes.other_types import one_topic_for_two, other_type
+from quad_ident_ros.nodes.other_types import one_topic_for_two
 from quad_ident_ros.nodes.outlets import outlets_of
 from quad_ident_ros.nodes.parameters import help_text, NodeParameters
 from quad_ident_ros.nodes.qos import latched
 from quad_ident_ros.nodes.recorder_parameters import mapped_topics, SPECS, validate
 from quad_ident_ros.nodes.subscriptions import Subscriptions
+from quad_ident_ros.nodes.unjoined import Unjoined
 
 QUIET = 0.5          # s after the last message when the middleware is asked what it lost
 ACKNOWLEDGED = 10    # rows after which the publishers are told how far the joining is
 GONE = 2.0           # s after the last message when nothing more is to come, and
 IDLE = 15.0          # s when something may, after which what is incomplete is given up; lost
                      # messages are sent again every 3 s
-AWAITED = 5.0        # s for a vehicle to begin, after which what is not there is said
-OTHER_CLOCK = 1.0    # s by which stamps are of another clock, as data.foreign has it for bags
 ENDING = 8.0         # s for what waits when the node is told to end: `ros2 launch` gives 10
 PARTING = 1.0        # s for listeners to take the last account before the node is gone
 
@@ -89,9 +88,7 @@ class Recorder(PackageNode):
         self._config = NodeParameters(self, SPECS, validate)
         parameters = self._config
         self._mapped = mapped_topics(parameters)
-        self._begun = self._now()
         self._told = set()      # notes on the stamps
-        self._awaits = self._mapped is not None
         if self._mapped is None:
             self._topics = tuple(parameters['topics'])
             self._joiner = FlightJoiner(self._topics, parameters['gap'])
@@ -105,7 +102,9 @@ class Recorder(PackageNode):
         self._buffer = self._outlets[0].buffer
         self._last_message = None
         self._frames = FrameWatch()
-        self._health = Health(self._topics, self._apart, self._silent)
+        self._unjoined = Unjoined(self, self._topics, self._joiner, self._mapped,
+                                  parameters['gap'], self._now())
+        self._health = Health(self._topics, self._unjoined.apart, self._unjoined.silent)
         self._announced = None
         self._disk = OnDisk(parameters['output'], parameters['vehicle_name'], self.get_clock(),
                             self.get_logger())
@@ -224,20 +223,11 @@ class Recorder(PackageNode):
         restarts, interpolated = counts.restarts, joiner.interpolates
         rows = joiner.add(topic.name, *sample)
         if joiner.interpolates and not interpolated:
-            self.get_logger().warning(self._between())
+            self.get_logger().warning(self._unjoined.between())
         self._keep(rows)
         if counts.restarts != restarts and counts is self.counts:
             self.get_logger().warning('the clock of the messages went back: a new record begins')
         self._disk.flush_when_due(now)
-
-    def _between(self):
-        """Return how rows come about where the stamps are not what they should be, or ''."""
-        if self._mapped is not None:
-            return '; '.join(self._mapped.notes())
-        if not self._joiner.interpolates:
-            return ''
-        return ('the stamps of the topics are seldom equal: joined by interpolation at those of '
-                f'{self._joiner.base}, within {self._config["gap"]:g} s (parameter gap)')
 
     def _on_mapped(self, name, kind, raw):
         now = self._last_message = self._now()
@@ -344,57 +334,13 @@ class Recorder(PackageNode):
         alive = any(map(self.count_publishers, self._inputs.topics.values()))
         return IDLE if alive else GONE
 
-    def _silent(self, names):
-        """Say that nothing comes on some of the topics, and what to do."""
-        if self._mapped is None:
-            return (f'nothing comes on {", ".join(names)} (the parameter topics leaves topics '
-                    'out)')
-        absent = self._absent()
-        return f'nothing comes on {self._mapped.named(names)}; ' + (
-            f'nobody publishes {", ".join(absent)}: correct the name, or leave it out of the '
-            'mapping' if absent else 'leave out of the mapping what is not to come')
-
-    def _absent(self):
-        """Return the topics of the mapping that nobody publishes."""
-        return [name for name in self._mapped.topics if not self.count_publishers(name)]
-
-    def _apart(self):
-        """Say that the stamps of the topics are too far apart."""
-        if self._mapped is None and not self._joiner.interpolates:
-            return 'the stamps of the topics are never equal'
-        if self._mapped is not None:
-            name, behind = max(self._joiner.behind().items(), key=lambda one: abs(one[1]),
-                               default=('', 0.0))
-            if abs(behind) > OTHER_CLOCK:
-                return (f'the stamps of {self._mapped.named([name])} are {abs(behind):.1f} s '
-                        f'{"behind" if behind > 0 else "ahead of"} those of '
-                        f'{self._mapped.named(self._topics[:1])}; set their clocks alike')
-        return (f'the samples of the topics are never within {self._config["gap"]:g} s of one '
-                'another (parameter gap)')
-
-    def _another_type(self):
-        """Say which silent topic is of another type, or return None."""
-        silent = () if self._mapped is not None else (
-            name for name in self._topics if not self.counts.received[name])
-        return next(filter(None, (other_type(self, name) for name in silent)), None)
-
-    def _say_what_is_awaited(self, now):
-        """Say once that none of the topics of the mapping is there."""
-        if not self._awaits or now - self._begun < AWAITED:
-            return
-        self._awaits = False
-        absent = self._absent()
-        if any(self.counts.received.values()) or len(absent) < len(self._mapped.topics):
-            return
-        self.get_logger().warning(f'waits for {", ".join(absent)}: nobody publishes them; if they '
-                                  'should be there, `ros2 topic list` has the names')
-
     def _report(self):
         now = self._now()
         trouble = self._health.look(now, self.counts.received, self._unreadable)
         self._unreadable = None
-        self._say_what_is_awaited(now)
-        if wrong := self._another_type() or self._frames.look(self._buffer.columns):
+        if awaited := self._unjoined.awaited(now):
+            self.get_logger().warning(awaited)
+        if wrong := self._unjoined.another_type() or self._frames.look(self._buffer.columns):
             self._health.blame(now, wrong)
             self.get_logger().error(wrong, throttle_duration_sec=10.0)
         elif trouble:
@@ -404,7 +350,8 @@ class Recorder(PackageNode):
                 'buffered': len(self._buffer), 'run': self._buffer.run_name,
                 'recording': folder, 'disk_error': self._disk.error}
         self._statistics.publish(String(data=json.dumps(data)))
-        level, text = self._health.status(now, self.counts, self._between(), self._disk.error)
+        level, text = self._health.status(now, self.counts, self._unjoined.between(),
+                                          self._disk.error)
         self._diagnostics.publish(diagnostics_message(self, level, text, data))
 
 
