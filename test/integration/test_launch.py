@@ -2,12 +2,35 @@
 # SPDX-License-Identifier: Apache-2.0
 """The nodes that launch files start, as processes with the words that they get."""
 
+from pathlib import Path
+import re
+import shlex
+
 from graph import write_experiment
 from launch_files import Tables
+import pytest
+from rcl_interfaces.srv import GetParameters
+from rclpy.parameter import parameter_value_to_python
 from rosgraph_msgs.msg import Clock
 from std_msgs.msg import String
 
+from quad_ident_ros.model.vehicle import load_vehicle, write_vehicle
 from quad_ident_ros.nodes.qos import latched
+
+ROOT = Path(__file__).parents[2]
+
+
+def recipes():
+    """Return (launch file, {argument: value}) of each launch that the pages print as a block."""
+    pages = (ROOT / 'README.md', *sorted((ROOT / 'docs').rglob('*.md')))
+    text = '\n'.join(page.read_text(encoding='utf-8') for page in pages)
+    lines = re.findall(r'^    ros2 launch quad_ident_ros (\w+)\.launch\.py (.*)',
+                       text.replace('\\\n', ' '), re.M)
+    return [(name, dict(word.split(':=', 1) for word in shlex.split(words)))
+            for name, words in lines]
+
+
+RECIPES = recipes()
 
 
 def start(processes, plan, namespace=''):
@@ -15,6 +38,13 @@ def start(processes, plan, namespace=''):
     name = ['-r', f'__ns:=/{namespace}'] if namespace else []
     return [processes.run(node, '--ros-args', *words, '--ros-args', *name)
             for node, words in plan.items()]
+
+
+def parameters(graph, node, *names):
+    values = graph.call(GetParameters, f'uav1/{node}/get_parameters',
+                        GetParameters.Request(names=names)).values
+    return [found.tolist() if hasattr(found, 'tolist') else found
+            for found in map(parameter_value_to_python, values)]
 
 
 def test_a_parameter_file_has_the_say_over_usual_values_and_arguments_over_it(
@@ -63,3 +93,26 @@ def test_two_namespaces_have_two_clocks(graph, processes, tmp_path):
             for info in graph.probe.get_subscriptions_info_by_topic(f'{space}/clock')],
             'the recorder to follow the clock')
     assert not graph.probe.get_publishers_info_by_topic('/clock') and not everybody
+
+
+def test_the_pages_launch_a_real_vehicle():
+    assert [(name, words['simulate']) for name, words in RECIPES] == [('identify', 'false')]
+
+
+@pytest.mark.parametrize(('name', 'values'), RECIPES)
+def test_the_nodes_of_a_launch_start_as_the_pages_print_it(
+        graph, processes, tmp_path, monkeypatch, name, values):
+    monkeypatch.chdir(tmp_path)     # of the files that are named
+    write_vehicle(values['vehicle'], load_vehicle('hummingbird'))
+    Path(values['params_file']).write_text(
+        '/**/recorder:\n  ros__parameters:\n    overlap: 0.2\n    gap: 0.05\n')
+    plan = Tables(name).plan(**values)
+    nodes = start(processes, plan, 'uav1')
+    for node in nodes:
+        graph.spin_until(lambda n=node: 'ready: ' in n.errors() or not n.running(),
+                         f'{node.node} to be ready', 120.0)
+    # An argument has the say over the file, which has it over the default.
+    assert parameters(graph, 'recorder', 'overlap', 'gap') == [float(values['overlap']), 0.05]
+    assert parameters(graph, 'identifier', 'trim', 'mode', 'method') == [
+        [6.374, 0.0, 0.0, 0.0], values['mode'], values['method']]
+    assert [node.stop() for node in nodes] == [0, 0], [node.errors() for node in nodes]
