@@ -15,7 +15,7 @@ def write_whole(path: str | Path, text: str) -> None:
     What is no regular file, such as a pipe, is written to as it is. What is no Unicode in the name
     of a file is written by its code. Raises OSError.
     """
-    path = Path(path).resolve()   # of a link, the file that it leads to
+    path = Path(path)
     if path.exists() and not path.is_file():
         path.write_text(text, encoding='utf-8', errors='backslashreplace')
         return

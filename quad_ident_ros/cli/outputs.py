@@ -40,7 +40,8 @@ def check_outputs(options):
         for folder in Path(output).parents:
             if folder.exists() and not folder.is_dir():
                 raise InputError(f'{output}: {folder} is a file, no folder; give another path')
-        if not place.exists() or place.is_file() or place.is_dir():     # no device, no pipe
+        given = Path(output)    # of a pipe, the place that its link names is none
+        if not given.exists() or given.is_file() or given.is_dir():
             _try_to_write(output, place)
     for output in _named(options, FILES):
         if Path(output).is_dir():

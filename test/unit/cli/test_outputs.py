@@ -3,6 +3,8 @@
 """Where commands may write, said before any work."""
 
 from argparse import Namespace
+import json
+import os
 from pathlib import Path
 
 import pytest
@@ -92,9 +94,17 @@ def test_what_is_tried_leaves_nothing_behind(tmp_path):
     assert not list(tmp_path.iterdir())
 
 
-@pytest.mark.parametrize('device', ['/dev/null', '/dev/stdout'])
-def test_a_device_is_written_to_as_it_is(device):
-    check_outputs(Namespace(json=device))
+def test_a_device_is_written_to_as_it_is():
+    assert main(['vehicle', 'iris', '--json', '/dev/null']) == 0
+
+
+def test_a_pipe_is_written_to_as_it_is():
+    """As bash gives one: --json >(jq .name)."""
+    out, into = os.pipe()
+    assert main(['vehicle', 'iris', '--json', f'/dev/fd/{into}']) == 0
+    os.close(into)
+    with open(out, encoding='utf-8') as read:
+        assert json.load(read)['vehicle']['name'] == 'iris'
 
 
 @pytest.mark.parametrize(('command', 'words'), [
