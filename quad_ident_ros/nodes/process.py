@@ -17,7 +17,7 @@ from rclpy.utilities import remove_ros_args
 from quad_ident_ros import resources
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.nodes.parameter_files import is_for, names_in
-from quad_ident_ros.nodes.shared_memory import free_abandoned, HearingWatch
+from quad_ident_ros.nodes.shared_memory import free_abandoned, HearingWatch, keep_to_oneself
 from quad_ident_ros.nodes.start_news import StartNews
 
 try:
@@ -27,6 +27,8 @@ except ImportError:   # early releases of Jazzy
 
 LETTING_GO = 5       # s that the middleware has to take a node down
 PARENT = 'QUAD_IDENT_PARENT'   # a process whose death ends the node
+STARTS = 'QUAD_IDENT_STARTS'   # how often a node has started once more by itself, and
+MOST_STARTS = 3                # how often it may
 
 
 def run(node_class, help_page, args=None, executor_class=SingleThreadedExecutor,
@@ -38,7 +40,7 @@ def run(node_class, help_page, args=None, executor_class=SingleThreadedExecutor,
     printed for --help; args: the command line, by default that of the process; warm_up: a function
     that `warm_up` of the node runs while the node is there. Bad input gives one line on standard
     error and exit code 2. Where the middleware does not let go of a closed node, SIGALRM ends the
-    process.
+    process. A node that turns out to be deaf just after its start starts once more.
     """
     name = node_class.__name__.lower()
     args = [name, *(sys.argv[1:] if args is None else args)]
@@ -68,7 +70,7 @@ def _plain_arguments(args):
 def _run(node_class, args, executor_class, warm_up):
     ensure_log_folder()
     free_abandoned()
-    stop = []
+    stop, deaf = [], False
     previous = {number: signal.signal(number, lambda *_: stop.append(True))
                 for number in (signal.SIGINT, signal.SIGTERM)}
     try:
@@ -87,10 +89,11 @@ def _run(node_class, args, executor_class, warm_up):
         executor.add_node(node)
         if warm_up is not None:
             node.warm_up(warm_up)
-        news, hearing = StartNews(node), HearingWatch(node)
-        while not stop and is_wanted():
+        news = StartNews(node)
+        hearing = HearingWatch(node.get_logger().error, _starts() < MOST_STARTS)
+        while not stop and not deaf and is_wanted():
             news.tell()
-            hearing.look()
+            deaf = hearing.look()
             executor.spin_once(timeout_sec=0.1)
     finally:
         if node is not None:
@@ -108,8 +111,24 @@ def _run(node_class, args, executor_class, warm_up):
         signal.alarm(0)
         for number, handler in previous.items():
             signal.signal(number, handler)
+    if deaf and not stop:
+        _start_anew()
     _leave_compilation()
     return 0
+
+
+def _starts():
+    """Return how often this node has started once more by itself."""
+    return int(os.environ.get(STARTS, '0'))
+
+
+def _start_anew():
+    """Become the program that this process was at its beginning."""
+    os.environ[STARTS] = str(_starts() + 1)
+    keep_to_oneself()
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os.execv(sys.executable, [sys.executable, *sys.orig_argv[1:]])
 
 
 def _leave_compilation():

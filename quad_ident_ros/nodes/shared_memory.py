@@ -19,7 +19,9 @@ SEGMENT = re.compile(r'fastrtps_[0-9a-f]{16}')
 LOCK = '_el'        # behind the name of a segment: the file that its process holds a lock on
 YOUNG = 5.0         # s, in which one that begins may not have its lock yet
 PORT = re.compile(r'fastrtps_port\d+')
-LOOK = 5.0          # s between two looks at what a node listens on, which take a millisecond
+LOOK = 5.0          # s between two looks at what a node listens on, which take a millisecond, and
+SOON = 1.0          # s between those of one that has just begun: most are deaf from the beginning
+EARLY = 30.0        # s in which it is not worth more than a start that hears
 
 
 def free_abandoned(folder=FOLDER):
@@ -83,25 +85,47 @@ def _inode(path):
 
 
 class HearingWatch:
-    """Logs once that a node does not hear those that begin now. Args: node of rclpy."""
+    """
+    Finds out whether a node hears those that begin now, and says so once where it does not.
 
-    def __init__(self, node):
-        self._node, self._next, self._lost = node, time.monotonic() + LOOK, []
+    Args: say: takes a line of log; anew: whether the node may start once more by itself.
+    """
+
+    def __init__(self, say, anew):
+        self._say, self._anew, self._lost = say, anew, []
+        self._begun = time.monotonic()
+        self._next = self._begun + SOON
 
     def look(self):
         """
         Look whether what the node listens on is still there, now and then until it is not.
 
         Twice: for a moment it holds the file of another node, too, to see whether that lives.
+        Returns whether the node is to start once more: later than EARLY it works with those who
+        began before, and only a person knows what a start would cost.
         """
-        if time.monotonic() < self._next:
-            return
+        now = time.monotonic()
+        if now < self._next:
+            return False
+        early = now - self._begun < EARLY
         before, self._lost = self._lost, lost_ports()
         told = bool(self._lost) and self._lost == before
-        self._next = float('inf') if told else time.monotonic() + LOOK
-        if told:
-            self._node.get_logger().error(
-                f'no node that begins from now on is heard, and perhaps no other: '
-                f'{", ".join(self._lost)}, on which this node listens, was deleted by another '
-                'process, as happens after a kill -9 (FastDDS, issue 5469); start this node once '
-                'more')
+        self._next = float('inf') if told else now + (SOON if early else LOOK)
+        if not told:
+            return False
+        anew = self._anew and early
+        self._say(
+            f'no node that begins from now on is heard, and perhaps no other: '
+            f'{", ".join(self._lost)}, on which this node listens, was deleted by another '
+            'process, as happens after a kill -9 (FastDDS, issue 5469); '
+            + ('this node starts once more' if anew else 'start this node once more'))
+        return anew
+
+
+def keep_to_oneself(process=Path('/proc/self'), folder=FOLDER):
+    """Have what FastDDS left open closed where this process becomes another program."""
+    with suppress(OSError):
+        for number in (process / 'fd').iterdir():
+            with suppress(OSError):
+                if os.readlink(number).startswith(f'{folder}/fastrtps_'):
+                    os.set_inheritable(int(number.name), False)

@@ -7,12 +7,17 @@ import os
 from pathlib import Path
 import time
 
-from std_msgs.msg import String
+from geometry_msgs.msg import PointStamped
+import pytest
+from std_msgs.msg import Float64MultiArray, String
 
+from quad_ident_ros.nodes import shared_memory
 from quad_ident_ros.nodes.qos import latched
 from quad_ident_ros.nodes.shared_memory import (
+    EARLY,
     FOLDER,
     free_abandoned,
+    HearingWatch,
     lost_ports,
     PORT,
     SEGMENT,
@@ -58,26 +63,61 @@ def test_a_node_that_starts_frees_what_a_killed_one_left(graph, processes):
     assert again.stop() == 0
 
 
-def test_a_node_that_has_become_deaf_says_so_once(graph, processes):
+def test_a_node_that_begins_deaf_starts_once_more_and_hears(graph, processes):
     """Another process deletes what it listens on by its name, as FastDDS does after a kill -9."""
-    process = processes.start('recorder')
+    process = processes.start('recorder', {'topics': ['altitude'], 'window_samples': 2})
     statistics = graph.listen(String, 'recorder/statistics', latched())
     graph.spin_until(lambda: statistics, 'the recorder')
     proc = Path('/proc', str(process.pid))
     assert lost_ports(proc) == lost_ports() == []
-    mine = {Path(os.readlink(fd)).name.removesuffix('_el') for fd in (proc / 'fd').iterdir()
-            if os.path.islink(fd)}
-    ports = sorted(FOLDER / name for name in mine if PORT.fullmatch(name))
+    ports = ports_of(proc)
     assert ports
     ports[0].unlink()
     assert lost_ports(proc) == [str(ports[0])]
     ports[0].write_bytes(b'of another process')
     assert lost_ports(proc) == [str(ports[0])]
-    graph.spin_until(lambda: 'start this node once more' in process.errors(), 'the error')
-    assert str(ports[0]) in process.errors()
+    graph.spin_until(lambda: process.errors().count('ready: ') == 2, 'the next start')
+    assert process.errors().count('deleted by another process') == 1
+    assert str(ports[0]) in process.errors() and 'this node starts once more' in process.errors()
+    assert Path('/proc', str(process.pid)).exists() and lost_ports(proc) == []
+    records = graph.listen(Float64MultiArray, 'record', latched(16))
+    altitude = graph.advertise(PointStamped, 'altitude')
+    for nanoseconds in (10 ** 7, 2 * 10 ** 7):
+        message = PointStamped()
+        message.header.stamp.nanosec = nanoseconds
+        altitude.publish(message)
+    graph.spin_until(lambda: records, 'a record of what it hears')
     assert process.stop() == 0
     ports[0].unlink(missing_ok=True)
-    assert process.errors().count('start this node once more') == 1
+
+
+def ports_of(process):
+    """Return the files that a process (its folder in /proc) listens on."""
+    held = {Path(os.readlink(fd)).name.removesuffix('_el') for fd in (process / 'fd').iterdir()
+            if os.path.islink(fd)}
+    return sorted(FOLDER / name for name in held if PORT.fullmatch(name))
+
+
+@pytest.mark.parametrize(('seconds', 'may', 'anew', 'words'), [
+    (2.0, True, True, '; this node starts once more'),
+    (2.0, False, False, '; start this node once more'),     # it has, three times
+    (EARLY + 10.0, True, False, '; start this node once more')])
+def test_a_node_that_has_become_deaf_says_so_once(monkeypatch, seconds, may, anew, words):
+    now, lost, said = [100.0], [], []
+    monkeypatch.setattr(shared_memory.time, 'monotonic', lambda: now[0])
+    monkeypatch.setattr(shared_memory, 'lost_ports', lambda: list(lost))
+    watch = HearingWatch(said.append, may)
+    for _ in range(round(seconds)):
+        now[0] += 1.0
+        assert not watch.look() and not said
+    lost.append('/dev/shm/fastrtps_port7411')
+    results = []
+    for _ in range(20):
+        now[0] += 1.0
+        results.append(watch.look())
+    assert results.count(True) == anew
+    [line] = said
+    assert line.endswith(words) and 'fastrtps_port7411, on which this node listens' in line
 
 
 def _is_free(name):
