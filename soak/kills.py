@@ -13,6 +13,7 @@ from std_srvs.srv import Trigger
 from benchmarks import load
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.nodes.launched import Launched
+from soak.landing import BEGINS, is_over, is_time_to_ask
 from soak.loss import lost
 from soak.rig import Finding, slowness, Watch
 
@@ -21,11 +22,11 @@ RATES = (100, 1000)     # Hz
 LOSS = 1.0              # s of what the recorder joined that a kill may cost
 AGAIN = 60.0            # s within which a node that was started again is ready, if nobody else
                         # keeps the machine busy
+FLIES = 2 * BEGINS      # s until it flies again, likewise
 HEARS = 20.0            # s within which it joins samples, likewise
 STARTS = 3              # of a recorder, of which each may hear nothing
 BUSY = 1.5              # times longer that computing takes where others keep the machine busy
 ON_ITS_WAY = 0.3        # s in which a watcher hears what was said before a kill
-LANDED = 5.0            # s without a sample after which a flight is over
 FLIGHT = 120.0          # s; it is flown again when it is over
 
 
@@ -60,7 +61,7 @@ def _victim(watch: Watch, launched: Launched, folder: Path, victim: str, paramet
     for _ in range(kills):
         joined = watch.account['joined']
         watch.until(lambda j=joined: flies(watch) and watch.account['joined'] > j, 'the flight',
-                    AGAIN)
+                    FLIES)
         watch.wait(random.uniform(0.6, 1.6))
         recording, before = watch.account['recording'], watch.account
         launched.processes[victim].kill()
@@ -76,6 +77,8 @@ def _victim(watch: Watch, launched: Launched, folder: Path, victim: str, paramet
         for again in range(STARTS):
             begin = time.monotonic()
             launched.start(victim, parameters)
+            if victim == 'simulator':
+                watch.asked = begin     # it flies by itself
             if _works(watch, folder / f'{victim}.txt', victim, recording, again + 1 == STARTS):
                 break
             launched.processes[victim].kill()
@@ -123,8 +126,8 @@ def _works(watch: Watch, log: Path, victim: str, recording: str, last: bool) -> 
 
 def flies(watch: Watch) -> bool:
     """Return whether the simulator flies; where it has landed, it is asked to fly again."""
-    landed = time.monotonic() - watch.flown > LANDED
-    if landed and watch.start.service_is_ready():
-        watch.flown = time.monotonic()      # it has time to begin
+    now = time.monotonic()
+    if is_time_to_ask(now, watch.flown, watch.asked) and watch.start.service_is_ready():
+        watch.asked = now
         watch.start.call_async(Trigger.Request())
-    return not landed
+    return not is_over(now, watch.flown)

@@ -41,14 +41,15 @@ class Watch:
     Hears the account of the recorder, how far it is, the newest stamp on the wire and who lives.
 
     newest, joined: stamps (ns) of the newest sample, and of the last that the recorder joined;
-    flown: when the last sample came, s of the monotonic clock; start: client of the simulator.
+    flown, asked: when the last sample came, and when the simulator was asked to fly, s of the
+    monotonic clock; start: its client.
     """
 
     def __init__(self, node: Any, executor: Any) -> None:
         self.node, self._executor = node, executor
         self.account: dict = {}
         self.newest = self.joined = 0
-        self.flown = time.monotonic()
+        self.flown = self.asked = time.monotonic()
         self.start = node.create_client(Trigger, 'simulator/start')
         self.heard: dict[str, float] = {}
         self.results: list = []
