@@ -128,10 +128,13 @@ class Transforms:
         return (name, *reversed(found)) if found else ()
 
     def said(self) -> str:
-        """Return what the poses are composed of, for a note, '' for a single transform."""
+        """Return what the poses are, for a note, '' where nothing else could be."""
         chain = self._chain or self.chain()
-        return (f'topic {self._topic}: the pose is composed of {" -> ".join(chain)}'
-                if len(chain) > 2 else '')
+        if len(chain) > 2:
+            return f'topic {self._topic}: the pose is composed of {" -> ".join(chain)}'
+        if chain and not self._child and len(self._links) > 1:
+            return f'topic {self._topic}: the pose is that of {chain[-1]} in {chain[0]}'
+        return ''
 
     def poses(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """

@@ -112,6 +112,15 @@ def test_poses_without_a_transform_of_the_frame_above_are_left_out(tmp_path):
     agrees(read, SMALL.slice(0, count))
 
 
+def test_the_frame_that_was_taken_of_several_is_said(tmp_path):
+    """Rotors that turn are frames in that of the vehicle, as a simulator publishes them."""
+    at = stamps(SMALL)
+    rotors = messages('base_link', 'rotor_1', at, np.zeros((len(at), 3)),
+                      turn(np.arange(len(at))[:, None] * [0.0, 0.0, 1.0]))
+    read = load(write2(tmp_path / 'bag', in_order(base('map'), rotors, imu(SMALL))))
+    assert 'topic /tf: the pose is that of base_link in map' in read.info['notes']
+
+
 @pytest.mark.parametrize(('more', 'said'), [
     (messages('odom', 'map', [START], [(0, 0, 0)], [(1, 0, 0, 0)]), 'lead back to themselves'),
     (messages('world', 'odom', [START], [(0, 0, 0)], [(1, 0, 0, 0)]),
