@@ -63,6 +63,8 @@ def check_keys(where: str, mapping: object, known: Collection[str],
 def number(where: str, value: object, minimum: float = -math.inf, maximum: float = math.inf,
            exclusive: bool = False) -> float:
     """Return a finite float within bounds, or raise InputError that says where and what."""
+    if value is None:
+        raise InputError(f'{where}: expected a number, it is empty')
     # YAML 1.1 reads 1e-3 (no dot) as text; it is a number to everybody else.
     if isinstance(value, str):
         try:

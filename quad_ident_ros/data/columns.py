@@ -9,11 +9,12 @@ from pathlib import Path
 import numpy as np
 
 from quad_ident_ros.data import frames
-from quad_ident_ros.data.foreign import BODY_VELOCITY, velocity_in_world
+from quad_ident_ros.data.foreign import velocity_in_world
 from quad_ident_ros.data.mapping import ATTITUDE, Column, factor_of, Mapping
 from quad_ident_ros.data.record import EULER, FlightRecord, MOMENTS, QUATERNION, unit
 from quad_ident_ros.data.streams import HELD, INTERPOLATED, join, SLOW, Stream
 from quad_ident_ros.data.tabular import shown, Table
+from quad_ident_ros.data.topic_part import BODY_VELOCITY
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.attitude import product
 from quad_ident_ros.model.motors import MOTORS_OFF

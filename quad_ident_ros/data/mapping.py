@@ -210,7 +210,7 @@ def in_record_unit(role: str, values: Sequence[float], said: str) -> Sequence[fl
     Return the numbers of a role from those in a unit of UNITS; '' is the record's.
 
     Roll, pitch and yaw become the quaternion, scalar first, that turns by them. Speeds of rotors
-    stay as they are: data.foreign reads them by their kind.
+    stay as they are: data.topic_part reads them by their kind.
     """
     if not said or role == 'rotors':
         return values

@@ -34,6 +34,8 @@ ACTUATORS = 'actuators'
 BY_MOTORS = 'by_motors'
 """Info of a record: its commands are as uncertain as the vehicle file says that its motors are."""
 BEYOND = 0.05       # of the range: what is further out is another kind of signal
+SIGNED, UNSIGNED = ('{kind: normalised, minimum: -1, maximum: 1}',
+                    '{kind: normalised, minimum: 0, maximum: 1}')
 
 
 def commanded(records: Sequence[FlightRecord], vehicle: Vehicle | None,
@@ -234,18 +236,19 @@ def _power(exponent: float) -> str:
 def _doubt(where: str, values: np.ndarray, kinds: Sequence[str]) -> InputError:
     """Return the InputError for signals that could be of several kinds, or of none."""
     low, high = np.nanmin(values), np.nanmax(values)
+    where = f'{where}: the outputs, {low:.6g} to {high:.6g},'
+    if not kinds and -1.001 <= low < 0 and high <= 1.001:
+        return InputError(f'{where} may go from -1 to 1, or from 0 to 1 with values that a mixer '
+                          'has not limited yet; write into the vehicle file which, as motors: '
+                          f'{SIGNED} or motors: {UNSIGNED}, or into a mapping as actuators: with '
+                          'the same behind it')
     what = (f'could be {" or ".join(map(described, kinds))};' if kinds else
             'are of no kind that is known by its size, nor rotor speeds near those of hover; give '
             'the vehicle that flew, or')
-    if kinds:
-        line = '{kind: ' + kinds[0] + '}'
-    elif -1.001 <= low < 0 and high <= 1.001:
-        line = '{kind: normalised, minimum: -1, maximum: 1}'
-    else:
-        line = '{kind: pwm, minimum: ..., maximum: ...}'
-    return InputError(f'{where}: the outputs, {low:.6g} to {high:.6g}, {what} write into the '
-                      f'vehicle file what they are, such as motors: {line}, or into a mapping as '
-                      f'actuators: {line}; kinds are {", ".join(KINDS)}')
+    line = f'{{kind: {kinds[0]}}}' if kinds else '{kind: pwm, minimum: ..., maximum: ...}'
+    return InputError(f'{where} {what} write into the vehicle file what they are, such as motors: '
+                      f'{line}, or into a mapping as actuators: {line}; kinds are '
+                      f'{", ".join(KINDS)}')
 
 
 def _refuse_range(where: str, values: np.ndarray, vehicle: Vehicle) -> None:

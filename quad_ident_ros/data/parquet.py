@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from quad_ident_ros.data.limits import most
+from quad_ident_ros.data.stamps_in_two import with_whole_stamps
 from quad_ident_ros.data.tabular import left_out, MOST_COLUMNS, noted, numbers_in, Table
 from quad_ident_ros.errors import InputError
 
@@ -55,7 +56,8 @@ def read_parquet(path: Path) -> Table:
     if not columns or found.num_rows < 2:
         raise InputError(f'{path}: there are fewer than 2 rows of numbers; give a table with '
                          f'samples{left_out(text, "; ")}')
-    return Table(columns, {}, tuple(noted(text)), 'Parquet', text=tuple(text))
+    columns, told = with_whole_stamps(columns)
+    return Table(columns, {}, (*told, *noted(text)), 'Parquet', text=tuple(text))
 
 
 def _is_text(pyarrow: Any, kind: Any) -> bool:

@@ -22,7 +22,8 @@ STATUS = 'vehicle_status'
 USUAL_RATIO = 0.05  # m, the KM that PX4 has where nobody set one
 
 _HEAD = """\
-# Nominal vehicle, as far as {log} describes it. Fill in what is empty.
+# Nominal vehicle, as far as {log} describes it. Fill in mass and inertia, and give the log
+# with --vehicle auto again, which fills in the coefficients that are empty.
 name: {name}
 mass:                           # kg
 inertia: [null, null, null]     # kg m2: Ixx, Iyy, Izz

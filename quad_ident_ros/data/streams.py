@@ -51,7 +51,7 @@ def join(where, streams):
     known = np.ones(len(stamps), bool)
     for stream in clean:
         if stream is not base and stream.between != SLOW:
-            known &= _covered(stream, stamps)
+            known &= covered(stream, stamps)
     if known.sum() < 2:
         spans = ', '.join(f'{s.source} {s.stamps[0] * 1e-9:.3f} to {s.stamps[-1] * 1e-9:.3f} s'
                           for s in clean)
@@ -64,7 +64,7 @@ def join(where, streams):
     stamps = stamps[known]
     columns = {}
     for stream in clean:
-        columns.update(_at(stream, stamps, base.stamps[0]))
+        columns.update(at_stamps(stream, stamps, base.stamps[0]))
     return int(stamps[0]), (stamps - stamps[0]) * 1e-9, columns, tuple(notes)
 
 
@@ -89,8 +89,8 @@ def _in_order(where, stream, notes):
                    for name, values in stream.columns.items()}, stream.between)
 
 
-def _covered(stream, stamps):
-    """Return where a stream has samples around stamps, (N,) bool."""
+def covered(stream, stamps):
+    """Return where a Stream in order has samples around stamps (N,) ns, bool."""
     after = np.searchsorted(stream.stamps, stamps, side='left')
     inside = (stamps >= stream.stamps[0]) & (after < len(stream.stamps))
     after = np.clip(after, 1, len(stream.stamps) - 1)
@@ -101,8 +101,12 @@ def _covered(stream, stamps):
     return inside & (short | exact)
 
 
-def _at(stream, stamps, origin):
-    """Return the columns of a stream at stamps that it covers."""
+def at_stamps(stream, stamps, origin):
+    """
+    Return the columns of a Stream in order at stamps (N,) ns, rising, that it covers.
+
+    Args: origin: the stamp, ns, from which differences are taken.
+    """
     if stream.between != INTERPOLATED:
         index = np.searchsorted(stream.stamps, stamps, side='right') - 1
         return {name: values[np.maximum(index, 0)] for name, values in stream.columns.items()}

@@ -13,6 +13,7 @@ import numpy as np
 
 from quad_ident_ros.data.csv import refuse_uneven
 from quad_ident_ros.data.plain_numbers import plain_numbers
+from quad_ident_ros.data.stamps_in_two import with_whole_stamps
 from quad_ident_ros.data.text_lines import first_rows, rows_of
 from quad_ident_ros.errors import InputError
 
@@ -74,9 +75,10 @@ def read_text(path: Path, separator: str = '') -> Table:
     if not columns or len(next(iter(columns.values()))) < 2:
         raise InputError(f'{path}: there are fewer than 2 lines of numbers; give a table with a '
                          f'header and samples{left_out(text, "; ")}')
+    columns, told = with_whole_stamps(columns)
     how = {',': 'commas', ';': 'semicolons', '\t': 'tabs', BLANKS: 'blanks'}.get(
         layout.separator, repr(layout.separator))
-    return Table(columns, layout.units, (*notes, *noted(text)),
+    return Table(columns, layout.units, (*notes, *told, *noted(text)),
                  f'{how}{", decimal commas" if layout.comma else ""}', layout.doubts, layout.rate,
                  tuple(text))
 

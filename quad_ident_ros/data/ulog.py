@@ -10,7 +10,7 @@ from pyulog import ULog
 
 from quad_ident_ros.data import frames
 from quad_ident_ros.data.counted import counted
-from quad_ident_ros.data.foreign import BODY_VELOCITY, velocity_in_world
+from quad_ident_ros.data.foreign import velocity_in_world
 from quad_ident_ros.data.mapping import Actuators, KINDS, Mapping
 from quad_ident_ros.data.modes import modes_from, PX4
 from quad_ident_ros.data.px4_airframe import FIRST_MOTOR, Motors, motors_of, other_kind
@@ -23,6 +23,7 @@ from quad_ident_ros.data.px4_states import flown
 from quad_ident_ros.data.record import FlightRecord, QUATERNION
 from quad_ident_ros.data.split import part, SHORTEST
 from quad_ident_ros.data.streams import HELD, INTERPOLATED, join, SLOW, Stream
+from quad_ident_ros.data.topic_part import BODY_VELOCITY
 from quad_ident_ros.data.ulog_parse import parse
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.vehicle import Vehicle

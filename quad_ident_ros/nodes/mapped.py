@@ -4,10 +4,13 @@
 
 from importlib import import_module
 
-from quad_ident_ros.data.foreign import BODY_VELOCITY, TopicPart, without_stamps
+from quad_ident_ros.data.foreign import without_stamps
 from quad_ident_ros.data.mapping import actuators_to_mapping, mapping_from, ROLES
+from quad_ident_ros.data.message_roles import is_tf
 from quad_ident_ros.data.outputs import ACTUATORS
 from quad_ident_ros.data.stream_joiner import between_of
+from quad_ident_ros.data.topic_part import BODY_VELOCITY, TopicPart
+from quad_ident_ros.data.transforms import static_topic
 from quad_ident_ros.errors import InputError
 
 KNOWN = {'odometry': ('pose', 'velocity', 'rate'), 'imu': ('rate', 'specific_force'),
@@ -63,9 +66,16 @@ class MappedTopics:
 
     def notes(self):
         """Return what is to be said of the stamps."""
+        chains = [part.note for part in self._parts.values() if part.note]
         if self.by_receipt:
-            return [RECEIVED]
-        return [without_stamps(topic) for topic in self.without_stamps]
+            return [RECEIVED, *chains]
+        return [*(without_stamps(topic) for topic in self.without_stamps), *chains]
+
+    def beside(self, topic, kind):
+        """Return the topic that a topic of a type needs beside it where it is there, or ''."""
+        sources = [part.source for part in self._parts.values() if part.source.topic == topic]
+        return static_topic(topic) if is_tf(kind) and not all(
+            source.field for source in sources) else ''
 
     def named(self, roles):
         """Return roles with the topics that they come on, for messages."""
@@ -81,20 +91,21 @@ class MappedTopics:
         Args: kind its type, package/msg/Name; received_ns its time of receipt.
         Raises InputError where it does not hold what the mapping says.
         """
-        found = [(role, stamp, values) for role, part in self._parts.items()
-                 if part.source.topic == topic
-                 for stamp, values in part.samples(message, kind, self._mapping)]
+        found = [(role, *sample) for role, part in self._parts.items()
+                 if topic in (part.source.topic, self.beside(part.source.topic, kind))
+                 for sample in part.samples(received_ns, message, kind, self._mapping,
+                                            topic != part.source.topic)]
         if not (self._parts.keys() & {'pose', 'attitude'}) and any(
-                BODY_VELOCITY[0] in values for _, _, values in found):
+                BODY_VELOCITY[0] in values for *_, values in found):
             raise InputError(f'topic {topic}: a velocity in body axes needs an attitude; map a '
                              'pose, or say frame: world')
         # A simulator stamps its messages with the very time that its clock says.
         if found and not found[0][1] and topic not in self.without_stamps:
             self.without_stamps.append(topic)
-        if found and not self.by_receipt:
-            self._compare(topic, received_ns, found[0][1] or received_ns)
-        return [(role, received_ns if self.by_receipt else stamp or received_ns, values)
-                for role, stamp, values in found]
+        if found and topic in self.topics and not self.by_receipt:
+            self._compare(topic, found[0][2], found[0][1] or found[0][2])
+        return [(role, came if self.by_receipt else stamp or came, values)
+                for role, stamp, came, values in found]
 
     def _compare(self, topic, received_ns, stamp):
         """Note how late a topic is: where some are APART the stamps are of several clocks."""

@@ -27,6 +27,7 @@ class OnDisk:
         self._output, self._vehicle = output, vehicle
         self._clock, self._logger = clock, logger
         self._recording = None
+        self._waiting = []
         self._flushed = time.monotonic()
         self._first = self._newest = None
         self.error = None
@@ -45,9 +46,18 @@ class OnDisk:
             self._recording = Recording(parent, topics, types)
             self._logger.info(f'recording to {self._recording.folder}')
         self._try(make)
+        waiting, self._waiting = self._waiting, []
+        for name, raw in waiting:
+            self.write(name, raw)
 
-    def write(self, name, raw):
-        """Write a message of a topic as it came."""
+    def write(self, name, raw, holds=False):
+        """
+        Write a message of a topic as it came.
+
+        holds: whether it says what holds for the whole flight; it then waits for the recording.
+        """
+        if self._recording is None and holds and self._output and self.error is None:
+            self._waiting.append((name, raw))
         if self._recording is not None:
             now = (self._clock.now().nanoseconds if self._clock.ros_time_is_active
                    else time.time_ns())     # the same, ten times faster

@@ -17,6 +17,11 @@ STREAM = QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1000,
 BEST_EFFORT = QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1000,
                          reliability=ReliabilityPolicy.BEST_EFFORT)
 
+# All that publishers keep for those who come late, of which there may be several on a topic.
+KEPT = QoSProfile(history=HistoryPolicy.KEEP_ALL, depth=0,
+                  reliability=ReliabilityPolicy.RELIABLE,
+                  durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
 
 def latched(depth=1):
     """Return the quality for results: reliable, and kept for those who come late."""

@@ -36,7 +36,7 @@ from quad_ident_ros.nodes.on_disk import FLUSH_PERIOD, OnDisk
 from quad_ident_ros.nodes.other_types import one_topic_for_two
 from quad_ident_ros.nodes.outlets import outlets_of
 from quad_ident_ros.nodes.parameters import help_text, NodeParameters
-from quad_ident_ros.nodes.qos import latched
+from quad_ident_ros.nodes.qos import KEPT, latched, LOSSLESS
 from quad_ident_ros.nodes.recorder_parameters import mapped_topics, SPECS, validate
 from quad_ident_ros.nodes.subscriptions import Subscriptions
 from quad_ident_ros.nodes.unjoined import Unjoined
@@ -189,10 +189,13 @@ class Recorder(PackageNode):
                     continue
                 self._types[name] = kinds[0]
                 self._subscribe(name)
-        if self._config['output'] and len(self._types) == len(self._mapped.topics):
+                if beside := self._mapped.beside(name, kinds[0]):
+                    self._types[beside] = kinds[0]
+                    self._subscribe(beside, KEPT)
+        if self._config['output'] and all(name in self._types for name in self._mapped.topics):
             self._open_recording()
 
-    def _subscribe(self, name):
+    def _subscribe(self, name, quality=LOSSLESS):
         if self._mapped is None:
             topic = FLIGHT_TOPICS[name]
             kind = getattr(geometry_msgs.msg, topic.type.rsplit('/', 1)[1])
@@ -206,7 +209,7 @@ class Recorder(PackageNode):
                 self._on_mapped(name, kind, raw)
 
         try:
-            self._inputs.add(name, kind, on_message)
+            self._inputs.add(name, kind, on_message, quality)
         except RCLError:
             if self._mapped is not None:
                 raise
@@ -231,7 +234,7 @@ class Recorder(PackageNode):
 
     def _on_mapped(self, name, kind, raw):
         now = self._last_message = self._now()
-        self._disk.write(name, raw)
+        self._disk.write(name, raw, holds=name not in self._mapped.topics)
         self._disk.flush_when_due(now)
         try:
             samples = self._mapped.samples(name, self._types[name],

@@ -4,15 +4,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
-import math
 
 import numpy as np
 
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.vehicle_files.bodies import Body, check_body, combined, Pose, pose, symmetric
 from quad_ident_ros.vehicle_files.mjcf_defaults import Model, onto
+from quad_ident_ros.vehicle_files.mjcf_shapes import SHELLS, SOLIDS
 from quad_ident_ros.vehicle_files.xml_tree import Element
 
 DENSITY = 1000.0    # kg/m^3 of shapes that state neither mass nor density, as in MuJoCo
@@ -140,11 +140,10 @@ def _shape(model: Model, geom: Element) -> Body:
     if kind in ('mesh', 'sdf') or 'mesh' in geom.attributes:
         raise InputError(f'{geom.where}: its mass is that of the mesh {geom.get("mesh")[:50]!r}, '
                          'which is not read; give its body an <inertial>, or the geom mass="0"')
-    if geom.get('shellinertia') == 'true':
-        raise InputError(f'{geom.where}: shellinertia is not read; give its body an <inertial>')
-    if kind not in _SHAPES:
+    if kind not in SOLIDS:
         raise InputError(f'{geom.where}: no geom has the type {kind[:20]!r}')
-    count, volume, moments = _SHAPES[kind]
+    shape = (SHELLS if geom.get('shellinertia') == 'true' else SOLIDS)[kind]
+    count = shape.sizes
     frame = model.pose_of(geom)
     if 'fromto' in geom.attributes:
         ends = geom.numbers('fromto', 6)
@@ -163,27 +162,5 @@ def _shape(model: Model, geom: Element) -> Body:
     if not (size > 0.0).all():
         raise InputError(f'{geom.where}: size: expected numbers above 0')
     mass = (geom.number('mass') if geom.get('mass') else
-            geom.number('density', DENSITY) * volume(*size))
-    return Body(mass, np.zeros(3), np.diag(moments(*size)) * mass).placed(frame)
-
-
-def _capsule(r: float, half: float) -> tuple[float, float, float]:
-    """Return the moments per mass of a cylinder with half balls at its ends."""
-    height = 2.0 * half
-    balls = 4.0 * r / (4.0 * r + 3.0 * height)
-    across = ((1.0 - balls) * (3.0 * r * r + height * height) / 12.0
-              + balls * (0.4 * r * r + 0.25 * height * height + 0.375 * height * r))
-    return across, across, (1.0 - balls) * r * r / 2.0 + balls * 0.4 * r * r
-
-
-# Sizes that a shape has, its volume, its moments per mass about x, y and z; halves and radii, m.
-_SHAPES: dict[str, tuple[int, Callable[..., float], Callable[..., tuple[float, ...]]]] = {
-    'sphere': (1, lambda r: 4.0 / 3.0 * math.pi * r ** 3, lambda r: (0.4 * r * r,) * 3),
-    'capsule': (2, lambda r, h: math.pi * r * r * (2.0 * h + 4.0 / 3.0 * r), _capsule),
-    'cylinder': (2, lambda r, h: math.pi * r * r * 2.0 * h,
-                 lambda r, h: ((3 * r * r + 4 * h * h) / 12.0,) * 2 + (r * r / 2.0,)),
-    'ellipsoid': (3, lambda a, b, c: 4.0 / 3.0 * math.pi * a * b * c,
-                  lambda a, b, c: ((b * b + c * c) / 5, (a * a + c * c) / 5,
-                                   (a * a + b * b) / 5)),
-    'box': (3, lambda a, b, c: 8.0 * a * b * c,
-            lambda a, b, c: ((b * b + c * c) / 3, (a * a + c * c) / 3, (a * a + b * b) / 3))}
+            geom.number('density', DENSITY) * shape.measure(*size))
+    return Body(mass, np.zeros(3), np.diag(shape.moments(*size)) * mass).placed(frame)

@@ -55,7 +55,8 @@ NAMES = {'csv': 'f.csv', 'csv_gz': 'f.csv.gz', 'mcap': 'f.mcap', 'mcap_topics': 
          'mcap_mapped': 'f.mcap', 'sqlite3': 'f.db3', 'metadata': 'bag', 'ulog': 'f.ulg',
          'crazyflie': 'log00', 'ardupilot': 'f.BIN', 'betaflight': 'f.bbl',
          'px4': 'f.ulg', 'table': 'f.csv', 'table_mapped': 'f.csv', 'parquet': 'f.parquet',
-         'mapping': 'f.yaml', 'ros1': 'f.bag', 'ros1_lz4': 'f.bag', 'px4_bag': 'f.db3'}
+         'mapping': 'f.yaml', 'ros1': 'f.bag', 'ros1_lz4': 'f.bag', 'px4_bag': 'f.db3',
+         'transforms': 'f.bag'}
 """File that each kind of input is written to."""
 
 TOPICS = mapping_from({'topics': {
@@ -124,7 +125,22 @@ def _bags(folder, record):
             *lists(record, MAV, '/command/motor_speed', 'angular_velocities', speeds)]
     return {'ros1': write1(folder / 'plain', rows).read_bytes(),
             'ros1_lz4': write1(folder / 'lz4', rows, Writer1.CompressionFormat.LZ4).read_bytes(),
+            'transforms': write1(folder / 'tf', _chain(record)).read_bytes(),
             'px4_bag': write_old(folder / 'px4', px4(record, speeds / 2000)).read_bytes()}
+
+
+def _chain(record):
+    """Return messages of transforms along a chain, of which the upper one comes more seldom."""
+    upper = [(topic, kind, ns, {'transforms': [
+        {**one, 'child_frame_id': 'odom'} for one in fields['transforms']]})
+        for topic, kind, ns, fields in transforms(record, ['odom'])[::3]]
+    lower = [(topic, kind, ns, {'transforms': [
+        {**one, 'header': {**one['header'], 'frame_id': 'odom'}} for one in fields['transforms']]})
+        for topic, kind, ns, fields in transforms(record, ['base_link'])]
+    fixed = [('/tf_static', kind, ns, {'transforms': [
+        {**one, 'header': {**one['header'], 'frame_id': 'world'}, 'child_frame_id': 'map'}
+        for one in fields['transforms']]}) for _, kind, ns, fields in upper[:1]]
+    return [*fixed, *sorted([*upper, *lower], key=lambda one: one[2]), *imu(record)]
 
 
 def _parquet(folder, record):

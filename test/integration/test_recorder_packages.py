@@ -19,6 +19,8 @@ from bag_files import (
     poses,
     px4,
     store,
+    TF,
+    transforms,
     write2,
 )
 from flightmaker import flight, VEHICLE
@@ -56,11 +58,12 @@ def packages(tmp_path_factory):
         build(package, shipped(package, *names), folder)
     package, _, name = CRAZYFLIE.partition('/msg/')
     build(package, {name: OTHERS[CRAZYFLIE]}, folder)
+    build('tf2_msgs', {'TFMessage': OTHERS[TF]}, folder)
     with pytest.MonkeyPatch.context() as patch:
         patch.syspath_prepend(folder)
         yield
     for name in [name for name in sys.modules
-                 if name.partition('.')[0] in (*PACKAGES, package)]:
+                 if name.partition('.')[0] in (*PACKAGES, package, 'tf2_msgs')]:
         del sys.modules[name]
 
 
@@ -171,4 +174,25 @@ def test_odometry_imu_and_actuators_need_no_mapping(graph):
         ['-r', 'actuators:=/command/motor_speed'])
     np.testing.assert_allclose(record.stack(*CMD), SPEEDS, rtol=1e-12)
     np.testing.assert_allclose(record.stack('vx', 'vy', 'vz'), FLIGHT.stack('vx', 'vy', 'vz'),
+                               atol=1e-9)
+
+
+def test_transforms_that_do_not_change_are_composed_with_those_that_do(graph, tmp_path):
+    """The former were published once, before the recorder began."""
+    path = tmp_path / 'topics.yaml'
+    path.write_text('topics:\n  pose: {topic: /tf, child: base_link}\n  rate: {topic: /imu}\n')
+    types = store()
+    fixed = Make(types)(TF, transforms=[{
+        'header': {'frame_id': 'world'}, 'child_frame_id': 'map', 'transform': {
+            'translation': {'x': 7.0}, 'rotation': {'w': 1.0}}}])
+    beside = graph.probe.create_publisher(message_class(TF), '/tf_static', latched())
+    beside.publish(bytes(types.serialize_cdr(fixed, TF)))
+    sent = [*transforms(FLIGHT, ['base_link']), *imu(FLIGHT)]
+    record = recorded(graph, {'mapping': str(path), 'output': str(tmp_path / 'out')}, sent)
+    np.testing.assert_allclose(record.columns['px'], FLIGHT.columns['px'] + 7.0, atol=1e-9)
+    np.testing.assert_allclose(record.columns['py'], FLIGHT.columns['py'], atol=1e-9)
+    assert any('world -> map -> base_link' in note for note in record.info['notes'])
+    [bag] = (tmp_path / 'out').glob('recording_1/bag')
+    again = load(bag, load_mapping(path))
+    np.testing.assert_allclose(again.columns['px'][:100], FLIGHT.columns['px'][:100] + 7.0,
                                atol=1e-9)

@@ -255,7 +255,7 @@ def changed(path, value):
     (('trim',), 'level', "trim: 'level' is not one of hover, zero"),
     (('altitude',), 'high', 'altitude: expected a number'),
     (('omega_r',), 'rotors', 'omega_r (zero, from_rotors or rad/s): expected a number'),
-    (('omega_r',), None, 'expected a number, got None'),
+    (('omega_r',), None, 'expected a number, it is empty'),
     (('omega_r_sign',), 0, 'omega_r_sign: 0 is not one of 1, -1'),
     (('step',), -1e-4, 'step: -0.0001 is out of range'),
     (('noise',), {'altitud': 1}, "noise: 'altitud' is not known here; did you mean 'altitude'?"),

@@ -33,9 +33,9 @@ from reader_checks import CMD, refused, SMALL
 from rosbags.rosbag1 import Writer as Writer1
 
 from quad_ident_ros.data.bag_guess import _holds
-from quad_ident_ros.data.foreign import TopicPart
 from quad_ident_ros.data.load import load, load_all
 from quad_ident_ros.data.mapping import mapping_from, Source
+from quad_ident_ros.data.topic_part import TopicPart
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.attitude import euler_from_quaternion
 

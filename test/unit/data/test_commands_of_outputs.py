@@ -87,13 +87,26 @@ def test_signals_from_minus_one_to_one_are_not_taken_for_0_to_1(tmp_path):
     """Their lower half would read as motors that are off."""
     strong = replace(VEHICLE, speed_max=2500.0)
     path = with_outputs(tmp_path, (SPEEDS - 100) / 1200 - 1)
-    refused(path, 'are of no kind', '{kind: normalised, minimum: -1, maximum: 1}', vehicle=strong)
+    refused(path, 'from -1 to 1, or from 0 to 1', 'motors: {kind: normalised, minimum: -1, '
+            'maximum: 1} or motors: {kind: normalised, minimum: 0, maximum: 1}', vehicle=strong)
     told = Actuators(kind='normalised', minimum=-1.0, maximum=1.0)
     read = commanded([load(path)], strong, told)[0]
     np.testing.assert_allclose(read.stack(*CMD), SPEEDS, rtol=1e-9)
     motors = motors_from('v', {'kind': 'normalised', 'minimum': -1, 'maximum': 1})
     read = load(path, vehicle=replace(strong, motors=motors))
     np.testing.assert_allclose(read.stack(*CMD), SPEEDS, rtol=1e-9)
+
+
+def test_signals_that_a_mixer_has_not_limited_are_read_by_the_line_for_them(tmp_path):
+    """Those below 0 are motors that are off; the same message has the line for either."""
+    values = (SPEEDS - 100) / 1600
+    values[::10, 0] = -0.2
+    path = with_outputs(tmp_path, values)
+    refused(path, 'minimum: 0, maximum: 1}', vehicle=VEHICLE)
+    told = Actuators(kind='normalised', minimum=0.0, maximum=1.0)
+    read = commanded([load(path)], VEHICLE, told)[0].stack(*CMD)
+    np.testing.assert_allclose(read[:, 1:], SPEEDS[:, 1:], rtol=1e-9)
+    assert (read[::10, 0] == 0.0).all()
 
 
 @pytest.mark.parametrize('factor', [1.0, 30 / np.pi])

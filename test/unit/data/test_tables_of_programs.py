@@ -388,3 +388,32 @@ def test_motion_capture_with_z_up_is_not_guessed_wrongly(tmp_path, order, turned
         close = np.abs(np.sum(read.stack(*Q) * q, axis=1))
         np.testing.assert_allclose(close, 1.0, atol=1e-9)
         np.testing.assert_allclose(read.stack(*PLACE), place, atol=1e-9)
+
+
+@pytest.mark.parametrize(('seconds', 'rest'), [
+    ('header.stamp.sec', 'header.stamp.nanosec'), ('secs', 'nsecs'),
+    ('/odom/header/stamp/sec', '/odom/header/stamp/nanosec')])
+@pytest.mark.parametrize('packed', [False, True])
+def test_stamps_in_two_columns_are_one_time(tmp_path, seconds, rest, packed):
+    """As messages of ROS become tables; whole seconds alone would be one sample a second."""
+    ns = np.round(1e9 * T).astype(int)
+    found = {seconds: 1_700_000_000.0 + ns // 10 ** 9, rest: 1.0 * (ns % 10 ** 9),
+             **columns('pose.position.', 'xyz', PLACE),
+             **columns('pose.orientation.', 'xyzw', XYZW)}
+    path = table(tmp_path, found)
+    if packed:
+        pyarrow = pytest.importorskip('pyarrow')
+        path = tmp_path / 'flight.parquet'
+        pytest.importorskip('pyarrow.parquet').write_table(pyarrow.table(found), path)
+    read = load(path)
+    assert len(read) == len(T)
+    same(changed(read, read.t + read.info['start_ns'] * 1e-9 - 1.7e9), PLACE, Q)
+    assert f'{seconds} and {rest}: one time' in read.info['notes']
+
+
+def test_counts_beside_seconds_are_no_part_of_them(tmp_path):
+    found = {'sec': T, 'nanosec': 1e9 * T, **columns('pose.position.', 'xyz', PLACE),
+             **columns('pose.orientation.', 'xyzw', XYZW)}
+    read = load(table(tmp_path, found))
+    same(read, PLACE)
+    assert not any('one time' in note for note in read.info['notes'])

@@ -180,6 +180,8 @@ GEOMS = """
 <frame pos="0 0 0.1" euler="0 90 0"><geom class="main" size="0.04" pos="0.1 0 0"/>
 <body name="tail" pos="-0.2 0 0" axisangle="0 1 1 70">
 <geom class="main" type="cylinder" size="0.01" fromto="0 0 0 0 0 -0.3"/></body></frame>"""
+HOLLOW = GEOMS.replace('class="main"', 'class="main" shellinertia="true"').replace(
+    'shellinertia="true" type="ellipsoid"', 'type="ellipsoid"')
 
 
 @pytest.mark.parametrize('before', [
@@ -187,7 +189,8 @@ GEOMS = """
     '<compiler eulerseq="zxz" inertiagrouprange="0 3"/>', '<compiler settotalmass="2.5"/>',
     '<compiler boundmass="2" boundinertia="0.03"/>'])
 @pytest.mark.parametrize('body', [
-    GEOMS, INERTIAL + GEOMS, GEOMS + '<body name="tag" pos="0.1 0.2 0.3"><site name="t"/></body>',
+    GEOMS, HOLLOW, INERTIAL + GEOMS,
+    GEOMS + '<body name="tag" pos="0.1 0.2 0.3"><site name="t"/></body>',
     '<inertial pos="0.01 0.02 0.03" mass="1" fullinertia="0.02 0.03 0.04 0.001 -0.002 0.003"/>',
     '<inertial pos="0 0 0.1" mass="1" diaginertia="0.02 0.03 0.04" xyaxes="1 1 0 0 1 1"/>',
     '<inertial pos="0 0 0.1" mass="1" diaginertia="0.02 0.03 0.04" zaxis="1 2 3"/>'])
@@ -217,6 +220,32 @@ def test_mass_and_inertia_are_those_of_mujoco(before, body, tmp_path, monkeypatc
     for k, rotor in enumerate(found.vehicle.rotors):
         site = frame.T @ (data.site(f'thrust{k}').xpos - data.xpos[root])
         np.testing.assert_allclose(rotor.position, site - centre, atol=1e-9)
+
+
+@pytest.mark.parametrize(('geom', 'mass', 'moments'), [
+    ('type="sphere" size="0.2" mass="3"', 3.0, [2 / 3 * 0.04] * 3),
+    ('type="sphere" size="0.2" density="10"', 1.6 * math.pi, [2 / 3 * 0.04] * 3),
+    ('type="ellipsoid" size="0.2 0.2 0.2" density="10"', 1.6 * math.pi, [2 / 3 * 0.04] * 3),
+    ('type="box" size="0.2 0.2 0.2" mass="3"', 3.0, [10 / 9 * 0.04] * 3),
+    ('type="cylinder" size="0.2 1e-9" mass="3"', 3.0, [0.01, 0.01, 0.02]),
+    ('type="capsule" size="0.2 1e-9" mass="3"', 3.0, [2 / 3 * 0.04] * 3)])
+def test_shells_have_their_mass_on_the_surface(geom, mass, moments):
+    """Those that are a ball, or a disc, have its moments."""
+    vehicle = reading(model(f'<geom class="main" shellinertia="true" {geom}/>')).vehicle
+    assert vehicle.mass == pytest.approx(mass)
+    np.testing.assert_allclose(vehicle.inertia, mass * np.array(moments), rtol=1e-6)
+
+
+@pytest.mark.parametrize('size', ['0.13 0.1 0.01', '0.02 0.3 0.3'])
+def test_a_hollow_ellipsoid_is_that_of_mujoco(size, tmp_path, monkeypatch):
+    """Within what its shell of 1 um makes of a radius of 1 cm."""
+    monkeypatch.chdir(tmp_path)
+    mujoco = pytest.importorskip('mujoco', reason='MuJoCo is not installed')
+    text = model(f'<geom class="main" type="ellipsoid" size="{size}" shellinertia="true"/>')
+    theirs, found = mujoco.MjModel.from_xml_string(text), reading(text).vehicle
+    assert found.mass == pytest.approx(theirs.body('quad').mass[0], rel=1e-9)
+    np.testing.assert_allclose(sorted(found.inertia), sorted(theirs.body('quad').inertia),
+                               rtol=2e-4)
 
 
 def test_a_wrench_is_that_of_mujoco():

@@ -1,0 +1,322 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What the messages of one topic of others hold for one role, from a bag or live."""
+
+from array import array
+import math
+import re
+
+import numpy as np
+
+from quad_ident_ros.data import frames
+from quad_ident_ros.data.mapping import Actuators, in_record_unit, rotor_speeds
+from quad_ident_ros.data.message_roles import (
+    at_path,
+    is_px4,
+    is_tf,
+    NoSuch,
+    reading_of,
+    ROLES_OF,
+    shaped,
+    stamp_of,
+    stamps_of,
+)
+from quad_ident_ros.data.px4_resets import Counters, TOPIC_OF
+from quad_ident_ros.data.record import QUATERNION
+from quad_ident_ros.data.signal_kind import kinds_of
+from quad_ident_ros.data.streams import HELD, INTERPOLATED, SLOW, Stream
+from quad_ident_ros.data.topics import not_unit, OTHER_SHAPE
+from quad_ident_ros.data.transforms import Transforms
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.model.motors import MOTORS_OFF, TO_SPEED
+
+BODY_VELOCITY = ('body_vx', 'body_vy', 'body_vz')
+STATES = 'pose', 'position', 'attitude', 'velocity'     # that an estimator resets
+_DOWN = re.compile(r'(^|[_/])ned($|[_/])')
+_DEFAULT_FIELD = {'commands': 'data', 'rotors': 'data', 'battery': 'voltage'}
+_SPEEDS = {'rad/s': 'speed', 'rpm': 'rpm'}      # kinds of outputs by the unit of measured speeds
+_COLUMNS = {'position': ('px', 'py', 'pz'), 'velocity': ('vx', 'vy', 'vz'),
+            'rate': ('wx', 'wy', 'wz'), 'specific_force': ('ax', 'ay', 'az')}
+
+
+class TopicPart:
+    """
+    What the messages of one topic hold for one role.
+
+    Only numbers are kept, so that a long bag takes little memory.
+    Args: where: file and topic, for messages; role of mapping.ROLES; source mapping.Source.
+    """
+
+    def __init__(self, where, role, source):
+        self.role, self.source = role, source
+        self._where = where
+        self._type = None
+        self._reading = None
+        self._frame = ''
+        self._frame_id = ''
+        self._width = 0
+        self._numbers = array('d')
+        self._stamps = array('q')
+        self.received = array('q')
+        self.counters = None    # of resets, where its type has them
+        self.spoilt = ()        # messages, counted from 0, whose attitude was left out
+        self.note = ''          # on how its values came about
+        self._messages = 0
+        self._transforms = Transforms(where, source.topic, source.child)
+
+    @property
+    def count(self):
+        """Return the number of its samples that are finite."""
+        return int(np.isfinite(self._numbers).sum()) // (self._width or 1)
+
+    @property
+    def offset(self):
+        """Return the time from stamp to receipt, s: the median, or 0 where there are no stamps."""
+        if not self.stamped:
+            return 0.0
+        late = np.array(self.received, np.int64) - np.array(self._stamps, np.int64)
+        return float(np.median(late)) * 1e-9
+
+    @property
+    def stamped(self):
+        """Whether each of its messages has a stamp."""
+        return min(self._stamps) > 0
+
+    def add(self, received, message, fixed=False):
+        """
+        Take a message and its time of receipt, ns; InputError where it does not hold this.
+
+        Args: fixed: whether it came on the topic of transforms that do not change.
+        """
+        found = self._read(message, message.__msgtype__)
+        if self.is_tf:
+            for frame, stamp, values in found:
+                self._transforms.add(*frame, stamp, received, values, fixed)
+            return
+        if self._type in TOPIC_OF and self.role in STATES:
+            self.counters = self.counters or Counters(self._type)
+            try:
+                self.counters.add(message)
+            except OTHER_SHAPE:
+                raise self._defined_otherwise() from None
+        for _, stamp, values in found:
+            self._stamps.append(stamp)
+            self.received.append(received)
+            self._numbers.extend(values)
+
+    @property
+    def is_tf(self):
+        """Whether its messages are transforms of frames, by the first of them."""
+        return is_tf(self._type) and not self.source.field
+
+    @property
+    def fixed(self):
+        """
+        Return the fields that say how a message is read, after the first.
+
+        None where messages with columns in place of numbers cannot be read: of transforms each has
+        those that it has, and angles become a quaternion one by one.
+        """
+        if is_tf(self._type) or (self.role == 'attitude' and self.source.unit):
+            return None
+        return self._reading.fixed if self._reading else ()
+
+    def add_many(self, received, message):
+        """Take messages in one, with columns in place of numbers, as add; received (n,) ns."""
+        count = len(received)
+        columns = in_record_unit(self.role, self._values(message, self._type, many=True),
+                                 self.source.unit)
+        self._messages += count
+        if self.counters:
+            self.counters.add_many(message, count)
+        with np.errstate(invalid='ignore'):     # nan of a kind that signals
+            table = np.stack(columns, axis=-1).astype(float)
+        self._numbers.frombytes(table.tobytes())
+        self._stamps.frombytes(np.maximum(stamps_of(message, self._type, count), 0).tobytes())
+        self.received.frombytes(received.tobytes())
+
+    def samples(self, received, message, kind, mapping, fixed=False):
+        """
+        Return [(stamp in ns, time of receipt, columns -> numbers)] that a message completes.
+
+        Nothing is kept but transforms that wait for others. The stamp is 0 where it has none.
+        Args: received its time, ns; kind its type; mapping Mapping; fixed as add. Raises
+        InputError where it does not hold this.
+        """
+        found = self._read(message, kind)
+        if self.is_tf:
+            for frame, stamp, values in found:
+                self._transforms.add_live(*frame, stamp, received, values, fixed)
+            rows = self._transforms.ready()
+            if rows:
+                self._say_chain()
+        else:
+            rows = [(stamp, received, values) for _, stamp, values in found]
+        samples = []
+        for stamp, came, values in rows:
+            self._refuse_down(mapping)
+            if self.role in ('pose', 'attitude') and not_unit(values[-4:]):
+                raise InputError(f'{self._here()}: the quaternion has not the length 1; publish a '
+                                 f'{self.role} with an attitude')
+            columns = self._columns(np.array([values]), mapping)
+            samples.append((stamp, came,
+                            {name: float(column[0]) for name, column in columns.items()}))
+        return samples
+
+    def _read(self, message, kind):
+        """Return [(frame and that it is in, stamp in ns or 0, numbers)] in a message."""
+        self._messages += 1
+        try:
+            return [self._one(part, kind) for part in self._parts(message, kind)]
+        except NoSuch as error:
+            raise InputError(f'{self._here()}: {error}') from None
+        except OTHER_SHAPE:
+            raise self._defined_otherwise() from None
+
+    def _defined_otherwise(self):
+        return InputError(f'{self._here()}: the bag defines {self._type} otherwise than ROS 2 '
+                          'does; record it again')
+
+    def _here(self):
+        return f'{self._where}, message {self._messages}'
+
+    def _parts(self, message, kind):
+        """Return the message, or its transforms."""
+        if self._type is None:
+            self._type = kind
+        if kind != self._type:
+            raise NoSuch(f'it is of type {kind}, the first is of {self._type}; record one type '
+                         'on a topic')
+        return list(message.transforms) if self.is_tf else [message]
+
+    def _one(self, message, kind):
+        if not self._numbers:
+            self._frame_id = str(getattr(getattr(message, 'header', None), 'frame_id', ''))[:40]
+        values = tuple(map(float, in_record_unit(self.role, self._values(message, kind),
+                                                 self.source.unit)))
+        self._width = self._width or len(values)
+        if len(values) != self._width:
+            raise NoSuch(f'{len(values)} values where the first has {self._width}')
+        stamp = stamp_of(message, kind)
+        frame = (message.child_frame_id, message.header.frame_id) if self.is_tf else None
+        return frame, stamp if 0 < stamp < 2 ** 63 else 0, values
+
+    def _refuse_down(self, mapping):
+        """Refuse a pose whose frame_id says NED, unless the mapping says so, too."""
+        if (self.role in ('pose', 'position', 'attitude') and mapping.world == 'ENU'
+                and not is_px4(self._type) and _DOWN.search(self._frame_id.lower())):
+            raise InputError(f'{self._where}: its frame_id {self._frame_id} says NED; write '
+                             'world: NED and body: FRD into a mapping (--mapping), or record it '
+                             'in ENU')
+
+    def _values(self, message, kind, many=False):
+        path = self.source.field
+        if not path and kind not in ROLES_OF and self.role in _DEFAULT_FIELD:
+            path = _DEFAULT_FIELD[self.role]
+        if path:
+            angles = self.role == 'attitude' and self.source.unit
+            return shaped('angles' if angles else self.role, at_path(message, path, kind), path,
+                          many)
+        if self.role == 'attitude' and self.source.unit:
+            raise NoSuch(f'{kind} has a quaternion, which has no unit; leave unit out, or name '
+                         'the field with roll, pitch and yaw')
+        reading = reading_of(self.role, kind, message)
+        if reading.frame is not None:
+            frame = reading.frame(message)
+            if self._reading is not None and frame != self._frame:
+                raise NoSuch('its velocity is in another frame than that of the first; record it '
+                             'in one')
+            self._frame = frame
+        self._reading = reading
+        return reading.values(message)
+
+    def stream(self, mapping, spoilt=False):
+        """
+        Return the Stream of the messages; InputError where there are none.
+
+        Args: mapping; spoilt: let attitudes that are none be nan, and name them in `spoilt`.
+        """
+        if self.is_tf:
+            self._compose()
+        if not self._numbers:
+            child = f' with child_frame_id {self.source.child}' if self.source.child else ''
+            raise InputError(f'{self._where}: there is no such topic in this bag, or nothing on '
+                             f'it{child}; see what there is with: quad_ident info')
+        self._refuse_down(mapping)
+        table = np.frombuffer(self._numbers, float).reshape(-1, self._width)
+        if spoilt and self.role in ('pose', 'attitude'):
+            bad = not_unit(table[:, -4:])
+            self.spoilt = np.flatnonzero(bad).tolist()
+            table = np.where(bad[:, None], np.nan, table)
+        stamps = self._stamps if self.stamped else self.received
+        columns = self._columns(table, mapping)
+        if self._is_unnamed(mapping, table):
+            columns = {name.replace('cmd', 'output'): values for name, values in columns.items()}
+        outputs = 'output1' in columns
+        while outputs and len(columns) > 1 and not (list(columns.values())[-1] > 0).any():
+            columns.popitem()   # outputs without a motor come last
+        return Stream(f'topic {self.source.topic}', np.array(stamps, np.int64), columns,
+                      {'commands': HELD, 'battery': SLOW}.get(self.role, INTERPOLATED))
+
+    def not_unit(self, number):
+        """Return the error of a message, counted from 0, whose attitude is none."""
+        return (f'{self._where}, message {number + 1}: the quaternion has not the length 1; '
+                f'record a {self.role} with an attitude, or leave it out with --from and --to')
+
+    def _is_unnamed(self, mapping, table):
+        """Whether commands of a type that says no kind are by their size no rotor speeds."""
+        return (self.role == 'commands' and mapping.actuators is None
+                and not (self._reading.kind if self._reading else '')
+                and kinds_of(table) not in ((), ('speed',)))
+
+    def _compose(self):
+        """Put the poses that the transforms make in the place of what was read."""
+        stamps, received, table = self._transforms.poses()
+        self._say_chain()
+        self._stamps, self.received = array('q', stamps.tobytes()), array('q', received.tobytes())
+        self._numbers = array('d', table.tobytes())
+
+    def _say_chain(self):
+        """Take the frame of the poses, and the note on it, from the transforms."""
+        self._frame_id = next(iter(self._transforms.chain()), '')
+        self.note = self._transforms.said()
+
+    def _columns(self, table, mapping):
+        """Return the columns of the role from the rows of its messages."""
+        px4 = is_px4(self._type)
+        world, body = ('NED', 'FRD') if px4 else (mapping.world, mapping.body)
+        role = self.role
+        if role in ('pose', 'attitude'):
+            bad = not_unit(table[:, -4:])
+            if bad.any():
+                raise InputError(self.not_unit(int(np.argmax(bad))))
+            columns = dict(zip(QUATERNION, frames.attitude(table[:, -4:], world, body).T,
+                               strict=True))
+            if role == 'pose':
+                position = frames.world_vector(table[:, :3], world)
+                columns = {**dict(zip(_COLUMNS['position'], position.T, strict=True)), **columns}
+            return columns
+        if role == 'position':
+            return dict(zip(_COLUMNS[role], frames.world_vector(table, world).T, strict=True))
+        if role == 'velocity' and (self.source.frame or self._frame) == 'world':
+            return dict(zip(_COLUMNS[role], frames.world_vector(table, world).T, strict=True))
+        if role in _COLUMNS:
+            names = BODY_VELOCITY if role == 'velocity' else _COLUMNS[role]
+            return dict(zip(names, frames.body_vector(table, body).T, strict=True))
+        if role == 'battery':
+            return {'vbat': np.where(np.isfinite(table[:, 0]), table[:, 0], math.nan)}
+        return self._outputs(table, mapping.actuators)
+
+    def _outputs(self, table, actuators):
+        """Return commands or rotor speeds in rad/s, or outputs where these are not known."""
+        kind = _SPEEDS.get(self.source.unit) or (self._reading.kind if self._reading else '')
+        if self.role == 'rotors':
+            told = actuators or Actuators()
+            if kind in TO_SPEED:
+                told = Actuators(told.order, kind)
+            speeds, name = rotor_speeds(self._where, table, told, None), 'rotor'
+        elif actuators is None and kind in ('', *TO_SPEED):
+            speeds, name = table * TO_SPEED[kind or 'speed'], 'cmd'
+        else:
+            speeds, name = np.where(np.isfinite(table), table, MOTORS_OFF), 'output'
+        return {f'{name}{k}': column for k, column in enumerate(speeds.T, 1)}
