@@ -3,7 +3,11 @@
 """Different moments of inertia."""
 
 from quad_ident_ros.compiled import compiled
-from quad_ident_ros.effects import inertia_mismatch_both, inertia_mismatch_moments
+from quad_ident_ros.effects import (
+    inertia_mismatch_both,
+    inertia_mismatch_matrix,
+    inertia_mismatch_moments,
+)
 from quad_ident_ros.effects.base import Axis, Effect, Form, Parameter, Table
 from quad_ident_ros.model.situation import IX, IY, IZ
 
@@ -30,7 +34,8 @@ FORM = Form(
     body=body)
 EFFECT = Effect(
     name='inertia_mismatch', title='error in inertia',
-    forms=(FORM, inertia_mismatch_moments.FORM, inertia_mismatch_both.FORM),
+    forms=(FORM, inertia_mismatch_moments.FORM, inertia_mismatch_both.FORM,
+           inertia_mismatch_matrix.FORM),
     excitation='fast turns about each axis',
     confused_with=('motor_lag', 'thrust_scale'),
     scale_group=True,

@@ -37,7 +37,10 @@ from quad_ident_ros.model.situation import (
     HY,
     HZ,
     IX,
+    IXY,
+    IXZ,
     IY,
+    IYZ,
     IZ,
     MASS,
     MX,
@@ -131,6 +134,7 @@ def prepare(v: np.ndarray, places: np.ndarray, theta: np.ndarray, s: np.ndarray,
     """Write what stays the same along a flight: what acts, mass, inertia, centre of mass, arms."""
     for i in range(s.shape[1]):
         s[MASS, i], s[IX, i], s[IY, i], s[IZ, i] = v[0, i], v[1, i], v[2, i], v[3, i]
+        s[IXY, i], s[IXZ, i], s[IYZ, i] = v[16, i], v[17, i], v[18, i]
         s[COM_X, i] = s[COM_Y, i] = s[COM_Z, i] = 0.0
         s[RADIUS, i], s[PER_HOVER, i] = v[7, i], 1.0 / v[15, i]
         s[WIND_X, i] = s[WIND_Y, i] = s[WIND_Z, i] = 0.0
@@ -143,12 +147,12 @@ def prepare(v: np.ndarray, places: np.ndarray, theta: np.ndarray, s: np.ndarray,
         s[PER_IX, i], s[PER_IY, i], s[PER_IZ, i] = 1.0 / s[IX, i], 1.0 / s[IY, i], 1.0 / s[IZ, i]
     full = 0.0
     for i in range(s.shape[1]):
-        if v[16, i] != 0.0 or v[17, i] != 0.0 or v[18, i] != 0.0:
+        if s[IXY, i] != 0.0 or s[IXZ, i] != 0.0 or s[IYZ, i] != 0.0:
             full = 1.0
     for i in range(s.shape[1]):
         s[FULL, i] = full
     if full != 0.0:
-        _invert(v, s)
+        _invert(s)
     for j in range(places.shape[0]):
         for i in range(s.shape[1]):
             rotors[j, RX, i] = s[ARMS_X, i] * places[j, 0] - s[COM_X, i]
@@ -157,11 +161,11 @@ def prepare(v: np.ndarray, places: np.ndarray, theta: np.ndarray, s: np.ndarray,
 
 
 @compiled(fused=True)
-def _invert(v: np.ndarray, s: np.ndarray) -> None:
+def _invert(s: np.ndarray) -> None:
     """Write the inverse of the matrix of inertia, its moments as they are in s."""
     for i in range(s.shape[1]):
         ix, iy, iz = s[IX, i], s[IY, i], s[IZ, i]
-        xy, xz, yz = v[16, i], v[17, i], v[18, i]
+        xy, xz, yz = s[IXY, i], s[IXZ, i], s[IYZ, i]
         s[PER_XX, i], s[PER_XY, i] = iy * iz - yz * yz, xz * yz - xy * iz
         s[PER_YY, i], s[PER_XZ, i] = ix * iz - xz * xz, xy * yz - xz * iy
         s[PER_ZZ, i], s[PER_YZ, i] = ix * iy - xy * xy, xy * xz - yz * ix
@@ -171,13 +175,13 @@ def _invert(v: np.ndarray, s: np.ndarray) -> None:
 
 
 @compiled(fused=True)
-def _turn_with_products(v: np.ndarray, s: np.ndarray, dx: np.ndarray) -> None:
+def _turn_with_products(s: np.ndarray, dx: np.ndarray) -> None:
     """Write how the rate changes by I w' = M - w x I w where the inertia has products."""
     for i in range(s.shape[1]):
         wx, wy, wz = s[WX, i], s[WY, i], s[WZ, i]
-        hx = s[IX, i] * wx + v[16, i] * wy + v[17, i] * wz
-        hy = v[16, i] * wx + s[IY, i] * wy + v[18, i] * wz
-        hz = v[17, i] * wx + v[18, i] * wy + s[IZ, i] * wz
+        hx = s[IX, i] * wx + s[IXY, i] * wy + s[IXZ, i] * wz
+        hy = s[IXY, i] * wx + s[IY, i] * wy + s[IYZ, i] * wz
+        hz = s[IXZ, i] * wx + s[IYZ, i] * wy + s[IZ, i] * wz
         mx = s[MX, i] - (wy * hz - wz * hy)
         my = s[MY, i] - (wz * hx - wx * hz)
         mz = s[MZ, i] - (wx * hy - wy * hx)
@@ -319,7 +323,7 @@ def derivative(x: np.ndarray, u: np.ndarray, v: np.ndarray, places: np.ndarray,
         dx[11, i] = (s[MY, i] + (iz - ix) * wz * wx) * s[PER_IY, i]
         dx[12, i] = (s[MZ, i] + (ix - iy) * wx * wy) * s[PER_IZ, i]
     if s[FULL, 0] != 0.0:
-        _turn_with_products(v, s, dx)
+        _turn_with_products(s, dx)
 
 
 @compiled(fused=True)

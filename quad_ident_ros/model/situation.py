@@ -19,21 +19,22 @@ A lane is one rollout of the batch. `s` (ROWS, LANES) holds the vehicle, the row
  SPINS, SPIN_UP,
  # Rate of the body with which its rotors meet the air: the state's, or a record's.
  TX, TY, TZ,
- # Constants of the vehicle and of its flight, the fall of the voltage in V and as a share of
- # that of reference; reciprocals of mass, of inertia, and of the sum of the hover speeds.
- MASS, IX, IY, IZ, COM_X, COM_Y, COM_Z, RADIUS, TIME, VOLT_DROP, VOLT_SHARE, PER_MASS, PER_IX,
- PER_IY, PER_IZ, PER_HOVER,
+ # Constants of the vehicle and of its flight, moments and products of inertia, the fall of the
+ # voltage in V and as a share of that of reference; reciprocals of mass, of inertia, and of the
+ # sum of the hover speeds.
+ MASS, IX, IY, IZ, IXY, IXZ, IYZ, COM_X, COM_Y, COM_Z, RADIUS, TIME, VOLT_DROP, VOLT_SHARE,
+ PER_MASS, PER_IX, PER_IY, PER_IZ, PER_HOVER,
  # Factors on the rotors' arms along body x and y, and on their reaction torque.
  ARMS_X, ARMS_Y, TORQUE,
  # 1 where a moment of inertia has products beside it, and then the inverse of the matrix.
  FULL, PER_XX, PER_YY, PER_ZZ, PER_XY, PER_XZ, PER_YZ,
  # 1 where a record gives attitude and rate for the motion of the centre of mass, see
  # rollout.roll_out; how far the integration is in its step, 0 to 1.
- GUIDED, STAGE) = range(63)
+ GUIDED, STAGE) = range(66)
 
 # The quaternion and the rate that the record gives, at the begin and at the end of a step.
 GUIDE = 7
-GUIDE_BEGIN, GUIDE_END = 63, 63 + GUIDE
+GUIDE_BEGIN, GUIDE_END = 66, 66 + GUIDE
 ROWS = GUIDE_END + GUIDE
 
 # A rotor: speed; its velocity against the air, body; factor on its thrust; its force, body; its

@@ -47,7 +47,10 @@ LINES: dict[tuple[str, str], Callable[[Values, int, float], str]] = {
         f'moment += {_one(p["coefficient"] / n)} * np.array([-w @ u[:, 1], w @ u[:, 0], 0.0])'),
     ('blade_flapping', 'drag_centre'): lambda p, n, r: (
         'across = force[:2] + push[:, :2].sum(axis=0)\n'
-        f'moment += {_one(p["arm"])} * np.array([-across[1], across[0], 0.0])')}
+        f'moment += {_one(p["arm"])} * np.array([-across[1], across[0], 0.0])'),
+    ('blade_flapping', 'drag_point'): lambda p, n, r: (
+        'drag = force + push.sum(axis=0) * [1.0, 1.0, 0.0]\n'
+        f'moment += np.cross({_row(p, ("arm_x", "arm_y", "arm_z"))}, drag)')}
 SAYS = 'has no number for'
 TEXT = '''"""
 What {model} ''' + SAYS + ''': {names}.

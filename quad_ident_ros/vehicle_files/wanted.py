@@ -76,8 +76,13 @@ def wanted_of(vehicle: Vehicle, sag: float | None, holds: Collection[Key]) -> Wa
     # Where the rotors' moments differ, the inertia that answers them alike.
     moments = np.array(vehicle.inertia) * [
         mismatch.get(f'factor_{axis}', 1.0) * mismatch.get(f'inertia_{axis}', 1.0)
+        * mismatch.get(2 * axis, 1.0)
         / (mismatch.get(moment, 1.0) * mismatch.get(f'moment_{axis}', 1.0))
         for axis, moment in zip('xyz', ('arms_y', 'arms_x', 'torque'), strict=True)]
+    roots = np.sqrt(moments)
+    products = np.array(vehicle.products) + [
+        mismatch.get(axes, 0.0) * roots[one] * roots[other]
+        for axes, one, other in (('xy', 0, 1), ('xz', 0, 2), ('yz', 1, 2))]
     rise, fall = _lags(effects)
     speeds = len(vehicle.rotors) * vehicle.hover_speed
     linear, by_speed = _drags(vehicle, holds)
@@ -87,7 +92,7 @@ def wanted_of(vehicle: Vehicle, sag: float | None, holds: Collection[Key]) -> Wa
     return Wanted(
         mass=vehicle.mass + effects.get('mass_offset', {}).get('mass', 0.0),
         centre=np.array([shift.get(axis, 0.0) for axis in 'xyz']),
-        inertia=replace(vehicle, inertia=tuple(moments)).inertia_matrix,
+        inertia=replace(vehicle, inertia=tuple(moments), products=tuple(products)).inertia_matrix,
         thrust=factor * vehicle.thrust_coefficient, hover=vehicle.hover_speed,
         exponent=exponent,
         losses=np.array([fault.get(f'loss_{j + 1}', 0.0) for j in range(len(vehicle.rotors))]),

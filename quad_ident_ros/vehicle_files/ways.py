@@ -59,6 +59,8 @@ WAYS: dict[tuple[str, str], tuple[Way, ...]] = {
                                        'motion'),),
     ('inertia_mismatch', 'factors'): (Way(('inertia',), 'a part of the inertia, which is the same '
                                           'motion'),),
+    ('inertia_mismatch', 'matrix'): (Way(('inertia',), 'a part of the matrix of inertia, which is '
+                                         'the same motion'),),
     ('inertia_mismatch', 'moments'): (Way(('inertia',), 'the inertia over the factors, which '
                                           'differs in the gyroscopic moment'),),
     ('inertia_mismatch', 'moments_and_inertia'): (

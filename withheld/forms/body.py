@@ -150,6 +150,46 @@ class Entrained(Influence):
             self._rate - self._turning)
 
 
+class Sprung(Influence):
+    """
+    Inertia held by a spring, as a camera on rubber dampers: slow turns take it along, fast not.
+
+    A second inertia about each axis on a torsion spring with a damper (J. P. Den Hartog,
+    Mechanical Vibrations, 1956, section 3.2).
+    """
+
+    FREQUENCY = 2.0 * np.pi * 4.0       # rad/s, of the inertia on its spring
+    DAMPING = 0.3                       # of the critical one
+
+    def __init__(self, size, params, rng):
+        """Draw how much of it each axis has."""
+        self.shares = 0.12 * size * rng.uniform(0.6, 1.0, 3)
+        self.parameters = {'share': 0.12 * size}
+
+    def alter(self, true, params):
+        """Take the inertia that it goes with."""
+        self.loads = self.shares * [true[key] for key in AXES]
+
+    def begin(self, rng):
+        """Start at rest."""
+        self._angle, self._turning, self._rate = np.zeros(3), np.zeros(3), np.zeros(3)
+
+    def wrench(self, now):
+        """Return the moment of spring and damper."""
+        self._rate = now.rate
+        return np.zeros(3), self.loads * self._pull()
+
+    def after(self, step, rotation, acceleration):
+        """Let it swing."""
+        self._turning = self._turning - step * self._pull()
+        self._angle = self._angle + step * (self._turning - self._rate)
+
+    def _pull(self):
+        """Return the moment on the body over the inertia, 1/s^2."""
+        return self.FREQUENCY * (self.FREQUENCY * self._angle + 2.0 * self.DAMPING * (
+            self._turning - self._rate))
+
+
 class Outriggers(Influence):
     """Masses moved outwards along one axis across the body: more inertia about the others."""
 

@@ -48,7 +48,10 @@ OTHERS = {
     ('inertia_mismatch', 'moments'): {'arms_y': 1.1, 'arms_x': 0.9, 'torque': 1.2},
     ('inertia_mismatch', 'moments_and_inertia'): {
         'moment_x': 1.1, 'moment_y': 0.9, 'moment_z': 1.2, 'inertia_y': 1.1, 'inertia_z': 0.9},
+    ('inertia_mismatch', 'matrix'): {'xx': 1.1, 'yy': 0.9, 'zz': 1.05, 'xy': 0.1, 'xz': -0.05,
+                                     'yz': 0.08},
     ('blade_flapping', 'drag_centre'): {'arm': 0.05},
+    ('blade_flapping', 'drag_point'): {'arm_x': 0.03, 'arm_y': -0.02, 'arm_z': 0.05},
     ('inflow', 'momentum'): {'through': 0.5}}
 EACH = [pytest.param(name, form, id=f'{name} {form}') for name, form in OTHERS]
 
@@ -377,6 +380,20 @@ def test_factors_on_the_inertia_are_moments_over_the_first_and_proportions_to_it
     assert np.abs(one - other).max() < 1e-9
 
 
+def test_a_matrix_of_inertia_is_that_of_a_vehicle_file():
+    ix, iy, iz = 1.1 * 0.03, 0.9 * 0.026, 1.05 * 0.055      # of VEHICLE
+    other = replace(VEHICLE, inertia=(ix, iy, iz), products=(
+        0.1 * np.sqrt(ix * iy), -0.05 * np.sqrt(ix * iz), 0.08 * np.sqrt(iy * iz)))
+    course = steps(VEHICLE)
+    found = roll(VEHICLE, {'inertia_mismatch': OTHERS['inertia_mismatch', 'matrix']}, course,
+                 START)
+    assert np.abs(found - roll(other, {}, course, START)).max() < 1e-10
+    # On a file with products they are added to those.
+    both = roll(other, {'inertia_mismatch': {'xy': -0.1, 'xz': 0.05, 'yz': -0.08}}, course, START)
+    plain = replace(other, products=(0.0, 0.0, 0.0))
+    assert np.abs(both - roll(plain, {}, course, START)).max() < 1e-10
+
+
 def moment_at(velocity, effects, vehicle):
     """Return the moment (3,) N m that effects add at a velocity, level."""
     course = held(vehicle, hover_speed(vehicle), 0.02)
@@ -397,6 +414,18 @@ def test_a_centre_of_drag_turns_the_vehicle_where_there_is_drag():
     without, found = (moment_at((5, 0, 0), each, flat) for each in (by_rotors,
                                                                     {**by_rotors, **arm}))
     assert found - without == pytest.approx([0, -0.05 * (1.5 + 0.02 * 25), 0], rel=1e-9)
+
+
+@pytest.mark.slow
+def test_drag_at_a_point_turns_the_vehicle_by_its_arm():
+    arm, velocity, drag = np.array([[0.03, -0.02, 0.05], [5.0, 2.0, 1.0], [0.1, 0.2, 0.3]])
+    vehicle = replace(BARE, linear_drag=tuple(drag))
+    point = {'blade_flapping': dict(zip(('arm_x', 'arm_y', 'arm_z'), arm, strict=True))}
+    assert not moment_at(velocity, point, BARE).any()
+    assert moment_at(velocity, point, vehicle) == pytest.approx(np.cross(arm, -drag * velocity))
+    above, centre = ({'blade_flapping': {name: 0.05}} for name in ('arm_z', 'arm'))
+    assert moment_at(velocity, above, vehicle) == pytest.approx(
+        moment_at(velocity, centre, vehicle))
 
 
 # Inflow.
