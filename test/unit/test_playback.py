@@ -76,6 +76,15 @@ def test_stamps_never_go_back_from_run_to_run():
     assert again.load(FLIGHT).start_ns > second.stop_ns
 
 
+def test_stamps_do_not_fall_behind_the_time_that_flights_took_to_compute():
+    playback, notice = playing(1.0)
+    for _ in EXPERIMENT.runs[1:]:
+        playback.next_run()
+        now = notice.stop_ns + 10 ** 9
+        notice = playback.load(FLIGHT, now)
+        assert notice.start_ns == now
+
+
 def test_each_run_comes_once():
     playback = Playback(EXPERIMENT, 1.0)
     runs = [playback.next_run() for _ in EXPERIMENT.runs]
