@@ -87,9 +87,11 @@ class BagFile:
                 self._reader = plugins.get('dir' if self.kind == 'folder' else self.kind,
                                            plugins['.mcap'])(self.path)
             self._reader.open()
-            # SQLite keeps anything in any column.
-            if not all(isinstance(text, str) for one in self._reader.connections
-                       for text in (one.topic, one.msgtype)):
+            # SQLite keeps anything in any column, and a damaged name is not to break a line.
+            names = [text for one in self._reader.connections
+                     for text in (one.topic, one.msgtype)]
+            if not all(isinstance(text, str) and text.isprintable() for text in names):
+                self.__exit__()
                 raise BadType('its list of topics is damaged')
         return self
 

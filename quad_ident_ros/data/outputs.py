@@ -13,7 +13,7 @@ from quad_ident_ros.data.mapping import Actuators, actuators_from, chosen_output
 from quad_ident_ros.data.measured_speeds import by_measured
 from quad_ident_ros.data.motor_order import order_of, rotors_of
 from quad_ident_ros.data.record import FlightRecord
-from quad_ident_ros.data.signal_kind import described, kinds_of, MANY
+from quad_ident_ros.data.signal_kind import described, hovers_signed, kinds_of, MANY
 from quad_ident_ros.data.thrust_curve import said as curve_said
 from quad_ident_ros.data.thrust_curve import share_of_thrust
 from quad_ident_ros.data.thrust_level import FULL_SPEED, full_speed, levelled
@@ -34,6 +34,7 @@ ACTUATORS = 'actuators'
 BY_MOTORS = 'by_motors'
 """Info of a record: its commands are as uncertain as the vehicle file says that its motors are."""
 BEYOND = 0.05       # of the range: what is further out is another kind of signal
+BY_SIZE = 'by their size'
 SIGNED, UNSIGNED = ('{kind: normalised, minimum: -1, maximum: 1}',
                     '{kind: normalised, minimum: 0, maximum: 1}')
 
@@ -187,7 +188,7 @@ def _map_of(where: str, about: dict, values: np.ndarray, vehicle: Vehicle | None
                 if not np.nanmax(np.ptp(np.nan_to_num(values), axis=0), initial=0.0) > 0:
                     return None
                 raise _doubt(where, values, kinds)
-            kind, how = kinds[0], 'by their size'
+            kind, how = kinds[0], BY_SIZE
         told = _of_kind(kind)
     else:
         _refuse_range(where, values, vehicle)
@@ -195,6 +196,10 @@ def _map_of(where: str, about: dict, values: np.ndarray, vehicle: Vehicle | None
     motors = completed(told, vehicle.thrust_coefficient, vehicle.speed_min, vehicle.speed_max)
     kind = about['kind'] if vehicle.motors is None and curve is not None else told.kind
     said = f'commands: outputs taken for {described(kind)}, {how}; '
+    if (kind, how) == ('normalised', BY_SIZE) and hovers_signed(
+            values, vehicle.hover_speed, (vehicle.speed_min, vehicle.speed_max)):
+        said += (f'as signals from -1 to 1 they would carry {vehicle.name}: write motors: '
+                 f'{SIGNED} into its file if they are; ')
     return _Map(motors, said + (_said(motors) if motors.whole else ''), bool(told.gives))
 
 

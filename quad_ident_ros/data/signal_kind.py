@@ -57,6 +57,18 @@ def kinds_of(values: np.ndarray, hover: float | None = None,
     return tuple(found)
 
 
+def hovers_signed(values: np.ndarray, hover: float, ends: tuple[float, float]) -> bool:
+    """
+    Whether signals of 0 to 1 turn the rotors as in hover if they are signals from -1 to 1 alone.
+
+    Args: as kinds_of.
+    """
+    usual = float(np.median(values[np.isfinite(values) & (values > 0)]))
+    near = [NEAR_HOVER[0] < (ends[0] + share * (ends[1] - ends[0])) / hover < NEAR_HOVER[1]
+            for share in (usual, (usual + 1.0) / 2.0)]
+    return bool(np.isfinite(ends[1])) and near == [False, True]
+
+
 def _nearer(kinds: list[str], usual: float, hover: float | None,
             ends: tuple[float, float]) -> list[str]:
     """

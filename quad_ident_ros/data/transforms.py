@@ -152,7 +152,7 @@ class Transforms:
         received = np.array(base.received, np.int64)
         stamps = np.array(base.stamps, np.int64) if stamped else np.zeros_like(received)
         table = _composed(links, base, np.arange(len(received)), stamped)
-        if len(links) > 1 and not np.isfinite(table).all(axis=1).any():
+        if len(links) > 1 and not np.isfinite(table[:, 3:]).all(axis=1).any():
             raise InputError(f'{self._where}: the transforms of {" -> ".join(self.chain())} are '
                              'never there together; record them together, and those that do not '
                              f'change on {static_topic(self._topic)}')
@@ -222,13 +222,14 @@ def _base(links: Sequence[_Link]) -> int:
 
 def _composed(links: Sequence[_Link], base: _Link, which: np.ndarray, stamped: bool) -> np.ndarray:
     """Return the poses (n, 7) of the last of links, root first, at some transforms of the base."""
+    if len(links) == 1:
+        return base.table()[which]
     stamps = _times(base, stamped)[which]
-    each = [base.table()[which] if link is base else _at(link, stamps, stamped) for link in links]
-    if len(each) == 1:
-        return each[0]
-    place, attitude = each[0][:, :3], each[0][:, 3:]
-    bad = not_unit(attitude)
-    with np.errstate(invalid='ignore', divide='ignore'):
+    with np.errstate(all='ignore'):     # numbers of a damaged message, which the record refuses
+        each = [base.table()[which] if link is base else _at(link, stamps, stamped)
+                for link in links]
+        place, attitude = each[0][:, :3], each[0][:, 3:]
+        bad = not_unit(attitude)
         for table in each[1:]:
             bad |= not_unit(table[:, 3:])
             attitude = attitude / np.linalg.norm(attitude, axis=-1, keepdims=True)

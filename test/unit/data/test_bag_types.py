@@ -191,6 +191,11 @@ def test_transforms_of_one_vehicle_are_a_pose(tmp_path):
     refused(path, 'with child_frame_id cf3', mapping=mapping_from({'topics': topics}, 'm'))
 
 
+def test_a_name_that_would_break_a_line_is_that_of_a_damaged_bag(tmp_path):
+    path = write1(tmp_path / 'a.bag', odometry(SMALL, '/b\u2028om'))
+    refused(path, 'its list of topics is damaged')
+
+
 def test_two_topics_for_one_role_are_listed_with_the_lines_to_write(tmp_path):
     path = write2(tmp_path / 'bag', [*odometry(SMALL, '/a/odom'), *odometry(SMALL, '/b/odom'),
                                      *imu(SMALL)])

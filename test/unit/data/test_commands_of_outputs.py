@@ -97,6 +97,17 @@ def test_signals_from_minus_one_to_one_are_not_taken_for_0_to_1(tmp_path):
     np.testing.assert_allclose(read.stack(*CMD), SPEEDS, rtol=1e-9)
 
 
+@pytest.mark.parametrize('signed', [False, True])
+def test_signals_that_would_hover_from_minus_one_to_one_are_said_to(tmp_path, signed):
+    """None of them is below 0, so that their range leaves both open; a vehicle that hovers."""
+    fast = replace(VEHICLE, speed_max=1600.0)
+    shares = (SPEEDS - fast.speed_min) / (fast.speed_max - fast.speed_min)
+    path = with_outputs(tmp_path, 2 * shares - 1 if signed else shares)
+    assert not signed or (2 * shares - 1).min() > 0
+    said = load(path, vehicle=fast).info['commands'][-1]
+    assert ('motors: {kind: normalised, minimum: -1, maximum: 1}' in said) == signed
+
+
 def test_signals_that_a_mixer_has_not_limited_are_read_by_the_line_for_them(tmp_path):
     """Those below 0 are motors that are off; the same message has the line for either."""
     values = (SPEEDS - 100) / 1600

@@ -149,6 +149,14 @@ def test_a_quaternion_that_is_none_in_the_frame_above_is_refused(tmp_path):
             'the quaternion has not the length 1')
 
 
+@pytest.mark.filterwarnings('error')
+def test_numbers_of_a_damaged_message_end_in_a_sentence(tmp_path):
+    """As the fuzzer found them: a quaternion whose square is no number any more."""
+    wild = messages('world', 'map', [START], [(1e300, 0, 0)], [(1e300, 0, 0, 0)], '/tf_static')
+    refused(write2(tmp_path / 'bag', in_order(wild, odom(), base(), imu(SMALL))),
+            'the quaternion has not the length 1')
+
+
 def live(topics, sent):
     """Return [(stamp, columns)] of the poses that messages give live."""
     make, found = Make(store()), []
