@@ -18,7 +18,7 @@ from quad_ident_ros.model.vehicle import load_vehicle, write_vehicle
 from quad_ident_ros.vehicle_files.export import export
 from quad_ident_ros.vehicle_files.mujoco_code import LINES
 
-# Two sets, because forms of one effect take the place of one another.
+# Some sets, because forms of one effect take the place of one another.
 SETS = ({'rotor_drag': {'coefficient': 0.2}, 'body_drag': {'horizontal': 0.02, 'vertical': 0.05},
          'wind': {'x': 2.0, 'y': -1.0, 'z': 0.5},
          'inflow': {'axial': 0.3, 'translational': 0.01}, 'ground_effect': {'strength': 4.0},
@@ -26,7 +26,11 @@ SETS = ({'rotor_drag': {'coefficient': 0.2}, 'body_drag': {'horizontal': 0.02, '
          'rotor_fault': {'loss_2': 0.1}},
         {'rotor_drag': {'x': 0.1, 'y': 0.2, 'z': 0.05}, 'body_drag': {'x': 0.02, 'z': 0.01},
          'blade_flapping': {'arm': 0.03}, 'thrust_scale': {'offset': 0.3}},
-        {'rotor_drag': {'x_by_speed': 0.1, 'y_by_speed': 0.2, 'z_by_speed': 0.05}})
+        {'rotor_drag': {'x_by_speed': 0.1, 'y_by_speed': 0.2, 'z_by_speed': 0.05},
+         'blade_flapping': {'arm_x': 0.03, 'arm_y': -0.02, 'arm_z': 0.05},
+         'inertia_mismatch': {'xx': 1.2, 'yy': 1.1, 'zz': 0.9, 'xy': 0.1, 'xz': -0.08,
+                              'yz': 0.05}})
+IN_NUMBERS = {'rotor_fault', 'inertia_mismatch'}   # of MJCF itself
 VEHICLE = replace(load_vehicle('hummingbird'), linear_drag=(0.1, 0.15, 0.2),
                   rotational_drag=(1e-3, 2e-3, 3e-3))
 
@@ -61,7 +65,7 @@ def test_accelerations_are_those_of_our_equations(effects):
     vehicle = replace(VEHICLE, effects=effects)
     mujoco, model, _, found = model_of(vehicle)
     by_code = {fate.name for fate in found.fates.by_code}
-    assert by_code == set(effects) - {'rotor_fault'} | {'linear_drag', 'rotational_drag'}
+    assert by_code == set(effects) - IN_NUMBERS | {'linear_drag', 'rotational_drag'}
     data, draw = mujoco.MjData(model), np.random.default_rng(3)
     for _ in range(20):
         start = state((0, 0, 0.15), draw.normal(0, 4, 3), draw.uniform(-0.5, 0.5, 3),
