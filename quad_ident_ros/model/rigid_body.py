@@ -104,6 +104,7 @@ STATE = 13      # position, velocity (world), quaternion (body to world), rate (
 # specific force x, y (body); for a residual function, smoothed commands after these.
 INPUT = 9
 CONSTANTS = 19
+ROUNDING = 2.0 ** -52   # of a moment of inertia: smaller products are none
 
 
 def vehicle_vector(vehicle: Vehicle, drag_in_world: bool = False) -> np.ndarray:
@@ -147,7 +148,7 @@ def prepare(v: np.ndarray, places: np.ndarray, theta: np.ndarray, s: np.ndarray,
         s[PER_IX, i], s[PER_IY, i], s[PER_IZ, i] = 1.0 / s[IX, i], 1.0 / s[IY, i], 1.0 / s[IZ, i]
     full = 0.0
     for i in range(s.shape[1]):
-        if s[IXY, i] != 0.0 or s[IXZ, i] != 0.0 or s[IYZ, i] != 0.0:
+        if abs(s[IXY, i]) + abs(s[IXZ, i]) + abs(s[IYZ, i]) > ROUNDING * s[IX, i]:
             full = 1.0
     for i in range(s.shape[1]):
         s[FULL, i] = full
