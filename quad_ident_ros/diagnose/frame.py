@@ -35,6 +35,7 @@ from quad_ident_ros.greybox.nuisances import Layout
 from quad_ident_ros.model.vehicle import Vehicle
 
 AT_ONCE = 4     # rollouts whose slopes are put in units of the noise at once: a core's cache
+BLOCKS = 16     # blocks whose products are held at once: all would be much of a diagnosis' memory
 
 
 @dataclass(frozen=True, eq=False)
@@ -159,23 +160,13 @@ def normal_at(frame: Frame, fit: Estimate, layout: Layout, distances: dict,
         along = directions_of(distances, number, frame.wanted)
         along *= scales(*sizes, rules.form_error, along.shape[2])
         along = np.pad(along, ((0, 0), (0, 1), (0, 0)))[:, None]    # the clock has no part in them
-        # The last row and column are the residual's.
-        each = np.zeros((found.slopes.shape[1], clock + 2, clock + 2))
-        np.sum(found.slopes, axis=0, out=each[:, :-1, :-1])
-        each[:, :-1, -1] = each[:, -1, :-1] = found.cross.sum(axis=0)
-        each[:, -1, -1] = found.power
-        across = along.transpose(0, 1, 3, 2)
-        drawn = across @ found.slopes
-        ties = np.concatenate([drawn, across @ found.cross[..., None]], axis=3).sum(axis=0)
-        inside = np.sum(drawn @ along, axis=0) + np.eye(along.shape[3])
-        each -= ties.transpose(0, 2, 1) @ np.linalg.solve(inside, ties)
+        whole, ends = _without_discrepancy(found, along)
         # The clock of the pose is free in each flight: it is taken out of the others.
-        whole = each.sum(axis=0)
         size = max(whole[clock, clock], 1e-300)
         share = whole[:, clock] / size
         cost += whole[-1, -1] - size * share[-1] ** 2
-        score = each[:, kept, -1] - share[-1] * each[:, kept, clock]
-        score -= share[kept] * (each[:, clock, -1] - share[-1] * each[:, clock, clock])[:, None]
+        score = ends[:, kept, -1] - share[-1] * ends[:, kept, 0]
+        score -= share[kept] * (ends[:, clock, -1] - share[-1] * ends[:, clock, 0])[:, None]
         table = whole[np.ix_(kept, kept)] - size * np.outer(share[kept], share[kept])
         places = layout.places(number)
         information[np.ix_(places, places)] += table[np.ix_(layout.rows, layout.rows)]
@@ -185,3 +176,29 @@ def normal_at(frame: Frame, fit: Estimate, layout: Layout, distances: dict,
         scores.append(np.zeros((len(pairs), layout.size)))
         scores[-1][:, places] = pairs
     return Normal(information, gradient, cost, np.concatenate(scores))
+
+
+def _without_discrepancy(products: Products, along: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """
+    Return Products with the discrepancy marginalised out, the residual as the last column.
+
+    (N + 1, N + 1) summed over blocks, and of each block the columns of clock and residual,
+    (K, N + 1, 2). Args: along (2, 1, N, D): directions times their scales.
+    """
+    count, size = products.slopes.shape[1:3]
+    across = along.transpose(0, 1, 3, 2)
+    whole, ends = np.zeros((size + 1, size + 1)), np.empty((count, size + 1, 2))
+    for begin in range(0, count, BLOCKS):
+        part = slice(begin, begin + BLOCKS)
+        slopes, cross = products.slopes[:, part], products.cross[:, part]
+        each = np.zeros((slopes.shape[1], size + 1, size + 1))
+        np.sum(slopes, axis=0, out=each[:, :-1, :-1])
+        each[:, :-1, -1] = each[:, -1, :-1] = cross.sum(axis=0)
+        each[:, -1, -1] = products.power[part]
+        drawn = across @ slopes
+        ties = np.concatenate([drawn, across @ cross[..., None]], axis=3).sum(axis=0)
+        inside = np.sum(drawn @ along, axis=0) + np.eye(along.shape[3])
+        each -= ties.transpose(0, 2, 1) @ np.linalg.solve(inside, ties)
+        whole += each.sum(axis=0)
+        ends[part] = each[:, :, -2:]
+    return whole, ends
