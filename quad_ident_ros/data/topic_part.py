@@ -61,6 +61,7 @@ class TopicPart:
         self.counters = None    # of resets, where its type has them
         self.spoilt = ()        # messages, counted from 0, whose attitude was left out
         self.note = ''          # on how its values came about
+        self.refused = ''       # why poses that the last live message completes were left out
         self._messages = 0
         self._transforms = Transforms(where, source.topic, source.child)
 
@@ -141,8 +142,10 @@ class TopicPart:
 
         Nothing is kept but transforms that wait for others. The stamp is 0 where it has none.
         Args: received its time, ns; kind its type; mapping Mapping; fixed as add. Raises
-        InputError where it does not hold this.
+        InputError where it does not hold this. Of several poses those that have no attitude are
+        left out alone, and `refused` says why.
         """
+        self.refused = ''
         found = self._read(message, kind)
         if self.is_tf:
             for frame, stamp, values in found:
@@ -156,11 +159,14 @@ class TopicPart:
         for stamp, came, values in rows:
             self._refuse_down(mapping)
             if self.role in ('pose', 'attitude') and not_unit(values[-4:]):
-                raise InputError(f'{self._here()}: the quaternion has not the length 1; publish a '
-                                 f'{self.role} with an attitude')
+                self.refused = (f'{self._here()}: the quaternion has not the length 1; publish a '
+                                f'{self.role} with an attitude')
+                continue
             columns = self._columns(np.array([values]), mapping)
             samples.append((stamp, came,
                             {name: float(column[0]) for name, column in columns.items()}))
+        if self.refused and not samples:
+            raise InputError(self.refused)
         return samples
 
     def _read(self, message, kind):

@@ -46,6 +46,7 @@ class MappedTopics:
         self._late = {}     # s from the stamp to the receipt, by topic
         self._settled = 0   # ns of receipt from which on they are compared
         self.by_receipt = False
+        self.refused = ''       # why poses that the last message completes were left out
         self.without_stamps = []    # topics, in the order in which they were heard
         self._parts = {role: TopicPart(f'topic {mapping.topics[role].topic}', role,
                                        mapping.topics[role])
@@ -91,10 +92,12 @@ class MappedTopics:
         Args: kind its type, package/msg/Name; received_ns its time of receipt.
         Raises InputError where it does not hold what the mapping says.
         """
-        found = [(role, *sample) for role, part in self._parts.items()
-                 if topic in (part.source.topic, self.beside(part.source.topic, kind))
+        parts = {role: part for role, part in self._parts.items()
+                 if topic in (part.source.topic, self.beside(part.source.topic, kind))}
+        found = [(role, *sample) for role, part in parts.items()
                  for sample in part.samples(received_ns, message, kind, self._mapping,
                                             topic != part.source.topic)]
+        self.refused = next((part.refused for part in parts.values() if part.refused), '')
         if not (self._parts.keys() & {'pose', 'attitude'}) and any(
                 BODY_VELOCITY[0] in values for *_, values in found):
             raise InputError(f'topic {topic}: a velocity in body axes needs an attitude; map a '

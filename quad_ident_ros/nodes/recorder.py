@@ -241,9 +241,10 @@ class Recorder(PackageNode):
                                            self.get_clock().now().nanoseconds,
                                            deserialize_message(raw, kind))
         except InputError as error:
-            self._health.trouble = self._unreadable = str(error)
-            self.get_logger().error(self._unreadable, throttle_duration_sec=10.0)
+            self._say_unreadable(str(error))
             return
+        if self._mapped.refused:
+            self._say_unreadable(self._mapped.refused)
         for note in self._mapped.notes():
             if note not in self._told:
                 self._told.add(note)
@@ -256,6 +257,10 @@ class Recorder(PackageNode):
                 self.get_logger().warning('the clock of the messages went back: a new record '
                                           'begins')
             self._keep(rows)
+
+    def _say_unreadable(self, why):
+        self._health.trouble = self._unreadable = why
+        self.get_logger().error(why, throttle_duration_sec=10.0)
 
     def _on_run(self, raw):
         self._disk.write(RUN_TOPIC, raw)

@@ -222,6 +222,22 @@ def test_live_transforms_are_forgotten(topics):
     assert all(len(link.stamps) < 100 for link in links.values())
 
 
+def test_one_quaternion_that_is_none_costs_one_live_pose(topics):
+    """A second of poses waits for the frame above; they are not lost with the bad one."""
+    at, _, _, sent = flown()
+    above = [one for one in sent if one[3]['transforms'][0]['child_frame_id'] == 'odom'][::20]
+    below = [one for one in sent if one[3]['transforms'][0]['child_frame_id'] == 'base_link']
+    below[150][3]['transforms'][0]['transform']['rotation'] = dict.fromkeys('wxyz', 0.0)
+    sent, whole = in_order(above, below), above[-1][2]
+    make, found, refused = Make(store()), [], []
+    for topic, kind, ns, fields in sent:
+        found += [stamp for _, stamp, _ in topics.samples(topic, kind, ns, make(kind, **fields))]
+        refused += filter(None, [topics.refused])
+    assert found == [ns for k, ns in enumerate(at.tolist()) if ns <= whole and k != 150]
+    [line] = refused
+    assert 'the quaternion has not the length 1; publish a pose with an attitude' in line
+
+
 def test_several_vehicles_are_refused_live(topics):
     topics = MappedTopics(mapping_from({'topics': {'pose': {'topic': '/tf'}}}, 'm'), 'm')
     with pytest.raises(InputError, match=r'several frames \(a, b\); name that of the vehicle'):
