@@ -23,6 +23,7 @@ COLUMNS = ('px', 'py', 'pz', *QUATERNION)
 FASTER = 1.5        # times as many transforms from which on another link sets the stamps
 SETTLED = 2 * 10 ** 9   # ns of transforms after which a live chain is taken to be whole
 MOST = 20000        # transforms of a link that wait
+SAME = 1e-6         # m, and of a quaternion: by how much what does not change may differ
 _KEPT = 16          # transforms of a link before the last pose
 _NAMED = 12         # frames that a message lists
 
@@ -36,13 +37,14 @@ class _Link:
     """
     The transforms of a frame in the one above it, its parent, in the order in which they came.
 
-    fixed: whether they do not change; stamps (0 without one) and received, ns; values: COLUMNS of
-    each; heard: how many came, those that were forgotten, too.
+    fixed: whether they do not change; doubtful: whether they are said to, and not to; stamps (0
+    without one) and received, ns; values: COLUMNS of each; heard: how many came, those that were
+    forgotten, too.
     """
 
     def __init__(self, parent: str):
         self.parent = parent
-        self.fixed = False
+        self.fixed = self.doubtful = False
         self.heard = 0
         self.stamps, self.received, self.values = array('q'), array('q'), array('d')
 
@@ -52,6 +54,11 @@ class _Link:
         self.stamps.append(stamp)
         self.received.append(received)
         self.values.extend(values)
+
+    def differs(self, values: Sequence[float]) -> bool:
+        """Return whether values are others than the last ones."""
+        return any(abs(new - old) > SAME for new, old
+                   in zip(values, self.values[-len(COLUMNS):], strict=False))
 
     def forget(self, count: int) -> None:
         """Forget the first transforms."""
@@ -96,7 +103,11 @@ class Transforms:
         if link.parent != parent:
             raise InputError(f'{self._where}: the frame {child!r} is in {parent!r} and in '
                              f'{link.parent!r}; publish its transform in one of them')
-        link.fixed = link.fixed or fixed and not link.heard
+        if not link.heard:
+            link.fixed = fixed
+        elif link.fixed != fixed:
+            link.doubtful = link.doubtful or link.differs(values)
+            return
         if link.fixed:
             link.forget(len(link.stamps))
         link.add(stamp, received, values)
@@ -108,7 +119,7 @@ class Transforms:
         link = self._links.get(child)
         if self._chain and (link is None or child not in self._chain):
             return
-        if link is not None and not link.fixed and len(link.stamps):
+        if link is not None and not link.fixed and not fixed and len(link.stamps):
             if stamp < link.stamps[-1] - RESTART_NS:
                 self._restart(stamp)
             elif stamp <= link.stamps[-1]:
@@ -192,7 +203,8 @@ class Transforms:
         """Return the frame of the vehicle, '' where there is none; InputError for several."""
         if self._child:
             return self._child
-        moving = sorted(name for name, link in self._links.items() if not link.fixed)
+        moving = sorted(name for name, link in self._links.items()
+                        if not link.fixed or link.doubtful)
         bodies = [name for name in moving if name.rpartition('/')[2] in BODIES]
         if len(moving) > 1 and len(bodies) != 1:
             raise InputError(
@@ -201,6 +213,12 @@ class Transforms:
         return next(iter(bodies if len(bodies) == 1 else moving), '')
 
     def _of(self, chain: Sequence[str]) -> list[_Link]:
+        for name in chain[1:]:
+            if self._links[name].doubtful:
+                fixed = static_topic(self._topic)
+                raise InputError(f'{self._where}: the frame {name!r} is on {fixed}, so that it '
+                                 f'should not move, and elsewhere on {self._topic}; publish it on '
+                                 f'one of them, or leave {fixed} out')
         return [self._links[name] for name in chain[1:]]
 
     def _restart(self, stamp: int) -> None:

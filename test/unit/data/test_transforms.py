@@ -157,6 +157,38 @@ def test_numbers_of_a_damaged_message_end_in_a_sentence(tmp_path):
             'the quaternion has not the length 1')
 
 
+def twice_told(ns, place=(5.0, 0.0, 0.0)):
+    """Return the message of a time that says that odom does not move in map."""
+    return messages('map', 'odom', [ns], [place], [(1, 0, 0, 0)], '/tf_static')
+
+
+BEFORE, LATER = START - 10 ** 9, START + 2 * SLOW + 1
+BOTH = "the frame 'odom' is on /tf_static, so that it should not move, and elsewhere on /tf"
+
+
+@pytest.mark.parametrize('ns', [BEFORE, LATER])
+def test_a_frame_that_does_not_change_and_moves_is_refused(tmp_path, ns):
+    """It would stand still in all poses, or have one wrong value."""
+    refused(write2(tmp_path / 'bag', in_order(twice_told(ns), odom(), base(), imu(SMALL))),
+            BOTH, 'publish it on one of them')
+
+
+@pytest.mark.parametrize('ns', [BEFORE, LATER])
+def test_a_frame_that_does_not_change_may_be_on_both_topics(tmp_path, ns):
+    at = np.arange(START - SLOW, stamps(SMALL)[-1] + SLOW + 1, SLOW)
+    still = (5.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0)
+    moved = messages('map', 'odom', at, *(np.tile(part, (len(at), 1)) for part in still))
+    below_it = messages('odom', 'base_link', np.array(stamps(SMALL)),
+                        SMALL.stack(*PLACE) - still[0], SMALL.stack(*ATTITUDE))
+    agrees(load(write2(tmp_path / 'bag', in_order(twice_told(ns), moved, below_it, imu(SMALL)))))
+
+
+def test_an_unused_frame_may_be_on_both_topics(tmp_path):
+    camera = [messages('base_link', 'camera', [START + k], [(k, 0, 0)], [(1, 0, 0, 0)], topic)
+              for k, topic in enumerate(('/tf_static', '/tf'))]
+    agrees(load(write2(tmp_path / 'bag', in_order(odom(), base(), imu(SMALL), *camera))))
+
+
 def live(topics, sent):
     """Return [(stamp, columns)] of the poses that messages give live."""
     make, found = Make(store()), []
@@ -236,6 +268,13 @@ def test_one_quaternion_that_is_none_costs_one_live_pose(topics):
     assert found == [ns for k, ns in enumerate(at.tolist()) if ns <= whole and k != 150]
     [line] = refused
     assert 'the quaternion has not the length 1; publish a pose with an attitude' in line
+
+
+@pytest.mark.parametrize('ns', [BEFORE, START + 3 * 10 ** 9 + 1])
+def test_a_frame_that_does_not_change_and_moves_is_refused_live(topics, ns):
+    topics.samples('/tf', TF, BEFORE, Make(store())(TF, transforms=[]))
+    with pytest.raises(InputError, match=BOTH):
+        live(topics, in_order(twice_told(ns), flown()[3]))
 
 
 def test_several_vehicles_are_refused_live(topics):
