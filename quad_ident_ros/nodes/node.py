@@ -33,6 +33,11 @@ class PackageNode(Node):
         """Whether the node can do what it is there for, or still gets ready for it."""
         return True
 
+    @property
+    def busy(self):
+        """Whether the node has anything that would be lost if it started once more."""
+        return False
+
     def set_parameters_atomically(self, parameter_list):
         """Set parameters as Node does, also empty lists and fixed ones that stay the same."""
         wanted = [self._typed(parameter) for parameter in parameter_list]

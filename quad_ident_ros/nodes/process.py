@@ -40,7 +40,8 @@ def run(node_class, help_page, args=None, executor_class=SingleThreadedExecutor,
     printed for --help; args: the command line, by default that of the process; warm_up: a function
     that `warm_up` of the node runs while the node is there. Bad input gives one line on standard
     error and exit code 2. Where the middleware does not let go of a closed node, SIGALRM ends the
-    process. A node that turns out to be deaf just after its start starts once more.
+    process. A node that turns out to be deaf just after its start, without work yet, starts once
+    more.
     """
     name = node_class.__name__.lower()
     args = [name, *(sys.argv[1:] if args is None else args)]
@@ -90,7 +91,8 @@ def _run(node_class, args, executor_class, warm_up):
         if warm_up is not None:
             node.warm_up(warm_up)
         news = StartNews(node)
-        hearing = HearingWatch(node.get_logger().error, _starts() < MOST_STARTS)
+        hearing = HearingWatch(node.get_logger().error,
+                                lambda: _starts() < MOST_STARTS and not node.busy)
         while not stop and not deaf and is_wanted():
             news.tell()
             deaf = hearing.look()

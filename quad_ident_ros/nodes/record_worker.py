@@ -67,6 +67,11 @@ class RecordWorker(PackageNode):
         """Whether the node can work at once: what comes before is kept and worked on then."""
         return not self._job.warming_up
 
+    @property
+    def busy(self):
+        """Whether there is a record to work on."""
+        return bool(self._records)
+
     def warm_up(self, function):
         """Run a function before the first work, beside the executor."""
         self._job.warm_up(function)

@@ -135,6 +135,11 @@ class Recorder(PackageNode):
         return f'joins {", ".join(self._topics)}; {self._config["output"] or "in memory only"}'
 
     @property
+    def busy(self):
+        """Whether anything of a flight came."""
+        return self._last_message is not None or any(self.counts.received.values())
+
+    @property
     def counts(self):
         """Return the account of the messages (data.joiner.Counts)."""
         return self._joiner.counts

@@ -88,7 +88,8 @@ class HearingWatch:
     """
     Finds out whether a node hears those that begin now, and says so once where it does not.
 
-    Args: say: takes a line of log; anew: whether the node may start once more by itself.
+    Args: say: takes a line of log; anew: returns whether the node may start once more by
+    itself.
     """
 
     def __init__(self, say, anew):
@@ -101,8 +102,8 @@ class HearingWatch:
         Look whether what the node listens on is still there, now and then until it is not.
 
         Twice: for a moment it holds the file of another node, too, to see whether that lives.
-        Returns whether the node is to start once more: later than EARLY it works with those who
-        began before, and only a person knows what a start would cost.
+        Returns whether the node is to start once more: later than EARLY, or where it may not, it
+        works with those who began before, and only a person knows what a start would cost.
         """
         now = time.monotonic()
         if now < self._next:
@@ -113,7 +114,7 @@ class HearingWatch:
         self._next = float('inf') if told else now + (SOON if early else LOOK)
         if not told:
             return False
-        anew = self._anew and early
+        anew = early and self._anew()
         self._say(
             f'no node that begins from now on is heard, and perhaps no other: '
             f'{", ".join(self._lost)}, on which this node listens, was deleted by another '

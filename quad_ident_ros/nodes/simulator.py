@@ -110,6 +110,12 @@ class Simulator(PackageNode):
         what = self._config['experiment']
         return f'flies {what}' if self._config['autostart'] else f'flies {what} on ~/start'
 
+    @property
+    def busy(self):
+        """Whether anything was flown, or is to be that a new start would not fly."""
+        return self._playback is not None and not (self._config['autostart']
+                                                   and self._playback.is_first)
+
     def start(self):
         """Begin the experiment anew, with the parameters as they are now."""
         experiment = self._load(self._config.values())

@@ -3,6 +3,7 @@
 """Shared memory of nodes that were killed is freed by the next start, and no other."""
 
 import fcntl
+import json
 import os
 from pathlib import Path
 import time
@@ -82,13 +83,37 @@ def test_a_node_that_begins_deaf_starts_once_more_and_hears(graph, processes):
     assert Path('/proc', str(process.pid)).exists() and lost_ports(proc) == []
     records = graph.listen(Float64MultiArray, 'record', latched(16))
     altitude = graph.advertise(PointStamped, 'altitude')
-    for nanoseconds in (10 ** 7, 2 * 10 ** 7):
-        message = PointStamped()
-        message.header.stamp.nanosec = nanoseconds
-        altitude.publish(message)
+    send_altitudes(altitude, (1, 2))
     graph.spin_until(lambda: records, 'a record of what it hears')
     assert process.stop() == 0
     ports[0].unlink(missing_ok=True)
+
+
+def test_a_node_that_becomes_deaf_at_work_keeps_what_it_has(graph, processes):
+    """It still hears those who began before: a new start would lose their flight."""
+    process = processes.start('recorder', {'topics': ['altitude'], 'window_samples': 4})
+    records = graph.listen(Float64MultiArray, 'record', latched(16))
+    statistics = graph.listen(String, 'recorder/statistics', latched())
+    altitude = graph.advertise(PointStamped, 'altitude')
+    graph.spin_until(lambda: statistics, 'the recorder')
+    send_altitudes(altitude, (1, 2))
+    graph.spin_until(lambda: json.loads(statistics[-1].data)['joined'] == 2, 'two rows')
+    ports = ports_of(Path('/proc', str(process.pid)))
+    ports[0].unlink()
+    graph.spin_until(lambda: 'deleted by another process' in process.errors(), 'what it says')
+    assert 'start this node once more' in process.errors()
+    send_altitudes(altitude, (3, 4))
+    graph.spin_until(lambda: records, 'a record of all four')
+    assert process.errors().count('ready: ') == 1
+    assert process.stop() == 0
+
+
+def send_altitudes(publisher, hundredths):
+    """Publish altitudes at hundredths of a second."""
+    for count in hundredths:
+        message = PointStamped()
+        message.header.stamp.nanosec = count * 10 ** 7
+        publisher.publish(message)
 
 
 def ports_of(process):
@@ -100,13 +125,13 @@ def ports_of(process):
 
 @pytest.mark.parametrize(('seconds', 'may', 'anew', 'words'), [
     (2.0, True, True, '; this node starts once more'),
-    (2.0, False, False, '; start this node once more'),     # it has, three times
+    (2.0, False, False, '; start this node once more'),     # it has, or works
     (EARLY + 10.0, True, False, '; start this node once more')])
 def test_a_node_that_has_become_deaf_says_so_once(monkeypatch, seconds, may, anew, words):
     now, lost, said = [100.0], [], []
     monkeypatch.setattr(shared_memory.time, 'monotonic', lambda: now[0])
     monkeypatch.setattr(shared_memory, 'lost_ports', lambda: list(lost))
-    watch = HearingWatch(said.append, may)
+    watch = HearingWatch(said.append, lambda: may)
     for _ in range(round(seconds)):
         now[0] += 1.0
         assert not watch.look() and not said
