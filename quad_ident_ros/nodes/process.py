@@ -121,7 +121,10 @@ def _run(node_class, args, executor_class, warm_up):
 
 def _starts():
     """Return how often this node has started once more by itself."""
-    return int(os.environ.get(STARTS, '0'))
+    try:
+        return int(os.environ.get(STARTS, '0'))
+    except ValueError:      # somebody else's
+        return 0
 
 
 def _start_anew():

@@ -12,7 +12,7 @@ from geometry_msgs.msg import PointStamped
 import pytest
 from std_msgs.msg import Float64MultiArray, String
 
-from quad_ident_ros.nodes import shared_memory
+from quad_ident_ros.nodes import process, shared_memory
 from quad_ident_ros.nodes.qos import latched
 from quad_ident_ros.nodes.shared_memory import (
     EARLY,
@@ -116,9 +116,15 @@ def send_altitudes(publisher, hundredths):
         publisher.publish(message)
 
 
-def ports_of(process):
+@pytest.mark.parametrize(('said', 'starts'), [('x', 0), ('', 0), ('2', 2)])
+def test_a_count_of_starts_that_is_none_is_zero(monkeypatch, said, starts):
+    monkeypatch.setenv(process.STARTS, said)
+    assert process._starts() == starts
+
+
+def ports_of(proc):
     """Return the files that a process (its folder in /proc) listens on."""
-    held = {Path(os.readlink(fd)).name.removesuffix('_el') for fd in (process / 'fd').iterdir()
+    held = {Path(os.readlink(fd)).name.removesuffix('_el') for fd in (proc / 'fd').iterdir()
             if os.path.islink(fd)}
     return sorted(FOLDER / name for name in held if PORT.fullmatch(name))
 
