@@ -149,7 +149,7 @@ class Transforms:
 
     def poses(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """
-        Return stamps (n,), times of receipt (n,) and poses (n, 7), COLUMNS, of all transforms.
+        Return stamps (n,), times of receipt (n,) and COLUMNS (n, 7) of the pose at all transforms.
 
         The stamps are 0 where a transform of the chain has none: all are joined by their receipt.
         A pose has a quaternion of zeros where one of its transforms has none of length 1. Raises

@@ -92,7 +92,7 @@ def _run(node_class, args, executor_class, warm_up):
             node.warm_up(warm_up)
         news = StartNews(node)
         hearing = HearingWatch(node.get_logger().error,
-                                lambda: _starts() < MOST_STARTS and not node.busy)
+                               lambda: _starts() < MOST_STARTS and not node.busy)
         while not stop and not deaf and is_wanted():
             news.tell()
             deaf = hearing.look()

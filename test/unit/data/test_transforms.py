@@ -34,11 +34,13 @@ def below(place, attitude, record=SMALL):
 
 def messages(frame, child, at, place, attitude, topic='/tf'):
     """Return TFMessages of a frame at stamps, ns."""
-    return [(topic, TF, int(ns), {'transforms': [{
-        'header': header(int(ns), frame), 'child_frame_id': child, 'transform': {
-            'translation': dict(zip('xyz', map(float, p), strict=True)),
-            'rotation': dict(zip('wxyz', map(float, q), strict=True))}}]})
-        for ns, p, q in zip(at, place, attitude, strict=True)]
+    sent = []
+    for ns, p, q in zip(at, place, attitude, strict=True):
+        motion = {'translation': dict(zip('xyz', map(float, p), strict=True)),
+                  'rotation': dict(zip('wxyz', map(float, q), strict=True))}
+        sent.append((topic, TF, int(ns), {'transforms': [{
+            'header': header(int(ns), frame), 'child_frame_id': child, 'transform': motion}]}))
+    return sent
 
 
 def odom(at=None):
@@ -197,7 +199,6 @@ def live(topics, sent):
             assert role == 'pose'
             found.append((stamp, values))
     return found
-
 
 
 @pytest.fixture
