@@ -89,8 +89,10 @@ class Frame:
         halves = residual[:, :, None] * np.stack([kept, 1.0 - kept], axis=-1)
         halves -= basis @ (basis.transpose(0, 2, 1) @ halves)
         halves *= self.scale[flight][:, :, None]
-        table = self.slopes.tangents[flight].table[:, ERRORS:][:, places]
-        cross = summed(table @ halves, self.block[flight])
+        table = self.slopes.tangents[flight].table
+        each = [table[part, ERRORS:][:, places] @ halves[part] for part in
+                (slice(begin, begin + AT_ONCE) for begin in range(0, len(table), AT_ONCE))]
+        cross = summed(np.concatenate(each), self.block[flight])
         slopes = self.products[flight][:, :, places][..., places]
         return Products(slopes, cross.transpose(2, 0, 1),
                         summed(np.sum(residual ** 2, axis=1), self.block[flight]))

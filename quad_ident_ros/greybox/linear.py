@@ -19,6 +19,8 @@ STATE_STEP = np.repeat([1e-4, 1e-4, 1e-5, 1e-4], 3)     # of differences in the 
 STEP = 1e-4                                             # of a parameter's usual size
 WRENCH = tuple(range(SPLIT + registry.SLICES[registry.RESIDUAL_WRENCH.name].start,
                      SPLIT + registry.SLICES[registry.RESIDUAL_WRENCH.name].stop))
+# Differences are wrong by some 1e-6 of themselves: more digits would only take memory.
+SLOPE = np.float32
 AT_ONCE = 200_000   # samples, of the flight and of rollouts, that are held at once, 40 MB
 ROLLOUTS = 16       # that are put in units of the noise at once, 3 MB
 GROUND = [place for (name, _), part in registry.PLACES.items() if name == 'ground_effect'
@@ -52,11 +54,8 @@ class Tangent:
     def weighed(self, scale: np.ndarray, clock: bool) -> np.ndarray:
         """Return the rows that count times scale (B, M), without the last one if not clock."""
         end = None if clock else -1
-        if self.kept is None:
-            return self.table[:, :end] * scale[:, None]
-        table = self.table[:, self.kept[:end]]
-        table *= scale[:, None]
-        return table
+        table = self.table[:, :end] if self.kept is None else self.table[:, self.kept[:end]]
+        return table * scale[:, None]
 
 
 @dataclass(frozen=True, eq=False)
@@ -186,7 +185,7 @@ def tangent_of(flight: Flight, vehicle: Vehicle, z: np.ndarray, starts: np.ndarr
         np.tile(starts, (len(columns), 1))]).reshape(-1, *starts.shape)
     factors = 1.0 / np.concatenate([STATE_STEP[shifts:], steps])
     which = np.append(np.zeros(1 + turned, int), np.arange(1, len(sets)))
-    table = np.zeros((batch, ERRORS + len(columns) + 1, (flight.count + 1) * ERRORS))
+    table = np.zeros((batch, ERRORS + len(columns) + 1, (flight.count + 1) * ERRORS), SLOPE)
     for axis in range(shifts):
         table[:, axis, axis::ERRORS] = 1.0
     base = np.empty(0)
