@@ -109,7 +109,7 @@ def judge(label, found):
     ranking = [row['effect'] for row in found.get('ranking', ())]
     exact = is_exact(label, found)
     twins = twins_of(label)
-    if 'undetermined' in verdict and (label['kind'] == 'poor' or doubts == twins):
+    if doubts and (label['kind'] == 'poor' or doubts == twins):
         sure = set(found.get('sure') or ())
         exact = sure <= truth <= doubts | sure if effects else False
     right = {name for name in effects if named_in(name, verdict, findings)}

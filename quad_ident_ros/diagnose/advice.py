@@ -19,7 +19,6 @@ from quad_ident_ros.greybox.parameters import NAMES
 from quad_ident_ros.model.vehicle import Vehicle
 
 AT_THE_RATE = 'log commands at the rate of the controller, and measure the constant'
-ASKS = (('none',), ('undetermined',))   # verdicts that ask for another flight
 
 
 def not_shown(selection: Selection, causes: tuple, verdict: Verdict, rules: Rules
@@ -42,7 +41,7 @@ def cannot_show(flights: Sequence[Flight], verdict: Verdict) -> tuple[str, ...]:
 def fly_next(selection: Selection, flights: list, vehicle: Vehicle, z: np.ndarray,
              verdict: Verdict, unseen: tuple, rules: Rules) -> list | None:
     """Return what to fly next, as data, where the verdict leaves something open, else None."""
-    if verdict.names not in ASKS or inertial(flights):
+    if not (verdict.doubts or verdict.names == ('none',)) or inertial(flights):
         return None
     return design.fly_next(selection, flights, vehicle, z, verdict.certain, verdict.doubts,
                            unseen, rules) or None

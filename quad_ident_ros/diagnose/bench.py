@@ -11,6 +11,7 @@ from scipy.special import chdtrc, ndtri
 from quad_ident_ros.diagnose import gap as gaps
 from quad_ident_ros.diagnose import input_errors
 from quad_ident_ros.diagnose.candidates import Candidate
+from quad_ident_ros.diagnose.evidence import key_of
 from quad_ident_ros.diagnose.fitted import (
     columns_at_bounds,
     effects_in,
@@ -117,7 +118,18 @@ class Bench:
         What is alike in all flights must not hide in nuisances: those that do what an effect does
         that is taken out may only differ between flights, as they do beside it.
         """
-        fit, z = model.estimate, model.z.copy()
+        return self._changed(model, model.z, removed, (), slopes)
+
+    def instead(self, model: Model, cause: Candidate, rival: Candidate, z: np.ndarray) -> Model:
+        """Return a Model with a rival in the place of one of its effects; z (Z,) has the rival."""
+        near = model.z.copy()
+        near[list(rival.columns)] = z[list(rival.columns)]
+        return self._changed(model, near, (cause,), (rival,), None)
+
+    def _changed(self, model: Model, z: np.ndarray, removed: tuple, added: tuple,
+                 slopes: Slopes | None) -> Model:
+        """Return a Model with effects taken out and added, everything refitted from z (Z,) on."""
+        fit, z = model.estimate, z.copy()
         columns = [column for cause in removed for column in cause.columns]
         z[columns] = nominal(self.vehicle)[columns]
         fixed = np.stack(model.vectors) - model.z
@@ -133,7 +145,8 @@ class Bench:
                 for column in cause.nuisance.columns]
         fixed[:, free] = 0.0
         fixed[:, shared] -= fixed[:-1, shared].mean(axis=0)
-        chosen = tuple(cause for cause in model.chosen if cause not in {*removed, *held})
+        chosen = key_of((*added, *(cause for cause in model.chosen
+                                   if cause not in {*removed, *held})))
         noise, scatter = self.selection.noise, self.selection.quadratic.scatter
         slow = self.selection.slow
         estimate = refitted(self.flights, self.vehicle, z, chosen, noise, fit.nuisances,

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Between which causes flights cannot tell."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -13,13 +13,16 @@ from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.diagnose.selection import Selection
 
 
-def doubts_of(selection: Selection, named: Sequence[Candidate], rules: Rules
+def doubts_of(selection: Selection, named: Sequence[Candidate], rules: Rules,
+              replaces: Callable[[Candidate, Candidate, Fitted], bool]
               ) -> dict[Candidate, Fitted]:
     """
     Return the causes between which the flights of a Selection cannot tell; none where they can.
 
     Those of the named ones whose effects are not sure, and those that may be there in their place,
-    each with the Fitted set that speaks for it: {cause: Fitted}.
+    each with the Fitted set that speaks for it: {cause: Fitted}. replaces: whether a rival, with
+    its set, does as much as a cause among those that are named; one that needs further effects for
+    that explains the flights less simply, and is no rival.
     """
     total = by_effect(selection.posterior)
     present = {cause.effect for cause in named}
@@ -29,6 +32,7 @@ def doubts_of(selection: Selection, named: Sequence[Candidate], rules: Rules
     for cause in named:
         rivals = ({} if total[cause.effect] >= 1.0 - rules.doubt else
                   rivals_of(selection, cause, others, rules))
+        rivals = {rival: one for rival, one in rivals.items() if replaces(cause, rival, one)}
         if rivals:
             found |= {cause: selection.best, **rivals}
     return found

@@ -4,13 +4,16 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from quad_ident_ros.diagnose import gap as gaps
 from quad_ident_ros.diagnose.bench import Bench
+from quad_ident_ros.diagnose.candidates import Candidate
 from quad_ident_ros.diagnose.doubts import doubts_of
-from quad_ident_ros.diagnose.judgement import beyond, Judgement, unexplained
+from quad_ident_ros.diagnose.fitted import Fitted
+from quad_ident_ros.diagnose.judgement import beyond, Judgement, matters, pooled, unexplained
 from quad_ident_ros.diagnose.probability import told_apart
 from quad_ident_ros.diagnose.result import FlightCheck, Minor, Ranked, Value
 from quad_ident_ros.effects.registry import EFFECTS
@@ -23,7 +26,8 @@ class Verdict:
     The names of a verdict, and what they rest on.
 
     certain: the candidates that are sure, sure: their effects; doubts {candidate: Fitted}: between
-    which the flights cannot tell, undetermined: their effects.
+    which the flights cannot tell, undetermined: their effects. That is the verdict where one of
+    them contributes most; else the sure ones are.
     """
 
     names: tuple[str, ...]
@@ -44,7 +48,8 @@ def verdict_of(bench: Bench, judged: Judgement, causes: tuple,
     # A flight that differs vetoes `none`; effects are what the others show, and it is named.
     unknown = (bool(judged.unexplained or judged.stand_ins)
                or not named and any(one.differs for one in checks))
-    doubts = {} if unknown else doubts_of(bench.selection, tuple(named), rules)
+    doubts = {} if unknown else doubts_of(bench.selection, tuple(named), rules,
+                                          partial(_replaces, bench, judged))
     total = told_apart(judged.probability, bench.selection.posterior,
                        [cause for cause in named if cause in doubts])
     minor = tuple(Minor(cause.effect, total[cause.effect], judged.weights[cause].contribution)
@@ -52,9 +57,19 @@ def verdict_of(bench: Bench, judged: Judgement, causes: tuple,
                   if cause not in {*judged.material, *judged.stand_ins})
     certain = tuple(cause for cause in named if cause not in doubts)
     sure = tuple(dict.fromkeys(cause.effect for cause in certain))
-    names = ((*sure, 'unknown') if unknown else ('undetermined',) if doubts else sure or ('none',))
+    open_first = bool(named) and named[0] in doubts
+    names = ((*sure, 'unknown') if unknown else ('undetermined',) if open_first
+             else sure or ('none',))
     return Verdict(names, minor, _ranking(bench, judged, causes, total, ruled_out), certain, sure,
                    doubts, tuple(sorted({cause.effect for cause in doubts})), checks)
+
+
+def _replaces(bench: Bench, judged: Judgement, cause: Candidate, rival: Candidate,
+              having: Fitted) -> bool:
+    """Return whether a rival in the place of a cause loses nothing of the Judgement that matters."""
+    instead = bench.instead(judged.model, cause, rival, having.estimate.z)
+    return not matters(judged.model.gap, instead.gap, gaps.gap(judged.before),
+                       pooled(judged.noise), bench.rules)
 
 
 def flight_checks(bench: Bench, judged: Judgement) -> tuple[FlightCheck, ...]:

@@ -26,10 +26,11 @@ def verdict_line(found: Diagnosis) -> str:
         beside = f', with {names} estimated for each flight,' if names else ''
         return (f'none: the nominal vehicle{beside} explains the flights to within noise and '
                 'tolerance, so no effect is named')
-    if found.undetermined:
+    doubts = (f'the flights cannot tell between {_listed(found.undetermined)}'
+              if found.undetermined else '')
+    if 'undetermined' in found.verdict:
         certain = f'; certain: {_listed(found.sure)}' if found.sure else ''
-        return ('undetermined: the flights cannot tell between '
-                f'{_listed(found.undetermined)}{certain}')
+        return f'undetermined: {doubts}{certain}'
     named = _named(found)
     if not named:
         return 'unknown: no known effect explains the gap'
@@ -37,16 +38,17 @@ def verdict_line(found: Diagnosis) -> str:
     share = (f'{100 * max(found.gap.closed, 0.0):.0f} % of the velocity gap above the noise'
              if above_noise(found.gap) else 'part of the gap' if unknown else 'the gap')
     share += ', and the rest is unknown' if unknown else ''
+    beside = doubts and f'; beside {"it" if len(named) == 1 else "them"}, {doubts}'
     if is_uncertain(found):
         best = '; '.join(f'{titled(row.effect)}, {values_of(row)}, probability '
                          f'{row.probability:.2g}' for row in named)
         return (f'uncertain: the best known explanation of {share} is less likely than '
                 f'something else that acts alike: {best}')
     if len(named) == 1:
-        return f'{titled(named[0].effect)}, {values_of(named[0])}, explains {share}'
+        return f'{titled(named[0].effect)}, {values_of(named[0])}, explains {share}{beside}'
     return f'{len(named)} effects explain {share}: ' + '; '.join(
         f'{titled(row.effect)}, {values_of(row)}, contribution {contribution_of(row)}'
-        for row in named)
+        for row in named) + beside
 
 
 def size_line(found: Diagnosis) -> str:
@@ -148,7 +150,7 @@ def _mend_flights(found: Diagnosis) -> str:
 
 
 def _them(found: Diagnosis) -> str:
-    if found.undetermined:
+    if 'undetermined' in found.verdict:
         return 'the most probable choice'
     words = {0: 'the effects of the model', 1: 'this effect'}
     return words.get(len(_named(found)), 'these effects')

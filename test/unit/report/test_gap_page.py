@@ -275,6 +275,14 @@ def test_what_cannot_be_told_apart_asks_for_a_flight(page, terminal):
     assert '\nNext: fly what ' in terminal(**changes)
 
 
+def test_what_cannot_be_told_apart_beside_a_larger_effect_ends_the_sentence(terminal, found):
+    changes = {'undetermined': ('motor_lag', 'actuation_delay'), 'sure': ('rotor_drag',)}
+    verdict, size, *_ = terminal(**changes).splitlines()
+    assert verdict == (f'{terminal().splitlines()[0]}; beside it, the flights cannot tell between '
+                       'lag of the motors (motor_lag) and delay of the commands (actuation_delay)')
+    assert size.startswith('With this effect, ')
+
+
 def test_each_of_several_effects_is_told_with_its_size(terminal, found):
     first, second, *_ = found.ranking
     second = replace(second, contribution=0.2, parameters={'x': Value(2.0, 0.1, 'm/s', 0.5)})
