@@ -66,7 +66,7 @@ def verdict_of(bench: Bench, judged: Judgement, causes: tuple,
 
 def _replaces(bench: Bench, judged: Judgement, cause: Candidate, rival: Candidate,
               having: Fitted) -> bool:
-    """Return whether a rival in the place of a cause loses nothing of the Judgement that matters."""
+    """Return whether a rival in the place of a cause loses nothing that matters."""
     instead = bench.instead(judged.model, cause, rival, having.estimate.z)
     return not matters(judged.model.gap, instead.gap, gaps.gap(judged.before),
                        pooled(judged.noise), bench.rules)
