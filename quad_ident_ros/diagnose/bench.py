@@ -135,11 +135,13 @@ class Bench:
         fixed = np.stack(model.vectors) - model.z
         alike = {column for cause in removed for column in _columns_alike(cause.effect)}
         shared = [column for column in sorted(alike) if fixed[:, column].any()]
-        # Thrust, wind and moment of a flight do what many effects do: they stay as they are.
+        # Thrust, wind and moment of a flight do what many effects do, and an offset of its clock
+        # does nearly what a lag does: they stay as they are.
+        near = {*shared, *(column for cause in removed for column in _columns_late(cause.effect))}
         held = {cause for cause in model.chosen
                 if cause.nuisance is not None and (cause.nuisance.of_effect
                                                    or any(cause.nuisance.sum_to_zero)
-                                                   or set(cause.nuisance.columns) & set(shared))}
+                                                   or set(cause.nuisance.columns) & near)}
         free = [column for cause in model.chosen
                 if cause.nuisance is not None and cause not in held
                 for column in cause.nuisance.columns]
@@ -262,7 +264,17 @@ def standard_errors_from_none(off: np.ndarray, covariance: np.ndarray) -> float:
 def _columns_alike(name: str) -> list[int]:
     """Return the columns of an effect in all its forms, and of those with the same ratio."""
     ratio = EFFECTS[name].ratio
-    names = {name, *(other for other, effect in EFFECTS.items()
-                     if ratio is not None and effect.ratio == ratio)}
+    return _columns_of({name, *(other for other, effect in EFFECTS.items()
+                                if ratio is not None and effect.ratio == ratio)})
+
+
+def _columns_late(name: str) -> list[int]:
+    """Return the columns of all effects of the actuators where one is of these, else none."""
+    return _columns_of({other for other, effect in EFFECTS.items()
+                        if EFFECTS[name].actuator and effect.actuator})
+
+
+def _columns_of(names: set[str]) -> list[int]:
+    """Return the columns of effects in all their forms."""
     return [SPLIT + place for (effect, _), part in PLACES.items() if effect in names
             for place in range(part.start, part.stop)]
