@@ -207,16 +207,18 @@ class Bench:
         """
         Return by how many standard errors the parameters of effects together differ from none.
 
-        In the best set where that has them: where others are taken out, they do their work.
+        In the best set where that has them: where others are taken out, they do their work. But
+        what is tied to one that is taken out is known as well as without it.
         """
         best = self.selection.best.estimate
         columns = [column for cause in causes for column in cause.columns]
-        kept = set(columns) <= set(best.columns)
-        fit, covariance = ((best, self.selection.covariance) if kept
-                           else (model.estimate, model.estimate.covariance))
-        places = [fit.columns.index(column) for column in columns]
-        return standard_errors_from_none((fit.z - nominal(self.vehicle))[columns],
-                                         covariance[np.ix_(places, places)])
+        if set(columns) <= set(best.columns):
+            known, off, covariance = best.columns, *self._known(model)
+        else:
+            known, covariance = model.estimate.columns, model.estimate.covariance
+            off = (model.z - nominal(self.vehicle))[known]
+        places = [known.index(column) for column in columns]
+        return standard_errors_from_none(off[places], covariance[np.ix_(places, places)])
 
     def distances(self, model: Model, cause: Candidate) -> dict[int, float]:
         """
@@ -224,17 +226,38 @@ class Bench:
 
         In the best set where that has the column, as the distance.
         """
-        best, null = self.selection.best.estimate, nominal(self.vehicle)
-        errors = self.errors(model)
-        z = np.where(np.isin(np.arange(len(null)), best.columns), best.z, model.z)
-        return {column: float(abs(z[column] - null[column]) / max(errors[column], 1e-300))
+        off, errors = model.z - nominal(self.vehicle), self.errors(model)
+        off[self.selection.best.estimate.columns] = self._known(model)[0]
+        return {column: float(abs(off[column]) / max(errors[column], 1e-300))
                 for column in cause.columns}
 
     def errors(self, model: Model) -> dict[int, float]:
         """Return {column: standard error}: of the best set where it has the column."""
-        best = self.selection.best.estimate
+        best, variances = self.selection.best.estimate, np.diag(self._known(model)[1])
         return (dict(zip(model.estimate.columns, model.estimate.errors, strict=True))
-                | dict(zip(best.columns, self.selection.errors, strict=True)))
+                | dict(zip(best.columns, np.sqrt(np.maximum(variances, 0.0)), strict=True)))
+
+    def taken_out(self, model: Model) -> list[int]:
+        """Return the columns of the best set's effects that a Model has not, but one tied to."""
+        best, there = self.selection.best, {*model.effects}
+        return sorted(column for cause in best.causes if cause not in there
+                      and any(tie(best.estimate, cause, other) > self.rules.tied
+                              for other in best.causes if other in there)
+                      for column in cause.columns)
+
+    def _known(self, model: Model) -> tuple[np.ndarray, np.ndarray]:
+        """
+        Return how far the best set's columns are from none, (C,), and their covariance, (C, C).
+
+        Given that what is tied to an effect of a Model, and taken out, is none.
+        """
+        best = self.selection.best.estimate
+        off = (best.z - nominal(self.vehicle))[best.columns]
+        places = [best.columns.index(column) for column in self.taken_out(model)]
+        if not places:
+            return off, self.selection.covariance
+        moved, covariance = given(self.selection.covariance, places)
+        return off - moved @ off[places], covariance
 
     def _nuisances(self, flight: int, z: np.ndarray, chosen: tuple,
                    fixed: np.ndarray | None = None) -> np.ndarray:
@@ -243,6 +266,24 @@ class Bench:
                             tuple(cause.nuisance for cause in chosen if cause.nuisance),
                             self.noise.deviation, self.flights[0].segment, fixed,
                             self.selection.slow)
+
+
+def given(covariance: np.ndarray, places: list[int]) -> tuple[np.ndarray, np.ndarray]:
+    """
+    Return how others move with some places (K,) that become known, (C, K), and what then remains.
+
+    The remaining covariance (C, C) is that of normal variables given these.
+    """
+    moved = covariance[:, places] @ np.linalg.pinv(covariance[np.ix_(places, places)])
+    return moved, covariance - moved @ covariance[places]
+
+
+def tie(fit: Estimate, one: Candidate, other: Candidate) -> float:
+    """Return the largest correlation between the parameters of two effects."""
+    errors = np.sqrt(np.maximum(np.diag(fit.covariance), 1e-300))
+    table = np.abs(fit.covariance / np.outer(errors, errors))
+    places = [[fit.columns.index(column) for column in cause.columns] for cause in (one, other)]
+    return float(table[np.ix_(*places)].max())
 
 
 def standard_errors_from_none(off: np.ndarray, covariance: np.ndarray) -> float:

@@ -8,13 +8,12 @@ from itertools import combinations
 import numpy as np
 
 from quad_ident_ros.diagnose import gap as gaps
-from quad_ident_ros.diagnose.bench import Bench, Model
+from quad_ident_ros.diagnose.bench import Bench, Model, tie
 from quad_ident_ros.diagnose.candidates import Candidate
 from quad_ident_ros.diagnose.probability import presence, probabilities, Weight, with_companions
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.greybox.errors import ERRORS, GROUPS
-from quad_ident_ros.greybox.estimate import Estimate
 from quad_ident_ros.greybox.parameters import nominal
 
 
@@ -226,13 +225,5 @@ def _subsets(model: Model, rules: Rules) -> list:
     groups = [tuple(group) for size in range(2, len(scaling) + 1)
               for group in combinations(scaling, size)]
     pairs = [pair for pair in combinations(effects, 2)
-             if pair not in groups and _tie(model.estimate, *pair) > rules.tied]
+             if pair not in groups and tie(model.estimate, *pair) > rules.tied]
     return [*((cause,) for cause in effects), *groups, *pairs]
-
-
-def _tie(fit: Estimate, one: Candidate, other: Candidate) -> float:
-    """Return the largest correlation between the parameters of two effects."""
-    errors = np.sqrt(np.maximum(np.diag(fit.covariance), 1e-300))
-    table = np.abs(fit.covariance / np.outer(errors, errors))
-    places = [[fit.columns.index(column) for column in cause.columns] for cause in (one, other)]
-    return float(table[np.ix_(*places)].max())

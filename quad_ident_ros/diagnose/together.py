@@ -5,7 +5,7 @@
 import numpy as np
 from scipy.linalg import block_diag
 
-from quad_ident_ros.diagnose.bench import Bench, Model
+from quad_ident_ros.diagnose.bench import Bench, given, Model
 from quad_ident_ros.greybox.parameters import NAMES
 from quad_ident_ros.model.covariance import Covariance, covariance_of_matrix
 
@@ -27,6 +27,8 @@ def known_together(bench: Bench, model: Model) -> Covariance | None:
         count = len(best.columns)
         whole = joint.stated.copy()
         whole[:count, :count] += bench.selection.covariance - joint.covariance
+        gone = [best.columns.index(column) for column in bench.taken_out(model)]
+        whole = given(whole, gone)[1] if gone else whole
         places = [*(best.columns.index(column) for column in columns),
                   *range(count, count + len(constants))]
         whole = whole[np.ix_(places, places)]
