@@ -43,6 +43,12 @@ LINES: dict[tuple[str, str], Callable[[Values, int, float], str]] = {
     ('inflow', 'linear'): lambda p, n, r: (
         f'push[:, 2] += {_one(p.get("translational", 0.0) / n)} * (u[:, :2] ** 2).sum(axis=1)\n'
         f'push[:, 2] -= {_one(p.get("axial", 0.0) / n)} * w * u[:, 2]'),
+    ('inflow', 'curve'): lambda p, n, r: (
+        'across = np.linalg.norm(u[:, :2], axis=1)\n'
+        f'push[:, 2] += {_one(p.get("edgewise", 0.0) / n)} * w * across\n'
+        f'push[:, 2] += {_one(p.get("edgewise_square", 0.0) / n)} * across ** 2\n'
+        f'push[:, 2] -= {_one(p.get("climb", 0.0) / n)} * w * u[:, 2]\n'
+        f'push[:, 2] -= {_one(p.get("climb_square", 0.0) / n)} * u[:, 2] * np.abs(u[:, 2])'),
     ('blade_flapping', 'hub_moment'): lambda p, n, r: (
         f'moment += {_one(p["coefficient"] / n)} * np.array([-w @ u[:, 1], w @ u[:, 0], 0.0])'),
     ('blade_flapping', 'drag_centre'): lambda p, n, r: (

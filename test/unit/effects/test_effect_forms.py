@@ -52,7 +52,9 @@ OTHERS = {
                                      'yz': 0.08},
     ('blade_flapping', 'drag_centre'): {'arm': 0.05},
     ('blade_flapping', 'drag_point'): {'arm_x': 0.03, 'arm_y': -0.02, 'arm_z': 0.05},
-    ('inflow', 'momentum'): {'through': 0.5}}
+    ('inflow', 'momentum'): {'through': 0.5},
+    ('inflow', 'curve'): {'climb': 0.1, 'climb_square': 0.05, 'edgewise': 0.1,
+                          'edgewise_square': 0.02}}
 EACH = [pytest.param(name, form, id=f'{name} {form}') for name, form in OTHERS]
 
 

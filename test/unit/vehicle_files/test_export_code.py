@@ -25,6 +25,8 @@ SETS = ({'rotor_drag': {'coefficient': 0.2}, 'body_drag': {'horizontal': 0.02, '
          'blade_flapping': {'coefficient': 0.01}, 'thrust_scale': {'exponent': 2.2},
          'rotor_fault': {'loss_2': 0.1}},
         {'rotor_drag': {'x': 0.1, 'y': 0.2, 'z': 0.05}, 'body_drag': {'x': 0.02, 'z': 0.01},
+         'inflow': {'climb': 0.2, 'climb_square': 0.02, 'edgewise': -0.1,
+                    'edgewise_square': 0.01},
          'blade_flapping': {'arm': 0.03}, 'thrust_scale': {'offset': 0.3}},
         {'rotor_drag': {'x_by_speed': 0.1, 'y_by_speed': 0.2, 'z_by_speed': 0.05},
          'blade_flapping': {'arm_x': 0.03, 'arm_y': -0.02, 'arm_z': 0.05},
