@@ -8,8 +8,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from quad_ident_ros.diagnose.bench import Bench, standard_errors_from_none
+from quad_ident_ros.diagnose.bench import Bench, given, standard_errors_from_none
 from quad_ident_ros.diagnose.candidates import candidates
+from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.diagnose.gap import Ends, gap
 from quad_ident_ros.diagnose.intake import take_in
 from quad_ident_ros.diagnose.judgement import (
@@ -29,7 +30,7 @@ from quad_ident_ros.diagnose.rules import RULES
 from quad_ident_ros.diagnose.select import select
 from quad_ident_ros.diagnose.verdict import flight_checks
 from quad_ident_ros.flight.fly import fly_closed_loop
-from quad_ident_ros.flight.measure import SENSORS
+from quad_ident_ros.flight.measure import MOCAP_IMU, SENSORS, Stream
 from quad_ident_ros.greybox.parameters import INDEX
 from quad_ident_ros.model.vehicle import load_vehicle
 
@@ -263,6 +264,39 @@ def test_what_a_flight_has_by_itself_stays_when_effects_are_taken_out_and_flight
     columns = less.estimate.columns
     assert begun.z[columns] == pytest.approx(less.z[columns], abs=0.5 * less.estimate.errors.min())
     assert begun.gap == pytest.approx(less.gap, rel=0.01)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(('lag', 'verdict'), [(0.0, 'none'), (0.02, 'motor_lag')])
+def test_an_offset_of_the_clocks_does_not_take_over_a_lag(lag, verdict):
+    """States are stamped later than the commands, in each flight by another time."""
+    vehicle = load_vehicle('hummingbird')
+    effects = {'motor_lag': {'time_constant': lag}} if lag else {}
+    records = []
+    for seed, (late, course) in enumerate(((0.003, 'lissajous'), (0.009, 'steps'),
+                                           (0.006, 'figure8'))):
+        sensors = replace(MOCAP_IMU, mocap=Stream(delay=late), imu=Stream(delay=late),
+                          rotors=False)
+        records.append(fly_closed_loop(vehicle, effects, course, duration=10.0, seed=seed,
+                                       noise=sensors))
+    found = diagnose(records, vehicle)
+    assert found.verdict == (verdict,)
+    assert np.ravel(found.nuisances['clock_offset']['values']) == pytest.approx(
+        [0.003, 0.009], abs=2e-3)
+    if lag:
+        [row] = [one for one in found.ranking if one.effect == 'motor_lag']
+        assert row.parameters['time_constant'].value == pytest.approx(lag, rel=0.1)
+
+
+def test_what_is_known_of_one_of_two_once_the_other_is():
+    """Two of which only the sum is known well: one that is 0 leaves the sum to the other."""
+    each, total = 1.0, 0.1      # standard deviations, before and of the sum
+    covariance = np.linalg.inv(np.eye(2) / each ** 2 + np.ones((2, 2)) / total ** 2)
+    moved, remains = given(covariance, [1])
+    assert moved[0, 0] == pytest.approx(-1.0, abs=0.02)     # less of the one, more of the other
+    assert np.sqrt(remains[0, 0]) == pytest.approx(total, rel=0.01)
+    assert np.sqrt(covariance[0, 0]) > 5.0 * total
+    assert remains[1] == pytest.approx([0.0, 0.0], abs=1e-12)
 
 
 @pytest.mark.parametrize('off', [0.5, 3.0, 60.0])
