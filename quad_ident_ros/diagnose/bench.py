@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Models of sets of effects, refitted with some of them taken out, and the gap that they leave."""
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
+from types import MappingProxyType
 
 import numpy as np
 from scipy.special import chdtrc, ndtri
@@ -118,7 +119,17 @@ class Bench:
         What is alike in all flights must not hide in nuisances: those that do what an effect does
         that is taken out may only differ between flights, as they do beside it.
         """
-        return self._changed(model, model.z, removed, (), slopes)
+        less = self._changed(model, model.z, removed, (), slopes)
+        # A lag is nearly a delay: an offset of the clocks, by which all flights alike answer
+        # later than their commands, does its work.
+        there = {column for cause in model.chosen if cause.nuisance
+                 for column in cause.nuisance.columns}
+        late = {column: max(0.0, common(model, column))
+                for cause in removed for column in _columns_late(cause.effect)
+                if column in there.difference(_columns_alike(cause.effect))}
+        if all(common(less, column) <= most for column, most in late.items()):
+            return less
+        return self._changed(model, model.z, removed, (), slopes, late)
 
     def instead(self, model: Model, cause: Candidate, rival: Candidate, z: np.ndarray) -> Model:
         """Return a Model with a rival in the place of one of its effects; z (Z,) has the rival."""
@@ -127,26 +138,31 @@ class Bench:
         return self._changed(model, near, (cause,), (rival,), None)
 
     def _changed(self, model: Model, z: np.ndarray, removed: tuple, added: tuple,
-                 slopes: Slopes | None) -> Model:
-        """Return a Model with effects taken out and added, everything refitted from z (Z,) on."""
+                 slopes: Slopes | None, kept: Mapping[int, float] = MappingProxyType({})
+                 ) -> Model:
+        """
+        Return a Model with effects taken out and added, everything refitted from z (Z,) on.
+
+        kept {column: mean}: nuisances that stay as they are, but with this mean over the flights.
+        """
         fit, z = model.estimate, z.copy()
         columns = [column for cause in removed for column in cause.columns]
         z[columns] = nominal(self.vehicle)[columns]
         fixed = np.stack(model.vectors) - model.z
         alike = {column for cause in removed for column in _columns_alike(cause.effect)}
         shared = [column for column in sorted(alike) if fixed[:, column].any()]
-        # Thrust, wind and moment of a flight do what many effects do, and an offset of its clock
-        # does nearly what a lag does: they stay as they are.
-        near = {*shared, *(column for cause in removed for column in _columns_late(cause.effect))}
+        # Thrust, wind and moment of a flight do what many effects do: they stay as they are.
         held = {cause for cause in model.chosen
-                if cause.nuisance is not None and (cause.nuisance.of_effect
-                                                   or any(cause.nuisance.sum_to_zero)
-                                                   or set(cause.nuisance.columns) & near)}
+                if cause.nuisance is not None and (
+                    cause.nuisance.of_effect or any(cause.nuisance.sum_to_zero)
+                    or {*cause.nuisance.columns} & {*shared, *kept})}
         free = [column for cause in model.chosen
                 if cause.nuisance is not None and cause not in held
                 for column in cause.nuisance.columns]
         fixed[:, free] = 0.0
         fixed[:, shared] -= fixed[:-1, shared].mean(axis=0)
+        for column, mean in kept.items():
+            fixed[:, column] += mean - fixed[:-1, column].mean()
         chosen = key_of((*added, *(cause for cause in model.chosen
                                    if cause not in {*removed, *held})))
         noise, scatter = self.selection.noise, self.selection.quadratic.scatter
@@ -300,6 +316,11 @@ def standard_errors_from_none(off: np.ndarray, covariance: np.ndarray) -> float:
     chance = float(chdtrc(len(off), square))
     # Of what is less probable than a float can tell, the root is as good.
     return float(-ndtri(0.5 * chance)) if chance > 1e-300 else float(np.sqrt(square))
+
+
+def common(model: Model, column: int) -> float:
+    """Return the mean of a nuisance (a place in z) over the flights that a Model learnt from."""
+    return float(np.mean([vector[column] for vector in model.vectors[:-1]]) - model.z[column])
 
 
 def _columns_alike(name: str) -> list[int]:

@@ -39,5 +39,5 @@ FORM = Form(
     source='thrust - climb (speed / sum of hover speeds) vz - climb_square vz |vz| / rotors '
            '+ edgewise (speed / sum of hover speeds) vh + edgewise_square vh^2 / rotors at each '
            'rotor: the thrust coefficient to second order in the advance ratio, as measured of '
-           'small propellers; Brandt and Selig, AIAA 2011-1255; edgewise: Theys et al., ICUAS 2014',
+           'small propellers; Brandt, Selig, AIAA 2011-1255; edgewise: Theys et al., ICUAS 2014',
     wrench=wrench, needs_reference=True)
