@@ -24,8 +24,9 @@ class Coasting(Motor):
 
     def __init__(self, size, params, rng):
         """Set the time constant of what is driven, and how slowly it falls."""
-        self.parameters = {'time': 0.7 * TIME * size}
-        self.slowing = self.SLOWING / (size * hover_speed(params)) if size else np.inf
+        grown = size ** 0.7     # the gap grows faster than the lag
+        self.parameters = {'time': 0.75 * TIME * grown}
+        self.slowing = self.SLOWING / (grown * hover_speed(params)) if size else np.inf
 
     def turn(self, speeds, command, step):
         """Return the speeds."""

@@ -52,5 +52,5 @@ class Drifting(Line):
         self.phase = rng.uniform(0.0, self.beat)
 
     def waits(self, time):
-        """Return the delay of one command: from 0.4 to 1.6 of its mean."""
-        return self.delay * (0.4 + 1.2 * ((time + self.phase) / self.beat % 1.0))
+        """Return the delay of one command: from 0.6 to 1.4 of its mean."""
+        return self.delay * (0.6 + 0.8 * ((time + self.phase) / self.beat % 1.0))
