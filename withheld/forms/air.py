@@ -8,10 +8,11 @@ from withheld.constants import AIR_DENSITY, arm_length, GRAVITY, hover_speed
 from withheld.influence import Influence
 
 
-class _Drag(Influence):
+class Drag(Influence):
     """A force on the body that depends on its velocity through the air."""
 
     def __init__(self, size, params, rng):
+        """Set the coefficient, kg/s."""
         self.coefficient = 0.08 * size * params['mass']
         self.parameters = {'coefficient': self.coefficient}
         self.hover = hover_speed(params)
@@ -21,7 +22,7 @@ class _Drag(Influence):
         return -self.coefficient * self.law(now), np.zeros(3)
 
 
-class Saturating(_Drag):
+class Saturating(Drag):
     """Linear drag that grows less beyond 2.5 m/s, the same at all rotor speeds."""
 
     def law(self, now):
@@ -29,7 +30,7 @@ class Saturating(_Drag):
         return now.air / np.sqrt(1.0 + now.air @ now.air / 2.5 ** 2)
 
 
-class Offset(_Drag):
+class Offset(Drag):
     """Linear drag that acts on a point off the centre, so that it turns the vehicle, too."""
 
     def __init__(self, size, params, rng):
@@ -46,7 +47,7 @@ class Offset(_Drag):
     beside = ('blade_flapping',)
 
 
-class Steeper(_Drag):
+class Steeper(Drag):
     """Drag with the power 1.25 of the velocity."""
 
     beside = ('body_drag',)
@@ -56,7 +57,7 @@ class Steeper(_Drag):
         return (now.air @ now.air) ** 0.125 * now.air
 
 
-class Skewed(_Drag):
+class Skewed(Drag):
     """Linear drag with axes that are not the body's, and with the root of the rotor speed."""
 
     def __init__(self, size, params, rng):
@@ -72,7 +73,7 @@ class Skewed(_Drag):
         return np.sqrt(np.mean(now.speeds) / self.hover) * (self.matrix @ now.air)
 
 
-class Power16(_Drag):
+class Power16(Drag):
     """Drag with the power 1.6 of the velocity: between a body's and rotors'."""
 
     beside = ('rotor_drag',)
@@ -82,7 +83,7 @@ class Power16(_Drag):
         return (now.air @ now.air) ** 0.3 * now.air
 
 
-class Plates(_Drag):
+class Plates(Drag):
     """A plate across each axis, each with the square of its own component."""
 
     def law(self, now):
@@ -90,7 +91,7 @@ class Plates(_Drag):
         return np.array([1.2, 0.8, 1.5]) * np.abs(now.air) * now.air
 
 
-class Crisis(_Drag):
+class Crisis(Drag):
     """A drag coefficient that falls as the flow clings longer."""
 
     beside = ('rotor_drag',)
@@ -101,7 +102,7 @@ class Crisis(_Drag):
         return speed / (1.0 + speed / 4.0) * now.air
 
 
-class Plate(_Drag):
+class Plate(Drag):
     """A body like a tilted plate: drag, and a force along its normal, which lifts."""
 
     beside = ('inflow',)
@@ -118,16 +119,17 @@ class Plate(_Drag):
         return 0.6 * speed * now.air + 0.8 * speed * (self.normal @ now.air) * self.normal
 
 
-class _Wind(Influence):
+class Wind(Influence):
     """Air that moves."""
 
     def __init__(self, size, params, rng):
+        """Draw the direction."""
         along = rng.choice([-1.0, 1.0], 2) * rng.uniform(0.3, 1.0, 2)
         self.mean = 0.7 * size * np.array([*along, 0.0])
         self.parameters = dict(zip('xyz', self.mean.tolist(), strict=True))
 
 
-class Profile(_Wind):
+class Profile(Wind):
     """A logarithmic profile over the ground, and light turbulence of a second or so."""
 
     ROUGH, TIME, SHARE = 0.02, 1.0, 0.08        # m, s, share of the mean
@@ -148,7 +150,7 @@ class Profile(_Wind):
             self.SHARE * np.linalg.norm(self.mean) * self._rng.normal(size=3))
 
 
-class Turning(_Wind):
+class Turning(Wind):
     """A wind that swings about its direction by 20 degrees, once in half a minute."""
 
     def wind(self, time, position):
@@ -159,7 +161,7 @@ class Turning(_Wind):
         return np.array([c * x - s * y, s * x + c * y, z])
 
 
-class Sheltered(_Wind):
+class Sheltered(Wind):
     """A profile with a power of the height, and a speed that swings by a seventh."""
 
     def wind(self, time, position):
@@ -168,7 +170,7 @@ class Sheltered(_Wind):
         return height * (1.0 + 0.14 * np.sin(2.0 * np.pi * time / 11.0)) * self.mean
 
 
-class Shear(_Wind):
+class Shear(Wind):
     """A wind that is stronger on one side."""
 
     def wind(self, time, position):
@@ -176,10 +178,11 @@ class Shear(_Wind):
         return (1.0 + 0.2 * np.clip(position[1], -2.0, 2.0)) * self.mean
 
 
-class _Thrust(Influence):
+class Thrust(Influence):
     """Thrust of each rotor that depends on its flow, as a factor on that at rest."""
 
     def __init__(self, size, params, rng):
+        """Take what velocities are measured by."""
         self.size = size
         self.hover = hover_speed(params)
         self.radius = params['rotor_radius']
@@ -189,7 +192,7 @@ class _Thrust(Influence):
         self.induced = float(np.sqrt(weight / (2.0 * AIR_DENSITY * area)))      # m/s, in hover
 
 
-class Momentum(_Thrust):
+class Momentum(Thrust):
     """
     Blade elements with the induced velocity that momentum theory asks for.
 
@@ -211,7 +214,7 @@ class Momentum(_Thrust):
         return ((1.0 + c2) * turn ** 2 - c2 * turn * (along + flow)) / turn ** 2
 
 
-class Following(_Thrust):
+class Following(Thrust):
     """Thrust that answers the axial velocity as the inflow builds up, in a tenth of a second."""
 
     TIME = 0.1
@@ -232,7 +235,7 @@ class Following(_Thrust):
         self._slow = self._slow + (1.0 - np.exp(-step / self.TIME)) * (self._now - self._slow)
 
 
-class FlatTable(_Thrust):
+class FlatTable(Thrust):
     """
     A thrust coefficient that hardly falls at first and then with the square, as in wind tunnels.
 
@@ -249,7 +252,7 @@ class FlatTable(_Thrust):
             -2.5 * axial * np.abs(axial) + 0.4 * across, -10.0, 10.0)
 
 
-class Shadowed(_Thrust):
+class Shadowed(Thrust):
     """
     Rotors at the back that fly in the wake of those in front, which costs them thrust.
 
@@ -309,10 +312,11 @@ class CrossFlapping(Influence):
         return np.zeros(3), share * np.array([self.cross * x - y, x + self.cross * y, 0.0])
 
 
-class _Ground(Influence):
+class Ground(Influence):
     """Thrust that grows towards the ground, by the height over the radius of the rotors."""
 
     def __init__(self, size, params, rng):
+        """Take what heights and velocities are measured by."""
         self.size, self.radius = size, params['rotor_radius']
         self.parameters = {'size': size}
         weight = params['mass'] * GRAVITY / params['num_rotors']
@@ -324,7 +328,7 @@ class _Ground(Influence):
         return 1.0 + self.size * self.law(np.maximum(now.heights / self.radius, 0.5), now)
 
 
-class Rational(_Ground):
+class Rational(Ground):
     """A rational law of the mean of each rotor's height and that of all: they share a cushion."""
 
     def law(self, heights, now):
@@ -333,7 +337,7 @@ class Rational(_Ground):
         return 0.06 / (1.0 + (shared / 1.2) ** 2)
 
 
-class Cushion(_Ground):
+class Cushion(Ground):
     """A cushion that holds up to 2.5 radii, then fades."""
 
     def law(self, heights, now):
@@ -341,7 +345,7 @@ class Cushion(_Ground):
         return 0.05 / (1.0 + np.exp((heights - 2.5) / 0.5))
 
 
-class Swept(_Ground):
+class Swept(Ground):
     """A power law that fades with the forward speed, as the wake is swept behind."""
 
     def law(self, heights, now):
@@ -350,7 +354,7 @@ class Swept(_Ground):
         return 0.04 * heights ** -1.5 / (1.0 + forward)
 
 
-class Bounded(_Ground):
+class Bounded(Ground):
     """Nothing from four radii on, below it with the square of what is missing."""
 
     def law(self, heights, now):

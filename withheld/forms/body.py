@@ -12,7 +12,8 @@ AXES = ('Ixx', 'Iyy', 'Izz')
 PRODUCTS = ('Ixy', 'Ixz', 'Iyz')
 
 
-def _signs(rng, count):
+def signs(rng, count):
+    """Return as many (count,) of 1 and -1, drawn."""
     return rng.choice([-1.0, 1.0], count)
 
 
@@ -64,7 +65,7 @@ class OtherBattery(_Load):
 
     def __init__(self, size, params, rng):
         """Draw which."""
-        self.parameters = {'mass': 0.007 * size * params['mass'] * float(_signs(rng, 1)[0])}
+        self.parameters = {'mass': 0.007 * size * params['mass'] * float(signs(rng, 1)[0])}
         self.place = arm_length(params) * np.array([-0.08 * rng.uniform(0.5, 1.0), 0.0, -0.15])
 
 
@@ -89,7 +90,7 @@ class Products(Influence):
 
     def __init__(self, size, params, rng):
         """Draw the factors and the turn."""
-        self.factors = np.exp(0.1 * size * rng.uniform(0.4, 1.0, 3) * _signs(rng, 1))
+        self.factors = np.exp(0.1 * size * rng.uniform(0.4, 1.0, 3) * signs(rng, 1))
         self.turn = 0.04 * min(size, 8.0) * rng.normal(size=3)
         self.parameters = {f'factor_{axis}': float(self.factors[k])
                            for k, axis in enumerate('xyz')}
@@ -108,7 +109,7 @@ class TorqueCoefficient(Influence):
 
     def __init__(self, size, params, rng):
         """Draw whether it is greater or less."""
-        self.parameters = {'factor_z': float(np.exp(0.08 * size * _signs(rng, 1)[0]))}
+        self.parameters = {'factor_z': float(np.exp(0.08 * size * signs(rng, 1)[0]))}
 
     def alter(self, true, params):
         """Change it."""
@@ -211,7 +212,7 @@ class Sliding(Influence):
 
     def __init__(self, size, params, rng):
         """Draw where it is."""
-        along = np.array([*_signs(rng, 2) * rng.uniform(0.3, 1.0, 2), rng.uniform(-0.3, 0.3)])
+        along = np.array([*signs(rng, 2) * rng.uniform(0.3, 1.0, 2), rng.uniform(-0.3, 0.3)])
         self.centre = 0.002 * size * arm_length(params) * along
         self.parameters = dict(zip('xyz', self.centre.tolist(), strict=True))
         self.thrust = params['k_eta']
@@ -232,7 +233,7 @@ class Elastic(Influence):
 
     def __init__(self, size, params, rng):
         """Draw where it is."""
-        along = np.array([*_signs(rng, 2) * rng.uniform(0.3, 1.0, 2), 0.0])
+        along = np.array([*signs(rng, 2) * rng.uniform(0.3, 1.0, 2), 0.0])
         self.centre = 0.002 * size * arm_length(params) * along
         self.parameters = dict(zip('xyz', self.centre.tolist(), strict=True))
         self.thrust, self.hover = params['k_eta'], hover_speed(params)
@@ -250,7 +251,7 @@ class Sloped(Influence):
 
     def __init__(self, size, params, rng):
         """Draw whether it is more or less."""
-        self.share = 0.007 * size * float(_signs(rng, 1)[0])
+        self.share = 0.007 * size * float(signs(rng, 1)[0])
         self.hover = hover_speed(params)
         self.parameters = {'share': self.share}
 
@@ -272,7 +273,7 @@ class Levelling(Influence):
 
     def __init__(self, size, params, rng):
         """Draw whether it is more or less."""
-        self.share = 0.007 * size * float(_signs(rng, 1)[0])
+        self.share = 0.007 * size * float(signs(rng, 1)[0])
         self.hover = hover_speed(params)
         self.parameters = {'share': self.share}
 
@@ -282,44 +283,46 @@ class Levelling(Influence):
         return 1.0 + self.share * (1.0 + self.SLOPE * below)
 
 
-class _Fault(Influence):
+class Fault(Influence):
     """One rotor that is weaker."""
 
     def __init__(self, size, params, rng):
+        """Draw the rotor."""
         self.rotor, self.loss = int(rng.integers(params['num_rotors'])), 0.005 * size
         self.parameters = {f'loss_{self.rotor + 1}': self.loss}
         self.hover = hover_speed(params)
 
-    def _with(self, now, change):
+    def losing(self, now, change):
+        """Return factors (n,): the loss times change(its speed over that in hover)."""
         gain = np.ones(len(now.speeds))
         turn = np.clip(now.speeds[self.rotor] / self.hover, 0.2, 3.0)
         gain[self.rotor] -= self.loss * change(turn)
         return gain
 
 
-class Broken(_Fault):
+class Broken(Fault):
     """Thrust and reaction torque are lost alike."""
 
     comparable = True
 
     def gain(self, now):
         """Return the factors."""
-        return self._with(now, lambda turn: 1.0)
+        return self.losing(now, lambda turn: 1.0)
 
     def torque(self, now):
         """Return the factors."""
-        return self._with(now, lambda turn: 1.0)
+        return self.losing(now, lambda turn: 1.0)
 
 
-class Chipped(_Fault):
+class Chipped(Fault):
     """A loss that grows with the square of the speed."""
 
     def gain(self, now):
         """Return the factors."""
-        return self._with(now, lambda turn: turn ** 2)
+        return self.losing(now, lambda turn: turn ** 2)
 
 
-class Incipient(_Fault):
+class Incipient(Fault):
     """
     A loss that grows during the flight, from half of its mean to half as much again.
 
@@ -329,23 +332,23 @@ class Incipient(_Fault):
 
     def gain(self, now):
         """Return the factors."""
-        return self._with(now, lambda turn: 0.5 + min(now.time / 20.0, 1.0))
+        return self.losing(now, lambda turn: 0.5 + min(now.time / 20.0, 1.0))
 
     def torque(self, now):
         """Return the factors: the motor turns more slowly."""
         return self.gain(now)
 
 
-class Dragging(_Fault):
+class Dragging(Fault):
     """A loss of the same force at every speed, with half of it in the torque."""
 
     def gain(self, now):
         """Return the factors."""
-        return self._with(now, lambda turn: turn ** -2)
+        return self.losing(now, lambda turn: turn ** -2)
 
     def torque(self, now):
         """Return the factors."""
-        return self._with(now, lambda turn: 0.5 * turn ** -2)
+        return self.losing(now, lambda turn: 0.5 * turn ** -2)
 
 
 class Unequal(Influence):
@@ -367,23 +370,24 @@ class HeavyPair(Influence):
     def __init__(self, size, params, rng):
         """Draw which."""
         self.parameters = {'rotor_inertia': 0.002 * size * params['Ixx']}
-        self.shares = 1.0 + 0.15 * _signs(rng, 1)[0] * np.asarray(params['rotor_directions'])
+        self.shares = 1.0 + 0.15 * signs(rng, 1)[0] * np.asarray(params['rotor_directions'])
 
     def alter(self, true, params):
         """Set them."""
         true['rotor_inertia'] = self.parameters['rotor_inertia'] * self.shares
 
 
-class _Tilt(Influence):
+class Tilt(Influence):
     """A frame of measurement that is tilted."""
 
     def __init__(self, size, params, rng):
-        along = np.array([*_signs(rng, 2) * rng.uniform(0.3, 1.0, 2), rng.uniform(-0.3, 0.3)])
+        """Draw the direction."""
+        along = np.array([*signs(rng, 2) * rng.uniform(0.3, 1.0, 2), rng.uniform(-0.3, 0.3)])
         self.angles = 0.008 * size * along
         self.parameters = dict(zip(('roll', 'pitch', 'yaw'), self.angles.tolist(), strict=True))
         self.size, self.draws = size, rng.normal(size=6)
 
-    def _tilted(self, state, share=1.0):
+    def tilted(self, state, share=1.0):
         """Return the state with a tilted attitude, and the tilt."""
         tilt = Rotation.from_euler('ZYX', share * self.angles[::-1])
         out = state.copy()
@@ -391,7 +395,7 @@ class _Tilt(Influence):
         return out, tilt.as_matrix()
 
 
-class BlockWithLever(_Tilt):
+class BlockWithLever(Tilt):
     """Attitude and rate of a block that sits askew and away from the body origin."""
 
     comparable = True
@@ -404,7 +408,7 @@ class BlockWithLever(_Tilt):
 
     def measured(self, time, state, thrust):
         """Return what the block says."""
-        out, tilt = self._tilted(state)
+        out, tilt = self.tilted(state)
         rotation = Rotation.from_quat(state[6:10])
         out[:3] += rotation.apply(self.lever)
         out[3:6] += rotation.apply(np.cross(state[10:], self.lever))
@@ -412,37 +416,38 @@ class BlockWithLever(_Tilt):
         return out
 
 
-class Creeping(_Tilt):
+class Creeping(Tilt):
     """An attitude whose tilt grows in flight, from 0.8 to 1.2 of its mean in 20 s."""
 
     def measured(self, time, state, thrust):
         """Return what is said."""
-        return self._tilted(state, 0.8 + 0.4 * min(time / 20.0, 1.0))[0]
+        return self.tilted(state, 0.8 + 0.4 * min(time / 20.0, 1.0))[0]
 
 
-class SkewedBlock(_Tilt):
+class SkewedBlock(Tilt):
     """A tilted block whose gyroscope has axes that are not quite at right angles, nor alike."""
 
     def measured(self, time, state, thrust):
         """Return what the block says."""
-        out, tilt = self._tilted(state)
+        out, tilt = self.tilted(state)
         a, b, c, d, e, f = 0.004 * min(self.size, 3.0) * self.draws
         out[10:] = (np.eye(3) + [[a, b, c], [0.0, d, e], [0.0, 0.0, f]]) @ tilt.T @ state[10:]
         return out
 
 
-class SoftMount(_Tilt):
+class SoftMount(Tilt):
     """An attitude from a soft mount: the thrust bends it."""
 
     def measured(self, time, state, thrust):
         """Return what is said."""
-        return self._tilted(state, 0.7 + 0.3 * float(np.clip(thrust, 0.0, 3.0)))[0]
+        return self.tilted(state, 0.7 + 0.3 * float(np.clip(thrust, 0.0, 3.0)))[0]
 
 
-class _Bias(Influence):
+class Bias(Influence):
     """A rate that is off."""
 
     def __init__(self, size, params, rng):
+        """Draw the direction."""
         direction = rng.normal(size=3)
         self.bias = 0.03 * size * direction / np.linalg.norm(direction)
         self.parameters = dict(zip('xyz', self.bias.tolist(), strict=True))
@@ -454,7 +459,7 @@ class _Bias(Influence):
         return out
 
 
-class Warming(_Bias):
+class Warming(Bias):
     """A bias that settles as the sensor warms."""
 
     def share(self, time, thrust):
@@ -462,7 +467,7 @@ class Warming(_Bias):
         return 0.8 + 0.6 * np.exp(-time / 8.0)
 
 
-class Wandering(_Bias):
+class Wandering(Bias):
     """A bias that wanders slowly, otherwise in each flight."""
 
     def begin(self, rng):
@@ -474,7 +479,7 @@ class Wandering(_Bias):
         return 1.0 + 0.25 * np.sin(2.0 * np.pi * time / 25.0 + self.phases)
 
 
-class Rectified(_Bias):
+class Rectified(Bias):
     """A bias that grows with the thrust, as the gyroscope takes vibration for rate."""
 
     def share(self, time, thrust):

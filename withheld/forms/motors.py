@@ -43,7 +43,7 @@ class SpeedDependent(Motor):
     def turn(self, speeds, command, step):
         """Return the speeds."""
         time = self.parameters['time'] * self.hover / np.maximum(speeds, 0.1 * self.hover)
-        return _towards(speeds, command, time, step)
+        return towards(speeds, command, time, step)
 
 
 class TorqueBalance(Motor):
@@ -58,7 +58,7 @@ class TorqueBalance(Motor):
         """Return the speeds of J dw/dt = k (command^2 - w^2)."""
         time = self.parameters['time'] * 2.0 * self.hover / np.maximum(
             speeds + command, 0.1 * self.hover)
-        return _towards(speeds, command, time, step)
+        return towards(speeds, command, time, step)
 
 
 class TwoPoles(Motor):
@@ -74,8 +74,8 @@ class TwoPoles(Motor):
         """Return the speeds."""
         smooth = speeds if self._smooth is None else self._smooth
         before = smooth
-        self._smooth = _towards(smooth, command, 0.4 * self.times, step)
-        return _towards(speeds, 0.5 * (before + self._smooth) if np.any(self.times) else command,
+        self._smooth = towards(smooth, command, 0.4 * self.times, step)
+        return towards(speeds, 0.5 * (before + self._smooth) if np.any(self.times) else command,
                         0.6 * self.times, step)
 
 
@@ -91,10 +91,10 @@ class DeadBand(Motor):
     def turn(self, speeds, command, step):
         """Return the speeds."""
         error = np.clip(command - speeds, -self.parameters['band'], self.parameters['band'])
-        return _towards(speeds, command - error, self.parameters['time'], step)
+        return towards(speeds, command - error, self.parameters['time'], step)
 
 
-def _towards(speeds, command, time, step):
+def towards(speeds, command, time, step):
     """Return the speeds after a step of a lag of the first order; time s, 0 for none."""
     with np.errstate(divide='ignore'):
         return command + (speeds - command) * np.exp(-step / np.asarray(time, float))

@@ -13,7 +13,21 @@ from scipy.spatial.transform import Rotation
 from withheld.actuators import Battery, Line, Motor
 from withheld.constants import hover_speed
 from withheld.files import FARTHEST, misread, SPREADS
-from withheld.forms import air, batteries, body, EVENTS, form_of, FORMS, motors
+from withheld.forms import (
+    air,
+    batteries,
+    body,
+    cells,
+    escs,
+    EVENTS,
+    form_of,
+    FORMS,
+    links,
+    loads,
+    motors,
+    rotors,
+    wakes,
+)
 from withheld.influence import Influence, Instant
 from withheld.lists import NOISES
 from withheld.logs import Grounded, Logging, LowPass
@@ -199,7 +213,8 @@ def test_the_induced_velocity_is_that_of_momentum_theory():
     assert flow * speed / part.induced == pytest.approx(gain, rel=1e-3)
 
 
-@pytest.mark.parametrize('kind', [air.Rational, air.Cushion, air.Swept, air.Bounded])
+@pytest.mark.parametrize('kind', [air.Rational, air.Cushion, air.Swept, air.Bounded,
+                                  wakes.Fountain])
 def test_the_ground_gives_thrust_that_fades_with_height(kind):
     part = kind(2.0, PARAMS, None)
     gains = [part.gain(instant(height=height)).mean() for height in (0.1, 0.2, 0.3, 3.0)]
@@ -259,6 +274,116 @@ def test_a_rotor_fails_more_and_more():
     part = body.Incipient(4.0, PARAMS, np.random.default_rng(2))
     losses = [1.0 - part.gain(instant(time=t))[part.rotor] for t in (0.0, 10.0, 20.0)]
     assert losses == pytest.approx([0.01, 0.02, 0.03])
+
+
+def test_a_motor_that_is_not_braked_coasts_down_and_is_driven_up():
+    motor, step = escs.Coasting(3.0, PARAMS, None), 0.001
+    speeds = np.array([0.7, 1.3, 1.0, 1.0]) * HOVER
+    for _ in range(50):
+        speeds = motor.turn(speeds, np.array([1.3, 0.7, 1.0, 1.0]) * HOVER, step)
+    grown = 3.0 ** 0.7      # dw/dt = -B w^2 with B w = 10 / grown per s in hover; upwards a lag
+    assert speeds[1] / HOVER == pytest.approx(1.3 / (1.0 + 1.3 * 0.05 * 10.0 / grown), rel=1e-3)
+    assert 1.3 - speeds[0] / HOVER == pytest.approx(0.6 * np.exp(-0.05 / (0.009 * grown)),
+                                                    rel=1e-3)
+
+
+def test_a_motor_with_a_slow_tail_has_the_mean_lag_of_its_time():
+    motor, step, missing = escs.SlowTail(2.0, PARAMS, None), 0.0005, []
+    speeds = np.full(4, HOVER)
+    for _ in range(2000):
+        speeds = motor.turn(speeds, np.full(4, 1.2 * HOVER), step)
+        missing.append(1.2 - speeds[0] / HOVER)
+    assert step * np.sum(missing) / 0.2 == pytest.approx(0.024, rel=0.03)
+    # 0.1 s on, a lag would be at 0.015 of the step.
+    assert 0.05 < missing[199] / 0.2 < 0.1
+
+
+def test_a_link_is_fast_mostly_and_slow_now_and_then():
+    link = links.Congested(1.0, PARAMS, None)
+    link.begin(np.random.default_rng(1))
+    waits = np.array([link.waits(t) for t in np.arange(0.0, 200.0, 0.01)]) / link.delay
+    assert set(waits) == {0.6, 2.2} and waits.mean() == pytest.approx(1.0, abs=0.1)
+    assert 100 < np.count_nonzero(np.diff(waits)) < 800
+
+
+def test_fast_rotors_fall_short_and_slow_ones_keep_their_speed():
+    battery = cells.Headroom(2.0, PARAMS, None)
+    battery.drain(10.0, 0.01, np.ones(4))
+    slow, hover, fast = battery.gain(np.array([0.6, 1.0, 1.2]))
+    assert slow == pytest.approx(1.0, abs=1e-3) and 1.0 - fast > 2.0 * (1.0 - hover) > 0.0
+
+
+def test_a_cell_near_its_end_falls_faster_and_faster():
+    battery, shown = cells.Rundown(2.0, PARAMS, None), []
+    for _ in range(2000):
+        battery.drain(0.0, 0.01, np.ones(4))
+        shown.append(battery.ratio)
+    assert shown[0] == pytest.approx(1.0, abs=1e-3)
+    assert shown[1500] - shown[1999] > 3.0 * (shown[0] - shown[500]) > 0.0
+
+
+def test_a_load_on_a_bungee_weighs_what_it_weighs_at_rest_and_bounces_after_a_jerk():
+    load, forces = loads.Bungee(3.0, PARAMS, np.random.default_rng(1)), []
+    load.begin(None)
+    for k in range(1000):
+        up = np.array([0.0, 0.0, 2.0 if 10 <= k < 20 else 0.0])
+        load.after(0.01, np.eye(3), up)
+        forces.append(load.wrench(instant())[0][2])
+    assert np.abs(forces[:10]).max() < 1e-9 < np.abs(forces[10:30]).max()
+    assert abs(forces[-1]) < 1e-3 * np.abs(forces[10:30]).max()
+
+
+def test_a_loose_battery_takes_no_more_moment_than_its_friction():
+    part = loads.Slipping(3.0, PARAMS, np.random.default_rng(2))
+    part.begin(None)
+    part.alter(fresh(), PARAMS)
+    moments = []
+    for k in range(200):
+        moments.append(part.wrench(instant(rate=(0.05 * k, 0.0, 0.0)))[1][0] / part.loads[0])
+        part.after(0.01, np.eye(3), np.zeros(3))
+    # 5 rad/s^2 is more than it can.
+    assert min(moments) == pytest.approx(-4.0, rel=0.01)
+
+
+def test_ground_under_one_side_lifts_that_side():
+    platform = wakes.Platform(3.0, PARAMS, np.random.default_rng(1))
+    now = instant(height=0.12)
+    place = now.position + (platform.edge - now.position @ platform.onto) * platform.onto
+    gain = platform.gain(Instant(**{**vars(now), 'position': place}))
+    side = PLACES @ platform.onto
+    assert gain[np.argmax(side)] > 1.03 and gain[np.argmin(side)] < 1.01
+
+
+def test_the_ring_of_vortices_takes_thrust_in_descent_alone():
+    def thrust(velocity):
+        part = wakes.Settling(3.0, PARAMS, None)
+        part.begin(None)
+        now = instant(velocity=velocity, rate=(0.0, 0.0, 0.0), turn=(1.0,) * 4)
+        first = part.gain(now)[0]
+        for _ in range(200):
+            part.after(0.01, np.eye(3), np.zeros(3))
+        return part.gain(now)[0] - first
+
+    sinking, forward, climbing = (thrust(v) for v in ((0, 0, -2.0), (6.0, 0, -2.0), (0, 0, 2.0)))
+    assert sinking < -0.01 and abs(forward) < 0.2 * abs(sinking) and climbing == 0.0
+
+
+def test_a_hub_slips_only_above_its_torque():
+    part = rotors.SlippingHub(10.0, PARAMS, np.random.default_rng(2))
+    losses = [1.0 - part.gain(instant(turn=(x,) * 4))[part.rotor] for x in (0.6, 1.0, 1.3)]
+    assert losses[0] < 0.001 < losses[1] < 0.5 * losses[2]
+
+
+def test_blades_on_hinges_pass_a_change_of_speed_on_later():
+    part, passed = rotors.Folding(5.0, PARAMS, None), []
+    for turn in (1.0, *[1.1] * 100):
+        now = instant(rate=(0.0, 0.0, 0.0), turn=(turn, 1.0, turn, 1.0))
+        passed.append(part.wrench(now)[1][2])
+        part.after(0.002, np.eye(3), np.zeros(3))
+    # In the end all of the momentum, that of 0.6 w + 0.4 w^3 in terms of hover.
+    change = 2.0 * part.inertia * HOVER * (0.6 * 0.1 + 0.4 * (1.1 ** 3 - 1.0))
+    assert 0.002 * np.sum(passed) == pytest.approx(change, rel=0.05)
+    assert passed[-1] < 0.02 * passed[1]
 
 
 def test_a_dropped_payload_is_gone_from_then_on():
