@@ -4,14 +4,13 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-import json
 import signal
 
 import yaml
 
 from quad_ident_ros import resources, schema
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.nodes.parameter_files import is_for, names_in
+from quad_ident_ros.nodes.parameter_files import is_for, names_in, words_for
 
 SIMULATOR = 'simulator'
 # Signals by which a node ends that was told to; the last where FastDDS holds it, see process.run.
@@ -116,19 +115,13 @@ def planned(nodes: Sequence[str], arguments: Sequence[Argument], values: Mapping
     usual = usual if simulate else {}
     # A flight that is simulated ends with its simulator: a new one flies from the beginning.
     respawn = _value(RESPAWN, values) if values.get(RESPAWN.name, '') else not simulate
-    return [Planned(node, (*_words(usual.get(node, {})), *_file(path, node, values, started),
-                           *_words(given[node]), *clock), respawn) for node in started]
+    return [Planned(node, (*words_for(usual.get(node, {})), *_file(path, node, values, started),
+                           *words_for(given[node]), *clock), respawn) for node in started]
 
 
 def was_killed(code: int) -> bool:
     """Return whether a node with this exit code was killed or crashed, and did not end itself."""
     return code < 0 and -code not in TOLD
-
-
-def _words(parameters: Mapping[str, object]) -> list[str]:
-    # As JSON, a text is a text to YAML too, whatever is in it.
-    return [word for name, value in parameters.items()
-            for word in ('-p', f'{name}:={json.dumps(value)}')]
 
 
 def _file(path: str, node: str, values: Mapping[str, str], started: Sequence[str]) -> tuple:
