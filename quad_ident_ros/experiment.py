@@ -154,13 +154,21 @@ def load_experiment(name_or_path, vehicle=None):
     return Experiment(
         name=schema.name(f'{where}: name', data['name']),
         description=str(data.get('description', '')), model=model,
-        vehicle=load_any_vehicle(vehicle or data['vehicle']),
+        vehicle=load_any_vehicle(vehicle) if vehicle else _vehicle(where, data['vehicle']),
         period=period,
         trim=schema.choice(f'{where}: trim', data['trim'], ('hover', 'zero')),
         altitude=schema.number(f'{where}: altitude', data.get('altitude', 0.0)),
         runs=runs, omega_r=omega_r,
         omega_r_sign=schema.choice(f'{where}: omega_r_sign', data.get('omega_r_sign', 1), (1, -1)),
         step=step, noise=noise)
+
+
+def _vehicle(where, name):
+    """Return the vehicle that an experiment file names; InputError that names the file."""
+    try:
+        return load_any_vehicle(name)
+    except InputError as error:
+        raise InputError(f'{where}: vehicle: {error}') from None
 
 
 def _run(where, data, period, folder):

@@ -29,7 +29,11 @@ COMMANDS = {
     'convert to gzip': ('csv.gz', f'convert {FLIGHT} {{out}}'),
     'diagnose --json': ('json', f'diagnose {FLIGHT} --vehicle hummingbird --json {{out}}'),
     'diagnose --report': ('html', f'diagnose {FLIGHT} --vehicle hummingbird --report {{out}}'),
+    'fleet --report': ('html', f'fleet {FLIGHT} --vehicle hummingbird --workers 1 -o fleet '
+                       '--report {out}'),
 }
+# What a fleet says while it works.
+PROGRESS = re.compile(r"data set: |Dask's dashboard |\w+: \d+ of \d+ |\[\d+/\d+\] ")
 SMALL = {
     'diagnose --out-vehicle': ('yaml', f'diagnose {FLIGHT} --vehicle hummingbird '
                                '--out-vehicle {out}'),
@@ -53,6 +57,7 @@ WRITTEN = {
     'info --write-mapping': ('in/kept', f'info {FLIGHT} --write-mapping in/out.yaml'),
     'simulate': ('in/kept', 'simulate small_angle -o in'),
     'paper': ('in/paper.html', 'paper --preset paper_table3 --seeds 1 -o in'),
+    'fleet': ('in/kept', f'fleet {FLIGHT} --vehicle hummingbird --workers 1 -o in/out'),
     'demo': ('in/kept', 'demo -o in'),
     'demo --gap': ('in/kept', 'demo --gap -o in'),
 }
@@ -170,7 +175,8 @@ def _gone(title: str, words: str, folder: Path, out: str) -> Finding:
 def _finding(case: str, title: str, done: subprocess.CompletedProcess, kept: bool,
              why: str) -> Finding:
     """Return what came of a command that is to say why (a pattern), in one line."""
-    lines = [line for line in done.stderr.splitlines() if line.strip()]
+    lines = [line for line in done.stderr.splitlines() if line.strip()
+             and not PROGRESS.match(line)]
     one = done.returncode == 2 and len(lines) == 1 and re.search(why, lines[0]) is not None
     said = lines[-1][-90:] if lines else 'nothing was said'
     return Finding(case, title, f'exit code {done.returncode}, {len(lines)} lines: {said}'

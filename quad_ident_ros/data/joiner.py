@@ -20,10 +20,10 @@ class Counts:
     received: per topic. joined: rows. dropped: stamps that some topic never delivered. late:
     messages after their row was given up. duplicated: a stamp twice on one topic. out_of_order: a
     stamp older than the one before it on its topic. nan: messages with a value that is no finite
-    number. lost and incompatible_qos: as the middleware reports them. unread: messages that waited
-    when the recorder was told to end, for too long to be joined. restarts: of the clock.
-    missing: samples that the records lack, whatever became of them, by the count that the sender
-    announced or else by the sample period.
+    number, or an attitude that is none. lost and incompatible_qos: as the middleware reports them.
+    unread: messages that waited when the recorder was told to end, for too long to be joined.
+    restarts: of the clock. missing: samples that the records lack, whatever became of them, by the
+    count that the sender announced or else by the sample period.
     """
 
     received: dict = field(default_factory=dict)
@@ -38,6 +38,11 @@ class Counts:
     unread: int = 0
     restarts: int = 0
     missing: int = 0
+
+    def add(self, more):
+        """Add what became of further messages, {name of a count: how many}."""
+        for name, count in more.items():
+            setattr(self, name, getattr(self, name) + count)
 
     def problems(self):
         """Return the counts of what went wrong that are not zero."""

@@ -3,6 +3,7 @@
 """What the messages of one topic of others hold for one role, from a bag or live."""
 
 from array import array
+from collections import Counter
 import math
 import re
 
@@ -62,6 +63,7 @@ class TopicPart:
         self.spoilt = ()        # messages, counted from 0, whose attitude was left out
         self.note = ''          # on how its values came about
         self.refused = ''       # why poses that the last live message completes were left out
+        self._left = Counter()  # live poses without an attitude, as transforms have them
         self._messages = 0
         self._transforms = Transforms(where, source.topic, source.child)
 
@@ -161,6 +163,7 @@ class TopicPart:
             if self.role in ('pose', 'attitude') and not_unit(values[-4:]):
                 self.refused = (f'{self._here()}: the quaternion has not the length 1; publish a '
                                 f'{self.role} with an attitude')
+                self._left['nan'] += 1
                 continue
             columns = self._columns(np.array([values]), mapping)
             samples.append((stamp, came,
@@ -168,6 +171,11 @@ class TopicPart:
         if self.refused and not samples:
             raise InputError(self.refused)
         return samples
+
+    def left_out(self, end):
+        """Return how many live poses came to nothing since the last call, see Transforms."""
+        new, self._left = self._transforms.left_out(end) + self._left, Counter()
+        return new
 
     def _read(self, message, kind):
         """Return [(frame and that it is in, stamp in ns or 0, numbers)] in a message."""

@@ -5,6 +5,8 @@
 from __future__ import annotations
 
 from array import array
+from bisect import bisect_right
+from collections import Counter
 from collections.abc import Sequence
 
 import numpy as np
@@ -39,13 +41,14 @@ class _Link:
 
     fixed: whether they do not change; doubtful: whether they are said to, and not to; stamps (0
     without one) and received, ns; values: COLUMNS of each; heard: how many came, those that were
-    forgotten, too.
+    forgotten, too; left: how many live ones came to nothing, by the name that Counts has for why.
     """
 
     def __init__(self, parent: str):
         self.parent = parent
         self.fixed = self.doubtful = False
         self.heard = 0
+        self.left: Counter[str] = Counter()
         self.stamps, self.received, self.values = array('q'), array('q'), array('d')
 
     def add(self, stamp: int, received: int, values: Sequence[float]) -> None:
@@ -87,6 +90,7 @@ class Transforms:
         self._chain: tuple[str, ...] = ()   # of a live one that is whole
         self._base = ''
         self._last = -1                     # stamp of the last pose that was given out live
+        self._told: Counter[str] = Counter()    # what left_out has returned
 
     def add(self, child: str, parent: str, stamp: int, received: int, values: Sequence[float],
             fixed: bool = False) -> None:
@@ -114,7 +118,11 @@ class Transforms:
 
     def add_live(self, child: str, parent: str, stamp: int, received: int,
                  values: Sequence[float], fixed: bool = False) -> None:
-        """Take a transform as add; what is late, or from before a clock began anew, is left."""
+        """
+        Take a transform as add; what is late, or from before a clock began anew, is left.
+
+        What is left is counted, see left_out.
+        """
         child, stamp = child.strip('/'), stamp or received
         link = self._links.get(child)
         if self._chain and (link is None or child not in self._chain):
@@ -123,8 +131,9 @@ class Transforms:
             if stamp < link.stamps[-1] - RESTART_NS:
                 self._restart(stamp)
             elif stamp <= link.stamps[-1]:
+                link.left['duplicated' if stamp == link.stamps[-1] else 'out_of_order'] += 1
                 return
-            link.forget(len(link.stamps) - MOST)
+            self._give_up(link, len(link.stamps) - MOST)
         self.add(child, parent, stamp, received, values, fixed)
 
     def chain(self) -> tuple[str, ...]:
@@ -199,6 +208,36 @@ class Transforms:
                 link.forget(int(np.searchsorted(link.stamps, self._last, 'right')) - _KEPT)
         return found
 
+    def left_out(self, end: bool = False) -> Counter[str]:
+        """
+        Return how many live transforms of the chain came to nothing since the last call.
+
+        By the names of joiner.Counts; dropped are those whose pose waited for other transforms.
+        Args: end: whether none is to come, so that what waits is dropped.
+        """
+        try:
+            links = self._of(self._chain or self.chain())
+        except InputError:      # it is said where they are read
+            return Counter()
+        if not links or not (self._chain or end):
+            return Counter()
+        base = self._links[self._base] if self._base else links[_base(links)]
+        if end:
+            self._give_up(base, len(base.stamps))
+        found: Counter[str] = Counter()
+        for link in links:
+            found.update({why: count for why, count in link.left.items()
+                          if link is base or why != 'dropped'})
+        new = found - self._told
+        self._told = found
+        return new
+
+    def _give_up(self, link: _Link, count: int) -> None:
+        """Forget the first transforms of a link; those of which no pose was made are dropped."""
+        if count > 0:
+            link.left['dropped'] += max(count - bisect_right(link.stamps, self._last), 0)
+            link.forget(count)
+
     def _frame(self) -> str:
         """Return the frame of the vehicle, '' where there is none; InputError for several."""
         if self._child:
@@ -223,10 +262,10 @@ class Transforms:
 
     def _restart(self, stamp: int) -> None:
         """Forget what is from before a clock that began anew."""
-        self._last = min(self._last, stamp - 1)
         for link in self._links.values():
             if not link.fixed and len(link.stamps) and link.stamps[-1] > stamp + RESTART_NS:
-                link.forget(len(link.stamps))
+                self._give_up(link, len(link.stamps))
+        self._last = min(self._last, stamp - 1)
 
 
 def _base(links: Sequence[_Link]) -> int:

@@ -4,15 +4,17 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-import json
+import signal
 
 import yaml
 
 from quad_ident_ros import resources, schema
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.nodes.parameter_files import is_for, names_in
+from quad_ident_ros.nodes.parameter_files import is_for, names_in, words_for
 
 SIMULATOR = 'simulator'
+# Signals by which a node ends that was told to; the last where FastDDS holds it, see process.run.
+TOLD = (signal.SIGINT, signal.SIGTERM, signal.SIGALRM)
 
 
 @dataclass(frozen=True)
@@ -38,8 +40,10 @@ PARAMS_FILE = Argument('params_file', 'Parameter file, such as config/parameters
                        'that are given go before it.')
 USE_SIM_TIME = Argument('use_sim_time', 'Follow the simulated time: that of the simulator here, '
                         'or with simulate:=false that on /clock.', bool, default='false')
+RESPAWN = Argument('respawn', 'Start a node that is killed or crashes once more, instead of '
+                   'ending all; empty: true with simulate:=false, else false.', bool)
 COMMON = (
-    NAMESPACE, SIMULATE, PARAMS_FILE, USE_SIM_TIME,
+    NAMESPACE, SIMULATE, PARAMS_FILE, USE_SIM_TIME, RESPAWN,
     Argument('experiment', 'Name of an experiment or path of its file.', str,
              ((SIMULATOR, 'experiment'),)),
     Argument('effects', "Effects of the vehicle that flies, for example ['wind:x=3'].", list,
@@ -68,10 +72,11 @@ COMMON = (
 
 @dataclass(frozen=True)
 class Planned:
-    """A node of this package to start: its executable and ROS arguments."""
+    """A node of this package to start: its executable, ROS arguments, whether to respawn it."""
 
     node: str
     words: tuple[str, ...]
+    respawn: bool
 
 
 def planned(nodes: Sequence[str], arguments: Sequence[Argument], values: Mapping[str, str],
@@ -108,14 +113,15 @@ def planned(nodes: Sequence[str], arguments: Sequence[Argument], values: Mapping
     # Two simulators, each in its namespace, have two times.
     clock = ('-r', '/clock:=clock') if sim_time and simulate and space else ()
     usual = usual if simulate else {}
-    return [Planned(node, (*_words(usual.get(node, {})), *_file(path, node, values, started),
-                           *_words(given[node]), *clock)) for node in started]
+    # A flight that is simulated ends with its simulator: a new one flies from the beginning.
+    respawn = _value(RESPAWN, values) if values.get(RESPAWN.name, '') else not simulate
+    return [Planned(node, (*words_for(usual.get(node, {})), *_file(path, node, values, started),
+                           *words_for(given[node]), *clock), respawn) for node in started]
 
 
-def _words(parameters: Mapping[str, object]) -> list[str]:
-    # As JSON, a text is a text to YAML too, whatever is in it.
-    return [word for name, value in parameters.items()
-            for word in ('-p', f'{name}:={json.dumps(value)}')]
+def was_killed(code: int) -> bool:
+    """Return whether a node with this exit code was killed or crashed, and did not end itself."""
+    return code < 0 and -code not in TOLD
 
 
 def _file(path: str, node: str, values: Mapping[str, str], started: Sequence[str]) -> tuple:

@@ -3,7 +3,6 @@
 """Nodes as processes on a ROS domain of their own, and a node here that watches them."""
 
 import contextlib
-import json
 import os
 from pathlib import Path
 import signal
@@ -17,6 +16,7 @@ from rclpy.signals import SignalHandlerOptions
 
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.nodes.domain import claim_domain
+from quad_ident_ros.nodes.parameter_files import words_for
 from quad_ident_ros.nodes.process import PARENT
 
 STOPPING = 10.0      # s that the nodes have to end after they were told to
@@ -61,14 +61,11 @@ class Launched:
         Args: node, e.g. 'recorder'; parameters: by name; name: of the process, by default that of
         the node; arguments: further ROS arguments.
         """
-        # As JSON, a text is a text to YAML too, whatever is in it.
-        words = [word for key, value in parameters.items()
-                 for word in ('-p', f'{key}:={json.dumps(value)}')]
         name = name or node
         with open(self._log(name), 'w', encoding='utf-8') as log:
             self.processes[name] = subprocess.Popen(
                 [sys.executable, '-m', module or f'quad_ident_ros.nodes.{node}', '--ros-args',
-                 *words, *arguments],
+                 *words_for(parameters), *arguments],
                 stdout=log, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL,
                 env=self._environment, start_new_session=True,
                 # A domain is taken as long as a node lives on it.

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Topics of any installed type that a mapping names, as streams that the recorder joins."""
 
+from collections import Counter
 from importlib import import_module
 
 from quad_ident_ros.data.foreign import without_stamps
@@ -109,6 +110,10 @@ class MappedTopics:
             self._compare(topic, found[0][2], found[0][1] or found[0][2])
         return [(role, came if self.by_receipt else stamp or came, values)
                 for role, stamp, came, values in found]
+
+    def left_out(self, end=False):
+        """Return how many live poses came to nothing since the last call, by names of Counts."""
+        return sum((part.left_out(end) for part in self._parts.values()), Counter())
 
     def _compare(self, topic, received_ns, stamp):
         """Note how late a topic is: where some are APART the stamps are of several clocks."""

@@ -38,6 +38,11 @@ class PackageNode(Node):
         """Whether the node has anything that would be lost if it started once more."""
         return False
 
+    def values(self):
+        """Return {name: value} of all parameters as they are now."""
+        return {name: _plain(parameter.value)
+                for name, parameter in self.get_parameters_by_prefix('').items()}
+
     def set_parameters_atomically(self, parameter_list):
         """Set parameters as Node does, also empty lists and fixed ones that stay the same."""
         wanted = [self._typed(parameter) for parameter in parameter_list]

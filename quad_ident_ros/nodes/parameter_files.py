@@ -1,6 +1,8 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""For which nodes a parameter file is."""
+"""For which nodes a parameter file is, and parameters as words of a command line."""
+
+import json
 
 
 def names_in(data):
@@ -11,6 +13,13 @@ def names_in(data):
 def is_for(keys, name, full_name):
     """Return whether one of the keys of a parameter file is a node's, by its name."""
     return any(_matches(key, name, full_name) for key in keys)
+
+
+def words_for(parameters):
+    """Return the ROS arguments that give a node parameters, {name: value}, at its start."""
+    # As JSON, a text is a text to YAML too, whatever is in it.
+    return [word for name, value in parameters.items()
+            for word in ('-p', f'{name}:={json.dumps(value, ensure_ascii=False)}')]
 
 
 def _names(data, prefix):

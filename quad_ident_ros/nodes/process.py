@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A node as a process: start, signals, errors in one line, a clean end."""
 
+import json
 import os
 import signal
 import sys
@@ -11,6 +12,7 @@ import threading
 import rclpy
 from rclpy.exceptions import ParameterException
 from rclpy.executors import SingleThreadedExecutor
+from rclpy.parameter import Parameter
 from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import remove_ros_args
 
@@ -29,6 +31,7 @@ LETTING_GO = 5       # s that the middleware has to take a node down
 PARENT = 'QUAD_IDENT_PARENT'   # a process whose death ends the node
 STARTS = 'QUAD_IDENT_STARTS'   # how often a node has started once more by itself, and
 MOST_STARTS = 3                # how often it may
+CHANGED = 'QUAD_IDENT_CHANGED'  # parameters, JSON, that were set before it did
 
 
 def run(node_class, help_page, args=None, executor_class=SingleThreadedExecutor,
@@ -41,7 +44,7 @@ def run(node_class, help_page, args=None, executor_class=SingleThreadedExecutor,
     that `warm_up` of the node runs while the node is there. Bad input gives one line on standard
     error and exit code 2. Where the middleware does not let go of a closed node, SIGALRM ends the
     process. A node that turns out to be deaf just after its start, without work yet, starts once
-    more.
+    more, with the parameters that were set since.
     """
     name = node_class.__name__.lower()
     args = [name, *(sys.argv[1:] if args is None else args)]
@@ -71,7 +74,7 @@ def _plain_arguments(args):
 def _run(node_class, args, executor_class, warm_up):
     ensure_log_folder()
     free_abandoned()
-    stop, deaf = [], False
+    stop, deaf, changed = [], False, {}
     previous = {number: signal.signal(number, lambda *_: stop.append(True))
                 for number in (signal.SIGINT, signal.SIGTERM)}
     try:
@@ -90,6 +93,8 @@ def _run(node_class, args, executor_class, warm_up):
         executor.add_node(node)
         if warm_up is not None:
             node.warm_up(warm_up)
+        begun = node.values()
+        _change(node)
         news = StartNews(node)
         hearing = HearingWatch(node.get_logger().error,
                                lambda: _starts() < MOST_STARTS and not node.busy)
@@ -97,6 +102,7 @@ def _run(node_class, args, executor_class, warm_up):
             news.tell()
             deaf = hearing.look()
             executor.spin_once(timeout_sec=0.1)
+        changed = {name: value for name, value in node.values().items() if value != begun[name]}
     finally:
         if node is not None:
             node.close()
@@ -114,7 +120,7 @@ def _run(node_class, args, executor_class, warm_up):
         for number, handler in previous.items():
             signal.signal(number, handler)
     if deaf and not stop:
-        _start_anew()
+        _start_anew(changed)
     _leave_compilation()
     return 0
 
@@ -127,8 +133,23 @@ def _starts():
         return 0
 
 
-def _start_anew():
-    """Become the program that this process was at its beginning."""
+def _change(node):
+    """Set the parameters again that were set before this node started once more by itself."""
+    try:
+        values = json.loads(os.environ.pop(CHANGED, '{}')).items()
+        changed = [Parameter(name, value=value) for name, value in values
+                   if node.has_parameter(name)]
+    except (ValueError, TypeError, AttributeError):     # somebody else's
+        return
+    result = node.set_parameters_atomically(changed)
+    if not result.successful:
+        node.get_logger().error(f'parameters that were set are lost: {result.reason}')
+
+
+def _start_anew(changed):
+    """Become the program that this process was at its beginning, with the parameters changed."""
+    # As words of the command line an empty list would not take the place of another.
+    os.environ[CHANGED] = json.dumps(changed)
     os.environ[STARTS] = str(_starts() + 1)
     keep_to_oneself()
     sys.stdout.flush()

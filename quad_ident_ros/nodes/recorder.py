@@ -150,6 +150,7 @@ class Recorder(PackageNode):
         # There is room for messages again: none is lost just now, which Losses asks for.
         self._count_lost()
         self._keep(self._joiner.drain())
+        self._count_left(end=True)
         self._buffer.complete()
         self.counts.missing = self._buffer.missing
         self._disk.close()
@@ -341,6 +342,10 @@ class Recorder(PackageNode):
     def _count_lost(self):
         self.counts.lost += self._inputs.count_lost()
 
+    def _count_left(self, end=False):
+        if self._mapped is not None:
+            self.counts.add(self._mapped.left_out(end))
+
     def _patience(self):
         if self._announced is not None and self._joiner.has_reached(self._announced):
             return GONE
@@ -349,6 +354,7 @@ class Recorder(PackageNode):
 
     def _report(self):
         now = self._now()
+        self._count_left()
         trouble = self._health.look(now, self.counts.received, self._unreadable)
         self._unreadable = None
         if awaited := self._unjoined.awaited(now):

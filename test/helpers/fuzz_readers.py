@@ -13,6 +13,7 @@ read, or a failure; failures are kept in --keep. A folder in memory makes it fas
 import argparse
 from collections import Counter
 from copy import deepcopy
+from dataclasses import replace
 from functools import lru_cache
 import gzip
 import json
@@ -40,12 +41,17 @@ from ruamel.yaml import YAML
 from table_files import others, table
 from usd_files import crazyflie_events, usdlog
 
+from quad_ident_ros import resources
 from quad_ident_ros.data.export import save, write_bag
 from quad_ident_ros.data.load import contents_of, load_all
 from quad_ident_ros.data.mapping import load_mapping, mapping_from
 from quad_ident_ros.data.record import FlightRecord, QUATERNION
 from quad_ident_ros.data.topics import EXACT_TOPIC
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.experiment import load_experiment
+from quad_ident_ros.model.vehicle import load_vehicle, vehicle_text
+from quad_ident_ros.vehicle_files.load import load_any_vehicle
+from quad_ident_ros.vehicle_files.targets import TARGETS
 
 SECONDS = 10        # of computing for one input
 WAITING = 300       # s for one input in all: a busy machine is no hang
@@ -56,8 +62,12 @@ NAMES = {'csv': 'f.csv', 'csv_gz': 'f.csv.gz', 'mcap': 'f.mcap', 'mcap_topics': 
          'crazyflie': 'log00', 'ardupilot': 'f.BIN', 'betaflight': 'f.bbl',
          'px4': 'f.ulg', 'table': 'f.csv', 'table_mapped': 'f.csv', 'parquet': 'f.parquet',
          'mapping': 'f.yaml', 'ros1': 'f.bag', 'ros1_lz4': 'f.bag', 'px4_bag': 'f.db3',
-         'transforms': 'f.bag'}
+         'transforms': 'f.bag', 'vehicle': 'f.yaml', 'experiment': 'f.yaml', 'gazebo': 'f.sdf',
+         'mujoco': 'f.xml', 'urdf': 'f.urdf', 'rotorpy': 'f.py', 'crazyflow': 'f.toml',
+         'px4_sih': 'f.params'}
 """File that each kind of input is written to."""
+DESCRIPTIONS = ('vehicle', 'experiment', *TARGETS)
+"""Kinds that are no flights."""
 
 TOPICS = mapping_from({'topics': {
     'pose': {'topic': '/odom'}, 'velocity': {'topic': '/odom'}, 'rate': {'topic': '/imu'},
@@ -115,6 +125,16 @@ def valid_inputs(folder):
     found['parquet'] = _parquet(folder, record)
     found['mapping'] = MAPPING.encode()
     return found | _bags(folder, record)
+
+
+def valid_descriptions():
+    """Return the bytes of a valid vehicle file of each kind, and of an experiment."""
+    effects = {'rotor_drag': {'coefficient': 0.2}, 'motor_lag': {'time_constant': 0.03}}
+    whole = replace(load_vehicle('iris'), effects=effects)
+    shipped = resources.find('experiments', 'payload_in_flight')
+    return {'vehicle': vehicle_text(whole).encode(), 'experiment': shipped.read_bytes(),
+            **{name: target.new(load_vehicle('iris')).encode()
+               for name, target in TARGETS.items()}}
 
 
 def _bags(folder, record):
@@ -207,7 +227,10 @@ def mutate(data, chance, others):
 
 
 def readings(kind, path):
-    """Yield what reads an input of a kind: its contents, and its flights."""
+    """Yield what reads an input of a kind: its contents, and its flights; or the one reader."""
+    if kind in DESCRIPTIONS:
+        yield lambda: (load_experiment if kind == 'experiment' else load_any_vehicle)(path)
+        return
     if kind == 'mapping':
         yield lambda: load_mapping(path)
         return
@@ -238,7 +261,7 @@ def work(kind, first, count, seed, keep):
     resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
     with tempfile.TemporaryDirectory() as folder:
         folder = Path(folder)
-        valid = valid_inputs(folder)
+        valid = valid_descriptions() if kind in DESCRIPTIONS else valid_inputs(folder)
         path = folder / NAMES[kind]
         if kind == 'metadata':
             path.mkdir()

@@ -23,17 +23,20 @@ from bag_files import (
     transforms,
     write2,
 )
+from diagnostic_msgs.msg import DiagnosticArray
 from flightmaker import flight, VEHICLE
 from message_packages import build, shipped
 import numpy as np
 import pytest
-from std_msgs.msg import Float64MultiArray
+from rcl_interfaces.msg import Log
+from std_msgs.msg import Float64MultiArray, String
 
 from quad_ident_ros.data.load import load
 from quad_ident_ros.data.mapping import load_mapping
 from quad_ident_ros.data.outputs import commanded
 from quad_ident_ros.model.motors import motors_from
 from quad_ident_ros.nodes.mapped import message_class
+from quad_ident_ros.nodes.messages import WARN
 from quad_ident_ros.nodes.qos import latched
 from quad_ident_ros.nodes.recorder import Recorder
 
@@ -196,3 +199,38 @@ def test_transforms_that_do_not_change_are_composed_with_those_that_do(graph, tm
     again = load(bag, load_mapping(path))
     np.testing.assert_allclose(again.columns['px'][:100], FLIGHT.columns['px'][:100] + 7.0,
                                atol=1e-9)
+
+
+def test_transforms_that_come_to_nothing_are_counted_and_said(graph, tmp_path):
+    """Each comes once more, each tenth late, and one has no attitude: the record has the rest."""
+    path = tmp_path / 'topics.yaml'
+    path.write_text('topics:\n  pose: {topic: /tf, child: base_link}\n')
+    graph.start(Recorder, {'mapping': str(path)})
+    log = graph.listen(Log, '/rosout', latched(100))
+    records = graph.listen(Float64MultiArray, 'record', latched(16))
+    statistics = graph.listen(String, 'recorder/statistics', latched())
+    diagnostics = graph.listen(DiagnosticArray, '/diagnostics', 10)
+    types = store()
+    make = Make(types)
+    publisher = graph.probe.create_publisher(message_class(TF), '/tf', 1000)
+    graph.await_listeners(publisher)
+    sent = transforms(FLIGHT, ['base_link'])
+    sent[250][3]['transforms'][0]['transform']['rotation'] = dict.fromkeys('wxyz', 0.0)
+    for k, (_, kind, _, fields) in enumerate(sent):
+        for one in (fields, fields, *([sent[k - 1][3]] if k % 10 == 9 else ())):
+            publisher.publish(bytes(types.serialize_cdr(make(kind, **one), kind)))
+        if k % 50 == 0:
+            graph.spin_for(0.01)
+    count = len(sent)
+    wanted = {'joined': count - 1, 'nan': 1, 'duplicated': count, 'out_of_order': count // 10}
+    graph.spin_until(lambda: statistics and wanted.items() <= statistics.data()[-1].items(),
+                     f'the account to be {wanted}')
+    assert statistics.data()[-1]['received'] == {'pose': count - 1}
+    graph.spin_until(lambda: any(
+        status.level == WARN and f'{count} duplicated' in status.message
+        for message in diagnostics for status in message.status), 'the warning')
+    graph.spin_until(lambda: any('the quaternion has not the length 1; publish a pose' in line.msg
+                                 for line in log), 'the line on it')
+    assert graph.trigger('recorder/flush').success
+    graph.spin_until(lambda: records, 'the record')
+    assert len(records.records()[0]) == count - 1

@@ -9,10 +9,16 @@ from pathlib import Path
 import time
 
 from geometry_msgs.msg import PointStamped
+from graph import flights
 import pytest
+from rcl_interfaces.srv import GetParameters
+from rclpy.parameter import parameter_value_to_python
 from std_msgs.msg import Float64MultiArray, String
 
 from quad_ident_ros.nodes import process, shared_memory
+from quad_ident_ros.nodes.diagnoser import Diagnoser
+from quad_ident_ros.nodes.identifier import Identifier
+from quad_ident_ros.nodes.messages import record_message
 from quad_ident_ros.nodes.qos import latched
 from quad_ident_ros.nodes.shared_memory import (
     EARLY,
@@ -23,6 +29,7 @@ from quad_ident_ros.nodes.shared_memory import (
     PORT,
     SEGMENT,
 )
+from quad_ident_ros.nodes.simulator import Simulator
 
 LONG_AGO = time.time() - 3600.0
 
@@ -89,6 +96,44 @@ def test_a_node_that_begins_deaf_starts_once_more_and_hears(graph, processes):
     ports[0].unlink(missing_ok=True)
 
 
+def test_a_node_that_starts_once_more_keeps_parameters_that_were_set(graph, processes):
+    process = processes.start('simulator', {'autostart': False, 'seed': 1, 'noise.rate': 0.5,
+                                            'effects': ['wind:x=3.0']})
+    graph.spin_until(lambda: 'ready: ' in process.errors(), 'the simulator')
+    wanted = {'seed': 7, 'vehicle': 'crazyflie', 'effects': []}
+    for name, value in wanted.items():
+        assert graph.set_parameter('simulator', name, value).successful
+    ports = ports_of(Path('/proc', str(process.pid)))
+    ports[0].unlink()
+    graph.spin_until(lambda: process.errors().count('ready: ') == 2, 'the next start')
+    values = graph.call(GetParameters, 'simulator/get_parameters',
+                        GetParameters.Request(names=[*wanted, 'noise.rate'])).values
+    assert [*map(parameter_value_to_python, values)] == [*wanted.values(), 0.5]
+    assert process.stop() == 0
+    ports[0].unlink(missing_ok=True)
+
+
+@pytest.mark.parametrize('node_class', [Identifier, Diagnoser])
+def test_a_node_that_has_a_record_is_busy(graph, node_class):
+    """It does not start once more by itself, or the record were lost, whatever became of it."""
+    node = graph.start(node_class)
+    publisher = graph.advertise(Float64MultiArray, 'record', latched(16))
+    assert not node.busy
+    publisher.publish(record_message(flights()[0]))     # of several: it is not worked on yet
+    graph.spin_until(lambda: node.busy, 'the record')
+
+
+def test_a_simulator_that_waits_to_fly_by_itself_is_not_busy_and_one_that_flies_is(graph):
+    """A new start flies what autostart flies, but not what somebody asked for."""
+    node = graph.start(Simulator, {'autostart': True})
+    assert not node.busy
+    graph.stop(node)
+    node = graph.start(Simulator, {'autostart': False})
+    assert not node.busy
+    assert graph.trigger('simulator/start').success
+    assert node.busy
+
+
 def test_a_node_that_becomes_deaf_at_work_keeps_what_it_has(graph, processes):
     """It still hears those who began before: a new start would lose their flight."""
     process = processes.start('recorder', {'topics': ['altitude'], 'window_samples': 4})
@@ -114,6 +159,15 @@ def send_altitudes(publisher, hundredths):
         message = PointStamped()
         message.header.stamp.nanosec = count * 10 ** 7
         publisher.publish(message)
+
+
+@pytest.mark.parametrize('said', ['x', '[1]', '{"seed": {}}', '{"seed": -1}', '{"none": 1}'])
+def test_parameters_of_somebody_else_change_nothing(graph, monkeypatch, said):
+    node = graph.start(Simulator, {'autostart': False, 'seed': 5})
+    before = node.values()
+    monkeypatch.setenv(process.CHANGED, said)
+    process._change(node)
+    assert node.values() == before and process.CHANGED not in os.environ
 
 
 @pytest.mark.parametrize(('said', 'starts'), [('x', 0), ('', 0), ('2', 2)])

@@ -269,6 +269,51 @@ def test_one_quaternion_that_is_none_costs_one_live_pose(topics):
     assert found == [ns for k, ns in enumerate(at.tolist()) if ns <= whole and k != 150]
     [line] = refused
     assert 'the quaternion has not the length 1; publish a pose with an attitude' in line
+    assert topics.left_out() == {'nan': 1}
+
+
+def test_live_transforms_that_come_to_nothing_are_counted(topics):
+    """Of both links: 30 twice, 20 from before the last ones; and 7 for which the other is late."""
+    at, _, _, sent = flown()
+    above, below = ([one for one in sent if one[3]['transforms'][0]['child_frame_id'] == name]
+                    for name in ('odom', 'base_link'))
+    later = flown(at[-1] + 10_000_000)[3]
+    last = [one for one in later if one[3]['transforms'][0]['child_frame_id'] == 'base_link']
+    whole = in_order(below, [one for one in above if one[2] <= at[-1]])
+    found = live(topics, whole)
+    assert topics.left_out() == {}      # a pose may still wait for the frame above
+    sent = [below[-1]] * 30 + below[-21:-1] + [above[-3]]
+    assert live(topics, sent) == []
+    assert topics.left_out() == {'duplicated': 30, 'out_of_order': 21}
+    assert topics.left_out() == {}
+    waiting = len(at) - len(found)
+    assert live(topics, last[:7]) == []
+    assert topics.left_out() == {}
+    assert topics.left_out(end=True) == {'dropped': 7 + waiting}
+    assert topics.left_out(end=True) == {}
+
+
+def test_what_waits_when_a_live_clock_begins_anew_is_counted_as_dropped(topics):
+    begin = START + 100 * 10 ** 9
+    at, _, _, sent = flown(begin)
+    found = live(topics, [one for one in sent if one[2] <= at[-1] - SLOW
+                          or one[3]['transforms'][0]['child_frame_id'] == 'base_link'])
+    again = live(topics, flown()[3])
+    assert len(again) == len(at) and 0 < len(found) < len(at)
+    assert topics.left_out() == {'dropped': len(at) - len(found)}
+
+
+def test_transforms_of_other_frames_are_not_counted(topics):
+    at, _, _, sent = flown()
+    live(topics, in_order(sent, messages('map', 'camera', [START + 1, START + 2, START + 2],
+                                         [(0, 0, 0)] * 3, [(1, 0, 0, 0)] * 3)))
+    assert topics.left_out() == {}
+
+
+def test_a_flight_too_short_to_know_its_chain_is_counted_as_dropped(topics):
+    at, _, _, sent = flown(count=100)
+    assert live(topics, sent) == [] and topics.left_out() == {}
+    assert topics.left_out(end=True) == {'dropped': len(at)}
 
 
 @pytest.mark.parametrize('ns', [BEFORE, START + 3 * 10 ** 9 + 1])

@@ -1,13 +1,14 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-What the launch files hand to `launch`: arguments, and nodes that end all others with them.
+What the launch files hand to `launch`: arguments, and what the end of each node leads to.
 
 `launch` comes with a whole ROS 2 alone. Stand-ins take its place, which take the arguments that
 launch 3.4 and launch_ros 0.26 (Jazzy) take, and keep what they are given.
 """
 
 from importlib.util import module_from_spec, spec_from_file_location
+import signal
 import sys
 from types import ModuleType, SimpleNamespace
 
@@ -54,9 +55,15 @@ class LaunchConfiguration:
 class Node:
 
     def __init__(self, *, executable, package=None, name=None, namespace=None,
-                 ros_arguments=None, output=None, on_exit=None):
+                 ros_arguments=None, output=None, on_exit=None, respawn=False,
+                 respawn_delay=None):
         self.executable, self.package, self.name = executable, package, name
-        self.namespace, self.ros_arguments, self.on_exit = namespace, ros_arguments, on_exit
+        self.namespace, self.ros_arguments = namespace, ros_arguments
+        self.respawn, self.respawn_delay, self._on_exit = respawn, respawn_delay, on_exit
+
+    def ended_by(self, code):
+        """Return the reasons for which its end with an exit code ends all."""
+        return [one.reason for one in self._on_exit(SimpleNamespace(returncode=code), None) or ()]
 
 
 @pytest.fixture
@@ -88,14 +95,23 @@ def described(monkeypatch):
 
 @pytest.mark.parametrize('file', FILES)
 @pytest.mark.parametrize('simulate', ['true', 'false'])
-def test_all_nodes_end_when_one_of_them_does(described, file, simulate):
-    _, nodes = described(file, simulate=simulate, namespace='uav1')
+@pytest.mark.parametrize('respawn', ['', 'true', 'false'])
+def test_all_nodes_end_when_one_of_them_does_unless_it_is_started_once_more(
+        described, file, simulate, respawn):
+    """A vehicle flies on where a node is killed; a simulated flight ends with its simulator."""
+    _, nodes = described(file, simulate=simulate, namespace='uav1', respawn=respawn)
     expected = FILES[file][simulate == 'false':]
     assert [node.executable for node in nodes] == [node.name for node in nodes] == expected
+    again = respawn == 'true' or (simulate, respawn) == ('false', '')
     for node in nodes:
-        assert isinstance(node.on_exit, Shutdown)
-        assert node.on_exit.reason == f'{node.name} has ended'
         assert (node.package, node.namespace) == ('quad_ident_ros', 'uav1')
+        assert node.respawn is again and node.respawn_delay > 0.0
+        reason = [f'{node.name} has ended']
+        for killed in (signal.SIGKILL, signal.SIGSEGV, signal.SIGABRT):
+            assert node.ended_by(-killed) == ([] if again else reason)
+        # It was told to end, or refuses its parameters, which a new start would not mend.
+        for code in (0, 1, 2, -signal.SIGINT, -signal.SIGTERM, -signal.SIGALRM):
+            assert node.ended_by(code) == reason
 
 
 def test_arguments_that_are_given_arrive_at_their_nodes(described):
