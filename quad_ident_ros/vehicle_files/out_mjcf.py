@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Vehicles back into MJCF models of MuJoCo."""
 
+from collections.abc import Sequence
 from itertools import permutations
 import math
 
@@ -25,8 +26,10 @@ from quad_ident_ros.vehicle_files.out_body import body_for, MOMENTS, PRODUCTS
 from quad_ident_ros.vehicle_files.reading import Draft
 from quad_ident_ros.vehicle_files.target import Code, Target
 from quad_ident_ros.vehicle_files.ways import BODY, LAGS
-from quad_ident_ros.vehicle_files.xml_tree import parse
+from quad_ident_ros.vehicle_files.xml_tree import Element, parse
 
+GENERAL = {'gainprm': '1', 'gaintype': 'fixed', 'biastype': 'none'}
+"""What a <motor> is as a <general>."""
 OTHER_TURNS = 'euler', 'axisangle', 'xyaxes', 'zaxis'
 
 
@@ -40,7 +43,7 @@ def write(base: Base) -> EditedXml:
     pushes = pushes_of(model, sites)
     thrusts = [push for push in pushes if push.pushes]
     bodies = bodies_of(Draft(base.source.path, ''), parts, {push.site for push in thrusts})
-    body = body_for(base, element.where, bodies[0], bodies[1:])
+    body = body_for(base, edited, element.where, bodies[0], bodies[1:])
     if body is not bodies[0]:
         if 'settotalmass' in model.compiler:
             raise InputError(f'{base.source.path}: settotalmass of <compiler> scales every mass; '
@@ -100,10 +103,8 @@ def _write_lags(edited: EditedXml, base: Base, thrusts: list[Push]) -> None:
     now = thrusts[0].lag if thrusts else 0.0
     if lag == 0.0 and now > 0.0:
         edited.lack(LAGS, 'a filter of MuJoCo needs a time constant above 0; take out its dyntype')
-    elif lag > 0.0 and (not thrusts or any(push.lag == 0.0 and push.element.tag != 'general'
-                                           for push in thrusts)):
-        edited.lack(LAGS, 'its actuators have no lag; make them <general> with '
-                    f'dyntype="filterexact" and dynprm="{lag:.6g}"')
+    elif lag > 0.0 and not thrusts:
+        edited.lack(LAGS, 'the file has no thrust of single rotors')
     elif lag > 0.0:
         for push in thrusts:
             stated = push.element.get('dynprm', '1').split() if push.lag else ['']
@@ -111,6 +112,20 @@ def _write_lags(edited: EditedXml, base: Base, thrusts: list[Push]) -> None:
                              base.wanted.sources['rise'], usual=(1.0,))
             if not push.lag:
                 edited.word(push.element, 'dyntype', 'filterexact')
+        _make_general(edited, [push.element for push in thrusts if push.element.tag == 'motor'])
+
+
+def _make_general(edited: EditedXml, motors: Sequence[Element]) -> None:
+    """Have <motor> elements be <general> ones, which have dynamics and are else the same."""
+    for motor in motors:
+        edited.renamed_tag(motor, 'general')
+        for name, usual in GENERAL.items():
+            if motor.get(name, usual) != usual:     # of a default class, not read for a <motor>
+                edited.word(motor, name, usual)
+    if motors:
+        edited.remarks.append(
+            f'{motors[0].place()} and {len(motors) - 1} more become <general>, for a <motor> has '
+            'no lag; thrusts begin at data.act, which is 0 after a reset')
 
 
 def _write_body(edited: EditedXml, base: Base, model: Model, part: Part, body: Body) -> None:

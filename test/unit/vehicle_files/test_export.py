@@ -160,6 +160,64 @@ def test_a_lag_of_mujoco_is_one_time_constant():
     assert [fate.form for fate in found.fates.nearest] == ['rise_fall']
 
 
+def test_a_motor_of_mujoco_becomes_one_with_a_lag_and_is_else_the_same():
+    text = mjcf.model(actuators=mjcf.motors().replace('/>', '>< !-- </motor> --></motor>', 1
+                                                      ).replace('< !', '<!'))
+    text = text.replace('<default class="quad">', '<general gainprm="3"/><default class="quad">')
+    source = Source('quad.xml', text)
+    vehicle = read_vehicle(source).vehicle
+    assert vehicle == read_vehicle(Source('quad.xml', mjcf.model())).vehicle
+    lagged = replace(vehicle, effects={'motor_lag': {'time_constant': 0.03}})
+    found = export(lagged, 'mujoco', source)
+    assert again(source, found) == lagged
+    assert [fate.name for fate in found.fates.carried] == ['motor_lag']
+    assert '3 more become <general>' in found.remarks[0]
+    mujoco = pytest.importorskip('mujoco', reason='MuJoCo is not installed')
+    old, new = (mujoco.MjModel.from_xml_string(each) for each in (source.text, found.text))
+    for name in ('gainprm', 'gear', 'ctrlrange', 'biastype', 'gaintype'):
+        np.testing.assert_array_equal(getattr(new, f'actuator_{name}'),
+                                      getattr(old, f'actuator_{name}'))
+    assert new.actuator_dynprm[:, 0].tolist() == [0.03] * 4
+
+
+@pytest.mark.parametrize('to', TARGETS)
+@pytest.mark.parametrize('by_effect', [True, False])
+def test_of_an_inertia_that_no_body_has_the_nearest_is_written_and_said(to, by_effect):
+    """A sum of the two smaller moments that is s short moves each by a third of s."""
+    source, vehicle = base(to)
+    vehicle = replace(vehicle, products=(0.0, 0.0, 0.0))
+    x, y = vehicle.inertia[:2]
+    wanted = (replace(vehicle, effects={**vehicle.effects, 'inertia_mismatch': {
+        'xx': 1.0, 'yy': 1.0, 'zz': 1.3 * (x + y) / vehicle.inertia[2]}}) if by_effect else
+        replace(vehicle, inertia=(x, y, 1.3 * (x + y))))
+    third = 0.1 * (x + y)
+    # SIH has its rotors in an order of its own, so that not every vehicle makes a new file.
+    for file in (source, None)[:1 if to == 'px4_sih' else 2]:
+        found = export(wanted, to, file)
+        [said] = [text for text in found.remarks if 'no body has the inertia' in text]
+        assert 'the largest is 30 % more' in said and f'{third:.2g} kg m2 off' in said
+        assert [fate.name for fate in found.fates.nearest
+                if 'a body can have' in fate.reason] == ['inertia_mismatch'] * by_effect
+        # What rotors with a mass of their own leave for the base is to be a body, too.
+        assert again(found.base, found).inertia == pytest.approx(
+            [x + third, y + third, x + y + 2.0 * third], rel=5e-3 if to == 'gazebo' else 2e-6)
+
+
+@pytest.mark.parametrize('beyond', [1.0, 1.01, 1.5])
+def test_simulators_that_refuse_an_inertia_take_the_one_that_is_written(beyond):
+    _, vehicle = base('mujoco')
+    axes, _ = np.linalg.qr(np.arange(9.0).reshape(3, 3) + np.eye(3))
+    matrix = axes @ np.diag([0.011, 0.012, 0.023 * beyond]) @ axes.T
+    flat = replace(vehicle, inertia=tuple(np.diag(matrix)),
+                   products=(matrix[0, 1], matrix[0, 2], matrix[1, 2]))
+    for to in ('gazebo', 'urdf', 'mujoco'):
+        found = export(flat, to)
+        moments = np.linalg.eigvalsh(again(found.base, found).inertia_matrix)
+        assert moments[2] < moments[0] + moments[1]
+    mujoco = pytest.importorskip('mujoco', reason='MuJoCo is not installed')
+    mujoco.MjModel.from_xml_string(found.text)
+
+
 @pytest.mark.parametrize('to', [to for to in TARGETS if 'centre' in TARGETS[to].holds])
 def test_the_centre_of_mass_moves_under_the_rotors(to):
     source, vehicle = base(to)

@@ -166,6 +166,20 @@ def test_a_motor_without_a_site_does_not_act_at_one_without_a_name():
     assert reading(unnamed).vehicle == reading(model()).vehicle
 
 
+def test_an_inertia_that_mujoco_balances_is_that_of_a_ball():
+    text = model(INERTIAL.replace('0.04', '0.4'), before='<compiler balanceinertia="true"/>')
+    assert reading(text).vehicle.inertia == pytest.approx([0.15] * 3, rel=1e-12)
+
+
+def test_forces_that_are_left_out_are_said():
+    text = model().replace('<freejoint/>', '<joint type="free" damping="0.1"/>').replace(
+        '<body name="quad"', '<body name="quad" gravcomp="0.5"')
+    said = ' '.join(reading(text).assumed)
+    assert 'damping: this force on the joint is left out' in said
+    assert 'gravcomp: it is left out' in said
+    assert 'left out' not in ' '.join(reading(model()).assumed)
+
+
 def test_it_is_told_by_its_content():
     assert kind_of(model()).name == 'mjcf'
 
@@ -187,7 +201,7 @@ HOLLOW = GEOMS.replace('class="main"', 'class="main" shellinertia="true"').repla
 @pytest.mark.parametrize('before', [
     '', '<compiler angle="radian" eulerseq="ZYX"/>', '<compiler inertiafromgeom="true"/>',
     '<compiler eulerseq="zxz" inertiagrouprange="0 3"/>', '<compiler settotalmass="2.5"/>',
-    '<compiler boundmass="2" boundinertia="0.03"/>'])
+    '<compiler boundmass="2" boundinertia="0.03"/>', '<compiler balanceinertia="true"/>'])
 @pytest.mark.parametrize('body', [
     GEOMS, HOLLOW, INERTIAL + GEOMS,
     GEOMS + '<body name="tag" pos="0.1 0.2 0.3"><site name="t"/></body>',
