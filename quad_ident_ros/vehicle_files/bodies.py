@@ -118,7 +118,7 @@ def check_body(where: str, body: Body) -> str:
                          f'{moments[0]:.4g} kg m2; correct its products')
     others = max(float(moments[0] + moments[1]), 1e-12 * float(moments[2]))
     beyond = moments[2] / others - 1.0 if moments[2] > 0.0 else 0.0
-    said = (f'a principal moment of {moments[2]:.4g} kg m2 is {100 * beyond:.2g} % more than the '
+    said = (f'a principal moment of {moments[2]:.4g} kg m2 is {100 * beyond:.3g} % more than the '
             f'other two together, {moments[0] + moments[1]:.4g}')
     if beyond > ROUNDED:
         raise InputError(f'{where}: no body has this inertia: {said}; correct it')

@@ -87,7 +87,7 @@ def _say_off(edited: Edits, aim: Body, written: Body) -> None:
     edited.remarks.append(
         f'no body has the inertia of the vehicle, whose principal moments are '
         f'{", ".join(f"{value:.4g}" for value in moments)} kg m2: the largest is '
-        f'{100 * beyond:.2g} % more than the other two together; the nearest that a body can have '
+        f'{100 * beyond:.3g} % more than the other two together; the nearest that a body can have '
         f'is written, which is {off:.2g} kg m2 off, {100 * off / moments[2]:.2g} % of the largest')
     edited.nearest['inertia'] = 'the nearest inertia that a body can have'
 

@@ -13,10 +13,14 @@ from refusing import refused
 
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.motors import rotor_speeds
+from quad_ident_ros.model.vehicle import load_vehicle
+from quad_ident_ros.vehicle_files.export import export
 from quad_ident_ros.vehicle_files.kinds import kind_of
 from quad_ident_ros.vehicle_files.load import load_any_vehicle, read_vehicle
 from quad_ident_ros.vehicle_files.source import Source
 
+if sys.version_info >= (3, 11):
+    import tomllib
 TOML = pytest.mark.skipif(sys.version_info < (3, 11), reason='TOML is read from Python 3.11 on')
 DRONE = """
 [small]
@@ -86,6 +90,24 @@ def test_a_drone_of_drone_models_is_reduced_at_hover():
     assert any('off its diagonal, up to 0.001' in text for text in found.assumed)
     places = {entry.key: entry.place for entry in found.read}
     assert places['thrust_coefficient'] == 'line 11: rpm2thrust'
+
+
+@TOML
+def test_a_drone_of_crazyflow_may_have_zeros_and_no_gravity():
+    text = DRONE.replace('gravity_vec = [0.0, 0.0, -10.0]', 'prop_inertia = 0.0').replace(
+        'thrust_min = 0.01', 'thrust_min = 0.0')
+    found = reading(text)
+    assert (found.vehicle.gravity, found.vehicle.speed_min) == (9.81, 0.0)
+    assert 'rotor_gyro' not in found.vehicle.effects
+    assert any('gravity 9.81 m/s2: that of crazyflow' in text for text in found.assumed)
+
+
+@TOML
+def test_a_new_file_has_all_that_the_equations_of_crazyflow_take():
+    vehicle = load_vehicle('hummingbird')
+    [table] = tomllib.loads(export(vehicle, 'crazyflow').text).values()
+    assert table.keys() >= {'mass', 'J', 'thrust_min', 'L', 'prop_inertia', 'rpm2thrust',
+                            'rpm2torque', 'rotor_dyn_coef', 'mixing_matrix', 'drag_matrix'}
 
 
 @TOML
