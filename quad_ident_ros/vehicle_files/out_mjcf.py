@@ -30,7 +30,7 @@ from quad_ident_ros.vehicle_files.xml_tree import Element, parse
 
 GENERAL = {'gainprm': '1', 'gaintype': 'fixed', 'biastype': 'none'}
 """What a <motor> is as a <general>."""
-OTHER_TURNS = 'euler', 'axisangle', 'xyaxes', 'zaxis'
+TURNS = 'quat', 'euler', 'axisangle', 'xyaxes', 'zaxis'
 
 
 def write(base: Base) -> EditedXml:
@@ -43,13 +43,16 @@ def write(base: Base) -> EditedXml:
     pushes = pushes_of(model, sites)
     thrusts = [push for push in pushes if push.pushes]
     bodies = bodies_of(Draft(base.source.path, ''), parts, {push.site for push in thrusts})
-    body = body_for(base, edited, element.where, bodies[0], bodies[1:])
-    if body is not bodies[0]:
+    # The body itself, or where that is a mere frame the heaviest of those in it.
+    main = 0 if bodies[0].mass > 0.0 else max(range(len(bodies)), key=lambda k: bodies[k].mass)
+    body = body_for(base, edited, parts[main].element.where, bodies[main],
+                    [*bodies[:main], *bodies[main + 1:]])
+    if body is not bodies[main]:
         if 'settotalmass' in model.compiler:
             raise InputError(f'{base.source.path}: settotalmass of <compiler> scales every mass; '
                              'take it out and state the masses themselves')
-        _write_body(edited, base, model, parts[0], body)
-        edited.say_several(element, len(bodies))
+        _write_body(edited, base, model, parts[main], body.placed(parts[main].pose.inverse))
+        edited.say_several(parts[main].element, len(bodies))
     edited.lack(['speed_max'], 'a command is a thrust here, and speeds are not of the file')
     _write_thrusts(edited, base, thrusts)
     _write_lags(edited, base, thrusts)
@@ -153,16 +156,16 @@ def _write_body(edited: EditedXml, base: Base, model: Model, part: Part, body: B
     elif max(abs(turned[at]) for at in PRODUCTS) <= SAME * size:
         edited.attribute(inertial, 'diaginertia', np.diag(turned), 'kg m2',
                          wanted.sources['inertia'], size=size)
-    elif 'quat' in inertial.attributes:
+    elif turn := next((name for name in TURNS if name in inertial.attributes), ''):
         axes, diagonal = _principal(turned)
         x, y, z, w = Rotation.from_matrix(rotation @ axes).as_quat()
-        edited.attribute(inertial, 'quat', [w, x, y, z], '1',
-                         wanted.sources['inertia'], size=1.0)
+        if turn == 'quat':
+            edited.attribute(inertial, 'quat', [w, x, y, z], '1', wanted.sources['inertia'],
+                             size=1.0)
+        else:       # as angles their numbers would depend on <compiler>
+            edited.renamed(inertial, turn, 'quat', [w, x, y, z], '1', wanted.sources['inertia'])
         edited.attribute(inertial, 'diaginertia', diagonal, 'kg m2', wanted.sources['inertia'],
                          size=size)
-    elif any(turn in inertial.attributes for turn in OTHER_TURNS):
-        raise InputError(f'{inertial.where}: its principal axes turn, which is written to quat '
-                         'alone; state its orientation as quat')
     else:
         edited.renamed(inertial, 'diaginertia', 'fullinertia', six, 'kg m2',
                        wanted.sources['inertia'])
@@ -173,13 +176,14 @@ def _insert(edited: EditedXml, base: Base, part: Part, body: Body, six: list[flo
     wanted, where = base.wanted, part.element.place('inertial')
     edited.child(part.element, f'<inertial pos="{shown(body.centre)}" mass="{shown([body.mass])}" '
                                f'fullinertia="{shown(six)}"/>')
-    edited.note(f'{where} mass', part.body.mass, body.mass, 'kg', wanted.sources['mass'])
+    before = part.body.placed(part.pose.inverse)
+    edited.note(f'{where} mass', before.mass, body.mass, 'kg', wanted.sources['mass'])
     for k, axis in enumerate('xyz'):
-        edited.note(f'{where} pos {axis}', float(part.body.centre[k]), float(body.centre[k]), 'm',
+        edited.note(f'{where} pos {axis}', float(before.centre[k]), float(body.centre[k]), 'm',
                     wanted.sources['centre'])
     for at, value in zip((*MOMENTS, *PRODUCTS), six, strict=True):
         edited.note(f'{where} fullinertia {"xyz"[at[0]]}{"xyz"[at[1]]}',
-                    float(part.body.inertia[at]), value, 'kg m2', wanted.sources['inertia'])
+                    float(before.inertia[at]), value, 'kg m2', wanted.sources['inertia'])
 
 
 def _principal(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -231,10 +231,15 @@ def test_the_centre_of_mass_moves_under_the_rotors(to):
                                                                             abs=1e-9)
 
 
-def test_principal_axes_of_mujoco_turn_with_the_inertia():
-    tilted = mjcf.INERTIAL.replace('mass', 'quat="0.9 0.1 0.2 0.3" mass')
+@pytest.mark.parametrize('turn', ['quat="0.9 0.1 0.2 0.3"', 'euler="10 20 30"',
+                                  'axisangle="1 0 1 40"', 'xyaxes="1 1 0 0 1 1"', 'zaxis="1 1 2"'])
+def test_principal_axes_of_mujoco_turn_with_the_inertia(turn):
+    tilted = mjcf.INERTIAL.replace('mass', f'{turn} mass')
     source = Source('quad.xml', mjcf.model(body=tilted))
     vehicle = read_vehicle(source).vehicle
+    turned = replace(vehicle, products=(0.001, -0.002, 0.0005))
+    assert again(source, export(turned, 'mujoco', source)).inertia_matrix == pytest.approx(
+        turned.inertia_matrix, rel=1e-9, abs=1e-12)
     wanted = replace(vehicle, inertia=tuple(1.1 * value for value in vehicle.inertia))
     assert again(source, export(wanted, 'mujoco', source)).inertia_matrix == pytest.approx(
         wanted.inertia_matrix, rel=1e-9, abs=1e-12)
@@ -257,6 +262,18 @@ def test_mujoco_itself_has_the_mass_and_the_inertia(body):
     assert compiled.body_mass[place] == pytest.approx(wanted.mass, rel=1e-9)
     assert axes @ np.diag(compiled.body_inertia[place]) @ axes.T == pytest.approx(
         wanted.inertia_matrix, rel=1e-9, abs=1e-10)
+
+
+def test_a_body_of_mujoco_that_is_a_frame_leaves_the_mass_to_the_one_in_it():
+    inner = f'<body name="hull" pos="0.01 0 0" euler="0 0 90">\n{mjcf.INERTIAL}</body>'
+    source = Source('quad.xml', mjcf.model(body=inner))
+    vehicle = read_vehicle(source).vehicle
+    x, y, z = vehicle.inertia
+    wanted = replace(vehicle, mass=1.1, inertia=(1.1 * x, y, 1.02 * z))
+    found = export(wanted, 'mujoco', source)
+    read = again(source, found)
+    assert read.mass == 1.1 and read.inertia == pytest.approx(wanted.inertia, rel=1e-9)
+    assert len(changed_lines(source.text, found.text)) == 1
 
 
 def test_shapes_of_mujoco_get_an_inertial_beside_them():
