@@ -55,7 +55,7 @@ def write(base: Base) -> EditedXml:
         edited.say_several(parts[main].element, len(bodies))
     edited.lack(['speed_max'], 'a command is a thrust here, and speeds are not of the file')
     _write_thrusts(edited, base, thrusts)
-    _write_lags(edited, base, thrusts)
+    _write_lags(edited, base, thrusts, _filter(model))
     return edited
 
 
@@ -67,8 +67,10 @@ def code(vehicle: Vehicle, base: Base, name: str) -> Code | None:
     parts = parts_of(model, *flying_body(base.source, model))
     pushes = pushes_of(model, {name: site for part in parts for name, site in part.sites.items()})
     places = [child.start for holder in model.root.all('actuator') for child in holder.children]
+    stated = base.effect('motor_lag', 'time_constant')
+    lag = vehicle.effects.get('motor_lag', {}).get('time_constant', 0.0)
     return program(vehicle, base.wanted, Rotors.of([push for push in pushes if push.pushes],
-                                                   places), name)
+                                                   places), name, differs(stated, lag))
 
 
 def _write_thrusts(edited: EditedXml, base: Base, thrusts: list[Push]) -> None:
@@ -98,8 +100,14 @@ def _write_thrusts(edited: EditedXml, base: Base, thrusts: list[Push]) -> None:
                          ', '.join(sorted(sources)), usual=(1.0,))
 
 
-def _write_lags(edited: EditedXml, base: Base, thrusts: list[Push]) -> None:
-    """Have the dynamics of the actuators hold the lag."""
+def _filter(model: Model) -> str:
+    """Return the dyntype of a lag: with filterexact, Runge-Kutta adds half a step to it."""
+    methods = [option.get('integrator') for option in model.root.all('option')]
+    return 'filter' if 'RK4' in methods else 'filterexact'
+
+
+def _write_lags(edited: EditedXml, base: Base, thrusts: list[Push], kind: str) -> None:
+    """Have the dynamics of the actuators hold the lag; kind: dyntype where they have none."""
     lag = base.wanted.lag
     if base.wanted.rise != base.wanted.fall:
         edited.one_lag()
@@ -114,7 +122,7 @@ def _write_lags(edited: EditedXml, base: Base, thrusts: list[Push]) -> None:
             edited.attribute(push.element, 'dynprm', [lag, *map(float, stated[1:])], 's',
                              base.wanted.sources['rise'], usual=(1.0,))
             if not push.lag:
-                edited.word(push.element, 'dyntype', 'filterexact')
+                edited.word(push.element, 'dyntype', kind)
         _make_general(edited, [push.element for push in thrusts if push.element.tag == 'motor'])
 
 

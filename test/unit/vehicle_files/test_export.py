@@ -170,7 +170,7 @@ def test_a_motor_of_mujoco_becomes_one_with_a_lag_and_is_else_the_same():
     lagged = replace(vehicle, effects={'motor_lag': {'time_constant': 0.03}})
     found = export(lagged, 'mujoco', source)
     assert again(source, found) == lagged
-    assert [fate.name for fate in found.fates.carried] == ['motor_lag']
+    assert [fate.name for fate in found.fates.by_code] == ['motor_lag']
     assert '3 more become <general>' in found.remarks[0]
     mujoco = pytest.importorskip('mujoco', reason='MuJoCo is not installed')
     old, new = (mujoco.MjModel.from_xml_string(each) for each in (source.text, found.text))
