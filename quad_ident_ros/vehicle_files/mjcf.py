@@ -12,12 +12,13 @@ from quad_ident_ros.errors import InputError
 from quad_ident_ros.vehicle_files.bodies import Body, combined, spun
 from quad_ident_ros.vehicle_files.mjcf_bodies import is_free, Part, parts_of, vehicles_of
 from quad_ident_ros.vehicle_files.mjcf_defaults import Model, model_of
+from quad_ident_ros.vehicle_files.mjcf_include import parsed
 from quad_ident_ros.vehicle_files.mjcf_thrust import common, Push, pushes_of
 from quad_ident_ros.vehicle_files.reading import Draft, thrusts_as_commands, UNLIMITED
 from quad_ident_ros.vehicle_files.rotor_axes import check_axis
 from quad_ident_ros.vehicle_files.source import one_of, Source
 from quad_ident_ros.vehicle_files.weak_rotors import faults, losses_of
-from quad_ident_ros.vehicle_files.xml_tree import Element, parse, root_of
+from quad_ident_ros.vehicle_files.xml_tree import Element, root_of
 
 GRAVITY = (0.0, 0.0, -9.81)     # m/s^2, of MuJoCo
 OF_JOINTS = 'damping', 'stiffness', 'frictionloss', 'armature'
@@ -30,7 +31,7 @@ def tells(text: str) -> bool:
 
 def read(source: Source) -> Draft:
     """Return the Draft of an MJCF model; raises InputError."""
-    model = model_of(parse(source.path, source.text))
+    model = model_of(parsed(source))
     body, inherited = flying_body(source, model)
     draft = Draft(source.path, body.get('name') or model.root.get('model') or source.stem)
     parts = list(parts_of(model, body, inherited))

@@ -17,6 +17,7 @@ from quad_ident_ros.vehicle_files.edits import differs, SAME, shown
 from quad_ident_ros.vehicle_files.mjcf import bodies_of, flying_body
 from quad_ident_ros.vehicle_files.mjcf_bodies import Part, parts_of
 from quad_ident_ros.vehicle_files.mjcf_defaults import Model, model_of
+from quad_ident_ros.vehicle_files.mjcf_include import parsed
 from quad_ident_ros.vehicle_files.mjcf_thrust import Push, pushes_of
 from quad_ident_ros.vehicle_files.mujoco_code import code as program
 from quad_ident_ros.vehicle_files.mujoco_code import Rotors
@@ -26,7 +27,7 @@ from quad_ident_ros.vehicle_files.out_body import body_for, MOMENTS, PRODUCTS
 from quad_ident_ros.vehicle_files.reading import Draft
 from quad_ident_ros.vehicle_files.target import Code, Target
 from quad_ident_ros.vehicle_files.ways import BODY, LAGS
-from quad_ident_ros.vehicle_files.xml_tree import Element, parse
+from quad_ident_ros.vehicle_files.xml_tree import Element
 
 GENERAL = {'gainprm': '1', 'gaintype': 'fixed', 'biastype': 'none'}
 """What a <motor> is as a <general>."""
@@ -36,7 +37,7 @@ TURNS = 'quat', 'euler', 'axisangle', 'xyaxes', 'zaxis'
 def write(base: Base) -> EditedXml:
     """Return the Edits by which an MJCF model holds what is wanted; raises InputError."""
     edited = EditedXml(base.source.text)
-    model = model_of(parse(base.source.path, base.source.text))
+    model = model_of(parsed(base.source))
     element, inherited = flying_body(base.source, model)
     parts = list(parts_of(model, element, inherited))
     sites = {name: site for part in parts for name, site in part.sites.items()}
@@ -47,6 +48,11 @@ def write(base: Base) -> EditedXml:
     main = 0 if bodies[0].mass > 0.0 else max(range(len(bodies)), key=lambda k: bodies[k].mass)
     body = body_for(base, edited, parts[main].element.where, bodies[main],
                     [*bodies[:main], *bodies[main + 1:]])
+    other = next((one for one in (parts[main].element, *parts[main].element.all('inertial'),
+                                  *(push.element for push in thrusts)) if one.beside), None)
+    if other is not None:
+        raise InputError(f'{base.source.path}: the vehicle stands in {other.path}, which it '
+                         'includes; give that file as --base')
     if body is not bodies[main]:
         if 'settotalmass' in model.compiler:
             raise InputError(f'{base.source.path}: settotalmass of <compiler> scales every mass; '
@@ -63,7 +69,7 @@ def code(vehicle: Vehicle, base: Base, name: str) -> Code | None:
     """Return the Code beside a model; see Target. None where it has no single rotors."""
     if base.constant('thrust_coefficient') is None:
         return None
-    model = model_of(parse(base.source.path, base.source.text))
+    model = model_of(parsed(base.source))
     parts = parts_of(model, *flying_body(base.source, model))
     pushes = pushes_of(model, {name: site for part in parts for name, site in part.sites.items()})
     places = [child.start for holder in model.root.all('actuator') for child in holder.children]
