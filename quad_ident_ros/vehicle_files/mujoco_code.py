@@ -118,8 +118,10 @@ def lagging(model, data, controls):
     """Return controls (n,) with which the lag of the actuators is one of the rotors' speeds."""
     act = np.maximum(data.act[model.actuator_actadr[ACTUATORS]], 0.0)
     now, then = np.sqrt(act), np.sqrt(np.maximum(limited(model, controls), 0.0))
-    left = (now - then) * np.exp(-model.opt.timestep / model.actuator_dynprm[ACTUATORS, 0])
-    return act + (then - now) * (now + then + left)
+    lag = np.where(then > now, {rise}, {fall})
+    soon = then + (now - then) * np.exp(-model.opt.timestep / lag)
+    done = 1.0 - np.exp(-model.opt.timestep / model.actuator_dynprm[ACTUATORS, 0])
+    return act + (soon ** 2 - act) / done
 '''
 COMMANDS = '''
 
@@ -153,13 +155,13 @@ class Rotors:
                    tuple(list(actuators).index(push.element.start) for push in pushes))
 
 
-def code(vehicle: Vehicle, wanted: Wanted, rotors: Rotors, model: str, lag: bool) -> Code | None:
+def code(vehicle: Vehicle, wanted: Wanted, rotors: Rotors, model: str, lag: str) -> Code | None:
     """
     Return the program beside a model, or None where it is to do nothing.
 
     Args: vehicle: with its effects, its speeds in the unit of the file; wanted: what the file
-    holds of it; model: the name of the file; lag: whether the speeds of the rotors lag where the
-    actuators of the file have their thrusts do so.
+    holds of it; model: the name of the file; lag: the form of motor_lag by which the speeds of the
+    rotors lag where the actuators of the file have their thrusts do so, or ''.
     """
     count, radius = len(vehicle.rotors), vehicle.rotor_radius
     acting = {(effect, form): values for effect, form, values in forms_of(vehicle.effects)}
@@ -175,7 +177,7 @@ def code(vehicle: Vehicle, wanted: Wanted, rotors: Rotors, model: str, lag: bool
     if delay:
         forms.append(('actuation_delay', 'pure_delay'))
     if lag:
-        forms.append(('motor_lag', 'first_order'))
+        forms.append(('motor_lag', lag))
     constants = tuple(name for name in ('linear_drag', 'rotational_drag')
                       if any(getattr(vehicle, name)))
     if not forms and not constants:
@@ -189,7 +191,7 @@ def code(vehicle: Vehicle, wanted: Wanted, rotors: Rotors, model: str, lag: bool
         lifts=f'[{", ".join(map(_one, lifts))}]', wind=f'[{", ".join(map(_one, wanted.wind))}]',
         lines=indent('\n'.join(lines), '    '))
     if lag:
-        text += LAG
+        text += LAG.format(rise=_one(wanted.rise), fall=_one(wanted.fall))
     if delay or lag:
         text += COMMANDS.format(
             delay=_one(delay), given='lagging(model, data, self.given)' if lag else 'self.given')

@@ -73,10 +73,17 @@ def code(vehicle: Vehicle, base: Base, name: str) -> Code | None:
     parts = parts_of(model, *flying_body(base.source, model))
     pushes = pushes_of(model, {name: site for part in parts for name, site in part.sites.items()})
     places = [child.start for holder in model.root.all('actuator') for child in holder.children]
-    stated = base.effect('motor_lag', 'time_constant')
-    lag = vehicle.effects.get('motor_lag', {}).get('time_constant', 0.0)
     return program(vehicle, base.wanted, Rotors.of([push for push in pushes if push.pushes],
-                                                   places), name, differs(stated, lag))
+                                                   places), name, _form_of_lag(vehicle, base))
+
+
+def _form_of_lag(vehicle: Vehicle, base: Base) -> str:
+    """Return the form of a lag that a file has the nearest of, or '' where it has it as it is."""
+    lag, wanted = vehicle.effects.get('motor_lag', {}), base.wanted
+    if 'time_constant' in lag:
+        same = not differs(base.effect('motor_lag', 'time_constant'), wanted.lag)
+        return '' if same or not wanted.lag else 'first_order'
+    return 'rise_fall' if {'rise', 'fall'} & lag.keys() and wanted.rise and wanted.fall else ''
 
 
 def _write_thrusts(edited: EditedXml, base: Base, thrusts: list[Push]) -> None:

@@ -157,7 +157,9 @@ def test_a_lag_of_mujoco_is_one_time_constant():
     found = export(replace(vehicle, effects={'motor_lag': {'rise': 0.04, 'fall': 0.06}}),
                    'mujoco', source)
     assert again(source, found).effects == {'motor_lag': {'time_constant': pytest.approx(0.05)}}
-    assert [fate.form for fate in found.fates.nearest] == ['rise_fall']
+    assert [fate.form for fate in found.fates.by_code] == ['rise_fall']
+    none = export(replace(vehicle, effects={'rotor_drag': {'coefficient': 0.1}}), 'mujoco', source)
+    assert [fate.name for fate in none.fates.by_code] == ['rotor_drag']
 
 
 def test_a_motor_of_mujoco_becomes_one_with_a_lag_and_is_else_the_same():

@@ -84,7 +84,7 @@ def test_accelerations_are_those_of_our_equations(effects):
 
 @pytest.mark.parametrize('effects', [
     {**SETS[0], 'actuation_delay': {'delay': 0.02}}, SETS[1],
-    {'motor_lag': {'time_constant': 0.06}},
+    {'motor_lag': {'time_constant': 0.06}}, {'motor_lag': {'rise': 0.05, 'fall': 0.08}},
     {**SETS[0], 'actuation_delay': {'delay': 0.02}, 'motor_lag': {'time_constant': 0.06}}])
 def test_a_flight_in_mujoco_is_that_of_our_model(effects):
     vehicle = replace(VEHICLE, effects=effects)
