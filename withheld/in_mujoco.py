@@ -100,7 +100,7 @@ class InMujoco:
              count: int) -> np.ndarray:
         """Return the states (count + 1, 13) from step `now` on, the body held until then."""
         data = mujoco.MjData(self.model)
-        line = self.code['Delayed']() if 'Delayed' in self.code else None
+        line = self.code['Commands']() if 'Commands' in self.code else None
         early = now - int(np.searchsorted(np.cumsum(dt[:now][::-1]), BEFORE))
         early = max(early, 0)
         data.ctrl[:] = controls[early]

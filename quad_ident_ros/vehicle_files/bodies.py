@@ -16,6 +16,9 @@ from quad_ident_ros.model.attitude import rotation_matrix
 # Moments that are estimates or rounded miss the inequality of the triangle by a little: those of
 # rotorpy's Crazyflie by 1 %.
 ROUNDED = 0.05
+# By which an inertia that is written stays below the inequality: on it MuJoCo's compiler finds
+# some beyond, by rounding.
+INSIDE = 1e-9
 
 
 @dataclass(frozen=True)
@@ -115,11 +118,25 @@ def check_body(where: str, body: Body) -> str:
                          f'{moments[0]:.4g} kg m2; correct its products')
     others = max(float(moments[0] + moments[1]), 1e-12 * float(moments[2]))
     beyond = moments[2] / others - 1.0 if moments[2] > 0.0 else 0.0
-    said = (f'a principal moment of {moments[2]:.4g} kg m2 is {100 * beyond:.2g} % more than the '
+    said = (f'a principal moment of {moments[2]:.4g} kg m2 is {100 * beyond:.3g} % more than the '
             f'other two together, {moments[0] + moments[1]:.4g}')
     if beyond > ROUNDED:
         raise InputError(f'{where}: no body has this inertia: {said}; correct it')
     return f'{said}; it was taken as it is' if beyond > 1e-6 else ''
+
+
+def nearest_body(body: Body) -> Body:
+    """
+    Return the body whose inertia is the nearest that a body can have; itself where it has that.
+
+    About the same axes, its largest moment is lowered and the others are raised by as much each.
+    """
+    moments, axes = np.linalg.eigh(body.inertia)
+    beyond = float(moments[2] - (1.0 - INSIDE) * (moments[0] + moments[1]))
+    if beyond <= 0.0:
+        return body
+    moved = moments + beyond / 3.0 * np.array([1.0, 1.0, -1.0])
+    return Body(body.mass, body.centre, axes @ np.diag(moved) @ axes.T)
 
 
 def is_body(body: Body) -> bool:

@@ -73,9 +73,13 @@ class Drone:
         return self._bounded(key, np.array(schema.numbers(self._where(key), self.table[key],
                                                           count)))
 
-    def number(self, key: str) -> float:
-        """Return the number of a key, above 0; InputError."""
-        return schema.number(self._where(key), self.table[key], 0.0, MOST, exclusive=True)
+    def number(self, key: str, positive: bool = True) -> float:
+        """Return the number of a key, above 0, or 0 where it need not be positive; InputError."""
+        return schema.number(self._where(key), self.table[key], 0.0, MOST, exclusive=positive)
+
+    def spun(self) -> float:
+        """Return the inertia of a rotor, kg m^2, 0 where it has no angular momentum."""
+        return self.number('prop_inertia', False) if 'prop_inertia' in self.table else 0.0
 
     def matrix(self, key: str, rows: int, columns: int) -> np.ndarray:
         """Return the numbers of a key with rows, (rows, columns); InputError."""
@@ -105,6 +109,9 @@ class Drone:
         if 'gravity_vec' in self.table:
             gravity = float(np.linalg.norm(self.numbers('gravity_vec', 3)))
             draft.take_gravity(gravity, self.place('gravity_vec'))
+        else:
+            draft.assumed.append(f'gravity {gravity:g} m/s2: that of crazyflow, whose file of a '
+                                 'drone has none')
         draft.data['gravity'] = gravity
         arm, mixing = self.number('L'), self.matrix('mixing_matrix', 3, 4)
         # Rows: the signs of the moments about x, y, z of a thrust or torque of each motor.
@@ -115,14 +122,13 @@ class Drone:
                            for sign in mixing[2]], self.place('L', 'mixing_matrix'))
         self._take_curves(draft)
         self._take_drag(draft)
-        for ours, theirs, unit in (('rotor_radius', 'prop_radius', 'm'),
-                                   ('rotor_inertia', 'prop_inertia', 'kg m2')):
-            if theirs in self.table:
-                draft.take(ours, self.number(theirs), unit, self.place(theirs))
-        if 'prop_inertia' in self.table:
-            draft.assumed.append('the angular momentum of the rotors is rotor_gyro, whose moment '
-                                 'about x is the other way than that of drone-models; it is small '
-                                 'where the rotors turn about equally fast')
+        if 'prop_radius' in self.table:
+            draft.take('rotor_radius', self.number('prop_radius'), 'm', self.place('prop_radius'))
+        if self.spun() > 0.0:
+            draft.take('rotor_inertia', self.spun(), 'kg m2', self.place('prop_inertia'))
+            draft.assumed.append('the angular momentum of the rotors is rotor_gyro, as in '
+                                 'crazyflow; drone-models to 0.1 has its moment about x the other '
+                                 'way, which is small where the rotors turn about equally fast')
         return draft
 
     def _take_curves(self, draft: Draft) -> None:
@@ -137,7 +143,8 @@ class Drone:
                    / speed ** 2, 'N m/(rad/s)^2', self.place('rpm2torque'))
         for ours, theirs in (('speed_min', 'thrust_min'), ('speed_max', 'thrust_max')):
             if theirs in self.table:
-                draft.take(ours, self.rpm(thrust, self.number(theirs)) * TO_SPEED, 'rad/s',
+                lift = self.number(theirs, positive=ours == 'speed_max')
+                draft.take(ours, self.rpm(thrust, lift) * TO_SPEED if lift else 0.0, 'rad/s',
                            self.place(theirs, 'rpm2thrust'))
         # Over the curve itself, not the share of the weight: a square has 2, without rounding.
         exponent = float((thrust[1] * hover + 2.0 * thrust[2] * hover ** 2)
@@ -153,7 +160,7 @@ class Drone:
             f'rad/s; from 0.7 to 1.3 of that it is off by up to {100 * off:.2g} % (rpm2thrust); '
             'torque goes with the square (rpm2torque)')
         rise = fall = 0.0
-        spun = self.number('prop_inertia') if 'prop_inertia' in self.table else 0.0
+        spun = self.spun()
         if 'rotor_dyn_coef' in self.table:
             rates = self.numbers('rotor_dyn_coef', 4)
             # d(rpm)/dt = a (command - rpm) + b (command^2 - rpm^2), up and down.

@@ -56,6 +56,17 @@ class EditedXml(Edits):
             self.note(element.place(f'{other}[{k}]'), old[k], value, unit, source)
         self.replace(found.start(1), found.end(2), f'{other}="{shown(new)}"')
 
+    def renamed_tag(self, element: Element, tag: str) -> None:
+        """Have an element without children be one of another tag."""
+        begin, size = element.start + 1, len(element.tag.encode('utf-8'))
+        self.replace(begin, begin + size, tag)
+        place = self._end_of_tag(element)
+        if self.data[place - 2:place] != b'/>':
+            while (mark := _MARKUP.search(self.data, place)) is not None and mark[0] != b'</':
+                place = mark.end()
+            assert mark is not None
+            self.replace(mark.end(), mark.end() + size, tag)
+
     def content(self, parent: Element, tag: str, new: Sequence[float] | np.ndarray, unit: str,
                 source: str, usual: Sequence[float] | None = None, size: float = 0.0) -> None:
         """Have the child of a tag hold other numbers as its text; arguments as of attribute."""

@@ -15,10 +15,12 @@ from quad_ident_ros.effects.registry import Values
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.greybox.flights import highest_voltage
 from quad_ident_ros.model.vehicle import Vehicle
+from quad_ident_ros.vehicle_files.bodies import Body, is_body, nearest_body
 from quad_ident_ros.vehicle_files.edits import Change, differs, Edits, SAME
 from quad_ident_ros.vehicle_files.kinds import Kind, kind_of, KINDS
 from quad_ident_ros.vehicle_files.known import with_errors
 from quad_ident_ros.vehicle_files.out_base import Base
+from quad_ident_ros.vehicle_files.out_body import MOMENTS, PRODUCTS
 from quad_ident_ros.vehicle_files.reading import finished
 from quad_ident_ros.vehicle_files.source import Source
 from quad_ident_ros.vehicle_files.speed_unit import counted, unit_of
@@ -59,7 +61,7 @@ def export(vehicle: Vehicle, to: str, source: Source | None = None, sag: float |
     """
     target = TARGETS[to]
     if source is None:
-        source = Source(f'new {to} file', target.new(vehicle))
+        source = Source(f'new {to} file', target.new(_real(vehicle)))
     kind = _kind(target, to, source)
     draft = kind.read(source)
     given = finished(draft, kind.title).vehicle
@@ -88,6 +90,17 @@ def export(vehicle: Vehicle, to: str, source: Source | None = None, sag: float |
                                 'by the code beside the file')
     return Export(edits.result(), changes, tuple(edits.remarks), fates, source, unit,
                   code)
+
+
+def _real(vehicle: Vehicle) -> Vehicle:
+    """Return a vehicle with the nearest inertia that a body can have, beyond rounding."""
+    body = Body(vehicle.mass, np.zeros(3), vehicle.inertia_matrix)
+    if is_body(body):
+        return vehicle
+    near = nearest_body(body).inertia
+    xy, xz, yz = (float(near[at]) for at in PRODUCTS)
+    return replace(vehicle, inertia=tuple(float(near[at]) for at in MOMENTS),
+                   products=(xy, xz, yz))
 
 
 def _kind(target: Target, to: str, source: Source) -> Kind:

@@ -12,14 +12,16 @@ from quad_ident_ros.errors import InputError
 from quad_ident_ros.vehicle_files.bodies import Body, combined, spun
 from quad_ident_ros.vehicle_files.mjcf_bodies import is_free, Part, parts_of, vehicles_of
 from quad_ident_ros.vehicle_files.mjcf_defaults import Model, model_of
+from quad_ident_ros.vehicle_files.mjcf_include import parsed
 from quad_ident_ros.vehicle_files.mjcf_thrust import common, Push, pushes_of
 from quad_ident_ros.vehicle_files.reading import Draft, thrusts_as_commands, UNLIMITED
 from quad_ident_ros.vehicle_files.rotor_axes import check_axis
 from quad_ident_ros.vehicle_files.source import one_of, Source
 from quad_ident_ros.vehicle_files.weak_rotors import faults, losses_of
-from quad_ident_ros.vehicle_files.xml_tree import Element, parse, root_of
+from quad_ident_ros.vehicle_files.xml_tree import Element, root_of
 
 GRAVITY = (0.0, 0.0, -9.81)     # m/s^2, of MuJoCo
+OF_JOINTS = 'damping', 'stiffness', 'frictionloss', 'armature'
 
 
 def tells(text: str) -> bool:
@@ -29,7 +31,7 @@ def tells(text: str) -> bool:
 
 def read(source: Source) -> Draft:
     """Return the Draft of an MJCF model; raises InputError."""
-    model = model_of(parse(source.path, source.text))
+    model = model_of(parsed(source))
     body, inherited = flying_body(source, model)
     draft = Draft(source.path, body.get('name') or model.root.get('model') or source.stem)
     parts = list(parts_of(model, body, inherited))
@@ -39,6 +41,7 @@ def read(source: Source) -> Draft:
     _take_gravity(draft, model)
     _take_rotors(draft, model, parts, pushes, whole)
     _say_air(draft, model, whole)
+    _say_left_out(draft, parts)
     return draft
 
 
@@ -184,3 +187,12 @@ def _say_air(draft: Draft, model: Model, whole: Body) -> None:
         draft.assumed.append(
             f"MuJoCo's fluid (density {density:g} kg/m3) is left out: a drag on the box of the "
             f'inertia, of at most {most:.2g} N at 1 m/s, with its square')
+
+
+def _say_left_out(draft: Draft, parts: Sequence[Part]) -> None:
+    """Say which forces of MuJoCo on the vehicle are left out."""
+    draft.assumed += [f'{joint.place(name)}: this force on the joint is left out'
+                      for joint in parts[0].joints for name in OF_JOINTS
+                      if any(joint.numbers(name, len(joint.get(name).split()), (0.0,)))]
+    draft.assumed += [f'{part.element.place("gravcomp")}: it is left out; the vehicle has all of '
+                      'its weight' for part in parts if part.element.number('gravcomp', 0.0)]

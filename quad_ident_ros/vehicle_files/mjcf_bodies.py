@@ -109,15 +109,18 @@ def _inertia(model: Model, element: Element, geoms: list[tuple[Pose, Element]]
 
 
 def _bounded(model: Model, element: Element, body: Body) -> Body:
-    """Return a body with the least mass and principal moments that the compiler lets it have."""
+    """Return a body with the mass and principal moments that the compiler has it have."""
     [mass], [moment] = model.setting('boundmass', (0.0,)), model.setting('boundinertia', (0.0,))
-    if body.mass >= mass and not moment > 0.0:
+    balanced = model.compiler.get('balanceinertia') == 'true'
+    if body.mass >= mass and not moment > 0.0 and not balanced:
         return body
     # MuJoCo has the centre of a body without mass as far from its origin as that from its parent.
     centre = body.centre if body.mass > 0.0 else model.pose_of(element).position
     moments, axes = np.linalg.eigh(body.inertia)
-    return Body(max(body.mass, mass), centre,
-                axes @ np.diag(np.maximum(moments, moment)) @ axes.T)
+    moments = np.maximum(moments, moment)
+    if balanced and moments[0] + moments[1] < moments[2]:
+        moments = np.full(3, moments.mean())    # of what no body has, MuJoCo makes a ball
+    return Body(max(body.mass, mass), centre, axes @ np.diag(moments) @ axes.T)
 
 
 def _stated(model: Model, inertial: Element) -> Body:
@@ -138,8 +141,9 @@ def _shape(model: Model, geom: Element) -> Body:
     if not geom.get('mass') and geom.number('density', DENSITY) == 0.0:
         return NOTHING
     if kind in ('mesh', 'sdf') or 'mesh' in geom.attributes:
-        raise InputError(f'{geom.where}: its mass is that of the mesh {geom.get("mesh")[:50]!r}, '
-                         'which is not read; give its body an <inertial>, or the geom mass="0"')
+        raise InputError(f'{geom.where}: its mass and inertia are those of the mesh '
+                         f'{geom.get("mesh")[:50]!r}, which is not read; give its body an '
+                         '<inertial>, or the geom mass="0"')
     if kind not in SOLIDS:
         raise InputError(f'{geom.where}: no geom has the type {kind[:20]!r}')
     shape = (SHELLS if geom.get('shellinertia') == 'true' else SOLIDS)[kind]

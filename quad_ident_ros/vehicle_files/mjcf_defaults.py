@@ -101,10 +101,6 @@ class Model:
 def model_of(root: Element) -> Model:
     """Return the Model of a <mujoco>; InputError for what is not expanded in it."""
     for element in root.walk():
-        if element.tag == 'include':
-            raise InputError(f'{element.where}: {element.get("file")[:100]!r} is not followed; '
-                             'give that file, or save the whole model with '
-                             '`mj_saveLastXML`')
         if element.tag in ('replicate', 'attach', 'composite', 'flexcomp'):
             raise InputError(f'{element.where}: it is not expanded here; save the compiled model '
                              'with `mj_saveLastXML` and give that file')

@@ -63,15 +63,17 @@ def _push(model: Model, element: Element, site: Pose) -> Push:
     if 'refsite' in element.attributes:
         raise InputError(f'{element.where}: refsite is not read; let it act in the axes of its '
                          'site')
-    if (element.get('biastype', 'none') != 'none'
-            or element.get('gaintype', 'fixed') != 'fixed'):
+    # Of a <motor> MuJoCo has a gain of 1 and nothing else, whatever the defaults of actuators say.
+    general = element.tag == 'general'
+    if general and (element.get('biastype', 'none') != 'none'
+                    or element.get('gaintype', 'fixed') != 'fixed'):
         raise InputError(f'{element.where}: its force depends on more than its control (gaintype, '
                          'biastype); rotors are read of actuators with a fixed gain')
     gear = np.zeros(6)
     words = element.get('gear', '1').split()
     gear[:len(words)] = element.numbers('gear', len(words), (1.0,))[:6]
-    gain = _first(element, 'gainprm')
-    kind = element.get('dyntype', 'none')
+    gain = _first(element, 'gainprm') if general else 1.0
+    kind = element.get('dyntype', 'none') if general else 'none'
     if kind not in ('none', 'filter', 'filterexact'):
         raise InputError(f'{element.where}: dyntype {kind[:20]!r} is not a lag; expected none or '
                          'filter')

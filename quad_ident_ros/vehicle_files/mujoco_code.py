@@ -63,7 +63,7 @@ What {model} ''' + SAYS + ''': {names}.
 
 It stands beside the model, needs MuJoCo and NumPy, and acts once a process says:
     install(model)      # an mjModel of {model}; compile all models before this
-{delay_said}"""
+{given_said}"""
 
 import mujoco
 import numpy as np
@@ -81,12 +81,17 @@ def install(model):
                             if (each.nbody, each.nu, each.nq) == own else None)
 
 
+def limited(model, controls):
+    """Return controls (n,) of the rotors within their range."""
+    limits = np.where(model.actuator_ctrllimited[ACTUATORS, None],
+                      model.actuator_ctrlrange[ACTUATORS], [-np.inf, np.inf])
+    return np.clip(controls, *limits.T)
+
+
 def thrusts(model, data):
     """Return the thrusts (n,) of the rotors as the actuators give them, N."""
     act = model.actuator_actadr[ACTUATORS]
-    limits = np.where(model.actuator_ctrllimited[ACTUATORS, None],
-                      model.actuator_ctrlrange[ACTUATORS], [-np.inf, np.inf])
-    signal = np.clip(data.ctrl[ACTUATORS], *limits.T)
+    signal = limited(model, data.ctrl[ACTUATORS])
     for k in np.flatnonzero(act >= 0):
         signal[k] = data.act[act[k]]
     gear = np.linalg.norm(model.actuator_gear[ACTUATORS, :3], axis=1)
@@ -113,19 +118,32 @@ def forces(model, data):
     moment = axes @ (moment + np.cross(arms, push).sum(axis=0))
     mujoco.mj_applyFT(model, data, force, moment, centre, body, data.qfrc_passive)
 '''
-DELAY = '''
+LAG = '''
 
-class Delayed:
+def lagging(model, data, controls):
+    """Return controls (n,) with which the lag of the actuators is one of the rotors' speeds."""
+    act = np.maximum(data.act[model.actuator_actadr[ACTUATORS]], 0.0)
+    now, then = np.sqrt(act), np.sqrt(np.maximum(limited(model, controls), 0.0))
+    lag = np.where(then > now, {rise}, {fall})
+    soon = then + (now - then) * np.exp(-model.opt.timestep / lag)
+    done = 1.0 - np.exp(-model.opt.timestep / model.actuator_dynprm[ACTUATORS, 0])
+    return act + (soon ** 2 - act) / done
+'''
+COMMANDS = '''
+
+class Commands:
     """Commands that act {delay} s after they are given, to the nearest step; one for an mjData."""
 
     def __init__(self):
-        self.waiting = []
+        self.waiting, self.given = [], None
 
     def command(self, model, data, controls):
         """Give controls (n,), and let those act whose time has come; call it before mj_step."""
         self.waiting.append((data.time + {delay}, np.array(controls)))
         while self.waiting and self.waiting[0][0] <= data.time + 0.5 * model.opt.timestep:
-            data.ctrl[ACTUATORS] = self.waiting.pop(0)[1]
+            self.given = self.waiting.pop(0)[1]
+        if self.given is not None:
+            data.ctrl[ACTUATORS] = {given}
 '''
 
 
@@ -143,12 +161,13 @@ class Rotors:
                    tuple(list(actuators).index(push.element.start) for push in pushes))
 
 
-def code(vehicle: Vehicle, wanted: Wanted, rotors: Rotors, model: str) -> Code | None:
+def code(vehicle: Vehicle, wanted: Wanted, rotors: Rotors, model: str, lag: str) -> Code | None:
     """
     Return the program beside a model, or None where it is to do nothing.
 
     Args: vehicle: with its effects, its speeds in the unit of the file; wanted: what the file
-    holds of it; model: the name of the file.
+    holds of it; model: the name of the file; lag: the form of motor_lag by which the speeds of the
+    rotors lag where the actuators of the file have their thrusts do so, or ''.
     """
     count, radius = len(vehicle.rotors), vehicle.rotor_radius
     acting = {(effect, form): values for effect, form, values in forms_of(vehicle.effects)}
@@ -163,6 +182,8 @@ def code(vehicle: Vehicle, wanted: Wanted, rotors: Rotors, model: str) -> Code |
     delay = acting.get(('actuation_delay', 'pure_delay'), {}).get('delay', 0.0)
     if delay:
         forms.append(('actuation_delay', 'pure_delay'))
+    if lag:
+        forms.append(('motor_lag', lag))
     constants = tuple(name for name in ('linear_drag', 'rotational_drag')
                       if any(getattr(vehicle, name)))
     if not forms and not constants:
@@ -171,11 +192,16 @@ def code(vehicle: Vehicle, wanted: Wanted, rotors: Rotors, model: str) -> Code |
     lifts = wanted.thrust * (1.0 - losses) * wanted.hover ** 2
     text = TEXT.format(
         model=model, names=', '.join(dict.fromkeys([*constants, *(name for name, _ in forms)])),
-        delay_said='and gives its commands by Delayed.command.\n' if delay else '',
+        given_said='and gives its commands by Commands().command.\n' if delay or lag else '',
         sites=list(rotors.sites), actuators=list(rotors.actuators),
         lifts=f'[{", ".join(map(_one, lifts))}]', wind=f'[{", ".join(map(_one, wanted.wind))}]',
         lines=indent('\n'.join(lines), '    '))
-    return Code(text + (DELAY.format(delay=_one(delay)) if delay else ''), tuple(forms), constants)
+    if lag:
+        text += LAG.format(rise=_one(wanted.rise), fall=_one(wanted.fall))
+    if delay or lag:
+        text += COMMANDS.format(
+            delay=_one(delay), given='lagging(model, data, self.given)' if lag else 'self.given')
+    return Code(text, tuple(forms), constants)
 
 
 def _one(value: float) -> str:

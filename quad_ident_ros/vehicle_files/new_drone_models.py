@@ -14,6 +14,7 @@ from quad_ident_ros.vehicle_files.edits import shown
 from quad_ident_ros.vehicle_files.new_rotors import rotor_inertia
 
 ROTORS = 4
+LAG = 0.004     # s, where the vehicle has none: crazyflow, which takes steps of 2 ms, needs one
 
 
 def new(vehicle: Vehicle) -> str:
@@ -30,16 +31,15 @@ def new(vehicle: Vehicle) -> str:
         'L': _number(arm), 'J': _matrix(vehicle.inertia_matrix),
         'rpm2thrust': _list([0.0, 0.0, vehicle.thrust_coefficient * per_rpm]),
         'rpm2torque': _list([0.0, 0.0, vehicle.torque_coefficient * per_rpm]),
-        'mixing_matrix': _matrix(mixing)}
-    if any(vehicle.linear_drag):
-        rows['drag_matrix'] = _matrix(-np.diag(vehicle.linear_drag))
-    for key, speed in (('thrust_min', vehicle.speed_min), ('thrust_max', vehicle.speed_max)):
-        if 0.0 < speed < math.inf:
-            rows[key] = _number(vehicle.thrust_coefficient * speed ** 2)
-    for key, value in (('prop_radius', vehicle.rotor_radius),
-                       ('prop_inertia', rotor_inertia(vehicle))):
-        if value > 0.0:
-            rows[key] = _number(value)
+        'mixing_matrix': _matrix(mixing),
+        'rotor_dyn_coef': _list([1.0 / LAG, 0.0, 1.0 / LAG, 0.0]),
+        'drag_matrix': _matrix(-np.diag(vehicle.linear_drag)),
+        'prop_inertia': _number(rotor_inertia(vehicle)),
+        'thrust_min': _number(vehicle.thrust_coefficient * vehicle.speed_min ** 2)}
+    if math.isfinite(vehicle.speed_max):
+        rows['thrust_max'] = _number(vehicle.thrust_coefficient * vehicle.speed_max ** 2)
+    if vehicle.rotor_radius > 0.0:
+        rows['prop_radius'] = _number(vehicle.rotor_radius)
     return f'[{json.dumps(vehicle.name)}]\n' + ''.join(
         f'{key} = {value}\n' for key, value in rows.items())
 

@@ -5,8 +5,12 @@
 import math
 from xml.sax.saxutils import quoteattr
 
+import numpy as np
+
 from quad_ident_ros.model.vehicle import Vehicle
+from quad_ident_ros.vehicle_files.bodies import Body, nearest_body
 from quad_ident_ros.vehicle_files.edits import shown
+from quad_ident_ros.vehicle_files.out_body import MOMENTS, PRODUCTS
 from quad_ident_ros.vehicle_files.reading import FULL_SPEED
 
 MODEL = """<mujoco model={name}>
@@ -37,12 +41,14 @@ def new(vehicle: Vehicle) -> str:
     ratio = vehicle.torque_coefficient / vehicle.thrust_coefficient
     limits = '' if math.isinf(high) else (f' ctrllimited="true" '
                                           f'ctrlrange="{shown([low, high])}"')
-    arm, (x, y, z) = vehicle.arm_length, vehicle.inertia
+    arm = vehicle.arm_length
+    inertia = nearest_body(Body(vehicle.mass, np.zeros(3), vehicle.inertia_matrix)).inertia
+    six = [float(inertia[at]) for at in (*MOMENTS, *PRODUCTS)]
     return MODEL.format(
         name=quoteattr(vehicle.name), gravity=shown([-vehicle.gravity]),
         mass=shown([vehicle.mass]), size=shown([0.3 * arm, 0.3 * arm, 0.1 * arm]),
-        inertia=(f'fullinertia="{shown([x, y, z, *vehicle.products])}"' if any(vehicle.products)
-                 else f'diaginertia="{shown([x, y, z])}"'),
+        inertia=(f'fullinertia="{shown(six)}"' if any(six[3:])
+                 else f'diaginertia="{shown(six[:3])}"'),
         sites='\n      '.join(f'<site name="rotor{j}" pos="{shown(rotor.position)}"/>'
                               for j, rotor in enumerate(vehicle.rotors, 1)),
         actuators='\n    '.join(

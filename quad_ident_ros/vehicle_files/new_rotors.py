@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from quad_ident_ros.model.vehicle import Vehicle
-from quad_ident_ros.vehicle_files.bodies import Body, is_body
+from quad_ident_ros.vehicle_files.bodies import Body, is_body, nearest_body
 from quad_ident_ros.vehicle_files.edits import shown
 from quad_ident_ros.vehicle_files.gz_motors import TURNS
 from quad_ident_ros.vehicle_files.out_body import remainder
@@ -62,7 +62,7 @@ def rotor_inertia(vehicle: Vehicle) -> float:
 def layout(vehicle: Vehicle) -> Layout:
     """Return the Layout of a vehicle without its effects, but for the inertia of its rotors."""
     inertia = rotor_inertia(vehicle) or ROTOR_INERTIA * max(vehicle.inertia)
-    whole = Body(vehicle.mass, np.zeros(3), vehicle.inertia_matrix)
+    whole = nearest_body(Body(vehicle.mass, np.zeros(3), vehicle.inertia_matrix))
     mass = ROTOR_MASS * vehicle.mass
     for slow in SLOWDOWNS:
         moments = (ACROSS * slow * inertia, ACROSS * slow * inertia, slow * inertia)
@@ -70,7 +70,7 @@ def layout(vehicle: Vehicle) -> Layout:
                                  for rotor in vehicle.rotors])
         if is_body(base):
             break
-    return Layout(base, mass, moments, slow)
+    return Layout(nearest_body(base), mass, moments, slow)
 
 
 def plugin(vehicle: Vehicle, rotor: int, slow: float, name: str) -> str:

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.vehicle_files.bodies import Body, check_body, combined
-from quad_ident_ros.vehicle_files.edits import differs, SAME
+from quad_ident_ros.vehicle_files.bodies import Body, check_body, combined, is_body, nearest_body
+from quad_ident_ros.vehicle_files.edits import differs, Edits, SAME
 
 if TYPE_CHECKING:
     from quad_ident_ros.vehicle_files.out_base import Base
@@ -21,14 +21,17 @@ PRODUCTS = (0, 1), (0, 2), (1, 2)
 ENTRIES = {f'i{"xyz"[i]}{"xyz"[j]}': (i, j) for i, j in (*MOMENTS, *PRODUCTS)}
 """Where in a matrix of inertia the six numbers stand, by the names that URDF and SDF have."""
 
+TOLD = 1e-6     # of the largest moment: less is rounding
 
-def body_for(base: Base, where: str, main: Body, rest: Sequence[Body]) -> Body:
+
+def body_for(base: Base, edited: Edits, where: str, main: Body, rest: Sequence[Body]) -> Body:
     """
     Return what the body that carries the rotors is to be, all in the same axes.
 
     The other bodies stay, and all together have the mass, the centre of mass and the inertia about
-    it that are wanted. Returns main itself where nothing changes. Raises InputError where no body
-    can do that; where: file and place of it.
+    it that are wanted. In the place of an inertia that no body has, for it is an estimate, comes
+    the nearest, which is said in `edited`. Returns main itself where nothing changes. Raises
+    InputError where no body can do that; where: file and place of it.
     """
     wanted, whole = base.wanted, combined([main, *rest])
     mass = wanted.mass if differs(base.mass, wanted.mass) else whole.mass
@@ -42,9 +45,51 @@ def body_for(base: Base, where: str, main: Body, rest: Sequence[Body]) -> Body:
     if not left > 0.0:
         raise InputError(f'{where}: the other bodies weigh {mass - left:.6g} kg, the whole '
                          f'vehicle is to weigh {mass:.6g} kg; correct their masses')
-    body = remainder(Body(mass, whole.centre + wanted.centre, whole.inertia + moved), rest)
+    aim = Body(mass, whole.centre + wanted.centre, whole.inertia + moved)
+    if not moved.any():     # an inertia of the file itself stays, whatever it is
+        body = remainder(aim, rest)
+        check_body(f'{where}: as the vehicle has it{said}', body)
+        return body
+    body = remainder(nearest_body(aim), rest)
     check_body(f'{where}: as the vehicle has it{said}', body)
+    body = nearest_body(body)
+    _say_off(edited, aim, combined([body, *rest]))
+    moved = body.inertia - main.inertia
+    if (not differs(main.mass, body.mass) and np.max(np.abs(body.centre - main.centre)) <= SAME
+            and np.max(np.abs(moved)) <= SAME * size):
+        return main
     return body
+
+
+def inertia_for(base: Base, edited: Edits, where: str) -> np.ndarray:
+    """
+    Return the inertia (3, 3) kg m^2 for a file whose simulator does not test it.
+
+    It is the one that is wanted, or the nearest where no body has that, beyond rounding, which is
+    said in `edited`. Raises InputError where there is none; where: file and place of it.
+    """
+    aim = Body(base.wanted.mass, np.zeros(3), base.wanted.inertia)
+    if is_body(aim):
+        return aim.inertia
+    near = nearest_body(aim)
+    check_body(f'{where}: as the vehicle has it', near)
+    _say_off(edited, aim, near)
+    return near.inertia
+
+
+def _say_off(edited: Edits, aim: Body, written: Body) -> None:
+    """Say by how much the inertia that is written is off that of the vehicle, where it is."""
+    moments = np.linalg.eigvalsh(aim.inertia)
+    off = float(np.linalg.norm(written.inertia - aim.inertia, 2))
+    if off <= TOLD * moments[2]:
+        return
+    beyond = moments[2] / (moments[0] + moments[1]) - 1.0
+    edited.remarks.append(
+        f'no body has the inertia of the vehicle, whose principal moments are '
+        f'{", ".join(f"{value:.4g}" for value in moments)} kg m2: the largest is '
+        f'{100 * beyond:.3g} % more than the other two together; the nearest that a body can have '
+        f'is written, which is {off:.2g} kg m2 off, {100 * off / moments[2]:.2g} % of the largest')
+    edited.nearest['inertia'] = 'the nearest inertia that a body can have'
 
 
 def remainder(whole: Body, rest: Sequence[Body]) -> Body:

@@ -10,11 +10,11 @@ import math
 import numpy as np
 
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.vehicle_files.bodies import Body, check_body
 from quad_ident_ros.vehicle_files.drone_models import Drone, drone_of, TO_SPEED
 from quad_ident_ros.vehicle_files.edits import differs, Edits, shown
 from quad_ident_ros.vehicle_files.new_drone_models import new
 from quad_ident_ros.vehicle_files.out_base import Base
+from quad_ident_ros.vehicle_files.out_body import inertia_for
 from quad_ident_ros.vehicle_files.target import Target
 from quad_ident_ros.vehicle_files.toml_places import after_header
 from quad_ident_ros.vehicle_files.wanted import SQUARE
@@ -31,11 +31,10 @@ def write(base: Base) -> Edits:
     wanted = base.wanted
     drone = drone_of(base.source)
     edited = _EditedDrone(drone)
-    check_body(f'{base.source.path}, {drone.place("J")}: as the vehicle has it',
-               Body(wanted.mass, np.zeros(3), wanted.inertia))
+    inertia = inertia_for(base, edited, f'{base.source.path}, {drone.place("J")}')
     edited.key('mass', [wanted.mass], 'kg', wanted.sources['mass'])
-    edited.key('J', wanted.inertia.ravel(), 'kg m2', wanted.sources['inertia'],
-               size=float(np.max(np.abs(wanted.inertia))))
+    edited.key('J', inertia.ravel(), 'kg m2', wanted.sources['inertia'],
+               size=float(np.max(np.abs(inertia))))
     curve = _write_curves(edited, base, drone)
     _write_lags(edited, base, drone, curve)
     drag = -drone.matrix('drag_matrix', 3, 3) if 'drag_matrix' in drone.table else np.zeros((3, 3))

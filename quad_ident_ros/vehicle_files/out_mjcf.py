@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Vehicles back into MJCF models of MuJoCo."""
 
+from collections.abc import Sequence
 from itertools import permutations
 import math
 
@@ -16,6 +17,7 @@ from quad_ident_ros.vehicle_files.edits import differs, SAME, shown
 from quad_ident_ros.vehicle_files.mjcf import bodies_of, flying_body
 from quad_ident_ros.vehicle_files.mjcf_bodies import Part, parts_of
 from quad_ident_ros.vehicle_files.mjcf_defaults import Model, model_of
+from quad_ident_ros.vehicle_files.mjcf_include import parsed
 from quad_ident_ros.vehicle_files.mjcf_thrust import Push, pushes_of
 from quad_ident_ros.vehicle_files.mujoco_code import code as program
 from quad_ident_ros.vehicle_files.mujoco_code import Rotors
@@ -25,31 +27,41 @@ from quad_ident_ros.vehicle_files.out_body import body_for, MOMENTS, PRODUCTS
 from quad_ident_ros.vehicle_files.reading import Draft
 from quad_ident_ros.vehicle_files.target import Code, Target
 from quad_ident_ros.vehicle_files.ways import BODY, LAGS
-from quad_ident_ros.vehicle_files.xml_tree import parse
+from quad_ident_ros.vehicle_files.xml_tree import Element
 
-OTHER_TURNS = 'euler', 'axisangle', 'xyaxes', 'zaxis'
+GENERAL = {'gainprm': '1', 'gaintype': 'fixed', 'biastype': 'none'}
+"""What a <motor> is as a <general>."""
+TURNS = 'quat', 'euler', 'axisangle', 'xyaxes', 'zaxis'
 
 
 def write(base: Base) -> EditedXml:
     """Return the Edits by which an MJCF model holds what is wanted; raises InputError."""
     edited = EditedXml(base.source.text)
-    model = model_of(parse(base.source.path, base.source.text))
+    model = model_of(parsed(base.source))
     element, inherited = flying_body(base.source, model)
     parts = list(parts_of(model, element, inherited))
     sites = {name: site for part in parts for name, site in part.sites.items()}
     pushes = pushes_of(model, sites)
     thrusts = [push for push in pushes if push.pushes]
     bodies = bodies_of(Draft(base.source.path, ''), parts, {push.site for push in thrusts})
-    body = body_for(base, element.where, bodies[0], bodies[1:])
-    if body is not bodies[0]:
+    # The body itself, or where that is a mere frame the heaviest of those in it.
+    main = 0 if bodies[0].mass > 0.0 else max(range(len(bodies)), key=lambda k: bodies[k].mass)
+    body = body_for(base, edited, parts[main].element.where, bodies[main],
+                    [*bodies[:main], *bodies[main + 1:]])
+    other = next((one for one in (parts[main].element, *parts[main].element.all('inertial'),
+                                  *(push.element for push in thrusts)) if one.beside), None)
+    if other is not None:
+        raise InputError(f'{base.source.path}: the vehicle stands in {other.path}, which it '
+                         'includes; give that file as --base')
+    if body is not bodies[main]:
         if 'settotalmass' in model.compiler:
             raise InputError(f'{base.source.path}: settotalmass of <compiler> scales every mass; '
                              'take it out and state the masses themselves')
-        _write_body(edited, base, model, parts[0], body)
-        edited.say_several(element, len(bodies))
+        _write_body(edited, base, model, parts[main], body.placed(parts[main].pose.inverse))
+        edited.say_several(parts[main].element, len(bodies))
     edited.lack(['speed_max'], 'a command is a thrust here, and speeds are not of the file')
     _write_thrusts(edited, base, thrusts)
-    _write_lags(edited, base, thrusts)
+    _write_lags(edited, base, thrusts, _filter(model))
     return edited
 
 
@@ -57,12 +69,21 @@ def code(vehicle: Vehicle, base: Base, name: str) -> Code | None:
     """Return the Code beside a model; see Target. None where it has no single rotors."""
     if base.constant('thrust_coefficient') is None:
         return None
-    model = model_of(parse(base.source.path, base.source.text))
+    model = model_of(parsed(base.source))
     parts = parts_of(model, *flying_body(base.source, model))
     pushes = pushes_of(model, {name: site for part in parts for name, site in part.sites.items()})
     places = [child.start for holder in model.root.all('actuator') for child in holder.children]
     return program(vehicle, base.wanted, Rotors.of([push for push in pushes if push.pushes],
-                                                   places), name)
+                                                   places), name, _form_of_lag(vehicle, base))
+
+
+def _form_of_lag(vehicle: Vehicle, base: Base) -> str:
+    """Return the form of a lag that a file has the nearest of, or '' where it has it as it is."""
+    lag, wanted = vehicle.effects.get('motor_lag', {}), base.wanted
+    if 'time_constant' in lag:
+        same = not differs(base.effect('motor_lag', 'time_constant'), wanted.lag)
+        return '' if same or not wanted.lag else 'first_order'
+    return 'rise_fall' if {'rise', 'fall'} & lag.keys() and wanted.rise and wanted.fall else ''
 
 
 def _write_thrusts(edited: EditedXml, base: Base, thrusts: list[Push]) -> None:
@@ -92,25 +113,43 @@ def _write_thrusts(edited: EditedXml, base: Base, thrusts: list[Push]) -> None:
                          ', '.join(sorted(sources)), usual=(1.0,))
 
 
-def _write_lags(edited: EditedXml, base: Base, thrusts: list[Push]) -> None:
-    """Have the dynamics of the actuators hold the lag."""
+def _filter(model: Model) -> str:
+    """Return the dyntype of a lag: with filterexact, Runge-Kutta adds half a step to it."""
+    methods = [option.get('integrator') for option in model.root.all('option')]
+    return 'filter' if 'RK4' in methods else 'filterexact'
+
+
+def _write_lags(edited: EditedXml, base: Base, thrusts: list[Push], kind: str) -> None:
+    """Have the dynamics of the actuators hold the lag; kind: dyntype where they have none."""
     lag = base.wanted.lag
     if base.wanted.rise != base.wanted.fall:
         edited.one_lag()
     now = thrusts[0].lag if thrusts else 0.0
     if lag == 0.0 and now > 0.0:
         edited.lack(LAGS, 'a filter of MuJoCo needs a time constant above 0; take out its dyntype')
-    elif lag > 0.0 and (not thrusts or any(push.lag == 0.0 and push.element.tag != 'general'
-                                           for push in thrusts)):
-        edited.lack(LAGS, 'its actuators have no lag; make them <general> with '
-                    f'dyntype="filterexact" and dynprm="{lag:.6g}"')
+    elif lag > 0.0 and not thrusts:
+        edited.lack(LAGS, 'the file has no thrust of single rotors')
     elif lag > 0.0:
         for push in thrusts:
             stated = push.element.get('dynprm', '1').split() if push.lag else ['']
             edited.attribute(push.element, 'dynprm', [lag, *map(float, stated[1:])], 's',
                              base.wanted.sources['rise'], usual=(1.0,))
             if not push.lag:
-                edited.word(push.element, 'dyntype', 'filterexact')
+                edited.word(push.element, 'dyntype', kind)
+        _make_general(edited, [push.element for push in thrusts if push.element.tag == 'motor'])
+
+
+def _make_general(edited: EditedXml, motors: Sequence[Element]) -> None:
+    """Have <motor> elements be <general> ones, which have dynamics and are else the same."""
+    for motor in motors:
+        edited.renamed_tag(motor, 'general')
+        for name, usual in GENERAL.items():
+            if motor.get(name, usual) != usual:     # of a default class, not read for a <motor>
+                edited.word(motor, name, usual)
+    if motors:
+        edited.remarks.append(
+            f'{motors[0].place()} and {len(motors) - 1} more become <general>, for a <motor> has '
+            'no lag; thrusts begin at data.act, which is 0 after a reset')
 
 
 def _write_body(edited: EditedXml, base: Base, model: Model, part: Part, body: Body) -> None:
@@ -138,16 +177,16 @@ def _write_body(edited: EditedXml, base: Base, model: Model, part: Part, body: B
     elif max(abs(turned[at]) for at in PRODUCTS) <= SAME * size:
         edited.attribute(inertial, 'diaginertia', np.diag(turned), 'kg m2',
                          wanted.sources['inertia'], size=size)
-    elif 'quat' in inertial.attributes:
+    elif turn := next((name for name in TURNS if name in inertial.attributes), ''):
         axes, diagonal = _principal(turned)
         x, y, z, w = Rotation.from_matrix(rotation @ axes).as_quat()
-        edited.attribute(inertial, 'quat', [w, x, y, z], '1',
-                         wanted.sources['inertia'], size=1.0)
+        if turn == 'quat':
+            edited.attribute(inertial, 'quat', [w, x, y, z], '1', wanted.sources['inertia'],
+                             size=1.0)
+        else:       # as angles their numbers would depend on <compiler>
+            edited.renamed(inertial, turn, 'quat', [w, x, y, z], '1', wanted.sources['inertia'])
         edited.attribute(inertial, 'diaginertia', diagonal, 'kg m2', wanted.sources['inertia'],
                          size=size)
-    elif any(turn in inertial.attributes for turn in OTHER_TURNS):
-        raise InputError(f'{inertial.where}: its principal axes turn, which is written to quat '
-                         'alone; state its orientation as quat')
     else:
         edited.renamed(inertial, 'diaginertia', 'fullinertia', six, 'kg m2',
                        wanted.sources['inertia'])
@@ -158,13 +197,14 @@ def _insert(edited: EditedXml, base: Base, part: Part, body: Body, six: list[flo
     wanted, where = base.wanted, part.element.place('inertial')
     edited.child(part.element, f'<inertial pos="{shown(body.centre)}" mass="{shown([body.mass])}" '
                                f'fullinertia="{shown(six)}"/>')
-    edited.note(f'{where} mass', part.body.mass, body.mass, 'kg', wanted.sources['mass'])
+    before = part.body.placed(part.pose.inverse)
+    edited.note(f'{where} mass', before.mass, body.mass, 'kg', wanted.sources['mass'])
     for k, axis in enumerate('xyz'):
-        edited.note(f'{where} pos {axis}', float(part.body.centre[k]), float(body.centre[k]), 'm',
+        edited.note(f'{where} pos {axis}', float(before.centre[k]), float(body.centre[k]), 'm',
                     wanted.sources['centre'])
     for at, value in zip((*MOMENTS, *PRODUCTS), six, strict=True):
         edited.note(f'{where} fullinertia {"xyz"[at[0]]}{"xyz"[at[1]]}',
-                    float(part.body.inertia[at]), value, 'kg m2', wanted.sources['inertia'])
+                    float(before.inertia[at]), value, 'kg m2', wanted.sources['inertia'])
 
 
 def _principal(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -6,10 +6,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from quad_ident_ros.vehicle_files.bodies import Body, check_body
 from quad_ident_ros.vehicle_files.edits import Edits, shown
 from quad_ident_ros.vehicle_files.new_px4_sih import new
 from quad_ident_ros.vehicle_files.out_base import Base
+from quad_ident_ros.vehicle_files.out_body import inertia_for
 from quad_ident_ros.vehicle_files.px4_sih import AXES, parameters_of, USUAL
 from quad_ident_ros.vehicle_files.reading import FULL_SPEED
 from quad_ident_ros.vehicle_files.source import Source
@@ -21,13 +21,12 @@ def write(base: Base) -> Edits:
     """Return the Edits by which parameters of PX4's SIH hold what is wanted; InputError."""
     wanted = base.wanted
     edited = _EditedParameters(base.source)
-    check_body(f'{base.source.path}: SIH_IXX: as the vehicle has it',
-               Body(wanted.mass, np.zeros(3), wanted.inertia))
+    inertia = inertia_for(base, edited, f'{base.source.path}: SIH_IXX')
     edited.set('SIH_MASS', wanted.mass, 'kg', wanted.sources['mass'])
-    size = float(np.max(np.abs(wanted.inertia)))
+    size = float(np.max(np.abs(inertia)))
     for axes, sign in AXES.items():
         at = 'XYZ'.index(axes[0]), 'XYZ'.index(axes[1])
-        edited.set(f'SIH_I{axes}', sign * float(wanted.inertia[at]), 'kg m2',
+        edited.set(f'SIH_I{axes}', sign * float(inertia[at]), 'kg m2',
                    wanted.sources['inertia'], size)
     for name, key, value, unit in (('SIH_T_MAX', 'thrust', wanted.thrust, 'N'),
                                    ('SIH_Q_MAX', 'torque', wanted.torque, 'N m')):

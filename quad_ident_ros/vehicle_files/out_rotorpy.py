@@ -6,11 +6,10 @@ import math
 
 import numpy as np
 
-from quad_ident_ros.vehicle_files.bodies import Body, check_body
 from quad_ident_ros.vehicle_files.edit_literals import EditedTable
 from quad_ident_ros.vehicle_files.new_rotorpy import new
 from quad_ident_ros.vehicle_files.out_base import Base
-from quad_ident_ros.vehicle_files.out_body import ENTRIES
+from quad_ident_ros.vehicle_files.out_body import ENTRIES, inertia_for
 from quad_ident_ros.vehicle_files.rotorpy import table_of
 from quad_ident_ros.vehicle_files.target import Target
 from quad_ident_ros.vehicle_files.ways import BODY, LAGS
@@ -20,12 +19,12 @@ def write(base: Base) -> EditedTable:
     """Return the Edits by which a dictionary of rotorpy holds what is wanted; InputError."""
     wanted = base.wanted
     edited = EditedTable(base.source, table_of(base.source))
-    place = f'{base.source.path}, line {edited.table.lines["Ixx"]}: Ixx: as the vehicle has it'
-    check_body(place, Body(wanted.mass, np.zeros(3), wanted.inertia))
+    inertia = inertia_for(base, edited,
+                          f'{base.source.path}, line {edited.table.lines["Ixx"]}: Ixx')
     edited.entry('mass', wanted.mass, 'kg', wanted.sources['mass'])
-    size = float(np.max(np.abs(wanted.inertia)))
+    size = float(np.max(np.abs(inertia)))
     for name, at in ENTRIES.items():
-        edited.entry(f'I{name[1:]}', float(wanted.inertia[at]), 'kg m2',
+        edited.entry(f'I{name[1:]}', float(inertia[at]), 'kg m2',
                      wanted.sources['inertia'], size)
     if wanted.centre.any() and not edited.vectors(
             'rotor_pos', [np.array(rotor['position']) - wanted.centre

@@ -25,7 +25,7 @@ def write(base: Base) -> EditedXml:
     link = tree.links[layout.base]
     rest = [body for name, body in layout.bodies.items() if name != layout.base]
     main = layout.bodies[layout.base]
-    body = body_for(base, link.where, main, rest)
+    body = body_for(base, edited, link.where, main, rest)
     if link.path != path:
         edited.lack(BODY, f'it stands in {link.path}; give the whole model as `gz sdf -p` prints '
                     'it')

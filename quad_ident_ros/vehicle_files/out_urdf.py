@@ -37,7 +37,7 @@ def write(base: Base) -> EditedXml:
     bodies = bodies_of(Draft(base.source.path, ''), links, rotors)
     name = _carrier(bodies, links, rotors)
     rest = [body for other, body in bodies.items() if other != name]
-    body = body_for(base, links[name].element.where, bodies[name], rest)
+    body = body_for(base, edited, links[name].element.where, bodies[name], rest)
     if body is not bodies[name]:
         _write_body(edited, base, links[name], body.placed(links[name].pose.inverse))
         edited.say_several(links[name].element, len(bodies))

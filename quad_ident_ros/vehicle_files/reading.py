@@ -160,7 +160,7 @@ def finished(draft: Draft, kind: str, supplied: Mapping[str, Any] | None = None)
         raise InputError(f'{error}{_read_from(str(error), draft)}') from None
     vehicle = replace(vehicle, effects=mapping(theta))
     return Reading(draft.where, kind, vehicle, tuple(read), {},
-                   (*draft.assumed, *_odd(vehicle, draft)))
+                   tuple(dict.fromkeys((*draft.assumed, *_odd(vehicle, draft)))))
 
 
 def _odd(vehicle: Vehicle, draft: Draft) -> list[str]:

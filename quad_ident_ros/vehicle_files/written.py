@@ -44,6 +44,8 @@ def with_code(found: Export, read: Vehicle, vehicle: Vehicle) -> Vehicle:
     effects = {name: dict(values) for name, values in read.effects.items()}
     for name, form, values in forms_of(vehicle.effects):
         if (name, form) in found.code.forms:
+            if name == 'motor_lag':     # in the place of the one that the file has
+                effects[name] = {}
             effects.setdefault(name, {}).update(_at_hover(name, form, values, there))
     kept = {key: getattr(vehicle, key) for key in (*found.code.constants, 'rotor_radius')}
     return replace(read, effects=effects, **kept)

@@ -24,7 +24,8 @@ class Element:
     """
     An element: tag, attributes, text, children, its line and the file that it stands in.
 
-    start: where in the file it begins, in bytes of UTF-8.
+    start: where in the file it begins, in bytes of UTF-8; beside: name of that file where it is
+    one that another file includes, else ''.
     """
 
     path: str
@@ -34,6 +35,7 @@ class Element:
     children: list[Element] = field(default_factory=list)
     text: str = ''
     start: int = 0
+    beside: str = ''
 
     @property
     def where(self) -> str:
@@ -43,7 +45,8 @@ class Element:
     def place(self, attribute: str = '') -> str:
         """Return the line and the element, for the table of what was read."""
         said = f' {attribute}' if attribute else ''
-        return f'line {self.line}: <{self.tag[:SHOWN]}{self._named}>{said}'
+        file = f'{self.beside}, ' if self.beside else ''
+        return f'{file}line {self.line}: <{self.tag[:SHOWN]}{self._named}>{said}'
 
     @property
     def _named(self) -> str:

@@ -40,12 +40,21 @@ def mujoco():
     return FOLDER / 'quadrotor.xml', 'mujoco_quadrotor.py:Quadrotor'
 
 
-def drone_models():
+def crazyflie_of(name, *parts):
     if sys.version_info < (3, 11) or os.environ.get('SCIPY_ARRAY_API') != '1':
-        pytest.skip('drone-models is imported only with SCIPY_ARRAY_API=1, from Python 3.11 on')
-    models = pytest.importorskip('drone_models', reason='drone-models is not installed')
-    file = Path(models.__file__).parent / 'data' / 'params.toml'
+        pytest.skip(f'{name} is imported only with SCIPY_ARRAY_API=1, from Python 3.11 on')
+    models = pytest.importorskip(name, reason=f'{name} is not installed')
+    file = Path(models.__file__).parent.joinpath(*parts)
     return f'{file}:cf21B_500', 'drone_models_crazyflie.py:Crazyflie'
+
+
+def drone_models():
+    return crazyflie_of('drone_models', 'data', 'params.toml')
+
+
+def crazyflow():
+    """Crazyflow from 0.4 on, which has the equations and the parameters of drone-models itself."""
+    return crazyflie_of('crazyflow.dynamics', 'first_principles', 'params.toml')
 
 
 PARAMETERS = """    def parameters(self):
@@ -53,7 +62,7 @@ PARAMETERS = """    def parameters(self):
         with open('FOLDER/real.toml', 'rb') as file:
             given |= tomllib.load(file)['cf21B_500']
         given['J_inv'] = np.linalg.inv(given['J'])
-        inner = dynamics.__wrapped__
+        inner = getattr(dynamics, '__wrapped__', dynamics)
         known = inner.__kwdefaults__ or inner.__code__.co_varnames
         return {key: np.asarray(given[key]) for key in given if key in known}
 
@@ -65,17 +74,23 @@ EXPORTED = {    # what an example takes from its library, and from the written f
     'from functools import partial\nimport tomllib\nfrom drone_models.core import load_params',
     "parametrize(dynamics, 'cf21B_500')": 'partial(dynamics, **self.parameters())',
     '    def step_many': PARAMETERS}
+OF_CRAZYFLOW = {    # where crazyflow has what the example takes from drone-models
+    'drone_models import': 'crazyflow.dynamics.core import',
+    'drone_models.core': 'crazyflow.dynamics.core',
+    'drone_models.first_principles': 'crazyflow.dynamics.first_principles'}
 
 
-def written(simulator, found, folder):
-    """Write an exported file and the example that flies it; return the class for --simulator."""
-    name = {'rotorpy': 'real_params.py', 'mujoco': 'quadrotor.xml', 'drone_models': 'real.toml'}
-    (folder / name[simulator.__name__]).write_text(found.text, encoding='utf-8')
+def written(simulator, folder, found=None):
+    """Write an exported file, if any, and its example; return the class for --simulator."""
+    name = {'rotorpy': 'real_params.py', 'mujoco': 'quadrotor.xml'}
+    changes = dict(EXPORTED) if found is not None else {}
+    if found is not None:
+        file = folder / name.get(simulator.__name__, 'real.toml')
+        file.write_text(found.text, encoding='utf-8')
     example, _, made = simulator()[1].partition(':')
     text = (FOLDER / example).read_text(encoding='utf-8')
-    for old, new in EXPORTED.items():
-        new = new.replace('FOLDER', str(folder))
-        text = text.replace(old, new, 1)
+    for old, new in (changes | (OF_CRAZYFLOW if simulator is crazyflow else {})).items():
+        text = text.replace(old, new.replace('FOLDER', str(folder)), 1)
     (folder / example).write_text(text, encoding='utf-8')
     return f'{folder / example}:{made}'
 
@@ -85,8 +100,9 @@ CARRIED = {     # beside the mass: what each of the formats has a number for
         'motor_lag': {'time_constant': 0.05}, 'rotor_drag': {'coefficient': 0.6 * vehicle.mass}},
     mujoco: lambda vehicle: {'inertia_mismatch': {'factor_x': 1.2, 'factor_z': 0.9},
                              'com_offset': {'x': 0.003}},
-    drone_models: lambda vehicle: {'rotor_drag': {'x': vehicle.mass, 'y': 0.5 * vehicle.mass},
-                                   'inertia_mismatch': {'factor_y': 1.2}}}
+    **dict.fromkeys((drone_models, crazyflow), lambda vehicle: {
+        'rotor_drag': {'x': vehicle.mass, 'y': 0.5 * vehicle.mass},
+        'inertia_mismatch': {'factor_y': 1.2}})}
 
 
 @pytest.mark.slow
@@ -107,27 +123,31 @@ def test_the_exported_model_flies_there_as_the_vehicle_file_does_in_ours(simulat
     for name, values in CARRIED[simulator](nominal_one).items():
         effects[name] = effects.get(name, {}) | values if name == 'rotor_drag' else values
     vehicle = replace(nominal_one, effects=mapping(vector(effects, nominal_one)))
-    to = {'rotorpy': 'rotorpy', 'mujoco': 'mujoco', 'drone_models': 'crazyflow'}
-    found = export(vehicle, to[simulator.__name__], source_of(file))
+    to = simulator.__name__.replace('drone_models', 'crazyflow')
+    found = export(vehicle, to, source_of(file))
     assert found.changes and not found.fates.not_carried
     flown = fly_closed_loop(nominal_one, effects | {'wind': {'x': 1.5}}, 'figure8', duration=8.0,
                             seed=3, noise=SENSORS['mocap_imu'])
     tracks = [track_of(flown, nominal_one)]
-    with Simulator(written(simulator, found, tmp_path), vehicle) as there:
+    with Simulator(written(simulator, tmp_path, found), vehicle) as there:
         in_simulator = gaps_of(vehicle, tracks, nominal(vehicle), there)
     for group, ours in gaps_of(vehicle, tracks, nominal(vehicle)).items():
-        curved = simulator is drone_models and group == 'rate'
+        curved = simulator in (drone_models, crazyflow) and group == 'rate'
         assert in_simulator[group] == pytest.approx(ours, rel=CURVED if curved else WITHIN)
     # The nominal model is off by far more than that: the numbers that were written matter.
     without = gaps_of(nominal_one, tracks, nominal(nominal_one))
     assert without['velocity'] > (1.0 + 5.0 * WITHIN) * in_simulator['velocity']
 
 
-@pytest.fixture(scope='module', params=[rotorpy, mujoco, drone_models],
+@pytest.fixture(scope='module', params=[rotorpy, mujoco, drone_models, crazyflow],
                 ids=lambda one: one.__name__)
-def flown(request):
+def flown(request, tmp_path_factory):
     """Read a vehicle of a simulator's file, and fly one that has more."""
     file, spec = request.param()
+    folder = FOLDER
+    if request.param is crazyflow:
+        folder = tmp_path_factory.mktemp('crazyflow')
+        written(crazyflow, folder)
     vehicle = load_any_vehicle(file)
     truth = {name: dict(values) for name, values in vehicle.effects.items()}
     drag = truth.setdefault('rotor_drag', {})
@@ -139,7 +159,7 @@ def flown(request):
                                        noise=SENSORS['mocap_imu']), vehicle)
               for course in ('figure8', 'lissajous')]
     z = np.concatenate([nominal(vehicle)[:SPLIT], vector(truth, vehicle)])
-    with Simulator(f'{FOLDER}/{spec}', vehicle) as simulator:
+    with Simulator(f'{folder}/{spec}', vehicle) as simulator:
         yield vehicle, simulator, tracks, z
 
 

@@ -157,7 +157,67 @@ def test_a_lag_of_mujoco_is_one_time_constant():
     found = export(replace(vehicle, effects={'motor_lag': {'rise': 0.04, 'fall': 0.06}}),
                    'mujoco', source)
     assert again(source, found).effects == {'motor_lag': {'time_constant': pytest.approx(0.05)}}
-    assert [fate.form for fate in found.fates.nearest] == ['rise_fall']
+    assert [fate.form for fate in found.fates.by_code] == ['rise_fall']
+    none = export(replace(vehicle, effects={'rotor_drag': {'coefficient': 0.1}}), 'mujoco', source)
+    assert [fate.name for fate in none.fates.by_code] == ['rotor_drag']
+
+
+def test_a_motor_of_mujoco_becomes_one_with_a_lag_and_is_else_the_same():
+    text = mjcf.model(actuators=mjcf.motors().replace('/>', '>< !-- </motor> --></motor>', 1
+                                                      ).replace('< !', '<!'))
+    text = text.replace('<default class="quad">', '<general gainprm="3"/><default class="quad">')
+    source = Source('quad.xml', text)
+    vehicle = read_vehicle(source).vehicle
+    assert vehicle == read_vehicle(Source('quad.xml', mjcf.model())).vehicle
+    lagged = replace(vehicle, effects={'motor_lag': {'time_constant': 0.03}})
+    found = export(lagged, 'mujoco', source)
+    assert again(source, found) == lagged
+    assert [fate.name for fate in found.fates.by_code] == ['motor_lag']
+    assert '3 more become <general>' in found.remarks[0]
+    mujoco = pytest.importorskip('mujoco', reason='MuJoCo is not installed')
+    old, new = (mujoco.MjModel.from_xml_string(each) for each in (source.text, found.text))
+    for name in ('gainprm', 'gear', 'ctrlrange', 'biastype', 'gaintype'):
+        np.testing.assert_array_equal(getattr(new, f'actuator_{name}'),
+                                      getattr(old, f'actuator_{name}'))
+    assert new.actuator_dynprm[:, 0].tolist() == [0.03] * 4
+
+
+@pytest.mark.parametrize('to', TARGETS)
+@pytest.mark.parametrize('by_effect', [True, False])
+def test_of_an_inertia_that_no_body_has_the_nearest_is_written_and_said(to, by_effect):
+    """A sum of the two smaller moments that is s short moves each by a third of s."""
+    source, vehicle = base(to)
+    vehicle = replace(vehicle, products=(0.0, 0.0, 0.0))
+    x, y = vehicle.inertia[:2]
+    wanted = (replace(vehicle, effects={**vehicle.effects, 'inertia_mismatch': {
+        'xx': 1.0, 'yy': 1.0, 'zz': 1.3 * (x + y) / vehicle.inertia[2]}}) if by_effect else
+        replace(vehicle, inertia=(x, y, 1.3 * (x + y))))
+    third = 0.1 * (x + y)
+    # SIH has its rotors in an order of its own, so that not every vehicle makes a new file.
+    for file in (source, None)[:1 if to == 'px4_sih' else 2]:
+        found = export(wanted, to, file)
+        [said] = [text for text in found.remarks if 'no body has the inertia' in text]
+        assert 'the largest is 30 % more' in said and f'{third:.2g} kg m2 off' in said
+        assert [fate.name for fate in found.fates.nearest
+                if 'a body can have' in fate.reason] == ['inertia_mismatch'] * by_effect
+        # What rotors with a mass of their own leave for the base is to be a body, too.
+        assert again(found.base, found).inertia == pytest.approx(
+            [x + third, y + third, x + y + 2.0 * third], rel=5e-3 if to == 'gazebo' else 2e-6)
+
+
+@pytest.mark.parametrize('beyond', [1.0, 1.01, 1.5])
+def test_simulators_that_refuse_an_inertia_take_the_one_that_is_written(beyond):
+    _, vehicle = base('mujoco')
+    axes, _ = np.linalg.qr(np.arange(9.0).reshape(3, 3) + np.eye(3))
+    matrix = axes @ np.diag([0.011, 0.012, 0.023 * beyond]) @ axes.T
+    flat = replace(vehicle, inertia=tuple(np.diag(matrix)),
+                   products=(matrix[0, 1], matrix[0, 2], matrix[1, 2]))
+    for to in ('gazebo', 'urdf', 'mujoco'):
+        found = export(flat, to)
+        moments = np.linalg.eigvalsh(again(found.base, found).inertia_matrix)
+        assert moments[2] < moments[0] + moments[1]
+    mujoco = pytest.importorskip('mujoco', reason='MuJoCo is not installed')
+    mujoco.MjModel.from_xml_string(found.text)
 
 
 @pytest.mark.parametrize('to', [to for to in TARGETS if 'centre' in TARGETS[to].holds])
@@ -173,10 +233,15 @@ def test_the_centre_of_mass_moves_under_the_rotors(to):
                                                                             abs=1e-9)
 
 
-def test_principal_axes_of_mujoco_turn_with_the_inertia():
-    tilted = mjcf.INERTIAL.replace('mass', 'quat="0.9 0.1 0.2 0.3" mass')
+@pytest.mark.parametrize('turn', ['quat="0.9 0.1 0.2 0.3"', 'euler="10 20 30"',
+                                  'axisangle="1 0 1 40"', 'xyaxes="1 1 0 0 1 1"', 'zaxis="1 1 2"'])
+def test_principal_axes_of_mujoco_turn_with_the_inertia(turn):
+    tilted = mjcf.INERTIAL.replace('mass', f'{turn} mass')
     source = Source('quad.xml', mjcf.model(body=tilted))
     vehicle = read_vehicle(source).vehicle
+    turned = replace(vehicle, products=(0.001, -0.002, 0.0005))
+    assert again(source, export(turned, 'mujoco', source)).inertia_matrix == pytest.approx(
+        turned.inertia_matrix, rel=1e-9, abs=1e-12)
     wanted = replace(vehicle, inertia=tuple(1.1 * value for value in vehicle.inertia))
     assert again(source, export(wanted, 'mujoco', source)).inertia_matrix == pytest.approx(
         wanted.inertia_matrix, rel=1e-9, abs=1e-12)
@@ -199,6 +264,18 @@ def test_mujoco_itself_has_the_mass_and_the_inertia(body):
     assert compiled.body_mass[place] == pytest.approx(wanted.mass, rel=1e-9)
     assert axes @ np.diag(compiled.body_inertia[place]) @ axes.T == pytest.approx(
         wanted.inertia_matrix, rel=1e-9, abs=1e-10)
+
+
+def test_a_body_of_mujoco_that_is_a_frame_leaves_the_mass_to_the_one_in_it():
+    inner = f'<body name="hull" pos="0.01 0 0" euler="0 0 90">\n{mjcf.INERTIAL}</body>'
+    source = Source('quad.xml', mjcf.model(body=inner))
+    vehicle = read_vehicle(source).vehicle
+    x, y, z = vehicle.inertia
+    wanted = replace(vehicle, mass=1.1, inertia=(1.1 * x, y, 1.02 * z))
+    found = export(wanted, 'mujoco', source)
+    read = again(source, found)
+    assert read.mass == 1.1 and read.inertia == pytest.approx(wanted.inertia, rel=1e-9)
+    assert len(changed_lines(source.text, found.text)) == 1
 
 
 def test_shapes_of_mujoco_get_an_inertial_beside_them():

@@ -85,7 +85,9 @@ def test_accelerations_are_those_of_our_equations(effects):
 
 
 @pytest.mark.parametrize('effects', [
-    {**SETS[0], 'actuation_delay': {'delay': 0.02}}, SETS[1]])
+    {**SETS[0], 'actuation_delay': {'delay': 0.02}}, SETS[1],
+    {'motor_lag': {'time_constant': 0.06}}, {'motor_lag': {'rise': 0.05, 'fall': 0.08}},
+    {**SETS[0], 'actuation_delay': {'delay': 0.02}, 'motor_lag': {'time_constant': 0.06}}])
 def test_a_flight_in_mujoco_is_that_of_our_model(effects):
     vehicle = replace(VEHICLE, effects=effects)
     mujoco, model, space, _ = model_of(vehicle)
@@ -94,8 +96,9 @@ def test_a_flight_in_mujoco_is_that_of_our_model(effects):
     model.opt.timestep = 0.001
     data = mujoco.MjData(model)
     data.qpos[:], data.qvel[:] = [*start[:3], *start[6:10]], [*start[3:6], *start[10:]]
-    line = space['Delayed']() if 'actuation_delay' in effects else None
+    line = space['Commands']() if 'Commands' in space else None
     data.ctrl[:] = vehicle.thrust_coefficient * course.commands[0] ** 2
+    data.act[:] = data.ctrl[:model.na]
     for command in course.commands[:-1]:
         for _ in range(10):
             controls = vehicle.thrust_coefficient * command ** 2
@@ -110,12 +113,12 @@ def test_a_flight_in_mujoco_is_that_of_our_model(effects):
     np.testing.assert_allclose(data.qvel[3:], ours[-1, 10:], atol=1e-3)
 
 
-def test_the_lag_of_the_actuators_is_ours_for_small_changes():
+def test_the_lag_of_the_actuators_is_ours_for_small_changes_without_the_code():
     lag = {'motor_lag': {'time_constant': 0.05}}
     vehicle = replace(VEHICLE, effects=lag, linear_drag=(0.0, 0.0, 0.0),
                       rotational_drag=(0.0, 0.0, 0.0))
     mujoco, model, _, found = model_of(vehicle)
-    assert found.code is None
+    assert [fate.name for fate in found.fates.by_code] == ['motor_lag']
     data = mujoco.MjData(model)
     hover = vehicle.thrust_coefficient * vehicle.hover_speed ** 2
     data.qpos[2], data.act[:], data.ctrl[:] = 1.0, hover, hover * 1.02 ** 2
@@ -174,7 +177,7 @@ def test_a_delay_ends_at_the_nearest_step(delay, steps_late):
     mujoco, model, space, _ = model_of(replace(
         VEHICLE, effects={'actuation_delay': {'delay': delay}}))
     model.opt.timestep = 0.002
-    data, line = mujoco.MjData(model), space['Delayed']()
+    data, line = mujoco.MjData(model), space['Commands']()
     seen = []
     for _ in range(5):
         line.command(model, data, np.full(4, 1.0))

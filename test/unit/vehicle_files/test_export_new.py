@@ -3,6 +3,7 @@
 """Vehicles into new files of simulators, with no file of the user to go into."""
 
 from dataclasses import replace
+import io
 
 from exported import again, assert_same, base
 import numpy as np
@@ -92,13 +93,33 @@ def test_mujoco_itself_pushes_as_a_new_file_says():
         rtol=1e-9, atol=1e-12)
 
 
-def test_yourdfpy_reads_a_new_urdf():
+@pytest.mark.parametrize('with_base', [False, True])
+def test_yourdfpy_reads_what_is_written_as_urdf(with_base):
     yourdfpy = pytest.importorskip('yourdfpy', reason='yourdfpy is not installed')
-    import io
-    vehicle = load_vehicle('hummingbird')
-    robot = yourdfpy.URDF.load(io.StringIO(export(vehicle, 'urdf').text), load_meshes=False,
-                               build_scene_graph=False)
-    assert robot.validate()
-    links = robot.link_map
-    assert sum(link.inertial.mass for link in links.values()) == pytest.approx(vehicle.mass)
-    assert len(robot.actuated_joints) == 4
+    source, vehicle = base('urdf') if with_base else (None, load_vehicle('hummingbird'))
+    x, y, z = (1.02 * moment for moment in vehicle.inertia)
+    shift = 0.1 * vehicle.arm_length * np.array([1.0, -0.5, 0.2])
+    vehicle = replace(vehicle, mass=1.1 * vehicle.mass, inertia=(x, y, z),
+                      products=(0.02 * x, -0.03 * x, 0.01 * x),
+                      effects={'com_offset': dict(zip('xyz', shift.tolist(), strict=True))})
+    robot = yourdfpy.URDF.load(io.StringIO(export(vehicle, 'urdf', source).text),
+                               load_meshes=False, build_scene_graph=True)
+    assert with_base or robot.validate()    # properties are none of the format's own elements
+    bodies, hubs = [], {}
+    for link in robot.robot.links:
+        inside = np.eye(4) if link.inertial.origin is None else link.inertial.origin
+        place = robot.get_transform(link.name, 'base_link') @ inside
+        hubs[link.name] = place[:3, 3]
+        moments = np.array(link.inertial.inertia)
+        bodies.append((link.inertial.mass, place[:3, 3],
+                       place[:3, :3] @ moments @ place[:3, :3].T))
+    mass = sum(body[0] for body in bodies)
+    centre = sum(body[0] * body[1] for body in bodies) / mass
+    inertia = sum(moments + weight * ((at - centre) @ (at - centre) * np.eye(3)
+                                      - np.outer(at - centre, at - centre))
+                  for weight, at, moments in bodies)
+    assert mass == pytest.approx(vehicle.mass, rel=1e-9)
+    np.testing.assert_allclose(inertia, vehicle.inertia_matrix, atol=1e-9 * z)
+    hub = 'prop{}_link' if with_base else 'rotor_{}'
+    for k, rotor in enumerate(vehicle.rotors):
+        np.testing.assert_allclose(hubs[hub.format(k)] - centre, rotor.position - shift, atol=1e-9)

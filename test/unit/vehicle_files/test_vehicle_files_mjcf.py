@@ -8,9 +8,11 @@ import numpy as np
 import pytest
 from refusing import refused
 
+from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.motors import rotor_speeds
+from quad_ident_ros.vehicle_files.export import export
 from quad_ident_ros.vehicle_files.kinds import kind_of
-from quad_ident_ros.vehicle_files.load import read_vehicle
+from quad_ident_ros.vehicle_files.load import read_vehicle, source_of
 from quad_ident_ros.vehicle_files.source import Source
 
 ARMS = ((-0.14, -0.18), (-0.14, 0.18), (0.14, 0.18), (0.14, -0.18))
@@ -136,7 +138,7 @@ def test_of_two_vehicles_one_is_named():
     ('gear="0 0 1 0 0 -', 'gear="0 0.5 1 0 0 -', '26.6 deg off body z'),
     ('gear="0 0 1 0 0 -0.02', 'gear="0 0 1 0 0 -0.03', 'torque over thrust is 0.02, that of the'),
     ('class="quad" name="m0"', 'class="none" name="m0"', "no default class 'none' is in the"),
-    ('<light pos="0 0 2"/>', '<include file="x2.xml"/>', "<include>: 'x2.xml' is not followed"),
+    ('<light pos="0 0 2"/>', '<include file="x2.xml"/>', "<include>: 'x2.xml' is not beside"),
     ('<light pos="0 0 2"/>', '<replicate count="2"/>', '<replicate>: it is not expanded here'),
     (INERTIAL, '<geom type="mesh" mesh="frame" mass="1"/>', "the mesh 'frame', which is not read"),
     (INERTIAL, '', "<body name='quad'>: it has no mass; give it an <inertial>"),
@@ -166,6 +168,35 @@ def test_a_motor_without_a_site_does_not_act_at_one_without_a_name():
     assert reading(unnamed).vehicle == reading(model()).vehicle
 
 
+def test_an_inertia_that_mujoco_balances_is_that_of_a_ball():
+    text = model(INERTIAL.replace('0.04', '0.4'), before='<compiler balanceinertia="true"/>')
+    assert reading(text).vehicle.inertia == pytest.approx([0.15] * 3, rel=1e-12)
+
+
+def test_forces_that_are_left_out_are_said():
+    text = model().replace('<freejoint/>', '<joint type="free" damping="0.1"/>').replace(
+        '<body name="quad"', '<body name="quad" gravcomp="0.5"')
+    said = ' '.join(reading(text).assumed)
+    assert 'damping: this force on the joint is left out' in said
+    assert 'gravcomp: it is left out' in said
+    assert 'left out' not in ' '.join(reading(model()).assumed)
+
+
+def test_what_a_scene_includes_is_read(tmp_path):
+    (tmp_path / 'x2.xml').write_text(model())
+    scene = tmp_path / 'scene.xml'
+    scene.write_text('<mujoco>\n<include file="x2.xml"/>\n</mujoco>')
+    found = read_vehicle(source_of(scene))
+    assert found.vehicle == reading(model()).vehicle
+    places = {entry.key: entry.place for entry in found.read}
+    assert places['mass'].startswith('x2.xml, line ')
+    with pytest.raises(InputError, match='the vehicle stands in .*x2.xml, which it includes'):
+        export(found.vehicle, 'mujoco', source_of(scene))
+    scene.write_text('<mujoco>\n<include file="x2.xml"/>\n<include file="x2.xml"/></mujoco>')
+    said = refused(scene.read_text(), str(scene))
+    assert "line 3: <include>: 'x2.xml' is included twice" in said
+
+
 def test_it_is_told_by_its_content():
     assert kind_of(model()).name == 'mjcf'
 
@@ -187,7 +218,7 @@ HOLLOW = GEOMS.replace('class="main"', 'class="main" shellinertia="true"').repla
 @pytest.mark.parametrize('before', [
     '', '<compiler angle="radian" eulerseq="ZYX"/>', '<compiler inertiafromgeom="true"/>',
     '<compiler eulerseq="zxz" inertiagrouprange="0 3"/>', '<compiler settotalmass="2.5"/>',
-    '<compiler boundmass="2" boundinertia="0.03"/>'])
+    '<compiler boundmass="2" boundinertia="0.03"/>', '<compiler balanceinertia="true"/>'])
 @pytest.mark.parametrize('body', [
     GEOMS, HOLLOW, INERTIAL + GEOMS,
     GEOMS + '<body name="tag" pos="0.1 0.2 0.3"><site name="t"/></body>',

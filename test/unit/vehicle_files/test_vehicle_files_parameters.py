@@ -2,6 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Vehicles in lists of parameters: of drone-models (crazyflow) and of PX4's SIH."""
 
+from dataclasses import replace
+import importlib
+import inspect
 import math
 import os
 from pathlib import Path
@@ -13,10 +16,14 @@ from refusing import refused
 
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.motors import rotor_speeds
+from quad_ident_ros.model.vehicle import load_vehicle
+from quad_ident_ros.vehicle_files.export import export
 from quad_ident_ros.vehicle_files.kinds import kind_of
 from quad_ident_ros.vehicle_files.load import load_any_vehicle, read_vehicle
 from quad_ident_ros.vehicle_files.source import Source
 
+if sys.version_info >= (3, 11):
+    import tomllib
 TOML = pytest.mark.skipif(sys.version_info < (3, 11), reason='TOML is read from Python 3.11 on')
 DRONE = """
 [small]
@@ -89,18 +96,73 @@ def test_a_drone_of_drone_models_is_reduced_at_hover():
 
 
 @TOML
-@pytest.mark.skipif(os.environ.get('SCIPY_ARRAY_API') != '1',
-                    reason='drone-models is imported only with SCIPY_ARRAY_API=1')
-def test_the_wrench_is_that_of_drone_models():
-    models = pytest.importorskip('drone_models', reason='drone-models is not installed')
-    from drone_models.core import load_params
-    from drone_models.first_principles import dynamics
-    path = Path(models.__file__).parent / 'data' / 'params.toml'
+def test_a_drone_of_crazyflow_may_have_zeros_and_no_gravity():
+    text = DRONE.replace('gravity_vec = [0.0, 0.0, -10.0]', 'prop_inertia = 0.0').replace(
+        'thrust_min = 0.01', 'thrust_min = 0.0')
+    found = reading(text)
+    assert (found.vehicle.gravity, found.vehicle.speed_min) == (9.81, 0.0)
+    assert 'rotor_gyro' not in found.vehicle.effects
+    assert any('gravity 9.81 m/s2: that of crazyflow' in text for text in found.assumed)
+
+
+@TOML
+def test_a_new_file_has_all_that_the_equations_of_crazyflow_take():
+    vehicle = load_vehicle('hummingbird')
+    [table] = tomllib.loads(export(vehicle, 'crazyflow').text).values()
+    assert table.keys() >= {'mass', 'J', 'thrust_min', 'L', 'prop_inertia', 'rpm2thrust',
+                            'rpm2torque', 'rotor_dyn_coef', 'mixing_matrix', 'drag_matrix'}
+
+
+def equations(library):
+    """Return the file of drone-models or crazyflow, and their load_params and dynamics."""
+    if os.environ.get('SCIPY_ARRAY_API') != '1':
+        pytest.skip(f'{library} is imported only with SCIPY_ARRAY_API=1')
+    models = pytest.importorskip(library, reason=f'{library} is not installed')
+    core = importlib.import_module(f'{library}.core')
+    dynamics = importlib.import_module(f'{library}.first_principles').dynamics
+    file = ('data' if library == 'drone_models' else 'first_principles') + '/params.toml'
+    return Path(models.__file__).parent / file, core.load_params, dynamics
+
+
+LIBRARIES = pytest.mark.parametrize('library', ['drone_models', 'crazyflow.dynamics'])
+
+
+@TOML
+@LIBRARIES
+def test_a_new_file_makes_the_accelerations_of_the_vehicle_in_their_equations(library):
+    _, _, dynamics = equations(library)
+    vehicle = replace(load_vehicle('hummingbird'), linear_drag=(0.1, 0.2, 0.3))
+    [table] = tomllib.loads(export(vehicle, 'crazyflow').text).values()
+    table['J_inv'] = np.linalg.inv(table['J'])
+    known = inspect.signature(dynamics).parameters
+    speeds = vehicle.hover_speed * np.array([0.9, 1.0, 1.1, 1.05])
+    velocity, rate, rest = np.array([0.5, -0.3, 0.2]), np.array([1.0, -2.0, 0.5]), np.zeros(3)
+    rpm = speeds * 30 / math.pi
+    _, _, acceleration, turning, _ = dynamics(
+        rest, np.array([0.0, 0, 0, 1]), velocity, rate, rpm, rpm,
+        **{key: np.asarray(value) for key, value in table.items() if key in known})
+    thrusts = vehicle.thrust_coefficient * speeds ** 2
+    places = np.array([rotor.position for rotor in vehicle.rotors])
+    spins = np.array([rotor.spin for rotor in vehicle.rotors])
+    moment = np.array([places[:, 1] @ thrusts, -places[:, 0] @ thrusts,
+                       vehicle.torque_coefficient * spins @ speeds ** 2])
+    force = np.array([0, 0, thrusts.sum()]) - np.array(vehicle.linear_drag) * velocity
+    inertia = np.array(vehicle.inertia)
+    np.testing.assert_allclose(acceleration, force / vehicle.mass - [0, 0, vehicle.gravity],
+                               rtol=1e-9, atol=1e-9)
+    np.testing.assert_allclose(turning, (moment - np.cross(rate, inertia * rate)) / inertia,
+                               rtol=1e-9, atol=1e-9)
+
+
+@TOML
+@LIBRARIES
+def test_the_wrench_is_that_of_drone_models(library):
+    path, load_params, dynamics = equations(library)
     with pytest.raises(InputError, match='several vehicles are in it .cf2x_L250, .*; name one'):
         load_any_vehicle(path)
     for name in ('cf2x_L250', 'cf2x_P250', 'cf2x_T350', 'cf21B_500'):
         vehicle, theirs = load_any_vehicle(f'{path}:{name}'), load_params('first_principles', name)
-        known = dynamics.__kwdefaults__ or dynamics.__wrapped__.__code__.co_varnames
+        known = inspect.signature(dynamics).parameters
         values = {key: np.asarray(value) for key, value in theirs.items() if key in known}
         exponent = vehicle.effects['thrust_scale']['exponent']
         for share, tolerance in ((1.0, 1e-9), (0.8, 2e-2), (1.2, 2e-2)):
