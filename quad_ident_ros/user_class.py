@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""A class in a user's Python file: made, called, and its errors told."""
+"""A class in a user's Python file: made, called, and its errors reported."""
 
 from collections.abc import Callable
 from contextlib import redirect_stdout
@@ -24,7 +24,7 @@ class UserClass:
     An instance, `made`, of the class that FILE.py:NAME names.
 
     Raises InputError for all that is wrong with the file, in one line that says where; option:
-    that by which it was named.
+    the one that was used.
     """
 
     def __init__(self, spec: str, option: str) -> None:
@@ -76,7 +76,7 @@ class UserClass:
                              + (f': {text}' if text else '')) from None
 
     def returns(self, what: str, function: Callable) -> str:
-        """Return the begin of what is said of what a method returns."""
+        """Return the beginning of messages about what a method returns."""
         return f'{self.path}, line {line_of(function)}: {what} of {self.name} returns'
 
     def array(self, what: str, function: Callable, made: Any, expected: str) -> np.ndarray:

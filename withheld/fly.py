@@ -12,7 +12,7 @@ from withheld.controllers import CONTROLLERS
 from withheld.logs import Logging, LowPass
 from withheld.sensors import declared, moved
 
-INTEGRAL = 0.8      # 1/s, of the position error into the place that is told
+INTEGRAL = 0.8      # 1/s, of the position error into the commanded place
 FARTHEST, FASTEST = 4.0, 100.0      # m from the path, rad/s: beyond, the vehicle is lost
 IDLE = 0.4          # of the speed in hover, of rotors on the floor
 

@@ -118,7 +118,7 @@ class _Column:
 
     def instead(self):
         one = self.all['instead']
-        return self._reached('`unknown` said instead of the effect', one['rate'], one['count'],
+        return self._reached('`unknown` instead of the effect', one['rate'], one['count'],
                              most=self.goal.instead, wrong=lambda case: case['instead'])
 
     def coverage(self):

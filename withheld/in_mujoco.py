@@ -34,7 +34,7 @@ from quad_ident_ros.vehicle_files.source import Source
 from quad_ident_ros.vehicle_files.written import read_back, with_code
 
 STEP = 0.002        # s, at most: MuJoCo's usual step
-BEFORE = 0.3        # s of commands before a start, by which actuators and delays have settled
+BEFORE = 0.3        # s of commands before a start, in which actuators and delays settle
 LEAST = 0.05        # of the nominal model's gap: what is promised to fall less is not judged
 KEPT = 0.95         # of what is promised must come true
 

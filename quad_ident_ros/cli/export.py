@@ -112,7 +112,7 @@ def cost_of(found: Export, vehicle: Vehicle, records: Sequence[FlightRecord]) ->
 
 
 def _base(options: argparse.Namespace) -> Source | None:
-    """Return the file of --base, or None; InputError where it is none, or would be lost."""
+    """Return the file of --base, or None; InputError if it is missing or would be lost."""
     if options.base is None:
         return None
     source = source_of(options.base)
@@ -135,7 +135,7 @@ def _beside(path: str) -> Path:
 
 
 def _refuse_others(path: Path) -> None:
-    """Raise InputError where code would be written over a file that is none of ours."""
+    """Raise InputError where code would overwrite a file that we did not write."""
     if path.exists() and (not path.is_file() or CODE_SAYS not in path.read_text(
             'utf-8', 'replace')[:200]):
         raise InputError(f'{path}: the code beside the file would be written over this; name '

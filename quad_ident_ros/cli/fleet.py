@@ -24,7 +24,7 @@ def add(commands, said):
         description='Diagnose flights of many vehicles. Those of one vehicle, configuration and '
                     'day are diagnosed together; all\nresults are kept in a folder of Parquet '
                     'files, which pandas, polars and DuckDB read. What is done is not\ndone '
-                    'again: start the same command anew after new flights, or where it was '
+                    'again: start the same command again after new flights, or where it was '
                     'interrupted.',
         epilog='a folder: the first folder in it that is no day names the vehicle, a second one '
                'the configuration;\n  without one the log does. The nominal vehicle is '

@@ -73,7 +73,7 @@ def parser(wanted):
 
 
 class _Parser(argparse.ArgumentParser):
-    """Says of a value that is none of several which of them may be meant."""
+    """Suggests, for a wrong value of several, which of them may be meant."""
 
     def error(self, message):
         """End with a message in one line."""

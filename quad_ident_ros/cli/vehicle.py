@@ -78,7 +78,7 @@ def as_data(reading: Reading) -> dict[str, Any]:
 
 
 def show(reading: Reading) -> None:
-    """Print what was read, what became of it, what is missing and what was assumed."""
+    """Print what was read and how it was used, what is missing and what was assumed."""
     screen = console()
     say(screen, f'{reading.path}: {reading.kind}')
     if reading.read:

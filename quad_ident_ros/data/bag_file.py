@@ -55,7 +55,7 @@ class BagFile:
     A bag that is open for reading.
 
     Use it with `with`. A bag is read by what it is: its name does not matter.
-    Raises InputError in one line for a path that is no bag, and wherever one is damaged.
+    Raises InputError in one line for a path that is not a bag, and where one is damaged.
     """
 
     def __init__(self, path):
@@ -113,7 +113,7 @@ class BagFile:
 
     @property
     def topics(self):
-        """Return the topics, by name; one of several types is there once for each."""
+        """Return the topics, by name; one of several types occurs once for each."""
         counts = {}
         with self._guarded():
             for one in self._reader.connections:
@@ -148,7 +148,7 @@ class BagFile:
         """
         Yield (topic, times of receipt in ns, messages) of the named topics, those of each by time.
 
-        Messages whose bytes lie alike come together: an array of times (n,), and one message with
+        Messages of equal layout come together: an array of times (n,), and one message with
         columns (n,), or (k, n) of a list, in place of its numbers. Others come one by one, with
         an integer, as the first of each topic does.
         Args: fixed(topic): the fields that have one value in messages that come together, or None

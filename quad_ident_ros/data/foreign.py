@@ -26,7 +26,7 @@ def read_mapped_bag(path, mapping, spoilt=False):
     is filled by the types of the topics, where these leave no doubt. Stamps are those in the
     messages where all of a topic have one, else the times of receipt; all are the times of
     receipt where the stamps are of several clocks.
-    Args: path of a bag; mapping Mapping; spoilt: leave attitudes that are none out, and tell them
+    Args: path of a bag; mapping Mapping; spoilt: leave invalid attitudes out and list them
     in the info, see record.SPOILT.
     Raises InputError that names file, topic and message.
     """
@@ -88,7 +88,7 @@ def _told(parts, streams, start):
 
 
 def without_stamps(topic):
-    """Return what is said of a topic whose messages say not when they are of."""
+    """Return the note on a topic whose messages have no stamp."""
     return (f'the messages of topic {topic} have no stamps; their times of receipt are used, '
             'which are later by what transport takes')
 

@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 import heapq
 import math
 
-# A stamp that goes back by more than this is a clock that began anew, not a late message.
+# A stamp that goes back by more than this is a clock that restarted, not a late message.
 RESTART_NS = 1_000_000_000
-REMEMBERED = 2000   # emitted stamps kept to tell a duplicate from a late message
+REMEMBERED = 2000   # emitted stamps, kept to distinguish a duplicate from a late message
 
 
 @dataclass
@@ -21,8 +21,8 @@ class Counts:
     messages after their row was given up. duplicated: a stamp twice on one topic. out_of_order: a
     stamp older than the one before it on its topic. nan: messages with a value that is no finite
     number. lost and incompatible_qos: as the middleware reports them. unread: messages that waited
-    when the recorder was told to end, for too long to be joined. restarts: of the clock.
-    missing: samples that the records lack, whatever became of them, by the count that the sender
+    when the recorder was asked to end, for too long to be joined. restarts: of the clock.
+    missing: samples missing in the records, for any reason, by the count that the sender
     announced or else by the sample period.
     """
 
@@ -58,7 +58,7 @@ class Joiner:
         self.topics = tuple(topics)
         self.counts = Counts(received=dict.fromkeys(self.topics, 0))
         self._most = most
-        # A row's key is (era, stamp): an era ends where the clock begins anew.
+        # A row's key is (era, stamp): an era ends where the clock restarts.
         self._pending = {}
         self._keys = []
         self._last = dict.fromkeys(self.topics, (0, -1))
@@ -72,7 +72,7 @@ class Joiner:
         Take a message's values (tuple of float) and return the rows that it completes.
 
         A row is (stamp_ns, values of all topics in their order). Rows come in rising order of
-        stamps; after a restart of the clock they begin anew.
+        stamps; after a restart of the clock they begin again.
         """
         counts = self.counts
         counts.received[topic] += 1
@@ -113,7 +113,7 @@ class Joiner:
         era, last = self._last[topic]
         before = self._before[topic]
         if before is not None and stamp > before and self._emitted[0] < era:
-            # The clock did not begin anew: one message came far too late.
+            # The clock did not restart: one message came far too late.
             self._pending.pop((era, last), None)
             self._newest[topic].pop()
             self._before[topic] = None

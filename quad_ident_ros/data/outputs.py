@@ -45,7 +45,7 @@ def commanded(records: Sequence[FlightRecord], vehicle: Vehicle | None,
     Return the flight records of one file with cmd1..n in place of output1..m.
 
     By the actuators of a mapping, or else by the motors of the vehicle, or else from its lowest
-    to its highest speed, by the kind that the reader knows or the values tell. Where neither has
+    to its highest speed, by the kind that the reader knows or the values show. Where neither has
     the speed at full signal, it is that by which thrust carries the weight: see thrust_level.
     Motors that a reader knows the places of, and their measured speeds, come into the order of
     the vehicle. Its arm length makes inputs u2 and u3 of moments: see commands.with_arm.
@@ -74,7 +74,7 @@ def commanded(records: Sequence[FlightRecord], vehicle: Vehicle | None,
 
 @dataclass(frozen=True)
 class _Map:
-    """Motors, whose gain may not be known, how they are told, and whether their shape is."""
+    """Motors, whose gain may be unknown, where they are from, and whether their shape is known."""
 
     motors: Motors
     said: str

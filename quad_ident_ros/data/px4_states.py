@@ -29,9 +29,9 @@ _TURNS = tuple(f'delta_q_reset[{i}]' for i in range(4))
 RESET_FIELDS = {topic: tuple(name for counter, kind, deltas, _ in counters for name in
                              (counter, *(_TURNS if kind == 'attitude' and not deltas else deltas)))
                 for topic, counters in _COUNTERS.items()}
-"""Topic -> the fields in it that tell of resets, as far as it has them."""
+"""Topic -> its fields that report resets, where it has them."""
 
-TWICE = 0.3         # s within which two topics tell of one reset
+TWICE = 0.3         # s within which two topics report one reset
 
 
 def flown(data: Topics) -> tuple[list[tuple[int | None, int | None]] | None, str]:

@@ -54,7 +54,7 @@ class Table:
 
 def read_text(path: Path, separator: str = '') -> Table:
     """
-    Return the Table of a text file; separator: '' to be told from the first lines.
+    Return the Table of a text file; separator: '' to find it from the first lines.
 
     Raises InputError that names file, line and column.
     """
@@ -168,7 +168,7 @@ def _number(cell: str, comma: bool) -> float | None:
 def _head(path: Path, rows: list[str], separator: str, comma: bool) -> tuple[int, int]:
     """Return the places of the line of names and of the first line of numbers."""
     for k, row in enumerate(rows[:_HEAD]):
-        # A line of numbers among names, as of markers, is none of samples.
+        # A line of numbers among names, as of markers, is not a sample.
         if _is_numbers(row, separator, comma) and (k + 1 == len(rows) or _is_numbers(
                 rows[k + 1], separator, comma)):
             if k == 0:

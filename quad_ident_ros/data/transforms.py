@@ -114,7 +114,7 @@ class Transforms:
 
     def add_live(self, child: str, parent: str, stamp: int, received: int,
                  values: Sequence[float], fixed: bool = False) -> None:
-        """Take a transform as add; what is late, or from before a clock began anew, is left."""
+        """Take a transform as add; what is late, or from before a clock restarted, is left."""
         child, stamp = child.strip('/'), stamp or received
         link = self._links.get(child)
         if self._chain and (link is None or child not in self._chain):
@@ -195,7 +195,7 @@ class Transforms:
                  for k, row in zip(now.tolist(), table.tolist(), strict=True)]
         self._last = found[-1][0]
         for link in links:
-            if not link.fixed:      # some stay, by which it is told how far apart they are
+            if not link.fixed:      # some stay, to find how far apart they are
                 link.forget(int(np.searchsorted(link.stamps, self._last, 'right')) - _KEPT)
         return found
 
@@ -222,7 +222,7 @@ class Transforms:
         return [self._links[name] for name in chain[1:]]
 
     def _restart(self, stamp: int) -> None:
-        """Forget what is from before a clock that began anew."""
+        """Forget what is from before a clock that restarted."""
         self._last = min(self._last, stamp - 1)
         for link in self._links.values():
             if not link.fixed and len(link.stamps) and link.stamps[-1] > stamp + RESTART_NS:

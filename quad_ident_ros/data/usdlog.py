@@ -103,7 +103,7 @@ def _header(path, data, stamp):
         name = data[at:max(end, at)].decode('ascii', 'replace')
         if not name or not name.isascii() or not name.isprintable():
             raise InputError(f'{path}: the header of this Crazyflie log is damaged at byte {at}: '
-                             f'no name is there; {_AGAIN}')
+                             f'the name is missing; {_AGAIN}')
         at = end + 1
         return name
 

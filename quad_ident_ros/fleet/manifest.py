@@ -129,7 +129,7 @@ def _entry(manifest: Path, line: int, names: Sequence[str], row: Sequence[str]) 
 
 
 def _covariate(where: str, name: str, cell: str) -> float:
-    """Return the number in a cell of a column that is none of COLUMNS; raises InputError."""
+    """Return the number in a cell of a column that is not in COLUMNS; raises InputError."""
     try:
         return schema.number(f'{where}, column {name}', cell)
     except InputError as error:

@@ -17,7 +17,7 @@ TRACELESS = 10.0   # pole x period beyond which e^-10 of its response is left at
 
 def said_of(signal, model, sure, tests, bounds=None):
     """
-    Yield what must be said about how sure a model is.
+    Yield what a reader must know about how certain a model is.
 
     Args: the Signal, its SecondOrder, Uncertainty and ResidualTests; bounds: the Space in which a
     search found the model, or None.
@@ -48,7 +48,7 @@ def said_of(signal, model, sure, tests, bounds=None):
         yield (f'the input differs between the two sides of {changed} of {gaps} gaps in the '
                'record: when it changed within them is not known, and the standard errors, which '
                'cover the noise only, are too small')
-    # The level enters beside the noise: it is said where it is not small.
+    # The level enters beside the noise: it is reported where it is not small.
     if sure.errors['K'] and sure.errors['K'] < 2 * level_spread(signal, model):
         yield LEVEL
     for name in at_bounds(bounds, model) if bounds else ():
@@ -71,7 +71,7 @@ def _gaps(signal):
 
 
 def said_of_order(other):
-    """Return what must be said of an order.Alternative, or None."""
+    """Return the finding on an order.Alternative, or None."""
     if not other.is_better:
         return None
     if other.name == 'first order':

@@ -120,7 +120,7 @@ def _preset(reproduction, name, pictures):
               details('The same with one search over all 12 parameters, as in the paper',
                       join([sections.spent(study, 'joint'), sections.fits(study, 'joint')]))]
     if preset.references:
-        parts += [tag('h3', 'The simulation against what is known of it'),
+        parts += [tag('h3', 'The simulation against known results'),
                   sections.references(preset)]
     if preset.truth:
         parts.append(sections.truth(preset))

@@ -92,7 +92,7 @@ def spent(study, effort):
 
 
 def references(preset):
-    """Return the table of what is known of the responses of a preset."""
+    """Return the table of known facts about the responses of a preset."""
     rows = [[entry.output, number(entry.t), number(entry.expected, 10),
              number(entry.computed, 10), number(abs(entry.computed - entry.expected), 2),
              entry.source] for entry in preset.references]

@@ -163,7 +163,7 @@ def minor_lines(found: Diagnosis) -> list[str]:
 
 
 def one_finding_lines(found: Diagnosis) -> list[str]:
-    """Return what motion cannot tell apart from an effect that is named, and what tells it."""
+    """Return what motion cannot separate from an effect that is named, and what does."""
     lines = []
     for row in found.one_finding:
         may_be = ', '.join(' or '.join(names) for names in row['may_be'])

@@ -53,7 +53,7 @@ def _first(found: Insight) -> list:
             [tag('strong', one.where), tag('span', one.why, f'tag {_kind(one)}'), one.text], ' ')
         + '</li>') for one in some)
     return [head, tag('p', 'The most urgent first: what gets worse, what changed, which vehicles '
-                           'differ from their sisters, what the model lacks for all, and logs '
+                           'differ from their sisters, what the model does not have, and logs '
                            'that are refused or look wrong.'),
             Markup(f'<ol class="first">{items}</ol>')]
 

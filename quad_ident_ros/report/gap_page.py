@@ -153,7 +153,7 @@ def _closed_loop(found: Diagnosis) -> list:
 
 
 def _open(found: Diagnosis) -> list:
-    """Return what the flights do not tell, and what would."""
+    """Return what the flights leave open, and which flights would settle it."""
     lines = [*open_lines(found), *nuisance_lines(found)]
     parts = [tag('h2', 'What remains open'), *_listed(lines)] if lines else []
     if found.fly_next:
@@ -165,7 +165,7 @@ def _open(found: Diagnosis) -> list:
 
 
 def _listed(lines: list[str]) -> list:
-    """Return lines as sentences of a list; none where there is none."""
+    """Return lines as sentences of a list; nothing where there are none."""
     items = join(tag('li', sentence(line.strip())) for line in lines)
     return [Markup(f'<ul>{items}</ul>')] if lines else []
 

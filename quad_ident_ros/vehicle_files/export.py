@@ -91,7 +91,7 @@ def export(vehicle: Vehicle, to: str, source: Source | None = None, sag: float |
 
 
 def _kind(target: Target, to: str, source: Source) -> Kind:
-    """Return the kind of a base file; InputError where it is none for a target."""
+    """Return the kind of a base file; InputError where no target has it."""
     kind = kind_of(source.text)
     expected = next(each for each in KINDS if each.name == target.kind)
     if kind is not expected:

@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""The kinds of files that vehicles are read from, told by their content."""
+"""The kinds of files that vehicles are read from, by their content."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

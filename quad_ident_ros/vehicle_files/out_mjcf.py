@@ -31,7 +31,7 @@ OTHER_TURNS = 'euler', 'axisangle', 'xyaxes', 'zaxis'
 
 
 def write(base: Base) -> EditedXml:
-    """Return the Edits by which an MJCF model holds what is wanted; raises InputError."""
+    """Return the Edits that give an MJCF model what is wanted; raises InputError."""
     edited = EditedXml(base.source.text)
     model = model_of(parse(base.source.path, base.source.text))
     element, inherited = flying_body(base.source, model)

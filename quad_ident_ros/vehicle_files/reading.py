@@ -91,7 +91,7 @@ class Draft:
         self.read.append(Entry(key, value, unit, place))
 
     def take_gravity(self, value: float, place: str) -> None:
-        """Enter the gravity, m/s^2; InputError where it is none."""
+        """Enter the gravity, m/s^2; InputError where it is not a number above 0."""
         if not value > 0.0:
             raise InputError(f'{self.where}: {place}: without gravity no flight is in balance; '
                              'state that of the Earth')

@@ -298,7 +298,7 @@ class _Fault(Influence):
 
 
 class Broken(_Fault):
-    """Thrust and reaction torque are lost alike."""
+    """Thrust and reaction torque fall by the same share."""
 
     comparable = True
 
@@ -421,7 +421,7 @@ class Creeping(_Tilt):
 
 
 class SkewedBlock(_Tilt):
-    """A tilted block whose gyroscope has axes that are not quite at right angles, nor alike."""
+    """A tilted block whose gyroscope has axes not quite at right angles and of unequal scale."""
 
     def measured(self, time, state, thrust):
         """Return what the block says."""

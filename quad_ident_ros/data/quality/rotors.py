@@ -15,7 +15,7 @@ from quad_ident_ros.model.vehicle import hover_fault
 SURE, BETTER = 0.5, 0.2   # mean correlation that an explanation needs, and its lead
 SLOW = 1.0                # s; what changes more slowly is trim, aerodynamics and battery
 LATEST = 0.08             # s, motors follow their commands within
-ROUNDING = 1e-12          # of a power: less is none
+ROUNDING = 1e-12          # of a power: less counts as 0
 COMPACT, WIDE = 0.01, 3.0   # moments of inertia over mass arm^2, beyond which no vehicle is built:
                             # those of known quadrotors lie between 0.16 and 0.32
 MOST_ROTORS = 6           # of which all orders are tried

@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Files that are no flight record, told by their content, and what to give instead."""
+"""Files that are not flight records, by their content, and what to give instead."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -10,7 +10,7 @@ import zlib
 
 from quad_ident_ros.errors import InputError
 
-START = 4096        # bytes that tell what a file is: a tar archive says it at 257
+START = 4096        # bytes that show what a file is: a tar archive says it at 257
 GZIP = b'\x1f\x8b'
 _CONTROL = 0.02     # share of control characters: numbers in binary have more, damaged text less
 _SHOWN = 3          # files of a folder that its message names
@@ -73,7 +73,7 @@ def title_of(start: bytes) -> str:
 
 def refuse_unknown(path: Path, start: bytes, known: str) -> None:
     """Raise InputError for a file that is no text either; known: the kinds that are read."""
-    # A letter that is none is an error of a table, which its reader tells with its place.
+    # An invalid letter is an error of a table, which its reader reports with its place.
     control = sum(byte < 32 and byte not in b'\t\r\n\f\x1b' for byte in start)
     if control > _CONTROL * len(start) and not start.startswith(GZIP):
         raise InputError(f'{path}: this is of no kind that is known; give {known}')

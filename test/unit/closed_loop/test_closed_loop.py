@@ -240,8 +240,8 @@ def test_a_name_that_is_no_class_of_a_file_is_refused():
         controller_of('mine', BARE)
 
 
-@pytest.mark.parametrize('gone, said', [(('px',), 'lacks position, velocity or attitude'),
-                                        (('qw', 'qx'), 'lacks position, velocity or attitude')])
+@pytest.mark.parametrize('gone, said', [(('px',), 'has no position, velocity or attitude'),
+                                        (('qw', 'qx'), 'has no position, velocity or attitude')])
 def test_a_flight_without_a_path_is_refused(gone, said):
     record = flight()
     columns = {name: values for name, values in record.columns.items() if name not in gone}
