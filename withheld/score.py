@@ -388,8 +388,7 @@ def coverage(pairs):
 
 def rescaled(label: dict, found: dict) -> bool:
     """
-    Return whether a diagnosis names an effect of a ratio (thrust per mass) other than the present
-    one.
+    Return whether a diagnosis names the wrong effect of a ratio, such as thrust per mass.
 
     Motion shows ratios only: where m times the mass is stated as 1 / m of the thrust, inertia,
     drag and all else with mass in its unit come out as 1 / m of what they are.
