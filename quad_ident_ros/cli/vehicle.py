@@ -9,6 +9,7 @@ from typing import Any
 import yaml
 
 from quad_ident_ros import schema
+from quad_ident_ros.effects.registry import titled
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.vehicle import load_vehicle, vehicle_to_mapping, write_vehicle
 from quad_ident_ros.report.data import write_json
@@ -101,7 +102,7 @@ def _show_vehicle(reading: Reading, screen: Any) -> None:
                 f'hovers at {vehicle.hover_speed:.4g} rad/s{most}')
     for name, values in vehicle.effects.items():
         numbers = ', '.join(f'{key} = {value:.6g}' for key, value in values.items())
-        say(screen, f'effect: {name} {numbers}')
+        say(screen, f'effect: {titled(name)} {numbers}')
     if not vehicle.effects:
         say(screen, 'effects: none')
     if vehicle.residual is not None:

@@ -298,7 +298,7 @@ def _of_simulator(found: Diagnosis) -> list[str]:
 def next_row(one: dict) -> list[str]:
     """Return the cells of a proposal of what to fly next."""
     low, high = one['height']
-    names = ', '.join(one['effects'])
+    names = ', '.join(map(titled, one['effects']))
     return [f'{one["trajectory"]}, {one["duration"]:g} s',
             f'tell apart {names}' if one['purpose'] == 'separate' else f'see {names}',
             *(f'{value:.1f}' if value < 10 else f'{value:.0f}' for value in (one['now'],

@@ -28,7 +28,7 @@ def verdict_line(found: Diagnosis) -> str:
                 'tolerance, so no effect is named')
     if found.undetermined:
         certain = f'; certain: {_listed(found.sure)}' if found.sure else ''
-        return ('undetermined: the flights cannot tell between '
+        return ('undetermined: the flights cannot distinguish between '
                 f'{_listed(found.undetermined)}{certain}')
     named = _named(found)
     if not named:

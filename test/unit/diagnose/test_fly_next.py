@@ -106,8 +106,8 @@ def test_a_sure_effect_is_named_beside_those_that_are_not():
     text = io.StringIO()
     show(found, text)
     assert text.getvalue().startswith(
-        'verdict: undetermined: the flights cannot tell between error in mass (mass_offset) and '
-        'error in thrust (thrust_scale); certain: tilt of the measured attitude '
+        'verdict: undetermined: the flights cannot distinguish between error in mass '
+        '(mass_offset) and error in thrust (thrust_scale); certain: tilt of the measured attitude '
         '(attitude_misalignment)\n')
     assert 'what to fly next' in text.getvalue()
     proposals = found.fly_next

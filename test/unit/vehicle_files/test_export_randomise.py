@@ -164,7 +164,8 @@ def test_the_command_writes_files_of_a_simulator(file, tmp_path, capsys):
     text = base.read_text()
     assert main(['export', str(file), '--to', 'gazebo', '--base', str(base), '--randomise', '3',
                  '-o', str(tmp_path / 'models')]) == 0
-    assert 'carried: rotor_drag (by_speed): as it is' in capsys.readouterr().out
+    said = capsys.readouterr().out
+    assert 'carried: drag of the rotors (rotor_drag), form by_speed: as it is' in said
     assert base.read_text() == text
     for made in draw(known(), 3).vehicles:
         read = load_any_vehicle(tmp_path / 'models' / f'{made.name}.sdf')

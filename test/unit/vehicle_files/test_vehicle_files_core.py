@@ -257,7 +257,8 @@ def test_the_command_shows_and_writes_what_the_file_says(tmp_path, capsys):
     path, out = written(tmp_path, PARAMETERS), tmp_path / 'v.yaml'
     assert main(['vehicle', str(path), '-o', str(out)]) == 0
     shown = capsys.readouterr().out
-    assert 'line 13' in shown and 'effect: motor_lag time_constant = 0.02' in shown
+    assert 'line 13' in shown
+    assert 'effect: lag of the motors (motor_lag) time_constant = 0.02' in shown
     assert load_vehicle(out) == load_any_vehicle(path)
     assert main(['vehicle', str(path), '--json', '-']) == 0
     data = json.loads(capsys.readouterr().out)
