@@ -101,8 +101,8 @@ def _conclusions(claims):
                  'pair of methods is a case; cases in which the opposite is true are counted '
                  'as well. A method is better if the 95 % interval of the probability that it '
                  'ends below the other lies above one half, where a tie counts half for each. A '
-                 'case is undecided if the interval contains one half, and a claim is undecided if all '
-                 'its cases are. That no method is better is decided in a case only if the 95 % '
+                 'case is undecided if the interval contains one half, and a claim is undecided if '
+                 'all its cases are. That no method is better is decided in a case only if the 95 % '
                  'interval of the probability that the other ends below lies under one half; a '
                  'single case that is not decided leaves the claim undecided.'),
         table(['claim', 'verdict', 'score', 'the numbers'], rows,
