@@ -98,11 +98,11 @@ def _conclusions(claims):
                  'that are the same, a space that contains all solutions, the smallest of all '
                  'errors, no better method) does not hold if a single case refutes it.'),
         tag('p', 'For claims that one method is better than another, each experiment, search and '
-                 'pair of methods is a case; cases in which the opposite is true are counted '
-                 'as well. A method is better if the 95 % interval of the probability that it '
-                 'ends below the other lies above one half, where a tie counts half for each. A '
-                 'case is undecided if the interval contains one half, and a claim is undecided if '
-                 'all its cases are. That no method is better is decided in a case only if the 95 % '
+                 'pair of methods is a case; cases in which the opposite is true are counted as '
+                 'well. A method is better if the 95 % interval of the probability that it ends '
+                 'below the other lies above one half, where a tie counts half for each. A case '
+                 'is undecided if the interval contains one half, and a claim is undecided if all '
+                 'its cases are. That no method is better is decided in a case only if the 95 % '
                  'interval of the probability that the other ends below lies under one half; a '
                  'single case that is not decided leaves the claim undecided.'),
         table(['claim', 'verdict', 'score', 'the numbers'], rows,
