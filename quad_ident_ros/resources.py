@@ -155,7 +155,7 @@ def kind_of(path):
     from quad_ident_ros.data.readers.registry import READERS
     with open(path, 'rb') as file:
         start = file.read(START)
-    known = (reader.title for reader in READERS if reader.tells(Path(path), start))
+    known = (reader.title for reader in READERS if reader.recognises(Path(path), start))
     return title_of(start) or next(known, '')
 
 

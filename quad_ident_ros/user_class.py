@@ -71,7 +71,7 @@ class UserClass:
             if isinstance(error, SyntaxError) and error.filename == str(self.path):
                 lines = [error.lineno]
             where = f'{self.path}, line {lines[-1]}' if lines else str(self.path)
-            text = ' '.join(_said(error).split())[:LONGEST]
+            text = ' '.join(_in_words(error).split())[:LONGEST]
             raise InputError(f'{where}: {what} of {self.name} raises {type(error).__name__}'
                              + (f': {text}' if text else '')) from None
 
@@ -105,7 +105,7 @@ class UserClass:
         return module
 
 
-def _said(error: BaseException) -> str:
+def _in_words(error: BaseException) -> str:
     """Return what an error says, or nothing where even that raises."""
     try:
         return str(error)

@@ -100,5 +100,5 @@ def fly(reality, params, path, seconds, step, noise, rng, sensors, full_voltage=
                             params['rotor_speed_max'])
         commands[k] = given
         s = reality.hold(s, given, step)
-    commands = logging.told(commands, params['rotor_speed_max'])
+    commands = logging.logged(commands, params['rotor_speed_max'])
     return Flown(step, states, speeds, exact, measured, commands, voltage).thinned(logging.every)

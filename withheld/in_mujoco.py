@@ -155,7 +155,7 @@ def falls_of(folders: Sequence[Path], jobs: int) -> list[Fall | str]:
     """Return the Fall of each case, or why it is refused, as they come."""
     found: list[Fall | str] = []
     with cluster(workers=jobs) as client:
-        for done in results(client, _told, folders):
+        for done in results(client, _fall_in, folders):
             if done.error is not None:
                 raise done.error
             found.append(done.value)
@@ -163,7 +163,7 @@ def falls_of(folders: Sequence[Path], jobs: int) -> list[Fall | str]:
     return found
 
 
-def _told(folder: Path) -> Fall | str:
+def _fall_in(folder: Path) -> Fall | str:
     try:
         return fall_of(folder)
     except InputError as error:

@@ -262,7 +262,7 @@ def text_of(name: str, label: dict, found: dict) -> str:
     about += [key for key in ('bodies', 'gusts') if label.get(key)]
     if label.get('setup') is not None:
         about.append(f'estimator {label["setup"] + 1}')
-    return f'`{name}` {" + ".join(effects) or "none"} ({", ".join(about)}): {_said(found)}'
+    return f'`{name}` {" + ".join(effects) or "none"} ({", ".join(about)}): {_in_words(found)}'
 
 
 def hybrids_of(labels: dict[str, dict], found: dict[str, dict]) -> list[dict]:
@@ -296,7 +296,7 @@ def _text_of_change(label: dict, row: dict, base: dict, changed: dict) -> str:
     amounts = [' '.join([effect, *(f'{parameter} {value:.3g}' for parameter, value in
                                    parameters.items())])
                for effect, parameters in label['effects'].items()]
-    said = _said(changed) if 'verdict' in base else f'as flown: {_said(base)}'
+    said = _in_words(changed) if 'verdict' in base else f'as flown: {_in_words(base)}'
     wrong = [text for applies, text in (
         (row['named'] is False, 'not named'), (row['moved'] is False, 'moved by another amount'),
         (row['lost'], f'lost {", ".join(row["lost"])}'),
@@ -304,7 +304,7 @@ def _text_of_change(label: dict, row: dict, base: dict, changed: dict) -> str:
     return '; '.join([f'`{row["name"]}` {row["change"]} ({", ".join(amounts)}): {said}', *wrong])
 
 
-def _said(found: dict) -> str:
+def _in_words(found: dict) -> str:
     """Return a diagnosis in words: its verdict, or why it has none."""
     return found.get('refused') or found.get('failed') or ', '.join(found.get('verdict', ()))
 

@@ -13,10 +13,10 @@ from quad_ident_ros.report.data import write_json
 from quad_ident_ros.report.screen import progress_bar
 
 
-def add(commands, said):
-    """Add the command to the parser; said: what it does."""
+def add(commands, summary):
+    """Add the command to the parser; summary: what it does."""
     parser = commands.add_parser(
-        'convert', help=said,
+        'convert', help=summary,
         formatter_class=argparse.RawDescriptionHelpFormatter,
         description='Read a flight of any kind that is known and write it as CSV or as a bag. '
                     'Nothing is lost: every\ncolumn, known or not, reads back number for number; '

@@ -27,10 +27,10 @@ from quad_ident_ros.vehicle_files.written import read_back, with_code
 from quad_ident_ros.whole_file import write_whole
 
 
-def add(commands: Any, said: str) -> None:
-    """Add the command to the parser; said: what it does."""
+def add(commands: Any, summary: str) -> None:
+    """Add the command to the parser; summary: what it does."""
     parser = commands.add_parser(
-        'export', help=said, formatter_class=argparse.RawDescriptionHelpFormatter,
+        'export', help=summary, formatter_class=argparse.RawDescriptionHelpFormatter,
         description='Write a vehicle file, as `diagnose --out-vehicle` writes it, as a file of a '
                     'simulator: a new\none, or with --base yours, in which only numbers change '
                     'and everything else stays byte for byte.\nLists what the effects change, '

@@ -17,10 +17,10 @@ FAULTY = 3
 _BYTES = re.compile(r'(\d+(?:\.\d+)?) ?([kMGT]?)(i?)B?')
 
 
-def add(commands, said):
-    """Add the command to the parser; said: what it does."""
+def add(commands, summary):
+    """Add the command to the parser; summary: what it does."""
     parser = commands.add_parser(
-        'fleet', help=said, formatter_class=argparse.RawDescriptionHelpFormatter,
+        'fleet', help=summary, formatter_class=argparse.RawDescriptionHelpFormatter,
         description='Diagnose flights of many vehicles. Those of one vehicle, configuration and '
                     'day are diagnosed together; all\nresults are kept in a folder of Parquet '
                     'files, which pandas, polars and DuckDB read. What is done is not\ndone '

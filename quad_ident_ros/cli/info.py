@@ -34,10 +34,10 @@ FAULTY = 3
 STYLE = {'error': 'bold red', 'warning': 'yellow', 'info': 'default'}
 
 
-def add(commands, said):
-    """Add the command to the parser; said: what it does."""
+def add(commands, summary):
+    """Add the command to the parser; summary: what it does."""
     parser = commands.add_parser(
-        'info', help=said,
+        'info', help=summary,
         formatter_class=argparse.RawDescriptionHelpFormatter,
         description='Say what is in a file: its streams, their rates and spans, and what they '
                     'could be read for; and of\nthe flight in it: columns, rates, gaps, ranges, '

@@ -21,10 +21,10 @@ from quad_ident_ros.vehicle_files.reading import needed_vehicle, Reading, SETTAB
 OURS = 'a vehicle file'
 
 
-def add(commands: Any, said: str) -> None:
-    """Add the command to the parser; said: what it does."""
+def add(commands: Any, summary: str) -> None:
+    """Add the command to the parser; summary: what it does."""
     parser = commands.add_parser(
-        'vehicle', help=said, formatter_class=argparse.RawDescriptionHelpFormatter,
+        'vehicle', help=summary, formatter_class=argparse.RawDescriptionHelpFormatter,
         description='Show what a file says about a vehicle: each number with its unit and place '
                     'in the file, what\nis missing, and what was assumed. Lags, drags and the '
                     'like become effects of the nominal\nvehicle, so that the gap is that of this '

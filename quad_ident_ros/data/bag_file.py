@@ -34,7 +34,7 @@ class Topic:
     count: int
 
 
-def told_kind(path, start):
+def kind_by_content(path, start):
     """Return '.bag', '.mcap' or '.db3' by the first bytes of a file, 'folder', or ''."""
     if Path(path).is_dir():
         return 'folder'
@@ -42,12 +42,12 @@ def told_kind(path, start):
 
 
 def kind_of(path):
-    """Return told_kind of a path, and of a damaged file the end of its name where that is one."""
+    """Return kind_by_content, or for a damaged file the end of its name where that is a kind."""
     path, start = Path(path), b''
     with suppress(OSError), open(path, 'rb') as file:
         start = file.read(16)
     named = path.suffix in MAGIC.values() and not is_text(start)
-    return told_kind(path, start) or (path.suffix if named else '')
+    return kind_by_content(path, start) or (path.suffix if named else '')
 
 
 class BagFile:

@@ -58,7 +58,7 @@ def read_mapped_bag(path, mapping, spoilt=False):
     start, t, columns, left_out = join(path, streams)
     record = FlightRecord(t, velocity_in_world(path, columns),
                           {'source': str(path), 'start_ns': start, 'notes': [*notes, *left_out]}
-                          | _told(parts, streams, start))
+                          | _spoilt(parts, streams, start))
     return split_at_resets([record], start, {
         part.counters.topic: (stream.stamps, part.counters.fields())
         for part, stream in zip(parts, streams, strict=True) if part.counters})
@@ -80,7 +80,7 @@ def _by_topic(parts, types):
     return found
 
 
-def _told(parts, streams, start):
+def _spoilt(parts, streams, start):
     """Return the info of the samples that were left out as spoilt; start: of the record, ns."""
     told = [[(int(stream.stamps[k]) - start) * 1e-9, part.not_unit(k)]
             for part, stream in zip(parts, streams, strict=True) for k in part.spoilt]

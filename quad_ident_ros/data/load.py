@@ -74,7 +74,7 @@ def reader_of(path):
     except OSError as error:
         raise InputError(f'{path}: cannot be read: {error.strerror}') from None
     refuse_others(path, start)
-    told = next((reader for reader in READERS if reader.tells(path, start)), None)
+    told = next((reader for reader in READERS if reader.recognises(path, start)), None)
     if told is None and not is_text(start):     # the name of a damaged file says what it was
         told = next((reader for reader in READERS if path.suffix in reader.suffixes), None)
     if told is None:

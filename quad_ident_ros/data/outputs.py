@@ -14,7 +14,7 @@ from quad_ident_ros.data.measured_speeds import by_measured
 from quad_ident_ros.data.motor_order import order_of, rotors_of
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.data.signal_kind import described, hovers_signed, kinds_of, MANY
-from quad_ident_ros.data.thrust_curve import said as curve_said
+from quad_ident_ros.data.thrust_curve import in_words as curve_in_words
 from quad_ident_ros.data.thrust_curve import share_of_thrust
 from quad_ident_ros.data.thrust_level import FULL_SPEED, full_speed, levelled
 from quad_ident_ros.errors import InputError
@@ -109,7 +109,7 @@ def _with_commands(records: list[FlightRecord], vehicle: Vehicle | None,
             motors, told = levelled(where, records, signals, motors, vehicle)
             info[FULL_SPEED] = full_speed(motors, thrust)
             by = f'is that by which thrust carries the weight of {vehicle.name} ({told})'
-        said += f'{_said(motors)}; the gain {by}'
+        said += f'{_in_words(motors)}; the gain {by}'
     done = []
     for record, values in zip(records, signals, strict=True):
         voltage = record.columns['vbat'] if motors.needs_voltage else None
@@ -179,7 +179,7 @@ def _map_of(where: str, about: dict, values: np.ndarray, vehicle: Vehicle | None
     told = vehicle.motors
     curve = about.get('curve')
     if told is None and curve is not None:
-        told, how = Motors('normalised', gives='thrust'), f'by the log: {curve_said(**curve)}'
+        told, how = Motors('normalised', gives='thrust'), f'by the log: {curve_in_words(**curve)}'
     elif told is None:
         kind, how = about.get('kind', ''), 'as the log has them'
         if not kind:
@@ -200,7 +200,7 @@ def _map_of(where: str, about: dict, values: np.ndarray, vehicle: Vehicle | None
             values, vehicle.hover_speed, (vehicle.speed_min, vehicle.speed_max)):
         said += (f'as signals from -1 to 1 they would carry {vehicle.name}: write motors: '
                  f'{SIGNED} into its file if they are; ')
-    return _Map(motors, said + (_said(motors) if motors.whole else ''), bool(told.gives))
+    return _Map(motors, said + (_in_words(motors) if motors.whole else ''), bool(told.gives))
 
 
 def _curve_of(record: FlightRecord, vehicle: Vehicle | None,
@@ -221,7 +221,7 @@ def _of_kind(kind: str) -> Motors:
     return Motors(kind, low, high)
 
 
-def _said(motors: Motors) -> str:
+def _in_words(motors: Motors) -> str:
     """Return what the map of Motors is, for a note."""
     if motors.kind in TO_SPEED:
         return 'which are rotor speeds'

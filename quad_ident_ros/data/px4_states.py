@@ -105,12 +105,12 @@ def resets(data: Topics) -> tuple[list[tuple[int, int, str]], list[int]]:
                 if size is not None and size < SMALL[kind][0]:
                     small.append(int(stamps[k]))
                     continue
-                by = '' if size is None else _said(size, kind)
+                by = '' if size is None else _in_words(size, kind)
                 found.append((int(stamps[k - 1]), int(stamps[k]), f'{what} was reset{by}'))
     return _merged(found), small
 
 
-def _said(size: float, kind: str) -> str:
+def _in_words(size: float, kind: str) -> str:
     if kind == 'attitude':
         return f' by {np.degrees(size):.0f} deg'
     return f' by {size:.2g} {SMALL[kind][1]}'

@@ -285,7 +285,7 @@ class TopicPart:
     def _say_chain(self):
         """Take the frame of the poses, and the note on it, from the transforms."""
         self._frame_id = next(iter(self._transforms.chain()), '')
-        self.note = self._transforms.said()
+        self.note = self._transforms.in_words()
 
     def _columns(self, table, mapping):
         """Return the columns of the role from the rows of its messages."""

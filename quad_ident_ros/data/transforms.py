@@ -138,7 +138,7 @@ class Transforms:
             name = self._links[name].parent
         return (name, *reversed(found)) if found else ()
 
-    def said(self) -> str:
+    def in_words(self) -> str:
         """Return what the poses are, for a note, '' where nothing else could be."""
         chain = self._chain or self.chain()
         if len(chain) > 2:

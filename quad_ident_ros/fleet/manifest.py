@@ -191,7 +191,8 @@ def _is_flight(path: Path) -> bool:
     except OSError:
         return True     # it is refused with its reason later
     *others, _ = READERS    # the last one takes any text
-    return any(path.suffix in reader.suffixes or reader.tells(path, start) for reader in others)
+    return any(path.suffix in reader.suffixes or reader.recognises(path, start)
+               for reader in others)
 
 
 def _nominal_in(folder: Path) -> str:

@@ -15,7 +15,7 @@ SAME = 1e-9        # of an input's range: changes below are rounding
 TRACELESS = 10.0   # pole x period beyond which e^-10 of its response is left at the next sample
 
 
-def said_of(signal, model, sure, tests, bounds=None):
+def findings_of(signal, model, sure, tests, bounds=None):
     """
     Yield what a reader must know about how certain a model is.
 
@@ -70,7 +70,7 @@ def _gaps(signal):
     return np.count_nonzero(ends), np.count_nonzero(changes)
 
 
-def said_of_order(other):
+def order_finding(other):
     """Return the finding on an order.Alternative, or None."""
     if not other.is_better:
         return None

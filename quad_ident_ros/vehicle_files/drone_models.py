@@ -27,7 +27,7 @@ _TELLING = tuple(re.compile(rf'^\s*{key}\s*=', re.MULTILINE)
                  for key in ('rpm2thrust', 'mixing_matrix'))
 
 
-def tells(text: str) -> bool:
+def recognises(text: str) -> bool:
     """Whether a text is a TOML file with a drone of drone-models."""
     return all(pattern.search(text) for pattern in _TELLING)
 

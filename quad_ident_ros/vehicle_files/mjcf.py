@@ -22,7 +22,7 @@ from quad_ident_ros.vehicle_files.xml_tree import Element, parse, root_of
 GRAVITY = (0.0, 0.0, -9.81)     # m/s^2, of MuJoCo
 
 
-def tells(text: str) -> bool:
+def recognises(text: str) -> bool:
     """Whether a text is an MJCF model."""
     return root_of(text) == 'mujoco'
 

@@ -28,7 +28,7 @@ PATHS = 'GZ_SIM_RESOURCE_PATH', 'GAZEBO_MODEL_PATH'
 """Variables of the environment with the folders in which Gazebo looks for models."""
 
 
-def tells(text: str) -> bool:
+def recognises(text: str) -> bool:
     """Whether a text is an SDF file."""
     return root_of(text) == 'sdf'
 

@@ -38,11 +38,11 @@ class Reader:
     """
     A kind of file.
 
-    name: in messages and data; title: as in `this is TITLE`; tells(path, first bytes): whether a
-    path is of this kind by its content; suffixes: of files whose content shows no kind, which are
-    then taken for damaged ones of this kind; read(path, mapping, vehicle): its flight records, at
-    least one; contents(path): the Content of all its streams; package: of PyPI that it needs
-    beyond the program's own, imported as `module`, and installed by the extra of this name;
+    name: in messages and data; title: as in `this is TITLE`; recognises(path, first bytes):
+    whether a path is of this kind by its content; suffixes: of files whose content shows no kind,
+    which are then taken for damaged ones of this kind; read(path, mapping, vehicle): its flight
+    records, at least one; contents(path): the Content of all its streams; package: of PyPI that it
+    needs beyond the program's own, imported as `module`, and installed by the extra of this name;
     spoilt: as read, for a part of a file: samples that it would refuse are left out and listed in
     the info of the records (record.SPOILT); None where it refuses none.
     All raise InputError in one line.
@@ -50,7 +50,7 @@ class Reader:
 
     name: str
     title: str
-    tells: Callable[[Path, bytes], bool]
+    recognises: Callable[[Path, bytes], bool]
     read: Callable[[Path, Mapping | None, Vehicle | None], list[FlightRecord]]
     contents: Callable[[Path], list[Content]]
     package: str = ''

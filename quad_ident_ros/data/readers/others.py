@@ -59,7 +59,7 @@ _YAML = re.compile(r'(- .*|-|---.*|[^\s:,;#]+:( .*)?|\s.*)$')
 
 def refuse_others(path: Path, start: bytes) -> None:
     """Raise InputError for a file that is known to be none of a flight, by its first bytes."""
-    found = _told(start)
+    found = _title(start)
     if found:
         title, instead = found
         raise InputError(f'{path}: this is {title}; {instead}')
@@ -67,7 +67,7 @@ def refuse_others(path: Path, start: bytes) -> None:
 
 def title_of(start: bytes) -> str:
     """Return what a file is that is known to be none of a flight, by its first bytes, or ''."""
-    found = _told(start)
+    found = _title(start)
     return found[0] if found else ''
 
 
@@ -105,7 +105,7 @@ def is_text(start: bytes) -> bool:
     return all(letter.isprintable() or letter in '\t\r\n\f\x1b' for letter in text)
 
 
-def _told(start: bytes) -> tuple[str, str] | None:
+def _title(start: bytes) -> tuple[str, str] | None:
     """Return what a file is that is no flight, and what to give instead, or None."""
     for magic, title, instead in _MAGIC:
         if start.startswith(magic):
@@ -127,7 +127,7 @@ def _told(start: bytes) -> tuple[str, str] | None:
             and _TIMES[0] < int.from_bytes(start[:8], 'big') < _TIMES[1]):
         return ('the telemetry log of a ground station (MAVLink, .tlog)',
                 'it is too slow; give the log of the vehicle itself (.ulg, .BIN)')
-    return _told_text(start.decode('utf-8-sig', 'ignore')) if is_text(start) else None
+    return _text_title(start.decode('utf-8-sig', 'ignore')) if is_text(start) else None
 
 
 def _packed(start: bytes) -> tuple[str, str] | None:
@@ -142,7 +142,7 @@ def _packed(start: bytes) -> tuple[str, str] | None:
     return f'a file packed by gzip, with {what} in it', _UNPACK
 
 
-def _told_text(text: str) -> tuple[str, str] | None:
+def _text_title(text: str) -> tuple[str, str] | None:
     """Return what a text is that is no table, and what to give instead, or None."""
     head = text.lstrip()
     lower = head[:1024].lower()
