@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""A wrong kind of file is told by its content, whatever its name, with what to give instead."""
+"""A wrong kind of file is recognised by its content, and the error says what to give instead."""
 
 from contextlib import suppress
 import gzip
