@@ -18,7 +18,7 @@ def add(commands, summary):
     parser = commands.add_parser(
         'convert', help=summary,
         formatter_class=argparse.RawDescriptionHelpFormatter,
-        description='Read a flight of any kind that is known and write it as CSV or as a bag. '
+        description='Read a flight of any known kind and write it as CSV or as a bag. '
                     'Nothing is lost: every\ncolumn, known or not, reads back number for number; '
                     'what could not be read is noted.\nA bag with several flights makes several '
                     'files, OUT_1, OUT_2, ...',

@@ -39,7 +39,7 @@ def check_outputs(options):
         written.add(place)
         for folder in Path(output).parents:
             if folder.exists() and not folder.is_dir():
-                raise InputError(f'{output}: {folder} is a file, no folder; give another path')
+                raise InputError(f'{output}: {folder} is a file, not a folder; give another path')
         given = Path(output)    # the link of a pipe names no place
         if not given.exists() or given.is_file() or given.is_dir():
             _try_to_write(output, place)

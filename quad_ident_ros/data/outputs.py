@@ -108,7 +108,7 @@ def _with_commands(records: list[FlightRecord], vehicle: Vehicle | None,
         else:
             motors, told = levelled(where, records, signals, motors, vehicle)
             info[FULL_SPEED] = full_speed(motors, thrust)
-            by = f'is that by which thrust carries the weight of {vehicle.name} ({told})'
+            by = f'is the one with which thrust carries the weight of {vehicle.name} ({told})'
         said += f'{_in_words(motors)}; the gain {by}'
     done = []
     for record, values in zip(records, signals, strict=True):
@@ -248,7 +248,7 @@ def _doubt(where: str, values: np.ndarray, kinds: Sequence[str]) -> InputError:
                           f'{SIGNED} or motors: {UNSIGNED}, or into a mapping as actuators: with '
                           'the same behind it')
     what = (f'could be {" or ".join(map(described, kinds))};' if kinds else
-            'are of no kind that is known by its size, nor rotor speeds near those of hover; give '
+            'are of no kind that their size shows, and not rotor speeds near hover; give '
             'the vehicle that flew, or')
     line = f'{{kind: {kinds[0]}}}' if kinds else '{kind: pwm, minimum: ..., maximum: ...}'
     return InputError(f'{where} {what} write into the vehicle file what they are, such as motors: '

@@ -128,8 +128,8 @@ class Watcher:
         for topic in self._topics:
             if node.count_publishers(topic) > 1:
                 raise InputError(
-                    f'others publish {topic}, too, on ROS domain {node.context.get_domain_id()}, '
-                    'which this run uses: their messages cannot be distinguished from it; start '
+                    f'other nodes publish {topic}, too, on ROS domain '
+                    f'{node.context.get_domain_id()}, which this run uses: their messages cannot be distinguished from it; start '
                     'them on another ROS_DOMAIN_ID, and start this again')
 
     @property

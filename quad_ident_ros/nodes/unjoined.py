@@ -39,7 +39,7 @@ class Unjoined:
         absent = self._absent()
         return f'nothing comes on {self._mapped.named(names)}; ' + (
             f'nobody publishes {", ".join(absent)}: correct the name, or leave it out of the '
-            'mapping' if absent else 'leave out of the mapping what is not to come')
+            'mapping' if absent else 'leave missing topics out of the mapping')
 
     def apart(self):
         """Say that the stamps of the topics are too far apart."""

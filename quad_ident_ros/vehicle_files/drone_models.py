@@ -149,7 +149,7 @@ class Drone:
             hover * NEAR, thrust) - 1.0))
         draft.note('exponent of the thrust at hover', exponent, '1', self.place('rpm2thrust'))
         draft.assumed.append(
-            f'thrust over speed is the power {exponent:.4g} that it is at hover, {speed:.4g} '
+            f'thrust goes with the power {exponent:.4g} that it is at hover, {speed:.4g} '
             f'rad/s; from 0.7 to 1.3 of that it is off by up to {100 * off:.2g} % (rpm2thrust); '
             'torque goes with the square (rpm2torque)')
         rise = fall = 0.0

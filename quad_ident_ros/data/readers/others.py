@@ -76,7 +76,7 @@ def refuse_unknown(path: Path, start: bytes, known: str) -> None:
     # An invalid letter is an error of a table, which its reader reports with its place.
     control = sum(byte < 32 and byte not in b'\t\r\n\f\x1b' for byte in start)
     if control > _CONTROL * len(start) and not start.startswith(GZIP):
-        raise InputError(f'{path}: this is of no kind that is known; give {known}')
+        raise InputError(f'{path}: this kind of file is not known; give {known}')
 
 
 def refuse_no_file(path: Path) -> None:
