@@ -130,7 +130,8 @@ class Watcher:
                 raise InputError(
                     f'other nodes publish {topic}, too, on ROS domain '
                     f'{node.context.get_domain_id()}, which this run uses: their '
-                    'messages cannot be distinguished from its own; start them on another ROS_DOMAIN_ID, and start this again')
+                    'messages cannot be distinguished from its own; start them on another '
+                    'ROS_DOMAIN_ID, and start this again')
 
     @property
     def done(self):
