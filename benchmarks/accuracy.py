@@ -85,7 +85,7 @@ def _cells(bound, misses, errors):
 
 
 def _estimate(model, form):
-    """Return K, c1, c0 and the poles; a and b are none where the truth's poles are of a kind."""
+    """Return K, c1, c0 and the poles; a and b are None where the true poles are alike."""
     poles = pole_values(model.c1, model.c0) if model.form == form else (np.nan, np.nan)
     return np.array([model.gain, model.c1, model.c0, *poles])
 

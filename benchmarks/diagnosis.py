@@ -18,7 +18,7 @@ from quad_ident_ros.model.vehicle import load_vehicle
 TRAJECTORIES = ('lissajous', 'steps', 'low_passes', 'circle')
 DURATION, RATE = 30.0, 100.0    # s, Hz
 MOST = 3.0                      # s
-# Of docs/real_flights.md, beside the checkout where they are there at all; the last is held out.
+# Those of docs/real_flights.md, if they lie beside the checkout; the last one is held out.
 PLACE = Path('shared') / 'flights' / 'nanobench'
 REAL = ('star_fast', 'oval_fast', 'helix_fast', 'lissajous_fast', 'figure8_fast', 'circle_slow',
         'trefoil_medium')

@@ -22,7 +22,7 @@ def fit_weighted(record, vehicle):
 
 
 def residual(record, vehicle):
-    """Return what is left of a flight at a vehicle's constants, over the noise."""
+    """Return the residuals of a flight with a vehicle's constants, over the noise."""
     problem, parameters = _problem(record, vehicle, _over_noise)
     return np.concatenate([part.ravel() for part in
                            problem(parameters.as_vector(), parameters)[0]])

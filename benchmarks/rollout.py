@@ -51,7 +51,7 @@ class Problem:
         self.x0[:, 2], self.x0[:, 6] = 5.0, 1.0
         self.x0[:, 3:6] = random.normal(0, 1, (batch, 3))
         self.samples = samples
-        self.out = np.full((batch, samples + 1, STATE), 1.0)    # written, so that it is there
+        self.out = np.full((batch, samples + 1, STATE), 1.0)    # written, to claim its memory
 
     def compiled(self, kernel):
         """Roll out by a compiled kernel into `out`."""

@@ -14,8 +14,8 @@ class Size:
     CPU time after which a slow method gets no further draw; long_runs, long_budget,
     long_seconds: searches for the best cost, their evaluations and CPU time; largest: samples of
     the longest record; accuracy_draws: per scenario of the accuracy study, and ten times that, to
-    tell chance from fault; flight: s of each flight through the nodes; rollouts: calls of each
-    kind of rollout; diagnoses: vehicles that are diagnosed; real_flights: that are diagnosed
+    distinguish chance from fault; flight: s of each flight through the nodes; rollouts: calls of
+    each kind of rollout; diagnoses: vehicles that are diagnosed; real_flights: that are diagnosed
     together; long_flight: s of each long one; clean_flights: of each noise that are checked;
     change_flights: with a change of the vehicle, and as many without; fleet_flights: that a fleet
     has, light_flights: of a fleet that are refused at once.

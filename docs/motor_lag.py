@@ -24,7 +24,7 @@ from quad_ident_ros.data.load import load
 STEP = 1e-3             # s, of the log
 MASS = 0.027            # kg
 SLICE = 35.0, 65.0      # s of the log's clock, the paper's slice for the thrust
-BLOCK = 3.0             # s over which errors may be alike
+BLOCK = 3.0             # s over which errors may be correlated
 ACCELEROMETER = 30.0    # Hz, second order: sensors_bmi088_bmp388.c of the firmware
 FULL = 65535.0          # of the duty
 ARM = 0.028             # m
@@ -109,7 +109,7 @@ def _fitted(terms: Callable[[np.ndarray], np.ndarray], force: np.ndarray, t: np.
 
     start = [0.06, 0.01] if delayed else [0.06]
     best = least_squares(left, start, diff_step=1e-2, bounds=(0.0, 0.3), x_scale=0.01)
-    # What is left is no white noise: errors within a block may be alike.
+    # The residuals are not white noise: errors within a block may be correlated.
     blocks = (t // BLOCK).astype(int)
     slopes = np.stack([best.jac[blocks == one].T @ best.fun[blocks == one]
                        for one in np.unique(blocks)])

@@ -4,7 +4,7 @@
 
 from html.parser import HTMLParser
 
-# Elements whose attribute a browser loads by itself; a link to be clicked is none of them.
+# Elements whose attribute a browser loads by itself; a link to click is not one of them.
 LOADED = {'script': 'src', 'img': 'src', 'iframe': 'src', 'source': 'src', 'video': 'src',
           'audio': 'src', 'embed': 'src', 'object': 'data', 'link': 'href', 'image': 'href'}
 NOT_LOADED = {'canonical', 'next', 'prev', 'alternate', 'license', 'author'}   # rel of <link>

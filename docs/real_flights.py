@@ -31,7 +31,7 @@ from quad_ident_ros.report.diagnosis import contribution_of, WORTH
 DOCUMENT = 'real_flights.md'
 TRAINING = ('star_fast', 'oval_fast', 'helix_fast', 'lissajous_fast')
 HELD_OUT = ('figure8_fast', 'trefoil_medium', 'circle_slow')
-EARLIER = 0.03      # s by which commands are stamped earlier
+EARLIER = 0.03      # s that the stamps of commands are moved earlier
 MOMENT = 3e-4       # N m about x that is added in software: 2 % of weight times arm
 PICTURES = ('horizons', 'map')
 
@@ -78,7 +78,7 @@ def effects_rows(told: Diagnosis) -> str:
 
 
 def logs_table(folder: Path) -> str:
-    """Return what each PX4 log holds, and what is said of it without a vehicle file."""
+    """Return what each PX4 log holds, and what `info` reports of it without a vehicle file."""
     rows = []
     for name in LOGS:
         try:
@@ -159,7 +159,7 @@ def swapped(record: FlightRecord, vehicle: Vehicle) -> FlightRecord:
 
 
 def pushed(record: FlightRecord, vehicle: Vehicle) -> FlightRecord:
-    """Return a record of a vehicle on which a moment acts of which its commands say nothing."""
+    """Return a record of a vehicle with a moment that its commands do not have."""
     y = np.array([rotor.position[1] for rotor in vehicle.rotors])
     names = record.numbered('cmd')
     thrust = vehicle.thrust_coefficient * record.stack(*names) ** 2 - MOMENT * y / np.sum(y ** 2)
@@ -226,7 +226,7 @@ def nuisances_table(found: Diagnosis) -> str:
 
 
 def tampered_table(found: dict) -> str:
-    """Return what is said of records that were tampered with, beside them as they were flown."""
+    """Return the verdicts on changed records, beside those on the same flights unchanged."""
     rows = []
     for label, one in found.items():
         if isinstance(one, InputError):

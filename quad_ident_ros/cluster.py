@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Work on many processes, by Dask: those of this machine, or a cluster that is there already."""
+"""Work on many processes, by Dask: those of this machine, or an existing cluster."""
 
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, ExitStack, suppress
@@ -27,7 +27,7 @@ Item = TypeVar('Item')
 IN_FLIGHT = 2       # tasks of each worker: one is worked on while the next is on its way
 AT_LEAST = 8        # tasks in flight where there are few workers, or none yet: more may join
 MEMORY = 0.8        # share of the machine's memory that all local workers together may have
-TICK = 0.25         # s, in which whoever follows the work is told that it still goes on
+TICK = 0.25         # s, after which a caller hears again that the work goes on
 GRACE = 3.0         # s from the end of a task's time to that of its process
 TIMES = 'quad_ident_times'
 """The topic on which a worker says that the time of a task is over."""
@@ -57,9 +57,9 @@ def cluster(scheduler: str | None = None, workers: int | None = None,
     """
     Give a dask.distributed.Client of workers on this machine, or of a scheduler.
 
-    Args: scheduler: address, tcp://HOST:PORT, of a cluster that is there; else workers: how many
+    Args: scheduler: address, tcp://HOST:PORT, of an existing cluster; else workers: how many
     processes (default: one for each core); memory: bytes of each (default: MEMORY of the
-    machine's, shared). A process that takes more is ended, and begins anew.
+    machine's, shared). A process that takes more is ended and restarted.
     Raises InputError where Dask is not installed or the scheduler does not answer.
     """
     try:
@@ -209,7 +209,7 @@ def _done(client: Any, ended: dict[str, tuple[Item, Any, bool]]) -> dict[str, Do
     from distributed.scheduler import KilledWorker
     found: dict[str, Done[Item]] = {}
     finished = [one for _, one, late in ended.values() if not late and one.status == 'finished']
-    with suppress(Exception):       # of those that are lost; the others are there the next time
+    with suppress(Exception):       # of those that are lost; the others remain for the next time
         found = {one.key: Done(ended[one.key][0], value) for one, value in
                  zip(finished, client.gather(finished), strict=True)}
     for key, (item, future, late) in ended.items():

@@ -24,7 +24,7 @@ def _stamp() -> str:
     return hashlib.sha256(repr(files).encode()).hexdigest()
 
 
-# Numba makes what it keeps on disk anew where the function's own file has changed, but not where
+# Numba rebuilds what it keeps on disk where the function's own file has changed, but not where
 # that of a function or constant has which it uses: so every file counts.
 STAMP = _stamp()
 
@@ -32,7 +32,7 @@ STAMP = _stamp()
 @lru_cache(maxsize=64)
 def is_trusted(folder: str | Path) -> bool:
     """
-    Return whether what lies in a folder is there by this user or root: it is executed as it is.
+    Return whether this user or root wrote what lies in a folder: it is executed as it is.
 
     The folder and the one that it lies in must be theirs, and not for everybody or a group to
     write to, but for the group of this user alone, and unless, as among temporary files, only the

@@ -16,7 +16,7 @@ class InputError(ValueError):
 
 
 class Cancelled(Exception):
-    """The work was cancelled by whoever started it; raised out of on_progress."""
+    """The caller has cancelled the work; raised in on_progress."""
 
 
 class Reason(Exception):

@@ -290,7 +290,7 @@ def _fly_closed_loop(experiment, run, noise, seed):
     inputs = commands ** 2 @ mixing.allocation_matrix(nominal).T
     columns = {**record.columns, **dict(zip(('u1', 'u2', 'u3', 'u4'), inputs.T, strict=True)),
                **dict(zip(('phi', 'theta', 'psi'), record.euler().T, strict=True))}
-    # What effects the vehicle has stays with who flies it: a diagnosis is not to be told.
+    # Only the simulator knows the effects of the vehicle: a diagnosis must not see them.
     info = {'name': f'{experiment.name}/{run.name}', 'experiment': experiment.name,
             'run': run.name, 'model': experiment.model, 'vehicle': nominal.name,
             **({'outputs': list(run.outputs)} if run.outputs else {}),

@@ -64,7 +64,7 @@ def find(kind, name_or_path):
 
 
 def _existing(path, kind=Path.is_file):
-    """Return the path of a file, or of another kind, that is there, or None."""
+    """Return the path of a file, or of another kind, that exists, or None."""
     try:
         path = Path(path).expanduser()
         return path if kind(path) else None
@@ -103,7 +103,7 @@ def read_yaml(path):
 
 class _Loader(yaml.SafeLoader):
     """
-    One that refuses a key that is there twice, and mappings that are merged without end.
+    One that refuses a key that occurs twice, and mappings that are merged without end.
 
     PyYAML takes the last value of such a key in silence. Nine levels of nine merged mappings
     would be 4e8 keys.
@@ -118,7 +118,7 @@ class _Loader(yaml.SafeLoader):
                 name = key.tag, key.value
                 if name in lines:
                     raise yaml.MarkedYAMLError(
-                        problem=f'{schema.shown(key.value)} is there twice, first in line '
+                        problem=f'{schema.shown(key.value)} is given twice, first in line '
                         f'{lines[name]}; remove one of them', problem_mark=key.start_mark)
                 lines[name] = key.start_mark.line + 1
         return node
@@ -155,7 +155,7 @@ def kind_of(path):
     from quad_ident_ros.data.readers.registry import READERS
     with open(path, 'rb') as file:
         start = file.read(START)
-    known = (reader.title for reader in READERS if reader.tells(Path(path), start))
+    known = (reader.title for reader in READERS if reader.recognises(Path(path), start))
     return title_of(start) or next(known, '')
 
 

@@ -49,7 +49,7 @@ def unknown_key(where: str, key: object, known: Collection[str]) -> InputError:
 
 def check_keys(where: str, mapping: object, known: Collection[str],
                required: Iterable[str] = ()) -> None:
-    """Raise InputError where `mapping` is none, lacks a required key or has an unknown one."""
+    """Raise InputError if `mapping` is not one, has no required key or has an unknown one."""
     if not isinstance(mapping, dict):
         raise InputError(f'{where}: expected `key: value` lines, got {shown(mapping)}')
     for key in mapping:

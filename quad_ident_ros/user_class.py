@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""A class in a user's Python file: made, called, and its errors told."""
+"""A class in a user's Python file: made, called, and its errors reported."""
 
 from collections.abc import Callable
 from contextlib import redirect_stdout
@@ -24,7 +24,7 @@ class UserClass:
     An instance, `made`, of the class that FILE.py:NAME names.
 
     Raises InputError for all that is wrong with the file, in one line that says where; option:
-    that by which it was named.
+    the one that was used.
     """
 
     def __init__(self, spec: str, option: str) -> None:
@@ -71,12 +71,12 @@ class UserClass:
             if isinstance(error, SyntaxError) and error.filename == str(self.path):
                 lines = [error.lineno]
             where = f'{self.path}, line {lines[-1]}' if lines else str(self.path)
-            text = ' '.join(_said(error).split())[:LONGEST]
+            text = ' '.join(_in_words(error).split())[:LONGEST]
             raise InputError(f'{where}: {what} of {self.name} raises {type(error).__name__}'
                              + (f': {text}' if text else '')) from None
 
     def returns(self, what: str, function: Callable) -> str:
-        """Return the begin of what is said of what a method returns."""
+        """Return the beginning of messages about what a method returns."""
         return f'{self.path}, line {line_of(function)}: {what} of {self.name} returns'
 
     def array(self, what: str, function: Callable, made: Any, expected: str) -> np.ndarray:
@@ -105,7 +105,7 @@ class UserClass:
         return module
 
 
-def _said(error: BaseException) -> str:
+def _in_words(error: BaseException) -> str:
     """Return what an error says, or nothing where even that raises."""
     try:
         return str(error)

@@ -10,7 +10,7 @@ from pathlib import Path
 
 def write_whole(path: str | Path, text: str) -> None:
     """
-    Write a text file, into a new folder if there is none; what was there stays if it fails.
+    Write a text file, into a new folder if needed; the old file stays if that fails.
 
     What is no regular file, such as a pipe, is written to as it is. What is no Unicode in the name
     of a file is written by its code. Raises OSError.
@@ -28,7 +28,7 @@ def replacing(path: str | Path) -> Iterator[Path]:
     """
     Give a path to write to, of the same ending, which takes the place of a file at the end.
 
-    Missing folders are made. If the block fails, what was there before stays. Raises OSError with
+    Missing folders are made. If the block fails, the old file stays. Raises OSError with
     the name of that file.
     """
     place = Path(path).resolve()    # of a link, the file that it leads to

@@ -48,8 +48,8 @@ SMALL = {
     'export --randomise to an array': ('npz', f'export {VEHICLE} --randomise 5 -o {{out}}'),
 }
 ROOT = str(Path(__file__).resolve().parents[1])
-KEPT = 'what was there before\n'
-# What each command writes into the folder `in`, and the file of it that is there before.
+KEPT = 'what was written before\n'
+# What each command writes into the folder `in`, and the file that exists before.
 WRITTEN = {
     **{title: (f'in/out.{ending}', words.format(out=f'in/out.{ending}'))
        for title, (ending, words) in (COMMANDS | SMALL).items()},
@@ -180,7 +180,7 @@ def _finding(case: str, title: str, done: subprocess.CompletedProcess, kept: boo
     one = done.returncode == 2 and len(lines) == 1 and re.search(why, lines[0]) is not None
     said = lines[-1][-90:] if lines else 'nothing was said'
     return Finding(case, title, f'exit code {done.returncode}, {len(lines)} lines: {said}'
-                   + ('' if kept else '; the file that was there is gone'), one and kept)
+                   + ('' if kept else '; the old file is gone'), one and kept)
 
 
 def _quad_ident(words: str, folder: Path, most: int | None = None) -> subprocess.CompletedProcess:

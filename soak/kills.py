@@ -24,7 +24,7 @@ AGAIN = 60.0            # s within which a node that was started again is ready,
                         # keeps the machine busy
 FLIES = 2 * BEGINS      # s until it flies again, likewise
 HEARS = 20.0            # s within which it joins samples, likewise
-STARTS = 3              # of a recorder, of which each may hear nothing
+STARTS = 3              # of a recorder, each of which may hear nothing
 BUSY = 1.5              # times longer that computing takes where others keep the machine busy
 ON_ITS_WAY = 0.3        # s in which a watcher hears what was said before a kill
 FLIGHT = 120.0          # s; it is flown again when it is over

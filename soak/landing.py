@@ -3,7 +3,7 @@
 """When a flight is over, and when it is time to ask for another; times in s of one clock."""
 
 LANDED = 5.0    # s without a sample after which a flight is over
-BEGINS = 60.0   # s that a simulator has to compute a flight; asked again, it begins anew
+BEGINS = 60.0   # s that a simulator has to compute a flight; asked again, it starts again
 
 
 def is_over(now: float, flown: float) -> bool:

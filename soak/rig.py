@@ -21,7 +21,7 @@ from quad_ident_ros.nodes.qos import latched
 
 PATIENCE = 120.0    # s after which something is wrong, on a machine that does nothing else
 SLOWEST = 10.0      # times longer, at most, on one that does
-SAMPLE = 0.05       # s of computing that tell how much slower it is
+SAMPLE = 0.05       # s of computing that show how much slower it is
 # The newest sample alone: a watcher is not to keep anybody waiting, nor busy itself.
 NEWEST = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 

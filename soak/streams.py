@@ -25,7 +25,7 @@ def run(short: bool = False, **_: object) -> list[Finding]:
 
 
 class Source:
-    """Publishes altitudes with the stamps it is told, not faster than they are heard."""
+    """Publishes altitudes with given stamps, not faster than they are heard."""
 
     def __init__(self, watch: Watch, quality: QoSProfile = STREAM) -> None:
         self._watch = watch

@@ -17,7 +17,7 @@ IMPORTS_ROS = re.compile(
 
 
 def pytest_ignore_collect(collection_path):
-    """Leave out the tests that import ROS 2 where there is none: on ARM and macOS."""
+    """Leave out the tests that import ROS 2 where it is not installed, as on ARM and macOS."""
     if find_spec('rclpy') is not None:
         return None
     if collection_path.name == 'integration':

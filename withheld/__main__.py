@@ -172,7 +172,7 @@ def fly(options, flights, sealed, bar):
 
 
 def diagnose(flights, found, bar, jobs=1):
-    """Have the flights diagnosed by a process that is told of them and of nothing else."""
+    """Have the flights diagnosed by a process that knows them and nothing else."""
     process = subprocess.Popen(
         [sys.executable, '-m', 'withheld.blind', str(flights), str(found), str(jobs)],
         stdout=subprocess.PIPE, text=True, cwd=flights, env={**os.environ, **THREADS})

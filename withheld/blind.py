@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""The diagnosing process: it is told a folder of flights, and knows nothing else of them."""
+"""The diagnosing process: it is given a folder of flights and knows nothing else of them."""
 
 import json
 from pathlib import Path

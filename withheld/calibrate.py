@@ -1,7 +1,7 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-How probable it is that a ranked effect is there: logistic regression on flights of development.
+How probable it is that a ranked effect is present: logistic regression on flights of development.
 
 The weights that come out are `Rules.calibration` of the library. A further feature is a further
 line of FEATURES.
@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 FEATURES: dict[str, Callable[[float], float]] = {
     'contribution': lambda value: float(np.sqrt(np.clip(value, 0.0, 1.0))),
     'distance': lambda value: float(np.log1p(value)), 'companions': float}
-# Effects that act alike: where one is there, it is no error of a probability to name the other.
+# Effects that act alike: where one is present, a probability of the other is not wrong.
 ALIKE = ({'thrust_scale', 'mass_offset'}, {'actuation_delay', 'motor_lag'})
 RIDGE = 0.01        # on the weights, in units of log likelihood: keeps what a few rows say finite
 
@@ -59,10 +59,10 @@ class Calibration:
 
 def rows_of(pairs: Iterable[tuple[dict, dict]], features: dict = FEATURES) -> Rows:
     """
-    Return the rows of the rankings of (label, diagnosis) that say whether an effect is there.
+    Return the rows of the rankings of (label, diagnosis) that say whether an effect is present.
 
     Those of the best set alone, which have a contribution; not those that are neither there nor
-    not: what a label allows, and what acts as something that is there.
+    not: what a label allows, and what acts like a present effect.
     """
     x, present, groups = [], [], []
     for label, found in pairs:
@@ -89,13 +89,13 @@ def _alike(effect: str, there: set, found: dict) -> bool:
 
 def fit(rows: Rows) -> Calibration:
     """
-    Return the Calibration by maximum likelihood; raises ValueError where all or none is there.
+    Return the Calibration by maximum likelihood; raises ValueError where all or none are present.
 
     Standard errors are those of the inverse Hessian, of rows that are independent.
     """
     y = rows.present
     if not len(y) or y.min() == y.max():
-        raise ValueError(f'{len(y)} effects of which all or none are there: nothing to fit')
+        raise ValueError(f'{len(y)} effects, all or none of them present: nothing to fit')
     x = np.column_stack([np.ones(len(y)), rows.x])
     ridge = RIDGE * np.array([0.0, *np.ones(rows.x.shape[1])])
 

@@ -187,7 +187,7 @@ def stratum_of(case: Case) -> tuple:
 
 def _dealt(cases: list[Case], part: str, rng: np.random.Generator) -> list[Case]:
     """
-    Return the cases in an order of which each beginning has them in proportion, and with names.
+    Return the cases named, in an order in which each beginning has them in proportion.
 
     The k-th of n cases of a stratum comes where (k + 1/2) / n of all have come; within a stratum,
     and where two fall together, chance decides. So the first N have of every stratum about what
@@ -217,7 +217,7 @@ class Set:
     """
     Cases, whose vehicles and paths they fly, and how many flights of how many seconds.
 
-    hybrids: with the changes made to real flights, where these are there.
+    hybrids: with the changes made to real flights, where these exist.
     """
 
     cases: object

@@ -11,7 +11,7 @@ from withheld.feedback import Lqr, mixer_of, TiltFirst
 
 class Geometric(SE3Control):
     """
-    rotorpy's controller of the nominal vehicle, with gains that bear a delay.
+    rotorpy's controller of the nominal vehicle, with gains that tolerate a delay.
 
     It turns about z more gently: rotors that jump to a speed hand their momentum over at once.
     """

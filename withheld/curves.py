@@ -147,7 +147,7 @@ class Sweep(Curve):
     """
     Sines whose frequency rises along the flight, one for each axis.
 
-    Their amplitude falls with the frequency, so that slow and fast parts bear alike on the
+    Their amplitude falls with the frequency, so that slow and fast parts count equally in the
     vehicle (Tischler and Remple, Aircraft and Rotorcraft System Identification, 2012, ch. 5).
     """
 

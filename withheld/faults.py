@@ -17,7 +17,8 @@ class Faults:
     What is wrong with a record.
 
     lost: share of the rows; offset s and drift (s/s) of the clock of the states against that of
-    the commands; glitches: share of the rows whose attitude jumps; voltage: whether it is there.
+    the commands; glitches: share of the rows whose attitude jumps; voltage: whether it is
+    recorded.
     """
 
     lost: float = 0.0

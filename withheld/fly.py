@@ -12,7 +12,7 @@ from withheld.controllers import CONTROLLERS
 from withheld.logs import Logging, LowPass
 from withheld.sensors import declared, moved
 
-INTEGRAL = 0.8      # 1/s, of the position error into the place that is told
+INTEGRAL = 0.8      # 1/s, of the position error into the commanded place
 FARTHEST, FASTEST = 4.0, 100.0      # m from the path, rad/s: beyond, the vehicle is lost
 IDLE = 0.4          # of the speed in hover, of rotors on the floor
 
@@ -100,5 +100,5 @@ def fly(reality, params, path, seconds, step, noise, rng, sensors, full_voltage=
                             params['rotor_speed_max'])
         commands[k] = given
         s = reality.hold(s, given, step)
-    commands = logging.told(commands, params['rotor_speed_max'])
+    commands = logging.logged(commands, params['rotor_speed_max'])
     return Flown(step, states, speeds, exact, measured, commands, voltage).thinned(logging.every)

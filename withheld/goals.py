@@ -86,12 +86,12 @@ class _Column:
             return Reached(what, self.name, '-', _target(least, most))
         figure = f'{100 * rate:.0f} %' + ('' if count is None else f' of {count}')
         if least is None and most is None:
-            return Reached(what, self.name, figure, missed=self._told(wrong))
+            return Reached(what, self.name, figure, missed=self._texts_of(wrong))
         met = (least is None or rate >= least - 1e-9) and (most is None or rate <= most + 1e-9)
         return Reached(what, self.name, figure, _target(least, most), met,
-                       () if met else self._told(wrong))
+                       () if met else self._texts_of(wrong))
 
-    def _told(self, wrong):
+    def _texts_of(self, wrong):
         return tuple(case['text'] for case in self.cases if wrong(case))
 
     def first(self):
@@ -118,7 +118,7 @@ class _Column:
 
     def instead(self):
         one = self.all['instead']
-        return self._reached('`unknown` said instead of the effect', one['rate'], one['count'],
+        return self._reached('`unknown` instead of the effect', one['rate'], one['count'],
                              most=self.goal.instead, wrong=lambda case: case['instead'])
 
     def coverage(self):
@@ -135,7 +135,7 @@ class _Column:
         met = one['middle'] <= most
         return Reached(what, self.name, f'{one["middle"]:.2f} of {one["middle_count"]}',
                        f'≤ {most:g}', met,
-                       () if met else self._told(lambda case: case['misjudged'] > CLEAR))
+                       () if met else self._texts_of(lambda case: case['misjudged'] > CLEAR))
 
     def closed(self, key):
         least = dict(zip(('median', 'tenth'), self.goal.closed, strict=True))[key]

@@ -1,7 +1,7 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Hybrids: flights of a real vehicle, of which software changes one thing by a known amount.
+Hybrids: flights of a real vehicle, in which software changes one thing by a known amount.
 
 Nobody knows all that a real vehicle has; what was changed is known. A case is one of `CHANGES`
 made to every flight of a set (or to its vehicle file), diagnosed beside the same set as it was
@@ -27,7 +27,7 @@ FLIGHTS = {'development': ('star_fast', 'oval_fast', 'figure8_fast'),
 COMMANDS = ('cmd1', 'cmd2', 'cmd3', 'cmd4')
 RATES = ('wx', 'wy', 'wz')
 QUATERNION = ('qx', 'qy', 'qz', 'qw')
-HEADROOM = 1.1      # on the largest speed in the vehicle file: commands are told as greater
+HEADROOM = 1.1      # on the largest speed in the vehicle file: the record has greater commands
 SURE = 1.96         # standard errors on either side of a value: an interval of 95 %
 
 
@@ -49,7 +49,7 @@ class Change:
 
 
 def weaker(factor):
-    """Return the Change to rotors with `factor` of their thrust: commands are told as greater."""
+    """Return the Change to rotors with `factor` of their thrust: recorded commands are greater."""
     def flight(columns, vehicle):
         return columns | {name: columns[name] / np.sqrt(factor) for name in COMMANDS}
     return Change({'thrust_scale': {'factor': factor}}, 'product', ('mass_offset',), flight)
@@ -64,7 +64,7 @@ def emptying(fall):
 
 
 def later(rows):
-    """Return the Change to commands that act some rows later than they are told, as if delayed."""
+    """Return the Change to commands that act some rows later than recorded, as if delayed."""
     def flight(columns, vehicle):
         count = len(columns['t']) - rows
         return {name: values[rows:] if name in COMMANDS else values[:count]
@@ -208,9 +208,9 @@ def judge(label, base, found):
 
     named: the verdict has the effect, or one of its twins; gained: it has, and that of the base
     has not; moved: whether each of its parameters moved by the amount, within the interval of the
-    two, or None where one of the two does not tell it; lost: what the base names and this verdict
+    two, or None where one of the two does not state it; lost: what the base names and this verdict
     does not; added: what else it names. right: it is named and did not move by another amount,
-    and nothing is lost or added; None where the base names it too and its amounts are not told.
+    and nothing is lost or added; None where the base names it too and its amounts are not stated.
 
     Args: label of make_hybrids; base, found: diagnoses as formats.md has them.
     """

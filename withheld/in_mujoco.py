@@ -34,7 +34,7 @@ from quad_ident_ros.vehicle_files.source import Source
 from quad_ident_ros.vehicle_files.written import read_back, with_code
 
 STEP = 0.002        # s, at most: MuJoCo's usual step
-BEFORE = 0.3        # s of commands before a start, by which actuators and delays have settled
+BEFORE = 0.3        # s of commands before a start, in which actuators and delays settle
 LEAST = 0.05        # of the nominal model's gap: what is promised to fall less is not judged
 KEPT = 0.95         # of what is promised must come true
 
@@ -155,7 +155,7 @@ def falls_of(folders: Sequence[Path], jobs: int) -> list[Fall | str]:
     """Return the Fall of each case, or why it is refused, as they come."""
     found: list[Fall | str] = []
     with cluster(workers=jobs) as client:
-        for done in results(client, _told, folders):
+        for done in results(client, _fall_in, folders):
             if done.error is not None:
                 raise done.error
             found.append(done.value)
@@ -163,7 +163,7 @@ def falls_of(folders: Sequence[Path], jobs: int) -> list[Fall | str]:
     return found
 
 
-def _told(folder: Path) -> Fall | str:
+def _fall_in(folder: Path) -> Fall | str:
     try:
         return fall_of(folder)
     except InputError as error:

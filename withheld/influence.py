@@ -38,7 +38,7 @@ class Part:
     Something that a reality is made of, where it is not as the vehicle file says.
 
     parameters: {name: value}, for the label; comparable: whether they mean what the effect's
-    parameters of the same names mean in the library; beside: effects that are there with it, so
+    parameters of the same names mean in the library; beside: effects that are present with it, so
     that a verdict may name them.
     """
 
@@ -61,7 +61,7 @@ class Influence(Part):
         """Change the parameters `true` of the reality; params are those of the nominal vehicle."""
 
     def mass(self, time):
-        """Return the mass, kg, that is there at a time beside that of the reality."""
+        """Return the mass, kg, at a time on top of that of the reality."""
         return 0.0
 
     def given(self, command):

@@ -22,7 +22,7 @@ class Logging:
     low_pass: float = 0.0
     bits: int = 0
 
-    def told(self, commands, largest):
+    def logged(self, commands, largest):
         """Return the commands (N, n) as the log has them."""
         if not self.bits:
             return commands

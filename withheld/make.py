@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Fly realities and write their records; what they are goes to whoever asked, and nowhere else."""
+"""Fly realities and write their records; their truth goes to the caller and nowhere else."""
 
 import argparse
 from dataclasses import asdict, replace
@@ -172,7 +172,7 @@ def _parameters(name, world, parts):
 
 
 def _beside(case, parts, params, log):
-    """Return the names of what is there, too, so that a verdict may but need not name it."""
+    """Return the names of effects that are present, too, and that a verdict may name."""
     names = {name for part in parts.values() for name in part.beside}
     if case.wrong_file:
         names |= {'inertia_mismatch'}
@@ -186,7 +186,7 @@ def _beside(case, parts, params, log):
 
 
 def _instead(case):
-    """Return the names that do as well as what is there."""
+    """Return the names that are as good as those present."""
     if case.stranger is not None:
         return ALSO.get(case.stranger[0], ())
     # A mass that goes in flight is no constant of the vehicle.

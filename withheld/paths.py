@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Where the vehicles are told to fly, by name, in the form of rotorpy's trajectories."""
+"""Where the vehicles are sent, by name, in the form of rotorpy's trajectories."""
 
 import contextlib
 import io

@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""The reality: rotorpy's multirotor, with what it lacks put into its wrench and around it."""
+"""The reality: rotorpy's multirotor, with effects added to its wrench and around it."""
 
 import copy
 
@@ -12,7 +12,7 @@ from withheld.constants import cross, hover_speed, rotation_of
 from withheld.influence import Instant
 
 NO_LAG = 1e12       # s: the speeds stay where the step sets them
-PART = 0.35         # of the time constant, one step of Runge-Kutta: 6e-5 of what is left
+PART = 0.35         # of the time constant, one step of Runge-Kutta: an error of 6e-5 of the rest
 SETTLED = 8.0       # time constants after which the command is reached
 FINE = 0.0034       # s, the steps of motors of another form
 
@@ -76,7 +76,7 @@ class Reality(Multirotor):
     def _s_dot_fn(self, t, s, cmd_rotor_speeds):
         """Return the slope (16 + n,) of a packed state, as rotorpy has it but with less ado."""
         rotation, velocity, rate, speeds = rotation_of(s[6:10]), s[3:6], s[10:13], s[16:]
-        # What rotorpy's wrench does not get told.
+        # What rotorpy's wrench does not receive.
         self._place = s[0:3], rotation, velocity
         turning = (cmd_rotor_speeds - speeds) / self.tau_m
         if self.lag:
@@ -94,7 +94,7 @@ class Reality(Multirotor):
         return out
 
     def compute_body_wrench(self, body_rates, rotor_speeds, body_airspeed_vector):
-        """Return rotorpy's force and moment (body), and those of what it lacks."""
+        """Return rotorpy's force and moment (body), and those that are added to it."""
         air, places, squares = body_airspeed_vector, self.rotor_geometry, rotor_speeds ** 2
         position, rotation, velocity = self._place
         heights = position[2] + places @ rotation[2]

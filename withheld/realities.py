@@ -75,7 +75,7 @@ class Setting:
 
     told: rotorpy's parameters as the vehicle file has them; controller: of CONTROLLERS; logging:
     a Logging; floor m or None; fall: share of the voltage lost in 30 s where nothing sags;
-    bodies: in MuJoCo; gusts: of which size.
+    bodies: in MuJoCo; gusts: their size.
     """
 
     told: dict

@@ -16,7 +16,7 @@ TITLES = {'ours': 'forms as ours', 'forms': 'other forms', 'files': 'wrong files
 MEASURES = ('first', 'exact', 'alarm', 'unknown', 'instead', 'undetermined', 'closed',
             'precision', 'recall')      # of judge
 BINS = (0.0, 0.05, 0.2, 0.4, 0.6, 0.8, 0.95, 1.0)
-# Between samples there is nothing to tell a delay from a lag by, where both are over at the next.
+# Between samples nothing separates a delay from a lag where both are over at the next.
 PASSED = {'actuation_delay': ('delay', 1.0), 'motor_lag': ('time_constant', 0.5)}   # periods
 # Effects of which a ratio shows, and {effect: the parameters that change with the one that stands
 # for it}: of what scales the whole motion all, of the rest those with mass in their unit.
@@ -34,7 +34,7 @@ def truth_of(label):
 
 
 def undetermined_of(found):
-    """Return the set of names between which a diagnosis could not tell."""
+    """Return the set of names between which a diagnosis could not decide."""
     doubts = found.get('undetermined') or []
     if isinstance(doubts, dict):
         doubts = doubts.get('effects', [])
@@ -42,7 +42,7 @@ def undetermined_of(found):
 
 
 def twins_of(label):
-    """Return the effects of which the records cannot tell which one it is, or an empty set."""
+    """Return the effects between which the records cannot decide, or an empty set."""
     for name, (parameter, most) in PASSED.items():
         true = label['effects'].get(name)
         value = None if true is None else true['parameters'].get(parameter)
@@ -55,7 +55,7 @@ def findings_of(found):
     """
     Return what a diagnosis names as one finding, as a list of sets of names.
 
-    What motion cannot tell apart is one finding: it names each of its members.
+    Effects that motion cannot separate are one finding: it names each of its members.
     """
     return [set(one['effects']) for one in found.get('one_finding') or ()]
 
@@ -72,9 +72,9 @@ def minor_of(found):
 
 def is_exact(label, found):
     """
-    Return whether a verdict names what is there, no more and no less.
+    Return whether a verdict names what is present, no more and no less.
 
-    Effects that are there but small may stand in `minor`. What the label allows beside the
+    Effects that are present but small may stand in `minor`. What the label allows beside the
     effects (`beside`) may be named and need not be; `instead` are names that do as well.
     """
     truth, verdict = truth_of(label), set(found.get('verdict', ()))
@@ -94,9 +94,10 @@ def judge(label, found):
     Return what came of one case: {measure: True, False, a number, or None where it has none}.
 
     A failure is wrong; a refusal is neither right nor wrong but counted as refused. `exact` is
-    also right where the records cannot tell (poor flights, twins_of) and `undetermined` names
-    what is there beside what the verdict names rightly; with twins, `first` is right with either.
-    `instead`: `unknown` is said where something known is, and nothing of that is named.
+    also right where the records cannot decide (poor flights, twins_of) and `undetermined` names
+    what is present beside what the verdict names rightly; with twins, `first` is right with
+    either. `instead`: the verdict is `unknown` where known effects are present, and names none of
+    them.
     """
     truth = truth_of(label)
     out = {'refused': 'refused' in found, 'failed': 'failed' in found,
@@ -134,7 +135,7 @@ def _closed(label, found):
     """
     Return the share of the closable gap that was closed, velocity on the held-out flight.
 
-    The noise is what is left where every effect is known: `floor`, which holds what a log hides.
+    The noise is what remains where every effect is known: `floor`, which holds what a log hides.
 
     Where records are not as they should be the gap before is the diagnosis's, as clocks are its
     own to mend, and rows on the floor its own to leave out.
@@ -236,7 +237,7 @@ def case_of(name: str, label: dict, found: dict, row: dict) -> dict:
     """
     Return a judged case for the lists of what was missed.
 
-    Beside `judge`: column, kind, group; text: what it is and what was said; outside: whether a
+    Beside `judge`: column, kind, group; text: the truth and the verdict; outside: whether a
     true parameter is outside its interval; misjudged: how far off the worst probability between
     0.05 and 0.95 is.
     """
@@ -251,7 +252,7 @@ def case_of(name: str, label: dict, found: dict, row: dict) -> dict:
 
 
 def text_of(name: str, label: dict, found: dict) -> str:
-    """Return a case in words: its name, what it is, what was said."""
+    """Return a case in words: its name, its truth, the verdict."""
     effects = [f'{effect}' + (f' ({one["form"]})' if one.get('form', 'ours') != 'ours' else '')
                + (f' {one["asked"]:g}' if one.get('asked') else '')
                for effect, one in label['effects'].items()]
@@ -261,14 +262,14 @@ def text_of(name: str, label: dict, found: dict) -> str:
     about += [key for key in ('bodies', 'gusts') if label.get(key)]
     if label.get('setup') is not None:
         about.append(f'estimator {label["setup"] + 1}')
-    return f'`{name}` {" + ".join(effects) or "none"} ({", ".join(about)}): {_said(found)}'
+    return f'`{name}` {" + ".join(effects) or "none"} ({", ".join(about)}): {_in_words(found)}'
 
 
 def hybrids_of(labels: dict[str, dict], found: dict[str, dict]) -> list[dict]:
     """
     Return the changes to real flights, each as hybrids.judge makes of it, by name of the change.
 
-    Beside that: name; change; text: what it is, what was said and what of that is wrong; refused,
+    Beside that: name; change; text: the truth, the verdict and what is wrong in it; refused,
     failed: the flights were, as flown or changed. What was refused is neither right nor wrong,
     what failed is wrong.
     """
@@ -291,11 +292,11 @@ def hybrids_of(labels: dict[str, dict], found: dict[str, dict]) -> list[dict]:
 
 
 def _text_of_change(label: dict, row: dict, base: dict, changed: dict) -> str:
-    """Return a change to real flights in words: what it is, what was said, what is wrong."""
+    """Return a change to real flights in words: the truth, the verdict, what is wrong."""
     amounts = [' '.join([effect, *(f'{parameter} {value:.3g}' for parameter, value in
                                    parameters.items())])
                for effect, parameters in label['effects'].items()]
-    said = _said(changed) if 'verdict' in base else f'as flown: {_said(base)}'
+    said = _in_words(changed) if 'verdict' in base else f'as flown: {_in_words(base)}'
     wrong = [text for applies, text in (
         (row['named'] is False, 'not named'), (row['moved'] is False, 'moved by another amount'),
         (row['lost'], f'lost {", ".join(row["lost"])}'),
@@ -303,8 +304,8 @@ def _text_of_change(label: dict, row: dict, base: dict, changed: dict) -> str:
     return '; '.join([f'`{row["name"]}` {row["change"]} ({", ".join(amounts)}): {said}', *wrong])
 
 
-def _said(found: dict) -> str:
-    """Return a diagnosis in words: its verdict, or why there is none."""
+def _in_words(found: dict) -> str:
+    """Return a diagnosis in words: its verdict, or why it has none."""
     return found.get('refused') or found.get('failed') or ', '.join(found.get('verdict', ()))
 
 
@@ -348,7 +349,7 @@ def reliability(given: NDArray[np.float64], present: NDArray[np.float64]) -> lis
     """
     Return [{'from', 'to', 'count', 'given', 'present'}] of probabilities by BINS, empty ones not.
 
-    Args: given (N,): probabilities; present (N,): 1 where the effect is there, or 0.
+    Args: given (N,): probabilities; present (N,): 1 where the effect is present, or 0.
     """
     which = np.clip(np.searchsorted(BINS, given, side='right') - 1, 0, len(BINS) - 2)
     return [{'from': BINS[k], 'to': BINS[k + 1], 'count': int((which == k).sum()),
@@ -358,7 +359,7 @@ def reliability(given: NDArray[np.float64], present: NDArray[np.float64]) -> lis
 
 
 def given_and_present(label: dict, found: dict) -> list[tuple[float, bool]]:
-    """Return [(probability, whether the effect is there)] of what a label does not leave open."""
+    """Return [(probability, whether the effect is present)] of what a label decides."""
     return [(row['probability'], row['effect'] in label['effects'])
             for row in found.get('ranking', ()) if row['effect'] not in label.get('beside', ())]
 
@@ -387,10 +388,10 @@ def coverage(pairs):
 
 def rescaled(label: dict, found: dict) -> bool:
     """
-    Return whether a diagnosis names another effect of a ratio (thrust per mass) than is there.
+    Return whether a diagnosis names the wrong effect of a ratio, such as thrust per mass.
 
-    Motion shows ratios only: where m times the mass is told as 1 / m of the thrust, inertia, drag
-    and all else with mass in its unit come out as 1 / m of what they are.
+    Motion shows ratios only: where m times the mass is stated as 1 / m of the thrust, inertia,
+    drag and all else with mass in its unit come out as 1 / m of what they are.
     """
     there, beside = set(label['effects']), set(label.get('beside', ()))
     said = set(found.get('verdict', ())) | minor_of(found)

@@ -4,7 +4,7 @@
 Labels that nobody reads before their time.
 
 The process that flies the realities encloses what they were with a pad as long as the text, used
-once (Vernam, 1926): the file on disk tells nothing to whoever lacks the pad, whatever their rights
+once (Vernam, 1926): the file on disk reveals nothing without the pad, whatever the reader's rights
 on the files. The pad goes to the process that scores, over a pipe, and is never written down.
 """
 

@@ -13,12 +13,12 @@ from quad_ident_ros.report.data import write_json
 from quad_ident_ros.report.screen import progress_bar
 
 
-def add(commands, said):
-    """Add the command to the parser; said: what it does."""
+def add(commands, summary):
+    """Add the command to the parser; summary: what it does."""
     parser = commands.add_parser(
-        'convert', help=said,
+        'convert', help=summary,
         formatter_class=argparse.RawDescriptionHelpFormatter,
-        description='Read a flight of any kind that is known and write it as CSV or as a bag. '
+        description='Read a flight of any known kind and write it as CSV or as a bag. '
                     'Nothing is lost: every\ncolumn, known or not, reads back number for number; '
                     'what could not be read is noted.\nA bag with several flights makes several '
                     'files, OUT_1, OUT_2, ...',

@@ -22,10 +22,10 @@ PICTURE = 'responses.png'
 HIDDEN = 1.2    # times the noise's gap, below which an effect does not show
 
 
-def add(commands, said):
-    """Add the command to the parser; said: what it does."""
+def add(commands, summary):
+    """Add the command to the parser; summary: what it does."""
     parser = commands.add_parser(
-        'demo', help=said,
+        'demo', help=summary,
         description='Start simulator, recorder and identifier as three processes on a ROS domain '
                     'of their own, fly an experiment, and show what was identified. Writes a '
                     'picture, the bag, CSV files and logs. With --gap the vehicle has a hidden '

@@ -37,10 +37,10 @@ from quad_ident_ros.user_simulator.program import INTERFACE
 from quad_ident_ros.user_simulator.simulator import Simulator
 
 
-def add(commands, said):
-    """Add the command to the parser; said: what it does."""
+def add(commands, summary):
+    """Add the command to the parser; summary: what it does."""
     parser = commands.add_parser(
-        'diagnose', help=said,
+        'diagnose', help=summary,
         formatter_class=argparse.RawDescriptionHelpFormatter,
         description='Compare flights of a real vehicle with its nominal description. The last '
                     'flight named is held\nout: the effects are not fitted to it. Contributions '

@@ -27,10 +27,10 @@ from quad_ident_ros.vehicle_files.written import read_back, with_code
 from quad_ident_ros.whole_file import write_whole
 
 
-def add(commands: Any, said: str) -> None:
-    """Add the command to the parser; said: what it does."""
+def add(commands: Any, summary: str) -> None:
+    """Add the command to the parser; summary: what it does."""
     parser = commands.add_parser(
-        'export', help=said, formatter_class=argparse.RawDescriptionHelpFormatter,
+        'export', help=summary, formatter_class=argparse.RawDescriptionHelpFormatter,
         description='Write a vehicle file, as `diagnose --out-vehicle` writes it, as a file of a '
                     'simulator: a new\none, or with --base yours, in which only numbers change '
                     'and everything else stays byte for byte.\nLists what the effects change, '
@@ -112,7 +112,7 @@ def cost_of(found: Export, vehicle: Vehicle, records: Sequence[FlightRecord]) ->
 
 
 def _base(options: argparse.Namespace) -> Source | None:
-    """Return the file of --base, or None; InputError where it is none, or would be lost."""
+    """Return the file of --base, or None; InputError if it is missing or would be lost."""
     if options.base is None:
         return None
     source = source_of(options.base)
@@ -135,7 +135,7 @@ def _beside(path: str) -> Path:
 
 
 def _refuse_others(path: Path) -> None:
-    """Raise InputError where code would be written over a file that is none of ours."""
+    """Raise InputError where code would overwrite a file that we did not write."""
     if path.exists() and (not path.is_file() or CODE_SAYS not in path.read_text(
             'utf-8', 'replace')[:200]):
         raise InputError(f'{path}: the code beside the file would be written over this; name '

@@ -22,10 +22,10 @@ from quad_ident_ros.report.data import write_json
 from quad_ident_ros.report.screen import console, progress_bar
 
 
-def add(commands, said):
-    """Add the command to the parser; said: what it does."""
+def add(commands, summary):
+    """Add the command to the parser; summary: what it does."""
     parser = commands.add_parser(
-        'fit', help=said,
+        'fit', help=summary,
         formatter_class=argparse.RawDescriptionHelpFormatter,
         description='Estimate chosen physical parameters of a vehicle from flight records, by '
                     'prediction error over short\nrollouts, with standard errors and a word on '

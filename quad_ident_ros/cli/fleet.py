@@ -17,17 +17,17 @@ FAULTY = 3
 _BYTES = re.compile(r'(\d+(?:\.\d+)?) ?([kMGT]?)(i?)B?')
 
 
-def add(commands, said):
-    """Add the command to the parser; said: what it does."""
+def add(commands, summary):
+    """Add the command to the parser; summary: what it does."""
     parser = commands.add_parser(
-        'fleet', help=said, formatter_class=argparse.RawDescriptionHelpFormatter,
+        'fleet', help=summary, formatter_class=argparse.RawDescriptionHelpFormatter,
         description='Diagnose flights of many vehicles. Those of one vehicle, configuration and '
                     'day are diagnosed together; all\nresults are kept in a folder of Parquet '
-                    'files, which pandas, polars and DuckDB read. What is done is not\ndone '
-                    'again: start the same command anew after new flights, or where it was '
+                    'files, which pandas, polars and DuckDB read. Finished work is\nnot '
+                    'repeated: start the same command again after new flights, or where it was '
                     'interrupted.',
-        epilog='a folder: the first folder in it that is no day names the vehicle, a second one '
-               'the configuration;\n  without one the log does. The nominal vehicle is '
+        epilog='a folder: the first folder in it that is not a day names the vehicle, a second '
+               'one the configuration;\n  without one the log does. The nominal vehicle is '
                'vehicle.yaml in a folder of its flights, or --vehicle.\n'
                'a manifest: a CSV table with the columns path, vehicle, configuration, date, '
                'group, vehicle_file, of which only\n  path is needed; each other column is a '
@@ -87,8 +87,8 @@ def run(options):
         raise InputError('--workers, --memory: they are for processes on this machine; with '
                          '--scheduler its own workers are used')
     if options.priors and options.out_priors:
-        raise InputError('--out-priors: verdicts that use --priors would repeat what they were '
-                         'told; run without --priors, into another --out')
+        raise InputError('--out-priors: verdicts that use --priors would repeat these; '
+                         'run without --priors, into another --out')
     rules = RULES if options.priors is None else replace(RULES,
                                                          priors=load_priors(options.priors))
     plan = planned(options.flights, vehicle=options.vehicle, mapping=options.mapping, rules=rules)

@@ -27,10 +27,10 @@ def _effects_text():
         for parameter in effect.parameters) + '\n' for effect in EFFECTS.values())
 
 
-def add(commands, said):
-    """Add the command to the parser; said: what it does."""
+def add(commands, summary):
+    """Add the command to the parser; summary: what it does."""
     parser = commands.add_parser(
-        'fly', help=said,
+        'fly', help=summary,
         formatter_class=argparse.RawDescriptionHelpFormatter,
         description='Fly a trajectory in simulation under a geometric controller and write the '
                     'flight record.\nThe controller knows the vehicle of the file; the vehicle '

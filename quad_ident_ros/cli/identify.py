@@ -18,10 +18,10 @@ from quad_ident_ros.report.table import identification_table, legend, notes
 from quad_ident_ros.vehicle_files.load import load_any_vehicle
 
 
-def add(commands, said):
-    """Add the command to the parser; said: what it does."""
+def add(commands, summary):
+    """Add the command to the parser; summary: what it does."""
     parser = commands.add_parser(
-        'identify', help=said,
+        'identify', help=summary,
         formatter_class=argparse.RawDescriptionHelpFormatter,
         description='Fit K/((s+a)(s+b)) to roll, pitch, yaw and altitude of flight records. '
                     'Several\nrecords, for instance one per axis, make one identification.',

@@ -34,10 +34,10 @@ FAULTY = 3
 STYLE = {'error': 'bold red', 'warning': 'yellow', 'info': 'default'}
 
 
-def add(commands, said):
-    """Add the command to the parser; said: what it does."""
+def add(commands, summary):
+    """Add the command to the parser; summary: what it does."""
     parser = commands.add_parser(
-        'info', help=said,
+        'info', help=summary,
         formatter_class=argparse.RawDescriptionHelpFormatter,
         description='Say what is in a file: its streams, their rates and spans, and what they '
                     'could be read for; and of\nthe flight in it: columns, rates, gaps, ranges, '
@@ -112,7 +112,7 @@ def _summaries(path: str, records: Sequence[FlightRecord], selection: Selection,
 
 
 def _vehicle(options: argparse.Namespace) -> tuple[Vehicle | None, list[dict]]:
-    """Return the Vehicle, and findings: why there is none where a log does not fill its file."""
+    """Return the Vehicle, and findings: why it is None where a log does not fill its file."""
     if not options.vehicle:
         return None, []
     try:
@@ -142,7 +142,7 @@ def show_streams(inside: dict) -> None:
                       f'{stream["start_s"] + stream["duration_s"]:.2f}',
                       ', '.join(stream['roles']))
     screen.print(table)
-    # A table of rows is told by its columns.
+    # A table is recognised by its columns.
     for stream in inside['streams'] if len(inside['streams']) == 1 else ():
         screen.print(f'fields: {", ".join(stream["fields"])}', markup=False, highlight=False,
                      soft_wrap=True)

@@ -63,17 +63,17 @@ def parser(wanted):
                     'and how far it differs from its simulation.')
     top.add_argument('--version', action='version', version=__version__)
     commands = top.add_subparsers(dest='command', metavar='COMMAND')
-    for name, said in COMMANDS.items():
+    for name, summary in COMMANDS.items():
         if name in wanted:
             module = name.replace('-', '_')
-            importlib.import_module(f'quad_ident_ros.cli.{module}').add(commands, said)
+            importlib.import_module(f'quad_ident_ros.cli.{module}').add(commands, summary)
         else:
-            commands.add_parser(name, help=said)
+            commands.add_parser(name, help=summary)
     return top, commands.choices
 
 
 class _Parser(argparse.ArgumentParser):
-    """Says of a value that is none of several which of them may be meant."""
+    """Suggests, for a wrong value of several, which of them may be meant."""
 
     def error(self, message):
         """End with a message in one line."""

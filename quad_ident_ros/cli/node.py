@@ -10,10 +10,10 @@ from quad_ident_ros.errors import InputError
 NODES = ('simulator', 'recorder', 'identifier', 'diagnoser')
 
 
-def add(commands, said):
-    """Add the command to the parser; said: what it does."""
+def add(commands, summary):
+    """Add the command to the parser; summary: what it does."""
     parser = commands.add_parser(
-        'node', help=said,
+        'node', help=summary,
         description='Run a ROS 2 node. `quad_ident node NAME --help` lists its topics, services '
                     'and parameters.')
     parser.add_argument('name', choices=NODES)

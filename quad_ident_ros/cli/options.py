@@ -67,7 +67,7 @@ def flights_from(path: str | Path, mapping: str | None = None,
 
 def read_flights(path: str | Path, mapping: str | None, vehicle: Vehicle | None,
                  selection: Selection | None, by_log: bool = False) -> list[FlightRecord]:
-    """Return all flight records that a path stands for, of which a Selection is taken then."""
+    """Return all flight records that a path stands for, or a Selection of them."""
     in_part = selection is not None and not selection.is_all
     found = load_all(path, load_mapping(mapping) if mapping else None, vehicle, in_part)
     give_back()
@@ -96,7 +96,7 @@ def asking_for_ros(error: ImportError) -> str:
 
 
 def thrust_by_log(option: str | None, path: str) -> bool:
-    """Whether the thrust coefficient of --vehicle is that by which the log carries the weight."""
+    """Whether the thrust coefficient of --vehicle follows from the log."""
     if option != AUTO:
         return False
     from quad_ident_ros.data.px4_nominal import has_thrust

@@ -39,8 +39,8 @@ def check_outputs(options):
         written.add(place)
         for folder in Path(output).parents:
             if folder.exists() and not folder.is_dir():
-                raise InputError(f'{output}: {folder} is a file, no folder; give another path')
-        given = Path(output)    # of a pipe, the place that its link names is none
+                raise InputError(f'{output}: {folder} is a file, not a folder; give another path')
+        given = Path(output)    # the link of a pipe names no place
         if not given.exists() or given.is_file() or given.is_dir():
             _try_to_write(output, place)
     for output in _named(options, FILES):
@@ -68,7 +68,7 @@ def _try_to_write(output, place):
     """
     Raise InputError where no file can be made in the folder that is to hold an output.
 
-    Permissions do not tell: root has them all. The file's name is as long as the temporary one of
+    Permissions do not say: root has them all. The file's name is as long as the temporary one of
     whole_file.replacing.
     """
     folder, name = (place, '') if place.is_dir() else (

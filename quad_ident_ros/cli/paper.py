@@ -17,10 +17,10 @@ from quad_ident_ros.report.screen import console, progress_bar
 from quad_ident_ros.report.svg import drawings
 
 
-def add(commands, said):
-    """Add the command to the parser; said: what it does."""
+def add(commands, summary):
+    """Add the command to the parser; summary: what it does."""
     parser = commands.add_parser(
-        'paper', help=said,
+        'paper', help=summary,
         formatter_class=argparse.RawDescriptionHelpFormatter,
         description='Reproduce the paper: fit all methods to its experiments over many seeds, '
                     'compute its Table 3 from\nits Table 2, fly its equations as printed, and say '

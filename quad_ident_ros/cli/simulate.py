@@ -14,10 +14,10 @@ from quad_ident_ros.experiment import fly, load_experiment, NOISE_UNITS
 from quad_ident_ros.report.data import write_json
 
 
-def add(commands, said):
-    """Add the command to the parser; said: what it does."""
+def add(commands, summary):
+    """Add the command to the parser; summary: what it does."""
     parser = commands.add_parser(
-        'simulate', help=said,
+        'simulate', help=summary,
         formatter_class=argparse.RawDescriptionHelpFormatter,
         description='Fly an experiment in simulation, without ROS, and write one CSV per run.',
         epilog='experiments that ship:\n' + ''.join(

@@ -9,6 +9,7 @@ from typing import Any
 import yaml
 
 from quad_ident_ros import schema
+from quad_ident_ros.effects.registry import titled
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.vehicle import load_vehicle, vehicle_to_mapping, write_vehicle
 from quad_ident_ros.report.data import write_json
@@ -20,10 +21,10 @@ from quad_ident_ros.vehicle_files.reading import needed_vehicle, Reading, SETTAB
 OURS = 'a vehicle file'
 
 
-def add(commands: Any, said: str) -> None:
-    """Add the command to the parser; said: what it does."""
+def add(commands: Any, summary: str) -> None:
+    """Add the command to the parser; summary: what it does."""
     parser = commands.add_parser(
-        'vehicle', help=said, formatter_class=argparse.RawDescriptionHelpFormatter,
+        'vehicle', help=summary, formatter_class=argparse.RawDescriptionHelpFormatter,
         description='Show what a file says about a vehicle: each number with its unit and place '
                     'in the file, what\nis missing, and what was assumed. Lags, drags and the '
                     'like become effects of the nominal\nvehicle, so that the gap is that of this '
@@ -78,7 +79,7 @@ def as_data(reading: Reading) -> dict[str, Any]:
 
 
 def show(reading: Reading) -> None:
-    """Print what was read, what became of it, what is missing and what was assumed."""
+    """Print what was read and how it was used, what is missing and what was assumed."""
     screen = console()
     say(screen, f'{reading.path}: {reading.kind}')
     if reading.read:
@@ -101,7 +102,7 @@ def _show_vehicle(reading: Reading, screen: Any) -> None:
                 f'hovers at {vehicle.hover_speed:.4g} rad/s{most}')
     for name, values in vehicle.effects.items():
         numbers = ', '.join(f'{key} = {value:.6g}' for key, value in values.items())
-        say(screen, f'effect: {name} {numbers}')
+        say(screen, f'effect: {titled(name)} {numbers}')
     if not vehicle.effects:
         say(screen, 'effects: none')
     if vehicle.residual is not None:

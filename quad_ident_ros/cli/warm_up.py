@@ -5,9 +5,9 @@
 from quad_ident_ros.warm_up import warm_up, warm_up_diagnosis
 
 
-def add(commands, said):
-    """Add the command to the parser; said: what it does."""
-    parser = commands.add_parser('warm-up', help=said)
+def add(commands, summary):
+    """Add the command to the parser; summary: what it does."""
+    parser = commands.add_parser('warm-up', help=summary)
     parser.set_defaults(run=run)
 
 

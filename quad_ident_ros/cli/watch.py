@@ -33,9 +33,9 @@ example, each line in a terminal of its own:
 """
 
 
-def add(commands, said):
-    """Add the command to the parser; said: what it does."""
-    parser = commands.add_parser('watch', help=said, description=DESCRIPTION, epilog=EPILOG,
+def add(commands, summary):
+    """Add the command to the parser; summary: what it does."""
+    parser = commands.add_parser('watch', help=summary, description=DESCRIPTION, epilog=EPILOG,
                                  formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('--namespace', default='', metavar='NAME',
                         help='namespace of the nodes, such as uav1 (default: none)')

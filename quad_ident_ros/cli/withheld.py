@@ -13,12 +13,12 @@ from quad_ident_ros.errors import InputError
 ROOT = Path(__file__).resolve().parents[2]
 
 
-def add(commands, said):
-    """Add the command to the parser; said: what it does."""
+def add(commands, summary):
+    """Add the command to the parser; summary: what it does."""
     # No argument begins with this: all of them go on to the check as they are.
     parser = commands.add_parser(
         'withheld', add_help=False, prefix_chars='\0',
-        help=said)
+        help=summary)
     parser.add_argument('arguments', nargs='*')
     parser.set_defaults(run=run)
 

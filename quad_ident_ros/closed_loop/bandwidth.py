@@ -19,7 +19,7 @@ def multisine(rate: float) -> np.ndarray:
     Return x, y, z, yaw (N, 4), m and rad, over two PERIODs: lines of all axes in turn.
 
     Each axis has every fourth line between LOWEST and HIGHEST, of the same acceleration, so that
-    one flight tells all axes apart (Pintelon and Schoukens, System Identification, 2012, 2.7).
+    one flight separates all axes (Pintelon and Schoukens, System Identification, 2012, 2.7).
     """
     t = np.arange(int(2 * PERIOD * rate + 1e-6)) / rate
     rng = np.random.default_rng(0)

@@ -82,7 +82,7 @@ class UserController:
 
 @dataclass(frozen=True, eq=False)
 class NamedController:
-    """A Controller, and the name by which --controller asked for it."""
+    """A Controller and its name in --controller."""
 
     spec: str
     controller: Controller

@@ -50,7 +50,7 @@ def reference_of(record: FlightRecord) -> Reference:
     heading = record.has('psi') or record.has(*QUATERNION)
     if not (record.has(*PLACE) and record.has(*VELOCITY) and heading):
         raise InputError(f'{name}: --controller needs a path to follow, and this flight, which is '
-                         'held out, lacks position, velocity or attitude; hold out one that has '
+                         'held out, has no position, velocity or attitude; hold out one that has '
                          'them')
     record = _longest_part(record)
     rate = float(np.clip(round(1.0 / record.period()), *RATES))
@@ -90,7 +90,7 @@ def with_asked(record: FlightRecord, trajectory: Callable[[np.ndarray], tuple[np
 
 def wanted_of(t: np.ndarray, path: np.ndarray, knot: float = KNOT) -> np.ndarray:
     """
-    Return what a controller is told (N, 14) along a path (N, 4), m and rad, at t (N,) s.
+    Return what a controller receives (N, 14) along a path (N, 4), m and rad, at t (N,) s.
 
     knot: s between the knots of the spline, 2 samples at least.
     """

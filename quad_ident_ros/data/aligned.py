@@ -26,9 +26,9 @@ def aligned(record):
 
     The slopes of the pose are velocity and rate. Where their stamps clearly differ, the one that
     comes first keeps its time, for a measurement may be late but never early, and the others are
-    moved onto it; one whose offset cannot be told stays where it is. Rows whose new values lie in
-    gaps or beyond the end are left out. Without such offsets the record itself is returned, and
-    {}.
+    moved onto it; one whose offset cannot be determined stays where it is. Rows whose new values
+    lie in gaps or beyond the end are left out. Without such offsets the record itself is returned,
+    and {}.
     """
     late = lateness(record)
     if not late:
@@ -54,7 +54,7 @@ def lateness(record):
     if len(known) == 2:
         (rate, wide), (velocity, narrow) = known.values()
         if abs(rate - velocity) <= ALIKE * np.hypot(wide, narrow):
-            # They are of one clock: the better known of the two tells the pose's.
+            # They share one clock: the better known offset of the two is that of the pose.
             weights = np.array([wide, narrow]) ** -2.0
             both = float(np.average([rate, velocity], weights=weights)), weights.sum() ** -0.5
             known = dict.fromkeys(known, both)

@@ -3,8 +3,8 @@
 """
 Serialized messages whose numbers lie at the same places, read as columns.
 
-Where the numbers of a message lie is told by its type and by the lengths of the texts and lists in
-it. Messages of a topic that have these bytes in common are one table of bytes.
+The place of the numbers in a message follows from its type and the lengths of the texts and lists
+in it. Messages of a topic that have these bytes in common are one table of bytes.
 """
 
 from collections.abc import Callable, Collection
@@ -55,7 +55,7 @@ def layout_of(data: bytes, message: object, store: object, *, ros1: bool = False
     Return the Layout of a message, or None where it is not known.
 
     A column is a view (n,) of the bytes, a list of numbers (k, n). What was read of the message
-    is compared with it, so that a layout that is misunderstood is none.
+    is compared with it, so that a layout that is misunderstood is not used.
     Args: data: its bytes; message: what rosbags reads in them; store: Typestore with its type;
     ros1: serialized as by ROS 1; fixed: fields of which messages of one layout have one value.
     """
@@ -185,7 +185,7 @@ class Waiting:
 
     def taken(self):
         """
-        Yield (time of receipt in ns, message) of those that wait, which then are none.
+        Yield (time of receipt in ns, message) of those that wait, and empty the list.
 
         Those of the layout come together: with times (n,) and columns in place of numbers.
         """

@@ -32,7 +32,7 @@ ROLES = {'XKQ': ('attitude',), 'NKQ': ('attitude',), 'ATT': ('attitude',),
 """Types of messages that are read, and for what."""
 
 _ABOUT = ('PARM', 'MSG', 'VER', 'TIME', 'MODE')
-_INSTANCES = ('C', 'I', 'Instance', 'Inst')     # fields that tell EKF cores, sensors, ... apart
+_INSTANCES = ('C', 'I', 'Instance', 'Inst')     # fields that number EKF cores, sensors, ...
 _BUILDS = {1: 'Rover', 3: 'ArduPlane', 4: 'AntennaTracker', 7: 'ArduSub', 12: 'Blimp'}
 _OTHERS = {'ArduPlane': 'ArduPlane', 'ArduRover': 'Rover', 'APM:Rover': 'Rover', 'Rover': 'Rover',
            'ArduSub': 'ArduSub', 'Blimp': 'Blimp', 'AntennaTracker': 'AntennaTracker',
@@ -130,7 +130,7 @@ def _timed(messages):
 
 
 def _instance_field(messages):
-    """Return the field that tells instances apart, or None; it comes right after the stamp."""
+    """Return the field that numbers instances, or None; it comes right after the stamp."""
     name = messages.fields[1] if len(messages.fields) > 1 else None
     small = name in _INSTANCES and messages.rows[name].dtype in (np.uint8, np.int8)
     return name if small else None
@@ -289,7 +289,7 @@ def _channels(parameters):
             function)
         if match and motor:
             found[motor] = min(found.get(motor, 99), int(match[1]))
-    # Motors are counted from 1 on; after a gap there is none.
+    # Motors are counted from 1; none follows a gap.
     return {motor: found[motor] for motor in found if all(k in found for k in range(1, motor))}
 
 

@@ -53,7 +53,7 @@ def _typestore():
 
 
 def is_known(msgtype):
-    """Whether a message type is one of ROS 2 Jazzy, which a bag can be written of."""
+    """Whether a message type is one of ROS 2 Jazzy, which can be written to a bag."""
     return msgtype in _typestore().fielddefs
 
 
@@ -83,8 +83,8 @@ class BagWriter:
     and stays it until the next flush: a killed process loses what came after its last flush and
     nothing else, and a full disk costs no more. The folder appears whole, without messages.
     A failed flush may be tried again. Of a process
-    that is killed within a flush the index at the end is gone, which is written anew; messages
-    are only ever appended, with a checksum by which BagFile tells those that are whole.
+    that is killed within a flush the index at the end is gone, which is rewritten; messages
+    are only ever appended, with a checksum by which BagFile recognises complete ones.
     Args: path of a folder that does not exist yet; topics the (name, message type) of each topic.
     Raises InputError where they cannot be, OSError where the folder cannot be written. Not for
     use by several threads at once.
@@ -172,7 +172,7 @@ class BagWriter:
 
 class _TailedFile:
     """
-    A file whose end, the tail, is written anew at every commit and left alone in between.
+    A file whose end, the tail, is rewritten at every commit and left alone in between.
 
     It stands in for the file that McapWriter writes to: what that writes is kept in memory until
     commit, so that the file on disk has its tail at all times but within the one write.
@@ -336,7 +336,7 @@ class _Writer(Writer):
 
     def close(self):
         """Write what is pending, the index, and metadata.yaml, which is whole at all times."""
-        # As rosbags does, which makes it anew by a slow way.
+        # As rosbags does, only faster.
         if self._template is None:
             self._template = metadata_template(self.storage.path.name, self.connections)
         text = metadata_text(self._template, self.counts, self.min_timestamp, self.max_timestamp)

@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""How the messages of a type in a bag are read, and by which bounds absurd types are told."""
+"""How the messages of a type in a bag are read, and bounds beyond which a type is absurd."""
 
 from functools import cache, lru_cache
 
@@ -72,7 +72,7 @@ class Codec:
         return tuple(_paths(self._type, self._candidates[0][1].fielddefs))
 
     def message(self, data):
-        """Return the message in bytes; a type with several layouts is told by its length."""
+        """Return the message in bytes; the length decides between several layouts of a type."""
         if self._chosen is not None:
             return self._chosen(data)
         problem = None

@@ -34,7 +34,7 @@ class Topic:
     count: int
 
 
-def told_kind(path, start):
+def kind_by_content(path, start):
     """Return '.bag', '.mcap' or '.db3' by the first bytes of a file, 'folder', or ''."""
     if Path(path).is_dir():
         return 'folder'
@@ -42,12 +42,12 @@ def told_kind(path, start):
 
 
 def kind_of(path):
-    """Return told_kind of a path, and of a damaged file the end of its name where that is one."""
+    """Return kind_by_content, or for a damaged file the end of its name where that is a kind."""
     path, start = Path(path), b''
     with suppress(OSError), open(path, 'rb') as file:
         start = file.read(16)
     named = path.suffix in MAGIC.values() and not is_text(start)
-    return told_kind(path, start) or (path.suffix if named else '')
+    return kind_by_content(path, start) or (path.suffix if named else '')
 
 
 class BagFile:
@@ -55,7 +55,7 @@ class BagFile:
     A bag that is open for reading.
 
     Use it with `with`. A bag is read by what it is: its name does not matter.
-    Raises InputError in one line for a path that is no bag, and wherever one is damaged.
+    Raises InputError in one line for a path that is not a bag, and where one is damaged.
     """
 
     def __init__(self, path):
@@ -113,7 +113,7 @@ class BagFile:
 
     @property
     def topics(self):
-        """Return the topics, by name; one of several types is there once for each."""
+        """Return the topics, by name; one of several types occurs once for each."""
         counts = {}
         with self._guarded():
             for one in self._reader.connections:
@@ -148,7 +148,7 @@ class BagFile:
         """
         Yield (topic, times of receipt in ns, messages) of the named topics, those of each by time.
 
-        Messages whose bytes lie alike come together: an array of times (n,), and one message with
+        Messages of equal layout come together: an array of times (n,), and one message with
         columns (n,), or (k, n) of a list, in place of its numbers. Others come one by one, with
         an integer, as the first of each topic does.
         Args: fixed(topic): the fields that have one value in messages that come together, or None

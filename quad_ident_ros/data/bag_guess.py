@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Which topics of a bag are what, told by their types where these leave no doubt."""
+"""What the topics of a bag are, by their types where these leave no doubt."""
 
 from dataclasses import replace
 import re

@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""metadata.yaml of a rosbag2 folder, made anew many times while the bag grows."""
+"""metadata.yaml of a rosbag2 folder, rewritten many times while the bag grows."""
 
 from rosbags.rosbag2.metadata import dump_qos_v9
 import yaml

@@ -81,7 +81,7 @@ def _outputs(path: Path) -> tuple[list[int], str]:
 
 
 def _instances(streams: Sequence[Content]) -> dict[str, list[int]]:
-    """Return the numbers of the instances of what can be read and is there several times."""
+    """Return the numbers of the instances of what can be read and occurs several times."""
     found: dict[str, list[int]] = {}
     for one in streams:
         match = _NUMBERED.fullmatch(one.name)

@@ -150,7 +150,7 @@ def _specific_force(log, notes):
         return None
     one = _number(log, 'acc_1G')
     if one is None:
-        notes.append('accSmooth: the header has no acc_1G, so that it is left out')
+        notes.append('accSmooth: the header has no acc_1G, so it is left out')
         return None
     force = _stack(log, ACCELEROMETER) * (GRAVITY / one)
     return _stream(log, 'accSmooth', ('ax', 'ay', 'az'), force)
@@ -172,7 +172,7 @@ def _rotors(log, notes):
         return None
     poles = _number(log, 'motor_poles')
     if poles is None:
-        notes.append('eRPM: the header has no motor_poles, so that rotor speeds are left out')
+        notes.append('eRPM: the header has no motor_poles, so rotor speeds are left out')
         return None
     # Counted in hundreds of electrical turns a minute; two poles make one mechanical turn.
     return _stream(log, 'eRPM', [f'rotor{k + 1}' for k in range(len(names))],
@@ -185,7 +185,7 @@ def _battery(log, notes):
     match = _REVISION.match(str(log.headers.get('Firmware revision', '')))
     version = tuple(map(int, match.groups())) if match else (0, 0)
     if version < (3, 1):
-        notes.append('vbatLatest: its unit is known for Betaflight 3.1 and later alone, so that '
+        notes.append('vbatLatest: its unit is known only for Betaflight 3.1 and later, so that '
                      'it is left out')
         return None
     return _stream(log, 'vbatLatest', ('vbat',),

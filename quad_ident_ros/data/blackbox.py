@@ -100,7 +100,7 @@ def _bounded(path, number=None):
                 if not line.startswith(b'H ') or not line.endswith(b'\n') or b':' not in line:
                     file.seek(before)
                     break
-                # Messages quote it: whatever could begin another line is not of a header.
+                # Messages quote it: what could begin another line is not part of a header.
                 text = _UNPRINTABLE.sub('?', line.decode('utf-8', 'replace').rstrip())
                 self._parse_header_line(text.encode())
             self._header_size = file.tell() - start
@@ -185,7 +185,7 @@ def _columns(parser, reader, indices):
         try:
             for frame in parser.frames():
                 if context.invalid_frame_count != invalid:
-                    # What follows is told as differences from a frame that is not known.
+                    # What follows are differences from a frame that is not known.
                     invalid, waiting = context.invalid_frame_count, True
                 waiting = waiting and frame.type is not FrameType.INTRA
                 if waiting:

@@ -24,7 +24,7 @@ class RecordBuffer:
     Collects rows and cuts them into flight records.
 
     A record is complete when the run that a notice announced has its last sample, when the next
-    run begins, when the clock begins anew, or when the window is full.
+    run begins, when the clock restarts, or when the window is full.
     Args: columns: raw columns of a row, to be set before the first record where they are not known
     yet; limits: Limits.
     """
@@ -37,7 +37,7 @@ class RecordBuffer:
         self._run = None
         self._accounted = 0   # samples of this run in earlier records, or missing before them
         self._counted = 0     # samples missing between the rows that an overlap has kept
-        self.missing = 0      # samples that all records lack
+        self.missing = 0      # samples that no record has
 
     def __len__(self):
         return len(self._rows)
@@ -52,7 +52,7 @@ class RecordBuffer:
                 self._run = notice
                 over = bool(self._rows) and self._rows[-1][0] >= notice.stop_ns
                 return self._end_run() if over else []
-            # The same time again: the clock begins anew, and what is here is from before.
+            # The same time again: the clock restarts, and what is here is from before.
             done = self.complete(run_over=True)
             self._run, self._accounted = notice, 0
             return done
@@ -94,7 +94,7 @@ class RecordBuffer:
         """
         Return [the record of the rows so far] or [], keeping a share of the rows.
 
-        run_over: no more rows of the announced run will come, so that those it lacks are known.
+        run_over: no more rows of the announced run will come, so that those missing are known.
         """
         rows = self._rows
         done = len(rows) - int(overlap * len(rows))

@@ -18,7 +18,7 @@ def stamped_numbers(count: int, places: Sequence[int]) -> Reader:
     Return a function that reads messages of a std_msgs/Header and so many doubles.
 
     It takes a serialized message and returns its stamp in ns and the doubles at some places, or
-    None for one of another encoding or length, which whoever made the message class has to read.
+    None for one of another encoding or length, which the message class has to read.
     Source: OMG Common Data Representation, formal/2021-11-03, 15.3.
     """
     numbers = struct.Struct(f'<{count}d')

@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Clocks of states and commands of flights, told by what the commands answer."""
+"""Clocks of states and commands of flights, from what the commands answer."""
 
 from dataclasses import dataclass
 
@@ -12,7 +12,7 @@ from quad_ident_ros.data.quality.answer import answer_of, CLEAR
 ALIKE = 0.001, 0.1      # s, or samples if that is more, within which the lags of flights are one
 LEAST = 0.0005          # s of an offset that is worth moving commands for
 PROMPT = 0.005          # s, the longest lag that controllers usually have of their own
-SURE = 2.0              # standard errors that tell two lags apart
+SURE = 2.0              # standard errors between two lags that differ
 
 
 @dataclass(frozen=True)

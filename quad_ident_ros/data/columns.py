@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Flight records from tables whose columns a mapping names, or that are told without doubt."""
+"""Flight records from tables whose columns a mapping or their names make certain."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from collections.abc import Mapping as Pairs

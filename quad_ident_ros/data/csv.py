@@ -30,7 +30,7 @@ def read_csv(path, spoilt=False):
     nan). A last line without a line end is one that a recording was cut off in, and is dropped:
     even where it looks whole, its last number may be cut. info has the file's name and source,
     and truncated=True where a line was dropped.
-    Args: path; spoilt: leave faulty samples out, and tell them in the info, see record.SPOILT.
+    Args: path; spoilt: leave faulty samples out and list them in the info, see record.SPOILT.
     Raises InputError that names file, line (from 1, as editors count) and column.
     """
     path = Path(path)
@@ -118,7 +118,7 @@ class CsvAppender:
     """
     A CSV file that grows while a flight is recorded.
 
-    What was flushed stays whole whatever becomes of the process. A failed flush loses nothing: a
+    What was flushed survives the process. A failed flush loses nothing: a
     later one goes on at the byte where it stopped.
     Args: path of a file that does not exist yet; columns the names, t among them.
     Raises OSError where the file cannot be made, InputError for column names that cannot be.
@@ -189,7 +189,7 @@ def _header(path, row):
 
 
 def _parse_any(path, rows, names):
-    """Return line numbers and the columns without text of any table; InputError if it is none."""
+    """Return line numbers and the columns of numbers; InputError if the file is not a table."""
     lines, cells = _cells(path, rows, names)
     columns = {}
     values = zip(*cells, strict=True) if cells else [()] * len(names)

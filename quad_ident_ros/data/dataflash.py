@@ -86,7 +86,7 @@ def read_messages(path, wanted=None):
 
 
 def _index(data):
-    """Return type -> DFFormat, type -> where its messages start, and bytes that are none."""
+    """Return type -> DFFormat, type -> starts of its messages, and the count of stray bytes."""
     formats, starts = {}, {kind: array('q') for kind in range(256)}
     lengths = [0] * 256
     lengths[_FORMAT] = _FORMAT_SIZE

@@ -25,7 +25,7 @@ def save(path, record, on_progress=None):
 
     Every number reads back as it was, or nothing is left where it fails or is interrupted.
     on_progress is called with the share that is written.
-    Raises InputError for another ending or a folder that is there already, OSError where the disk
+    Raises InputError for another ending or an existing folder, OSError where the disk
     refuses.
     """
     path = Path(path)

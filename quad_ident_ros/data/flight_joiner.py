@@ -10,7 +10,7 @@ from quad_ident_ros.data.stream_joiner import StreamJoiner
 from quad_ident_ros.data.streams import HELD, INTERPOLATED
 from quad_ident_ros.data.topics import FLIGHT_TOPICS
 
-DECIDED = 100       # stamps whose fate tells how the topics go together: chance joins few of them
+DECIDED = 100       # stamps whose fate shows how the topics go together: chance joins few of them
 AHEAD = 20000       # interpolated rows that wait for that
 STATES = ('pose', 'attitude', 'twist', 'altitude')
 
@@ -23,7 +23,7 @@ class FlightJoiner:
 
     By equal stamps (Joiner), unless more of the first DECIDED stamps come without the others than
     with them: then topics have rates of their own, and are joined between their samples
-    (StreamJoiner) at the stamps of the pose, or of the first of STATES that is there, or of
+    (StreamJoiner) at the stamps of the pose, or of the first of STATES that exists, or of
     inputs that come far more often.
     Args: topics: names that a row needs; gap: s between samples beyond which rows are dropped.
     """

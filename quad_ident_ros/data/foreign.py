@@ -26,7 +26,7 @@ def read_mapped_bag(path, mapping, spoilt=False):
     is filled by the types of the topics, where these leave no doubt. Stamps are those in the
     messages where all of a topic have one, else the times of receipt; all are the times of
     receipt where the stamps are of several clocks.
-    Args: path of a bag; mapping Mapping; spoilt: leave attitudes that are none out, and tell them
+    Args: path of a bag; mapping Mapping; spoilt: leave invalid attitudes out and list them
     in the info, see record.SPOILT.
     Raises InputError that names file, topic and message.
     """
@@ -58,7 +58,7 @@ def read_mapped_bag(path, mapping, spoilt=False):
     start, t, columns, left_out = join(path, streams)
     record = FlightRecord(t, velocity_in_world(path, columns),
                           {'source': str(path), 'start_ns': start, 'notes': [*notes, *left_out]}
-                          | _told(parts, streams, start))
+                          | _spoilt(parts, streams, start))
     return split_at_resets([record], start, {
         part.counters.topic: (stream.stamps, part.counters.fields())
         for part, stream in zip(parts, streams, strict=True) if part.counters})
@@ -80,7 +80,7 @@ def _by_topic(parts, types):
     return found
 
 
-def _told(parts, streams, start):
+def _spoilt(parts, streams, start):
     """Return the info of the samples that were left out as spoilt; start: of the record, ns."""
     told = [[(int(stream.stamps[k]) - start) * 1e-9, part.not_unit(k)]
             for part, stream in zip(parts, streams, strict=True) for k in part.spoilt]
@@ -88,7 +88,7 @@ def _told(parts, streams, start):
 
 
 def without_stamps(topic):
-    """Return what is said of a topic whose messages say not when they are of."""
+    """Return the note on a topic whose messages have no stamp."""
     return (f'the messages of topic {topic} have no stamps; their times of receipt are used, '
             'which are later by what transport takes')
 

@@ -12,7 +12,7 @@ from quad_ident_ros.data.quality import frames
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.data.topics import record_columns
 
-SPAN = 10.0     # s that are looked at: the shipped flights tell wrong frames within 5 s
+SPAN = 10.0     # s that are looked at: the shipped flights reveal wrong frames within 5 s
 EVERY = 5.0     # s of flight between two looks
 PERIOD = 0.01   # s between the rows that are kept: frames show below 10 Hz
 
@@ -27,7 +27,7 @@ class FrameWatch:
         self._wrong = ''
 
     def add(self, rows: Iterable[Row]) -> None:
-        """Take rows (stamp_ns, values); a clock that goes back begins anew."""
+        """Take rows (stamp_ns, values); a clock that goes back restarts the check."""
         for row in rows:
             self._is_new = True
             since = row[0] - self._rows[-1][0] if self._rows else np.inf
@@ -59,7 +59,7 @@ class FrameWatch:
         stamps = np.array([row[0] for row in self._rows], np.int64)
         table = np.array([row[1] for row in self._rows])
         record = FlightRecord((stamps - stamps[0]) * 1e-9, record_columns(columns, table), {})
-        with np.errstate(all='ignore'):     # values so large that nothing can be said of them
+        with np.errstate(all='ignore'):     # values too large to judge
             found = [one for check in frames.CHECKS for one in check(record, None)
                      if one.severity == 'error']
         return f'{found[0].where}: {found[0].message}; {found[0].remedy}' if found else ''

@@ -20,7 +20,7 @@ from quad_ident_ros.model.attitude import rotation_matrix, turn, turned_on
 
 POSITION, VELOCITY = ('px', 'py', 'pz'), ('vx', 'vy', 'vz')
 RATE, FORCE = ('wx', 'wy', 'wz'), ('ax', 'ay', 'az')
-GAP = 0.15      # s; the slowest records that bear a diagnosis have shorter steps
+GAP = 0.15      # s; the slowest records that can be diagnosed have shorter steps
 
 SUMMED = 'summed'
 """Info of a record: groups of its states that are integrals of the others."""

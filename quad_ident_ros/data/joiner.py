@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 import heapq
 import math
 
-# A stamp that goes back by more than this is a clock that began anew, not a late message.
+# A stamp that goes back by more than this is a clock that restarted, not a late message.
 RESTART_NS = 1_000_000_000
-REMEMBERED = 2000   # emitted stamps kept to tell a duplicate from a late message
+REMEMBERED = 2000   # emitted stamps, kept to distinguish a duplicate from a late message
 
 
 @dataclass
@@ -63,7 +63,7 @@ class Joiner:
         self.topics = tuple(topics)
         self.counts = Counts(received=dict.fromkeys(self.topics, 0))
         self._most = most
-        # A row's key is (era, stamp): an era ends where the clock begins anew.
+        # A row's key is (era, stamp): an era ends where the clock restarts.
         self._pending = {}
         self._keys = []
         self._last = dict.fromkeys(self.topics, (0, -1))
@@ -77,7 +77,7 @@ class Joiner:
         Take a message's values (tuple of float) and return the rows that it completes.
 
         A row is (stamp_ns, values of all topics in their order). Rows come in rising order of
-        stamps; after a restart of the clock they begin anew.
+        stamps; after a restart of the clock they begin again.
         """
         counts = self.counts
         counts.received[topic] += 1
@@ -118,7 +118,7 @@ class Joiner:
         era, last = self._last[topic]
         before = self._before[topic]
         if before is not None and stamp > before and self._emitted[0] < era:
-            # The clock did not begin anew: one message came far too late.
+            # The clock did not restart: one message came far too late.
             self._pending.pop((era, last), None)
             self._newest[topic].pop()
             self._before[topic] = None

@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""One way to read a flight, whatever it is kept in."""
+"""One way to read a flight from any kind of file."""
 
 from pathlib import Path
 
@@ -25,7 +25,7 @@ def load(path: str | Path, mapping: Mapping | None = None,
     """
     Return the FlightRecord in a file or bag that holds one flight.
 
-    What kind it is of (data.readers.registry) is told by its first bytes.
+    Its first bytes decide its kind (data.readers.registry).
     Args: path; mapping (data.mapping.Mapping) for records of others; vehicle
     (model.vehicle.Vehicle) for the speeds of its rotors.
     Raises InputError in one line that names file, and row and column or topic and message.
@@ -74,8 +74,8 @@ def reader_of(path):
     except OSError as error:
         raise InputError(f'{path}: cannot be read: {error.strerror}') from None
     refuse_others(path, start)
-    told = next((reader for reader in READERS if reader.tells(path, start)), None)
-    if told is None and not is_text(start):     # the name of a damaged file tells what it was
+    told = next((reader for reader in READERS if reader.recognises(path, start)), None)
+    if told is None and not is_text(start):     # the name of a damaged file says what it was
         told = next((reader for reader in READERS if path.suffix in reader.suffixes), None)
     if told is None:
         refuse_unknown(path, start, ', '.join(reader.title for reader in READERS))

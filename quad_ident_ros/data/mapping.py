@@ -110,7 +110,7 @@ class Mapping:
     topics: role -> Source; world and body: the frames of the record, ENU or NED, FLU or FRD;
     instances: ULog topic -> the instance (multi_id) to read; actuators: Actuators or None;
     columns: column of the flight record, or q for all four of the quaternion -> Column of a
-    table; quaternion: order of those of q, wxyz or xyzw; separator of a table, '' if not told.
+    table; quaternion: order of those of q, wxyz or xyzw; separator of a table, '' if not given.
     """
 
     topics: Pairs = field(default_factory=dict)

@@ -68,7 +68,7 @@ def names_text(source: object, outputs: Sequence[int], kind: str,
     Return a mapping file to begin with for a log whose names are known.
 
     Nothing is filled in, as the log says by itself what it has. Args: source; outputs: numbers of
-    those that motors are on; kind of them (KINDS), or ''; instances: the numbers of what is there
+    those that motors are on; kind of them (KINDS), or ''; instances: the numbers of what occurs
     several times.
     """
     order = ', '.join(map(str, outputs)) or '1, 2, 3, 4'

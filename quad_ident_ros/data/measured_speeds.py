@@ -49,7 +49,7 @@ def by_measured(records: Sequence[FlightRecord], signals: Sequence[np.ndarray], 
     """
     Return Motors with the gain that measured rotor speeds show, or None where they show none.
 
-    Where the map has no shape either (Motors.gives is '') the speeds tell that, too.
+    Where the map has no shape either (Motors.gives is ''), the speeds give that, too.
     Args: records of flights with the same motors, rotor1..n of some in the order of the signals;
     signals (N, n) of each; motors without a gain; thrust_coefficient N/(rad/s)^2.
     """

@@ -78,7 +78,7 @@ def _px4_pose(m):
 def _px4_velocity_frame(m):
     code = m.velocity_frame
     if code not in (_NED, _FRD_WORLD, _FRD_BODY):
-        raise NoSuch(f'its velocity_frame {code} is none that is known')
+        raise NoSuch(f'its velocity_frame {code} is not known')
     return 'body' if code == _FRD_BODY else 'world'
 
 
@@ -214,7 +214,7 @@ def could_be(topic, msgtype, fields):
     """
     Return the roles that a topic could be read for, and the field of its messages for outputs.
 
-    Types that are not known are told to be of motors by the name of the topic or type.
+    Unknown types count as motors by the name of the topic or type.
     Args: topic, msgtype; fields: paths of the fields of its messages, of lists with [] behind.
     """
     roles = roles_of(msgtype)

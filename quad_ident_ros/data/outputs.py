@@ -14,7 +14,7 @@ from quad_ident_ros.data.measured_speeds import by_measured
 from quad_ident_ros.data.motor_order import order_of, rotors_of
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.data.signal_kind import described, hovers_signed, kinds_of, MANY
-from quad_ident_ros.data.thrust_curve import said as curve_said
+from quad_ident_ros.data.thrust_curve import in_words as curve_in_words
 from quad_ident_ros.data.thrust_curve import share_of_thrust
 from quad_ident_ros.data.thrust_level import FULL_SPEED, full_speed, levelled
 from quad_ident_ros.errors import InputError
@@ -45,7 +45,7 @@ def commanded(records: Sequence[FlightRecord], vehicle: Vehicle | None,
     Return the flight records of one file with cmd1..n in place of output1..m.
 
     By the actuators of a mapping, or else by the motors of the vehicle, or else from its lowest
-    to its highest speed, by the kind that the reader knows or the values tell. Where neither has
+    to its highest speed, by the kind that the reader knows or the values show. Where neither has
     the speed at full signal, it is that by which thrust carries the weight: see thrust_level.
     Motors that a reader knows the places of, and their measured speeds, come into the order of
     the vehicle. Its arm length makes inputs u2 and u3 of moments: see commands.with_arm.
@@ -74,7 +74,7 @@ def commanded(records: Sequence[FlightRecord], vehicle: Vehicle | None,
 
 @dataclass(frozen=True)
 class _Map:
-    """Motors, whose gain may not be known, how they are told, and whether their shape is."""
+    """Motors, whose gain may be unknown, where they are from, and whether their shape is known."""
 
     motors: Motors
     said: str
@@ -108,8 +108,8 @@ def _with_commands(records: list[FlightRecord], vehicle: Vehicle | None,
         else:
             motors, told = levelled(where, records, signals, motors, vehicle)
             info[FULL_SPEED] = full_speed(motors, thrust)
-            by = f'is that by which thrust carries the weight of {vehicle.name} ({told})'
-        said += f'{_said(motors)}; the gain {by}'
+            by = f'is the one with which thrust carries the weight of {vehicle.name} ({told})'
+        said += f'{_in_words(motors)}; the gain {by}'
     done = []
     for record, values in zip(records, signals, strict=True):
         voltage = record.columns['vbat'] if motors.needs_voltage else None
@@ -179,7 +179,7 @@ def _map_of(where: str, about: dict, values: np.ndarray, vehicle: Vehicle | None
     told = vehicle.motors
     curve = about.get('curve')
     if told is None and curve is not None:
-        told, how = Motors('normalised', gives='thrust'), f'by the log: {curve_said(**curve)}'
+        told, how = Motors('normalised', gives='thrust'), f'by the log: {curve_in_words(**curve)}'
     elif told is None:
         kind, how = about.get('kind', ''), 'as the log has them'
         if not kind:
@@ -200,7 +200,7 @@ def _map_of(where: str, about: dict, values: np.ndarray, vehicle: Vehicle | None
             values, vehicle.hover_speed, (vehicle.speed_min, vehicle.speed_max)):
         said += (f'as signals from -1 to 1 they would carry {vehicle.name}: write motors: '
                  f'{SIGNED} into its file if they are; ')
-    return _Map(motors, said + (_said(motors) if motors.whole else ''), bool(told.gives))
+    return _Map(motors, said + (_in_words(motors) if motors.whole else ''), bool(told.gives))
 
 
 def _curve_of(record: FlightRecord, vehicle: Vehicle | None,
@@ -221,7 +221,7 @@ def _of_kind(kind: str) -> Motors:
     return Motors(kind, low, high)
 
 
-def _said(motors: Motors) -> str:
+def _in_words(motors: Motors) -> str:
     """Return what the map of Motors is, for a note."""
     if motors.kind in TO_SPEED:
         return 'which are rotor speeds'
@@ -248,7 +248,7 @@ def _doubt(where: str, values: np.ndarray, kinds: Sequence[str]) -> InputError:
                           f'{SIGNED} or motors: {UNSIGNED}, or into a mapping as actuators: with '
                           'the same behind it')
     what = (f'could be {" or ".join(map(described, kinds))};' if kinds else
-            'are of no kind that is known by its size, nor rotor speeds near those of hover; give '
+            'are of no kind that their size shows, and not rotor speeds near hover; give '
             'the vehicle that flew, or')
     line = f'{{kind: {kinds[0]}}}' if kinds else '{kind: pwm, minimum: ..., maximum: ...}'
     return InputError(f'{where} {what} write into the vehicle file what they are, such as motors: '

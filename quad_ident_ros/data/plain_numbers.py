@@ -44,7 +44,7 @@ def plain_numbers(path: Path, skip: int, separator: str | None = ',',
     Return the PlainNumbers of a text file in UTF-8; None where it holds anything else.
 
     Args: path; skip: lines before the first numbers; separator: None for blanks; comma: whether
-    commas are decimal points. A file that cannot be read is none of numbers either.
+    commas are decimal points. A file that cannot be read has no numbers either.
     """
     try:
         if not path.is_file():

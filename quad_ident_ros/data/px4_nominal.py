@@ -41,7 +41,7 @@ def vehicle_of_log(path: Path, mapping: Mapping | None = None) -> Vehicle:
     """
     Return the Vehicle of the file beside a PX4 log, which is written where there is none.
 
-    What the log knows (rotors, speeds, thrust over mass) is filled in; a file that is there is
+    What the log knows (rotors, speeds, thrust over mass) is filled in; an existing file is
     never changed. Args: path of the log; mapping Mapping or None.
     Raises InputError that asks for what no log knows.
     """

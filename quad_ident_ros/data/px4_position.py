@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Which samples of position and velocity in a PX4 log are estimates, and which are none."""
+"""Which samples of position and velocity in a PX4 log are estimates and which are not."""
 
 from collections.abc import Mapping
 

@@ -30,7 +30,7 @@ def split_at_resets(records: Sequence[FlightRecord], start_ns: int,
     and attitude are taken from, topic -> (stamps (n,) ns, fields name -> (n,)).
     """
     if any('xy_reset_counter' in topics[name][1] for name in POSITIONS if name in topics):
-        # It tells all that an odometry counts, and by how much.
+        # It has all resets that an odometry counts, with their sizes.
         topics = {name: found for name, found in topics.items() if name != ODOMETRY}
     found, small = resets(topics)
     times = [((before - start_ns) * 1e-9, (after - start_ns) * 1e-9, what)

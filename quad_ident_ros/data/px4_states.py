@@ -29,9 +29,9 @@ _TURNS = tuple(f'delta_q_reset[{i}]' for i in range(4))
 RESET_FIELDS = {topic: tuple(name for counter, kind, deltas, _ in counters for name in
                              (counter, *(_TURNS if kind == 'attitude' and not deltas else deltas)))
                 for topic, counters in _COUNTERS.items()}
-"""Topic -> the fields in it that tell of resets, as far as it has them."""
+"""Topic -> its fields that report resets, where it has them."""
 
-TWICE = 0.3         # s within which two topics tell of one reset
+TWICE = 0.3         # s within which two topics report one reset
 
 
 def flown(data: Topics) -> tuple[list[tuple[int | None, int | None]] | None, str]:
@@ -105,12 +105,12 @@ def resets(data: Topics) -> tuple[list[tuple[int, int, str]], list[int]]:
                 if size is not None and size < SMALL[kind][0]:
                     small.append(int(stamps[k]))
                     continue
-                by = '' if size is None else _said(size, kind)
+                by = '' if size is None else _in_words(size, kind)
                 found.append((int(stamps[k - 1]), int(stamps[k]), f'{what} was reset{by}'))
     return _merged(found), small
 
 
-def _said(size: float, kind: str) -> str:
+def _in_words(size: float, kind: str) -> str:
     if kind == 'attitude':
         return f' by {np.degrees(size):.0f} deg'
     return f' by {size:.2g} {SMALL[kind][1]}'

@@ -33,7 +33,7 @@ MOMENTS = ('moment_x', 'moment_y')
 """What u2 and u3 are at the arm, where a record says no arm length."""
 
 ARM = 'arm_length'
-"""Info of a record: the arm length l (m) by which u2 and u3 are moments."""
+"""Info of a record: the arm length l (m) that makes u2 and u3 moments."""
 
 SATURATED = 'saturated'
 """Column: 1 where U1..U4 ask a rotor for more than its limits, else 0."""
@@ -101,7 +101,7 @@ because no record can hold it. It is an error where that part has the time (data
 
 NOTED = 'commands', 'logging'
 """
-Info of a record: those of its notes that a diagnosis tells, too.
+Info of a record: those of its notes that a diagnosis reports, too.
 
 commands: what the outputs to the motors were taken for; logging: what was logged too seldom or
 without valid estimates.
@@ -150,7 +150,7 @@ class FlightRecord:
         return len(self.t)
 
     def has(self, *names):
-        """Return whether all of the named columns are there (t always is)."""
+        """Return whether the record has all of the named columns (it always has t)."""
         return all(name == 't' or name in self.columns for name in names)
 
     def numbered(self, prefix):
@@ -177,7 +177,7 @@ class FlightRecord:
         Return roll, pitch and yaw without jumps, (N, 3) rad.
 
         They are the columns phi, theta, psi, or else made from the quaternion, starting from its
-        first sample with pitch in [-pi/2, pi/2]. Raises InputError where neither is there, or
+        first sample with pitch in [-pi/2, pi/2]. Raises InputError where it has neither, or
         where a quaternion is no attitude.
         """
         if self.has(*EULER):

@@ -25,12 +25,12 @@ class Recording:
     Writes messages to <folder>/bag and rows to <folder>/flight_1.csv, flight_2.csv, ...
 
     What was flushed survives a kill -9. A CSV file ends, and the next one begins, where the rows
-    are not one flight any more: between announced runs, and where the clock begins anew.
+    are not one flight any more: between announced runs, and where the clock restarts.
     Args: parent: the folder in which recording_1, recording_2, ... is made; topics: the names of
     the topics that rows consist of, and of `run`, each with the full name that the bag keeps;
     types: the message types of topics that are not ours, of which the bag keeps those of ROS 2
     itself: set columns to those of the rows then.
-    Raises OSError where the disk refuses, and for the home of a user who is none.
+    Raises OSError where the disk refuses, and for the home of an unknown user.
     """
 
     def __init__(self, parent, topics, types=None):

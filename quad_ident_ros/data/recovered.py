@@ -28,7 +28,7 @@ PACKINGS = (b'', b'lz4', b'zstd')
 
 class Recovering(McapReader):
     """
-    A reader of MCAP files that reads the chunks that are whole, wherever others are not.
+    A reader of MCAP files that reads the chunks that are complete and skips others.
 
     recovered: whether the end is missing.
     """
@@ -173,7 +173,7 @@ def _next_chunk(data, at):
             return None
         (length,) = struct.unpack_from('<Q', data, at + 1)
         (name,) = struct.unpack_from('<I', data, at + HEAD + PACKED)
-        # Most places are none, which is seen before anything is unpacked.
+        # Most places are not, which shows before anything is unpacked.
         if (LEAST <= length <= len(data) - at - HEAD and name <= max(map(len, PACKINGS))
                 and _whole_chunk(data, at, length)):
             return at

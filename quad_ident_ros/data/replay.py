@@ -44,7 +44,7 @@ def is_recorded(path):
     """
     Whether a bag is of the recorder, of `quad_ident convert`, or of such topics.
 
-    `pose` and `twist` are common names, so they do not tell that.
+    `pose` and `twist` are common names, so they do not show that.
     """
     path = in_recording(path)
     with BagFile(path) as bag:

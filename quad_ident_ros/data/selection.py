@@ -71,7 +71,7 @@ def selected(path: object, records: Sequence[FlightRecord],
 
 def segment_of(path: object, records: Sequence[FlightRecord],
                selection: Selection) -> list[FlightRecord]:
-    """Return the records, or the one that is asked for; InputError where there is none such."""
+    """Return the records, or the one that is asked for; InputError where it does not exist."""
     if selection.segment is None:
         return list(records)
     if selection.segment > len(records):
@@ -94,7 +94,7 @@ def refuse_spoilt(records: Sequence[FlightRecord], selection: Selection) -> None
 
 
 def _without_spoilt(record: FlightRecord) -> FlightRecord:
-    """Return a record whose spoilt samples are no longer told."""
+    """Return a record whose spoilt samples are no longer listed."""
     if SPOILT not in record.info:
         return record
     return replace(record, info={key: value for key, value in record.info.items()

@@ -25,9 +25,9 @@ def kinds_of(values: np.ndarray, hover: float | None = None,
     Return the kinds (of KINDS) that values may be, the likeliest first.
 
     Values of 0 and less are motors that are off; where signals of 1 and less are often
-    below 0, they have another range, which their size does not tell.
+    below 0, they have another range, which their size does not show.
     Args: values, any shape; hover: rad/s, the hover speed of the vehicle, or None; ends: its
-    lowest and highest speed, rad/s, by which PWM and DSHOT of the same size are told apart.
+    lowest and highest speed, rad/s, which separate PWM from DSHOT of the same size.
     """
     on = values[np.isfinite(values) & (values > 0)]
     if not len(on):

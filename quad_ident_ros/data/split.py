@@ -21,7 +21,7 @@ WITHIN = 0.2        # s in which a jump is over: streams of 5 Hz and more, inter
 RETURNS = 1.0       # s; what has come back by then was a glitch, and no reset
 CLEAR = 5.0         # times the usual disagreement of the streams
 GAP = 5.0           # periods; what happens in a longer silence is no jump
-APART = 0.1         # s between two parts: what is lost for that long is not bridged by a fit
+APART = 0.1         # s between two parts: a fit does not bridge a gap of that length
 
 
 def split(record: FlightRecord, resets: Sequence[Reset],
@@ -70,8 +70,8 @@ def joined(records: Sequence[FlightRecord]) -> list[FlightRecord]:
     """
     Return records in which the parts of one recording are one, with gaps between them.
 
-    They are in the order in which the recordings come first. What is between the parts is told in
-    the info: `cuts`, the times (s) at which a part begins.
+    They are in the order in which the recordings come first. What is between the parts is reported
+    in the info: `cuts`, the times (s) at which a part begins.
     """
     groups: dict[str, list[FlightRecord]] = {}
     for number, record in enumerate(records):
@@ -130,7 +130,7 @@ def jumps(record: FlightRecord) -> list[Reset]:
     A position jumps where it changes by more than POSITION within WITHIN, beyond what the
     velocity explains, a heading by more than HEADING beyond what the rate explains; by far more
     than the streams usually disagree, and not to come back. Without velocity or rate none is
-    told: what only moves fast is no jump.
+    reported: what only moves fast is not a jump.
     """
     found = []
     rest = _unexplained_position(record)

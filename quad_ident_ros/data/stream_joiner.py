@@ -105,7 +105,7 @@ class StreamJoiner:
         self._is_decided = True
 
     def _restart(self, name, stamp):
-        """Forget the samples of a stream whose clock began anew, and what is from before it."""
+        """Forget the samples of a stream whose clock restarted, and what is from before it."""
         self._samples[name].clear()
         given_up = len(self._stamps.get(name, ()))
         if name in self._stamps:

@@ -40,7 +40,7 @@ def summarise(record, vehicle=None, more=()):
     fast one.
     """
     steps = np.diff(record.t)
-    with np.errstate(all='ignore'):     # values so large that nothing can be said of them
+    with np.errstate(all='ignore'):     # values too large to judge
         clocks = clock_offset(record), velocity_offset(record), command_offset(record)
         excited = excitation(record)
         columns = {name: _column(name, values, record.t)

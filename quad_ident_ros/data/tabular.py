@@ -54,7 +54,7 @@ class Table:
 
 def read_text(path: Path, separator: str = '') -> Table:
     """
-    Return the Table of a text file; separator: '' to be told from the first lines.
+    Return the Table of a text file; separator: '' to find it from the first lines.
 
     Raises InputError that names file, line and column.
     """
@@ -106,7 +106,7 @@ class _Layout:
 
 def _layout(path: Path, rows: list[str], places: list[int], separator: str) -> _Layout:
     """Return the _Layout of a table from its first lines, and where they stand."""
-    separator = separator or told_separator(rows)
+    separator = separator or separator_in(rows)
     comma = separator != ',' and any(',' in row for row in rows[1:_HEAD])
     head, first = _head(path, rows, separator, comma)
     names, units = _names(path, rows, places[head], head, first, separator)
@@ -125,7 +125,7 @@ def _rate_of_frames(rows: list[str]) -> float:
     return float(said[1]) if said else 0.0
 
 
-def told_separator(rows: list[str]) -> str:
+def separator_in(rows: list[str]) -> str:
     """Return the separator that the lines of a table have most of, the same in each."""
     best, most_of = ',', 0
     for separator in SEPARATORS:
@@ -168,7 +168,7 @@ def _number(cell: str, comma: bool) -> float | None:
 def _head(path: Path, rows: list[str], separator: str, comma: bool) -> tuple[int, int]:
     """Return the places of the line of names and of the first line of numbers."""
     for k, row in enumerate(rows[:_HEAD]):
-        # A line of numbers among names, as of markers, is none of samples.
+        # A line of numbers among names, as of markers, is not a sample.
         if _is_numbers(row, separator, comma) and (k + 1 == len(rows) or _is_numbers(
                 rows[k + 1], separator, comma)):
             if k == 0:

@@ -36,7 +36,7 @@ def share_of_thrust(signals: np.ndarray, minimum: float, maximum: float,
     return factor * x ** 2 + (1.0 - factor) * x
 
 
-def said(minimum: float, maximum: float, factor: float) -> str:
+def in_words(minimum: float, maximum: float, factor: float) -> str:
     """Return the curve in words."""
     return (f'the share of thrust x is {factor:.3g} s^2 + {1 - factor:.3g} s of the signal s, 0 '
             f'at {minimum:g} and 1 at {maximum:g} (MOT_THST_EXPO)')

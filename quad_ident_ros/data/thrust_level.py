@@ -23,13 +23,13 @@ FLYING = 0.4    # of the strong thrust: rotors that idle turn at up to half the 
 FACTORS = ('factor', 'at_hover', 'hover_factor')    # of thrust_scale, on the thrust at hover
 
 FULL_SPEED = 'full_speed'
-"""Info of a record: speed in rad/s at full signal, where the weight tells it."""
+"""Info of a record: speed in rad/s at full signal, where the weight determines it."""
 BY_LOG = 'thrust_by_log'
-"""Info of a record: the weight told the thrust coefficient, beside this speed."""
+"""Info of a record: the thrust coefficient follows from the weight, with this speed."""
 
 
 def carried_by_log(record: FlightRecord, vehicle: Vehicle) -> FlightRecord:
-    """Return a record for a Vehicle whose thrust coefficient is that by which a log flies."""
+    """Return a record for a Vehicle whose thrust coefficient follows from a log."""
     if FULL_SPEED in record.info:
         return record
     return replace(record, info={**record.info, FULL_SPEED: vehicle.speed_max, BY_LOG: True})
@@ -38,7 +38,7 @@ def carried_by_log(record: FlightRecord, vehicle: Vehicle) -> FlightRecord:
 def levelled(where: str, records: Sequence[FlightRecord], signals: Sequence[np.ndarray],
              motors: Motors, vehicle: Vehicle) -> tuple[Motors, str]:
     """
-    Return Motors with the gain by which thrust carries the weight, and what told the weight.
+    Return Motors with the gain by which thrust carries the weight, and where that is from.
 
     It is the median over windows of what is needed over what a gain of 1 gives.
     Args: records of flights with the same motors; signals (N, n) of each; motors without a gain.
@@ -81,7 +81,7 @@ def full_speed(motors: Motors, thrust_coefficient: float) -> float:
 
 def on_one_level(records: Sequence[FlightRecord]) -> list[FlightRecord]:
     """
-    Return records whose commands, where the weight told their scale, have one scale.
+    Return records whose commands, where the weight determines their scale, have one scale.
 
     The same motors have the same map in all flights: it is the mean by their lengths.
     """
@@ -101,7 +101,7 @@ def _scaled(record: FlightRecord, speed: float) -> FlightRecord:
 
 
 def _lift(record: FlightRecord, gravity: float) -> tuple[np.ndarray, str]:
-    """Return the specific force along the body's z axis (N,), m/s^2, and what tells it."""
+    """Return the specific force along the body's z axis (N,), m/s^2, and its source."""
     if record.has('az'):
         return record.columns['az'], 'the accelerometer'
     if not record.has(*QUATERNION):

@@ -248,7 +248,7 @@ class TopicPart:
         """
         Return the Stream of the messages; InputError where there are none.
 
-        Args: mapping; spoilt: let attitudes that are none be nan, and name them in `spoilt`.
+        Args: mapping; spoilt: set invalid attitudes to nan, and name them in `spoilt`.
         """
         if self.is_tf:
             self._compose()
@@ -273,7 +273,7 @@ class TopicPart:
                       {'commands': HELD, 'battery': SLOW}.get(self.role, INTERPOLATED))
 
     def not_unit(self, number):
-        """Return the error of a message, counted from 0, whose attitude is none."""
+        """Return the error of a message, counted from 0, whose attitude is invalid."""
         return (f'{self._where}, message {number + 1}: the quaternion has not the length 1; '
                 f'record a {self.role} with an attitude, or leave it out with --from and --to')
 
@@ -293,7 +293,7 @@ class TopicPart:
     def _say_chain(self):
         """Take the frame of the poses, and the note on it, from the transforms."""
         self._frame_id = next(iter(self._transforms.chain()), '')
-        self.note = self._transforms.said()
+        self.note = self._transforms.in_words()
 
     def _columns(self, table, mapping):
         """Return the columns of the role from the rows of its messages."""

@@ -112,7 +112,7 @@ def record_columns(names, table, arm=None):
     Return the columns of the flight record format from raw ones.
 
     Args: names: raw columns; table (N, len(names)). The velocity of `twist` is that of the body
-    frame and is turned into the world by the attitude of `pose`, where both are there. arm: the
+    frame and is turned into the world by the attitude of `pose`, where both exist. arm: the
     arm length in m that makes u2 and u3 of the moments of `input`, None where it is not known.
     """
     columns = dict(zip(names, np.asarray(table, float).T, strict=True))
@@ -180,7 +180,7 @@ def needed_from(runs, now):
     Return the notices that rows may still need when those of one of them, or None, are at hand.
 
     Args: runs: in the order in which they came. One that came later may begin before, where the
-    clock begins anew.
+    clock restarts.
     """
     if now is None:
         return runs

@@ -147,7 +147,7 @@ class Transforms:
             name = self._links[name].parent
         return (name, *reversed(found)) if found else ()
 
-    def said(self) -> str:
+    def in_words(self) -> str:
         """Return what the poses are, for a note, '' where nothing else could be."""
         chain = self._chain or self.chain()
         if len(chain) > 2:
@@ -204,7 +204,7 @@ class Transforms:
                  for k, row in zip(now.tolist(), table.tolist(), strict=True)]
         self._last = found[-1][0]
         for link in links:
-            if not link.fixed:      # some stay, by which it is told how far apart they are
+            if not link.fixed:      # some stay, to find how far apart they are
                 link.forget(int(np.searchsorted(link.stamps, self._last, 'right')) - _KEPT)
         return found
 

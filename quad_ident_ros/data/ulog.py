@@ -162,7 +162,7 @@ def _in_the_air(path: Path, record: FlightRecord, spans: list[tuple[int | None, 
 
 
 def _slow(streams: list[Stream]) -> list[str]:
-    """Return notes of streams that are logged too slowly to tell lags and delays."""
+    """Return notes of streams that are logged too slowly to show lags and delays."""
     slow = []
     for stream in streams:
         stamps = np.sort(stream.stamps)
@@ -393,5 +393,5 @@ def _measured(path: Path, data: dict | None, motors: Motors | None
             places[motor] = k
     rpm = _values(path, 'esc_status', data, [f'esc[{k}].esc_rpm' for k in places])
     if not (np.abs(rpm) > 0).any(axis=0).all() or len(rpm) < 2:
-        return None     # of controllers that tell no speed
+        return None     # of controllers that report no speed
     return _stamps(path, 'esc_status', data), np.abs(rpm) * (2 * np.pi / 60)

@@ -23,7 +23,7 @@ class TooLarge(ReaderError, Reason):
 
 
 def _bounded(unpack):
-    """Return a function that unpacks data of a size that is told, and no more."""
+    """Return a function that unpacks data of the stated size and no more."""
     def within(data, size):
         if size > limits.PART:
             raise TooLarge(f'a chunk says that it unpacks to {_in_mb(size)}')

@@ -37,7 +37,7 @@ class Event:
     values: dict
 
 
-def tells(start):
+def recognises(start):
     """Return whether first bytes are those of such a log."""
     return (len(start) > 8 and start[0] == MAGIC and 1 <= start[1] < 16 and start[2] == 0
             and 1 <= int.from_bytes(start[3:5], 'little') <= _MOST_EVENTS
@@ -103,7 +103,7 @@ def _header(path, data, stamp):
         name = data[at:max(end, at)].decode('ascii', 'replace')
         if not name or not name.isascii() or not name.isprintable():
             raise InputError(f'{path}: the header of this Crazyflie log is damaged at byte {at}: '
-                             f'no name is there; {_AGAIN}')
+                             f'the name is missing; {_AGAIN}')
         at = end + 1
         return name
 

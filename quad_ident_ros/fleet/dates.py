@@ -17,7 +17,7 @@ _NUMBER = re.compile(r'(\d+)')
 
 
 def date_of(text: str) -> datetime | None:
-    """Return the time (UTC where no zone is said) that ISO 8601 text is, or None."""
+    """Return the time (UTC where no zone is given) that ISO 8601 text is, or None."""
     text = text.strip()
     try:    # Python 3.10 does not know the Z
         found = datetime.fromisoformat(text[:-1] + '+00:00' if text.endswith('Z') else text)
@@ -89,7 +89,7 @@ def _date_in(name: str) -> tuple[datetime, bool] | None:
 
 
 def _at(day: datetime, time: re.Match[str] | None) -> datetime:
-    """Return a day at a time, where there is one; raises ValueError for one that is none."""
+    """Return a day, with its time where there is one; raises ValueError for an invalid one."""
     if time is None:
         return day
     hour, minute, second = map(int, time.group(1, 3, 4))

@@ -55,7 +55,7 @@ class Group:
 def groups_of(flights: Iterable[tuple[Listed, Looked]], nominal_of: Callable[[Listed], Vehicle],
               mapping: Mapping | None, rules: Rules) -> tuple[list[Group], list[Listed]]:
     """
-    Return the Groups of flights, and the flights left out: their content is there already.
+    Return the Groups of flights, and the flights left out: their content occurs before.
 
     nominal_of: the nominal vehicle of a flight; raises InputError where none is named.
     """

@@ -29,7 +29,7 @@ MOST_OFTEN = 0.01
 ODD = 0.02
 """Probability that a single flight is off: a wrong log that its own checks do not find."""
 LEAST = 4
-"""Flights from which on a history is looked at: three cannot tell an odd one from a change."""
+"""Flights from which on a history is looked at: three do not separate an odd one from a change."""
 INSIDE = 0.95       # of the posterior of the flight, between the first and the last that it may be
 DAY, WEEK, YEAR = 86400.0, 7 * 86400.0, 365.25 * 86400.0      # s
 STEP, SLOPE, SINGLE = 'step', 'slope', 'single'
@@ -209,7 +209,7 @@ def _probability(model: Regression, chosen: Sequence[Term], term: Term) -> tuple
     Return how probable it is that something lasting is where a term is, and that it is no such.
 
     Beside the best set that explains it by single flights, with or without the other terms; a step
-    counts wherever it may have been, and a slope in place of a step counts, too.
+    counts at every place where it may have been, and a slope in place of a step counts, too.
     """
     rest = tuple(one for one in chosen if one != term)
     without = max(model.search(rest, (SINGLE,))[0], model.search((), (SINGLE,))[0])

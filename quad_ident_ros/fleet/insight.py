@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What a fleet tells that a flight cannot, as typed values and as data."""
+"""What a fleet shows that one flight cannot, as typed values and as data."""
 
 from collections.abc import Callable, Collection, Iterable
 from dataclasses import asdict, dataclass
@@ -78,7 +78,7 @@ class FleetGap:
 @dataclass(frozen=True, eq=False)
 class Insight:
     """
-    What the results of a fleet tell together.
+    What the results of a fleet show together.
 
     status {of groups: how many}; refused, failed, suspect ((vehicle, file, reason), ...): flights
     whose log cannot be used, those that were not diagnosed for another reason or ran out of time,
@@ -213,7 +213,7 @@ def _gaps(rows: Iterable[dict]) -> tuple[FleetGap, ...]:
 
 
 def _quartiles(values: Iterable[float | None]) -> tuple[float, float, float] | None:
-    """Return median, lower and upper quartile of what is known, None where nothing is."""
+    """Return median, lower and upper quartile of the known values, None where there are none."""
     known = [value for value in values if value is not None]
     if not known:
         return None

@@ -65,7 +65,7 @@ def look(one: Listed, mapping: Mapping | None = None) -> Looked:
 
 
 def without_content(one: Listed, reason: str) -> Looked:
-    """Return what is known of a file that cannot be read: its place stands for its content."""
+    """Return the entry of a file that cannot be read: its path stands for its content."""
     path = str(Path(one.path).resolve())
     return Looked(path, 0, 0, hashlib.sha256(os.fsencode(path)).hexdigest(), reason=reason)
 

@@ -129,7 +129,7 @@ def _entry(manifest: Path, line: int, names: Sequence[str], row: Sequence[str]) 
 
 
 def _covariate(where: str, name: str, cell: str) -> float:
-    """Return the number in a cell of a column that is none of COLUMNS; raises InputError."""
+    """Return the number in a cell of a column that is not in COLUMNS; raises InputError."""
     try:
         return schema.number(f'{where}, column {name}', cell)
     except InputError as error:
@@ -191,7 +191,8 @@ def _is_flight(path: Path) -> bool:
     except OSError:
         return True     # it is refused with its reason later
     *others, _ = READERS    # the last one takes any text
-    return any(path.suffix in reader.suffixes or reader.tells(path, start) for reader in others)
+    return any(path.suffix in reader.suffixes or reader.recognises(path, start)
+               for reader in others)
 
 
 def _nominal_in(folder: Path) -> str:

@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What a fleet teaches of each effect: how often it is there, how large, in which form."""
+"""What a fleet teaches about each effect: how often it is present, how large, in which form."""
 
 from collections.abc import Iterable
 from pathlib import Path
@@ -28,7 +28,7 @@ def effects_without_priors(out: str | Path, rules: Rules = RULES) -> pyarrow.Tab
     """
     Return the table `effects` of a data set, of the verdicts by usual rules alone.
 
-    Those that used priors would repeat what they were told. Raises InputError where there is none.
+    Results that used priors would repeat them. Raises InputError where no result is left.
     """
     groups = read_table(out, 'groups', ['group', 'rules'])
     usual = groups.filter(pc.field('rules') == rules_hash(rules))['group']

@@ -31,7 +31,7 @@ that error, and a wrong log may be off by hundreds.
 ALWAYS = 30.0
 """The same of the terms that are always in: covariates."""
 LEVEL = 1e4
-"""The same of the level: it tells nothing beforehand. It is in all sets alike."""
+"""The same for the level, which has no prior value. All sets have it alike."""
 FARTHEST = 5.0      # standard deviations of the values, up to which the scatter is looked for
 NORMAL = 1.4826     # times the median absolute deviation is the standard deviation
 PATIENCE = 2        # terms that a search adds without a gain: a change and the way back are two
@@ -153,7 +153,7 @@ class Regression:
     def probability(self, numbers: np.ndarray, chosen: Collection[Term], term: Term,
                     without: float) -> float:
         """
-        Return how probable it is that one of some terms is there.
+        Return the probability that one of some terms is present.
 
         Args: numbers of these terms; chosen: the best set, and a term of it that they could take
         the place of; without: the score of the best set that has none of them.
@@ -163,7 +163,7 @@ class Regression:
         return float(1.0 / (1.0 + np.exp(np.clip(without - there, -700.0, 700.0))))
 
     def posterior(self, chosen: Collection[Term]) -> Posterior:
-        """Return what is known of the coefficients of a set, over all scatters."""
+        """Return the posterior of the coefficients of a set, over all scatters."""
         shares, means, covariances = self.coefficients(chosen)
         mean = shares @ means
         apart = means - mean

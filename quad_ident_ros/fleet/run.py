@@ -86,7 +86,7 @@ Tell = Callable[[Progress], None]
 
 
 class _Account:
-    """The Progress of a stage, and who is told of it."""
+    """The Progress of a stage, and who follows it."""
 
     def __init__(self, tell: Tell, progress: Progress) -> None:
         self.progress, self._tell = progress, tell
@@ -112,7 +112,7 @@ def run_fleet(client: Any, plan: Plan, out: str | Path, *, time_limit: float = T
     """
     Diagnose the flights of a Plan, on a Dask client, into the data set `out`.
 
-    What is there already is not done again; groups that failed are. Args: time_limit: s of a
+    Finished groups are not done again; failed ones are. Args: time_limit: s of a
     group; tell is called with the Progress, a few times per second. Raises InputError, and OSError
     where nothing can be written.
     """
@@ -134,7 +134,7 @@ def run_fleet(client: Any, plan: Plan, out: str | Path, *, time_limit: float = T
 
 def _looked(client: Any, flights: Sequence[Listed], mapping: Mapping | None, out: str | Path,
             time_limit: float, tell: Tell) -> list[Looked]:
-    """Return what is known of flights, in their order; what was seen before is not read again."""
+    """Return the entries of flights, in their order; those seen before are not read again."""
     looks = Looks(out)
     known = [looks.known(one) for one in flights]
     new = [number for number, one in enumerate(known) if one is None]

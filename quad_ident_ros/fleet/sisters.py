@@ -26,7 +26,7 @@ LEAST = 4
 @dataclass(frozen=True)
 class Sister:
     """
-    A vehicle's value of a parameter: alone, and with what its sisters tell of it.
+    A vehicle's value of a parameter: alone, and given those of its sisters.
 
     pooled, pooled_std: drawn towards the mean; off, off_std: from the mean of the others; spreads:
     off over the standard deviation that a sister's value would have there (leave-one-out); odd:

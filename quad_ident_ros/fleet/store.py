@@ -116,7 +116,7 @@ def missing(out: str | Path, table: str, keys: Collection[str], seconds: float) 
 
 def read_rows(out: str | Path, table: str, key: str,
               columns: Sequence[str] | None = None) -> list[dict[str, Any]]:
-    """Return the rows of the file of a key, none where there is none or it is damaged."""
+    """Return the rows of the file of a key, none where it is missing or damaged."""
     try:
         return parquet.read_table(Path(out) / table / f'{key}.parquet', columns=columns,
                                   schema=TABLES[table]).to_pylist()
@@ -148,7 +148,7 @@ def read_table(out: str | Path, table: str,
         return read_table(out, table, columns)
     except (OSError, pyarrow.ArrowException) as error:
         raise InputError(f'{folder}: cannot be read: {_short(error)}; remove the file that it '
-                         'names and start the run again, which makes it anew') from None
+                         'names and start the run again, which rebuilds it') from None
     give_back()     # what opening thousands of files took, also from Arrow
     pyarrow.default_memory_pool().release_unused()
     return rows

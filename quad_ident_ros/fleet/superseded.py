@@ -11,7 +11,7 @@ from quad_ident_ros.fleet.grouping import Group
 from quad_ident_ros.fleet.store import keys_of, read_table, remove
 
 BY_GROUP = 'groups', 'flights', 'effects'
-"""Tables whose files have the key of a group; that says whether it is there comes first."""
+"""Tables whose files have the key of a group; that says whether it exists comes first."""
 BY_TRACKING = 'covariances', 'parameters'
 """Tables whose files have a key that begins with that of a group."""
 

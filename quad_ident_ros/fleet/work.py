@@ -42,7 +42,7 @@ class Outcome:
 
 @dataclass(frozen=True, eq=False)
 class _Read:
-    """A flight of a group: its records, or why there are none."""
+    """A flight of a group: its records, or why it has none."""
 
     member: Member
     records: tuple[FlightRecord, ...]

@@ -56,7 +56,7 @@ class Sensors:
     with correlation_time s. mocap gives position, velocity and attitude, imu rate and force.
     differentiated: velocity is the difference of measured positions; lost: share of rows that are
     missing; glitches 1/s at which the attitude jumps by glitch_angle rad for glitch_time s;
-    voltage, rotors: whether vbat and rotor speeds are there.
+    voltage, rotors: whether vbat and rotor speeds are recorded.
     """
 
     white: Noise = field(default_factory=Noise)
@@ -109,7 +109,7 @@ def errors_of(sensors, count, step, seed):
 
 def measured(sensors, t, states, forces, errors, seed):
     """
-    Return the states (N, 13) and forces (N, 3) recorded at t (N,) s, and which rows are there.
+    Return the states (N, 13) and forces (N, 3) recorded at t (N,) s, and which rows exist.
 
     Args: states (N, 13) recorded without noise and delay; forces (N, 3) m/s^2; errors: see
     errors_of.
@@ -169,7 +169,7 @@ def _linear(t, values):
 
 
 def _glitches(sensors, t, rng):
-    """Return the rotation vectors (N, 3) rad by which the attitude jumps."""
+    """Return the jumps of the attitude as rotation vectors (N, 3) rad."""
     jumps = np.zeros((len(t), 3))
     for begin in rng.uniform(t[0], t[-1], rng.poisson(sensors.glitches * (t[-1] - t[0]))):
         axis = rng.standard_normal(3)

@@ -74,7 +74,7 @@ def blocks_of(signal, after_ns):
     """
     Return the Blocks of a Signal with a start_ns that end after a stamp.
 
-    They end on a grid of stamps, half a block apart, whatever window of the flight it is.
+    They end on a grid of stamps, half a block apart, in every window of the flight.
     """
     count = samples_of(signal.period)
     hop_ns = round(count // 2 * signal.period * 1e9)

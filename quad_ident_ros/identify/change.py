@@ -82,8 +82,8 @@ class Watch:
         """
         Return the Change that a Signal with a start_ns shows in what is new of it, or None.
 
-        It is told LASTING blocks after the first that is unusual, if it still is: then most of it
-        is from after the change, and a knock is over.
+        It is reported LASTING blocks after the first that is unusual, if it still is: then most of
+        it is from after the change, and a knock is over.
         """
         new = blocks_of(signal, self._reached)
         for k in range(len(new)):
@@ -126,7 +126,7 @@ def watched(output):
 
 def find_change(blocks, output, noise=(0.0, 0.0)):
     """
-    Return the Change that the last Blocks show against those before, or None; time is not said.
+    Return the Change that the last Blocks show against those before, or None; without its time.
 
     Args: noise: variance and freedom of residuals of an earlier reference.
     """
@@ -159,7 +159,7 @@ def find_change(blocks, output, noise=(0.0, 0.0)):
 
 def _lasts(blocks, moves, reference, columns):
     """
-    Return whether half of the largest move is there in the very last block.
+    Return whether the very last block has half of the largest move.
 
     Blocks overlap by half, so that a knock of a quarter of a second is in three at most.
     """
@@ -179,7 +179,7 @@ def _change(output, last, moves, reference, limit, hop):
     moved = {name: (float(reference.parameters[columns[name]]), float(value))
              for name, (size, value) in moves.items() if size > limit}
     advantage = reference.freedom * np.log1p(largest ** 2 / reference.freedom)
-    # The first block after a change may have begun before it: by a quarter of it, it is there.
+    # The first block after a change may have begun before it: after a quarter of it, it shows.
     return Change(output, 0.0, float(advantage), moved, int(last.ends_ns[0]) - 3 * hop // 2)
 
 
@@ -189,7 +189,7 @@ def reference_of(blocks, output, noise):
     count, size = features.shape
     if count <= size:
         return None
-    # Damping is known to be small before the flight tells it: else a first climb would be unusual.
+    # Damping is known to be small before the flight shows it: else a first climb would be unusual.
     main = np.delete(features, 1, axis=1)
     rough = target - main @ np.linalg.lstsq(main, target, rcond=None)[0]
     normal = features.T @ features

@@ -15,9 +15,9 @@ SAME = 1e-9        # of an input's range: changes below are rounding
 TRACELESS = 10.0   # pole x period beyond which e^-10 of its response is left at the next sample
 
 
-def said_of(signal, model, sure, tests, bounds=None):
+def findings_of(signal, model, sure, tests, bounds=None):
     """
-    Yield what must be said about how sure a model is.
+    Yield what a reader must know about how certain a model is.
 
     Args: the Signal, its SecondOrder, Uncertainty and ResidualTests; bounds: the Space in which a
     search found the model, or None.
@@ -48,7 +48,7 @@ def said_of(signal, model, sure, tests, bounds=None):
         yield (f'the input differs between the two sides of {changed} of {gaps} gaps in the '
                'record: when it changed within them is not known, and the standard errors, which '
                'cover the noise only, are too small')
-    # The level enters beside the noise: it is said where it is not small.
+    # The level enters beside the noise: it is reported where it is not small.
     if sure.errors['K'] and sure.errors['K'] < 2 * level_spread(signal, model):
         yield LEVEL
     for name in at_bounds(bounds, model) if bounds else ():
@@ -70,8 +70,8 @@ def _gaps(signal):
     return np.count_nonzero(ends), np.count_nonzero(changes)
 
 
-def said_of_order(other):
-    """Return what must be said of an order.Alternative, or None."""
+def order_finding(other):
+    """Return the finding on an order.Alternative, or None."""
     if not other.is_better:
         return None
     if other.name == 'first order':

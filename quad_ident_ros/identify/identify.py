@@ -11,7 +11,7 @@ import numpy as np
 from quad_ident_ros import __version__
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.identify.findings import said_of, said_of_order
+from quad_ident_ros.identify.findings import findings_of, order_finding
 from quad_ident_ros.identify.methods import METHODS
 from quad_ident_ros.identify.metrics import errors, UNITS
 from quad_ident_ros.identify.objective import Fitted, Objective
@@ -166,7 +166,7 @@ def _with_orders(fit, signal):
         return fit
     found = alternatives(signal, fit.model)
     return replace(fit, orders=found, findings=(*fit.findings, *(
-        said for said in map(said_of_order, found) if said)))
+        said for said in map(order_finding, found) if said)))
 
 
 def _search(method, objective, space, output, settings, random, on_progress):
@@ -229,7 +229,7 @@ def _finish(signal, output, fitted, evaluations, remarks=(), bounds=None):
     sure = uncertainty(signal, fitted)
     tests = examine(signal, signal.y - fit, fitted.noise)
     found = errors(signal.t[signal.measured], signal.y[signal.measured], fit[signal.measured])
-    findings = list(said_of(signal, model, sure, tests, bounds))
+    findings = list(findings_of(signal, model, sure, tests, bounds))
     if not found['fit_percent'] > POOR:
         findings.append('the model explains little of the response (fit '
                         f'{found["fit_percent"]:.0f} %)')

@@ -165,7 +165,7 @@ def _columns(matrix, stride, u, unknowns):
 @compiled
 def _left(columns, there, y):
     """
-    Return what a linear fit of columns (n, M) leaves of y, known where it is there (M,).
+    Return the residuals of y after a linear fit of columns (n, M), where y is known (M,).
 
     Gram and Schmidt, each column twice: once more is enough (A. Bjorck, Numerical Methods for
     Least Squares Problems, 1996, sec. 2.4.5).

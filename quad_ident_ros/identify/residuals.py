@@ -18,17 +18,17 @@ INPUT_LAGS = 8         # of the test of independence, spread evenly on a logarit
 LONGEST_MEMORY = 10    # order of a noise model at most
 SIGNIFICANT = 0.01     # probability below which a test has found something
 ROUNDING = 1e-12       # of the output's range: residuals below are not of the data
-ENOUGH_CHANGES = 5     # of an input that tell the dynamics left out from coloured noise
+ENOUGH_CHANGES = 5     # of an input that separate dynamics left out from coloured noise
 
 
 @dataclass(frozen=True)
 class ResidualTests:
     """
-    Tests of the residuals; the probabilities are None for records too short to tell.
+    Tests of the residuals; the probabilities are None for records that are too short.
 
     white: probability of autocorrelations as large as these, were the noise white (G. M. Ljung
     and G. E. P. Box, Biometrika 65, 1978). independent: probability of as much of them being
-    explained by the input's past, were there nothing of it left (an F-test on lagged inputs).
+    explained by the input's past if nothing of it remained (an F-test on lagged inputs).
     noise: coefficients n1.. of the model e(k) + n1 e(k-1) + .. = white for which the fit allowed.
     """
 
@@ -51,7 +51,7 @@ def examine(signal, residual, noise=()):
     """
     Return the ResidualTests of residuals (N,) of a Signal; noise: see ResidualTests.
 
-    Residuals that are but rounding are not tested: exact data leave nothing to tell.
+    Residuals that are only rounding are not tested: exact data leave nothing to test.
     """
     if signal.samples < FEWEST or _is_rounding(signal, residual):
         return ResidualTests(None, None, tuple(noise))
@@ -91,7 +91,7 @@ def noise_model(residual, measured):
 
 
 def can_tell_noise(signal):
-    """Return whether the input tells the noise from dynamics left out: a step alone does not."""
+    """Return whether the input separates noise from dynamics left out: a step alone does not."""
     return np.count_nonzero(np.diff(signal.u[:-1])) >= ENOUGH_CHANGES
 
 

@@ -22,7 +22,7 @@ class OutputFit:
     The fit of one output by one method.
 
     model is None where the method found none; response (N,) is the fitted output; cost is F;
-    errors as in metrics.errors; remarks tell how the model was found, findings what it says of
+    errors as in metrics.errors; remarks say how the model was found, findings what it means for
     itself and the data; disturbance is a constant beside K u; least_cost the cost of the
     least-squares fit, where the model is the most likely one for coloured noise instead; orders
     what models of other orders give (see order.Alternative).
@@ -50,7 +50,7 @@ class OutputFit:
 
     @property
     def rank(self):
-        """F by which methods are compared: coloured noise makes the best model none of least F."""
+        """F for comparing methods: with coloured noise the best model may not have the least F."""
         return self.cost if self.least_cost is None else min(self.cost, self.least_cost)
 
 
@@ -123,7 +123,7 @@ def parameter_table(fit):
 
 
 def error_table(fit):
-    """Return the standard errors of parameter_table (4, 3); not a number where there is none."""
+    """Return the standard errors of parameter_table (4, 3); NaN where there is none."""
     table = np.full((4, 3), np.nan)
     for i, name in enumerate(OUTPUTS):
         model = fit.outputs[name].model if name in fit.outputs else None
@@ -136,7 +136,7 @@ def error_table(fit):
 
 
 def as_data(identification):
-    """Return an Identification as JSON-able data: numbers that are none become None."""
+    """Return an Identification as JSON-able data: NaN and infinities become None."""
     return clean({
         'schema': 'quad_ident/identification/1',
         'best': identification.best,
@@ -192,7 +192,7 @@ def _correlations(sure):
 
 
 def clean(value):
-    """Return a value as JSON-able data: numbers that are none become None."""
+    """Return a value as JSON-able data: NaN and infinities become None."""
     if isinstance(value, dict):
         return {str(key): clean(entry) for key, entry in value.items()}
     if isinstance(value, list | tuple):
@@ -211,7 +211,7 @@ def from_data(data, signals):
     Return the Identification that as_data described.
 
     Args: signals: the Signals it was fitted to, by output; the fitted responses are computed
-    anew from the models.
+    again from the models.
     """
     methods = {}
     for name, method in data['methods'].items():

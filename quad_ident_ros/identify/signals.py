@@ -22,7 +22,7 @@ LONGEST_GAP = 10    # periods that interpolation may bridge
 TILT_MATTERS = 1e-3     # of an input's largest deviation that the tilt takes of it
 LARGEST = 1e50      # of inputs and outputs
 LARGEST_PERIOD = 1e9    # s between samples; 1 / LARGEST_PERIOD is the shortest
-NO_ARM = ('roll and pitch are not identified: the record has moments in N m, of which an arm '
+NO_ARM = ('roll and pitch are not identified: the record has moments in N m, which an arm '
           'length makes U2 and U3; name the vehicle (--vehicle, or the parameter vehicle)')
 MISSING_SHARE = 0.2  # of the samples that interpolation may fill
 
@@ -32,7 +32,7 @@ class Signal:
     """
     One input-output pair on an even grid: deviations u (N,) from trim and y (N,) from the start.
 
-    at_rest tells that the vehicle was at rest at the first sample, at y = 0 where level_known;
+    at_rest: the vehicle was at rest at the first sample, at y = 0 where level_known;
     measured (N,) which samples of y there are, by default all; start_ns is the stamp of the first;
     trim: what u deviates from; attitude (N, 3) roll, pitch and yaw, rad, where recorded; saturated
     (N,) where the input is beyond the limits of the rotors, by default nowhere.
@@ -52,7 +52,7 @@ class Signal:
     saturated: np.ndarray | None = None
 
     def __post_init__(self):
-        """Take all samples as measured where nothing else is said."""
+        """Take all samples as measured unless stated otherwise."""
         if self.measured is None:
             object.__setattr__(self, 'measured', np.ones(len(self.y), bool))
 

@@ -120,7 +120,7 @@ def _by_averages(period, u, y, unknowns):
     Return c1, c0 (SCALES,) by least squares of the model, averaged over shorter and shorter times.
 
     The second difference over a time W of the model, integrated twice, has no derivative and no
-    initial state in it, and averages the noise over W; what is left of that biases the estimate,
+    initial state in it, and averages the noise over W; the noise that remains biases the estimate,
     least where W is some part of a swing. Source: weak forms, as H. Unbehauen and G. P. Rao,
     Automatica 26(1), 1990.
     """

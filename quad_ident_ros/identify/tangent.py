@@ -18,7 +18,7 @@ import numpy as np
 from quad_ident_ros.compiled import compiled
 from quad_ident_ros.identify.transfer import INVERSES, SERIES_TERMS
 
-WIDTH = 7     # columns at most: 3 unknowns, gain, c1, c0, and what is left of y
+WIDTH = 7     # columns at most: 3 unknowns, gain, c1, c0, and the residual of y
 CHUNK = 256   # samples that are folded in at a time
 
 

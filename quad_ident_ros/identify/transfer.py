@@ -164,7 +164,7 @@ class Discrete:
         """
         Return the discrete model of given coefficients.
 
-        Roots closer than the rounding of a0 and a1 can tell are taken as equal.
+        Roots closer than the rounding of a0 and a1 can separate are taken as equal.
         """
         difference = a1 * a1 - 4.0 * a0
         if abs(difference) < 8 * np.finfo(float).eps * a1 * a1:
@@ -182,7 +182,7 @@ def to_discrete(model, period):
     """
     Return the zero-order-hold equivalent of a model: eq. (36) put right.
 
-    A complex pair with w T >= pi cannot be told from a slower one after sampling (aliasing).
+    A complex pair with w T >= pi looks like a slower one after sampling (aliasing).
     """
     mean = model.c1 / 2
     decay = math.exp(-mean * period)

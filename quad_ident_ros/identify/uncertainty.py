@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""How sure a fitted model is: standard errors, correlations, and what the data do not tell."""
+"""How certain a fitted model is: standard errors, correlations, and what the data leave open."""
 
 from dataclasses import dataclass
 
@@ -26,7 +26,7 @@ class Uncertainty:
     errors: standard errors of K, a, b, c1 = a + b and c0 = a b, None where there is none: at
     equal poles a and b by themselves have none, of a complex pair they are those of its real and
     imaginary part. correlations (3, 3) of `names`, or None. unidentifiable: names of what the
-    record does not tell.
+    record does not determine.
     """
 
     errors: dict
@@ -60,7 +60,7 @@ def uncertainty(signal, fitted):
              'c0': max(abs(fitted.model.c0), max(abs(fitted.model.c1), 1 / duration) / duration),
              'a': max(abs(fitted.model.a), 1 / duration),
              'b': max(abs(fitted.model.b), 1 / duration)}
-    # Of equal poles the record tells the sum and the product, not the one and the other.
+    # The record determines the sum and the product of equal poles, but neither pole alone.
     unsure = tuple(key for key in KEYS if errors[key] is None
                    or not errors[key] < TOO_UNSURE * sizes[key])
     return Uncertainty({key: None if value is None else float(value)
@@ -73,7 +73,7 @@ def level_spread(signal, model):
     Return by how much K is off where the output's level is off by the output's range.
 
     From a free start under an input that never changes, K u and a level c0 y0 are one constant:
-    which part is K nobody can tell but at c0 = 0. Elsewhere it is 0.
+    which part is K is known at c0 = 0 only. Elsewhere it is 0.
     """
     if signal.unknowns != 2:
         return 0.0
@@ -103,12 +103,12 @@ def _factor(signal, fitted):
 
 
 def _covariance(signal, fitted):
-    """Return the covariance (3, 3) of K, c1 and c0, or None where the data do not bear it."""
+    """Return the covariance (3, 3) of K, c1 and c0, or None where the data do not determine it."""
     model, first = fitted.model, signal.unknowns
     factor, variance = _factor(signal, fitted)
     if factor is None:
         return None
-    # The unknowns come first: what is left below them is what K, c1 and c0 explain beside them.
+    # The unknowns come first: the rows below them are what K, c1 and c0 explain as well.
     columns = slice(first, first + 3)
     root, rest = factor[columns, columns], factor[columns, first + 3]
     whole = np.linalg.norm(factor[:, columns], axis=0)

@@ -16,8 +16,8 @@ class Validity:
     """
     Whether K/((s+a)(s+b)) is what an output follows, by the most that it leaves out.
 
-    holds: None where nothing tells; share: of the acceleration that is left out at most; tilt: the
-    largest, rad, or None; why: the reason in words.
+    holds: None where that is unknown; share: of the acceleration that is left out at most; tilt:
+    the largest, rad, or None; why: the reason in words.
     """
 
     holds: bool | None
@@ -30,7 +30,7 @@ def validity(signal):
     """Return the Validity of a Signal: of z the largest block counts, of angles the rms."""
     blocks = blocks_of(signal if signal.start_ns is not None else replace(signal, start_ns=0), 0)
     if not len(blocks):
-        return Validity(None, None, None, 'the record is too short to tell')
+        return Validity(None, None, None, 'the record is too short to judge')
     limited = np.isinf(blocks.neglected)
     if limited.any():
         return Validity(False, None, None, f'in {limited.mean():.0%} of the time rotors cannot '

@@ -114,7 +114,7 @@ def accelerations(t: np.ndarray, acted: Actuation, thetas: np.ndarray) -> np.nda
 @compiled(fused=True, inlined=True)
 def shares(step: float, lag: float) -> tuple[float, float, float]:
     """
-    Return what is left of a gap to the command at begin, middle and end of a step s, lag s.
+    Return the share of a gap to the command at begin, middle and end of a step s, lag s.
 
     That at the begin is 1 but for terms of fourth order, so that the mean over the step, as the
     integration weighs it, is that of the exponential however short the lag is beside the step.
@@ -184,7 +184,7 @@ def _advance(speed: np.ndarray, command: np.ndarray, length: float, left: float,
     """
     Advance speeds (n,) by length s, `left` s before the end of a step.
 
-    Adds the integrals of their squares times what is left of the step, to the power of 0, 1 and
+    Adds the integrals of their squares times what remains of the step, to the power of 0, 1 and
     2, to sums (3, n).
     """
     gone = np.exp(-length / lag) if lag > 0.0 else 0.0

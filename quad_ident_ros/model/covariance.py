@@ -14,7 +14,7 @@ from quad_ident_ros import schema
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model import quantities
 
-DIGITS = 9          # of a correlation in a file: 0.999999999 is still told from 1
+DIGITS = 9          # of a correlation in a file: 0.999999999 still differs from 1
 ROUNDED = 1e-6      # how far off what people round to six digits is from symmetric or positive
 
 

@@ -98,8 +98,8 @@ def completed(motors: Motors, thrust_coefficient: float, speed_min: float,
     """
     Return Motors whose map is what the limits of the vehicle (rad/s) make of it.
 
-    A map that is not told goes from speed_min to speed_max, linear in the signal; a gain that is
-    not told is that which reaches speed_max. Without a finite speed_max the gain stays unknown.
+    A map that is not given goes from speed_min to speed_max, linear in the signal; a gain that is
+    not given is the one that reaches speed_max. Without a finite speed_max the gain stays unknown.
     """
     if motors.whole:
         return motors

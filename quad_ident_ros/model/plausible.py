@@ -41,7 +41,7 @@ MOST_STDS = 1e3             # of the scale of a constant: more says nothing of i
 
 
 def refuse_absurd(where: str, vehicle: Vehicle) -> None:
-    """Raise InputError where a constant of a vehicle is none that a multirotor can have."""
+    """Raise InputError where a constant of a vehicle is not one that a multirotor can have."""
     for key, value, low, high, unit, why in _ranges(vehicle):
         if not low <= value <= high:
             raise InputError(f'{where}: {key}: {value:.6g} {unit} cannot be, expected '

@@ -43,7 +43,7 @@ def inputs_along(vehicle: Vehicle, theta: np.ndarray, course: Course, states: np
 @compiled(fused=True)
 def _look_along(v: np.ndarray, places: np.ndarray, theta: np.ndarray, states: np.ndarray,
                 speeds: np.ndarray, inputs: np.ndarray, out: np.ndarray) -> None:
-    """Write the inputs at states (N, 13) of the centre of mass into out; the rest as there."""
+    """Write the inputs at states (N, 13) of the centre of mass into out (N, 22)."""
     x, dx, seen = np.empty((STATE, 1)), np.empty((STATE, 1)), np.empty((out.shape[1], 1))
     s, rotors = np.zeros((TABLE, 1)), np.zeros((places.shape[0], ROTOR_ROWS, 1))
     parameters, u = np.empty((len(theta), 1)), np.empty((inputs.shape[1], 1))

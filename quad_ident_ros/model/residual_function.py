@@ -59,7 +59,7 @@ class ResidualFunction:
 
     constant (6,) + sum of x weights of inputs {name of INPUTS: Input} + sum of waves. x goes from
     -1 at an input's lowest value to 1 at its highest one, and no further beyond; no channel goes
-    beyond its limit (6,). So it is bounded wherever the vehicle flies.
+    beyond its limit (6,). So it is bounded at every state.
     """
 
     limit: tuple[float, ...]

@@ -104,7 +104,7 @@ STATE = 13      # position, velocity (world), quaternion (body to world), rate (
 # specific force x, y (body); for a residual function, smoothed commands after these.
 INPUT = 9
 CONSTANTS = 19
-ROUNDING = 2.0 ** -52   # of a moment of inertia: smaller products are none
+ROUNDING = 2.0 ** -52   # of a moment of inertia: smaller products count as 0
 
 
 def vehicle_vector(vehicle: Vehicle, drag_in_world: bool = False) -> np.ndarray:

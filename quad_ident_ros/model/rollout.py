@@ -38,7 +38,7 @@ CHANGE = 4  # row of work[3]: what of the rate of change of the rotors' spin no 
 def _set_speeds(share: np.ndarray, speed: np.ndarray, command: np.ndarray, added: np.ndarray,
                 places: np.ndarray, period_rate: np.ndarray, change: np.ndarray, s: np.ndarray,
                 rotors: np.ndarray) -> None:
-    """Set the speeds that lie between `speed` and `command`; share (LANES,) is what is left."""
+    """Set the speeds that lie between `speed` and `command`; share (LANES,) is what remains."""
     for i in range(s.shape[1]):
         s[SPIN_UP, i] = change[i]
     for j in range(rotors.shape[0]):
@@ -151,7 +151,7 @@ def _kernel(lanes: int) -> Callable[..., None]:
         (A, N, n), added (A, N, 3, n) to each step from a sample on, law (T,) of each parameter
         set: see actuators; inputs (N, INPUT or more), what else acts; first (B,) the sample at
         which a rollout starts; count of samples; substeps per sample, 1 where anything is added or
-        guided; guides (G, N, GUIDE): quaternions and rates that a record gives, by which the
+        guided; guides (G, N, GUIDE): quaternions and rates that a record gives, to which the
         centre of mass moves instead of by the predicted ones; without any, G is 0; guide_of (T,)
         the guide of each parameter set.
         """

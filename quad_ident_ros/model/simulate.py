@@ -68,7 +68,7 @@ def simulate(vehicle: Vehicle, model: str, inputs: ArrayLike, period: float, *,
     Raises InputError where it diverged within the first sample, where the inputs are no numbers,
     or where the effects need rotors that cannot give them.
     """
-    # Copies: a read-only array would have the integrator compiled anew.
+    # Copies: for a read-only array the integrator would be compiled again.
     inputs = np.array(inputs, float, order='C')
     if inputs.ndim != 2 or inputs.shape[1] != 4 or len(inputs) < 2:
         raise InputError(f'inputs: expected an array (N >= 2, 4), got {inputs.shape}')

@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""The vehicle file: the nominal vehicle, what is known of it beforehand, and its effects."""
+"""The vehicle file: the nominal vehicle, how well it is known, and its effects."""
 
 from dataclasses import asdict, dataclass, field, fields, replace
 import math

@@ -96,7 +96,7 @@ def prepared(output):
 
 class Watcher:
     """
-    Collects what the nodes publish and tells how far they are.
+    Collects what the nodes publish and reports how far they are.
 
     Args: runs: how many there are; worker: the node that works on their records; topic: of what
     it publishes, JSON, at last; on_progress: see run_demo.
@@ -128,9 +128,10 @@ class Watcher:
         for topic in self._topics:
             if node.count_publishers(topic) > 1:
                 raise InputError(
-                    f'others publish {topic}, too, on ROS domain {node.context.get_domain_id()}, '
-                    'which this run uses: their messages cannot be distinguished from it; start '
-                    'them on another ROS_DOMAIN_ID, and start this again')
+                    f'other nodes publish {topic}, too, on ROS domain '
+                    f'{node.context.get_domain_id()}, which this run uses: their '
+                    'messages cannot be distinguished from its own; start them on another '
+                    'ROS_DOMAIN_ID, and start this again')
 
     @property
     def done(self):
@@ -143,7 +144,7 @@ class Watcher:
         self._on_progress(text, share)
 
     def _on_log(self, message):
-        # A node that compiles has no other news; one of others, in a namespace, is none.
+        # A node that compiles has no other news; nodes of others, in a namespace, do not count.
         self.news += message.name in self._loggers and message.msg.startswith(COMPILING)
 
     def _on_run(self, message):
@@ -171,7 +172,7 @@ class Watcher:
 
     def _on_status(self, message):
         for status in message.status:
-            # A grave result has values; without any, there is none.
+            # A grave result has values; without any there is no result.
             if status.name == self._worker and status.level == ERROR and not status.values:
                 self.refusal = status.message
 
@@ -183,7 +184,7 @@ def watch(watcher, nodes, logs):
     Args: nodes: {node: {parameter: value}}; logs: the folder of their logs. Raises InputError
     where one of them fails, or refuses what it got.
     """
-    # The nodes must not outlive a demo that is told to end or whose terminal is closed.
+    # The nodes must not outlive a demo that is asked to end or whose terminal is closed.
     for number in (signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, _end)
     with Launched(logs) as launched:

@@ -69,7 +69,7 @@ Publishes (latched, but progress and diagnostics):
   ~/progress     std_msgs/String             JSON: fraction
   /diagnostics   diagnostic_msgs/DiagnosticArray  OK: nothing but noise; WARN: known effects, or
                                              undetermined; ERROR: unknown, or refused
-Services (std_srvs/Trigger): ~/diagnose diagnoses what is there, ~/cancel ends a diagnosis
+Services (std_srvs/Trigger): ~/diagnose uses the records so far, ~/cancel ends a diagnosis
 
 Parameters (--ros-args -p NAME:=VALUE):
 {help_text(SPECS)}"""

@@ -7,7 +7,7 @@ import threading
 from quad_ident_ros.errors import Cancelled, InputError
 from quad_ident_ros.experiment import fly
 
-ENDING = 1.0    # s that a flight has to end; a compilation in it cannot be told to
+ENDING = 1.0    # s that a flight has to end; a compilation cannot be interrupted
 
 
 class FlightWorker(threading.Thread):

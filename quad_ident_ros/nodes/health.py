@@ -1,10 +1,10 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Whether a recorder works: what it says of itself on /diagnostics."""
+"""Whether a recorder works: what it reports on /diagnostics."""
 
 from quad_ident_ros.nodes.messages import ERROR, OK, WARN
 
-NO_ROW = 2.0         # s with messages but without a joined row, after which that is said
+NO_ROW = 2.0         # s with messages but without a joined row, after which that is reported
 RECENT = 10.0        # s for which something that went wrong is a warning
 
 

@@ -56,7 +56,7 @@ SPECS = (
                   choices=('auto', 'rest', 'free')),
     ParameterSpec('vehicle', '', 'Name or file of the vehicle whose arm length makes U2 and U3 of '
                   'moments, for records that do not say it (empty: these have no roll and pitch), '
-                  'and whose limits tell where rotors saturate.'),
+                  'and whose limits show where rotors saturate.'),
     ParameterSpec('trim', [], 'U1..U4 from which inputs count; empty: what the record says, or '
                   'its first sample.', length=(0, 4)),
     ParameterSpec('evaluations', 0, 'Evaluations of the objective per search, the same for each '
@@ -99,7 +99,7 @@ Publishes (latched, but progress and diagnostics):
   ~/progress           std_msgs/String             JSON: method, output, fraction
   /diagnostics         diagnostic_msgs/DiagnosticArray
 Not a number stands for an output that was not excited, and for a, b of a complex pair.
-Services (std_srvs/Trigger): ~/identify fits what is there, ~/cancel ends a fit
+Services (std_srvs/Trigger): ~/identify fits the records so far, ~/cancel ends a fit
 
 Parameters (--ros-args -p NAME:=VALUE):
 {help_text(SPECS)}"""

@@ -12,7 +12,7 @@ from std_msgs.msg import String
 from quad_ident_ros.errors import Cancelled, InputError
 
 PROGRESS_PERIOD = 0.1   # s between two messages on ~/progress
-ENDING = 1.0            # s that work has to end; a compilation cannot be told to
+ENDING = 1.0            # s that work has to end; a compilation cannot be interrupted
 
 
 class Job:
@@ -70,7 +70,7 @@ class Job:
         return there
 
     def close(self):
-        """Cancel, and wait for the end as far as it can be told to end."""
+        """Cancel, and wait for the end where it can be interrupted."""
         self._cancelled.set()
         if self._worker is not None:
             self._worker.join(ENDING)

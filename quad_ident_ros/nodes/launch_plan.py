@@ -143,7 +143,7 @@ def _value(argument: Argument, values: Mapping[str, str]) -> object:
         return text
     try:
         value = yaml.safe_load(text)
-    except (yaml.YAMLError, ValueError, RecursionError):    # ValueError: a day that is none
+    except (yaml.YAMLError, ValueError, RecursionError):    # ValueError: an invalid day
         value = None
     if argument.kind is bool:
         if not isinstance(value, bool):

@@ -19,8 +19,8 @@ from quad_ident_ros.nodes.domain import claim_domain
 from quad_ident_ros.nodes.parameter_files import words_for
 from quad_ident_ros.nodes.process import PARENT
 
-STOPPING = 10.0      # s that the nodes have to end after they were told to
-# How a node ends that did as it was told; the last two where FastDDS holds it, see process.run.
+STOPPING = 10.0      # s that the nodes have to end when asked to
+# Exit codes of a node that ended when asked; the last two where FastDDS holds it, see process.run.
 ENDINGS = (0, -signal.SIGALRM, -signal.SIGKILL)
 
 

@@ -20,7 +20,7 @@ KNOWN = {'odometry': ('pose', 'velocity', 'rate'), 'imu': ('rate', 'specific_for
 
 
 APART = 60.0        # s by which stamps of one clock are never late, however fast they are played
-SETTLED = 2.0       # s after which all topics follow a clock that was set anew
+SETTLED = 2.0       # s after which all topics follow a clock that was set
 RECEIVED = ('the stamps of the topics are of several clocks; times of receipt are used for all of '
             'them')
 
@@ -67,14 +67,14 @@ class MappedTopics:
                 **({'notes': notes} if (notes := self.notes()) else {})}
 
     def notes(self):
-        """Return what is to be said of the stamps."""
+        """Return the note on the stamps."""
         chains = [part.note for part in self._parts.values() if part.note]
         if self.by_receipt:
             return [RECEIVED, *chains]
         return [*(without_stamps(topic) for topic in self.without_stamps), *chains]
 
     def beside(self, topic, kind):
-        """Return the topic that a topic of a type needs beside it where it is there, or ''."""
+        """Return the existing topic that a topic of a type needs beside it, or ''."""
         sources = [part.source for part in self._parts.values() if part.source.topic == topic]
         return static_topic(topic) if is_tf(kind) and not all(
             source.field for source in sources) else ''
@@ -119,7 +119,7 @@ class MappedTopics:
         """Note how late a topic is: where some are APART the stamps are of several clocks."""
         late = (received_ns - stamp) * 1e-9
         if abs(late - self._late.get(topic, late)) > APART:
-            # The clock was set, or a simulation began anew: the other topics are about to follow.
+            # The clock was set, or a simulation restarted: the other topics are about to follow.
             self._late = {}
             self._settled = received_ns + int(SETTLED * 1e9)
         self._late[topic] = late

@@ -30,7 +30,7 @@ class PackageNode(Node):
 
     @property
     def is_ready(self):
-        """Whether the node can do what it is there for, or still gets ready for it."""
+        """Whether the node is ready for its work."""
         return True
 
     @property

@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What a node records on disk: a failure is said once, and the run goes on in memory."""
+"""What a node records on disk: a failure is reported once, and the run goes on in memory."""
 
 from datetime import datetime, timezone
 import time
@@ -11,7 +11,7 @@ from quad_ident_ros.fleet.folders import folder_of
 FLUSH_PERIOD = 0.5   # s; a kill -9 loses at most this much of a recording, or
 OVERDUE = 0.6        # s while messages wait, which the timer waits behind; also s of flight: a
                      # recorder that catches up joins several in one
-SOONEST = 0.1        # s between two flushes: each writes the index of the bag anew
+SOONEST = 0.1        # s between two flushes: each rewrites the index of the bag
 
 
 class OnDisk:
@@ -115,4 +115,4 @@ class OnDisk:
             try:
                 recording.close()
             except OSError:
-                pass   # it has been said
+                pass   # it has been reported

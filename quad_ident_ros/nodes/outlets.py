@@ -32,7 +32,7 @@ def windows_of(entries):
     """
     Return the Windows of the parameter windows, each TOPIC=SECONDS or TOPIC=SECONDS,OVERLAP.
 
-    Raises InputError where one is none, or two have the same topic.
+    Raises InputError where one is invalid or two have the same topic.
     """
     found = []
     for entry in entries:

@@ -37,11 +37,11 @@ CHANGED = 'QUAD_IDENT_CHANGED'  # parameters, JSON, that were set before it did
 def run(node_class, help_page, args=None, executor_class=SingleThreadedExecutor,
         warm_up=None):
     """
-    Run a node until it is told to stop and return the exit code.
+    Run a node until it is asked to stop, and return the exit code.
 
     Args: node_class: called without arguments, its `close()` is called at the end; help_page:
     printed for --help; args: the command line, by default that of the process; warm_up: a function
-    that `warm_up` of the node runs while the node is there. Bad input gives one line on standard
+    that `warm_up` of the node runs while the node exists. Bad input gives one line on standard
     error and exit code 2. Where the middleware does not let go of a closed node, SIGALRM ends the
     process. A node that turns out to be deaf just after its start, without work yet, starts once
     more, with the parameters that were set since.
@@ -107,7 +107,7 @@ def _run(node_class, args, executor_class, warm_up):
         if node is not None:
             node.close()
         # FastDDS can deadlock when peers leave at once (its issue 6502), with the interpreter
-        # locked. All is saved and said by now, so the alarm's default may end the process.
+        # locked. All is saved and reported by now, so the alarm's default may end the process.
         signal.signal(signal.SIGALRM, signal.SIG_DFL)
         signal.alarm(LETTING_GO)
         if executor is not None:
@@ -171,7 +171,7 @@ def _leave_compilation():
 
 
 def is_wanted():
-    """Return whether whoever started the node, and said so, still lives."""
+    """Return whether the process that started the node, if it said so, still lives."""
     parent = os.environ.get(PARENT)
     return parent is None or parent == str(os.getppid())
 

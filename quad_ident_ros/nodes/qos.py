@@ -17,7 +17,7 @@ STREAM = QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1000,
 BEST_EFFORT = QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1000,
                          reliability=ReliabilityPolicy.BEST_EFFORT)
 
-# All that publishers keep for those who come late, of which there may be several on a topic.
+# All that publishers keep for late subscribers; a topic may have several publishers.
 KEPT = QoSProfile(history=HistoryPolicy.KEEP_ALL, depth=0,
                   reliability=ReliabilityPolicy.RELIABLE,
                   durability=DurabilityPolicy.TRANSIENT_LOCAL)

@@ -42,11 +42,11 @@ from quad_ident_ros.nodes.subscriptions import Subscriptions
 from quad_ident_ros.nodes.unjoined import Unjoined
 
 QUIET = 0.5          # s after the last message when the middleware is asked what it lost
-ACKNOWLEDGED = 10    # rows after which the publishers are told how far the joining is
+ACKNOWLEDGED = 10    # rows after which the publishers hear how far the joining is
 GONE = 2.0           # s after the last message when nothing more is to come, and
 IDLE = 15.0          # s when something may, after which what is incomplete is given up; lost
                      # messages are sent again every 3 s
-ENDING = 8.0         # s for what waits when the node is told to end: `ros2 launch` gives 10
+ENDING = 8.0         # s for what waits when the node is asked to end: `ros2 launch` gives 10
 PARTING = 1.0        # s for listeners to take the last account before the node is gone
 
 HELP = f"""recorder: joins the topics of a flight into records, keeps and publishes them.
@@ -177,7 +177,7 @@ class Recorder(PackageNode):
                     'topic list` shows it') from None
 
     def _look_for_topics(self):
-        """Subscribe to the topics of the mapping that are there: only then are their types."""
+        """Subscribe to the topics of the mapping that exist by now: only they have a type."""
         missing = [name for name in self._mapped.topics if name not in self._types]
         if not missing:
             return
@@ -310,7 +310,7 @@ class Recorder(PackageNode):
     def _on_flush(self, _, response):
         if self._silence() > QUIET:
             self._keep(self._joiner.drain())
-        # Else a flight goes on: rows that still lack a topic are of the next record.
+        # Else a flight goes on: rows that still wait for a topic belong to the next record.
         records = self._publish(lambda buffer: buffer.complete())
         response.success = bool(records)
         response.message = (f'published a record of {max(map(len, records))} samples'

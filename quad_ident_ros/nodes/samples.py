@@ -50,7 +50,7 @@ class SampleMessages:
 
 class SampleStreams:
     """
-    The publishers of the topics of a flight, of which one that is stuck is not passed over.
+    The publishers of the topics of a flight, in order: one that is stuck holds up the others.
 
     Args: node; quality of service; prefix of the body's frame; with_clock: /clock, too.
     """

@@ -116,10 +116,10 @@ class HearingWatch:
             return False
         anew = early and self._anew()
         self._say(
-            f'no node that begins from now on is heard, and perhaps no other: '
+            f'no node that starts from now on is heard, and perhaps no other: '
             f'{", ".join(self._lost)}, on which this node listens, was deleted by another '
             'process, as happens after a kill -9 (FastDDS, issue 5469); '
-            + ('this node starts once more' if anew else 'start this node once more'))
+            + ('this node starts again' if anew else 'start this node again'))
         return anew
 
 

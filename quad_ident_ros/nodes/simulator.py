@@ -112,12 +112,12 @@ class Simulator(PackageNode):
 
     @property
     def busy(self):
-        """Whether anything was flown, or is to be that a new start would not fly."""
+        """Whether anything was flown, or would be lost in a new start."""
         return self._playback is not None and not (self._config['autostart']
                                                    and self._playback.is_first)
 
     def start(self):
-        """Begin the experiment anew, with the parameters as they are now."""
+        """Restart the experiment with the parameters as they are now."""
         experiment = self._load(self._config.values())
         self._stop_timer()
         self._cut_short()
@@ -170,7 +170,7 @@ class Simulator(PackageNode):
         return response
 
     def _cut_short(self):
-        """Announce anew, as it was, a run that ends before its time."""
+        """Announce again a run that ends before its time."""
         notice = self._playback.cut_short() if self._playback else None
         if notice is not None:
             self._run_publisher.publish(String(data=notice.to_json()))

@@ -16,7 +16,7 @@ class StartNews:
     Logs that a node is ready, and how far a compilation is whenever there is one.
 
     A simulator compiles what a flight needs while it is ready; a node that works on records does
-    before. Only what is compiled is told of, not what is loaded from where it was kept.
+    before. Only compiling is reported, not loading what was compiled before.
     Args: node PackageNode.
     """
 

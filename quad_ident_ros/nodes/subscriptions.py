@@ -33,7 +33,7 @@ class Subscriptions:
         refused = 0
 
         def on_incompatible(event):
-            # total_count_change lacks what was before the executor knew the subscription.
+            # total_count_change does not count what was before the executor knew the subscription.
             nonlocal refused
             self._counted += event.total_count - refused
             refused = event.total_count
@@ -65,6 +65,6 @@ class Subscriptions:
         return take_waiting(self._all.values(), seconds)
 
     def close(self):
-        """Ask no more what was lost."""
+        """Stop counting what was lost."""
         for losses in self._losses.values():
             losses.close()

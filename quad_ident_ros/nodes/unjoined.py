@@ -4,7 +4,7 @@
 
 from quad_ident_ros.nodes.other_types import other_type
 
-AWAITED = 5.0        # s for a vehicle to begin, after which what is not there is said
+AWAITED = 5.0        # s for a vehicle to begin, after which missing topics are reported
 OTHER_CLOCK = 1.0    # s by which stamps are of another clock, as data.foreign has it for bags
 
 
@@ -39,7 +39,7 @@ class Unjoined:
         absent = self._absent()
         return f'nothing comes on {self._mapped.named(names)}; ' + (
             f'nobody publishes {", ".join(absent)}: correct the name, or leave it out of the '
-            'mapping' if absent else 'leave out of the mapping what is not to come')
+            'mapping' if absent else 'leave missing topics out of the mapping')
 
     def apart(self):
         """Say that the stamps of the topics are too far apart."""
@@ -51,7 +51,7 @@ class Unjoined:
             if abs(behind) > OTHER_CLOCK:
                 return (f'the stamps of {self._mapped.named([name])} are {abs(behind):.1f} s '
                         f'{"behind" if behind > 0 else "ahead of"} those of '
-                        f'{self._mapped.named(self._topics[:1])}; set their clocks alike')
+                        f'{self._mapped.named(self._topics[:1])}; synchronise their clocks')
         return (f'the samples of the topics are never within {self._gap:g} s of one another '
                 '(parameter gap)')
 
@@ -62,7 +62,7 @@ class Unjoined:
         return next(filter(None, (other_type(self._node, name) for name in silent)), None)
 
     def awaited(self, now):
-        """Say once that none of the topics of the mapping is there, or return ''."""
+        """Return, once, that no topic of the mapping exists, or ''."""
         if not self._awaits or now - self._begun < AWAITED:
             return ''
         self._awaits = False

@@ -1,13 +1,13 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Messages that wait in the middleware when a node is told to end."""
+"""Messages that wait in the middleware when a node is asked to end."""
 
 import time
 
 FULL = 5000         # messages of a topic that the middleware keeps for a reader that is behind
-BEHIND = 100        # messages without a pause by which a reader is behind: 0.1 s at 1 kHz
-SENT_AGAIN = 3.5    # s within which the middleware sends again what it had no room for, or tells
-                    # that it is lost: writers tell what they have every 3 s
+BEHIND = 100        # messages without a pause: then a reader is behind, 0.1 s at 1 kHz
+SENT_AGAIN = 3.5    # s within which the middleware sends again what it had no room for, or reports
+                    # that it is lost: writers announce what they have every 3 s
 
 
 def take_waiting(subscriptions, seconds):

@@ -46,7 +46,7 @@ class Watching:
     A Source (watch.view) fed by the nodes of one namespace; to be used with `with`.
 
     Args: namespace: '' or 'uav1'; domain: of ROS, by default that of the environment. Raises
-    InputError where the namespace is none.
+    InputError where the namespace is invalid.
     """
 
     def __init__(self, namespace: str = '', domain: int | None = None) -> None:

@@ -98,14 +98,14 @@ def _conclusions(claims):
                  'that are the same, a space that contains all solutions, the smallest of all '
                  'errors, no better method) does not hold if a single case refutes it.'),
         tag('p', 'For claims that one method is better than another, each experiment, search and '
-                 'pair of methods is a case; cases in which the opposite is true are counted '
-                 'beside. A method is better if the 95 % interval of the probability that it ends '
+                 'pair of methods is a case; cases in which the opposite is true are counted as '
+                 'well. A method is better if the 95 % interval of the probability that it ends '
                  'below the other lies above one half, where a tie counts half for each. A case '
                  'is undecided if the interval contains one half, and a claim is undecided if all '
                  'its cases are. That no method is better is decided in a case only if the 95 % '
                  'interval of the probability that the other ends below lies under one half; a '
                  'single case that is not decided leaves the claim undecided.'),
-        table(['claim', 'verdict', 'so in', 'the numbers'], rows,
+        table(['claim', 'verdict', 'score', 'the numbers'], rows,
               ('text', 'text', 'text', 'text'), caption='Claims of the paper')])
 
 
@@ -120,7 +120,7 @@ def _preset(reproduction, name, pictures):
               details('The same with one search over all 12 parameters, as in the paper',
                       join([sections.spent(study, 'joint'), sections.fits(study, 'joint')]))]
     if preset.references:
-        parts += [tag('h3', 'The simulation against what is known of it'),
+        parts += [tag('h3', 'The simulation against known results'),
                   sections.references(preset)]
     if preset.truth:
         parts.append(sections.truth(preset))
@@ -147,9 +147,9 @@ def _tables(reproduction, pictures):
         tag('h3', 'Table 3: errors, computed from Table 2'),
         tag('p', f'Plain sums over {SAMPLES} samples, one each {PERIOD:g} s up to '
                  f'{DURATION:g} s, over a power of ten ({powers}); in {" and ".join(EXCHANGED)} '
-                 'the rows PSO and PSO-CS of Table 3 go with the models of one another in Table '
+                 'the rows PSO and PSO-CS of Table 3 are exchanged against the models in Table '
                  '2. The four responses were fitted to these sums, 8 numbers to 64. The sums are '
-                 'no integrals; the tables of the experiments above have those.'),
+                 'not integrals; the tables of the experiments above have those.'),
         tag('p', f'{good} of {len(cells)} cells agree within {100 * TOLERANCE:.0f} %; the others '
                  f'are marked. {len(OUTLIERS)} are known: three values of ISE that are ten or a '
                  'hundred times too large in print, one of a single digit, and one that the '

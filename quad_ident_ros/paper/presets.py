@@ -35,7 +35,7 @@ class Preset:
     """
     An experiment of the reproduction.
 
-    records: FlightRecords to identify; references: what is known of them; truth: (K, a, b) by
+    records: FlightRecords to identify; references: known results for them; truth: (K, a, b) by
     output where the responses are of the model's class by construction.
     """
 

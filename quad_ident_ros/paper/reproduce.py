@@ -17,7 +17,7 @@ from quad_ident_ros.warm_up import warm_up
 @dataclass(frozen=True)
 class Reproduction:
     """
-    What was computed: presets and studies by name, and the rest as in the modules named.
+    What was computed: presets and studies by name, the others as in the modules named.
 
     printed_fits: PrintedFits by preset; cells: table3.Cells; trips: printed_ls.RoundTrips; cases:
     divergence.Cases; printed: Table 2 as an Identification of the responses of Table 3.

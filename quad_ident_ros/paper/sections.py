@@ -87,12 +87,12 @@ def spent(study, effort):
                      number(ordered[-1], 3) if name in SWARMS else NONE])
     return table(['method', 'evaluations', 'time, ms', 'NRMSE, % (median)', 'NRMSE, % (worst)'],
                  rows, caption=f'Searched {EFFORTS[effort].label}. NRMSE is the rms over the '
-                 'outputs, evaluations are those of all outputs. To find the bounds took '
-                 f'{bounds} evaluations more, once for all methods.')
+                 'outputs, evaluations are those of all outputs. Finding the bounds took '
+                 f'another {bounds} evaluations, once for all methods.')
 
 
 def references(preset):
-    """Return the table of what is known of the responses of a preset."""
+    """Return the table of known facts about the responses of a preset."""
     rows = [[entry.output, number(entry.t), number(entry.expected, 10),
              number(entry.computed, 10), number(abs(entry.computed - entry.expected), 2),
              entry.source] for entry in preset.references]

@@ -32,7 +32,7 @@ def conclusions_table(claims):
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1), header_style='bold')
     table.add_column('claim', no_wrap=True)
     table.add_column('verdict', no_wrap=True)
-    table.add_column('so in', no_wrap=True)
+    table.add_column('score', no_wrap=True)
     for claim in claims:
         table.add_row(claim.text, claim.verdict, claim.score)
     return table

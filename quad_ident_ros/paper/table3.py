@@ -1,7 +1,7 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Table 3 of the paper, computed anew from its Table 2.
+Table 3 of the paper, recomputed from its Table 2.
 
 As printed the two tables contradict each other: no time base gives the errors in units of s. They
 agree when the errors are read as plain sums over 100 samples of 500 s with a power of ten dropped,

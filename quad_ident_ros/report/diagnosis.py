@@ -163,7 +163,7 @@ def minor_lines(found: Diagnosis) -> list[str]:
 
 
 def one_finding_lines(found: Diagnosis) -> list[str]:
-    """Return what motion cannot tell apart from an effect that is named, and what tells it."""
+    """Return what motion cannot separate from an effect that is named, and what does."""
     lines = []
     for row in found.one_finding:
         may_be = ', '.join(' or '.join(names) for names in row['may_be'])
@@ -298,7 +298,7 @@ def _of_simulator(found: Diagnosis) -> list[str]:
 def next_row(one: dict) -> list[str]:
     """Return the cells of a proposal of what to fly next."""
     low, high = one['height']
-    names = ', '.join(one['effects'])
+    names = ', '.join(map(titled, one['effects']))
     return [f'{one["trajectory"]}, {one["duration"]:g} s',
             f'tell apart {names}' if one['purpose'] == 'separate' else f'see {names}',
             *(f'{value:.1f}' if value < 10 else f'{value:.0f}' for value in (one['now'],

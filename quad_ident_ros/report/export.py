@@ -5,6 +5,7 @@
 from pathlib import Path
 
 from quad_ident_ros.diagnose.carried import Carried, NOMINAL, WHOLE
+from quad_ident_ros.effects.registry import EFFECTS, titled
 from quad_ident_ros.report.screen import console, say, table_of
 from quad_ident_ros.vehicle_files.export import Export
 
@@ -44,8 +45,9 @@ def show_fates(found: Export) -> None:
     screen = console()
     for key, said in _CLASSES.items():
         for fate in getattr(found.fates, key):
-            form = f' ({fate.form})' if fate.form else ''
-            say(screen, f'{said}: {fate.name}{form}: {fate.reason}')
+            name = titled(fate.name) if fate.name in EFFECTS else fate.name
+            form = f', form {fate.form}' if fate.form else ''
+            say(screen, f'{said}: {name}{form}: {fate.reason}')
 
 
 def show_cost(cost: Carried) -> None:

@@ -49,10 +49,10 @@ def small_multiple(one: History, unit: str, factor: float) -> Markup:
               _text(LEFT, HIGH - 4, 'start', _day(series.t[0])),
               _text(WIDE - RIGHT, HIGH - 4, 'end', _day(series.t[-1]))]
     return Markup(f'<svg class="small" viewBox="0 0 {WIDE:g} {HIGH:g}" role="img" aria-label="'
-                  f'{escape(said(one, unit, factor))}">{"".join(parts)}</svg>')
+                  f'{escape(in_words(one, unit, factor))}">{"".join(parts)}</svg>')
 
 
-def said(one: History, unit: str, factor: float) -> str:
+def in_words(one: History, unit: str, factor: float) -> str:
     """Return what a picture shows, for who does not see it."""
     series = one.series
     told = [f'{with_configuration(series.vehicle, series.configuration)}, {series.effect} '

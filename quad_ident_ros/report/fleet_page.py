@@ -53,7 +53,7 @@ def _first(found: Insight) -> list:
             [tag('strong', one.where), tag('span', one.why, f'tag {_kind(one)}'), one.text], ' ')
         + '</li>') for one in some)
     return [head, tag('p', 'The most urgent first: what gets worse, what changed, which vehicles '
-                           'differ from their sisters, what the model lacks for all, and logs '
+                           'differ from their sisters, what the model does not have, and logs '
                            'that are refused or look wrong.'),
             Markup(f'<ol class="first">{items}</ol>')]
 
@@ -67,8 +67,8 @@ def _heat(found: Insight) -> list:
     parts = [tag('h2', 'Vehicles and effects'),
              tag('p', 'Each cell is the value at the last flight with its standard error. '
                       f'Coloured cells are {FAR:g}, or {FARTHER:g} and more, times the spread '
-                      'between vehicles away from their sisters; a star marks those that surely '
-                      f'differ (probability over {SURE:g}).')]
+                      'between vehicles away from the other vehicles; a star marks those that '
+                      f'surely differ (probability over {SURE:g}).')]
     for name in dict.fromkeys(one.configuration for one in found.sisters):
         some = sorted((one for one in found.sisters if one.configuration == name),
                       key=lambda one: (-len(one.vehicles), one.effect, one.parameter))
@@ -84,8 +84,8 @@ def _heat_of(configuration: str, some: Sequence[Sisters]) -> Markup:
         units.append(unit)
         columns.append({one.vehicle: _cell(one, factor, len(each.vehicles) > 1)
                         for one in each.vehicles})
-    head = ['vehicle', *(Markup(f'<span title="{escape(known_effect(each.effect))}">'
-                                f'{escape(each.effect)}</span><br>{escape(each.parameter)}'
+    head = ['vehicle', *(Markup(f'{escape(known_effect(each.effect))}<br>'
+                                f'({escape(each.effect)})<br>{escape(each.parameter)}'
                                 + (f', {escape(unit)}' if unit not in ('1', '') else ''))
                          for each, unit in zip(some, units, strict=True))]
     rows = [[name, *(column.get(name, tag('td', '')) for column in columns)] for name in names]
@@ -106,7 +106,7 @@ def _cell(one: Sister, factor: float, has_sisters: bool) -> Markup:
 
 def _effects(found: Insight) -> list:
     rows = effect_rows(found)
-    shared = [[with_configuration(known_effect(each.effect), each.configuration), each.parameter,
+    shared = [[with_configuration(_title(each.effect), each.configuration), each.parameter,
                sized(each.mean, each.mean_std, each.unit), sized(each.spread, 0.0, each.unit),
                str(len(each.vehicles)), str(len(each.odd))] for each in found.sisters
               if len(each.vehicles) > 1
@@ -130,7 +130,7 @@ def _time(found: Insight) -> list:
         return []
     left = len(some) - MOST
     said = ('Values with two standard errors; the line is the level with its drifts and changes, '
-            'upright lines are changes, crosses are flights that are off by themselves.')
+            'vertical lines are changes, crosses are single flights that stand out.')
     if left > 0:
         said += f' The {left} others, in which nothing happens, are left out.'
     values: dict[tuple[str, str], list[float]] = {}
@@ -156,7 +156,7 @@ def _figure(one: History, unit: str, factor: float) -> Markup:
     told = ' and '.join([*(['changed'] * bool(one.changes)), *(['drifts'] * bool(one.drift))])
     sign = tag('span', told, 'tag part') if told else ''
     caption = join([tag('strong', with_configuration(series.vehicle, series.configuration)),
-                    f'{series.effect} {series.parameter}'
+                    f'{_title(series.effect)} {series.parameter}'
                     + (f', {unit}' if unit not in ('1', '') else ''), sign], ' ')
     return Markup(f'<figure data-vehicle="{escape(series.vehicle)}" data-effect="'
                   f'{escape(series.effect)}" data-title="{escape(_title(series.effect))}" '

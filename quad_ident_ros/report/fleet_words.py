@@ -36,8 +36,9 @@ def points(found: Insight) -> tuple[Point, ...]:
     Return what to look at, the most urgent first.
 
     What drifts away from the model, what changed, what drifts towards it, which vehicles are odd,
-    what the model lacks for all, which flights were not diagnosed, which logs cannot be used, or
-    look wrong; last what is sure but in no verdict, for it hardly moves the vehicle.
+    what the model does not have for any vehicle, which flights were not diagnosed, which logs
+    cannot be used, or look wrong; last what is sure but in no verdict, for it hardly moves the
+    vehicle.
     """
     groups: dict[str, list[Point]] = {why: [] for why in (WORSE, CHANGED, DRIFTS, DIFFERS, MODEL,
                                                           FAILED, LOGS, SUSPECT, SMALL)}
@@ -50,7 +51,7 @@ def points(found: Insight) -> tuple[Point, ...]:
              for event in found.events for part in event.parts}
     for odd in found.odd:
         if (odd.configuration, odd.sister.vehicle, odd.effect) in since:
-            continue    # it differs because it changed, which is said already
+            continue    # it differs because it changed, which another entry says
         groups[DIFFERS if odd.material else SMALL].append(
             Point(DIFFERS, with_configuration(odd.sister.vehicle, odd.configuration),
                   odd_line(odd) + _small(odd.material)))

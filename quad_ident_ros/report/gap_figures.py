@@ -41,8 +41,8 @@ def figures(found: Diagnosis) -> dict[str, Figure]:
                                   file),
             'Residual force and moment by channel and regime, before and after',
             'Force and moment that the model does not explain, by channel and regime: each '
-            'feature is cut into three thirds of the flight time. As the velocity that it makes '
-            'in half a second, noise taken off; one scale for both.')}
+            'feature is split into thirds of the flight time. The colour is the velocity that '
+            'they cause in half a second, without the noise, on one scale for both.')}
     if path is not None:
         made['path'] = Figure(
             lambda file: save_path(path, file),

@@ -10,7 +10,7 @@ import yaml
 
 from quad_ident_ros import __version__
 from quad_ident_ros.diagnose.result import Diagnosis
-from quad_ident_ros.effects.registry import titled
+from quad_ident_ros.effects.registry import EFFECTS, titled
 from quad_ident_ros.model.vehicle import vehicle_to_mapping
 from quad_ident_ros.report.ceiling import ceiling_line
 from quad_ident_ros.report.closed_loop import (
@@ -77,8 +77,8 @@ def write(path: str | Path, found: Diagnosis) -> None:
 
 
 def _verdict(found: Diagnosis) -> list:
-    words = join((tag('span', name, f'tag {KINDS.get(name, "part")}') for name in found.verdict),
-                 ' ')
+    words = join((tag('span', titled(name) if name in EFFECTS else name,
+                      f'tag {KINDS.get(name, "part")}') for name in found.verdict), ' ')
     return [tag('p', sentence(verdict_line(found)), 'lead'),
             tag('p', size_line(found)), tag('p', next_step(found)),
             tag('p', join([tag('strong', 'Verdict: '), words], ''))]
@@ -109,7 +109,7 @@ def _which(found: Diagnosis) -> list:
                         kinds=('text', 'text', '', '', '', 'text', '', '', 'text'),
                         caption='Effects of the model that explains the flights best')]
                  if rows else [tag('p', 'No effect is probable.')])
-    return [tag('h2', 'Which'), *estimates, _probabilities(found),
+    return [tag('h2', 'Which effects'), *estimates, _probabilities(found),
             *_listed([*improbable_lines(found), *minor_lines(found), *one_finding_lines(found)])]
 
 
@@ -153,7 +153,7 @@ def _closed_loop(found: Diagnosis) -> list:
 
 
 def _open(found: Diagnosis) -> list:
-    """Return what the flights do not tell, and what would."""
+    """Return what the flights leave open, and which flights would settle it."""
     lines = [*open_lines(found), *nuisance_lines(found)]
     parts = [tag('h2', 'What remains open'), *_listed(lines)] if lines else []
     if found.fly_next:
@@ -165,7 +165,7 @@ def _open(found: Diagnosis) -> list:
 
 
 def _listed(lines: list[str]) -> list:
-    """Return lines as sentences of a list; none where there is none."""
+    """Return lines as sentences of a list; nothing where there are none."""
     items = join(tag('li', sentence(line.strip())) for line in lines)
     return [Markup(f'<ul>{items}</ul>')] if lines else []
 
@@ -174,7 +174,7 @@ def _provenance(found: Diagnosis) -> list:
     """Return what the diagnosis comes from: run, files, flights, vehicle."""
     run = found.run
     made = f'Made by quad_ident_ros {__version__}' + (f' on {run.date} with' if run else '.')
-    parts = [tag('h2', 'From what'),
+    parts = [tag('h2', 'Provenance'),
              tag('p', f'Fitted to {", ".join(found.flights)}; held out: {found.held_out}.'),
              tag('p', join([made, tag('code', run.command)], ' ') if run else made)]
     findings = Counter(one['flight'] for one in found.findings)
@@ -190,7 +190,7 @@ def _provenance(found: Diagnosis) -> list:
     if run:
         parts.append(table(['file', 'SHA-256'], [
             [path, Markup(f'<td class="prose"><code>{whole}</code></td>')]
-            for path, whole in run.files.items()], caption='Files'))
+            for path, whole in run.files.items()], ('text', 'text'), caption='Files'))
     text = yaml.safe_dump(vehicle_to_mapping(found.vehicle), sort_keys=False,
                           default_flow_style=None)
     return [*parts, details('Vehicle file in full', Markup(

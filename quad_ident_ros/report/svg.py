@@ -53,7 +53,8 @@ def inline(path: str | Path, name: str, alt: str) -> Markup:
     """
     Return an SVG file of Matplotlib as an element of a page.
 
-    Args: name: what tells its ids from those of other pictures of the page; alt: what it shows.
+    Args: name: what distinguishes its ids from those of other pictures of the page; alt: what it
+    shows.
     """
     text = Path(path).read_text(encoding='utf-8')
     text = re.sub(r'<metadata>.*?</metadata>|<!--.*?-->|<style[^>]*>.*?</style>', '',

@@ -134,11 +134,11 @@ def sensors_alone(theta: np.ndarray) -> np.ndarray:
 def plan_of(vehicle: Vehicle, theta: np.ndarray, course: Course, starts: np.ndarray,
             first: np.ndarray, count: int) -> Plan:
     """
-    Return the Plan by which a simulator flies as a vehicle with a parameter set theta (P,) does.
+    Return the Plan that makes a simulator fly like a vehicle with a parameter set theta (P,).
 
     Motor lags act on the commands; what else theta has and the simulator has not is added. A
     delay acts on the commands, also that of the simulator's vehicle: a simulator that begins
-    anew knows no earlier commands. Args: vehicle: the simulator's, with its effects; course;
+    again knows no earlier commands. Args: vehicle: the simulator's, with its effects; course;
     starts (B, 13): recorded states at the samples first (B,); count of samples to go.
     """
     own = vector(vehicle.effects, vehicle)
@@ -178,7 +178,7 @@ def _rotors(t: np.ndarray, acted: Actuation, theta: np.ndarray) -> Rotors:
 def _commands(t: np.ndarray, course: Course, wanted: Rotors, theta: np.ndarray,
               inside: np.ndarray) -> np.ndarray:
     """
-    Return the commands (N - 1, n) by which a simulator's rotors turn as is wanted.
+    Return the commands (N - 1, n) that make a simulator's rotors turn as wanted.
 
     Without a lag those of the same thrust in each step; with a lag of the first order, up and
     down, those that lead to the speeds at the end of each step. For any other law inside the

@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""A simulator that is a class in a user's Python file: loaded, called, and its errors told."""
+"""A simulator that is a class in a user's Python file: loaded, called, and its errors reported."""
 
 import inspect
 from typing import Any
@@ -14,7 +14,7 @@ from quad_ident_ros.user_class import UserClass
 
 WRENCH = ('force', 'moment')
 METHODS = 'reset(state) and step(commands, dt)'
-UNIT = 1e-3         # by which the length of a quaternion may differ from 1: float32 is far below
+UNIT = 1e-3         # that the length of a quaternion may differ from 1: float32 is far below
 
 INTERFACE = """\
 class Name:                                # made without arguments

@@ -68,7 +68,7 @@ class Simulator:
         if self._pool is None and (perf_counter() - begun) * batch < WORTH:
             return np.concatenate([*done, fly(self._program, plan.part(slice(1, batch)))])
         if self._pool is None:
-            # Started anew: a copy of this process would have the locks of its threads.
+            # Started afresh: a copy of this process would have the locks of its threads.
             self._pool = ProcessPoolExecutor(cores, get_context('spawn'), _load, (self.spec,))
         edges = np.linspace(1, batch, min(PARTS * cores, batch - 1) + 1).astype(int)
         parts = [plan.part(slice(*edge)) for edge in zip(edges[:-1], edges[1:], strict=True)]

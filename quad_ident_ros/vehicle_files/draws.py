@@ -21,7 +21,7 @@ from quad_ident_ros.vehicle_files.known import known_of
 from quad_ident_ros.vehicle_files.wanted import Wanted, wanted_of
 
 AT_ONCE = 64        # so that the first vehicles of a seed are the same, however many are drawn
-FEWEST = 0.01       # of the draws that can be vehicles: with fewer the widths are none of vehicles
+FEWEST = 0.01       # of the draws that can be vehicles: with fewer the widths are too large
 DRAWN = 1000        # that show it
 
 

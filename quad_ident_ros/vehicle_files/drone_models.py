@@ -27,7 +27,7 @@ _TELLING = tuple(re.compile(rf'^\s*{key}\s*=', re.MULTILINE)
                  for key in ('rpm2thrust', 'mixing_matrix'))
 
 
-def tells(text: str) -> bool:
+def recognises(text: str) -> bool:
     """Whether a text is a TOML file with a drone of drone-models."""
     return all(pattern.search(text) for pattern in _TELLING)
 
@@ -156,7 +156,7 @@ class Drone:
             hover * NEAR, thrust) - 1.0))
         draft.note('exponent of the thrust at hover', exponent, '1', self.place('rpm2thrust'))
         draft.assumed.append(
-            f'thrust over speed is the power {exponent:.4g} that it is at hover, {speed:.4g} '
+            f'thrust goes with the power {exponent:.4g} that it is at hover, {speed:.4g} '
             f'rad/s; from 0.7 to 1.3 of that it is off by up to {100 * off:.2g} % (rpm2thrust); '
             'torque goes with the square (rpm2torque)')
         rise = fall = 0.0

@@ -146,7 +146,7 @@ class EditedXml(Edits):
 
 def _numbers(where: str, words: Sequence[str], count: int, usual: Sequence[float] | None
              ) -> list[float | None]:
-    """Return the numbers of words, with usual ones behind them; InputError where one is none."""
+    """Return the numbers of words, then the usual ones; InputError where one is invalid."""
     try:
         stated: list[float | None] = [float(word) for word in words]
     except ValueError:

@@ -35,7 +35,7 @@ class Change:
 @dataclass
 class Edits:
     """
-    The text of a file, what is to change in it, and what is to be said of that.
+    The text of a file, what is to change in it, and remarks on that.
 
     lacking: {key of Wanted: why the file cannot have it}; nearest: {key of Wanted: what the file
     has in its place}. Numbers that do not change are not touched, nor is anything around those
@@ -50,7 +50,7 @@ class Edits:
     _edits: list[tuple[int, int, str]] = field(default_factory=list)
 
     def __post_init__(self) -> None:
-        """Keep the text as the bytes by which places are counted."""
+        """Keep the text as bytes, in which places are counted."""
         self.data = self.text.encode('utf-8')
 
     def result(self) -> str:
@@ -66,7 +66,7 @@ class Edits:
 
     def number(self, span: tuple[int, int], place: str, old: float | None, new: float, unit: str,
                source: str, size: float = 0.0) -> None:
-        """Put a number between two places, where it is another than the one that is there."""
+        """Put a number between two places, where it differs from the present one."""
         if any(self.enter(place, [old], [new], unit, source, size)):
             self.replace(*span, shown([new]))
 
@@ -96,7 +96,7 @@ class Edits:
 
 
 def differs(old: float | None, new: float, size: float = 0.0) -> bool:
-    """Whether a number is another, beyond SAME of it or of a size that is given."""
+    """Whether a number differs by more than SAME, of it or of a given size."""
     return old is None or abs(new - old) > SAME * max(abs(old), abs(new), size)
 
 

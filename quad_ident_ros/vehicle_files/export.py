@@ -104,11 +104,11 @@ def _real(vehicle: Vehicle) -> Vehicle:
 
 
 def _kind(target: Target, to: str, source: Source) -> Kind:
-    """Return the kind of a base file; InputError where it is none for a target."""
+    """Return the kind of a base file; InputError where no target has it."""
     kind = kind_of(source.text)
     expected = next(each for each in KINDS if each.name == target.kind)
     if kind is not expected:
-        what = kind.title if kind else 'of no kind that is known'
+        what = kind.title if kind else 'a file of an unknown kind'
         raise InputError(f'{source.path}: this is {what}; --to {to} takes {expected.title} as '
                          '--base')
     return kind

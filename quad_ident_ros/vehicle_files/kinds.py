@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""The kinds of files that vehicles are read from, told by their content."""
+"""The kinds of files that vehicles are read from, by their content."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -16,22 +16,22 @@ class Kind:
 
     name: str
     title: str
-    tells: Callable[[str], bool]
+    recognises: Callable[[str], bool]
     read: Callable[[Source], Draft]
 
 
 KINDS = (
-    Kind('mjcf', 'an MJCF model of MuJoCo', mjcf.tells, mjcf.read),
-    Kind('sdf', 'an SDF model of Gazebo', sdf.tells, sdf.read),
-    Kind('urdf', 'a URDF', urdf.tells, urdf.read),
-    Kind('rotorpy', 'a dictionary of rotorpy', rotorpy.tells, rotorpy.read),
+    Kind('mjcf', 'an MJCF model of MuJoCo', mjcf.recognises, mjcf.read),
+    Kind('sdf', 'an SDF model of Gazebo', sdf.recognises, sdf.read),
+    Kind('urdf', 'a URDF', urdf.recognises, urdf.read),
+    Kind('rotorpy', 'a dictionary of rotorpy', rotorpy.recognises, rotorpy.read),
     Kind('drone_models', 'parameters of drone-models, as crazyflow has them',
-         drone_models.tells, drone_models.read),
+         drone_models.recognises, drone_models.read),
     # Others' files may name parameters of PX4 in a comment.
-    Kind('px4_sih', "parameters of PX4's SIH", px4_sih.tells, px4_sih.read),
+    Kind('px4_sih', "parameters of PX4's SIH", px4_sih.recognises, px4_sih.read),
 )
 
 
 def kind_of(text: str) -> Kind | None:
     """Return the kind of a text, or None."""
-    return next((kind for kind in KINDS if kind.tells(text)), None)
+    return next((kind for kind in KINDS if kind.recognises(text)), None)

@@ -38,7 +38,7 @@ def with_errors(changes: Sequence[Change], vehicle: Vehicle,
     """
     Return changes with the standard errors that a vehicle file gives them, None where it has none.
 
-    Args: write: the changes by which the file holds another vehicle. First order in the errors.
+    Args: write: the changes that make the file another vehicle. First order in the errors.
     """
     names, matrix = known_of(vehicle)
     places = _placed(changes)

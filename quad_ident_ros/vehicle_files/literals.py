@@ -51,7 +51,7 @@ def tables_of(path: str, text: str, keys: tuple[str, ...]) -> list[Table]:
     Return the dictionaries that a Python file gives names to and that have all of some keys.
 
     Only numbers, lists, arithmetic and a few functions of NumPy are taken; nothing is run.
-    Raises InputError with the line for a value of such a dictionary that is none of these.
+    Raises InputError with the line for a value of such a dictionary that is neither.
     """
     try:
         tree = ast.parse(text)

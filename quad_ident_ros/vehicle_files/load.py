@@ -35,7 +35,7 @@ def read_vehicle(source: Source, supplied: Mapping[str, Any] | None = None) -> R
     """Return the Reading of a file of a simulator; see reading.finished. Raises InputError."""
     kind = kind_of(source.text)
     if kind is None:
-        raise InputError(f'{source.path}: is of no kind of vehicle file that is known; give '
+        raise InputError(f'{source.path}: this kind of vehicle file is not known; give '
                          f'{", ".join(each.title for each in KINDS)}, or our own (.yaml)')
     reading = finished(kind.read(source), kind.title, supplied)
     return replace(reading, path=f'{source.path}:{source.wanted}') if source.wanted else reading

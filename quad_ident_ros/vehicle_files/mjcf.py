@@ -24,7 +24,7 @@ GRAVITY = (0.0, 0.0, -9.81)     # m/s^2, of MuJoCo
 OF_JOINTS = 'damping', 'stiffness', 'frictionloss', 'armature'
 
 
-def tells(text: str) -> bool:
+def recognises(text: str) -> bool:
     """Whether a text is an MJCF model."""
     return root_of(text) == 'mujoco'
 
@@ -166,12 +166,12 @@ def _take_limits(draft: Draft, thrusts: Sequence[Push], per_control: float, whol
         hover = whole.mass * draft.data['gravity'] / len(thrusts)
         highs = [UNLIMITED * hover / per_control] * len(thrusts)
         draft.assumed.append(f'controls without a range: {UNLIMITED:g} times the thrust at hover, '
-                             f'{UNLIMITED * hover:.4g} N, stands for the most')
+                             f'{UNLIMITED * hover:.4g} N, is assumed as the highest')
     high = common(thrusts, highs, 'most control')
     if not high > low:
         raise InputError(f'{thrusts[0].element.where}: its controls from {low:g} to {high:g} '
                          'leave no thrust; correct ctrlrange')
-    draft.note('most thrust of a rotor', per_control * high, 'N', f'{where} ctrlrange x gear')
+    draft.note('highest thrust of a rotor', per_control * high, 'N', f'{where} ctrlrange x gear')
     thrusts_as_commands(draft, per_control * high, ratio, f'{where} ctrlrange x gear',
                         per_control * low, (low, high))
 

@@ -27,7 +27,7 @@ OTHER_MODELS = ('thrust2torque', 'rotor_dyn_coef_simple', 'thrust_dyn_coef')
 
 
 def write(base: Base) -> Edits:
-    """Return the Edits by which a table of drone-models holds what is wanted; InputError."""
+    """Return the Edits that give a table of drone-models what is wanted; InputError."""
     wanted = base.wanted
     drone = drone_of(base.source)
     edited = _EditedDrone(drone)

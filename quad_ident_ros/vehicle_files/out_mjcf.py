@@ -35,7 +35,7 @@ TURNS = 'quat', 'euler', 'axisangle', 'xyaxes', 'zaxis'
 
 
 def write(base: Base) -> EditedXml:
-    """Return the Edits by which an MJCF model holds what is wanted; raises InputError."""
+    """Return the Edits that give an MJCF model what is wanted; raises InputError."""
     edited = EditedXml(base.source.text)
     model = model_of(parsed(base.source))
     element, inherited = flying_body(base.source, model)

@@ -18,7 +18,7 @@ from quad_ident_ros.vehicle_files.ways import LAGS
 
 
 def write(base: Base) -> Edits:
-    """Return the Edits by which parameters of PX4's SIH hold what is wanted; InputError."""
+    """Return the Edits that give parameters of PX4's SIH what is wanted; InputError."""
     wanted = base.wanted
     edited = _EditedParameters(base.source)
     inertia = inertia_for(base, edited, f'{base.source.path}: SIH_IXX')

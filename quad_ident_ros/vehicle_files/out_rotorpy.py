@@ -16,7 +16,7 @@ from quad_ident_ros.vehicle_files.ways import BODY, LAGS
 
 
 def write(base: Base) -> EditedTable:
-    """Return the Edits by which a dictionary of rotorpy holds what is wanted; InputError."""
+    """Return the Edits that give a dictionary of rotorpy what is wanted; InputError."""
     wanted = base.wanted
     edited = EditedTable(base.source, table_of(base.source))
     inertia = inertia_for(base, edited,

@@ -18,7 +18,7 @@ from quad_ident_ros.vehicle_files.xml_tree import Element, parse
 
 
 def write(base: Base) -> EditedXml:
-    """Return the Edits by which an SDF model holds what is wanted; raises InputError."""
+    """Return the Edits that give an SDF model what is wanted; raises InputError."""
     path, edited = base.source.path, EditedXml(base.source.text)
     _, tree = flying_model(base.source, parse(path, base.source.text))
     layout = layout_of(Draft(path, ''), tree)

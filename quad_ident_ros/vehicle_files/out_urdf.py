@@ -30,7 +30,7 @@ from quad_ident_ros.vehicle_files.xml_tree import Element, parse
 
 
 def write(base: Base) -> EditedXml:
-    """Return the Edits by which a URDF holds what is wanted; raises InputError."""
+    """Return the Edits that give a URDF what is wanted; raises InputError."""
     root, edited = parse(base.source.path, base.source.text), EditedXml(base.source.text)
     links = links_of(base.source, root)
     rotors = rotors_of(root, links)

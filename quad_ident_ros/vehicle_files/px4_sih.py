@@ -43,7 +43,7 @@ class Parameter:
     span: tuple[int, int]
 
 
-def tells(text: str) -> bool:
+def recognises(text: str) -> bool:
     """Whether a text sets parameters of PX4's SIH."""
     return _LINE.search(text) is not None
 

@@ -91,7 +91,7 @@ class Draft:
         self.read.append(Entry(key, value, unit, place))
 
     def take_gravity(self, value: float, place: str) -> None:
-        """Enter the gravity, m/s^2; InputError where it is none."""
+        """Enter the gravity, m/s^2; InputError where it is not a number above 0."""
         if not value > 0.0:
             raise InputError(f'{self.where}: {place}: without gravity no flight is in balance; '
                              'state that of the Earth')
@@ -213,8 +213,8 @@ def thrusts_as_commands(draft: Draft, highest: float, ratio: float | None, place
                             'thrust': {'offset': lowest, 'gain': highest - lowest,
                                        'exponent': 1.0}}
     draft.assumed.append(
-        f'a command is a thrust here and the file knows no speeds: {FULL_SPEED:g} rad/s stand for '
-        f'the most, {highest:.6g} N; `motors` has the map of commands from {low:g} to {high:g}')
+        f'a command is a thrust here and the file has no speeds: {FULL_SPEED:g} rad/s stand for '
+        f'the highest, {highest:.6g} N; `motors` has the map of commands from {low:g} to {high:g}')
 
 
 def _supply(draft: Draft, data: dict[str, Any], read: list[Entry], key: str, value: Any) -> None:

@@ -24,7 +24,7 @@ _UNITS = {'tau_m': 's', 'k_d': 'kg/rad', 'k_z': 'kg/rad', 'k_h': 'kg/m', 'k_flap
 _NOISE = 'motor_noise_std'
 
 
-def tells(text: str) -> bool:
+def recognises(text: str) -> bool:
     """Whether a text is a Python file with a dictionary of rotorpy."""
     return 'k_eta' in text and 'rotor_pos' in text
 

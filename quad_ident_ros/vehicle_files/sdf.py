@@ -28,7 +28,7 @@ PATHS = 'GZ_SIM_RESOURCE_PATH', 'GAZEBO_MODEL_PATH'
 """Variables of the environment with the folders in which Gazebo looks for models."""
 
 
-def tells(text: str) -> bool:
+def recognises(text: str) -> bool:
     """Whether a text is an SDF file."""
     return root_of(text) == 'sdf'
 
@@ -82,7 +82,7 @@ def flying_model(source: Source, root: Element) -> tuple[Element, Tree]:
 
 
 def layout_of(draft: Draft, tree: Tree) -> Layout:
-    """Return the Layout of a model; what is to be said of its links goes into the Draft."""
+    """Return the Layout of a model; remarks on its links go into the Draft."""
     plugins = _plugins(tree)
     check_numbers([plugin for plugin, _ in plugins])
     joints = [_joint(tree, plugin, scope) for plugin, scope in plugins]
@@ -209,7 +209,7 @@ def _axis(tree: Tree, joint: tuple[Element, str], link: Element) -> np.ndarray:
 
 
 def _models(holder: Element, source: Source) -> Iterator[Element]:
-    """Give the models of a world or a file; those that a world includes and that are there."""
+    """Give the models of a world or a file; those that a world includes and that exist."""
     yield from (model for model in holder.all('model')
                 if not (model.first('static') is not None
                         and child_text(model, 'static') in ('true', '1')))

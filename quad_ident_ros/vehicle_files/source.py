@@ -32,7 +32,7 @@ class Source:
 
 
 def is_file(path: str | Path) -> bool:
-    """Whether a file is there; what cannot be a path is none."""
+    """Whether a file exists; what cannot be a path does not."""
     try:
         return Path(path).is_file()
     except (OSError, ValueError):
@@ -40,7 +40,7 @@ def is_file(path: str | Path) -> bool:
 
 
 def text_of(path: str | Path) -> str:
-    """Return the text of a file; InputError for what is none."""
+    """Return the text of a file; InputError for what is not text."""
     try:
         if not stat.S_ISREG(Path(path).stat().st_mode):
             raise InputError(f'{path}: this is not a file; name one')

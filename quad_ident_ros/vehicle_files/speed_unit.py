@@ -52,7 +52,7 @@ def counted(vehicle: Vehicle, unit: float) -> Vehicle:
 
 
 def _signals(motors: Motors) -> tuple[Any, ...]:
-    """Return what tells signals that are thrusts from others."""
+    """Return what distinguishes signals that are thrusts from others."""
     return motors.kind, motors.gives, motors.exponent, motors.minimum, motors.maximum
 
 

@@ -30,7 +30,7 @@ class Target:
     A simulator to write for.
 
     kind: of its files; endings: of their names; holds: what files of the kind have; write: returns
-    the Edits by which a base file has what is wanted of it; new: returns the text of a file of its
+    the Edits that give a base file what is wanted; new: returns the text of a file of its
     own with the constants of a vehicle, in which there is room for its effects; code: returns the
     Code beside a base file for a vehicle, its speeds in the unit of the file, and the name of the
     written file, or None where it is to do nothing. All raise InputError.

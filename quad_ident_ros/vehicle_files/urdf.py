@@ -33,7 +33,7 @@ _TURNS = (re.compile(r'(?<![a-z])ccw(?![a-z])', re.IGNORECASE), -1), (
     re.compile(r'(?<![a-z])cw(?![a-z])', re.IGNORECASE), 1)
 
 
-def tells(text: str) -> bool:
+def recognises(text: str) -> bool:
     """Whether a text is a URDF."""
     return root_of(text) == 'robot'
 

@@ -12,7 +12,7 @@ from quad_ident_ros.errors import InputError
 from quad_ident_ros.vehicle_files.bodies import Body, fixed_axes, Pose, pose, symmetric
 from quad_ident_ros.vehicle_files.xml_tree import Element
 
-SHORTEST = 1e-9      # of an axis: less is none
+SHORTEST = 1e-9      # of an axis: less counts as 0
 
 
 @dataclass(frozen=True)

@@ -24,7 +24,7 @@ class Wanted:
 
     mass kg; centre (3,) m, of mass, from that of the file; inertia (3, 3) kg m^2 about the centre
     of mass; thrust N/(rad/s)^2, at hover, rad/s, and exponent: of the rotor speed that the thrust
-    goes with; losses (n,): share of the thrust that each rotor lacks; torque N m/(rad/s)^2;
+    goes with; losses (n,): share of the thrust that each rotor has lost; torque N m/(rad/s)^2;
     speed_max rad/s; rise, fall s, time constants; rotor_drag kg/rad, force per speed of a rotor
     and air velocity across its axis; linear_drag (3,) N/(m/s); body_drag (3,) kg/m; inflow:
     kg/rad, thrust of a rotor lost per its speed and air velocity along its axis, and kg/m, won
@@ -108,7 +108,7 @@ def wanted_of(vehicle: Vehicle, sag: float | None, holds: Collection[Key]) -> Wa
 
 
 def _drags(vehicle: Vehicle, holds: Collection[Key]) -> tuple[np.ndarray, np.ndarray]:
-    """Return drags (3,) N/(m/s) whatever the rotor speeds, and scaled by them, at hover."""
+    """Return drags (3,) N/(m/s) at any rotor speeds, and scaled by them, at hover."""
     drag = vehicle.effects.get('rotor_drag', {})
     linear = np.array(vehicle.linear_drag) + [drag.get(axis, 0.0) for axis in 'xyz']
     by_speed = np.array([drag.get(f'{axis}_by_speed', 0.0) for axis in 'xyz'])

@@ -31,7 +31,7 @@ _MEAN = Way(('thrust',), 'its mean factor on the thrust coefficient, the same at
 _AT_HOVER = Way(('thrust',), 'its factor at hover on the thrust coefficient, the same at all '
                 'speeds')
 _PLANE = Way(('rotor_drag',), 'the mean of x and y, scaled by rotor speed; along z nothing')
-_STEADY = Way(('linear_drag',), 'the drag that it is at hover, whatever the rotor speeds')
+_STEADY = Way(('linear_drag',), 'the drag at hover, for all rotor speeds')
 _BODY_DRAG, _LAG = Way(('body_drag',)), Way(LAGS)
 WAYS: dict[tuple[str, str], tuple[Way, ...]] = {
     ('motor_lag', 'first_order'): (_LAG,),
@@ -171,6 +171,6 @@ def fates_of(effects: Values, base_effects: Values, holds: Collection[Key],
 
 
 def _alike(values: Mapping[str, float], others: Mapping[str, float]) -> bool:
-    """Whether all values are those of others."""
+    """Whether all values equal those of others."""
     return all(key in others and math.isclose(value, others[key], rel_tol=1e-9)
                for key, value in values.items())

@@ -12,7 +12,7 @@ SAME = 1e-6     # relative: numbers of two rotors that are told apart
 
 def losses_of(thrusts: Sequence[float], torques: Sequence[float]) -> list[float]:
     """
-    Return the share of the thrust that each rotor lacks beside the strongest one.
+    Return the share of the thrust that each rotor has lost against the strongest one.
 
     Args: thrusts and torques of rotors at one speed, in any unit. Zeros where the thrusts are the
     same, and where the torques differ: such rotors are not those of a weak one among others.
@@ -25,6 +25,6 @@ def losses_of(thrusts: Sequence[float], torques: Sequence[float]) -> list[float]
 
 
 def faults(losses: Sequence[float]) -> Values:
-    """Return the effect that losses of rotors are, {} where there are none."""
+    """Return losses of rotors as an effect, {} where there are none."""
     found = {f'loss_{j}': loss for j, loss in enumerate(losses, 1) if loss != 0.0}
     return {'rotor_fault': found} if found else {}

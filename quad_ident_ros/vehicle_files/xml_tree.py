@@ -81,7 +81,7 @@ class Element:
         return self._parsed(attribute, self.attributes[attribute], count)
 
     def number(self, attribute: str, usual: float | None = None) -> float:
-        """Return the number of an attribute; InputError where it is none."""
+        """Return the number of an attribute; InputError where it is not one."""
         return float(self.numbers(attribute, 1, None if usual is None else (usual,))[0])
 
     def content(self, count: int) -> np.ndarray:
@@ -89,7 +89,7 @@ class Element:
         return self._parsed('', self.text, count)
 
     def value(self, tag: str, usual: float | None = None) -> float:
-        """Return the number in the text of a child; InputError where it is none."""
+        """Return the number in the text of a child; InputError where it is not one."""
         child = self.first(tag)
         if child is not None:
             return float(child.content(1)[0])
@@ -127,7 +127,7 @@ def root_of(text: str) -> str:
 
 
 def _parser() -> expat.XMLParserType:
-    """Return a parser of UTF-8, which a text is given in whatever its first line says."""
+    """Return a parser of UTF-8, the encoding of the given text whatever its first line says."""
     return expat.ParserCreate('utf-8')
 
 

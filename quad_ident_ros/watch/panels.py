@@ -141,7 +141,7 @@ def _title(state: State, node: str, now: float) -> Table:
 
 
 def _is_repeated(state: State, node: str, text: str) -> bool:
-    """Whether the text of a node is what its panel says anyway."""
+    """Whether the text of a node repeats what its panel shows."""
     return (node == 'diagnoser' and state.verdict is not None
             and text.endswith(state.verdict.line))
 

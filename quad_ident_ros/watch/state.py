@@ -148,7 +148,7 @@ def after_message(state: State, topic: str, step: Callable[[State], State]) -> S
 def with_health(state: State, node: str, level: int, text: str, now: float) -> State:
     """Return the state after a DiagnosticStatus of a node."""
     state = replace(state, health={**state.health, node: Health(level, text, now)})
-    # A node at work says that it is well: whatever else it says, its work has ended.
+    # A node at work says that it is well: no matter what else it reports, its work has ended.
     return state if level == OK else _without_progress(state, node)
 
 
@@ -206,7 +206,7 @@ def with_diagnosis(state: State, data: dict) -> State:
 
 
 def with_event(state: State, event: Event) -> State:
-    """Return the state with an event, each once: nodes that start anew publish theirs again."""
+    """Return the state with an event, each once: restarted nodes publish theirs again."""
     if event in state.history:
         return state
     return replace(state, history=(event, *state.history)[:KEPT])

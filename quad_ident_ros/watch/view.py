@@ -22,7 +22,7 @@ from quad_ident_ros.watch.panels import (
 from quad_ident_ros.watch.state import State
 
 LOOK = 0.25     # s between two looks at the state: soon enough to the eye, little for a slow line
-ALIVE = 1.0     # s after which the clock and the silences are written anew
+ALIVE = 1.0     # s after which the clock and the silences are rewritten
 REQUESTS = ('identify', 'diagnose', 'flush')
 
 
@@ -79,12 +79,12 @@ class WatchApp(App[None]):
         self.show()
 
     def on_resize(self) -> None:
-        """Lay the tables out anew."""
+        """Lay out the tables again."""
         self._shown = (None, 0.0)
         self.show()
 
     def show(self) -> None:
-        """Write the panels anew where there is news."""
+        """Update the panels where there is news."""
         state, now = self._source.state, time.monotonic()
         before, then = self._shown
         if state is before and now - then < ALIVE:

@@ -51,10 +51,10 @@ def opened(browser, path, width=1280, **options):
     page = context.new_page()
     page.on('console', lambda message: said.append(message.text))
     page.on('pageerror', lambda error: said.append(str(error)))
-    page.on('request', lambda request: asked.append(request.url))
     place = Path(path).resolve().as_uri()
+    page.on('request', lambda request: asked.append(request.url)
+            if request.url != place and not request.url.startswith('data:') else None)
     page.goto(place)
-    asked = [url for url in asked if url != place and not url.startswith('data:')]
     try:
         yield page, said, asked
     finally:

@@ -327,7 +327,7 @@ def _virtual():
 
 
 def _reset_peak():
-    """Let the peak begin anew at what the process has now, and return that in MB."""
+    """Reset the peak to what the process has now, and return that in MB."""
     Path('/proc/self/clear_refs').write_text('5')
     return _status('VmRSS')
 

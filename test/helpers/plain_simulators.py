@@ -73,7 +73,7 @@ class ManyPushed(Many):
 
 
 class One(Many):
-    """One at a time; the speeds of its rotors are not told."""
+    """One state at a time; it does not return the speeds of its rotors."""
 
     step_many = None
 
@@ -86,7 +86,7 @@ class One(Many):
 
 
 class OneLagged(One):
-    """With motors that lag, whose speeds are told."""
+    """With motors that lag, whose speeds it returns."""
 
     lag = LAG
 

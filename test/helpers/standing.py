@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Flights that begin on the ground, and what is left of them without position or velocity."""
+"""Flights that begin on the ground, and the same without position or velocity."""
 
 from functools import cache
 
@@ -25,7 +25,7 @@ def hover_of(vehicle):
 
 @cache
 def brisk():
-    """Return a flight at 200 Hz, with all that motion capture, accelerometer and gyro tell."""
+    """Return a flight at 200 Hz, with all columns of motion capture, accelerometer and gyro."""
     return fly_closed_loop(VEHICLE, {}, 'lissajous', duration=8.0, rate=200.0, seed=3,
                            noise=MOCAP_IMU)
 

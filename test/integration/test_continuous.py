@@ -93,7 +93,7 @@ def test_a_payload_picked_up_in_flight_is_found_within_2_s_of_its_stamp(graph, c
     assert {entry.key: float(entry.value) for entry in status.values} == {
         f'{name}/{when}': value for name, values in change['moved'].items()
         for when, value in zip(('before', 'after'), values, strict=True)}
-    # The log tells of each change, and now and then that all is well.
+    # The log reports each change, and now and then that all is well.
     log = capfd.readouterr().err
     assert log.count(' changed at ') == len(found)
     for line in ('[recorder]: record ', '[identifier]: best method vp'):

@@ -131,8 +131,8 @@ def test_what_others_publish_on_its_domain_ends_the_demo_at_once(tmp_path):
         finally:
             graph.close()
         assert demo.returncode == 2
-        assert re.search(r'^quad_ident demo: error: others publish /\S+, too, on ROS domain \d+',
-                         errors.splitlines()[-1])
+        assert re.search(r'^quad_ident demo: error: other nodes publish /\S+, too, on ROS domain '
+                         r'\d+', errors.splitlines()[-1])
     finally:
         demo.kill()
         demo.wait()

@@ -195,7 +195,7 @@ def test_a_recorder_that_was_killed_goes_on_in_a_new_folder(graph, processes, tm
     again, folder = restarted(graph, processes, heard, tmp_path / 'flights')
     assert again.stop() == 0
     [first], [second] = read_bag(folder.with_name('recording_1') / 'bag'), read_bag(folder / 'bag')
-    # The announcement of the run is there for it, and it does not take its start for the run's.
+    # It still gets the announcement of the run, and it does not take its start for the run's.
     assert first.info['run'] == second.info['run'] == 'psi'
     assert first.info['starts_at_rest'] is True and 'starts_at_rest' not in second.info
     assert second.info['start_ns'] > first.info['start_ns'] + first.t[-1] * 1e9

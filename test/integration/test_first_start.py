@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""The first start of a node compiles for a minute or two: it is there all the while."""
+"""The first start of a node compiles for a minute or two: it answers all the while."""
 
 import re
 import time
@@ -30,7 +30,7 @@ def climb(count=300):
 
 @pytest.mark.parametrize('node', ['identifier', 'diagnoser'])
 def test_a_node_is_there_at_once_while_it_compiles(graph, processes, tmp_path, node):
-    """It says so and how far it is, answers, keeps the records that come, and ends when told."""
+    """It reports its progress, answers, keeps the records that come, and ends when asked."""
     statuses = graph.listen(DiagnosticArray, '/diagnostics', 10)
     service = {'identifier': 'identify', 'diagnoser': 'diagnose'}[node]
     begin = time.monotonic()

@@ -79,7 +79,7 @@ def test_what_cannot_be_is_refused_in_one_line(tmp_path, words, said):
 
 
 def test_what_the_diagnoser_refuses_is_what_the_demo_ends_with():
-    """The flights of a demo are long enough: its watcher is told of a refusal."""
+    """The flights of a demo are long enough: its watcher hears of a refusal."""
     watcher = Watcher(1, 'diagnoser', 'diagnosis', lambda text, share: None)
     for name, values in (('recorder', []), ('diagnoser', [KeyValue(key='closed', value='0')])):
         watcher._on_status(DiagnosticArray(status=[DiagnosticStatus(
@@ -91,7 +91,7 @@ def test_what_the_diagnoser_refuses_is_what_the_demo_ends_with():
 
 
 def test_what_others_compile_is_no_news_of_a_run():
-    """Its patience would begin anew with each line of a node in a namespace."""
+    """Each line of a node in a namespace would reset its patience."""
     watcher = Watcher(1, 'diagnoser', 'diagnosis', lambda text, share: None)
     counts = []
     for name in ('uav1.diagnoser', 'identifier', 'simulator', 'diagnoser'):

@@ -75,7 +75,7 @@ def check_physics(table, outputs=OUTPUTS):
 
 
 def check_data(data, samples):
-    """Check that parameters_json tells everything."""
+    """Check that parameters_json has everything."""
     assert data['schema'] == 'quad_ident/identification/1'
     assert data['version'] == __version__
     assert data['settings']['seed'] == SEED

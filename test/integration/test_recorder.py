@@ -66,7 +66,7 @@ def test_topics_are_joined_by_stamp(graph):
     recorder = graph.start(Recorder)
     records, statistics = listen(graph)
     vehicle = Vehicle(graph)
-    # Each topic by itself, one after the other: only stamps tell what belongs together.
+    # Each topic by itself, one after the other: only stamps show what belongs together.
     stamps = [SECOND + k * PERIOD for k in range(50)]
     for topic in STREAMS:
         for k, stamp in enumerate(stamps):
@@ -102,7 +102,7 @@ def test_what_is_wrong_is_counted_and_published(graph):
     vehicle = Vehicle(graph)
     for k in range(200):
         stamp, topics = SECOND + k * PERIOD, list(STREAMS)
-        if k == 30:    # one topic lacks a sample, and delivers it when it is too late
+        if k == 30:    # one topic delivers a sample too late
             topics.remove('altitude')
         if k == 80:
             await_joined(graph, recorder, 79)

@@ -81,7 +81,7 @@ def fly(graph, count=60):
 
 
 def flown(graph, recorder):
-    """Return the record of a flight of which 50 rows are there, and its stamps, s."""
+    """Return the record of a flight with 50 rows, and its stamps, s."""
     records = graph.listen(Float64MultiArray, 'record', latched(16))
     fly(graph)
     graph.spin_until(lambda: recorder.counts.joined >= 50, '50 rows')

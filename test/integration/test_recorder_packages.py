@@ -124,7 +124,7 @@ def recorded(graph, parameters, sent, arguments=()):
     records = graph.listen(Float64MultiArray, 'record', latched(16))
     types = store()
     make = Make(types)
-    # The recorder listens to a topic only once it is there.
+    # The recorder listens to a topic only once it exists.
     out = {topic: graph.probe.create_publisher(message_class(kind), topic, 1000)
            for topic, kind in {one[0]: one[1] for one in sent}.items()}
     for publisher in out.values():

@@ -86,7 +86,7 @@ def test_a_node_that_begins_deaf_starts_once_more_and_hears(graph, processes):
     assert lost_ports(proc) == [str(ports[0])]
     graph.spin_until(lambda: process.errors().count('ready: ') == 2, 'the next start')
     assert process.errors().count('deleted by another process') == 1
-    assert str(ports[0]) in process.errors() and 'this node starts once more' in process.errors()
+    assert str(ports[0]) in process.errors() and 'this node starts again' in process.errors()
     assert Path('/proc', str(process.pid)).exists() and lost_ports(proc) == []
     records = graph.listen(Float64MultiArray, 'record', latched(16))
     altitude = graph.advertise(PointStamped, 'altitude')
@@ -146,7 +146,7 @@ def test_a_node_that_becomes_deaf_at_work_keeps_what_it_has(graph, processes):
     ports = ports_of(Path('/proc', str(process.pid)))
     ports[0].unlink()
     graph.spin_until(lambda: 'deleted by another process' in process.errors(), 'what it says')
-    assert 'start this node once more' in process.errors()
+    assert 'start this node again' in process.errors()
     send_altitudes(altitude, (3, 4))
     graph.spin_until(lambda: records, 'a record of all four')
     assert process.errors().count('ready: ') == 1
@@ -184,9 +184,9 @@ def ports_of(proc):
 
 
 @pytest.mark.parametrize(('seconds', 'may', 'anew', 'words'), [
-    (2.0, True, True, '; this node starts once more'),
-    (2.0, False, False, '; start this node once more'),     # it has, or works
-    (EARLY + 10.0, True, False, '; start this node once more')])
+    (2.0, True, True, '; this node starts again'),
+    (2.0, False, False, '; start this node again'),     # it has, or works
+    (EARLY + 10.0, True, False, '; start this node again')])
 def test_a_node_that_has_become_deaf_says_so_once(monkeypatch, seconds, may, anew, words):
     now, lost, said = [100.0], [], []
     monkeypatch.setattr(shared_memory.time, 'monotonic', lambda: now[0])

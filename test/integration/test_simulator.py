@@ -272,7 +272,7 @@ def test_start_and_stop(graph, short):
     assert 3 <= count < 51
     graph.spin_for(0.2)
     assert len(heard['input']) == count
-    # The run is announced anew as what it was.
+    # The run is announced again, unchanged.
     graph.spin_until(lambda: len(runs) == 2, 'the notice of the end')
     whole, cut = runs.data()
     assert (whole['samples'], whole['info']['status']) == (51, 'complete')

@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Results on a full disk, where what was there before stays, and of odd names."""
+"""Results on a full disk, where the old file stays, and under odd names."""
 
 import json
 import os

@@ -94,7 +94,7 @@ def fly_on_estimate(reality, params, path, seconds, step, setup, rng, sensors,
                 logged[name].append(value)
         s = reality.hold(s, given, h)
     logged = {name: np.array(values) for name, values in logged.items()}
-    told = (logging or Logging()).told(logged['commands'], params['rotor_speed_max'])
+    told = (logging or Logging()).logged(logged['commands'], params['rotor_speed_max'])
     return Flown(step=step, **logged | {'commands': told})
 
 

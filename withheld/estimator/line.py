@@ -8,7 +8,7 @@ class Seldom:
     A line that is given a command only every so many steps, as the controller gives it.
 
     Reality.hold hands the same command over in each step of the IMU; a delay that differs from
-    command to command must not be drawn anew for it.
+    command to command must not be drawn again for it.
     """
 
     def __init__(self, line, every):

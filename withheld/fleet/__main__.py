@@ -20,7 +20,7 @@ from withheld.processes import follow, key_from, progress, THREADS
 from withheld.seal import unseal
 
 DESCRIPTION = """\
-Check what `quad_ident fleet` tells of a fleet on one whose truth is withheld from it.
+Check what `quad_ident fleet` reports, on a fleet whose truth is withheld from it.
 
 One process flies a fleet in simulation, with changes, a drift, odd vehicles and wrong logs, and
 seals what it did; `quad_ident fleet` diagnoses the logs; this process then opens the seal and
@@ -121,7 +121,7 @@ def _run_priors(options: argparse.Namespace, work: Path) -> dict:
 
 def _look(options: argparse.Namespace, flights: Path, out: Path, bar: Progress, groups: int,
           *more: str) -> None:
-    """Have `quad_ident fleet` diagnose flights into a data set; it is told nothing else."""
+    """Have `quad_ident fleet` diagnose flights into a data set; it knows nothing else."""
     command = [sys.executable, '-m', 'quad_ident_ros', 'fleet', str(flights), '--out', str(out),
                '--json', '-', *more]
     if options.workers:

@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""The process that looks at a data set: it is told a folder, and knows nothing else of it."""
+"""The process that looks at a data set: it is given a folder and knows nothing else of it."""
 
 import json
 from pathlib import Path

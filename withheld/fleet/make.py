@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Fly a made fleet and write its logs; what it is goes to whoever asked, and nowhere else."""
+"""Fly a made fleet and write its logs; its truth goes to the caller and nowhere else."""
 
 import argparse
 import csv

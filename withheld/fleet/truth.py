@@ -121,7 +121,7 @@ def _vehicle(rng: np.random.Generator) -> dict:
 
 
 def _flight(usual: dict, rng: np.random.Generator) -> dict:
-    """Return those of one of its flights: batteries are never put in alike."""
+    """Return those of one of its flights: batteries never sit in the same place."""
     drag, lag = (usual[name][key] for name, key in (('rotor_drag', 'coefficient'),
                                                     ('motor_lag', 'time_constant')))
     return {'rotor_drag': {'coefficient': drag * (1.0 + DRAG[2] * rng.standard_normal())},

@@ -85,7 +85,7 @@ class DeadBand(Motor):
     BAND = 0.005        # of the speed in hover, per size
 
     def __init__(self, size, params, rng):
-        """Set the time constant and the error, rad/s, that is none."""
+        """Set the time constant and the error, rad/s, below which there is no lag."""
         self.parameters = {'time': TIME * size, 'band': self.BAND * size * hover_speed(params)}
 
     def turn(self, speeds, command, step):

@@ -19,7 +19,7 @@ from quad_ident_ros.data.tabular import shown, Table
 STEPS = (clock.time, programs.blackbox_decode, programs.vicon, motion.vectors, attitude.quaternion,
          attitude.angles, attitude.rates, motion.positions, motion.forces, motion.axes,
          motion.velocities, motors.motors, motors.battery)
-BEYOND = 1e30   # no quantity of a flight, in whatever unit, is as large
+BEYOND = 1e30   # no quantity of a flight, in any unit, is as large
 
 
 def guess(table: Table, given: Mapping | None = None) -> Guess:
@@ -29,7 +29,7 @@ def guess(table: Table, given: Mapping | None = None) -> Guess:
     Args: table tabular.Table; given Mapping or None: what it says of frames and quaternions holds.
     """
     given = given or Mapping()
-    # What is no number of a flight tells nothing.
+    # Values that are not numbers of a flight are ignored.
     finite = {name: np.where(np.abs(values) < BEYOND, values, np.nan)
               for name, values in table.columns.items()}
     made = Draft(replace(table, columns=finite), given)

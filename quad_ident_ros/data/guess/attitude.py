@@ -16,7 +16,7 @@ from quad_ident_ros.data.record import EULER, QUATERNION
 
 LEVEL, TURNED = 40.0, 60.0      # deg: the usual tilt is less; one of another order is more
 FOLLOWS = 0.7           # correlation of the gyro with the turns of the right attitude, at least
-CLEAR, CLEARER = 0.2, 0.3   # by which the better of two signs, or orders, correlates more
+CLEAR, CLEARER = 0.2, 0.3   # of correlation, that the better of two signs or orders is ahead
 RADIANS, DEGREES = (0.3, 4.0), (15.0, 230.0)    # gyro over turns: 1 or 57.3 within a factor of 4
 FAST, SLOW = 35.0, 12.0     # what turns by over 35 rad/s is past its gyro; below 12 deg/s nothing
                             # manoeuvres
@@ -74,7 +74,7 @@ def angles(draft: Draft) -> None:
 
 
 def rates(draft: Draft) -> None:
-    """Take the body rates, in the unit that name or attitude tell."""
+    """Take the body rates, in the unit by the name or the attitude."""
     names = draft.found[RATE]
     if names is None or any(name not in draft.free for name in names):
         return

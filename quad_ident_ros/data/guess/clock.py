@@ -23,7 +23,7 @@ def time(draft: Draft) -> None:
     rising = [name for name in found if _rises(draft.table.columns[name])]
     first = next(iter(draft.table.columns))
     if not found and _is_clock(draft.table.columns[first]):
-        rising = [first]        # in whatever language
+        rising = [first]        # in any language
     if not rising and _by_count(draft):
         return
     if not rising:

@@ -136,7 +136,7 @@ class Draft:
         """
         Return the three columns of a group that are counted from 0 or 1, or None.
 
-        A fourth of that name is none of an axis, and letters that are counted may be anything.
+        A fourth column of that name is not an axis, and numbered letters may be anything.
         """
         for (_, stem), axes in self._by_prefix(group, '01234').items():
             counted = ''.join(sorted(axes))
@@ -158,7 +158,7 @@ class Draft:
         return found
 
     def _same(self, group: Sequence[str], one: list[str], other: list[str]) -> bool:
-        """Return whether the first of two trios is the plain one, or both tell the same."""
+        """Return whether the first of two trios is the plain one, or both say the same."""
         whole = re.compile(AXES[group].format('[wxyz0-4]'))
         if whole.fullmatch(self.names[one[-1]]) and not whole.fullmatch(self.names[other[-1]]):
             return True

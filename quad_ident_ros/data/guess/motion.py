@@ -34,7 +34,7 @@ def vectors(draft: Draft) -> None:
 
 
 def positions(draft: Draft) -> None:
-    """Take the position, in the unit that name, velocity or tilt tell."""
+    """Take the position, in the unit by name, velocity or tilt."""
     names = draft.found[POSITION]
     if names is None or any(name not in draft.free for name in names):
         return
@@ -97,7 +97,7 @@ def axes(draft: Draft) -> None:
 
 
 def velocities(draft: Draft) -> None:
-    """Take the velocity, in the axes that name, position or accelerometer tell."""
+    """Take the velocity, in the axes by name, position or accelerometer."""
     names = draft.found[VELOCITY]
     if names is None or any(name not in draft.free for name in names):
         return
@@ -118,7 +118,7 @@ def velocities(draft: Draft) -> None:
 
 
 def _by_velocity(draft: Draft, names: Sequence[str]) -> str:
-    """Return the unit of positions of which the velocity is the change, '' if not told."""
+    """Return the unit of positions of which the velocity is the change, '' if unknown."""
     given = draft.found[VELOCITY]
     if given is None:
         return ''
@@ -143,7 +143,7 @@ def _by_velocity(draft: Draft, names: Sequence[str]) -> str:
 
 def _by_tilt(draft: Draft, names: Sequence[str]) -> str:
     """
-    Return the unit of positions that bend as a thrust that tilts makes them, '' if not told.
+    Return the unit of positions that bend as a tilting thrust makes them, '' if unknown.
 
     What hovers accelerates by g times the tangent of its tilt.
     """

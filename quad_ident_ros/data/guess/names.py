@@ -55,7 +55,7 @@ COMMANDED = re.compile(r'(^|_)(cmds?|commands?|commanded|req)(_|$)')
 """Of rotor speeds that are asked for, not measured."""
 
 REPORTED = re.compile(r'(^|_)esc_?\d')
-"""Of motors whose speeds, where they are told as such, a speed controller has measured."""
+"""Names of motors whose speeds, where named so, a speed controller has measured."""
 
 _AFTER = re.compile(rf'_?(\d{{1,2}})_(speed|vel|velocity|{_WORDS})$')
 """What stands behind the number of a motor, and belongs before it: m1_pwm."""

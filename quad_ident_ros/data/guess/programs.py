@@ -19,7 +19,7 @@ def vicon(draft: Draft) -> None:
     """
     Take the rotation in a table of Vicon's Tracker where it is a quaternion, RX, RY, RZ, RW.
 
-    RX, RY, RZ alone are angles or a rotation vector, as the program is set, which no name tells.
+    RX, RY, RZ alone are angles or a rotation vector, as the program is set, which no name shows.
     Source: Vicon Tracker, export of objects as CSV.
     """
     columns = {plain: name for name, plain in draft.names.items()}
@@ -41,7 +41,7 @@ def blackbox_decode(draft: Draft) -> None:
     """
     Take the columns of a CSV that blackbox_decode makes of a log of Betaflight.
 
-    It writes gyro and accelerometer as they are in the log unless it is told a unit, and leaves
+    It writes gyro and accelerometer as they are in the log unless given a unit, and leaves
     out the header, which has the scales and the number of poles of the motors.
     Source: blackbox_decode.c of Betaflight's blackbox-tools.
     """

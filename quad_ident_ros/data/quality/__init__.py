@@ -53,7 +53,7 @@ COMPARISONS = (stale.held, stale.marked, glitches.attitude,
 """Checks of columns against each other, which one impossible value would decide."""
 
 TOLD = 'commands', 'logging', 'differentiated'
-"""Codes of Findings that a diagnosis tells whatever their severity."""
+"""Codes of Findings that a diagnosis reports whatever their severity."""
 
 __all__ = ['cautions', 'COLUMNS', 'COMPARISONS', 'clock_offset', 'ClockOffset', 'command_offset',
            'Finding', 'findings', 'gravest_first', 'refuse_errors', 'refuse_unfit', 'refuted',
@@ -64,10 +64,10 @@ def findings(record, vehicle=None):
     """
     Return the Findings on a flight record, the gravest first.
 
-    Args: record FlightRecord; vehicle model.vehicle.Vehicle or None; without it nothing is said
-    of saturation, of the unit of rotor speeds, nor of the order and spin of the rotors.
+    Args: record FlightRecord; vehicle model.vehicle.Vehicle or None; without it there are no
+    findings of saturation, of the unit of rotor speeds, nor of the order and spin of the rotors.
     """
-    with np.errstate(all='ignore'):   # values so large that nothing can be said of them
+    with np.errstate(all='ignore'):   # values too large to judge
         found = [finding for check in COLUMNS for finding in check(record, vehicle)]
         believable = columns.believable(record)
         found += [finding for check in COMPARISONS for finding in check(believable, vehicle)]

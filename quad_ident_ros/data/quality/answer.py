@@ -4,8 +4,8 @@
 How much later than the states the commands are stamped that answer them.
 
 A controller that flies on what is measured hands the noise of its measurements on to the commands.
-What changes from sample to sample in both is hardly motion, so that it tells the time between
-them whatever the vehicle does with the commands, and however late it does that.
+What changes from sample to sample in both is hardly motion, so it shows the time between
+them, no matter what the vehicle does with the commands and how late.
 """
 
 from dataclasses import dataclass
@@ -36,7 +36,7 @@ STEPS = 6           # of Gauss-Newton
 WORST = 1e6         # condition of its matrix
 RIDGE = 1e-9        # of the trace, that keeps least squares solvable
 FINEST = 0.02       # samples, the least standard error: what lies between them was never measured
-LATEST = 1e-3       # s, the largest standard error of a lag that is told
+LATEST = 1e-3       # s, the largest standard error of a lag that is reported
 SEVERAL = 5.0       # standard errors, and
 EARLY = 0.002       # s by which commands come before what they answer, where that is a fault
 
@@ -199,7 +199,7 @@ def _gain(model, target):
 
 
 def _smooth(said, known):
-    """Return whether what was said (K, n), at the known ones of samples (N,), is motion."""
+    """Return whether commands (K, n), at the known ones of samples (N,), are motion."""
     next_to = np.flatnonzero(known[:-1] & known[1:])
     row = np.cumsum(known) - 1
     one, other = said[row[next_to]], said[row[next_to + 1]]

@@ -55,7 +55,7 @@ class ClockOffset:
 @once
 def clock_offset(record):
     """
-    Return the ClockOffset of the attitude against the gyro, or None where it cannot be told.
+    Return the ClockOffset of the attitude against the gyro, or None where it is not visible.
 
     A positive offset: attitude (and position, which comes with it) is stamped late. The rate of
     the attitude is compared with the gyro's in windows of 4 s: a whole-sample shift by
@@ -74,7 +74,7 @@ def clock_offset(record):
 
 
 def _without_jumps(record):
-    """Return a record without the few samples whose attitude is off: its slope there is none."""
+    """Return a record without the few samples whose attitude is off: its slope there is wrong."""
     off = jumps(record)
     if not off.any() or off.mean() > FEW:
         return record
@@ -85,7 +85,7 @@ def _without_jumps(record):
 @once
 def velocity_offset(record):
     """
-    Return the ClockOffset of the position against the velocity, or None where it cannot be told.
+    Return the ClockOffset of the position against the velocity, or None where it is not visible.
 
     The slope of the position is compared with the velocity as clock_offset does with attitude and
     gyro. A positive offset: the position is stamped late.
@@ -160,7 +160,7 @@ def _offset(grid, late, early, answers=False, beside=None):
                             grid.period, _without(beside[part]))
         if estimate is not None:
             found.append((grid.t[part].mean(), *estimate))
-    # Beside other signals a window may tell one by chance: most have to.
+    # Beside other signals one window may show it by chance: most have to.
     if not found or (beside.shape[1] and 2 * len(found) <= count):
         return None
     t, offsets, stds = np.array(found).T
@@ -234,7 +234,7 @@ def _refined(t, spline, late, slopes, start, period, rest_of):
 
 def _displaced(grid, spline, late, offsets):
     """
-    Return the most by which what is left would move the offset if it came earlier or later, s.
+    Return by how much at most the residuals, earlier or later, would move the offset, s.
 
     Where it lies it does not move it, for so the offset was chosen. What has nothing to do with
     the motion is, displaced, as large as its standard error; what the motion answers to is more.

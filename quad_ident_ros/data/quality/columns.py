@@ -10,7 +10,7 @@ from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.record import EULER, FlightRecord, QUATERNION, unit
 
 GROUPS = (('px', 'py', 'pz'), ('vx', 'vy', 'vz'), QUATERNION, ('wx', 'wy', 'wz'))
-"""Columns of the motion, of which one alone is of little use, but the height."""
+"""Columns of the motion; one alone is of little use, except the height."""
 
 FORCE = ('ax', 'ay', 'az')
 
@@ -64,7 +64,7 @@ def frozen(record, vehicle):
 
 
 def dead(record, vehicle):
-    """Find streams that never change while another that tells of the same motion does."""
+    """Find streams that never change while another one of the same motion does."""
     found = []
     for one, other in (('velocity', 'position'), ('rate', 'attitude'), ('position', 'velocity'),
                        ('attitude', 'rate')):
@@ -143,7 +143,7 @@ def quaternions(record, vehicle):
 
 
 def possible(record, vehicle):
-    """Find values that are too large for any flight, whatever the unit."""
+    """Find values that are too large for any flight in any unit."""
     found = []
     for name, values in record.columns.items():
         bad = _too_large(name, values)

@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""How much each axis is moved, and so what a flight can tell at all."""
+"""How much each axis moves, and so what a flight can show at all."""
 
 import numpy as np
 

@@ -156,7 +156,7 @@ def _motion(grid, attitude):
     speeding = grid.derivative(grid.signal('vx', 'vy', 'vz'))[grid.good]
     force = grid.acceleration(attitude)[grid.good]
     if not grid.record.has('ax', 'ay', 'az'):
-        # The thrust is then only known to lie along z of the body: what tells is its tilt.
+        # The thrust is then only known to lie along z of the body: its tilt decides.
         speeding, force = speeding[:, :2], force[:, :2]
     sure = correlation(speeding, force)[0]
     turned = [Finding('frame_sign', 'error', f'p{axis}, v{axis}',

@@ -15,7 +15,7 @@ from quad_ident_ros.model.attitude import conjugate, continuous, product
 LONGEST = 0.15            # s, that a jump lasts
 FAR = 7.0                 # standard deviations of the noise from which on it is one,
 LEAST = np.radians(0.5)   # and rad,
-LATE = 0.02               # and s of the change of the rate: an attitude that is late is none
+LATE = 0.02               # and s of the change of the rate: a late attitude is not a glitch
 ALIKE = 0.7, 1.4          # rate of the attitude over that of the gyro
 
 

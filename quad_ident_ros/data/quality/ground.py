@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Where a vehicle stands or is carried, whose force no command tells, and where it flies."""
+"""Where a vehicle stands or is carried, by a force that no command shows, and where it flies."""
 
 from dataclasses import replace
 import math
@@ -16,7 +16,7 @@ from quad_ident_ros.model.vehicle import Vehicle
 
 STILL = 0.2         # m/s: slower stands, or hovers
 IDLE = 0.5          # of the weight, or of the usual thrust if that is less: nothing hovers with it
-LEAST = 0.3         # s: whatever falls for that long with half the thrust is faster than STILL
+LEAST = 0.3         # s: what falls for that long with half the thrust is faster than STILL
 CLEAR = 0.05        # m above the height of standing where the ground is left
 LASTS = 1.0         # s of a flight at the height of a stand, such as from a hand: what takes off
                     # or lands is past CLEAR sooner

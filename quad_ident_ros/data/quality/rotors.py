@@ -15,7 +15,7 @@ from quad_ident_ros.model.vehicle import hover_fault
 SURE, BETTER = 0.5, 0.2   # mean correlation that an explanation needs, and its lead
 SLOW = 1.0                # s; what changes more slowly is trim, aerodynamics and battery
 LATEST = 0.08             # s, motors follow their commands within
-ROUNDING = 1e-12          # of a power: less is none
+ROUNDING = 1e-12          # of a power: less counts as 0
 COMPACT, WIDE = 0.01, 3.0   # moments of inertia over mass arm^2, beyond which no vehicle is built:
                             # those of known quadrotors lie between 0.16 and 0.32
 MOST_ROTORS = 6           # of which all orders are tried
@@ -59,13 +59,13 @@ def order_and_spin(record, vehicle):
     The moment on the body, I dw/dt + w x I w, is correlated with what the squared commands give
     for each order (roll and pitch), then for each choice of spins (yaw).
     """
-    told = _told(record, vehicle)
+    told = _evidence(record, vehicle)
     return [] if told is None else _wrong(told, vehicle)
 
 
 def confirmed(record, vehicle):
     """Return whether a flight shows that order and spins are those of the vehicle file."""
-    told = _told(record, vehicle)
+    told = _evidence(record, vehicle)
     return (told is not None and told.scores[told.declared] >= SURE
             and not _wrong(told, vehicle))
 
@@ -87,7 +87,7 @@ def _wrong(told, vehicle):
 
 
 @dataclass(frozen=True, eq=False)
-class _Told:
+class _Evidence:
     """
     What a flight says of the order of its rotors.
 
@@ -104,8 +104,8 @@ class _Told:
     declared: tuple
 
 
-def _told(record, vehicle):
-    """Return the _Told of a record, None where it cannot be held against the vehicle file."""
+def _evidence(record, vehicle):
+    """Return the _Evidence of a record, None where it cannot be held against the vehicle file."""
     names = record.numbered('cmd')
     grid = Grid.of(record)
     if (vehicle is None or grid is None or not record.has('wx', 'wy', 'wz')
@@ -122,7 +122,7 @@ def _told(record, vehicle):
     lag, scores = max((_scores(grid, moment, squared, position, shift) for shift in
                        range(round(LATEST / grid.period) + 1)),
                       key=lambda entry: max(entry[1].values()))
-    return _Told(grid, moment, squared, lag, scores, tuple(range(len(names))))
+    return _Evidence(grid, moment, squared, lag, scores, tuple(range(len(names))))
 
 
 def _fast(grid, signal):

@@ -9,7 +9,7 @@ from quad_ident_ros.data.quality import units
 from quad_ident_ros.data.quality.finding import Finding
 
 NEAR = 0.002   # of the range of speeds
-STUCK = 0.9    # of the samples of one rotor, which then tells of nothing but the limit
+STUCK = 0.9    # of the samples of one rotor, which then shows nothing but the limit
 
 
 def _grave(share, of_one):

@@ -28,7 +28,7 @@ COARSEST = 0.1 * WIDTH  # s between them, however long a record is: smoothing ne
 
 
 def attitudes_of(record):
-    """Return the unit quaternions of a record, (N, 4), or None where one of them is none."""
+    """Return the unit quaternions of a record, (N, 4), or None where one is not a rotation."""
     if record.has(*QUATERNION):
         q = record.stack(*QUATERNION)
     elif record.has(*EULER):

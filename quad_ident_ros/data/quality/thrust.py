@@ -68,7 +68,7 @@ def other_vehicle(record, vehicle):
     more = ', and they turn the body as rotors in other places would' if wrong else ''
     return [Finding(
         'other_vehicle', 'error' if wrong else 'warning', 'vehicle file',
-        f'the commands give {ratio:.2g} times the thrust by which {vehicle.name} flies{more}: '
+        f'the commands give {ratio:.2g} times the thrust with which {vehicle.name} flies{more}: '
         'mass, thrust coefficient and inertia seem to be those of another vehicle',
         'name the vehicle that flew with --vehicle, or weigh it and measure its thrust')]
 

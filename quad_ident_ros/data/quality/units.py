@@ -56,7 +56,7 @@ def _other_size(one, other, where, these, those):
         return []
     return [Finding('scale', 'error', where,
                     f'{these} are {abs(slope):.3g} times {those}, which is not a unit',
-                    'see by what they are scaled where they are written')]
+                    'check their scale where they are written')]
 
 
 def euler_in_degrees(record, vehicle):

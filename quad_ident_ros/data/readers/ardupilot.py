@@ -10,7 +10,7 @@ from quad_ident_ros.errors import InputError
 TEXT = b'FMT, 128, 89, FMT'     # how the same log begins where it was written out as text
 
 
-def tells(path, start):
+def recognises(path, start):
     """Return whether a path is such a log; InputError where it is one that was made text."""
     if start.startswith(TEXT):
         raise InputError(f'{path}: this is an ArduPilot log that was written out as text; give '
@@ -23,5 +23,5 @@ def read(path, mapping=None, vehicle=None):
     return [read_ardupilot(path, mapping)]
 
 
-READER = Reader('ardupilot', 'a log of ArduPilot (DataFlash)', tells, read, contents,
+READER = Reader('ardupilot', 'a log of ArduPilot (DataFlash)', recognises, read, contents,
                 package='pymavlink', module='pymavlink', extra='ardupilot')

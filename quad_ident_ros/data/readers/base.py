@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What a kind of file has to offer: how it is told, what is in it, its flights."""
+"""What a kind of file has to offer: how it is recognised, what is in it, its flights."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -38,19 +38,19 @@ class Reader:
     """
     A kind of file.
 
-    name: in messages and data; title: as in `this is TITLE`; tells(path, first bytes): whether a
-    path is of this kind by its content; suffixes: of files whose content tells no kind, which are
-    then taken for damaged ones of this kind; read(path, mapping, vehicle): its flight records, at
-    least one; contents(path): the Content of all its streams; package: of PyPI that it needs
-    beyond the program's own, imported as `module`, and installed by the extra of this name;
-    spoilt: as read, for a part of a file: samples that it would refuse are left out and told in
+    name: in messages and data; title: as in `this is TITLE`; recognises(path, first bytes):
+    whether a path is of this kind by its content; suffixes: of files whose content shows no kind,
+    which are then taken for damaged ones of this kind; read(path, mapping, vehicle): its flight
+    records, at least one; contents(path): the Content of all its streams; package: of PyPI that it
+    needs beyond the program's own, imported as `module`, and installed by the extra of this name;
+    spoilt: as read, for a part of a file: samples that it would refuse are left out and listed in
     the info of the records (record.SPOILT); None where it refuses none.
     All raise InputError in one line.
     """
 
     name: str
     title: str
-    tells: Callable[[Path, bytes], bool]
+    recognises: Callable[[Path, bytes], bool]
     read: Callable[[Path, Mapping | None, Vehicle | None], list[FlightRecord]]
     contents: Callable[[Path], list[Content]]
     package: str = ''

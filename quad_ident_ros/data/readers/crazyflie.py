@@ -13,4 +13,4 @@ def read(path, mapping=None, vehicle=None):
 
 
 READER = Reader('crazyflie', 'a Crazyflie log (micro-SD card)',
-                lambda path, start: usdlog.tells(start), read, contents)
+                lambda path, start: usdlog.recognises(start), read, contents)

@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Files that are no flight record, told by their content, and what to give instead."""
+"""Files that are not flight records, by their content, and what to give instead."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -10,7 +10,7 @@ import zlib
 
 from quad_ident_ros.errors import InputError
 
-START = 4096        # bytes that tell what a file is: a tar archive says it at 257
+START = 4096        # bytes that show what a file is: a tar archive says it at 257
 GZIP = b'\x1f\x8b'
 _CONTROL = 0.02     # share of control characters: numbers in binary have more, damaged text less
 _SHOWN = 3          # files of a folder that its message names
@@ -59,7 +59,7 @@ _YAML = re.compile(r'(- .*|-|---.*|[^\s:,;#]+:( .*)?|\s.*)$')
 
 def refuse_others(path: Path, start: bytes) -> None:
     """Raise InputError for a file that is known to be none of a flight, by its first bytes."""
-    found = _told(start)
+    found = _title(start)
     if found:
         title, instead = found
         raise InputError(f'{path}: this is {title}; {instead}')
@@ -67,16 +67,16 @@ def refuse_others(path: Path, start: bytes) -> None:
 
 def title_of(start: bytes) -> str:
     """Return what a file is that is known to be none of a flight, by its first bytes, or ''."""
-    found = _told(start)
+    found = _title(start)
     return found[0] if found else ''
 
 
 def refuse_unknown(path: Path, start: bytes, known: str) -> None:
     """Raise InputError for a file that is no text either; known: the kinds that are read."""
-    # A letter that is none is an error of a table, which its reader tells with its place.
+    # An invalid letter is an error of a table, which its reader reports with its place.
     control = sum(byte < 32 and byte not in b'\t\r\n\f\x1b' for byte in start)
     if control > _CONTROL * len(start) and not start.startswith(GZIP):
-        raise InputError(f'{path}: this is of no kind that is known; give {known}')
+        raise InputError(f'{path}: this kind of file is not known; give {known}')
 
 
 def refuse_no_file(path: Path) -> None:
@@ -105,7 +105,7 @@ def is_text(start: bytes) -> bool:
     return all(letter.isprintable() or letter in '\t\r\n\f\x1b' for letter in text)
 
 
-def _told(start: bytes) -> tuple[str, str] | None:
+def _title(start: bytes) -> tuple[str, str] | None:
     """Return what a file is that is no flight, and what to give instead, or None."""
     for magic, title, instead in _MAGIC:
         if start.startswith(magic):
@@ -127,7 +127,7 @@ def _told(start: bytes) -> tuple[str, str] | None:
             and _TIMES[0] < int.from_bytes(start[:8], 'big') < _TIMES[1]):
         return ('the telemetry log of a ground station (MAVLink, .tlog)',
                 'it is too slow; give the log of the vehicle itself (.ulg, .BIN)')
-    return _told_text(start.decode('utf-8-sig', 'ignore')) if is_text(start) else None
+    return _text_title(start.decode('utf-8-sig', 'ignore')) if is_text(start) else None
 
 
 def _packed(start: bytes) -> tuple[str, str] | None:
@@ -142,7 +142,7 @@ def _packed(start: bytes) -> tuple[str, str] | None:
     return f'a file packed by gzip, with {what} in it', _UNPACK
 
 
-def _told_text(text: str) -> tuple[str, str] | None:
+def _text_title(text: str) -> tuple[str, str] | None:
     """Return what a text is that is no table, and what to give instead, or None."""
     head = text.lstrip()
     lower = head[:1024].lower()

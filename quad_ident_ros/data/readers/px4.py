@@ -12,7 +12,7 @@ from quad_ident_ros.model.vehicle import Vehicle
 MAGIC = b'ULog'     # three more bytes follow; a log that is cut off before them is one, too
 
 
-def tells(path: Path, start: bytes) -> bool:
+def recognises(path: Path, start: bytes) -> bool:
     """Return whether a path is a log of PX4."""
     return start.startswith(MAGIC)
 
@@ -30,5 +30,5 @@ def contents(path: str | Path) -> list[Content]:
     return found(path)
 
 
-READER = Reader('px4', 'a log of PX4 (ULog)', tells, read, contents, package='pyulog',
+READER = Reader('px4', 'a log of PX4 (ULog)', recognises, read, contents, package='pyulog',
                 module='pyulog', suffixes=('.ulg',))

@@ -15,4 +15,4 @@ from quad_ident_ros.data.readers import (
 
 READERS = (rosbag1.READER, rosbag2.READER, px4.READER, ardupilot.READER, betaflight.READER,
            crazyflie.READER, parquet.READER, table.READER)
-"""In the order in which they are told: what is none of the others is a table."""
+"""In the order in which they are tried: what no other reader recognises is a table."""

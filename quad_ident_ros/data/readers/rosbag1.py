@@ -4,16 +4,16 @@
 
 from functools import partial
 
-from quad_ident_ros.data.bag_file import told_kind
+from quad_ident_ros.data.bag_file import kind_by_content
 from quad_ident_ros.data.foreign import read_mapped_bag
 from quad_ident_ros.data.mapping import Mapping
 from quad_ident_ros.data.readers.bags import topics_of
 from quad_ident_ros.data.readers.base import Reader
 
 
-def tells(path, start):
+def recognises(path, start):
     """Return whether a path is a bag of ROS 1."""
-    return told_kind(path, start) == '.bag'
+    return kind_by_content(path, start) == '.bag'
 
 
 def read(path, mapping=None, vehicle=None, spoilt=False):
@@ -21,5 +21,5 @@ def read(path, mapping=None, vehicle=None, spoilt=False):
     return read_mapped_bag(path, mapping or Mapping(), spoilt)
 
 
-READER = Reader('rosbag1', 'a bag of ROS 1', tells, read, topics_of, suffixes=('.bag',),
+READER = Reader('rosbag1', 'a bag of ROS 1', recognises, read, topics_of, suffixes=('.bag',),
                 spoilt=partial(read, spoilt=True))

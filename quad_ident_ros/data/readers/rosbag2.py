@@ -5,7 +5,7 @@
 from dataclasses import replace
 from functools import partial
 
-from quad_ident_ros.data.bag_file import BagFile, told_kind
+from quad_ident_ros.data.bag_file import BagFile, kind_by_content
 from quad_ident_ros.data.foreign import read_mapped_bag
 from quad_ident_ros.data.mapping import Mapping
 from quad_ident_ros.data.readers.bags import topics_of
@@ -17,9 +17,9 @@ NO_END = ('the bag has no end, as where its recorder was killed or the disk was 
 SKIPPED = 'damaged parts (chunks) of the bag were left out, with all their messages: {}'
 
 
-def tells(path, start):
+def recognises(path, start):
     """Return whether a path is a bag of ROS 2."""
-    return told_kind(path, start) in ('folder', '.mcap', '.db3')
+    return kind_by_content(path, start) in ('folder', '.mcap', '.db3')
 
 
 def read(path, mapping=None, vehicle=None, spoilt=False):
@@ -39,5 +39,5 @@ def _noted(record, notes):
     return replace(record, info={**record.info, 'notes': [*record.info.get('notes', ()), *notes]})
 
 
-READER = Reader('rosbag2', 'a bag of ROS 2', tells, read, topics_of,
+READER = Reader('rosbag2', 'a bag of ROS 2', recognises, read, topics_of,
                 suffixes=('.mcap', '.db3'), spoilt=partial(read, spoilt=True))

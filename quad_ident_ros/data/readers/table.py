@@ -49,7 +49,7 @@ def records_from(path: Path, table: Table, mapping: Mapping | None) -> list[Flig
     """
     Return the flight records of a Table, by the columns of a mapping or by guess.
 
-    One for each recording in it, where the time begins anew.
+    One for each recording in it, where the time restarts.
     """
     mapping = mapping or Mapping()
     if mapping.topics or mapping.instances:
@@ -71,7 +71,7 @@ def records_from(path: Path, table: Table, mapping: Mapping | None) -> list[Flig
         return records
     return [replace(record, info={
         **record.info, 'name': f'{record.info["name"]}_{k}', 'source': f'{path}, recording {k}',
-        'notes': [*record.info['notes'], f'the time begins anew in the table: this is recording '
+        'notes': [*record.info['notes'], f'the time restarts in the table: this is recording '
                                          f'{k} of {len(records)}']})
             for k, record in enumerate(records, 1)]
 
@@ -108,7 +108,7 @@ def is_record(path: Path) -> bool:
     ours = {_group(name) for name in names if unit(name) is not None} - {''}
     if all(unit(name) is not None for name in names):
         return True
-    # Names of others beside t, or ours: theirs if they tell more of a flight than ours do.
+    # Names of others beside t, or ours: theirs if they say more about a flight than ours do.
     try:
         found = guess(read_text(path))
     except InputError:

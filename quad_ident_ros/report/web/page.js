@@ -1,8 +1,8 @@
 /* Copyright 2026 quad_ident_ros contributors
    SPDX-License-Identifier: Apache-2.0 */
 
-// Draws the pictures of a page anew, from the values beside them, so that they can be zoomed,
-// turned and read. The picture that is there without scripts stays for print.
+// Draws the pictures of a page again, from the values beside them, so that they can be zoomed,
+// turned and read. The picture in the file, without scripts, stays for print.
 'use strict';
 (() => {
   const HEIGHT = 150, KEY_ZOOM = 1.5, LEAST = 4;  // px; times; values that a zoom shows at least

@@ -144,7 +144,7 @@ def test_no_command_writes_over_what_it_reads(call, flights, tmp_path, capsys):
 def test_a_file_in_the_place_of_a_folder_is_named(flights, tmp_path, capsys):
     (tmp_path / 'b.csv').write_text('mine')
     assert main(['convert', str(flights['z']), str(tmp_path / 'b.csv' / 'x.csv')]) == 2
-    assert f'{tmp_path / "b.csv"} is a file, no folder' in capsys.readouterr().err
+    assert f'{tmp_path / "b.csv"} is a file, not a folder' in capsys.readouterr().err
 
 
 @pytest.mark.parametrize('call', ['fit FLIGHT --vehicle paper_quadrotor --free mass',

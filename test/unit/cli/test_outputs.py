@@ -111,6 +111,6 @@ def test_a_pipe_is_written_to_as_it_is():
     ('diagnose', ['f.csv', '--vehicle', 'iris', '--out-vehicle']),
     ('fit', ['f.csv', '--vehicle', 'iris', '--free', 'mass', '--out-vehicle'])])
 def test_a_vehicle_is_not_sought_where_it_cannot_be_written(closed, capsys, command, words):
-    """The flight is not there either: what is said first is what is known first."""
+    """The flight is missing as well: the error that is known first comes first."""
     assert main([command, *words, f'{closed}/real.yaml']) == 2
     assert f'real.yaml: cannot be written into {closed}: ' in capsys.readouterr().err

@@ -174,7 +174,7 @@ def test_flights_of_several_vehicles_are_told_apart():
 def test_what_only_one_log_knows_tells_no_vehicles_apart():
     assert vehicles([known('a', board='X', id='1'), known('b', board='X')]) == []
     assert len(vehicles([known('a', board='X', id='1'), known('b', board='Y')])) == 1
-    # The third knows what tells the first two apart.
+    # The third has what distinguishes the first two.
     assert len(vehicles([known('a', board='X'), known('b', id='1'), known('c', board='Z')])) == 1
 
 

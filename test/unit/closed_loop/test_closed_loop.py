@@ -150,7 +150,7 @@ def test_the_bandwidth_of_a_flight_shows_where_it_was_asked_for_enough():
     slow = lfilter([0.01], [1.0, -0.99], rng.standard_normal((20000, 4)), axis=0)
     flown = lagged(slow, 2.0 * np.pi) + 1e-4 * rng.standard_normal(slow.shape)
     asked = slow.copy()
-    asked[:, 3] = 0.0       # a heading that never changes tells nothing
+    asked[:, 3] = 0.0       # a heading that never changes shows nothing
     found = bandwidth_of_flight(asked, flown, RATE)
     assert [found[axis] for axis in 'xyz'] == pytest.approx([1.0] * 3, rel=0.15)
     assert found['yaw'] is None
@@ -240,8 +240,8 @@ def test_a_name_that_is_no_class_of_a_file_is_refused():
         controller_of('mine', BARE)
 
 
-@pytest.mark.parametrize('gone, said', [(('px',), 'lacks position, velocity or attitude'),
-                                        (('qw', 'qx'), 'lacks position, velocity or attitude')])
+@pytest.mark.parametrize('gone, said', [(('px',), 'has no position, velocity or attitude'),
+                                        (('qw', 'qx'), 'has no position, velocity or attitude')])
 def test_a_flight_without_a_path_is_refused(gone, said):
     record = flight()
     columns = {name: values for name, values in record.columns.items() if name not in gone}

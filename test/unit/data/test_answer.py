@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What commands answer tells the clocks of states and commands, whatever the vehicle does."""
+"""What commands answer shows the clocks of states and commands, whatever the vehicle does."""
 
 from dataclasses import replace
 
@@ -174,7 +174,7 @@ def answering_late(seed):
 
 @pytest.mark.slow
 def test_a_lag_of_the_controller_is_no_delay_whatever_the_clocks():
-    """Beside clocks that differ no record tells it from commands that act late by as much."""
+    """With clocks that differ, no record distinguishes it from commands that act as much later."""
     one_clock = [answering_late(seed) for seed in range(3)]
     assert answer_of(one_clock[0]).lag == pytest.approx(0.01, abs=1e-3)
     data = diagnose(one_clock, VEHICLE).as_data()

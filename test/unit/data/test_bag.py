@@ -259,7 +259,7 @@ def test_a_process_that_is_killed_while_it_flushes_loses_nothing_that_it_flushed
 @pytest.mark.slow
 @pytest.mark.parametrize('more', [4, 60])
 def test_a_kill_within_a_flush_loses_nothing_that_was_whole(tmp_path, more):
-    """Wherever a write ends: before it is what is new, behind it what was there."""
+    """Wherever a write ends, the new content is before that place and the old one behind it."""
     path = tmp_path / 'bag'
     writer = BagWriter(path, TOPICS)
     fill(writer, 0, 40)
@@ -427,7 +427,7 @@ def test_topics_that_cannot_be(tmp_path, topics, part):
 
 
 def test_refused_calls(tmp_path):
-    """A folder that is there is not written to, nor a topic that is not."""
+    """An existing folder is not written to, nor a topic that does not exist."""
     with BagWriter(tmp_path / 'bag', TOPICS) as writer:
         before = files(tmp_path / 'bag')
         with pytest.raises(InputError, match='already'):

@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Bags of others without a mapping, and with types that only their definitions tell."""
+"""Bags of others without a mapping, and with types that only their definitions describe."""
 
 import sqlite3
 from types import SimpleNamespace

@@ -211,7 +211,7 @@ PLACES = {'crazyflie': ((1, -1), (-1, -1), (-1, 1), (1, 1)),
 @pytest.mark.parametrize('vehicle', [VEHICLE, TURNED], ids=['as it is', 'turned'])
 @pytest.mark.parametrize('name', PLACES)
 def test_motors_are_matched_by_direction_where_the_log_knows_it(tmp_path, name, vehicle):
-    """Each motor has an output that tells its place: the rotor there gets it."""
+    """Each motor has an output that marks its place: the rotor there gets it."""
     places = PLACES[name]
     share = {place: 0.3 + 0.1 * k for k, place in enumerate(sorted(places))}
     wave = 0.02 * np.sin(5 * FLIGHT.t)[:, None]

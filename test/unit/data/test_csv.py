@@ -49,7 +49,7 @@ def same(one, other):
 
 
 def test_columns_in_any_order(tmp_path):
-    """Columns are found by name; the info tells where they are from."""
+    """Columns are found by name; the info says where they are from."""
     flight = read(tmp_path, 'pz,t, cmd2 ,foo\n1,0,5,-1\n2,0.5,6,nan\n')
     assert flight.t.tolist() == [0, 0.5]
     assert flight.stack('pz', 'cmd2').tolist() == [[1, 5], [2, 6]]
@@ -85,7 +85,7 @@ def test_text_in_unknown_columns(tmp_path):
 
 @pytest.mark.parametrize('last', ['0.2,3', '0.2,', '0.2', '0.2,3,4', '0.2,-', 'x'])
 def test_line_cut_off_while_recording(tmp_path, last):
-    """The last line is dropped where it has no line end, and the info tells so."""
+    """The last line is dropped where it has no line end, and the info says so."""
     flight = read(tmp_path, f't,pz\n0,1\n0.1,2\n{last}')
     assert flight.stack('t', 'pz').tolist() == [[0, 1], [0.1, 2]]
     assert flight.info['truncated'] is True

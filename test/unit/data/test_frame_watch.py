@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Wrong frames, told while a vehicle flies."""
+"""Wrong frames, reported while a vehicle flies."""
 
 from dataclasses import replace
 

@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Time on the ground: told, and left out of a diagnosis."""
+"""Time on the ground: reported, and left out of a diagnosis."""
 
 from dataclasses import replace
 import json

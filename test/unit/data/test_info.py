@@ -158,7 +158,7 @@ def test_a_part_of_thrust_and_moments_is_told_by_what_is_missing():
 
 
 def test_a_mapping_to_begin_with_reads_the_table(tmp_path, capsys):
-    """What is told is filled in, what is in doubt is said; after one correction it holds."""
+    """What is certain is filled in, doubts are comments; after one correction it works."""
     columns = others(SHORT)
     q = columns.pop('q_x'), columns.pop('q_y'), columns.pop('q_z'), columns.pop('q_w')
     for name in ('gyro_x', 'gyro_y', 'gyro_z'):

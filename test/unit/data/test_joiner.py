@@ -58,7 +58,7 @@ def test_a_topic_may_begin_late():
     feed(joiner, [('a', 10 * k) for k in range(30)])
     rows = feed(joiner, even('ab', 300, 600))
     assert stamps(rows) == list(range(300, 600, 10))
-    # Nobody can tell that b's first messages will not come until it has gone on for long enough.
+    # Nobody can know that b's first messages will not come until it has gone on for long enough.
     assert joiner.counts.dropped == 30
 
 

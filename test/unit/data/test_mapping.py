@@ -34,7 +34,7 @@ def test_the_mapping_file_of_the_documents_is_one():
 def test_the_lines_of_the_table_of_the_nodes_are_a_mapping():
     """Each row names topics of its middleware, and what goes with them."""
     text = (Path(__file__).parents[3] / 'docs' / 'nodes.md').read_text(encoding='utf-8')
-    table = text.split('| from | lines | besides |\n')[1].split('\n\n')[0].splitlines()[1:]
+    table = text.split('| from | lines | also needed |\n')[1].split('\n\n')[0].splitlines()[1:]
     assert len(table) == 4
     for row in table:
         lines = re.findall(r'`([a-z_]+): ?(\{.*?\}|`)', row)

@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""A wrong kind of file is told by its content, whatever its name, with what to give instead."""
+"""A wrong kind of file is recognised by its content, and the error says what to give instead."""
 
 from contextlib import suppress
 import gzip
@@ -97,7 +97,7 @@ KINDS = {
     'dataflash as text': (b'FMT, 128, 89, FMT, BBnNZ, Type,Length\n', 'ArduPilot', '.BIN'),
     'utf-16': ('t,px\n0,1\n1,2\n'.encode('utf-16'), 'UTF-16', 'as UTF-8'),
     'zeros': (bytes(5000), 'zeros', 'copy it from the vehicle again'),
-    'noise': (np.random.default_rng(0).bytes(600), 'of no kind that is known', 'ULog'),
+    'noise': (np.random.default_rng(0).bytes(600), 'this kind of file is not known', 'ULog'),
     'empty': (b'', 'empty', 'again'),
 }
 

@@ -38,7 +38,7 @@ def test_memory_is_that_of_the_numbers_not_of_the_text(tmp_path, name, read, sep
     _, peak = tracemalloc.get_traced_memory()
     tracemalloc.stop()
     assert np.array_equal(record.columns['c7'], values[:, 7])
-    # The text is more than twice the numbers, which are there twice while they become columns.
+    # The text is more than twice the numbers, which exist twice while they become columns.
     assert len(data) > 2.3 * values.nbytes
     assert peak < 3.0 * values.nbytes
 

@@ -380,7 +380,7 @@ def test_a_diagnosis_without_a_vehicle_says_what_the_log_could_fill_in(tmp_path,
 
 
 def test_auto_tells_no_thrust_that_the_log_itself_set(tmp_path, capsys, monkeypatch):
-    """The weight then told the thrust coefficient: a factor on it comes out as 1."""
+    """The thrust coefficient then follows from the weight: a factor on it comes out as 1."""
     record = flight(seconds=6.0, noise=0.0)
     path = log(tmp_path, log_of(record, motors=controls(record, 'thrust'),
                                 named=parameters(THR_MDL_FAC=1.0)))

@@ -118,7 +118,7 @@ def test_units():
 
 
 def test_missing_columns_are_named():
-    """The error for missing columns tells which are missing and which there are."""
+    """The error for missing columns says which are missing and which exist."""
     with pytest.raises(InputError) as caught:
         record(3, px=np.zeros(3)).stack('px', 'vx', 'vy')
     one_line(caught, 'vx, vy', 't, px')
@@ -153,7 +153,7 @@ def test_euler_from_quaternions_with_jumping_sign(scale):
 
 
 def test_euler_without_attitude():
-    """Without an attitude, or with one that is none, there are no angles."""
+    """Without a valid attitude there are no angles."""
     with pytest.raises(InputError) as caught:
         record(2, phi=[0, 0], theta=[0, 0], qw=[1, 1]).euler()
     one_line(caught, 'no attitude', 'qw, qx, qy, qz', 'phi, theta, psi')

@@ -279,7 +279,7 @@ def test_what_announces_no_run_is_refused(text, tmp_path):
 
 
 def test_topics_of_other_programs_are_left_alone(tmp_path):
-    """The names are common: those of another type, and notices for others, are none of ours."""
+    """The names are common: topics of another type and notices for others do not count."""
     altitude = FLIGHT_TOPICS['altitude'].type
     topics = [('/quad/altitude', altitude), ('/quad/pose', RUN_TYPE), ('/input', RUN_TYPE),
               ('/run', RUN_TYPE)]
@@ -311,7 +311,7 @@ def test_notices_of_runs_that_are_over_are_not_kept_nor_needed(tmp_path):
         recording.add_rows(rows(start, start + 500))
         recording.flush()
     assert len(recording._runs) == 1
-    # The clock begins anew: its notice comes before the last rows of the old time are written.
+    # The clock restarts: its notice comes before the last rows of the old time are written.
     recording.add_rows(rows(49_500, 49_510))    # the last of its run
     announce(recording, notice(0, 500))
     recording.flush()

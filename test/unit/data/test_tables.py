@@ -345,7 +345,7 @@ def test_axes_that_are_counted_are_known_unless_there_is_a_fourth(tmp_path):
 
 
 def test_text_in_a_parquet_file_is_named(tmp_path):
-    """As in a table of text: a cell that is no number, and a column that has none."""
+    """As in a table of text: a cell that is not a number, and a column without numbers."""
     pyarrow = pytest.importorskip('pyarrow', reason='pyarrow is not installed')
     from pyarrow import parquet
     path = tmp_path / 'f.parquet'

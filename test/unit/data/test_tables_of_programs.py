@@ -371,7 +371,7 @@ def test_frames_at_a_rate_that_is_not_said_are_asked_for_and_mapped(tmp_path):
 @pytest.mark.parametrize('order', ['wxyz', 'xyzw'])
 @pytest.mark.parametrize('turned', [0.0, 0.5, 2.0])
 def test_motion_capture_with_z_up_is_not_guessed_wrongly(tmp_path, order, turned):
-    """Letters tell the order of a quaternion; numbers do, or are asked for, never turned round."""
+    """Letters give the order of a quaternion; numbers do, or cause a question, never a swap."""
     yaw = from_euler(np.zeros(1), np.zeros(1), np.array([turned]))[0]
     q = product(np.broadcast_to(yaw, (len(T), 4)), FLIGHT.stack(*Q))
     place = FLIGHT.stack(*PLACE)

@@ -68,7 +68,7 @@ def agrees(read, record=SMALL, within=1e-9):
 
 
 def test_a_chain_is_composed_at_the_stamps_of_the_faster_link(tmp_path):
-    """The frame of the vehicle is told by its usual name, too."""
+    """The frame of the vehicle is recognised by its usual name, too."""
     path = write2(tmp_path / 'bag', in_order(odom(), base(), imu(SMALL)))
     for mapping in (None, mapping_from({'topics': TOPICS}, 'm')):
         read = load(path, mapping)

@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Streams that are stamped late: how late is told, and they are put together again."""
+"""Streams that are stamped late: the offset is found, and they are aligned again."""
 
 from dataclasses import replace
 
@@ -145,7 +145,7 @@ def test_a_stream_that_is_late_changes_no_verdict(sensors, stream, offset, truth
         flights = [late(flight, {stream: offset}) for flight in flights]
     data = diagnose(flights, VEHICLE).as_data()
     assert data['verdict'] == (list(truth) or ['none'])
-    # The slow passes tell it to less than a millisecond, and no better.
+    # The slow passes show it to less than a millisecond, and no better.
     assert np.ravel(data['nuisances'][f'{stream}_clock']['values']) == pytest.approx(
         offset, abs=0.0025)
     assert data['gap']['after']['velocity'] < 1.15 * data['gap']['noise']['velocity']

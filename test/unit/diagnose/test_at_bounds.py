@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""A parameter that ends at its bound is told, for it may do the work of something else."""
+"""A parameter that ends at its bound is reported, for it may stand in for something else."""
 
 from dataclasses import replace
 from types import SimpleNamespace
@@ -59,7 +59,7 @@ def test_an_effect_that_needs_values_no_vehicle_has_is_not_named():
 
 
 def test_a_form_at_its_bound_is_left_out_where_its_usual_one_cannot_be_told(monkeypatch):
-    """Where the weight told the level of thrust, thrust_scale has its offset alone."""
+    """Where the weight determines the level of thrust, thrust_scale has its offset alone."""
     offset = INDEX['thrust_scale.offset']
     curve = Candidate('thrust_scale', 'thrust_scale offset', (offset,), 'offset', usual=False)
     z = nominal(VEHICLE)

@@ -88,7 +88,7 @@ def test_it_is_told_beside_what_the_effects_close(found, explained):
 
 
 def test_the_ceiling_of_a_moment_is_told_by_the_rate():
-    """Flights without velocity, whose motors lag, and an effect that is no moment."""
+    """Flights without velocity, whose motors lag, and an effect without a moment."""
     lag = {'motor_lag': {'time_constant': 0.03}}
     seen = [replace(one, columns={name: values for name, values in one.columns.items()
                                   if name in ('wx', 'wy', 'wz', 'ax', 'ay', 'az')

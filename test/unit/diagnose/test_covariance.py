@@ -109,7 +109,7 @@ def test_deviations_are_the_standard_errors_that_are_told(flights):
 @pytest.mark.slow
 def test_constants_that_are_stated_are_as_wide_as_flights_leave_them(flights):
     # Mass, thrust, moments of inertia and torque in proportion are the same motion: what is stated
-    # of each tells the common factor; flights tell the ratios far better than the statements.
+    # of each gives the common factor; flights give the ratios far better than the statements.
     shares = {'mass': 0.02, 'thrust_coefficient': 0.05, 'torque_coefficient': 0.1,
               'inertia_x': 0.05, 'inertia_y': 0.05, 'inertia_z': 0.05}
     values = {name: quantities.value_of(BARE, name) for name in shares}

@@ -46,7 +46,7 @@ def flown(truth, noise=WHITE, seed=0):
 
 
 def as_if(record, told):
-    """Return a record whose commands are told as a function of what the rotors were given."""
+    """Return a record whose commands are a function of what the rotors were given."""
     columns = {f'cmd{j}': told(record.columns[f'cmd{j}']) for j in range(1, 5)}
     return replace(record, columns=record.columns | columns)
 
@@ -207,7 +207,7 @@ def test_each_flight_is_left_out_in_turn_and_the_one_that_differs_is_named(odd):
 
 
 def test_a_vehicle_that_is_lost_within_half_a_second_is_found():
-    """The model without effects turns over: no slope at it leads to what is there."""
+    """The model without effects turns over: no slope at it leads to the truth."""
     truth = {'com_offset': {'x': 0.006, 'y': -0.008, 'z': 0.004},
              'inertia_mismatch': {'factor_x': 1.6, 'factor_y': 1.5, 'factor_z': 1.4},
              'thrust_scale': {'factor': 0.9}}

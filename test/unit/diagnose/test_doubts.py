@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Between which causes flights cannot tell, by the evidence of sets."""
+"""Causes between which flights cannot decide, by the evidence of sets."""
 
 from types import SimpleNamespace
 
@@ -26,7 +26,7 @@ def selected(*sets, posterior):
 
 
 def test_only_what_stands_in_its_place_is_a_rival():
-    """The rate's bias is there or not with either of the two, and so is no rival."""
+    """The rate's bias is present or not with either of the two, and so is no rival."""
     sets = [((MASS,), 0.0), ((THRUST,), -0.4), ((MASS, BIAS), -0.1), ((THRUST, BIAS), -0.5),
             ((), -90.0)]
     unsure = selected(*sets, posterior={MASS: 0.6, THRUST: 0.4, BIAS: 0.5})

@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What flights cannot tell, and whether the manoeuvre that is proposed then tells it."""
+"""What flights leave open, and whether the proposed manoeuvre then settles it."""
 
 import io
 import json
@@ -25,10 +25,10 @@ from quad_ident_ros.report.diagnosis import show
 pytestmark = pytest.mark.slow
 VEHICLE = load_vehicle('hummingbird')
 WHITE = Sensors(white=MOCAP_IMU.white)
-# Weaker thrust gives weaker moments, too: of more than this a hover tells by them which it is.
+# Weaker thrust gives weaker moments, too: above this size they show in a hover which it is.
 PAYLOAD = {'mass_offset': {'mass': 0.012 * VEHICLE.mass}}
 WEAKER = {'thrust_scale': {'factor': 0.988}}
-# Half of it beside a tilt: of the whole, the flights of the test tell at seven to one what it is.
+# Half of it beside a tilt: the whole is settled by the flights of the test at seven to one.
 TILTED = {'attitude_misalignment': {'roll': 0.03, 'pitch': -0.02},
           'mass_offset': {'mass': 0.006 * VEHICLE.mass}}
 ALIKE = ['mass_offset', 'thrust_scale']
@@ -70,7 +70,7 @@ def flown_as(doubtful, trajectory):
 def test_a_hover_does_not_tell_a_payload_from_weaker_thrust(doubtful):
     found = doubtful[2]
     assert found.verdict == ('undetermined',) and found.undetermined == tuple(ALIKE)
-    # One of them is there, and no more than one is.
+    # Exactly one of them is present.
     assert 0.9 < sum(probabilities(found)[name] for name in ALIKE) < 1.05
     one = proposal(doubtful[2])
     assert one['effects'] == ALIKE
@@ -106,8 +106,8 @@ def test_a_sure_effect_is_named_beside_those_that_are_not():
     text = io.StringIO()
     show(found, text)
     assert text.getvalue().startswith(
-        'verdict: undetermined: the flights cannot tell between error in mass (mass_offset) and '
-        'error in thrust (thrust_scale); certain: tilt of the measured attitude '
+        'verdict: undetermined: the flights cannot distinguish between error in mass '
+        '(mass_offset) and error in thrust (thrust_scale); certain: tilt of the measured attitude '
         '(attitude_misalignment)\n')
     assert 'what to fly next' in text.getvalue()
     proposals = found.fly_next

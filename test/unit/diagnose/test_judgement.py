@@ -240,7 +240,7 @@ def test_without_a_named_effect_less_remains_unsaid():
 
 @pytest.mark.slow
 def test_what_a_flight_has_by_itself_stays_when_effects_are_taken_out_and_flights_left_out():
-    """Its thrust is no part of what the others tell, and not free where an effect is gone."""
+    """Its thrust is no part of what the others show, and not free where an effect is removed."""
     vehicle, noise = load_vehicle('hummingbird'), SENSORS['mocap_imu']
     records = [fly_closed_loop(vehicle, {'gyro_bias': {'x': 0.05}, 'motor_lag': {
         'time_constant': 0.03}, 'thrust_scale': {'factor': factor}}, 'lissajous', duration=10.0,

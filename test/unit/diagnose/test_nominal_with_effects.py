@@ -41,7 +41,7 @@ def flights():
 
 
 def without_speeds(records):
-    """Return records without measured rotor speeds: what motors do has to be told by motion."""
+    """Return records without measured rotor speeds: motors show only in the motion."""
     return [FlightRecord(record.t, {name: values for name, values in record.columns.items()
                                     if not name.startswith('rotor')}, record.info)
             for record in records]

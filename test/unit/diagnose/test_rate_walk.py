@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Moments that no logged command tells: how fast the variance of the rate grows by them."""
+"""Moments that no logged command explains: how fast the variance of the rate grows by them."""
 
 import numpy as np
 import pytest

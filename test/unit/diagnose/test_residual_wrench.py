@@ -45,7 +45,7 @@ def hover(felt):
 
 
 def pushed(record, frequency):
-    """Return a record whose thrust is told without a wave (Hz) that it had."""
+    """Return a record whose thrust is recorded without a wave (Hz) that it had."""
     factor = np.sqrt(1.0 + WAVE * np.sin(2.0 * np.pi * frequency * record.t))
     return replace(record, columns=record.columns | {
         f'cmd{j}': record.columns[f'cmd{j}'] * factor for j in range(1, 5)})

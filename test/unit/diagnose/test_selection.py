@@ -96,7 +96,7 @@ def test_a_form_at_its_bound_gives_way_to_the_best_of_all_sets_that_were_fitted(
     ('a', 0.005, 0.001, False),    # of one effect, the form with fewer parameters
     ('a', 0.02, 0.001, True),      # unless it leaves more than 1 % of the cost
     ('b', 0.005, 0.001, True),     # another effect is no form: the evidence decides
-    ('b', 0.005, 0.1, False)])     # if the flights tell that the form is another
+    ('b', 0.005, 0.1, False)])     # if the flights show another form
 def test_more_parameters_give_way_to_a_form_of_the_same_effect(
         monkeypatch, effect, saved, error, kept):
     vehicle = load_vehicle('hummingbird')

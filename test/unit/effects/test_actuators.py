@@ -47,7 +47,7 @@ def test_a_lag_much_shorter_than_the_step_is_the_mean_of_its_exponential():
     without = roll(BARE, {}, course, state())[-1]
     for lag in (1e-3, 1e-5, 1e-9):
         found = roll(BARE, {'motor_lag': {'time_constant': lag}}, course, state())[-1]
-        # The thrust lacks 0.21 of the weight for about a lag, less the square of the gap.
+        # The thrust is 0.21 of the weight too small for about a lag, less the square of the gap.
         assert without[5] - found[5] == pytest.approx(0.22 * GRAVITY * lag, rel=0.06)
 
 

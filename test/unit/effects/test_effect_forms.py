@@ -339,7 +339,7 @@ def test_thrust_near_the_ground_by_either_law(height):
     assert lifted({'gain': 0.4, 'length': 2.0}, height) == pytest.approx(
         1 + 0.4 * np.exp(-radii / 2.0), rel=1e-5)
     # Hayden: power falls by 0.9926 + 0.0379 (2R / z)^2 at a given thrust, thrust goes with the
-    # power to 2/3; his 0.7 % far from the ground are none here.
+    # power to 2/3; his 0.7 % far from the ground are 0 here.
     hayden = ((0.9926 + 0.0379 * (2 / radii) ** 2) / 0.9926) ** (2 / 3)
     assert lifted({'hayden': 1.0}, height) == pytest.approx(hayden, rel=1e-5)
 

@@ -77,7 +77,7 @@ def test_the_printed_equations_know_no_effects():
 
 def test_rotors_that_are_flown_take_the_place_of_omega_r():
     # Asked for a spin of the rotors, the simulation turns them: at hover with a yaw torque they
-    # have one of their own, whatever is said, and without being asked there is none.
+    # have one of their own, in any case, and without being asked they have none.
     rows = inputs(0.3, turns=(0.05, 0.03, 0.05))
     rows[:, 1:] = np.abs(rows[:, 1:])
     drag = {'rotor_drag': {'coefficient': 1e-9}}

@@ -21,7 +21,7 @@ def test_hover_in_ground_effect_takes_less_speed(height, strength):
     course = held(BARE, HOVER * np.sqrt(share))
     found = roll(BARE, {'ground_effect': {'strength': strength}}, course,
                  state(position=(0, 0, above)))
-    # It would fall by 5 m without: what is left is the integration of a balance.
+    # It would fall by 5 m without: what remains is the integration of a balance.
     assert np.abs(found - found[0]).max() < 1e-9
     far = roll(BARE, {'ground_effect': {'strength': strength}}, course,
                state(position=(0, 0, 1000.0)))

@@ -61,7 +61,7 @@ class Runs:
                           'hummingbird', '-o', str(self.out), '--json', '-', *arguments, **options)
 
     def close(self):
-        """Kill what is left."""
+        """Kill the processes that remain."""
         for process in self._all:
             process.kill()
             process.communicate()
@@ -87,7 +87,7 @@ def ended(process):
 
 
 def check_complete(folder, out):
-    """Check that each flight is there once, diagnosed, with its values."""
+    """Check that each flight occurs once, diagnosed, with its values."""
     contents = {hashlib.sha256(path.read_bytes()).hexdigest() for path in folder.rglob('*.csv')}
     assert len(contents) == FLIGHTS
     for table in ('flights', 'covariances'):

@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What the data set of a fleet tells, in values, in words and on the page."""
+"""What the data set of a fleet shows, in values, in words and on the page."""
 
 from datetime import timedelta
 import io
@@ -210,7 +210,7 @@ def test_what_cannot_be_seen_is_not_denied(tmp_path, vehicles, flights, said):
 
 @pytest.mark.slow
 def test_whole_diagnoses_are_left_on_the_disk(tmp_path):
-    """Those of a fleet take gigabytes, and tell nothing here that the other columns do not."""
+    """Those of a fleet take gigabytes, and add nothing here to the other columns."""
     size, count = 10 ** 6, 20
     for number in range(count):
         write_rows(tmp_path, 'groups', f'{number}', [{

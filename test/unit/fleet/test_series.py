@@ -32,7 +32,7 @@ def tables(values, stds, covariates, status='diagnosed', days=1.0):
 
 
 def test_values_are_in_the_order_of_time_with_their_covariates():
-    """Covariates are centred and in standard deviations; an outcome of the flight is none."""
+    """Covariates are centred and in standard deviations; an outcome of the flight is not one."""
     covariates = [{'temperature_c': 10.0 + number, 'battery_v_end': float(number)}
                   for number in range(8)]
     one, = series_of(*tables(np.arange(8.0), np.ones(8), covariates))

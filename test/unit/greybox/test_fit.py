@@ -434,7 +434,7 @@ def test_effects_that_were_freed_are_in_the_vehicle_written(problem):
     found = fit([record], VEHICLE, ['rotor_drag'])
     vehicle = fitted_vehicle(found)
     assert vehicle.effects['rotor_drag']['coefficient'] == found.parameters[0].value
-    # From there on nothing is left to find, and what was there is kept; what the file knows of a
+    # From there on nothing is left to find, and the result is kept; what the file knows of a
     # constant goes with its value.
     vehicle = dataclasses.replace(vehicle, uncertainty={'mass': 0.01, 'thrust_coefficient': 1e-6})
     again = fitted_vehicle(fit([record], vehicle, ['thrust_coefficient']))

@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Measurement noise, told from what sensors say of one another."""
+"""Measurement noise, from the differences between sensors."""
 
 import numpy as np
 import pytest
@@ -46,7 +46,7 @@ def noise(random, memory):
 
 
 def told(states, error, z=None):
-    """Return the noise that is told for recorded states with an error, (4,) by group."""
+    """Return the noise found for recorded states with an error, (4,) by group."""
     count = len(TIMES)
     course = Course(TIMES, np.ones((count, 4)), np.zeros(count))
     flight = Flight('a', course, moved(states, error), np.ones((count, 12), bool),

@@ -210,7 +210,7 @@ def test_biases_that_differ_from_flight_to_flight_are_no_effect(dragged):
 
 
 def test_how_far_biases_differ_is_part_of_the_uncertainty_of_the_one_they_share(dragged):
-    """Where flights do not tell which of two spreads is theirs the error lies between both."""
+    """Where flights do not show which of two spreads is theirs, the error lies between both."""
     shared, own = np.array([0.05, -0.03, 0.04]), np.array([0.0038, 0.0, -0.0038])
     flights = []
     for k, record in enumerate(dragged):

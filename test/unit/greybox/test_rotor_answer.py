@@ -58,7 +58,7 @@ def test_a_map_that_is_off_and_a_sag_of_speed_are_told_beside():
 
 
 def test_a_gap_between_parts_of_a_recording_takes_no_part():
-    """Parts of 8 and 10 s that lie 52 s apart: the second alone is what is told of both."""
+    """Parts of 8 and 10 s that lie 52 s apart: the second alone has what is reported of both."""
     record = measured(0.0, 0.03, per_volt=0.04)
     first, second = record.t - record.t[0] < 8.0, record.t - record.t[0] >= 10.0
     t = np.concatenate([record.t[first], record.t[second] + 50.0])

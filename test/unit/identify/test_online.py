@@ -59,7 +59,7 @@ def test_after_the_change_the_parameters_are_those_of_the_vehicle_as_it_is(seed)
 
 @pytest.mark.parametrize('seed', range(5))
 def test_a_payload_dropped_soon_after_is_found_within_2_s_too(seed):
-    """What is usual was learnt before the first change: it need not be learnt anew."""
+    """What is usual was learnt before the first change: it need not be learnt again."""
     dropped = PICKED_UP + 3.0
     found = [end for end, result in tracked(PAYLOAD, seed=seed, dropped=dropped)
              if result.changes]

@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Tests of residuals: that they find what is there, and little else."""
+"""Tests of residuals: that they find what is present, and little else."""
 
 from dataclasses import replace
 import tracemalloc
@@ -63,7 +63,7 @@ def test_a_noise_model_makes_its_noise_white():
     there[100] = False
     task = replace(SIGNAL, y=lfilter([1.0], [1.0, *noise], white(1)), measured=there)
     found = whitened(task, noise)
-    # The two first samples lack their past, and so do those after the one that is missing.
+    # The first two samples have no past, and so do those after the one that is missing.
     assert list(np.flatnonzero(~found.measured)) == [0, 1, 100, 101, 102]
     np.testing.assert_allclose(found.y, white(1), atol=1e-12)
     np.testing.assert_allclose(found.u, lfilter([1.0, *noise], [1.0], PRBS))

@@ -117,7 +117,7 @@ def test_a_perfect_fit_has_errors_of_rounding_only():
 @pytest.mark.parametrize('share', [0.98, 1.01, 1.05])
 def test_a_fit_beside_the_optimum_says_how_far(share):
     # Without noise all that is wrong with a fit is that its search stopped short. One step of
-    # Gauss and Newton tells how far, and the misfit counts as noise beside it: 1 to 1.5 times.
+    # Gauss and Newton shows how far, and the misfit counts as noise beside it: 1 to 1.5 times.
     truth = SYSTEMS['real']
     signal = measured(truth, 0.0, 0)
     fitted = Objective(signal).fit(share * truth.c1 / 2, (truth.a - truth.b) / 2)
@@ -167,7 +167,7 @@ def told(truth, u=STEP, noise=0.01):
 
 def test_what_a_record_does_not_tell_is_named():
     assert told(SYSTEMS['real'], PRBS).unidentifiable == ()
-    # Poles hundreds of times slower than the record: an integrator to it, and that is told.
+    # Poles hundreds of times slower than the record: an integrator to it, and that is reported.
     slow = told(SecondOrder.from_poles(1.5, 0.02, 0.01))
     assert {'a', 'b'} & set(slow.unidentifiable) and 'K' not in slow.unidentifiable
     # Noise as large as the response.

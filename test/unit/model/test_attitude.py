@@ -64,7 +64,7 @@ def test_the_poles_of_the_angles_are_no_error():
 @pytest.mark.parametrize('speed', [1.0, -1.0, 6.0, -29.0])
 def test_unwrapping_follows_many_turns_about_one_axis(axis, speed):
     # Also over the top in pitch, where the folded angle turns back at 90 degrees; 0.29 rad a
-    # sample is far below the half turn at which no one could tell.
+    # sample is far below the half turn at which the sign is open.
     angles = np.zeros((1000, 3))
     angles[:, axis] = speed * 0.01 * np.arange(1000)
     folded = euler_from_quaternion(quaternion_from_euler(angles))

@@ -87,7 +87,7 @@ def test_moments_of_the_inputs_are_right(euler, euler_rate, moments):
 @given(triple_angle, triple_rate)
 def test_body_gyroscopics_are_right(euler, euler_rate):
     # Without friction and rotors (13) and (14) are the derived ones, and (15) is but for the
-    # friction that lacks its coefficient.
+    # friction without its coefficient.
     found = difference(euler, euler_rate, vehicle=FRICTIONLESS)
     assert close(found[:2], 0)
     (roll, pitch, _), (roll_rate, pitch_rate, yaw_rate) = euler, euler_rate

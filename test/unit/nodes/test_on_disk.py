@@ -14,7 +14,7 @@ CLOCK = SimpleNamespace(ros_time_is_active=False)
 
 
 def test_what_holds_for_the_whole_flight_waits_for_the_recording(tmp_path):
-    """Transforms that do not change come as soon as their topic is there, before the others."""
+    """Transforms that do not change come as soon as their topic exists, before the others."""
     disk = OnDisk(str(tmp_path), '', CLOCK, logging.getLogger('test'))
     types = store()
     raw = bytes(types.serialize_cdr(Make(types)(TF, transforms=[{'header': header(START)}]), TF))

@@ -49,7 +49,7 @@ def test_exact_solutions_solve_their_equations():
     climb = solve_ivp(lambda t, x: [x[1], (moment - drag * x[1]) / inertia],
                       (0, 3), [0, 0], rtol=1e-10, atol=1e-12).y[0, -1]
     assert reference.climbed(moment, inertia, drag, 3.0) == pytest.approx(climb, rel=1e-8)
-    # Shortly before the blow-up the rate is the reciprocal of what is left of the time.
+    # Shortly before the blow-up the rate is the reciprocal of the time that is left.
     end = reference.blow_up(moment, inertia, drag)
     rate = solve_ivp(lambda t, x: [(moment + drag * x[0] ** 2) / inertia], (0, 0.999 * end), [0],
                      rtol=1e-10).y[0, -1]

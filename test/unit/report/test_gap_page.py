@@ -66,9 +66,9 @@ def terminal(found):
 
 def test_the_verdict_comes_first_then_where_which_and_how_far(page, found):
     text = page()
-    places = [text.index(part) for part in ('<strong>Verdict: </strong>', '>rotor_drag</span>',
-                                            '<h2>Where</h2>', '<h2>Which</h2>',
-                                            '<h2>How far</h2>', '<h2>From what</h2>')]
+    places = [text.index(part) for part in (
+        '<strong>Verdict: </strong>', '>drag of the rotors (rotor_drag)</span>', '<h2>Where</h2>',
+        '<h2>Which effects</h2>', '<h2>How far</h2>', '<h2>Provenance</h2>')]
     assert places == sorted(places)
     assert text.count('<svg role="img"') == 5 and '<img' not in text
     assert not re.search(r'(src|href)="(?!#|data:)', text)     # one file holds it all
@@ -265,12 +265,13 @@ def test_what_cannot_be_told_apart_asks_for_a_flight(page, terminal):
     changes = {'verdict': ('undetermined',), 'undetermined': ('wind', 'body_drag'),
                'sure': ('rotor_drag',), 'fly_next': [proposal('circle'), proposal('chirp_x')]}
     text = page(**changes)
-    said = ('undetermined: the flights cannot tell between steady wind (wind) and drag of the '
-            'body (body_drag); certain: drag of the rotors (rotor_drag)')
+    said = ('undetermined: the flights cannot distinguish between steady wind (wind) and drag of '
+            'the body (body_drag); certain: drag of the rotors (rotor_drag)')
     assert f'U{said[1:]}.' in text
     first = text.index('<th scope="row" class="text">circle, 20 s</th>')
     assert first < text.index('chirp_x, 20 s')
-    assert '<td class="text">tell apart wind, body_drag</td><td>0.5</td><td>12</td>' in text
+    assert ('<td class="text">tell apart steady wind (wind), drag of the body (body_drag)</td>'
+            '<td>0.5</td><td>12</td>') in text
     assert terminal(**changes).startswith(f'verdict: {said}\n')
     assert '\nNext: fly what ' in terminal(**changes)
 

@@ -26,5 +26,5 @@ def test_units_of_a_column_are_those_of_its_largest_value():
 
 
 def test_a_value_without_an_error_is_short():
-    """Three digits say what is known of it."""
+    """Three digits are as many as are known."""
     assert with_error(0.123456, 0.0) == '0.123'

@@ -375,7 +375,8 @@ def test_the_command_says_what_it_does(tmp_path, capsys):
     assert main(call) == 0
     said = capsys.readouterr().out
     assert '2.16' in said and '0.01' in said and 'the file has 5 bodies' in said
-    assert 'not carried: gyro_bias (constant): ' in said and 'carried: motor_lag' in said
+    assert 'not carried: bias of the gyroscope (gyro_bias), form constant: ' in said
+    assert 'carried: lag of the motors (motor_lag)' in said
     assert main([*call, '--json', '-']) == 0
     data = json.loads(capsys.readouterr().out)
     assert data['changes'][0]['std'] == pytest.approx(0.01)

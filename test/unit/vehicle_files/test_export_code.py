@@ -161,7 +161,8 @@ def test_the_command_writes_it_beside_the_model(tmp_path, capsys):
     text = (tmp_path / 'like_real.py').read_text()
     assert 'quad_ident' not in text and 'What like_real.xml has no number for' in text
     said = capsys.readouterr().out
-    assert 'carried: rotor_drag (by_speed): by the code beside the file' in said
+    assert ('carried: drag of the rotors (rotor_drag), form by_speed: by the code beside the '
+            'file') in said
     assert 'like_real.py: code for what the file has no number for' in said
     # It is not written over what somebody else wrote.
     (tmp_path / 'mine.py').write_text('print(1)')

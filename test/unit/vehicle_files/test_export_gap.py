@@ -47,7 +47,7 @@ def test_a_file_with_all_effects_closes_all_of_the_gap(flown, capsys):
 def test_what_a_format_does_not_have_is_what_its_file_leaves(flown):
     shares = {to: exported(flown, to, out)['gap']['shares']['file']
               for to, out in (('gazebo', 'a.sdf'), ('mujoco', 'a.xml'))}
-    # Gazebo lacks the drag of the body, MuJoCo that of the rotors too.
+    # Gazebo has no drag of the body, MuJoCo none of the rotors either.
     assert 0.3 < shares['mujoco'] < shares['gazebo'] < 0.999
 
 

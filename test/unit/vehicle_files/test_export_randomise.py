@@ -98,7 +98,7 @@ def test_constants_apart_from_the_covariance_are_drawn_by_their_own_deviation():
     assert draws.names[3:] == ('rotors[0].position_x', 'rotors[0].position_y', 'speed_max',
                                'inertia_x')
     assert draws.values[:, 3:].std(axis=0) == pytest.approx([0.001, 0.001, 10.0, 1e-4], rel=0.2)
-    # Of the mass the flights tell more.
+    # The flights say more about the mass.
     assert draws.values[:, 1].std() == pytest.approx(0.02 * BARE.mass, rel=0.2)
 
 
@@ -164,7 +164,8 @@ def test_the_command_writes_files_of_a_simulator(file, tmp_path, capsys):
     text = base.read_text()
     assert main(['export', str(file), '--to', 'gazebo', '--base', str(base), '--randomise', '3',
                  '-o', str(tmp_path / 'models')]) == 0
-    assert 'carried: rotor_drag (by_speed): as it is' in capsys.readouterr().out
+    said = capsys.readouterr().out
+    assert 'carried: drag of the rotors (rotor_drag), form by_speed: as it is' in said
     assert base.read_text() == text
     for made in draw(known(), 3).vehicles:
         read = load_any_vehicle(tmp_path / 'models' / f'{made.name}.sdf')
@@ -211,7 +212,7 @@ def test_a_vehicle_file_without_covariance_is_refused(tmp_path, capsys):
 @pytest.mark.slow
 def test_the_true_vehicle_lies_among_the_draws_as_often_as_they_say():
     # Realities with other drags and lags. In every second one mass, thrust and inertia are off by
-    # one factor, which no flight tells: as far as the file states of each that it may be. Their
+    # one factor, which no flight shows: it is as uncertain as the file states for each. Their
     # ratios are those of the file, so that a lag is better known there than the file lets it be.
     rng = np.random.default_rng(7)
     share, keys = 0.05, ('mass', 'thrust_coefficient', 'torque_coefficient')

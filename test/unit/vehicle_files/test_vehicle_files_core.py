@@ -257,7 +257,8 @@ def test_the_command_shows_and_writes_what_the_file_says(tmp_path, capsys):
     path, out = written(tmp_path, PARAMETERS), tmp_path / 'v.yaml'
     assert main(['vehicle', str(path), '-o', str(out)]) == 0
     shown = capsys.readouterr().out
-    assert 'line 13' in shown and 'effect: motor_lag time_constant = 0.02' in shown
+    assert 'line 13' in shown
+    assert 'effect: lag of the motors (motor_lag) time_constant = 0.02' in shown
     assert load_vehicle(out) == load_any_vehicle(path)
     assert main(['vehicle', str(path), '--json', '-']) == 0
     data = json.loads(capsys.readouterr().out)
@@ -272,7 +273,7 @@ def test_the_command_says_what_is_wrong_in_one_line(tmp_path, capsys):
     for words, said in (([str(path), '--set', 'mass'], 'expected KEY=VALUE'),
                         (['iris', '--set', 'mass=1'], 'change a vehicle file itself'),
                         ([str(path), '-o', str(tmp_path / 'v.xml')], 'to a .yaml file'),
-                        ([str(written(tmp_path, '<html/>', 'a.xml'))], 'of no kind of vehicle'),
+                        ([str(written(tmp_path, '<html/>', 'a.xml'))], 'this kind of vehicle'),
                         ([str(tmp_path / 'none.xml')], 'is')):
         assert main(['vehicle', *words]) == 2
         error = capsys.readouterr().err

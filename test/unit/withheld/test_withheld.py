@@ -319,7 +319,7 @@ def test_coverage_leaves_out_what_is_scaled_by_another_name_of_the_ratio():
     told = scores.coverage([rescaled_pair(0.5, 'mass_offset', *others)])
     assert told.pop('all') == {'rate': 1.0, 'count': 4}
     assert set(told) == {'mass_offset', *others}
-    # Both are named, for nothing tells them apart: what is there by which share is not told.
+    # Both are named, because nothing separates them, and the share of each is not stated.
     both = rescaled_pair(0.5, 'mass_offset', 'thrust_scale', *others)
     assert set(scores.coverage([both])) == {'all', 'motor_lag'}
 

@@ -12,7 +12,7 @@ from withheld.__main__ import main
 
 
 def drawn(weights, constant, count=20000, seed=1):
-    """Return Rows whose effects are there as often as the weights say."""
+    """Return Rows whose effects are present as often as the weights say."""
     rng = np.random.default_rng(seed)
     x = rng.normal(size=(count, len(weights)))
     z = constant + x @ np.array(list(weights.values()))

@@ -415,8 +415,8 @@ def test_a_wrong_file_says_by_how_much():
 
 def test_a_log_has_commands_to_half_a_step_of_its_bits():
     commands = np.random.default_rng(1).uniform(0.0, 1000.0, (50, 4))
-    assert Logging().told(commands, 1000.0) is commands
-    off = Logging(bits=8).told(commands, 1000.0) - commands
+    assert Logging().logged(commands, 1000.0) is commands
+    off = Logging(bits=8).logged(commands, 1000.0) - commands
     assert 0.4 * 1000 / 255 < np.abs(off).max() <= 0.5 * 1000 / 255 + 1e-9
 
 

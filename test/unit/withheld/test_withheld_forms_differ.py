@@ -37,7 +37,7 @@ def made(effect, form, size=SIZE):
 def test_a_force_or_moment_is_no_form_of_the_library(effect, form):
     part = made(effect, form)
     if isinstance(part, Battery):
-        assert not part.recorded    # a recorded voltage would tell the library
+        assert not part.recorded    # a recorded voltage would show it to the library
         target = of_battery(part, PARAMS, PLACES, HOVER, FLIGHT)
     else:
         target = of_part(part, PARAMS, PLACES, FLIGHT)

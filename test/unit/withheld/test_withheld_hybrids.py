@@ -52,7 +52,7 @@ def test_commands_act_later_than_they_are_told(flown):
     change = hybrids.later(3)
     changed = change.flight(flown, VEHICLE)
     assert change.effects == {'actuation_delay': {'delay': pytest.approx(0.03)}}
-    # What acts at row k was told at row k - 3.
+    # What acts at row k was commanded at row k - 3.
     assert np.array_equal(changed['cmd2'][:-3], flown['cmd2'][3:-3])
     assert np.array_equal(changed['vx'], flown['vx'][:-3])
     assert len({len(values) for values in changed.values()}) == 1
