@@ -26,7 +26,7 @@ def verdict_line(found: Diagnosis) -> str:
         beside = f', with {names} estimated for each flight,' if names else ''
         return (f'none: the nominal vehicle{beside} explains the flights to within noise and '
                 'tolerance, so no effect is named')
-    doubts = (f'the flights cannot tell between {_listed(found.undetermined)}'
+    doubts = (f'the flights cannot distinguish between {_listed(found.undetermined)}'
               if found.undetermined else '')
     if 'undetermined' in found.verdict:
         certain = f'; certain: {_listed(found.sure)}' if found.sure else ''
