@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What the flights could not show or tell apart, and what would."""
+"""What the flights could not show or separate, and what would."""
 
 from collections.abc import Sequence
 
@@ -87,13 +87,13 @@ def by_input_errors(judged: Judgement) -> tuple[dict, ...]:
 
 def one_finding(verdict: Verdict) -> tuple[dict, ...]:
     """
-    Return what each named effect may be as well, and what measurement would tell, as data.
+    Return what each named effect may be as well, and what measurement would decide, as data.
 
-    effects: names that the flights do not tell apart. Thrust and mass are told from one another by
+    effects: names that the flights do not separate. Thrust and mass are separated by
     the moments, so not where the inertia is found to differ, too.
     """
     rows, named = [], [name for name in verdict.names if name in EFFECTS]
-    # The moments tell thrust from mass, but not where the inertia is off, too.
+    # The moments separate thrust from mass, but not where the inertia is off, too.
     loose = any(EFFECTS[name].scale_group and EFFECTS[name].ratio is None for name in named)
     for effect in (EFFECTS[name] for name in named if EFFECTS[name].same_motion):
         ratio = [name for name, other in EFFECTS.items()

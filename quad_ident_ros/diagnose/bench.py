@@ -114,7 +114,7 @@ class Bench:
         """
         Return a Model with some of its effects taken out and everything else refitted.
 
-        slopes: those at the model, by which fits begin that are only for comparison.
+        slopes: those at the model, with which fits that only serve for comparison begin.
 
         What is alike in all flights must not hide in nuisances: those that do what an effect does
         that is taken out may only differ between flights, as they do beside it.
@@ -314,7 +314,7 @@ def standard_errors_from_none(off: np.ndarray, covariance: np.ndarray) -> float:
     along = vectors.T @ (off / errors)
     square = float(np.sum(along ** 2 / np.maximum(values, 1e-12)))
     chance = float(chdtrc(len(off), square))
-    # Of what is less probable than a float can tell, the root is as good.
+    # Below the smallest probability of a float the root is as good.
     return float(-ndtri(0.5 * chance)) if chance > 1e-300 else float(np.sqrt(square))
 
 

@@ -14,7 +14,7 @@ def interleaved(track: Track, length: float) -> tuple[Track, Track]:
     Return a Track with the blocks of a flight to learn from, and one with those held out.
 
     Of each two blocks that follow one another one is held out, whichever keeps the motion of both
-    parts alike: of two halves one may only hover. The rows of the other part are there, unseen.
+    parts alike: of two halves one may only hover. The rows of the other part exist, unseen.
     Args: length s of a block, about.
     """
     # Time flown: between the parts of a flight there is nothing to hold out.

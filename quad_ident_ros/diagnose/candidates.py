@@ -89,7 +89,7 @@ def _known_first(effect: Effect, vehicle: Vehicle) -> list[Form]:
 
 
 def not_told(flights: Sequence[Flight]) -> tuple[str, ...]:
-    """Return the names of the effects that no form of can be told from flights like these."""
+    """Return the names of the effects of which such flights show no form."""
     return tuple(name for name, effect in EFFECTS.items()
                  if inertial(flights) and all(form.needs_reference for form in effect.forms)
                  or _without_height(flights) and all(form.needs_height for form in effect.forms))

@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Between which causes flights cannot tell."""
+"""Causes between which flights cannot decide."""
 
 from collections.abc import Callable, Sequence
 
@@ -17,7 +17,7 @@ def doubts_of(selection: Selection, named: Sequence[Candidate], rules: Rules,
               replaces: Callable[[Candidate, Candidate, Fitted], bool]
               ) -> dict[Candidate, Fitted]:
     """
-    Return the causes between which the flights of a Selection cannot tell; none where they can.
+    Return the causes between which the flights of a Selection cannot decide, or none.
 
     Those of the named ones whose effects are not sure, and those that may be there in their place,
     each with the Fitted set that speaks for it: {cause: Fitted}. replaces: whether a rival, with
@@ -40,12 +40,12 @@ def doubts_of(selection: Selection, named: Sequence[Candidate], rules: Rules,
 
 def rivals_of(selection: Selection, cause: Candidate, others: Sequence[Candidate], rules: Rules
               ) -> dict[Candidate, Fitted]:
-    """Return {rival: Fitted} of other causes that are there rather where a cause is not."""
+    """Return {rival: Fitted} of other causes that are likelier without a cause."""
     top = max(one.evidence for one in selection.fitted)
     weights = [np.exp(max(one.evidence - top, -700.0)) for one in selection.fitted]
 
     def odds(other: Candidate, there: bool) -> float:
-        """Return the odds of another cause, given whether the cause is there."""
+        """Return the odds of another cause, given whether the cause is present."""
         given = [(weight, other in one.causes) for weight, one in
                  zip(weights, selection.fitted, strict=True) if (cause in one.causes) == there]
         having, lacking = (sum(weight for weight, has in given if has == which)

@@ -134,7 +134,7 @@ def out_of_bounds(cause: Candidate, fit: Estimate, vehicle: Vehicle, rules: Rule
     """
     Return whether a further form of an effect has a parameter that wants to leave its bounds.
 
-    It does the work of something else then. The bound of no effect is none in this sense.
+    It then stands in for something else. The bound of no effect does not count.
     """
     return not cause.usual and bool(columns_at_bounds(cause, fit.z, vehicle, rules))
 
@@ -158,7 +158,7 @@ def within_bounds(chosen: tuple, fit: Estimate, usual: dict, flights: Sequence[F
     """
     Return a set and its Estimate with the usual form for each that wants to leave its bounds.
 
-    An effect whose usual form these flights cannot tell is left out instead.
+    An effect whose usual form these flights cannot show is left out instead.
     Args: usual {effect: candidate of its usual form}; the others as of refitted.
     """
     while True:

@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Flights linearised around a fit, by which all sets of effects near it are judged alike."""
+"""Flights linearised around a fit, to judge all sets of effects near it in the same way."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass

@@ -25,7 +25,7 @@ EVERY = 0.1                     # s from one start to the next
 AT_ONCE = 2048                  # predictions that memory holds along their whole way
 NOISE_STARTS = 60               # starts at which the noise is carried along
 DRAWS = 400                     # of the bootstrap
-LEAST = 0.01                    # of the noise's gap: what is less above it is none
+LEAST = 0.01                    # of the noise's gap: less than that above it counts as 0
 
 
 def horizon_of(tracks: Sequence[Track], rules: Rules) -> float:
@@ -84,7 +84,7 @@ def gap(all_ends: Sequence[Ends]) -> dict[str, float]:
 
 def surely(one: Ends, rules: Rules) -> dict[str, float]:
     """
-    Return {group: gap} of a flight that is there but for as many standard errors as show a thing.
+    Return {group: gap} of a flight, less as many standard errors as show an effect.
 
     Standard errors of the mean square are those of blocks in which errors may hang together
     (Künsch, Annals of Statistics 17, 1989).

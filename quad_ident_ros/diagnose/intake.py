@@ -92,7 +92,7 @@ def take_in(records: Sequence[FlightRecord], vehicle: Vehicle, hold_out: FlightR
     findings: list[dict] = []
     vehicle = _beside_records(vehicle, every, findings)
     if not all(record.info.get(BY_MOTORS) for record in every):
-        vehicle = replace(vehicle, motors=None)     # its uncertainty is none of these commands'
+        vehicle = replace(vehicle, motors=None)     # its uncertainty is not that of these commands
     wrong = refuted([*records, *([] if hold_out is None else [hold_out])], vehicle)
     findings += [*vehicles(every), *days(every)]
     records = [_fit_for_use(record, vehicle, rules, wrong, findings) for record in records]
@@ -120,7 +120,7 @@ def take_in(records: Sequence[FlightRecord], vehicle: Vehicle, hold_out: FlightR
 
 
 def lacking(record: FlightRecord, vehicle: Vehicle) -> tuple[Finding, ...]:
-    """Return the Finding that says which columns a flight lacks for a diagnosis, if any."""
+    """Return the Finding that says which columns a flight would need for a diagnosis, if any."""
     try:
         record = with_commands(with_motion(record), vehicle)
         course_of(record, vehicle)
@@ -140,7 +140,7 @@ def _beside_records(vehicle: Vehicle, records: Sequence[FlightRecord], findings:
 
     Measured rotor speeds have gone through the motors; where accelerometer and gyro alone were
     recorded the force of the air is among what they measured, and nothing is known of the place;
-    ground is felt only at a height that is known. The findings say what is left out. Raises
+    ground acts only at a known height. The findings say what is left out. Raises
     InputError where motors act on the commands of some records alone.
     """
     driven = [is_driven_by_speeds(record) for record in records]

@@ -22,7 +22,7 @@ class Judgement:
     """
     What was judged of a Selection.
 
-    model: all effects that are there; material: those of them that matter; stand_ins: those that
+    model: all effects that are present; material: those of them that matter; stand_ins: those that
     would, but have most of their parameters at bounds or untold; untold {column: (least, most)}:
     what errors of the commands may have made; weights {candidate: Weight} and
     probability {effect: of being present}; without {candidate: Model without it};
@@ -49,7 +49,7 @@ def judge(bench: Bench) -> Judgement:
     Return the Judgement of the best set of a Selection on the flights of a Bench.
 
     Effects without which nothing that matters is lost are taken out one group after the other;
-    those of them that are there all the same stay in the model.
+    those that are present all the same stay in the model.
     """
     best, rules = bench.selection.best, bench.rules
     full = model = bench.model(best.chosen, best.estimate)
@@ -77,7 +77,7 @@ def judge(bench: Bench) -> Judgement:
                                      bench.distance(model, removed), rules))]
         if not idle:
             break
-        # Where either of two does and their gaps hardly differ, the likelihood tells them apart.
+        # Where either of two does and their gaps hardly differ, the likelihood decides.
         first = max(idle, key=lambda removed: (len(removed), -smaller[removed].estimate.cost))
         model = smaller[first]
     # Where forms gave way to the usual ones, these stand for their effects.
@@ -117,7 +117,7 @@ def _weight(model: Model, without: Model, before: dict, noise: dict, distance: f
 
 
 def _explained(after: float, without: float, noise: float, least: float) -> float:
-    """Return the share that an effect explains of what is there without it, by gaps of a group."""
+    """Return the share of the gap without an effect that it explains, by gaps of a group."""
     there = beyond(without, noise)
     return float(np.clip((there - beyond(after, noise)) / max(there, least), 0.0, 1.0))
 
@@ -188,7 +188,7 @@ def closes_half(after: dict, before: dict, noise: dict, rules: Rules) -> bool:
 
 def clear(weights: list[Weight], distance: float, rules: Rules) -> bool:
     """
-    Return whether effects, of which one at least is probable, together clearly differ from none.
+    Return whether effects, at least one of them probable, together clearly differ from none.
 
     How much of the gap the errors of form of others may be is then no matter: the standard errors
     have these in them. Effects that cancel one another are together near none.

@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""The nuisances of each flight, told, which are no effects."""
+"""The nuisances of each flight, which are reported apart from effects."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -34,7 +34,7 @@ def nuisances_of(track: Track, vehicle: Vehicle, z: np.ndarray, kinds: Sequence[
     """
     Return the nuisances (Z,) of a Track that was not learnt from, beside a vector z.
 
-    fixed (Z,): what is known of it beforehand; slow as of estimate.
+    fixed (Z,): its prior; slow as of estimate.
     """
     fixed = np.zeros(len(z)) if fixed is None else fixed
     if not kinds:

@@ -41,7 +41,7 @@ Priors = dict[str, EffectPrior]
 
 
 def load_priors(path: str | Path) -> Priors:
-    """Return the priors in a file; raises InputError where it is none."""
+    """Return the priors in a file; raises InputError where it has none."""
     data = resources.read_yaml(path)
     schema.check_keys(str(path), data, ('schema', 'vehicles', 'effects'))
     if data.get('schema') != SCHEMA:

@@ -16,7 +16,7 @@ class Weight:
     What an effect weighs, by what is lost when it is taken out and everything else is refitted.
 
     contribution: the share of the closable gap that is lost; stability: how steadily it helps,
-    see judgement.stability; explained: the share of what it is there for that its form explains;
+    see judgement.stability; explained: the share of its contribution that its form explains;
     gap {group: ...}: without it; distance: by how many standard errors its parameters together
     differ from no effect, see bench.standard_errors_from_none; companions: how many other
     effects clearly contribute beside it.
@@ -34,7 +34,7 @@ def with_companions(weights: dict, rules: Rules) -> dict:
     """
     Return {candidate: Weight} of the effects of one model with their companions.
 
-    How likely an effect is before looking at it shows in how many others are there (Scott and
+    How likely an effect is before looking at it shows in the number of others present (Scott and
     Berger, Annals of Statistics 38, 2010).
     """
     contribution, steadiness = rules.companion
@@ -61,7 +61,7 @@ def probabilities(posterior: dict, weights: dict, rules: Rules) -> dict[str, flo
 def told_apart(probability: dict[str, float], posterior: dict, doubtful: Iterable
                ) -> dict[str, float]:
     """
-    Return {effect: probability of being present} for effects that flights cannot tell apart.
+    Return {effect: probability of being present} for effects that flights cannot separate.
 
     What an effect contributes says that it, or its rival, is present; which of them, the posterior
     says. Args: posterior {candidate: ...}; doubtful: candidates of the best set that have a rival.
@@ -83,7 +83,7 @@ def presence(weight: Weight, rules: Rules, shift: float = 0.0) -> float:
     """
     Return the probability that an effect of the best set is present.
 
-    shift: what is known of the effect before looking, see Rules.shift.
+    shift: prior knowledge of the effect, see Rules.shift.
 
     The root of its contribution is as its size: a gap grows with the square of what is small
     beside the rest of it. Of standard errors the logarithm counts: ten more tell little where

@@ -23,7 +23,7 @@ def promising(ranked: list, tried: Collection[tuple]) -> list[tuple[tuple, np.nd
     Return [(set, distances)] of the untried sets that are worth refitting.
 
     Those with the most evidence, and those with another candidate in place of one of the best
-    set's: slopes at a point tell little of which of two is there that do nearly the same.
+    set's: slopes at a point hardly show which of two similar ones is present.
     """
     most, top, _ = ranked[0]
     fresh = [(chosen, away) for _, chosen, away in ranked[:3 * REFITS] if chosen not in tried]

@@ -38,7 +38,7 @@ FOLDS = 4               # parts of which each is predicted from the others
 MOST = 4000             # windows of all flights: 20 MB of waves
 SEED = 0
 MEASURED = {'air_x': AIR[1], 'air_y': AIR[2], 'air_z': AIR[3], 'height': 'height'}
-"""Inputs that not all flights tell, by the feature of a ResidualWrench that says whether."""
+"""Inputs that not all flights have, by the feature of a ResidualWrench that says whether."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +46,7 @@ class Windows:
     """
     What there is to learn from: windows of flights.
 
-    x (N, 22): mean inputs, nan where a flight does not tell one; y (N, 6) N and N m: the residual
+    x (N, 22): mean inputs, nan where a flight does not have one; y (N, 6) N and N m: the residual
     wrench; fold (N,): which part is predicted from the others; block (N,) of time, over which
     errors may hang together.
     """

@@ -27,7 +27,7 @@ from quad_ident_ros.model.attitude import rotation_matrix
 from quad_ident_ros.model.vehicle import Vehicle
 
 CHANNELS = ('Fx', 'Fy', 'Fz', 'Mx', 'My', 'Mz')
-# How finely `where` is told; no verdict is a matter of these.
+# How finely `where` is reported; no verdict depends on these.
 WINDOW = 0.2        # s over which force and moment are taken as constant,
 EVERY = 0.05        # s from one such window to the next: up to 5 Hz are seen
 STRETCH = 25.0      # s without a break that spectra are taken of,
@@ -57,7 +57,7 @@ def residual_wrench(track: Track, vehicle: Vehicle, z: np.ndarray, noise: np.nda
                     predictor: Predictor = by_model) -> ResidualWrench:
     """Return the ResidualWrench of a Track with a parameter vector z (Z,) and noise (12,)."""
     flight = flight_of(track, WINDOW, EVERY)
-    # A window whose end is not seen, at the end of a block, tells nothing.
+    # A window whose end is not seen, at the end of a block, shows nothing.
     flight = replace(flight, first=flight.first[
         flight.seen[flight.first + flight.count].all(axis=1)])
     first, stretch = _stretches(flight)

@@ -225,7 +225,7 @@ class Diagnosis:
     The verdict on flights of a vehicle, and what it rests on.
 
     verdict: what matters, the largest contribution first, or none, unknown, undetermined; minor:
-    what is there and does not matter; z (Z,): the parameter vector with the effects named;
+    what is present and does not matter; z (Z,): the parameter vector with the effects named;
     covariance: how well their parameters are known together, with the constants whose deviations
     the vehicle file states, or None where there are none; residual: the function of state and
     command that reaches the ceiling, None where effects do; recorded: the flights as they came;

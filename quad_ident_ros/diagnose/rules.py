@@ -11,17 +11,17 @@ from quad_ident_ros.diagnose.priors import EffectPrior, log_odds
 @dataclass(frozen=True)
 class Rules:
     """
-    The thresholds by which a verdict is reached.
+    The thresholds of a verdict.
 
     Intake:
       shortest: s of a flight. Half of a single one is held out: four rollouts of half a second
-        for each half; whether that tells anything is a matter of information, see `not_shown`.
+        for each half; whether that suffices is a matter of information, see `not_shown`.
       held_block: s of a block of a single flight, of which half are held out: room for a few
         rollouts, and longer than the errors of a formula hang together.
       follows: share of the spread of measured rotor speeds that the commands must explain for the
-        speeds to tell anything of the motors: with less, most of it comes from something else.
+        speeds to say anything about the motors: with less, most of it comes from something else.
     Candidates:
-      voltage: V that a recorded voltage must change for it to tell anything of the battery: what
+      voltage: V that a recorded voltage must change for it to say anything about the battery: what
         the coarsest loggers resolve. at_bound: usual sizes from a bound that are at it.
     Noise:
       coloured: times that all that is left may be the noise from sample to sample, or a part of
@@ -31,7 +31,7 @@ class Rules:
         states. drift: m/s, that of the velocity of such a filter, which stays over a prediction.
         filtered_attitude: rad from sample to sample, below which an attitude is that of
         a filter; tracked_position: m, above which its position is not from motion capture.
-      walk_lags: s, by which the growth of the rate's errors is told from their noise: gyros are
+      walk_lags: s, which separate the growth of the rate's errors from their noise: gyros are
         filtered at 20 Hz and more, effects take half a second.
     Prior:
       prior_odds: probability of each effect before looking. One to three of some seventeen are
@@ -81,7 +81,7 @@ class Rules:
         of `smallest` is, so that it only counts where a user has set wider floors.
       stand_in: share of its parameters that clearly differ from none beyond which, at bounds or
         not told for errors of the commands, an effect does the work of something else: one at a
-        bound may be one that the flights do not tell.
+        bound may be one that the flights do not show.
       tied: correlation of two effects' parameters from which on they are taken out together, too.
     Advice:
       hidden, shown: standard errors from no effect below which an effect of usual size is not
@@ -95,7 +95,7 @@ class Rules:
         the noise itself is known to some ten percent only where it has a memory.
       floors: m, m/s, rad, rad/s that no user of a simulation at 0.5 s minds.
       smallest: half of the usual floors: of what can be closed below it, shares mean nothing,
-        whatever the tolerance of the user. Whether an effect is there is no matter of tolerance.
+        whatever the tolerance of the user. Presence does not depend on it.
     Where:
       regime: of the energy of a residual that a half-space must have beyond its share of the time
         to be named: for less, `everywhere` is the better word.

@@ -40,8 +40,8 @@ from quad_ident_ros.model.vehicle import Vehicle
 
 # How long and how far the search goes; the thresholds of a verdict are those of Rules.
 ROUNDS = 6
-KEPT = 10           # fitted sets that are judged anew around each new best one
-PASSES = 3          # times, at most, in each stage, that the noise is taken anew
+KEPT = 10           # fitted sets that are judged again around each new best one
+PASSES = 3          # times, at most, in each stage, that the noise is estimated again
 LOST = 4.0          # times the scatter that a fit may cost more than a subset does
 
 
@@ -182,7 +182,7 @@ class _Search:
             best = self.best.chosen
 
     def stand_at(self, chosen: tuple) -> None:
-        """Linearise around a fitted set; those judged before are judged anew, the best of them."""
+        """Linearise around a fitted set; the best of those judged before are judged again."""
         fit = self.tried[chosen]
         everyone = NuisanceValues.of([one.nuisance for one in self.nuisances if one.nuisance],
                                      len(self.flights), fit.nuisances)

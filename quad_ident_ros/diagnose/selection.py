@@ -66,7 +66,7 @@ def posteriors(fitted: Sequence[Fitted], ranked: list, causes: Sequence[Candidat
 
     Sets that were not refitted count by the linear model, beside the best one, for little. The
     best one is the simplest of those that are about as good: sets that only add effects to it
-    tell no more of these than was known before looking.
+    say no more about these than their prior.
     """
     top = fitted[0]
     best = set(top.causes)

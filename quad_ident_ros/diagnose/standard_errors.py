@@ -18,7 +18,7 @@ from quad_ident_ros.greybox.nuisances import Layout
 from quad_ident_ros.greybox.parameters import INDEX, limits, uncertain_constants
 from quad_ident_ros.model.vehicle import Vehicle
 
-# Relative errors of formulas that are tried, the likeliest of which is taken.
+# Relative errors of formulas to try; the likeliest is taken.
 FORM_ERRORS = (0.0, *(0.02 * 2.0 ** (0.5 * k) for k in range(10)))
 
 
@@ -85,6 +85,6 @@ def joint_of(fitted: Fitted, flights: Sequence[Flight], frame: Frame, vehicle: V
 
 
 def _first(normal: Normal, count: int) -> Normal:
-    """Return what is said of the first columns, the others held."""
+    """Return the information on the first columns, the others held."""
     return replace(normal, information=normal.information[:count, :count],
                    gradient=normal.gradient[:count], scores=normal.scores[:, :count])

@@ -15,7 +15,7 @@ def known_together(bench: Bench, model: Model) -> Covariance | None:
     Return the Covariance of a Model's columns, and of constants whose file states a deviation.
 
     None where there is neither. The correlation is that of the Joint of the best set, or that by
-    the noise of a model which has other forms; deviations are the standard errors that are told,
+    the noise of a model which has other forms; deviations are the reported standard errors,
     widened by what the constants leave open.
     """
     best, joint = bench.selection.best.estimate, bench.selection.joint

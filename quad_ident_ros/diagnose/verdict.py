@@ -26,7 +26,7 @@ class Verdict:
     The names of a verdict, and what they rest on.
 
     certain: the candidates that are sure, sure: their effects; doubts {candidate: Fitted}: between
-    which the flights cannot tell, undetermined: their effects. That is the verdict where one of
+    which the flights cannot decide, undetermined: their effects. That is the verdict where one of
     them contributes most; else the sure ones are.
     """
 

@@ -16,5 +16,5 @@ FORM = Form(
 EFFECT = Effect(
     name='attitude_misalignment', title='tilt of the measured attitude',
     forms=(FORM, attitude_misalignment_block.FORM, attitude_misalignment_gyro.FORM),
-    excitation='any flight; turns of the heading to tell it from wind',
+    excitation='any flight; turns of the heading to separate it from wind',
     confused_with=('wind', 'com_offset'))

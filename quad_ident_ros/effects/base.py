@@ -66,7 +66,7 @@ class Parameter:
 @dataclass(frozen=True)
 class Form:
     """
-    One law by which an effect may act.
+    A law of an effect.
 
     parameters: of Parameter; source: where the formula stands. What it changes, each a function
     or None (rows of the tables: model.situation; p (P, LANES) has its parameters from row k on):
@@ -101,7 +101,7 @@ class Form:
 @dataclass(frozen=True)
 class Effect:
     """
-    Something that reality has and the nominal model lacks, in one of several forms.
+    Something that reality has and the nominal model does not, in one of several forms.
 
     forms: of Form, the first the usual one; excitation: what a flight must do to show it;
     confused_with: names of effects that look alike; per_rotor: each parameter belongs to one

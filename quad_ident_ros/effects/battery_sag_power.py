@@ -24,7 +24,7 @@ FORM = Form(
                           'of the voltage over that of reference; 2 is that of a motor whose '
                           'speed goes with the voltage'),
                 Parameter('load', '1', 0.0, 1.0, 0.05, 'share of the thrust lost at twice the '
-                          'power of hover, beyond what the recorded voltage tells')),
+                          'power of hover, beyond what the recorded voltage shows')),
     source='thrust (V / V0)^exponent (1 - load (P / P hover - 1)), P the sum of the cubes of the '
            'speeds: open-circuit voltage behind a resistance, of which a filtered voltage shows '
            'the slow part; Tremblay and Dessaint, World Electric Vehicle Journal 3, 2009',

@@ -18,6 +18,6 @@ def thrust(p: Table, k: int, s: Table, rotors: Table) -> None:
 FORM = Form(
     name='time', title='linear in the time of flight',
     parameters=(Parameter('per_second', '1/s', 0.0, 0.05, 0.002, 'share of the thrust lost per '
-                          'second of flight, where no voltage is recorded or it does not tell'),),
+                          'second of flight, where no voltage is recorded or it shows nothing'),),
     source='thrust (1 - per_second t): what is drawn is about the same at all times',
     thrust=thrust)

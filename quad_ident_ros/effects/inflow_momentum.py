@@ -15,7 +15,7 @@ STEPS = 4   # of Newton's method: from above, to 1e-4 of the velocity and better
 @compiled(fused=True, inlined=True)
 def induced_velocity(hover: float, along: float, across: float) -> float:
     """
-    Return the velocity m/s by which a rotor blows, of Glauert's v sqrt(across^2 + (along + v)^2).
+    Return the induced velocity of a rotor, m/s, of Glauert's v sqrt(across^2 + (along + v)^2).
 
     hover: that at rest, whose square the product is; along, across: the rotor's own velocity
     against the air along its thrust and across it. Descending, this is the branch of hover, on

@@ -22,7 +22,7 @@ FORM = Form(
     body=body)
 EFFECT = Effect(
     name='mass_offset', title='error in mass', forms=(FORM,),
-    excitation='any flight, with roll or pitch manoeuvres to tell it from thrust',
+    excitation='any flight, with roll or pitch manoeuvres to separate it from thrust',
     confused_with=('thrust_scale',),
     scale_group=True, ratio='thrust per mass',
     same_motion=(('mass', 'thrust coefficient with the inertia in proportion'),),

@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Drag of the rotors: linear in the air velocity along each axis, whatever the rotor speeds."""
+"""Drag of the rotors: linear in the air velocity along each axis, at all rotor speeds."""
 
 from quad_ident_ros.compiled import compiled
 from quad_ident_ros.effects.base import Form, Parameter, Table
@@ -16,7 +16,7 @@ def wrench(p: Table, k: int, s: Table, _: Table) -> None:
 
 
 FORM = Form(
-    name='axes', title='along each axis, whatever the rotor speeds',
+    name='axes', title='along each axis, at all rotor speeds',
     parameters=tuple(Parameter(axis, 'kg/s', 0.0, 5.0, 0.1, f'force along body {axis} per air '
                                'velocity, beside the nominal linear_drag, whose sum with it is '
                                'not negative',

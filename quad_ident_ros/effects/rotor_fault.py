@@ -20,7 +20,7 @@ def thrust(p: Table, k: int, _: Table, rotors: Table) -> None:
 FORM = Form(
     name='thrust', title='thrust alone',
     parameters=tuple(Parameter(f'loss_{j}', '1', 0.0, 1.0, 0.1,
-                               f'share of the thrust that rotor {j} lacks')
+                               f'share of the thrust that rotor {j} has lost')
                      for j in range(1, MOST_ROTORS + 1)),
     source="loss of effectiveness of one rotor, thrust (1 - loss); e.g. Mueller and D'Andrea, "
            'ICRA 2014',

@@ -24,7 +24,7 @@ FORM = Form(
 EFFECT = Effect(
     name='thrust_scale', title='error in thrust',
     forms=(FORM, thrust_scale_offset.FORM, thrust_scale_exponent.FORM),
-    excitation='any flight, with roll or pitch manoeuvres to tell it from mass',
+    excitation='any flight, with roll or pitch manoeuvres to separate it from mass',
     confused_with=('mass_offset', 'battery_sag', 'inflow'),
     scale_group=True, per_flight=(0.03,), ratio='thrust per mass',
     same_motion=(('thrust coefficient', 'mass with the inertia in proportion'),),

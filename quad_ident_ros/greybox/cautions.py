@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What is wrong with flights and bears on a fit: said beside its values."""
+"""Faults of flights that affect a fit, reported beside its values."""
 
 from collections.abc import Iterable, Sequence
 

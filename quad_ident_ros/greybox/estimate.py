@@ -36,7 +36,7 @@ FEW = 8             # rollouts that bring a start near
 STRAIGHT = 0.1      # of what a step should save that it may save more or less: slopes are kept;
 NEARLY = 1.0        # or this many variances of the noise, in all: half a unit of log evidence
 SHARES = tuple(0.5 ** k for k in range(7))  # of a step, tried until the cost does not rise
-SPARSE = 4          # every so many samples tell how far the bulk of them is off
+SPARSE = 4          # samples between those that show how far the bulk is off
 OUTLIER = 4.0       # noise deviations beyond which a sample counts less
 
 
@@ -101,7 +101,7 @@ def estimate(flights: Sequence[Flight], vehicle: Vehicle, z: np.ndarray, columns
     tried, whereupon as many steps more may go by slopes that are kept; scatter: what differences
     of the cost are divided by: the more, the sooner a step is small; slow (6,): standard
     deviation of a force (N) and a moment (N m), body, that nothing explains and that lasts for a
-    rollout, by which errors that hang together count less (generalised least squares).
+    rollout, by which autocorrelated errors count less (generalised least squares).
     """
     columns = list(columns)
     nuisances = nuisances or NuisanceValues.of((), len(flights))

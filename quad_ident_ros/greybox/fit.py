@@ -149,7 +149,7 @@ def fit(records: Sequence[FlightRecord], vehicle: Vehicle, names: Iterable[str],
 
 
 def _refuse_level(records: Iterable[FlightRecord], free: Iterable[str]) -> None:
-    """Raise InputError where the weight told the scale of commands that is to be estimated."""
+    """Raise InputError where the scale of commands to be estimated follows from the weight."""
     scales = [name for name in free if name in OF_LEVEL]
     for record in records:
         if scales and FULL_SPEED in record.info:
@@ -162,7 +162,7 @@ def _refuse_level(records: Iterable[FlightRecord], free: Iterable[str]) -> None:
 
 
 def _refuse_motors(records: Iterable[FlightRecord], free: Iterable[str]) -> None:
-    """Raise InputError where what motors make of commands is asked for, and there are none."""
+    """Raise InputError where parameters of motors are asked for and there are no commands."""
     asked = [name for name in free if name.partition('.')[0] in OF_MOTORS]
     for record in records:
         if asked and is_driven_by_speeds(record):
@@ -231,7 +231,7 @@ def as_data(fit: Fit) -> dict[str, Any]:
 
 
 def _inside(normal: Normal, free: np.ndarray) -> Normal:
-    """Return what is said of the columns that are inside their bounds, the others held."""
+    """Return the information on the columns inside their bounds, the others held."""
     return replace(normal, information=normal.information[np.ix_(free, free)],
                    gradient=normal.gradient[free], scores=normal.scores[:, free])
 

@@ -75,7 +75,7 @@ class Flight(Track):
 def track_of(record: FlightRecord, vehicle: Vehicle, reference_voltage: float | None = None,
              clock: Clock | None = None) -> Track:
     """
-    Return the Track of a record; InputError where it lacks columns or is too slow.
+    Return the Track of a record; InputError where columns are missing or it is too slow.
 
     Args: reference_voltage V, see dynamics.course_of; clock: of the Track, put right here.
     """
@@ -96,7 +96,7 @@ def track_of(record: FlightRecord, vehicle: Vehicle, reference_voltage: float | 
         name = record.info.get('source') or record.info.get('name', 'flight')
         raise InputError(f'{name}: {record.t[-1] - record.t[0]:.3g} s are too short; give a '
                          'longer flight')
-    if across is not None:  # the force has given the velocity, and tells nothing beside it
+    if across is not None:  # the force has given the velocity, and adds nothing to it
         course, force = replace(course, across=across[:len(states)]), None
     track = Track(record.info.get('name', 'flight'), course, states, seen, period, clock,
                   force=force, levelled=FULL_SPEED in record.info, summed=summed)
@@ -201,7 +201,7 @@ def _thinned(course: Course, states: np.ndarray, seen: np.ndarray, force: np.nda
     if force is not None:   # about each sample that stays
         force = uniform_filter1d(force, skip, axis=0, mode='nearest')[:rows:skip].copy()
     drop = course.volt_drop[:rows].reshape(-1, skip).mean(axis=1)
-    # A copy: an array with gaps would have the integrator compiled anew.
+    # A copy: an array with gaps would have the integrator compiled again.
     return (Course(course.t[:rows:skip].copy(), course.commands, drop, course.stamps,
                    course.reference_voltage),
             states[:rows:skip].copy(), seen[:rows:skip].copy(), force)

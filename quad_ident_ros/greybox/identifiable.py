@@ -33,7 +33,7 @@ def freedoms(information: np.ndarray, values: np.ndarray, sizes: np.ndarray,
     """
     Return the Freedoms that an information matrix (C, C) leaves.
 
-    One parameter after the other is held until what is left is determined. The others depend on
+    One parameter after the other is held until the others are determined. The others depend on
     it if they would move by more than their standard error where it moves by its size.
     Args: values (C,) of the parameters; sizes (C,) usual ones, for those that are near zero;
     first: places of those to be held rather than others.

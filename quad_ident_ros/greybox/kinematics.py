@@ -3,8 +3,8 @@
 """
 Measurement noise that hangs together in time, from what sensors say of one another.
 
-The pose is the integral of velocity and rate, whatever force acts: what a model lacks cannot be
-taken for noise here, nor noise with a memory for what a model lacks.
+The pose is the integral of velocity and rate, for any force: an unmodelled force cannot be
+mistaken for noise here, nor noise with a memory for such a force.
 """
 
 from collections.abc import Sequence
@@ -25,7 +25,7 @@ LONGEST = 1.0   # s between two samples that are compared
 LAGS = 14
 ALIKE = 0.1     # weight of shares that are alike, beside the drift's
 KEPT = 0.995    # of pairs of samples, the others being glitches that were not told
-FEWEST = 50     # pairs of samples from which on a lag tells anything
+FEWEST = 50     # pairs of samples from which on a lag is used
 
 
 def measurement_noise(flights: Sequence[Flight], vectors: Sequence[np.ndarray],

@@ -14,7 +14,7 @@ from quad_ident_ros.model.vehicle import Vehicle
 
 SEGMENTS = (SEGMENT, 0.3, 0.2)      # s
 MOST = 180      # rollouts of all flights, three of 30 s: of more, every so many. Where that many
-                # do not tell an effect from noise, it makes no gap that matters
+                # do not separate an effect from noise, it makes no gap that matters
 SHORT = 0.08    # s, of inertial flights: what nothing explains is taken as constant for that long
 FAR = 0.8       # rad, of the attitude at the end: beyond it what the slopes say is not so
 

@@ -14,7 +14,7 @@ from quad_ident_ros.greybox.nuisances import Layout
 
 WEAK = 1e-7         # of the largest information: a direction that says nothing
 CHANCE = 0.01       # of white noise to be taken for noise that hangs together
-BLOCK = 2.0         # s over which what is left may hang together
+BLOCK = 2.0         # s over which residuals may be autocorrelated
 
 
 @dataclass(frozen=True, eq=False)

@@ -88,7 +88,7 @@ def nuisances(vehicle: Vehicle, tracks: Sequence[Track]) -> tuple[Nuisance, ...]
     level = any(track.levelled for track in tracks)
     if level:
         kinds.append((LEVEL, LEVEL_TITLE, '1', ('thrust_scale.factor',), (OFF_LEVEL,), LIKELY))
-    # One flight does not tell what is its alone from what is the vehicle's.
+    # One flight does not separate what is its own from what is the vehicle's.
     for name, effect in EFFECTS.items() if len(tracks) > 1 else ():
         if level and effect.ratio is not None:
             continue    # the same by another name
@@ -106,7 +106,7 @@ def nuisances(vehicle: Vehicle, tracks: Sequence[Track]) -> tuple[Nuisance, ...]
 
 def trim_wrench(vehicle: Vehicle) -> np.ndarray:
     """
-    Return the force (N) and moment (N m), body, (6,), by which vehicles usually are out of trim.
+    Return the force (N) and moment (N m), body, (6,), of the usual trim of vehicles.
 
     Some hundredths of what the rotors give: a motor or a propeller differs by as much.
     """

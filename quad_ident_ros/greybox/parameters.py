@@ -46,7 +46,7 @@ def uncertain_constants(vehicle: Vehicle, columns: Iterable[int]) -> dict[str, f
     """
     Return {constant: stated deviation} of those that an estimate is to know of.
 
-    Where a column is the same physical number, such as an offset of the mass, flights tell it.
+    Where a column is the same physical number, such as an offset of the mass, flights show it.
     """
     estimated = {NAMES[column] for column in columns}
     same = estimated | constants_within(estimated)

@@ -16,13 +16,13 @@ from quad_ident_ros.greybox.flights import BRIDGED, GAP, RATE
 from quad_ident_ros.greybox.normal import BLOCK
 from quad_ident_ros.model.actuators import actuated, DELAY, LAG
 
-MOST = 20_000           # samples, from the middle of a stretch: more tell nothing new
+MOST = 20_000           # samples, from the middle of a stretch: more show nothing new
 LEAST_RATE = 40.0       # Hz of measured speeds; slower ones do not show lags
 COPY, COPIED = 1e-9, 1e-4   # of the variance, and s: what is left, and how late, by a copy of
                             # the commands, which no sensor measures
 DELAYS, LAGS = np.arange(-0.02, 0.121, 0.01), np.array([0.0, 0.01, 0.02, 0.04, 0.08, 0.16])
 SMALL = 0.5 / RATE      # s: half a sample of what a diagnosis looks at
-FINEST = 1e-5           # s: no clock tells more
+FINEST = 1e-5           # s: no clock is finer
 
 OF_MOTORS = tuple(name for name, effect in EFFECTS.items() if effect.actuator)
 """Effects of what the motors make of commands."""
@@ -102,7 +102,7 @@ def ruled_out_by(answers: Iterable[RotorAnswer | None], sure: float,
 
 def rotor_answer(record: FlightRecord) -> RotorAnswer | None:
     """
-    Return the RotorAnswer of a record, None where its measured speeds do not tell.
+    Return the RotorAnswer of a record, None where its measured speeds do not show it.
 
     Where they are missing, slow, or a copy of the commands. Of a record with gaps it is the
     longest stretch without one: lags do not reach across them.
