@@ -38,8 +38,12 @@ class TimeOver(Exception):
     """A task took more than its time."""
 
 
-class WorkerDied(Exception):
+class WorkerDied(InputError):
     """The process of each worker that began a task ended, as where the memory is not enough."""
+
+    def __init__(self) -> None:
+        super().__init__('the process of each worker that began a part of the work ended: it may '
+                         'need more memory than a worker has')
 
 
 @dataclass(frozen=True)
@@ -49,6 +53,11 @@ class Done(Generic[Item]):
     item: Item
     value: Any = None
     error: Exception | None = None
+
+
+def is_installed() -> bool:
+    """Return whether Dask is installed."""
+    return find_spec('distributed') is not None
 
 
 @contextmanager
@@ -89,7 +98,10 @@ def cluster(scheduler: str | None = None, workers: int | None = None,
     limit = memory or int(MEMORY * distributed.system.MEMORY_LIMIT / count)
     # A second worker is tried where one died: what is out of memory there is so everywhere.
     with dask.config.set({'distributed.scheduler.allowed-failures': 1,
-                          'distributed.worker.profile.enabled': False}), ExitStack() as stack:
+                          'distributed.worker.profile.enabled': False,
+                          # Nothing leaves this machine.
+                          'distributed.admin.large-graph-warning-threshold': '1 GB',
+                          }), ExitStack() as stack:
         with _without_interrupt():
             local = stack.enter_context(distributed.LocalCluster(
                 n_workers=count, threads_per_worker=1, memory_limit=limit, host='127.0.0.1',
@@ -154,6 +166,19 @@ def results(client: Any, function: Callable[[Item], Any], items: Iterable[Item],
         else:
             yield done
     yield from _results(client, function, suspects, time_limit, on_tick, 1)
+
+
+def values(client: Any, function: Callable[[Item], Any], items: Iterable[Item]
+           ) -> Iterator[tuple[Item, Any]]:
+    """
+    Yield each item with what a function makes of it, in the order in which they are done.
+
+    Raises the first error.
+    """
+    for done in results(client, function, items):
+        if done.error is not None:
+            raise done.error
+        yield done.item, done.value
 
 
 def _results(client: Any, function: Callable[[Item], Any], items: Iterable[Item],
