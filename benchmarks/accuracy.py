@@ -3,6 +3,7 @@
 """Known truth over many draws of the noise: errors, bias and coverage of the intervals."""
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from scipy.stats import binom, norm
@@ -12,6 +13,7 @@ from benchmarks.bound import NAMES, pole_values
 from benchmarks.compare import quiet
 from benchmarks.problems import INPUTS, Problem
 from benchmarks.tables import markdown, targets
+from quad_ident_ros.cluster import cluster, values
 from quad_ident_ros.identify.transfer import SecondOrder
 
 SYSTEMS = {'stable': SecondOrder.from_poles(4.0, 2.0, 0.5),
@@ -20,6 +22,7 @@ SYSTEMS = {'stable': SecondOrder.from_poles(4.0, 2.0, 0.5),
            'complex': SecondOrder.from_half_difference(4.0, 0.5, -2.0)}
 NOISE = (0.001, 0.01, 0.1)      # standard deviation over the response's range
 SAMPLES = 1000
+AT_ONCE = 50        # draws that a task fits: each is a matter of milliseconds
 
 LEVEL = 0.95
 CURVED = 0.1            # bias that linear theory must not predict, in standard deviations
@@ -42,11 +45,11 @@ def run(size, bar):
     few, many = size.accuracy_draws
     scenarios = [(excitation, share) for excitation in INPUTS for share in NOISE]
     first, all_ = {}, {}
-    with bar('known truth', len(scenarios) * many) as advance:
+    with bar('known truth', len(scenarios) * many) as advance, cluster() as client:
         for number, (excitation, share) in enumerate(scenarios):
             problem = Problem(f'{excitation}, {share:.1%}', tuple(SYSTEMS.values()), excitation,
                               SAMPLES, share, 100 + number)
-            misses, errors = _fits(problem, many, advance)
+            misses, errors = _fits(client, problem, many, advance)
             for i, (name, bound) in enumerate(zip(SYSTEMS, problem.bounds, strict=True)):
                 key = name, excitation, share
                 first[key] = _cells(bound, misses[:few, i], errors[:few, i])
@@ -59,19 +62,31 @@ def run(size, bar):
             f'Of {many:,} draws:\n\n{markdown(head, rows)}')
 
 
-def _fits(problem, draws, advance):
+def _fits(client, problem, draws, advance):
     """Return the misses and the standard errors of all fits, (draws, systems, parameters)."""
-    misses = np.full((draws, len(problem.truths), len(NAMES)), np.nan)
-    errors = misses.copy()
-    for draw in range(draws):
+    some = [range(first, min(first + AT_ONCE, draws)) for first in range(0, draws, AT_ONCE)]
+    found = {}
+    for each, fits in values(client, partial(_fits_of, problem), some):
+        found[each] = fits
+        for _ in each:
+            advance()
+    misses, errors = zip(*(fits for each in some for fits in found[each]), strict=True)
+    return np.array(misses), np.array(errors)
+
+
+def _fits_of(problem, draws):
+    """Return the misses and the standard errors of each draw, (systems, parameters)."""
+    fits = []
+    for draw in draws:
+        misses, errors = np.full((2, len(problem.truths), len(NAMES)), np.nan)
         for i, signal in enumerate(problem.draw(draw)):
             with quiet():
                 model, deviations = ours.fit_vp_any(signal)
-            misses[draw, i] = _estimate(model, problem.truths[i].form) - problem.bounds[i].values
-            errors[draw, i] = [np.nan if deviations[name] is None else deviations[name]
-                               for name in NAMES]
-        advance()
-    return misses, errors
+            misses[i] = _estimate(model, problem.truths[i].form) - problem.bounds[i].values
+            errors[i] = [np.nan if deviations[name] is None else deviations[name]
+                         for name in NAMES]
+        fits.append((misses, errors))
+    return fits
 
 
 def _cells(bound, misses, errors):

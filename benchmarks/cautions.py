@@ -6,6 +6,7 @@ from itertools import islice, product
 
 from benchmarks.tables import markdown
 from quad_ident_ros import resources
+from quad_ident_ros.cluster import cluster, values
 from quad_ident_ros.data.quality import findings
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import SENSORS
@@ -18,20 +19,26 @@ SECONDS = 20.0      # of each flight
 
 def run(size, bar):
     """Return the results as Markdown; size: a Size; bar: makes progress bars."""
-    vehicles = [load_vehicle(name) for name in resources.names('vehicles')]
-    vehicles = [vehicle for vehicle in vehicles if vehicle.rotors]
-    courses = product(range(size.clean_flights), TRAJECTORIES, vehicles)
+    names = [name for name in resources.names('vehicles') if load_vehicle(name).rotors]
+    courses = product(range(size.clean_flights), TRAJECTORIES, names)
     courses = list(islice(courses, size.clean_flights))
+    codes = {noise: [] for noise in NOISES}
+    with bar('cautions', len(courses) * len(NOISES)) as advance, cluster() as client:
+        for (noise, *_), found in values(client, _codes, (
+                (noise, *course) for noise in NOISES for course in courses)):
+            codes[noise].append(found)
+            advance()
     rows = []
-    with bar('cautions', len(courses) * len(NOISES)) as advance:
-        for noise in NOISES:
-            codes = []
-            for seed, trajectory, vehicle in courses:
-                record = fly_closed_loop(vehicle, {}, trajectory, duration=SECONDS, seed=seed,
-                                         noise=SENSORS[noise])
-                codes.append([one.code for one in findings(record, vehicle)
-                              if one.severity != 'info'])
-                advance()
-            which = ', '.join(sorted({code for one in codes for code in one})) or 'none'
-            rows.append((noise, str(len(codes)), str(sum(map(bool, codes))), which))
+    for noise, each in codes.items():
+        which = ', '.join(sorted({code for one in each for code in one})) or 'none'
+        rows.append((noise, str(len(each)), str(sum(map(bool, each))), which))
     return markdown(('noise', 'flights', 'with a caution', 'cautions'), rows)
+
+
+def _codes(flight):
+    """Return the codes of the cautions of a flight: (noise, seed, trajectory, vehicle)."""
+    noise, seed, trajectory, name = flight
+    vehicle = load_vehicle(name)
+    record = fly_closed_loop(vehicle, {}, trajectory, duration=SECONDS, seed=seed,
+                             noise=SENSORS[noise])
+    return [one.code for one in findings(record, vehicle) if one.severity != 'info']

@@ -8,6 +8,7 @@ import numpy as np
 from scipy.stats import chi2
 
 from benchmarks.tables import markdown, number
+from quad_ident_ros.cluster import cluster, values
 from quad_ident_ros.experiment import fly, load_experiment, Run
 from quad_ident_ros.identify.identify import collect, Settings
 from quad_ident_ros.identify.online import Changes
@@ -67,23 +68,29 @@ def flown(course, seed, payload, seconds, at=None):
 
 def run(size, bar):
     """Return the results as Markdown; size: a Size; bar: makes progress bars."""
-    mass = load_experiment(EXPERIMENT).vehicle.mass
-    rows, each = [], size.change_flights // len(COURSES)
-    with bar('changes', 2 * each * len(COURSES)) as advance:
-        for regime, courses in COURSES.items():
-            changed, same = [], []
-            for seed in range(each):
-                course = courses[seed % len(courses)]
-                at = float(np.random.default_rng([seed, 8]).uniform(*AT))
-                changed.append(flown(course, seed, PAYLOAD * mass, WITH, at))
-                advance()
-                same.append(flown(course, each + seed, 0.0, WITHOUT))
-                advance()
-            rows.append(_row(regime, changed, same))
+    each = size.change_flights // len(COURSES)
+    found = {(regime, changed): [] for regime in COURSES for changed in (True, False)}
+    with bar('changes', each * len(found)) as advance, cluster() as client:
+        for (regime, changed, *_), flight in values(client, _flown, (
+                (regime, changed, number, number if changed else each + number)
+                for regime, changed in found for number in range(each))):
+            found[regime, changed].append(flight)
+            advance()
+    rows = [_row(regime, found[regime, True], found[regime, False]) for regime in COURSES]
     head = ('flight', 'tilt up to, deg', 'with a change', 'found', 'delay, s: median', 'largest',
             'hours without', 'false alarms', 'per hour', 'at most, 95 %')
     return (f'{markdown(head, rows)}\n\nSeeds 0 to {each - 1} with a change, {each} to '
             f'{2 * each - 1} without.')
+
+
+def _flown(which):
+    """Return what was Flown: (regime, with a change, number of the course, seed)."""
+    regime, changed, number_of_it, seed = which
+    course = COURSES[regime][number_of_it % len(COURSES[regime])]
+    if not changed:
+        return flown(course, seed, 0.0, WITHOUT)
+    payload = PAYLOAD * load_experiment(EXPERIMENT).vehicle.mass
+    return flown(course, seed, payload, WITH, float(np.random.default_rng([seed, 8]).uniform(*AT)))
 
 
 def _row(regime, changed, same):

@@ -7,7 +7,7 @@ from contextlib import contextmanager, ExitStack, suppress
 from dataclasses import dataclass
 import faulthandler
 from importlib.util import find_spec
-from itertools import islice
+from itertools import count, islice, repeat
 import logging
 from multiprocessing import resource_tracker
 import os
@@ -17,18 +17,21 @@ import signal
 import threading
 from time import monotonic
 from typing import Any, Generic, TypeVar
+import uuid
 
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.resources import PACKAGE
 from quad_ident_ros.schema import shown
 
 Item = TypeVar('Item')
+_Key = tuple[str, int]      # of a task
 
 IN_FLIGHT = 2       # tasks of each worker: one is worked on while the next is on its way
 AT_LEAST = 8        # tasks in flight where there are few workers, or none yet: more may join
 MEMORY = 0.8        # share of the machine's memory that all local workers together may have
 TICK = 0.25         # s, after which a caller hears again that the work goes on
 GRACE = 3.0         # s from the end of a task's time to that of its process
+REMEMBERED = 20     # messages, with the work in them, that each connection keeps for developers
 TIMES = 'quad_ident_times'
 """The topic on which a worker says that the time of a task is over."""
 _ADDRESS = re.compile(r'((tcp|tls|ws|wss|ucx)://)?(\[[\da-f:.]+\]|[^/:\s]+):\d+', re.IGNORECASE)
@@ -38,8 +41,12 @@ class TimeOver(Exception):
     """A task took more than its time."""
 
 
-class WorkerDied(Exception):
+class WorkerDied(InputError):
     """The process of each worker that began a task ended, as where the memory is not enough."""
+
+    def __init__(self) -> None:
+        super().__init__('the process of each worker that began a part of the work ended: it may '
+                         'need more memory than a worker has')
 
 
 @dataclass(frozen=True)
@@ -49,6 +56,11 @@ class Done(Generic[Item]):
     item: Item
     value: Any = None
     error: Exception | None = None
+
+
+def is_installed() -> bool:
+    """Return whether Dask is installed."""
+    return find_spec('distributed') is not None
 
 
 @contextmanager
@@ -62,37 +74,48 @@ def cluster(scheduler: str | None = None, workers: int | None = None,
     machine's, shared). A process that takes more is ended and restarted.
     Raises InputError where Dask is not installed or the scheduler does not answer.
     """
-    try:
-        import dask.system
-        import distributed
-    except ModuleNotFoundError as error:
-        raise InputError(f"{error.name} is not installed: pip install 'quad_ident_ros[fleet]'"
-                         ) from None
+    if not is_installed():
+        raise InputError("Dask is not installed: pip install 'quad_ident_ros[fleet]'")
+    import dask
     logging.getLogger('distributed').setLevel(logging.CRITICAL)     # we say what matters
-    if scheduler is not None:
-        _check_address(scheduler, distributed.Security())
-        try:
-            client = distributed.Client(scheduler, timeout='10s', set_as_default=False)
-        except (OSError, ValueError) as error:
-            raise InputError(f'--scheduler {scheduler}: no scheduler of Dask answers there '
-                             f'({_first_line(error)}); `dask scheduler` prints its address'
-                             ) from None
-        with client:
-            if max(client.ncores().values(), default=1) > 1:
-                raise InputError(f'--scheduler {scheduler}: its workers have several threads; '
-                                 'start them with --nthreads 1, because what hangs is ended with '
-                                 'its process')
-            _check_packages(client, scheduler)
-            yield client
-        return
-    count = workers or dask.system.CPU_COUNT
-    limit = memory or int(MEMORY * distributed.system.MEMORY_LIMIT / count)
+    with dask.config.set({'distributed.admin.low-level-log-length': REMEMBERED}):
+        yield from _there(scheduler) if scheduler is not None else _here(workers, memory)
+
+
+def _there(scheduler: str) -> Iterator[Any]:
+    """Yield a Client of a scheduler that is there."""
+    import distributed
+    _check_address(scheduler, distributed.Security())
+    try:
+        client = distributed.Client(scheduler, timeout='10s', set_as_default=False)
+    except (OSError, ValueError) as error:
+        raise InputError(f'--scheduler {scheduler}: no scheduler of Dask answers there '
+                         f'({_first_line(error)}); `dask scheduler` prints its address'
+                         ) from None
+    with client:
+        if max(client.ncores().values(), default=1) > 1:
+            raise InputError(f'--scheduler {scheduler}: its workers have several threads; '
+                             'start them with --nthreads 1, because what hangs is ended with '
+                             'its process')
+        _check_packages(client, scheduler)
+        yield client
+
+
+def _here(workers: int | None, memory: int | None) -> Iterator[Any]:
+    """Yield a Client of processes of this machine."""
+    import dask.system
+    import distributed
+    number = workers or dask.system.CPU_COUNT
+    limit = memory or int(MEMORY * distributed.system.MEMORY_LIMIT / number)
     # A second worker is tried where one died: what is out of memory there is so everywhere.
     with dask.config.set({'distributed.scheduler.allowed-failures': 1,
-                          'distributed.worker.profile.enabled': False}), ExitStack() as stack:
+                          'distributed.worker.profile.enabled': False,
+                          # Nothing leaves this machine.
+                          'distributed.admin.large-graph-warning-threshold': '1 GB',
+                          }), ExitStack() as stack:
         with _without_interrupt():
             local = stack.enter_context(distributed.LocalCluster(
-                n_workers=count, threads_per_worker=1, memory_limit=limit, host='127.0.0.1',
+                n_workers=number, threads_per_worker=1, memory_limit=limit, host='127.0.0.1',
                 dashboard_address='127.0.0.1:0', silence_logs=logging.CRITICAL))
             client = stack.enter_context(distributed.Client(local, set_as_default=False))
         yield client
@@ -156,13 +179,28 @@ def results(client: Any, function: Callable[[Item], Any], items: Iterable[Item],
     yield from _results(client, function, suspects, time_limit, on_tick, 1)
 
 
+def values(client: Any, function: Callable[[Item], Any], items: Iterable[Item]
+           ) -> Iterator[tuple[Item, Any]]:
+    """
+    Yield each item with what a function makes of it, in the order in which they are done.
+
+    Raises the first error.
+    """
+    for done in results(client, function, items):
+        if done.error is not None:
+            raise done.error
+        yield done.item, done.value
+
+
 def _results(client: Any, function: Callable[[Item], Any], items: Iterable[Item],
              time_limit: float | None, on_tick: Callable[[], None], each: int
              ) -> Iterator[Done[Item]]:
     news: queue.SimpleQueue = queue.SimpleQueue()
-    flying: dict[str, tuple[Item, Any]] = {}
+    flying: dict[_Key, tuple[Item, Any]] = {}
     waiting = iter(items)
     topic = f'{TIMES}-{id(flying)}-{client.id}'
+    # One group of tasks, whatever their number: the scheduler never forgets a group.
+    keys = zip(repeat(f'work-{uuid.uuid4().hex}'), count())
     client.subscribe_topic(topic, lambda event: news.put((event[1], True)))
     more, most, looked = True, 1, -float('inf')
     try:
@@ -172,7 +210,8 @@ def _results(client: Any, function: Callable[[Item], Any], items: Iterable[Item]
                 most = max(AT_LEAST if each > 1 else 1, each * len(client.ncores()))
                 on_tick()
             for item in islice(waiting, max(0, most - len(flying))):
-                future = client.submit(_limited, function, item, time_limit, topic, pure=False)
+                future = client.submit(_limited, function, item, time_limit, topic, key=next(keys),
+                                       pure=False)
                 flying[future.key] = item, future
                 future.add_done_callback(lambda one: news.put((one.key, False)))
             more = more and len(flying) >= most
@@ -200,14 +239,14 @@ def _all_of(news: queue.SimpleQueue) -> Iterator[Any]:
             yield news.get_nowait()
 
 
-def _done(client: Any, ended: dict[str, tuple[Item, Any, bool]]) -> dict[str, Done[Item]]:
+def _done(client: Any, ended: dict[_Key, tuple[Item, Any, bool]]) -> dict[_Key, Done[Item]]:
     """
     Return {key: Done} of {key: (item, future, whether it was late)}.
 
     What is lost with a worker that ended just after it is not done: Dask does it again.
     """
     from distributed.scheduler import KilledWorker
-    found: dict[str, Done[Item]] = {}
+    found: dict[_Key, Done[Item]] = {}
     finished = [one for _, one, late in ended.values() if not late and one.status == 'finished']
     with suppress(Exception):       # of those that are lost; the others remain for the next time
         found = {one.key: Done(ended[one.key][0], value) for one, value in

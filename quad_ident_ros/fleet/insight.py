@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a fleet shows that one flight cannot, as typed values and as data."""
 
-from collections.abc import Callable, Collection, Iterable
+from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -65,7 +65,11 @@ class Presence:
 
 @dataclass(frozen=True)
 class FleetGap:
-    """The gap of a vehicle's groups, {group of outputs: (median, lower, upper quartile)}."""
+    """
+    The gap of groups, {group of outputs: (median, lower, upper quartile)}.
+
+    vehicle, configuration: whose they are; both are '' for those of the whole fleet.
+    """
 
     vehicle: str
     configuration: str
@@ -82,7 +86,7 @@ class Insight:
 
     status {of groups: how many}; refused, failed, suspect ((vehicle, file, reason), ...): flights
     whose log cannot be used, those that were not diagnosed for another reason or ran out of time,
-    and those that were but stand apart from the others of their vehicle.
+    and those that were but stand apart from the others of their vehicle; gap: of the whole fleet.
     """
 
     vehicles: tuple[str, ...]
@@ -94,6 +98,7 @@ class Insight:
     events: tuple[Event, ...]
     odd: tuple[Odd, ...]
     present: tuple[Presence, ...]
+    gap: FleetGap
     gaps: tuple[FleetGap, ...]
     histories: tuple[History, ...]
     sisters: tuple[Sisters, ...]
@@ -111,7 +116,7 @@ class Insight:
                        for one in self.events],
             'odd': [asdict(one) for one in self.odd],
             'effects': [asdict(one) for one in self.present],
-            'gaps': [asdict(one) for one in self.gaps],
+            'gap': asdict(self.gap), 'gaps': [asdict(one) for one in self.gaps],
             'vehicles_by_parameter': [asdict(one) for one in self.sisters]}
 
 
@@ -135,7 +140,9 @@ def insight(out: str | Path, on_progress: Callable[[int, int], None] = lambda do
     return Insight(tuple(sorted({row['vehicle'] for row in rows})), flights.num_rows, status,
                    _unused(flown, (REFUSED,)), _unused(flown, (FAILED, TIMEOUT)),
                    _suspect(flown, found), events(found, named), _odd(beside, named),
-                   presence(effects), _gaps(rows), found, beside)
+                   presence(effects), _gap('', '', [row for row in rows
+                                                    if row['status'] == DIAGNOSED]),
+                   _gaps(rows), found, beside)
 
 
 def _unused(flights: Iterable[dict], status: Collection[str]) -> tuple[tuple[str, str, str], ...]:
@@ -207,9 +214,13 @@ def _gaps(rows: Iterable[dict]) -> tuple[FleetGap, ...]:
     for row in rows:
         if row['status'] == DIAGNOSED:
             of_vehicle.setdefault((row['vehicle'], row['configuration']), []).append(row)
-    return tuple(FleetGap(*key, len(some), *(
+    return tuple(_gap(*key, some) for key, some in sorted(of_vehicle.items()))
+
+
+def _gap(vehicle: str, configuration: str, some: Sequence[dict]) -> FleetGap:
+    return FleetGap(vehicle, configuration, len(some), *(
         {name: _quartiles([row[f'gap_{stage}_{name}'] for row in some]) for name in UNITS}
-        for stage in STAGES)) for key, some in sorted(of_vehicle.items()))
+        for stage in STAGES))
 
 
 def _quartiles(values: Iterable[float | None]) -> tuple[float, float, float] | None:

@@ -10,7 +10,7 @@ from quad_ident_ros.identify.result import clean, Identification
 from quad_ident_ros.paper import divergence, printed_ls, table2, table3
 from quad_ident_ros.paper.presets import load_preset
 from quad_ident_ros.paper.ranking import comparisons
-from quad_ident_ros.paper.study import EFFORTS, steps, study
+from quad_ident_ros.paper.study import EFFORTS, in_turn, steps, study
 from quad_ident_ros.warm_up import warm_up
 
 
@@ -33,12 +33,12 @@ class Reproduction:
     printed: Identification
 
 
-def reproduce(names, seeds, on_progress=lambda text, share: None):
+def reproduce(names, seeds, on_progress=lambda text, share: None, each=in_turn):
     """
     Return the Reproduction for presets by name.
 
     Args: names in presets.PRESETS; seeds: count of seeds of the searches; on_progress: called with
-    what is being done and the share done.
+    what is being done and the share done; each: as study.in_turn, does what is done for each seed.
     """
     on_progress('compiling', 0.0)
     warm_up()
@@ -54,7 +54,7 @@ def reproduce(names, seeds, on_progress=lambda text, share: None):
         text = name
         on_progress(text, done / total)
         presets[name] = load_preset(name)
-        studies[name] = study(presets[name].records, seeds, step)
+        studies[name] = study(presets[name].records, seeds, step, each)
     text = 'the equations as printed'
     on_progress(text, done / total)
     cases = divergence.cases()

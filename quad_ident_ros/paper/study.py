@@ -3,6 +3,7 @@
 """Every method on one experiment, over many seeds: at the paper's budget and at equal ones."""
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -84,40 +85,51 @@ def middle(ordered):
     return ordered[(len(ordered) - 1) // 2]
 
 
-def study(records, seeds, on_progress=lambda: None):
+def in_turn(function, items):
+    """Yield each item with what a function makes of it; cluster.values does so on workers."""
+    for item in items:
+        yield item, function(item)
+
+
+def study(records, seeds, on_progress=lambda: None, each=in_turn):
     """
     Fit records by all methods with each effort, and return the Study.
 
     Args: records: FlightRecords from rest; seeds: count of seeds, from 0; on_progress: called
-    steps(seeds) times. The poles are real, as in the paper.
+    steps(seeds) times; each: as in_turn, which seeds of a cluster share. The poles are real, as in
+    the paper.
     """
     # One evaluation of a search is enough to learn its bounds.
     first = identify(records, with_budget(Settings(
         methods=(SWARMS[0], *DIRECT), poles='real', compare_orders=False), 1))
     on_progress()
-    direct = {name: (first.methods[name],) for name in DIRECT}
-    fits = {}
-    for name, effort in EFFORTS.items():
-        drawn = {method: [] for method in SWARMS}
-        for seed in range(seeds):
-            # What the paper's generations have spent already need not be searched for again.
-            known = {} if effort.evaluations is None else {
-                method: earlier[seed] for method, earlier in fits[effort.search].items()
-                if method in SWARMS and _spent(earlier[seed]) == effort.evaluations}
-            missing = tuple(method for method in SWARMS if method not in known)
-            found = known | (_search(records, seed, effort, missing) if missing else {})
-            for method in SWARMS:
-                drawn[method].append(found[method])
-            on_progress()
-        fits[name] = {method: tuple(drawn[method]) if method in drawn else direct[method]
-                      for method in METHODS}
+    drawn = {}
+    for seed, found in each(partial(_of_seed, records), range(seeds)):
+        drawn[seed] = found
+        on_progress()
+    fits = {name: {method: tuple(drawn[seed][name][method] for seed in range(seeds))
+                   if method in SWARMS else (first.methods[method],) for method in METHODS}
+            for name in EFFORTS}
     return Study(first.signals, fits, {**first.settings, 'methods': list(METHODS),
                                        'seeds': seeds}, first.remarks, first.provenance)
 
 
 def steps(seeds):
     """Return how often study reports its progress."""
-    return 1 + len(EFFORTS) * seeds
+    return 1 + seeds
+
+
+def _of_seed(records, seed):
+    """Return the MethodFits of the searches with a seed, {effort: {method: MethodFit}}."""
+    fits = {}
+    for name, effort in EFFORTS.items():
+        # What the paper's generations have spent already need not be searched for again.
+        known = {} if effort.evaluations is None else {
+            method: fit for method, fit in fits[effort.search].items()
+            if _spent(fit) == effort.evaluations}
+        missing = tuple(method for method in SWARMS if method not in known)
+        fits[name] = known | (_search(records, seed, effort, missing) if missing else {})
+    return fits
 
 
 def _search(records, seed, effort, methods):

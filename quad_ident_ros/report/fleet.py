@@ -13,6 +13,7 @@ from quad_ident_ros.report.fleet_words import (
     points,
     rows_of,
     summary_line,
+    whole_gap_line,
     with_configuration,
 )
 from quad_ident_ros.report.screen import console, say, table_of
@@ -38,6 +39,8 @@ def show_insight(found: Insight, stream: TextIO) -> None:
     if found.gaps:
         say(screen, 'gap of the velocity half a second ahead, m/s: median of the groups')
         screen.print(table_of(GAPS, gap_rows(found), GAPS[1:]))
+        if found.gap.before['velocity'] is not None:
+            say(screen, whole_gap_line(found))
 
 
 def effect_rows(found: Insight) -> list[list[str]]:

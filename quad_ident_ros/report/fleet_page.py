@@ -24,6 +24,7 @@ from quad_ident_ros.report.fleet_words import (
     Point,
     points,
     summary_line,
+    whole_gap_line,
     with_configuration,
     WORSE,
 )
@@ -180,6 +181,7 @@ def _gap(found: Insight) -> list:
             tag('p', markup('Error of the velocity half a second ahead, median of the groups of '
                             'each vehicle. The light part of a bar is what the effects named '
                             'close, the dark part remains; the mark is the noise.')),
+            tag('p', markup(f'Median {whole_gap_line(found)}.')),
             _live(table(['vehicle', 'groups', 'before, m/s', 'after, m/s', 'noise, m/s', ''],
                         rows, ('text', '', '', '', '', 'text'),
                         caption='Gap before and after, over the whole fleet'))]

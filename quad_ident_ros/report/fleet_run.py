@@ -157,10 +157,11 @@ def workers(client):
 
 def dashboard(client):
     """Return where the dashboard of Dask is, or how to have it, in words."""
-    link = None
+    link = drawn = None
     with suppress(Exception):       # a scheduler may have none
         link = client.dashboard_link
-    if link and find_spec('bokeh'):
+        drawn = client.run_on_scheduler(find_spec, 'bokeh')
+    if link and drawn:
         return f"Dask's dashboard: {link}"
     return "Dask's dashboard needs bokeh where the scheduler runs: pip install bokeh"
 

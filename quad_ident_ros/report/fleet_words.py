@@ -165,6 +165,14 @@ def summary_line(found: Insight) -> str:
             + (f', {len(found.failed)} not diagnosed' if found.failed else ''))
 
 
+def whole_gap_line(found: Insight) -> str:
+    """Return a sentence on the gap of the velocity over all groups, where it is known."""
+    before, after, noise = (stage['velocity'][0] for stage in (
+        found.gap.before, found.gap.after, found.gap.noise))
+    return (f'over {counted(found.gap.groups, "group")} of the whole fleet: {before:.3g} m/s '
+            f'before, {after:.3g} m/s after, {noise:.3g} m/s of noise')
+
+
 def known_effect(name: str) -> str:
     """Return the title of an effect, or its name where this version does not know it."""
     return EFFECTS[name].title if name in EFFECTS else name
@@ -195,8 +203,9 @@ def _suspect(found: Insight) -> list[Point]:
         return []
     names = listed([f'{vehicle} {file}' for vehicle, file, _ in found.suspect])
     return [Point(SUSPECT, found.suspect[0][0],
-                  f'{counted(len(found.suspect), "flight")} differ from all others of the same '
-                  f'vehicle, and changed nothing: {names}; look at their logs')]
+                  f'{counted(len(found.suspect), "flight")} '
+                  f'{"differs" if len(found.suspect) == 1 else "differ"} from all others of the '
+                  f'same vehicle, and changed nothing: {names}; look at their logs')]
 
 
 def _signed(part: Part) -> str:

@@ -33,12 +33,14 @@ class Program:
     """
     An instance of the class that FILE.py:NAME names.
 
-    at_once: whether it has step_many; takes_wrench: whether it takes force and moment. Raises
-    InputError for all that is wrong with the file, in one line that says where.
+    spec: the same, in any folder; at_once: whether it has step_many; takes_wrench: whether it
+    takes force and moment. Raises InputError for all that is wrong with the file, in one line that
+    says where.
     """
 
     def __init__(self, spec: str) -> None:
         self._user = UserClass(spec, '--simulator')
+        self.spec = f'{self._user.path}:{self._user.name}'
         self.at_once = self._user.optional('step_many') is not None
         if not self.at_once:
             self._reset = self._user.method('reset', METHODS)

@@ -2,15 +2,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """A user's simulator as what flies predictions, on all cores where it flies one at a time."""
 
-from concurrent.futures import ProcessPoolExecutor
-from concurrent.futures.process import BrokenProcessPool
-from multiprocessing import get_context
+from contextlib import ExitStack
+from functools import lru_cache, partial
 import os
 from time import perf_counter
 from types import TracebackType
+from typing import Any
 
 import numpy as np
 
+from quad_ident_ros.cluster import cluster, is_installed, values, WorkerDied
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.greybox.flights import Track
 from quad_ident_ros.greybox.parameters import SPLIT
@@ -30,13 +31,15 @@ class Simulator:
     The simulator FILE.py:NAME of a vehicle, a Predictor; to be used in a `with`.
 
     Its vehicle is that which it flies, with the effects that it has. Predictions with other
-    effects have them around it, see plan.plan_of.
+    effects have them around it, see plan.plan_of. One that flies a state at a time does so on all
+    cores where Dask is installed.
     """
 
     def __init__(self, spec: str, vehicle: Vehicle) -> None:
         self.spec, self.vehicle = spec, vehicle
         self._program = Program(spec)
-        self._pool: ProcessPoolExecutor | None = None
+        self._client: Any = None
+        self._workers = ExitStack()
         hover = np.full(len(vehicle.rotors), vehicle.hover_speed)
         still = np.concatenate([[0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0], np.zeros(6)])[None]
         self._fly(Plan(still, hover[None], np.full((1, 1), 0.01), hover[None, None],
@@ -47,8 +50,7 @@ class Simulator:
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None,
                  trace: TracebackType | None) -> None:
-        if self._pool is not None:
-            self._pool.shutdown(cancel_futures=True)
+        self._workers.close()
 
     def __call__(self, track: Track, vehicle: Vehicle, z: np.ndarray, starts: np.ndarray,
                  first: np.ndarray, count: int) -> np.ndarray:
@@ -61,30 +63,28 @@ class Simulator:
     def _fly(self, plan: Plan) -> np.ndarray:
         """Return the true states (B, M + 1, 13) along a Plan."""
         batch, cores = len(plan.starts), len(os.sched_getaffinity(0))
-        if self._program.at_once or cores == 1 or batch < 2:
+        if self._program.at_once or cores == 1 or batch < 2 or not is_installed():
             return fly(self._program, plan)
         begun = perf_counter()
         done = [fly(self._program, plan.part(slice(0, 1)))]
-        if self._pool is None and (perf_counter() - begun) * batch < WORTH:
+        if self._client is None and (perf_counter() - begun) * batch < WORTH:
             return np.concatenate([*done, fly(self._program, plan.part(slice(1, batch)))])
-        if self._pool is None:
-            # Started afresh: a copy of this process would have the locks of its threads.
-            self._pool = ProcessPoolExecutor(cores, get_context('spawn'), _load, (self.spec,))
+        if self._client is None:
+            self._client = self._workers.enter_context(cluster(workers=cores))
         edges = np.linspace(1, batch, min(PARTS * cores, batch - 1) + 1).astype(int)
         parts = [plan.part(slice(*edge)) for edge in zip(edges[:-1], edges[1:], strict=True)]
         try:
-            return np.concatenate([*done, *self._pool.map(_fly_here, parts)])
-        except BrokenProcessPool:
+            flown = {number: states for (number, _), states in values(
+                self._client, partial(_fly_there, self._program.spec), enumerate(parts))}
+        except WorkerDied:
             raise InputError(f'{self.spec}: it ended the process in which it flew; run it by '
                              'itself to see why') from None
+        return np.concatenate([*done, *(flown[number] for number in range(len(parts)))])
 
 
-_HERE: list[Program] = []     # the simulator of a process that flies nothing else
+_program_there = lru_cache(1)(Program)
+"""The simulator of a worker, by its specification."""
 
 
-def _load(spec: str) -> None:
-    _HERE.append(Program(spec))
-
-
-def _fly_here(plan: Plan) -> np.ndarray:
-    return fly(_HERE[0], plan)
+def _fly_there(spec: str, part: tuple[int, Plan]) -> np.ndarray:
+    return fly(_program_there(spec), part[1])

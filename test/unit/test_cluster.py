@@ -10,7 +10,7 @@ import time
 
 import pytest
 
-from quad_ident_ros.cluster import cluster, Done, results, TimeOver, WorkerDied
+from quad_ident_ros.cluster import cluster, Done, results, TimeOver, values, WorkerDied
 from quad_ident_ros.errors import InputError
 
 pytest.importorskip('distributed', reason="Dask is not installed: pip install '.[fleet]'")
@@ -78,8 +78,15 @@ def test_what_ends_hangs_or_fills_a_worker_does_not_stop_the_rest(client):
     errors = {number: type(done.error) for number, done in found.items() if done.error}
     assert errors == {3: WorkerDied, 5: TimeOver, 7: InputError, 11: WorkerDied}
     assert str(found[7].error) == 'seven is no number here'
+    assert 'may need more memory than a worker has' in str(found[3].error)
     assert all(found[number] == Done(number, number) for number in range(20)
                if number not in errors)
+
+
+def test_values_come_with_their_items_and_the_first_error_is_raised(client):
+    assert dict(values(client, square, range(20))) == {number: number ** 2 for number in range(20)}
+    with pytest.raises(InputError, match='seven is no number here'):
+        dict(values(client, trouble, [7]))
 
 
 def test_what_hangs_with_the_lock_of_python_is_ended_too(client):

@@ -4,6 +4,7 @@
 
 from dataclasses import replace
 import json
+from types import SimpleNamespace
 
 import pytest
 
@@ -12,6 +13,7 @@ from quad_ident_ros.cli.main import main, parser
 pytest.importorskip('pyarrow', reason="pyarrow is not installed: pip install '.[fleet]'")
 from quad_ident_ros.fleet.run import COMPARING, DIAGNOSING, Progress, Summary  # noqa: E402, I100
 from quad_ident_ros.report.fleet_run import (  # noqa: E402, I100
+    dashboard,
     line,
     Reporter,
     seconds_left,
@@ -50,6 +52,15 @@ def test_the_end_says_which_groups_have_no_values_of_single_flights():
     assert summary_text(Summary(12, groups, 0, (), ('it took long',) * 2), 'out').splitlines() == [
         '12 flights in 7 groups: 7 diagnosed', '2 groups without values of single flights: it '
         'took long; the same command tries again']
+
+
+@pytest.mark.parametrize('drawn, said', [
+    (object(), "Dask's dashboard: http://10.0.0.5:8787/status"),
+    (None, "Dask's dashboard needs bokeh where the scheduler runs: pip install bokeh")])
+def test_the_dashboard_is_named_where_the_scheduler_can_draw_it(drawn, said):
+    client = SimpleNamespace(dashboard_link='http://10.0.0.5:8787/status',
+                             run_on_scheduler=lambda *words: drawn)
+    assert dashboard(client) == said
 
 
 def test_lines_for_a_machine_go_into_a_folder_that_is_made(tmp_path):

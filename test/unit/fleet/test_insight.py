@@ -94,6 +94,7 @@ def test_the_data_is_json_of_its_schema(found):
     assert data['schema'] == 'quad_ident/insight/1'
     assert [event['vehicle'] for event in data['events']] == [
         event.vehicle for event in found.events]
+    assert data['gap']['groups'] == sum(one['groups'] for one in data['gaps']) == 32
 
 
 def test_the_terminal_shows_the_list_first(found):
@@ -103,6 +104,7 @@ def test_the_terminal_shows_the_list_first(found):
     text = stream.getvalue()
     assert text.index('what to look at first') < text.index('uav3') < text.index('effects in')
     assert '160 flights of 8 vehicles' in text
+    assert 'over 32 groups of the whole fleet: 0.4 m/s before, 0.05 m/s after' in text
 
 
 def test_the_page_has_every_vehicle_and_loads_nothing(found, tmp_path):
@@ -112,6 +114,7 @@ def test_the_page_has_every_vehicle_and_loads_nothing(found, tmp_path):
     text = page.read_text(encoding='utf-8')
     assert text.count('<figure data-vehicle=') == len(found.histories) == 24
     assert text.count('<svg class="small"') == 24
+    assert 'Median over 32 groups of the whole fleet: 0.4 m/s before' in text
     assert 'http://' not in text and 'https://' not in text
 
 

@@ -3,6 +3,7 @@
 """Fits over seeds, which method is better, and what that makes of the paper's claims."""
 
 from dataclasses import replace
+from functools import partial
 import json
 from types import SimpleNamespace
 
@@ -10,6 +11,7 @@ import numpy as np
 import pytest
 from scipy.stats import binom
 
+from quad_ident_ros.cluster import cluster, values
 from quad_ident_ros.identify.identify import identify, Settings, with_budget
 from quad_ident_ros.identify.methods import METHODS
 from quad_ident_ros.identify.signals import OUTPUTS
@@ -31,6 +33,17 @@ def reproduction():
 @pytest.fixture(scope='module')
 def table_3_study(reproduction):
     return reproduction.studies['paper_table3']
+
+
+@pytest.mark.slow
+def test_workers_that_share_the_seeds_give_the_same_costs(table_3_study):
+    pytest.importorskip('distributed', reason="Dask is not installed: pip install '.[fleet]'")
+    with cluster(workers=2) as client:
+        shared = study(load_preset('paper_table3').records, SEEDS, each=partial(values, client))
+    for effort in EFFORTS:
+        for name in METHODS:
+            np.testing.assert_array_equal(shared.costs(effort, name),
+                                          table_3_study.costs(effort, name))
 
 
 @pytest.mark.slow

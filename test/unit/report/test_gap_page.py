@@ -280,7 +280,8 @@ def test_what_cannot_be_told_apart_beside_a_larger_effect_ends_the_sentence(term
     changes = {'undetermined': ('motor_lag', 'actuation_delay'), 'sure': ('rotor_drag',)}
     verdict, size, *_ = terminal(**changes).splitlines()
     assert verdict == (f'{terminal().splitlines()[0]}; beside it, the flights cannot '
-                       'distinguish between lag of the motors (motor_lag) and delay of the commands (actuation_delay)')
+                       'distinguish between lag of the motors (motor_lag) and delay of the '
+                       'commands (actuation_delay)')
     assert size.startswith('With this effect, ')
 
 
