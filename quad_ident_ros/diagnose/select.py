@@ -64,6 +64,10 @@ def select(flights: list[Flight], vehicle: Vehicle, causes: tuple[Candidate, ...
             if turn == PASSES or not search.weigh_anew():
                 break
     search.settle()
+    # A simpler set, or one within its bounds, may leave other errors than those it was weighed by.
+    if search.weigh_anew():
+        search.look_among(causes, lambda share: None)
+        search.settle()
     on_progress(1.0)
     return search.selection()
 

@@ -147,7 +147,7 @@ def test_bad_logs_are_refused(tmp_path):
     events = crazyflie_events(SMALL, MOTORS)
     whole = usdlog(events)
     refused(file(tmp_path, whole[:22]), 'ends in its header')
-    refused(file(tmp_path, whole[:55]), 'no name')
+    refused(file(tmp_path, whole[:55]), 'name is missing')
     refused(file(tmp_path, whole[:1] + b'\x03\0' + whole[3:]), 'version 3')
     refused(file(tmp_path, usdlog(events[:1], claims=900)), 'Crazyflie')
     refused(file(tmp_path, usdlog([(1, 'e', ('acc.x(z)',), [], [])])), 'acc.x(z)')

@@ -112,7 +112,7 @@ def test_a_wrong_kind_is_told_by_its_content(kind, name, tmp_path):
     content, *words = KINDS[kind]
     (tmp_path / name).write_bytes(content)
     refused(tmp_path / name, *words)
-    with pytest.raises(InputError, match='this is|empty'):
+    with pytest.raises(InputError, match='this is|this kind|empty'):
         contents_of(tmp_path / name)
 
 
