@@ -77,6 +77,7 @@ def cluster(scheduler: str | None = None, workers: int | None = None,
     if not is_installed():
         raise InputError("Dask is not installed: pip install 'quad_ident_ros[fleet]'")
     import dask
+    import distributed  # noqa: F401  first: what is set before it would take its defaults along
     logging.getLogger('distributed').setLevel(logging.CRITICAL)     # we say what matters
     with dask.config.set({'distributed.admin.low-level-log-length': REMEMBERED}):
         yield from _there(scheduler) if scheduler is not None else _here(workers, memory)

@@ -6,6 +6,8 @@ from operator import length_hint
 import os
 import re
 import signal
+import subprocess
+import sys
 import time
 
 import pytest
@@ -100,6 +102,23 @@ def test_a_scheduler_that_is_not_there_is_said_in_one_line():
             cluster('tcp://127.0.0.1:1'):
         pass
     assert '\n' not in str(caught.value)
+
+
+def test_one_cluster_leaves_the_settings_of_dask_to_the_next():
+    """In a process that has not imported Dask yet."""
+    made = subprocess.run([sys.executable, '-c', ONE_AFTER_THE_OTHER], capture_output=True,
+                          text=True)
+    assert made.returncode == 0, made.stderr
+
+
+ONE_AFTER_THE_OTHER = """
+from contextlib import suppress
+from quad_ident_ros.cluster import cluster
+from quad_ident_ros.errors import InputError
+for _ in range(2):
+    with suppress(InputError), cluster('no address'):
+        pass
+"""
 
 
 @pytest.mark.parametrize('address', ['10.0.0.5', 'tcp://', 'tcp://host', 'http://host:8786', '',
