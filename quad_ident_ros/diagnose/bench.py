@@ -249,9 +249,12 @@ class Bench:
 
     def errors(self, model: Model) -> dict[int, float]:
         """Return {column: standard error}: of the best set where it has the column."""
-        best, variances = self.selection.best.estimate, np.diag(self._known(model)[1])
+        best, out = self.selection.best.estimate, {*self.taken_out(model)}
+        errors = np.sqrt(np.maximum(np.diag(self._known(model)[1]), 0.0))
+        # What is taken out is given for the others, but not for itself.
         return (dict(zip(model.estimate.columns, model.estimate.errors, strict=True))
-                | dict(zip(best.columns, np.sqrt(np.maximum(variances, 0.0)), strict=True)))
+                | {column: float(whole if column in out else error) for column, error, whole
+                   in zip(best.columns, errors, self.selection.errors, strict=True)})
 
     def taken_out(self, model: Model) -> list[int]:
         """Return the columns of the best set's effects that a Model has not, but one tied to."""
