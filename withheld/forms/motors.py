@@ -75,8 +75,8 @@ class TwoPoles(Motor):
         smooth = speeds if self._smooth is None else self._smooth
         before = smooth
         self._smooth = towards(smooth, command, 0.4 * self.times, step)
-        return towards(speeds, 0.5 * (before + self._smooth) if np.any(self.times) else command,
-                        0.6 * self.times, step)
+        goal = 0.5 * (before + self._smooth) if np.any(self.times) else command
+        return towards(speeds, goal, 0.6 * self.times, step)
 
 
 class DeadBand(Motor):

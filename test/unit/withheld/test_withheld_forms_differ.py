@@ -89,6 +89,7 @@ def test_a_motor_is_no_lag_of_the_library(form):
 
     # What follows a command is at the end of its step.
     true, command = true[:-1], command[:-1]
+
     def slew(logs):
         up, down = HOVER * STEP_OF_MOTORS * np.exp(logs + 4.0)
         return missed(followed(lambda w, c: w + np.clip(c - w, -down, up), command))
