@@ -34,7 +34,7 @@ def nuisances_of(track: Track, vehicle: Vehicle, z: np.ndarray, kinds: Sequence[
     """
     Return the nuisances (Z,) of a Track that was not learnt from, beside a vector z.
 
-    fixed (Z,): its prior; slow as of estimate.
+    fixed (Z,): what is held in it; slow as of estimate.
     """
     fixed = np.zeros(len(z)) if fixed is None else fixed
     if not kinds:

@@ -19,7 +19,7 @@ STATE_STEP = np.repeat([1e-4, 1e-4, 1e-5, 1e-4], 3)     # of differences in the 
 STEP = 1e-4                                             # of a parameter's usual size
 WRENCH = tuple(range(SPLIT + registry.SLICES[registry.RESIDUAL_WRENCH.name].start,
                      SPLIT + registry.SLICES[registry.RESIDUAL_WRENCH.name].stop))
-# Differences are wrong by some 1e-6 of themselves: more digits would only take memory.
+# Differences over a step of 1e-4 have no more digits than these: they would only take memory.
 SLOPE = np.float32
 AT_ONCE = 200_000   # samples, of the flight and of rollouts, that are held at once, 40 MB
 ROLLOUTS = 16       # that are put in units of the noise at once, 3 MB

@@ -116,16 +116,8 @@ class TorqueCoefficient(Influence):
         true['k_m'] /= self.parameters['factor_z']
 
 
-class Entrained(Influence):
-    """
-    Inertia that the body drags along through friction, as liquid in a tank or a loose harness.
-
-    Each axis turns a second inertia through a viscous coupling: slow turns have all of it to
-    move, fast ones nothing but its friction (the viscous ring of P. C. Hughes, Spacecraft Attitude
-    Dynamics, 1986; liquids: R. A. Ibrahim, Liquid Sloshing Dynamics, 2005).
-    """
-
-    TIME = 0.05         # s, of the coupling
+class Coupled(Influence):
+    """A second inertia about each axis, which something couples to that of the body."""
 
     def __init__(self, size, params, rng):
         """Draw how much of it each axis has."""
@@ -135,6 +127,18 @@ class Entrained(Influence):
     def alter(self, true, params):
         """Take the inertia that it goes with."""
         self.loads = self.shares * [true[key] for key in AXES]
+
+
+class Entrained(Coupled):
+    """
+    Inertia that the body drags along through friction, as liquid in a tank or a loose harness.
+
+    Each axis turns a second inertia through a viscous coupling: slow turns have all of it to
+    move, fast ones nothing but its friction (the viscous ring of P. C. Hughes, Spacecraft Attitude
+    Dynamics, 1986; liquids: R. A. Ibrahim, Liquid Sloshing Dynamics, 2005).
+    """
+
+    TIME = 0.05         # s, of the coupling
 
     def begin(self, rng):
         """Start at rest."""
@@ -151,7 +155,7 @@ class Entrained(Influence):
             self._rate - self._turning)
 
 
-class Sprung(Influence):
+class Sprung(Coupled):
     """
     Inertia held by a spring, as a camera on rubber dampers: slow turns take it along, fast not.
 
@@ -161,15 +165,6 @@ class Sprung(Influence):
 
     FREQUENCY = 2.0 * np.pi * 4.0       # rad/s, of the inertia on its spring
     DAMPING = 0.3                       # of the critical one
-
-    def __init__(self, size, params, rng):
-        """Draw how much of it each axis has."""
-        self.shares = 0.12 * size * rng.uniform(0.6, 1.0, 3)
-        self.parameters = {'share': 0.12 * size}
-
-    def alter(self, true, params):
-        """Take the inertia that it goes with."""
-        self.loads = self.shares * [true[key] for key in AXES]
 
     def begin(self, rng):
         """Start at rest."""

@@ -5,7 +5,7 @@
 import numpy as np
 
 from withheld.constants import arm_length, GRAVITY
-from withheld.forms.body import AXES, signs
+from withheld.forms.body import Coupled, signs
 from withheld.influence import Influence
 
 
@@ -68,7 +68,7 @@ class Emptying(Influence):
         return self.parameters['mass'] * (1.3 - 0.6 * min(time / 20.0, 1.0))
 
 
-class Slipping(Influence):
+class Slipping(Coupled):
     """
     A battery that dry friction holds: it turns with the body up to a limit, and slips beyond.
 
@@ -77,15 +77,6 @@ class Slipping(Influence):
     """
 
     LIMIT, SMOOTH = 4.0, 0.1        # rad/s^2 of the inertia; rad/s of slip, below which it sticks
-
-    def __init__(self, size, params, rng):
-        """Draw how much of it each axis has."""
-        self.shares = 0.12 * size * rng.uniform(0.6, 1.0, 3)
-        self.parameters = {'share': 0.12 * size}
-
-    def alter(self, true, params):
-        """Take the inertia that it goes with."""
-        self.loads = self.shares * [true[key] for key in AXES]
 
     def begin(self, rng):
         """Start at rest."""
