@@ -49,7 +49,9 @@ def find(kind, name_or_path):
             said = text if text.isprintable() and len(text) < 300 else schema.shown(text)
             if _existing(text, Path.is_dir) is not None:
                 raise InputError(f'{said}: this is a folder; name a file in it')
-            raise InputError(f'{said}: there is no such file; give the path of one, or a name: '
+            problem = ('this is not a file' if _existing(text, Path.exists) else
+                       'there is no such file')
+            raise InputError(f'{said}: {problem}; give the path of one, or a name: '
                              f'{", ".join(names(kind))}')
         return path
     shipped = _existing(config_dir() / kind / f'{text}.yaml')

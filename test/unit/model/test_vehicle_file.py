@@ -389,6 +389,8 @@ def test_what_is_no_mapping_is_refused(data):
 
 
 def test_a_file_that_is_not_there_and_a_name_that_is_not_known():
+    with pytest.raises(InputError, match='/dev/null: this is not a file; give the path of one'):
+        load_vehicle('/dev/null')
     with pytest.raises(InputError, match='/no/such.yaml: there is no such file'):
         load_vehicle('/no/such.yaml')
     with pytest.raises(InputError, match="'quad' is not among the vehicles .*paper_quadrotor"):
