@@ -45,6 +45,12 @@ SMALL = {
                            '--picture {out}'),
     'vehicle': ('yaml', f'vehicle {VEHICLE} -o {{out}}'),
     'export': ('py', f'export {VEHICLE} --to rotorpy -o {{out}}'),
+    **{f'export --to {target}': (ending, f'export {VEHICLE} --to {target} -o {{out}}')
+       for target, ending in (('gazebo', 'sdf'), ('mujoco', 'xml'), ('urdf', 'urdf'),
+                              ('crazyflow', 'toml'))},
+    'fit --json': ('json', f'fit {FLIGHT} --vehicle hummingbird --free mass --json {{out}}'),
+    'info --json': ('json', f'info {FLIGHT} --json {{out}}'),
+    'vehicle --json': ('json', f'vehicle {VEHICLE} --json {{out}}'),
     'export --randomise to an array': ('npz', f'export {VEHICLE} --randomise 5 -o {{out}}'),
 }
 ROOT = str(Path(__file__).resolve().parents[1])

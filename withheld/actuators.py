@@ -69,4 +69,4 @@ class Battery(Part):
 
     def gain(self, speeds):
         """Return the factors on the thrust of rotors at speeds (n,) of those in hover."""
-        return self.ratio ** self.exponent
+        return max(self.ratio, 0.0) ** self.exponent

@@ -86,7 +86,7 @@ class _Parser(argparse.ArgumentParser):
 
 def _refuse(command, unknown):
     """End with the arguments that a command's parser does not know, and what may be meant."""
-    known = set(re.findall(r'--[a-z][a-z-]+', command.format_help()))
+    known = set(re.findall(r'^  (?:-\w[^,\n]*, )?(--[a-z][a-z-]+)', command.format_help(), re.M))
     hint = suggestion(unknown[0].partition('=')[0], known) or 'try --help'
     command.error(f'unrecognized arguments: {" ".join(unknown)}; {hint}')
 

@@ -55,10 +55,10 @@ def run(options: argparse.Namespace) -> None:
     supplied = dict(_entry(entry) for entry in options.set)
     source = source_of(options.vehicle)
     if source is None:
+        reading = Reading(options.vehicle, OURS, load_vehicle(options.vehicle), (), {}, ())
         if supplied:
             raise InputError('--set: supplies what the file of a simulator does not have; change '
                              'a vehicle file itself')
-        reading = Reading(options.vehicle, OURS, load_vehicle(options.vehicle), (), {}, ())
     else:
         reading = read_vehicle(source, supplied)
     if options.json != '-':

@@ -10,6 +10,7 @@ from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.mixing import allocation_matrix, beyond_limits, squared_speeds
 from quad_ident_ros.model.vehicle import Vehicle
 
+FASTEST = 1e100     # rad/s: sums of squares of speeds below it, and their squares, are finite
 BY_SPEEDS = 'by_speeds'     # in a record's info: its commands are measured rotor speeds
 
 
@@ -69,7 +70,13 @@ def _with_inputs(record: FlightRecord, vehicle: Vehicle) -> FlightRecord:
     if set(commands) != set(wanted):
         raise InputError(f'the record has {len(commands)} rotor commands and the vehicle '
                          f'{vehicle.name} {len(wanted)} rotors: name its vehicle')
-    inputs = np.square(record.stack(*wanted)) @ allocation_matrix(vehicle).T
+    speeds = record.stack(*wanted)
+    beyond = np.abs(speeds) > FASTEST
+    if beyond.any():
+        k, j = np.argwhere(beyond)[0]
+        raise InputError(f'{record.label()}, sample {k}, column {wanted[j]!r}: {speeds[k, j]:g} '
+                         'rad/s is the speed of no rotor; give the commands in rad/s')
+    inputs = np.square(speeds) @ allocation_matrix(vehicle).T
     return FlightRecord(record.t, {**record.columns, **dict(zip(INPUTS, inputs.T, strict=True))},
                         record.info)
 

@@ -41,6 +41,8 @@ SATURATED = 'saturated'
 QUATERNION = ('qw', 'qx', 'qy', 'qz')
 EULER = ('phi', 'theta', 'psi')
 
+RESOLUTION = 1e-12  # s: a float of an hour has half of it; shorter steps end in infinite quotients
+
 _ROTOR_COLUMN = re.compile(r'(cmd|rotor)[1-9][0-9]*')
 
 
@@ -63,16 +65,20 @@ def find_fault(t, columns):
     Return the first value that a flight record may not hold.
 
     Args: t (N,) s; columns name -> (N,) in the unit of the name.
-    Returns a Fault, or None: t is finite and strictly increasing, known columns are finite.
+    Returns a Fault, or None: t is finite and grows by more than RESOLUTION, known columns are
+    finite.
     """
     for name, values in {'t': t, **columns}.items():
         if unit(name) is not None and not np.isfinite(values).all():
             k = int(np.argmin(np.isfinite(values)))
             return Fault(name, k, f'{values[k]} is not a finite number',
                          'fill in the value, or leave the sample out')
-    stuck = t[1:] <= t[:-1]
+    stuck = ~_later(t[1:], t[:-1])
     if stuck.any():
         k = int(np.argmax(stuck)) + 1
+        if t[k] > t[k - 1]:
+            return Fault('t', k, f'{t[k]} s comes less than a picosecond after {t[k - 1]} s',
+                         'give the times in seconds, one sample of each')
         return Fault('t', k, f'{t[k]} s does not come after {t[k - 1]} s',
                      'put the samples into the order of time, one of each')
     return None
@@ -85,8 +91,14 @@ def faulty(t: np.ndarray, columns: Mapping) -> np.ndarray:
         if unit(name) is not None:
             wrong |= ~np.isfinite(values)
     latest = np.maximum.accumulate(np.where(wrong, -np.inf, t))
-    wrong[1:] |= t[1:] <= latest[:-1]
+    wrong[1:] |= ~_later(t[1:], latest[:-1])
     return wrong
+
+
+def _later(t: np.ndarray, before: np.ndarray) -> np.ndarray:
+    """Return whether each time is more than RESOLUTION after one before it."""
+    with np.errstate(over='ignore', invalid='ignore'):
+        return t - before > RESOLUTION
 
 
 CUT = ('the last line of the file has no line end and was left out: a recording that was cut off '
@@ -134,13 +146,13 @@ class FlightRecord:
         object.__setattr__(self, 'info', dict(self.info))
         t = self._checked('t', self.t, None)
         if len(t) < 2:
-            raise InputError(f'{self._label()} has {counted(len(t), "sample")}; at least 2 are '
+            raise InputError(f'{self.label()} has {counted(len(t), "sample")}; at least 2 are '
                              'needed')
         columns = {name: self._checked(name, values, len(t))
                    for name, values in self.columns.items()}
         fault = find_fault(t, columns)
         if fault is not None:
-            raise InputError(f'{self._label()}, sample {fault.sample}, column {fault.column!r}: '
+            raise InputError(f'{self.label()}, sample {fault.sample}, column {fault.column!r}: '
                              f'{fault.problem}; {fault.remedy}')
         object.__setattr__(self, 't', t)
         object.__setattr__(self, 'columns', columns)
@@ -164,7 +176,7 @@ class FlightRecord:
         """Return the named columns side by side, (N, k); InputError names those missing."""
         missing = [name for name in names if not self.has(name)]
         if missing:
-            raise InputError(f'{self._label()} has no column {", ".join(missing)}; it has: '
+            raise InputError(f'{self.label()} has no column {", ".join(missing)}; it has: '
                              f'{", ".join(["t", *self.columns])}')
         return np.stack([self.t if name == 't' else self.columns[name] for name in names], axis=-1)
 
@@ -183,12 +195,12 @@ class FlightRecord:
         if self.has(*EULER):
             return self.stack(*EULER)
         if not self.has(*QUATERNION):
-            raise InputError(f'{self._label()} has no attitude; give the columns qw, qx, qy, qz '
+            raise InputError(f'{self.label()} has no attitude; give the columns qw, qx, qy, qz '
                              'or phi, theta, psi')
         quaternion = self.stack(*QUATERNION)
         norm = np.linalg.norm(quaternion, axis=-1)
         if norm.min() < 1e-3:
-            raise InputError(f'{self._label()}, sample {int(norm.argmin())}, columns qw..qz: the '
+            raise InputError(f'{self.label()}, sample {int(norm.argmin())}, columns qw..qz: the '
                              'quaternion is zero; '
                              + without(self.t, norm < 1e-3, 'fill in its attitude'))
         folded = euler_from_quaternion(quaternion / norm[:, None])
@@ -226,23 +238,24 @@ class FlightRecord:
         rest = np.partition(steps, count - 1)[:count]
         return float(max(np.median(steps), rest.mean() / DENSEST))
 
-    def _label(self):
+    def label(self):
+        """Return what messages call the record: its source, or its name."""
         source = self.info.get('source') or self.info.get('name')
         return f'{source}' if source else 'the flight record'
 
     def _checked(self, name, values, length):
         if not isinstance(name, str) or not name.isprintable() or name != name.strip() or not name:
-            raise InputError(f'{self._label()}: {str(name)[:40]!r} is not a column name; use '
+            raise InputError(f'{self.label()}: {str(name)[:40]!r} is not a column name; use '
                              'printable text without spaces around it')
         if length is not None and name == 't':
-            raise InputError(f'{self._label()}: the columns repeat t; give it once')
+            raise InputError(f'{self.label()}: the columns repeat t; give it once')
         try:
             array = np.asarray(values, dtype=float).view()
         except (TypeError, ValueError):
-            raise InputError(f'{self._label()}, column {name!r}: the values are not numbers; '
+            raise InputError(f'{self.label()}, column {name!r}: the values are not numbers; '
                              'give numbers or leave the column out') from None
         if array.ndim != 1 or (length is not None and len(array) != length):
-            raise InputError(f'{self._label()}, column {name!r}: shape {array.shape} does not '
+            raise InputError(f'{self.label()}, column {name!r}: shape {array.shape} does not '
                              f'fit; give one value for each sample, {length or "(N,)"}')
         array.flags.writeable = False
         return array

@@ -85,12 +85,13 @@ def by_input_errors(judged: Judgement) -> tuple[dict, ...]:
     return tuple(rows)
 
 
-def one_finding(verdict: Verdict) -> tuple[dict, ...]:
+def one_finding(verdict: Verdict, flights: Sequence[Flight]) -> tuple[dict, ...]:
     """
     Return what each named effect may be as well, and what measurement would decide, as data.
 
     effects: names that the flights do not separate. Thrust and mass are separated by
-    the moments, so not where the inertia is found to differ, too.
+    the moments, so not where the inertia is found to differ, too. A lag and a delay are not
+    separated where both are over before the next sample.
     """
     rows, named = [], [name for name in verdict.names if name in EFFECTS]
     # The moments separate thrust from mass, but not where the inertia is off, too.
@@ -101,4 +102,11 @@ def one_finding(verdict: Verdict) -> tuple[dict, ...]:
         rows.append({'effect': effect.name, 'may_be': [list(pair) for pair in effect.same_motion],
                      'effects': sorted(ratio) if loose and ratio else [effect.name],
                      'tells': effect.told_by})
+    late = sorted(name for name, effect in EFFECTS.items() if effect.actuator)
+    rate = 1.0 / max(flight.period for flight in flights)
+    tells = (f'measured rotor speeds, or a log much faster than {rate:.0f} Hz: it is over before '
+             'the next sample')
+    rows += [{'effect': name, 'effects': late, 'tells': tells,
+              'may_be': [[EFFECTS[other].title for other in late if other != name]]}
+             for name in verdict.brief]
     return tuple(rows)

@@ -131,6 +131,16 @@ class Bench:
             return less
         return self._changed(model, model.z, removed, (), slopes, late)
 
+    def absent(self, model: Model, removed: tuple) -> Model:
+        """
+        Return a Model without effects that are not there, everything else refitted.
+
+        What each flight has of them is then its own, however alike the flights are by chance.
+        """
+        return self._changed(model, model.z, removed, (), None, own=frozenset(
+            cause for cause in model.chosen if cause.nuisance is not None
+            and cause.nuisance.shared in {one.effect for one in removed}))
+
     def instead(self, model: Model, cause: Candidate, rival: Candidate, z: np.ndarray) -> Model:
         """Return a Model with a rival in the place of one of its effects; z (Z,) has the rival."""
         near = model.z.copy()
@@ -138,22 +148,24 @@ class Bench:
         return self._changed(model, near, (cause,), (rival,), None)
 
     def _changed(self, model: Model, z: np.ndarray, removed: tuple, added: tuple,
-                 slopes: Slopes | None, kept: Mapping[int, float] = MappingProxyType({})
-                 ) -> Model:
+                 slopes: Slopes | None, kept: Mapping[int, float] = MappingProxyType({}),
+                 own: frozenset[Candidate] = frozenset()) -> Model:
         """
         Return a Model with effects taken out and added, everything refitted from z (Z,) on.
 
-        kept {column: mean}: nuisances that stay as they are, but with this mean over the flights.
+        kept {column: mean}: nuisances that stay as they are, but with this mean over the flights;
+        own: nuisances that are free in what flights share, too.
         """
         fit, z = model.estimate, z.copy()
         columns = [column for cause in removed for column in cause.columns]
         z[columns] = nominal(self.vehicle)[columns]
         fixed = np.stack(model.vectors) - model.z
         alike = {column for cause in removed for column in _columns_alike(cause.effect)}
+        alike -= {column for cause in own if cause.nuisance for column in cause.nuisance.columns}
         shared = [column for column in sorted(alike) if fixed[:, column].any()]
         # Thrust, wind and moment of a flight do what many effects do: they stay as they are.
         held = {cause for cause in model.chosen
-                if cause.nuisance is not None and (
+                if cause.nuisance is not None and cause not in own and (
                     cause.nuisance.of_effect or any(cause.nuisance.sum_to_zero)
                     or {*cause.nuisance.columns} & {*shared, *kept})}
         free = [column for cause in model.chosen

@@ -21,7 +21,7 @@ from quad_ident_ros.diagnose.intake import take_in
 from quad_ident_ros.diagnose.judgement import judge, pooled
 from quad_ident_ros.diagnose.noise import noise_of
 from quad_ident_ros.diagnose.nuisances import as_data as nuisances_as_data
-from quad_ident_ros.diagnose.nuisances import late_controller
+from quad_ident_ros.diagnose.nuisances import late_states
 from quad_ident_ros.diagnose.provenance import recorded
 from quad_ident_ros.diagnose.result import Diagnosis
 from quad_ident_ros.diagnose.rules import RULES, Rules
@@ -79,7 +79,7 @@ def diagnose(records: Iterable[FlightRecord], vehicle: Vehicle, *,
                          + '; name other effects')
     selection = select(intake.flights, vehicle, causes, rules,
                        lambda share: told(0.7 * share))
-    prompt = late_controller(selection, intake.flights, vehicle)
+    prompt = late_states(selection, intake.flights, vehicle, rules)
     if prompt:
         intake = intake.shifted(prompt)
         selection = select(intake.flights, vehicle, causes, rules,
@@ -112,7 +112,7 @@ def diagnose(records: Iterable[FlightRecord], vehicle: Vehicle, *,
                    for name, gap in pooled(judged.noise).items()},
         unknown=measure.unexplained(judged, measure.channels(after, vehicle, rules)),
         undetermined=verdict.undetermined, sure=verdict.sure,
-        one_finding=advice.one_finding(verdict), not_shown=tuple(dict.fromkeys(
+        one_finding=advice.one_finding(verdict, intake.flights), not_shown=tuple(dict.fromkeys(
             (*unseen, *advice.cannot_show(intake.flights, verdict)))),
         fly_next=advice.fly_next(selection, intake.flights, vehicle, model.z, verdict, unseen,
                                  rules),

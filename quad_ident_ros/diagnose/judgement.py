@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What each effect contributes, which effects matter, and whether something unknown remains."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import combinations
 
@@ -53,10 +54,8 @@ def judge(bench: Bench) -> Judgement:
     """
     best, rules = bench.selection.best, bench.rules
     full = model = bench.model(best.chosen, best.estimate)
-    null = nominal(bench.vehicle)
-    ends = bench.ends(tuple(null + vector - full.z for vector in full.vectors))
     noises = bench.noise_gaps(full)
-    before, noise = gaps.gap(ends), pooled(noises)
+    before, noise = gaps.gap(_nominal_ends(bench, full)), pooled(noises)
     weights: dict[Candidate, Weight] = {}
     without: dict[Candidate, Model] = {}
     while model.effects:
@@ -87,6 +86,7 @@ def judge(bench: Bench) -> Judgement:
     present = probabilities(bench.selection.posterior, weights, rules)
     absent = tuple(cause for cause in there.values() if present[cause.effect] < rules.present)
     if set(model.effects) <= set(absent) and closes_half(model.gap, before, noise, rules):
+        model = _fewest(bench, model, before, noise)
         absent = tuple(cause for cause in absent if cause not in model.effects)
     # What needs values that no vehicle has does the work of something else, which it stands for.
     untold = bench.untold(model)
@@ -95,13 +95,35 @@ def judge(bench: Bench) -> Judgement:
     present |= {cause.effect: rules.prior_odds for cause in stand_ins}
     material = tuple(cause for cause in model.effects if cause not in {*absent, *stand_ins})
     if set(model.effects) <= set(full.effects):
-        final = full if not absent else bench.without(full, absent)
+        final = full if not absent else bench.absent(full, absent)
     else:
         improbable = tuple(cause for cause in model.effects if cause in absent)
-        final = bench.without(model, improbable) if improbable else model
-    return Judgement(final, material, stand_ins, untold, weights, present, without, ends,
-                     bench.left_out(final), noises,
-                     unexplained(final.gap, before, noise, bool(material), rules))
+        final = bench.absent(model, improbable) if improbable else model
+    ends = _nominal_ends(bench, final)
+    return Judgement(final, in_forms_of(final.effects, material),
+                     in_forms_of(final.effects, stand_ins), untold,
+                     dict(zip(in_forms_of(final.effects, weights), weights.values(), strict=True)),
+                     present,
+                     dict(zip(in_forms_of(final.effects, without), without.values(), strict=True)),
+                     ends, bench.left_out(final), noises,
+                     unexplained(final.gap, gaps.gap(ends), noise, bool(material), rules))
+
+
+def in_forms_of(effects: Iterable[Candidate], causes: Iterable[Candidate]
+                ) -> tuple[Candidate, ...]:
+    """
+    Return causes in the forms that some effects have, and as they are where these have them not.
+
+    A form may leave its bounds once another effect is taken out; the usual one takes its place.
+    """
+    there = {cause.effect: cause for cause in effects}
+    return tuple(there.get(cause.effect, cause) for cause in causes)
+
+
+def _nominal_ends(bench: Bench, model: Model) -> tuple:
+    """Return the Ends of the nominal vehicle with the nuisances of each flight in a Model."""
+    null = nominal(bench.vehicle)
+    return bench.ends(tuple(null + vector - model.z for vector in model.vectors))
 
 
 def _weight(model: Model, without: Model, before: dict, noise: dict, distance: float,
@@ -184,6 +206,22 @@ def closes_half(after: dict, before: dict, noise: dict, rules: Rules) -> bool:
     place would say less than the flights do.
     """
     return max(lost_shares(after, before, before, noise, rules).values()) >= rules.half
+
+
+def _fewest(bench: Bench, model: Model, before: dict, noise: dict) -> Model:
+    """
+    Return the Model with the fewest effects that closes half of the gap of some group, too.
+
+    Of as many effects, those that are likeliest.
+    """
+    slopes = bench.slopes(model)
+    for size in range(1, len(model.effects)):
+        fewer = [bench.without(model, removed, slopes)
+                 for removed in combinations(model.effects, len(model.effects) - size)]
+        fewer = [one for one in fewer if closes_half(one.gap, before, noise, bench.rules)]
+        if fewer:
+            return min(fewer, key=lambda one: one.estimate.cost)
+    return model
 
 
 def clear(weights: list[Weight], distance: float, rules: Rules) -> bool:

@@ -11,6 +11,8 @@ from quad_ident_ros.diagnose.intake import Intake
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.diagnose.selection import Selection
 from quad_ident_ros.greybox.errors import GROUPS
+from quad_ident_ros.greybox.estimate import Estimate
+from quad_ident_ros.greybox.flights import Flight
 from quad_ident_ros.greybox.kinematics import measurement_noise
 from quad_ident_ros.greybox.noise import near_noise, quick_noise
 
@@ -26,19 +28,33 @@ def noise_of(selection: Selection, intake: Intake, rules: Rules) -> Noise:
     best = selection.best.estimate
     near, white = (np.median([kind(raw) for raw in best.residuals], axis=0)
                    for kind in (near_noise, quick_noise))
-    deviation = measurement_noise(intake.flights, best.vectors, near, white)
+    deviation, drift = measurement_noise(intake.flights, best.vectors, near, white)
     attitude, position = GROUPS['attitude'], GROUPS['position']
     period = float(np.median([flight.period for flight in intake.flights]))
     steady = max(0.0, float(np.mean(deviation[attitude] ** 2 - white[attitude] ** 2)))
     mean = float(np.mean(white[attitude] ** 2)) * period / horizon_of(intake.flights, rules)
     # A position that is the integral of the velocity has no noise to go by.
     summed = {name for flight in intake.flights for name in flight.summed}
-    levels = ('attitude' not in summed and np.mean(near[attitude]) < rules.filtered_attitude
+    levels = (_is_filtered(near, intake.flights, rules)
               and ('position' in summed or np.mean(near[position]) > rules.tracked_position))
-    level, drift = (rules.levelling, rules.drift) if levels else (0.0, 0.0)
+    level, drift = (rules.levelling, max(rules.drift, drift)) if levels else (0.0, drift)
     walk = rate_walk([(raw[..., GROUPS['rate']], flight.period) for raw, flight in
                       zip(best.residuals, intake.flights, strict=True)], rules)
     return Noise(deviation, float(np.sqrt(steady + mean + level ** 2)), drift, walk)
+
+
+def _is_filtered(near: np.ndarray, flights: Sequence[Flight], rules: Rules) -> bool:
+    """Return whether the attitude of flights, by its near_noise, is that of a filter."""
+    return (not any('attitude' in flight.summed for flight in flights)
+            and bool(np.mean(near[GROUPS['attitude']]) < rules.filtered_attitude))
+
+
+def follows_gyro(best: Estimate, flights: Sequence[Flight], rules: Rules) -> bool:
+    """Return whether the attitude of flights is that of a filter which follows a gyro."""
+    near, white = (np.median([kind(raw) for raw in best.residuals], axis=0)
+                   for kind in (near_noise, quick_noise))
+    return (_is_filtered(near, flights, rules)
+            and bool(np.mean(white[GROUPS['rate']]) > rules.quiet_gyro))
 
 
 def rate_walk(parts: Sequence[tuple[np.ndarray, float]], rules: Rules) -> np.ndarray:

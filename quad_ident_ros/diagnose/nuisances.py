@@ -8,8 +8,11 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from quad_ident_ros.data.clocks import Clock, controllers_own
+from quad_ident_ros.data.clocks import Clock, controllers_own, SURE
+from quad_ident_ros.diagnose.noise import follows_gyro
+from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.diagnose.selection import Selection
+from quad_ident_ros.effects.registry import EFFECTS, PARAMETERS
 from quad_ident_ros.greybox.estimate import estimate
 from quad_ident_ros.greybox.flights import Flight, flight_of, Track
 from quad_ident_ros.greybox.linear import slopes_at, WRENCH
@@ -21,7 +24,7 @@ from quad_ident_ros.greybox.nuisances import (
     NuisanceValues,
     put_right,
 )
-from quad_ident_ros.greybox.parameters import nominal
+from quad_ident_ros.greybox.parameters import nominal, SPLIT
 from quad_ident_ros.model.vehicle import Vehicle
 
 WIDE = 1.64     # standard errors below which 95 % lie, of a bound that is only reported
@@ -49,6 +52,44 @@ def nuisances_of(track: Track, vehicle: Vehicle, z: np.ndarray, kinds: Sequence[
                      nuisances=replace(values, fixed=fixed[None]), starts=starts, slopes=slopes,
                      slow=slow)
     return found.vectors[0] - z
+
+
+def late_states(selection: Selection, flights: Sequence[Flight], vehicle: Vehicle, rules: Rules
+                ) -> float:
+    """
+    Return by how much later (s) the states of a Selection's flights may be stamped, or 0.
+
+    What was found of delays and lags of the actuators counts as such where it is no more than the
+    controller's own lag, or the low pass of the gyro, may be.
+    """
+    return (late_controller(selection, flights, vehicle)
+            or late_gyro(selection, flights, vehicle, rules))
+
+
+def late_gyro(selection: Selection, flights: Sequence[Flight], vehicle: Vehicle, rules: Rules
+              ) -> float:
+    """
+    Return the delays and lags (s) that a Selection found where the gyro's low pass may be all.
+
+    It makes the rate late, and an attitude that a filter has from it as much: no record shows that
+    apart from actuators that answer later. No more than the low pass is counted so.
+    """
+    best, null = selection.best, nominal(vehicle)
+    if not follows_gyro(best.estimate, flights, rules):
+        return 0.0
+    weights, late = np.zeros(len(best.estimate.columns)), 0.0
+    for cause in best.causes:
+        columns = [column for column in cause.columns if EFFECTS[cause.effect].actuator]
+        later = [PARAMETERS[column - SPLIT][1].later for column in columns]
+        part = sum(weight * (best.estimate.z[column] - null[column])
+                   for weight, column in zip(later, columns, strict=True))
+        # Less of a lag than the file has, or one that is no time, is not the gyro's.
+        if columns and (part < 0.0 or not any(later)):
+            return 0.0
+        late += part
+        weights[[best.estimate.columns.index(column) for column in columns]] = later
+    error = float(np.sqrt(weights @ selection.covariance @ weights))
+    return min(float(late), rules.low_pass) if late - SURE * error <= rules.low_pass else 0.0
 
 
 def late_controller(selection: Selection, flights: Sequence[Flight], vehicle: Vehicle) -> float:
@@ -86,7 +127,7 @@ def as_data(kinds: Sequence[Nuisance], flights: Sequence[np.ndarray], late: Sequ
     for kind in kinds:
         if kind.name == CLOCK and kind.spreads == (APART,):
             fitted = np.ravel(found[CLOCK]['values'])
-            hidden = float(fitted.mean() + WIDE * APART / np.sqrt(len(fitted)))
+            hidden = prompt + float(fitted.mean() + WIDE * APART / np.sqrt(len(fitted)))
     offsets = np.array([[clock.late + prompt if clock else prompt] for clock in clocks])
     if offsets.any():
         if CLOCK in found:

@@ -31,6 +31,10 @@ class Rules:
         states. drift: m/s, that of the velocity of such a filter, which stays over a prediction.
         filtered_attitude: rad from sample to sample, below which an attitude is that of
         a filter; tracked_position: m, above which its position is not from motion capture.
+        quiet_gyro: rad/s from sample to sample, below which a rate is no gyro's but a
+        simulation's: the best ones of autopilots have 0.003 deg/s/Hz^0.5 over 50 Hz.
+      low_pass: s by which the low pass of a gyro makes a rate late, and the attitude that a filter
+        has from it: 5.6 ms for the second order at 40 Hz that PX4 has by default.
       walk_lags: s, which separate the growth of the rate's errors from their noise: gyros are
         filtered at 20 Hz and more, effects take half a second.
     Prior:
@@ -116,6 +120,8 @@ class Rules:
     drift: float = 0.05
     filtered_attitude: float = 5e-4
     tracked_position: float = 1e-3
+    quiet_gyro: float = 3e-4
+    low_pass: float = 0.006
     walk_lags: tuple[float, float, float] = (0.02, 0.05, 0.1)
     prior_odds: float = 0.02
     usual_form: float = 0.5

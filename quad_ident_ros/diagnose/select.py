@@ -322,7 +322,7 @@ class _Search:
         assert self.best is not None
         chosen, fit = self.best.chosen, self.best.estimate
         for cause in chosen:
-            name = cause.nuisance.of_effect if cause.nuisance else ''
+            name = cause.nuisance.shared if cause.nuisance else ''
             # The law of a vehicle file may be another than that whose parameters these are.
             laws = [one for one in self.all_causes
                     if one.effect == name and set(cause.columns) <= set(one.columns)]
@@ -333,7 +333,7 @@ class _Search:
                 continue
             places = [fit.nuisances.columns.index(column) for column in cause.columns]
             values = fit.nuisances.values[:, places]
-            if are_alike(values, self.rules.prior_odds):
+            if are_alike(values, fit.nuisances.spreads[places], self.rules.prior_odds):
                 start = fit.z.copy()
                 start[list(cause.columns)] += values.mean(axis=0)
                 whole = key_of((laws[0], *self.best.chosen))

@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 
 from quad_ident_ros.diagnose import gap as gaps
-from quad_ident_ros.diagnose.bench import Bench
+from quad_ident_ros.diagnose.bench import Bench, Model
 from quad_ident_ros.diagnose.candidates import Candidate
 from quad_ident_ros.diagnose.doubts import doubts_of
 from quad_ident_ros.diagnose.fitted import Fitted
@@ -37,6 +37,7 @@ class Verdict:
     sure: tuple[str, ...]
     doubts: dict
     undetermined: tuple[str, ...]
+    brief: tuple[str, ...]
     flight_checks: tuple[FlightCheck, ...]
 
 
@@ -61,15 +62,38 @@ def verdict_of(bench: Bench, judged: Judgement, causes: tuple,
     names = ((*sure, 'unknown') if unknown else ('undetermined',) if open_first
              else sure or ('none',))
     return Verdict(names, minor, _ranking(bench, judged, causes, total, ruled_out), certain, sure,
-                   doubts, tuple(sorted({cause.effect for cause in doubts})), checks)
+                   doubts, tuple(sorted({cause.effect for cause in doubts})),
+                   tuple(cause.effect for cause in certain
+                         if is_brief(bench, judged.model, cause)),
+                   checks)
 
 
 def _replaces(bench: Bench, judged: Judgement, cause: Candidate, rival: Candidate,
               having: Fitted) -> bool:
-    """Return whether a rival in the place of a cause loses nothing that matters."""
+    """
+    Return whether a rival in the place of a cause loses nothing that matters.
+
+    A lag and a delay that are both over before the next sample are one finding, and no rivals.
+    """
+    if is_brief(bench, judged.model, cause) and EFFECTS[rival.effect].actuator:
+        return False
     instead = bench.instead(judged.model, cause, rival, having.estimate.z)
     return not matters(judged.model.gap, instead.gap, gaps.gap(judged.before),
                        pooled(judged.noise), bench.rules)
+
+
+def is_brief(bench: Bench, model: Model, cause: Candidate) -> bool:
+    """
+    Return whether a cause is a delay or a lag that is over before the next sample.
+
+    Records show when the vehicle answers, but not how it does between two samples.
+    """
+    effect, away = EFFECTS[cause.effect], model.z - nominal(bench.vehicle)
+    units = {parameter.name: parameter.unit for parameter in effect.parameters}
+    times = [abs(away[column]) for column in cause.columns
+             if units[NAMES[column].split('.')[1]] == 's']
+    return bool(effect.actuator and times
+                and max(times) <= max(flight.period for flight in bench.flights))
 
 
 def flight_checks(bench: Bench, judged: Judgement) -> tuple[FlightCheck, ...]:

@@ -7,7 +7,7 @@ from quad_ident_ros.effects.base import Effect, Form, Parameter
 FORM = Form(
     name='pure_delay', title='pure delay',
     parameters=(Parameter('delay', 's', 0.0, 0.3, 0.02,
-                          'from the time of a command to the time at which it acts'),),
+                          'from the time of a command to the time at which it acts', later=1.0),),
     source='pure delay, speed(t) = command(t - delay)',
     actuator='delay')
 EFFECT = Effect(

@@ -32,7 +32,8 @@ class Parameter:
     excited_by: the axis without whose motion no flight shows it, or None. A parameter that only
     shapes a form (a length, an exponent) has no effect while the form's strength is null. gain:
     the power of it by which the answer to commands about the axis of excited_by grows. beside:
-    the vector of the vehicle file and the axis that it adds to: their sum is not negative.
+    the vector of the vehicle file and the axis that it adds to: their sum is not negative. later:
+    how many s later, for each unit of it, the vehicle answers commands that change evenly.
     """
 
     name: str
@@ -45,6 +46,7 @@ class Parameter:
     excited_by: Axis | None = None
     gain: Literal[-1, 0, 1] = 0
     beside: tuple[Literal['linear_drag'], int] | None = None
+    later: float = 0.0
 
     def scale(self, vehicle: Vehicle) -> float:
         """Return the vehicle's own measure of this parameter's unit: its mass, arm or inertia."""

@@ -8,7 +8,8 @@ from quad_ident_ros.effects.base import Effect, Form, Parameter
 FORM = Form(
     name='first_order', title='the same lag up and down',
     parameters=(Parameter('time_constant', 's', 0.0, 0.5, 0.03,
-                          'of the first-order lag from commanded to actual rotor speed'),),
+                          'of the first-order lag from commanded to actual rotor speed',
+                          later=1.0),),
     source="first-order motor, speed' = (command - speed) / time_constant; e.g. Mahony, Kumar, "
            'Corke, IEEE Robotics & Automation Magazine 19(3), 2012',
     actuator='lag')

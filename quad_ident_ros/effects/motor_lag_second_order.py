@@ -7,7 +7,7 @@ from quad_ident_ros.effects.base import Form, Parameter
 FORM = Form(
     name='second_order', title='a response of the second order',
     parameters=(Parameter('mean_lag', 's', 0.0, 0.5, 0.03,
-                          'of the speed behind a command that rises evenly'),
+                          'of the speed behind a command that rises evenly', later=1.0),
                 Parameter('inner_lag', 's', 0.0, 0.2, 0.01,
                           'of the torque; damping 0.5 (mean_lag / inner_lag)^0.5')),
     source="inner_lag torque' = torque_wanted - torque, speed' in proportion to the torque, which "

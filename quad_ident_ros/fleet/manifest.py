@@ -32,7 +32,8 @@ class Listed:
     A flight as it was named; '' and None: the log is asked.
 
     folder: the name of the folder that was searched, which is the vehicle where nothing else says
-    which; group: what is diagnosed together instead of a day; vehicle_file: the nominal vehicle.
+    which; group: what is diagnosed together instead of a day; vehicle_file: the nominal vehicle;
+    place: file and line of a manifest.
     """
 
     path: str
@@ -44,6 +45,7 @@ class Listed:
     vehicle_file: str = ''
     folder: str = ''
     covariates: dict[str, float] = field(default_factory=dict)
+    place: str = field(default='', compare=False)
 
 
 def listed(names: Iterable[str]) -> list[Listed]:
@@ -125,7 +127,7 @@ def _entry(manifest: Path, line: int, names: Sequence[str], row: Sequence[str]) 
     return Listed(path, cells.get('vehicle', ''), cells.get('configuration', ''), date, '',
                   cells.get('group', ''),
                   str(beside) if nominal and beside.is_file() else nominal,
-                  manifest.absolute().parent.name, covariates)
+                  manifest.absolute().parent.name, covariates, where)
 
 
 def _covariate(where: str, name: str, cell: str) -> float:

@@ -60,4 +60,9 @@ def _nominal(vehicle: str | None, load: Callable[[str], Vehicle], one: Listed) -
         raise InputError(f'{one.path}: no nominal vehicle is named for it; give --vehicle FILE, '
                          f'put a {VEHICLE_FILE} into the folder of its vehicle, or name one in '
                          'the column vehicle_file of a manifest')
-    return load(name)
+    try:
+        return load(name)
+    except InputError as error:
+        if not (one.vehicle_file and one.place):
+            raise
+        raise InputError(f'{one.place}, column vehicle_file: {error}') from None

@@ -19,7 +19,13 @@ from quad_ident_ros.fleet.look import look, Looked, Looks, without_content
 from quad_ident_ros.fleet.manifest import Listed
 from quad_ident_ros.fleet.plan import Plan
 from quad_ident_ros.fleet.store import keys_of, missing, prepare, read_table
-from quad_ident_ros.fleet.superseded import remove_group, remove_trackings, superseded_by
+from quad_ident_ros.fleet.superseded import (
+    give_way,
+    remove_group,
+    remove_trackings,
+    replaced_in,
+    superseded_by,
+)
 from quad_ident_ros.fleet.track import track, tracked_effects, Tracking
 from quad_ident_ros.fleet.work import (
     DIAGNOSED,
@@ -72,7 +78,8 @@ class Summary:
     What a run has come to: flights, {status: groups}, and paths of copies of flights.
 
     before: groups that were done; untracked: reasons of the groups to whose single flights nothing
-    could be fitted, which the next run tries again.
+    could be fitted, which the next run tries again; replaced: groups whose flights another run has
+    put into groups of its own.
     """
 
     flights: int
@@ -80,6 +87,7 @@ class Summary:
     before: int
     copies: tuple[str, ...]
     untracked: tuple[str, ...] = ()
+    replaced: int = 0
 
 
 Tell = Callable[[Progress], None]
@@ -122,14 +130,16 @@ def run_fleet(client: Any, plan: Plan, out: str | Path, *, time_limit: float = T
     looked = _looked(client, plan.flights, plan.mapping, out, time_limit, tell)
     groups, copies = groups_of(zip(plan.flights, looked, strict=True), plan.nominal_of,
                                plan.mapping, plan.rules)
-    before = _diagnose_all(client, groups, out, time_limit, tell)
-    _check_written(groups, out)
+    before, went = _diagnose_all(client, groups, out, time_limit, tell)
+    replaced = _check_written([group for group in groups if group.key not in went], out)
     untracked = _track_all(client, groups, out, time_limit, tell)
+    for why in went.values():
+        raise InputError(why)
     status = _statuses(out)
     ended = [status.get(group.key) for group in groups]
     return Summary(len(plan.flights) - len(copies), {name: ended.count(name) for name in
                                                      (DIAGNOSED, REFUSED, FAILED, TIMEOUT)},
-                   before, tuple(one.path for one in copies), untracked)
+                   before, tuple(one.path for one in copies), untracked, len(replaced))
 
 
 def _looked(client: Any, flights: Sequence[Listed], mapping: Mapping | None, out: str | Path,
@@ -169,8 +179,12 @@ def _look(mapping: Mapping | None, some: Iterable[tuple[int, Listed]]
 
 
 def _diagnose_all(client: Any, groups: Sequence[Group], out: str | Path, time_limit: float,
-                  tell: Tell) -> int:
-    """Diagnose the groups that are not done, and return how many were."""
+                  tell: Tell) -> tuple[int, dict[str, str]]:
+    """
+    Diagnose the groups that are not done.
+
+    Returns how many were, and why some gave way to those of another run, {key: why}.
+    """
     replaced = superseded_by(groups, out)
     status = _statuses(out)
     todo = [group for group in groups if status.get(group.key) not in DONE]
@@ -179,6 +193,7 @@ def _diagnose_all(client: Any, groups: Sequence[Group], out: str | Path, time_li
     # Each run in an order of its own: two on one data set seldom do the same group at once.
     random.shuffle(todo)
     account = _Account(tell, Progress(DIAGNOSING, len(groups), before, before))
+    ended = {group.key: status.get(group.key, '') for group in groups}
     for done in results(client, partial(_work, out), todo, time_limit, account.tick):
         group = done.item
         outcome = done.value
@@ -190,19 +205,29 @@ def _diagnose_all(client: Any, groups: Sequence[Group], out: str | Path, time_li
                 write(group, out, outcome)
         for key in replaced.get(group.key, ()):
             remove_group(out, key)
+        ended[group.key] = outcome.status
         account.count_group(group, outcome)
-    if todo:    # a run beside this one may have ended with some of these flights meanwhile
-        _remove_replaced(out, superseded_by(groups, out), _statuses(out))
-    return before
+    if not todo:
+        return before, {}
+    # A run beside this one may have ended with some of these flights meanwhile. What this one has
+    # done is known, though a list of the files may not show it yet.
+    return before, give_way(groups, out, {
+        key for key, one in (_statuses(out) | ended).items() if one in DONE})
 
 
-def _check_written(groups: Sequence[Group], out: Path) -> None:
-    """Raise InputError where results of groups that are done are not in the data set."""
-    lost = missing(out, 'groups', {group.key for group in groups}, SHOWN_AFTER)
-    if lost:
+def _check_written(groups: Sequence[Group], out: Path) -> set[str]:
+    """
+    Return the keys of groups that a run beside this one has replaced.
+
+    Raises InputError where results of other groups that are done are not in the data set.
+    """
+    wanted = {group.key for group in groups}
+    replaced = replaced_in(groups, out) if missing(out, 'groups', wanted, 0.0) else set()
+    if lost := missing(out, 'groups', wanted - replaced, SHOWN_AFTER):
         raise InputError(f'{out}: the results of {counted(len(lost), "group")} are not in it, but '
                          'where the workers see this path; name a folder that they share with '
                          'this machine')
+    return replaced
 
 
 def _work(out: str | Path, group: Group) -> Outcome:
@@ -237,6 +262,9 @@ def _track_all(client: Any, groups: Sequence[Group], out: str | Path, time_limit
             failed.add(done.item.group.key)     # what earlier runs fitted to its flights stays
         account.count(failed=int(done.error is not None))
     kept = {group.key: '' for group in groups} | {one.group.key: one.key for one in wanted}
+    # Of a group that another run has replaced meanwhile nothing stays.
+    there = keys_of(out, 'groups')
+    kept = {key: new if key in there else '' for key, new in kept.items()}
     remove_trackings(out, {key: new for key, new in kept.items() if key not in failed})
     return tuple(reasons)
 

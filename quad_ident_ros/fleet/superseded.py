@@ -3,17 +3,27 @@
 """Groups of a data set in whose place new ones come, so that every flight is in it once."""
 
 from collections import defaultdict
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.fleet.grouping import Group
-from quad_ident_ros.fleet.store import keys_of, read_table, remove
+from quad_ident_ros.fleet.store import keys_of, read_rows, read_table, remove
 
 BY_GROUP = 'groups', 'flights', 'effects'
 """Tables whose files have the key of a group; that says whether it exists comes first."""
 BY_TRACKING = 'covariances', 'parameters'
 """Tables whose files have a key that begins with that of a group."""
+
+
+@dataclass(frozen=True)
+class Overlap:
+    """A group in a data set that a run does not replace, for it has a flight that is not named."""
+
+    key: str            # of the group of the run that has flights of it, too
+    other: str
+    path: str           # of the flight that is not named
 
 
 def superseded_by(groups: Iterable[Group], out: str | Path) -> dict[str, list[str]]:
@@ -24,6 +34,69 @@ def superseded_by(groups: Iterable[Group], out: str | Path) -> dict[str, list[st
     or set of flights; of a bag that was still recorded to, the file in it was the flight. Raises
     InputError where one has other flights, too, which are still there: they would be lost.
     """
+    found, overlaps = _shared(groups, out)
+    for one in overlaps:
+        raise InputError(
+            f'{one.path}: it was diagnosed together with flights that are named now; name it, '
+            'too (the folder or manifest with all flights), or give another --out')
+    return found
+
+
+def give_way(groups: Sequence[Group], out: str | Path, done: Collection[str]
+             ) -> dict[str, str]:
+    """
+    Leave each flight once in a data set into which another run may have written, too.
+
+    A group that is done takes the place of those whose flights it has; of two with the same
+    flights, the later one does. Of two that share some flights the first one stays, before it one
+    of `done`, keys of groups that need not be tried again. Returns {key of a group of this run
+    that went: why}.
+    """
+    found, overlaps = _shared(groups, out)
+    planned = {group.key: group for group in groups}
+
+    def order(key: str) -> tuple[bool, float, str]:
+        return key not in done, _written(out, key), key
+
+    def there(key: str) -> bool:
+        # If not, one of this run was replaced by the other run, or one of that is just being
+        # written, and that run comes here, too.
+        return _written(out, key) < float('inf')
+
+    went = {}
+    for key, others in found.items():
+        for other in others if key in done and there(key) else ():
+            newer = other in done and order(other) > order(key)
+            if there(other) and not (newer and _has_all(out, other, planned[key])):
+                remove_group(out, other)
+    for one in overlaps:
+        if not there(one.key):
+            continue
+        if order(one.key) > order(one.other):
+            remove_group(out, one.key)
+            went[one.key] = (
+                f'{one.path}: another run has diagnosed it meanwhile, together with flights that '
+                'are named here; its result stays. Run again with the flights of both, or give '
+                'another --out')
+        elif one.other not in done and there(one.other):
+            remove_group(out, one.other)
+    return went
+
+
+def replaced_in(groups: Iterable[Group], out: str | Path) -> set[str]:
+    """Return the keys of groups whose flights are all in a data set in other groups."""
+    groups = list(groups)
+    own = {group.key for group in groups}
+    table = read_table(out, 'flights', ['group', 'flight', 'path'])
+    there = {name for row in table.to_pylist() if row['group'] not in own
+             for name in (row['flight'], row['path'])}
+    return {group.key for group in groups
+            if all(there & {flight.flight, flight.path} for flight in group.flights)}
+
+
+def _shared(groups: Iterable[Group], out: str | Path
+            ) -> tuple[dict[str, list[str]], list[Overlap]]:
+    """Return what groups take the place of, and the groups that they only overlap with."""
     planned = {group.key: group for group in groups}
     place = {name: key for key, group in planned.items() for flight in group.flights
              for name in (flight.flight, flight.path)}
@@ -34,19 +107,34 @@ def superseded_by(groups: Iterable[Group], out: str | Path) -> dict[str, list[st
             if row['group'] not in planned:
                 rows[row['group']].append((row['flight'], row['path']))
     found: dict[str, list[str]] = defaultdict(list)
+    overlaps = []
     for old, flights in rows.items():
         new = [next((place[name] for name in (flight, path, *map(str, Path(path).parents))
                      if name in place), None) for flight, path in flights]
-        if not any(new):
-            continue
-        for (_, path), key in zip(flights, new, strict=True):
-            if key is None and Path(path).exists():
-                raise InputError(
-                    f'{path}: it was diagnosed together with flights that are named now; name it, '
-                    'too (the folder or manifest with all flights), or give another --out')
-        # Of several, the last that is done: until then the old one stays.
-        found[[key for key in new if key][-1]].append(old)
-    return found
+        keys = [key for key in new if key]
+        lost = next((path for (_, path), key in zip(flights, new, strict=True)
+                     if key is None and Path(path).exists()), None)
+        if keys and lost is not None:
+            overlaps += [Overlap(key, old, lost) for key in dict.fromkeys(keys)]
+        elif keys:
+            # Of several, the last that is done: until then the old one stays.
+            found[keys[-1]].append(old)
+    return found, overlaps
+
+
+def _has_all(out: str | Path, key: str, group: Group) -> bool:
+    """Return whether a group of a data set has all flights of another one."""
+    rows = read_rows(out, 'flights', key, ['flight', 'path'])
+    there = {name for row in rows for name in row.values()}
+    return all(there & {flight.flight, flight.path} for flight in group.flights)
+
+
+def _written(out: str | Path, key: str) -> float:
+    """Return when the file of a group was written, ns; never (inf), where it is missing."""
+    try:
+        return (Path(out) / 'groups' / f'{key}.parquet').stat().st_mtime_ns
+    except OSError:
+        return float('inf')
 
 
 def remove_group(out: str | Path, key: str) -> None:

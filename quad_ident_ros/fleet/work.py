@@ -4,7 +4,7 @@
 
 from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 import json
 from pathlib import Path
 from time import perf_counter
@@ -42,7 +42,7 @@ class Outcome:
 
 @dataclass(frozen=True, eq=False)
 class _Read:
-    """A flight of a group: its records, or why it has none."""
+    """A flight of a group: its records, if it could be read, and why it is refused, if it is."""
 
     member: Member
     records: tuple[FlightRecord, ...]
@@ -65,10 +65,8 @@ def work(group: Group, out: str | Path) -> Outcome:
     reads = [_read(member, group) for member in group.flights]
     found, reason = None, ''
     try:
-        reads, found = _diagnosed(reads, group)
-        status = DIAGNOSED
-    except InputError as error:
-        status, reason = REFUSED, one_line(error)
+        reads, found, reason = _diagnosed(reads, group)
+        status = REFUSED if found is None else DIAGNOSED
     except Exception as error:      # of a library: it takes no other group with it
         status, reason = FAILED, f'{type(error).__name__}: {one_line(error)}'
     outcome = Outcome(status, reason, perf_counter() - begun)
@@ -124,27 +122,25 @@ def _read(member: Member, group: Group) -> _Read:
         return _Read(member, (), f'{member.path}: {type(error).__name__} while it was read')
 
 
-def _diagnosed(reads: list[_Read], group: Group) -> tuple[list[_Read], Diagnosis]:
+def _diagnosed(reads: list[_Read], group: Group) -> tuple[list[_Read], Diagnosis | None, str]:
     """
-    Return the Diagnosis of what was read, and which flights are used; raises InputError.
+    Return what was read and is used, and its Diagnosis, or None and why there is none.
 
     Where together they are refused, those that are refused by themselves are left out.
     """
     some = [one for one in reads if not one.reason]
     if not some:
-        raise InputError(reads[0].reason)
+        return reads, None, reads[0].reason
     try:
-        return reads, _of(some, group)
+        return reads, _of(some, group), ''
     except InputError as error:
-        refusals = {id(one): reason for one in some if (reason := _refusal(one, group))}
-        if not 0 < len(refusals) < len(some):
-            raise
-        first = error
-    reads = [_Read(one.member, (), refusals[id(one)]) if id(one) in refusals else one
-             for one in reads]
-    with suppress(InputError):
-        return reads, _of([one for one in reads if not one.reason], group)
-    raise first
+        first = one_line(error)
+    refusals = {id(one): reason for one in some if (reason := _refusal(one, group))}
+    reads = [replace(one, reason=refusals.get(id(one), one.reason)) for one in reads]
+    if 0 < len(refusals) < len(some):
+        with suppress(InputError):
+            return reads, _of([one for one in reads if not one.reason], group), ''
+    return reads, None, first
 
 
 def _of(reads: Sequence[_Read], group: Group) -> Diagnosis:

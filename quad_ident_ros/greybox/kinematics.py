@@ -29,19 +29,19 @@ FEWEST = 50     # pairs of samples from which on a lag is used
 
 
 def measurement_noise(flights: Sequence[Flight], vectors: Sequence[np.ndarray],
-                      near: np.ndarray, white: np.ndarray) -> np.ndarray:
+                      near: np.ndarray, white: np.ndarray) -> tuple[np.ndarray, float]:
     """
     Return the standard deviation of the measurement noise, with what of it has a memory, (12,).
 
     Of a long memory only what changes within HORIZON counts: start and end of a prediction have
-    the rest in common.
+    the rest in common. What the velocity has of that, m/s, comes second: it moves a prediction.
 
     Args: flights; vectors: a vector z (Z,) per flight, whose tilt and bias of the sensors are
     undone; near (12,): the noise over some samples, which it is at least; white (12,): that from
     sample to sample. From the spread of the pose less the integral of the rate, by the time
     between two samples; constant biases do not count.
     """
-    found = np.array(near, float)
+    found, drift = np.array(near, float), 0.0
     drifts = [_drifts(flight, z) for flight, z in zip(flights, vectors, strict=True)]
     for k, (pose, rate) in enumerate(PAIRS):
         if any(pose in flight.summed for flight in flights):
@@ -52,10 +52,12 @@ def measurement_noise(flights: Sequence[Flight], vectors: Sequence[np.ndarray],
         period = float(np.median([flight.period for flight in flights]))
         whole = _split(lags, spread, period, np.mean(white[GROUPS[rate]] ** 2),
                        [np.mean(found[GROUPS[group]] ** 2) for group in (pose, rate)])
-        for group, power in zip((pose, rate), whole, strict=True):
+        for group, power in zip((pose, rate), whole[:2], strict=True):
             part = GROUPS[group]
             found[part] *= max(1.0, np.sqrt(power / np.mean(found[part] ** 2)))
-    return found
+        if rate == 'velocity':
+            drift = float(np.sqrt(whole[2]))
+    return found, drift
 
 
 def _drifts(flight: Flight, z: np.ndarray) -> list[np.ndarray]:
@@ -104,9 +106,11 @@ def _spreads(flights: Sequence[Flight], drifts: Sequence[np.ndarray], group: sli
 
 
 def _split(lags: np.ndarray, spread: np.ndarray, period: float, white: float,
-           near: Sequence[float]) -> tuple[float, float]:
+           near: Sequence[float]) -> tuple[float, float, float]:
     """
     Return the variances of the noise of a pose and of its rate, as far as it changes in HORIZON.
+
+    Then that of the noise of the rate that stays for so long.
 
     Args: lags (L,) s; spread (L,) of the drift over them; white: the variance of what is white in
     the rate; near (2,): variances of the noise over some samples. The noise of both is a sum of
@@ -126,4 +130,5 @@ def _split(lags: np.ndarray, spread: np.ndarray, period: float, white: float,
                                             np.zeros(count)))
     share /= size
     apart = 1.0 - np.exp(-HORIZON / memory)
-    return share[0] + apart @ share[1:1 + count], white + apart @ share[1 + count:]
+    return (share[0] + apart @ share[1:1 + count], white + apart @ share[1 + count:],
+            (1.0 - apart) @ share[1 + count:])

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import t as student
+from scipy.stats import f as fisher
 
 from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.greybox.flights import inertial, Track
@@ -30,7 +30,9 @@ RARE, LIKELY = 1e-4, 0.5    # odds of flights having one, before looking
 APART = 0.02        # s, how far clocks usually are apart where nothing shows it,
 REST = 0.001        # s, or
 REST_SHARE = 0.2    # periods, how far where they were put right
-MEAN_SHARE = 0.01   # of a spread, how far from zero the mean of what sums to zero may be
+# Of a spread, how far from zero the mean of what sums to zero may be: it turns no usual quadrotor
+# by more than some mrad in half a second.
+MEAN_SHARE = 0.002
 
 
 @dataclass(frozen=True)
@@ -41,7 +43,8 @@ class Nuisance:
     name, what it is, unit, places in z and its usual spread from 0 there, SI; odds of flights
     having it, before looking; of_effect: the name of the effect that differs by flight, or '';
     sum_to_zero: of each place, whether the values of several flights do, because there is an
-    effect for what they share: it must not hide in them.
+    effect for what they share: it must not hide in them; shared: the name of the effect that it
+    is where flights have it alike, or ''.
     """
 
     name: str
@@ -52,6 +55,7 @@ class Nuisance:
     odds: float
     of_effect: str = ''
     sum_to_zero: tuple[bool, ...] = ()
+    shared: str = ''
 
 
 def put_right(tracks: Sequence[Track]) -> bool:
@@ -78,10 +82,10 @@ def nuisances(vehicle: Vehicle, tracks: Sequence[Track]) -> tuple[Nuisance, ...]
     # Inertial flights have one clock and no attitude, and slow moments count for little there.
     if not inertial(tracks):
         kinds.append((CLOCK, CLOCK_TITLE, 's', ('actuation_delay.delay',), (apart,), odds))
-        kinds += [('rate_bias', 'bias of the rate', 'rad/s', rate, (spread,) * 3, RARE)
-                  for spread in (0.01, 0.003)]
-        kinds += [('attitude_bias', 'tilt of the attitude', 'rad', tilt, (spread,) * 3, RARE)
-                  for spread in (0.005, 0.0015)]
+        kinds += [('rate_bias', 'bias of the rate', 'rad/s', rate, (spread,) * 3, RARE, '', (),
+                   'gyro_bias') for spread in (0.01, 0.003)]
+        kinds += [('attitude_bias', 'tilt of the attitude', 'rad', tilt, (spread,) * 3, RARE, '',
+                   (), 'attitude_misalignment') for spread in (0.005, 0.0015)]
         # A weak rotor or a centre of mass that is off tilts all flights alike; nothing turns them.
         kinds.append((TRIM, 'moment', 'N m', moment, tuple(trim_wrench(vehicle)[3:]), RARE, '',
                       (True, True, False)))
@@ -99,7 +103,7 @@ def nuisances(vehicle: Vehicle, tracks: Sequence[Track]) -> tuple[Nuisance, ...]
         if differing:
             kinds.append((f'{name}_by_flight', f'{effect.title}, by flight', differing[0][0].unit,
                           tuple(f'{name}.{parameter.name}' for parameter, _ in differing),
-                          tuple(spread for _, spread in differing), RARE, name))
+                          tuple(spread for _, spread in differing), RARE, name, (), name))
     return tuple(Nuisance(name, title, unit, tuple(INDEX[one] for one in columns), *rest)
                  for name, title, unit, columns, *rest in kinds)
 
@@ -116,19 +120,28 @@ def trim_wrench(vehicle: Vehicle) -> np.ndarray:
     return np.array([0.02 * weight] * 3 + [0.02 * lever, 0.02 * lever, 0.05 * twist])
 
 
-def are_alike(values: np.ndarray, chance: float) -> bool:
+def are_alike(values: np.ndarray, spreads: np.ndarray, chance: float) -> bool:
     """
     Return whether values (F, K) of flights share more than flights that differ by chance do.
 
-    By Student's t of each place: its mean over the flights by its scatter between them. In any of
-    the places it is as large in a share `chance` of such flights at most (Bonferroni's bound).
+    By the F statistic of the mean over the flights by the variance between them: of each place,
+    and of all together in units of their usual spreads (K,). Any of these is as large in a share
+    `chance` of such flights at most (Bonferroni's bound).
     """
     count, places = values.shape
     if count < 2:
         return False
-    error = values.std(axis=0, ddof=1) / np.sqrt(count)
-    return bool(np.any(np.abs(values.mean(axis=0))
-                       > student.ppf(1.0 - 0.5 * chance / places, count - 1) * error))
+    scaled = values / spreads
+    shared, apart = count * scaled.mean(axis=0) ** 2, scaled.var(axis=0, ddof=1)
+
+    def rare(number: int, share: float) -> float:
+        """Return the F statistic of so many places that a share of flights exceeds."""
+        return float(fisher.ppf(1.0 - share, number, number * (count - 1)))
+
+    if places == 1:
+        return bool(shared[0] > rare(1, chance) * apart[0])
+    return bool(np.any(shared > rare(1, 0.5 * chance / places) * apart)
+                or shared.sum() > rare(places, 0.5 * chance) * apart.sum())
 
 
 @dataclass(frozen=True, eq=False)

@@ -82,7 +82,8 @@ class Reporter:
         groups = summary.groups
         self._write({'schema': 'quad_ident/fleet_run/1', 'out': str(self._out),
                      'flights': summary.flights, 'groups': groups, 'before': summary.before,
-                     'copies': list(summary.copies), 'untracked': list(summary.untracked)})
+                     'copies': list(summary.copies), 'untracked': list(summary.untracked),
+                     'replaced': summary.replaced})
         if self._path != '-':
             sys.stdout.write(summary_text(summary, self._out))
 
@@ -136,6 +137,9 @@ def summary_text(summary, out):
         lines.append(f'{counted(len(summary.copies), "file")} left out, whose content is that of '
                      f'another: {", ".join(summary.copies[:3])}'
                      + (' ...' if len(summary.copies) > 3 else ''))
+    if summary.replaced:
+        lines.append(f'{counted(summary.replaced, "group")} not counted: another run has put the '
+                     'flights into groups of its own meanwhile')
     if summary.untracked:
         lines.append(f'{counted(len(summary.untracked), "group")} without values of single '
                      f'flights: {summary.untracked[0]}; the same command tries again')

@@ -110,7 +110,7 @@ def parameters_of(text: str) -> dict[str, Parameter]:
     """Return the parameters of SIH in a text, of each that which is set last."""
     found, begin = {}, 0
     for number, line in enumerate(text.splitlines(keepends=True), 1):
-        for match in () if line.lstrip().startswith('#') else _LINE.finditer(line):
+        for match in _LINE.finditer(line.partition('#')[0]):
             if match[1] in USUAL:
                 first, last = (begin + len(line[:at].encode('utf-8')) for at in match.span(2))
                 found[match[1]] = Parameter(float(match[2]), number, (first, last))

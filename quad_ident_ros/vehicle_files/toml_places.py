@@ -6,6 +6,8 @@ from dataclasses import dataclass
 import re
 
 _HEADER = re.compile(r'\[\s*(?:"((?:[^"\\]|\\.)*)"|\'([^\']*)\'|([\w-]+))\s*\]')
+# Of a table in another one, or of one in an array: what follows is in no table by a single name.
+_DEEPER = re.compile(r'\[\[\s*["\'A-Za-z_]|\[\s*(?:"[^"]*"|\'[^\']*\'|[A-Za-z_][\w-]*)\s*\.')
 _KEY = re.compile(r'\s*["\']?([\w-]+)["\']?\s*=')
 _TOKEN = re.compile(rb'#[^\r\n]*|"(?:[^"\\\r\n]|\\.)*"|\'[^\'\r\n]*\'|[\[\]]|\r\n|\r|\n|'
                     rb'[-+]?(?:\d[\d_]*\.?[\d_]*(?:[eE][-+]?\d+)?|inf|nan)')
@@ -25,12 +27,16 @@ def places_of(text: str, table: str) -> dict[str, Place]:
 
     Keys in other places (inline tables, dotted names) are left out.
     """
-    found, at, begin = {}, '', 0
+    found: dict[str, Place] = {}
+    at: str | None = ''
+    begin = 0
     data = text.encode('utf-8')
     for number, line in enumerate(text.splitlines(keepends=True), 1):
         header, key = _HEADER.match(line), _KEY.match(line)
         if header:
             at = next(name for name in header.groups() if name is not None)
+        elif _DEEPER.match(line):
+            at = None
         elif key and at == table:
             found[key[1]] = Place(number, _numbers(data, begin + len(key[0].encode('utf-8'))))
         begin += len(line.encode('utf-8'))

@@ -5,6 +5,8 @@
 from datetime import datetime, timedelta, timezone
 from pathlib import Path
 import shutil
+import subprocess
+import sys
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from graph import sample, stamps_of, STREAMS, Vehicle, write_experiment
@@ -169,7 +171,8 @@ def restarted(graph, processes, heard, parent):
 
     After some kills, on a loaded machine, FastDDS hands nothing to the process that comes next:
     others go on with the shared memory of the killed one (its issue 5469). The one after that is
-    not affected.
+    seldom affected. Where it is, a process without anything of ours, started while samples come,
+    tells whose fault that is.
     """
     for number in (2, 3):
         again = processes.start('recorder', {'output': str(parent)})
@@ -178,11 +181,50 @@ def restarted(graph, processes, heard, parent):
                             and heard.data()[-1]['joined'] > 10 and heard.data()[-1]['run'], 20.0):
             return again, folder
         again.kill()
+    here = graph.listen(STREAMS['altitude'], 'altitude')
+    graph.spin_until(lambda: here, 'the samples, which are still sent')
+    first = len(here)
+    hears = a_stranger_hears(graph, processes)
+    if len(here) > first + 100 and not hears:
+        pytest.xfail('FastDDS hands nothing to a process of plain rclpy that begins now, either')
     pytest.fail('neither of two recorders that were started joins the run')
 
 
-def test_a_recorder_that_was_killed_goes_on_in_a_new_folder(graph, processes, tmp_path):
+STRANGER = """
+import rclpy
+from rclpy.wait_for_message import wait_for_message
+from geometry_msgs.msg import PointStamped
+rclpy.init()
+node = rclpy.create_node('stranger')
+heard, _ = wait_for_message(PointStamped, node, 'altitude', time_to_wait=10)
+rclpy.shutdown()
+raise SystemExit(0 if heard else 3)
+"""
+
+
+def a_stranger_hears(graph, processes):
+    """Return whether a process of plain rclpy hears what is published."""
+    stranger = subprocess.Popen([sys.executable, '-c', STRANGER], env=processes.environment)
+    try:
+        assert graph.comes_true(lambda: stranger.poll() is not None, 60.0), 'it never ends'
+        assert stranger.returncode in (0, 3)
+        return stranger.returncode == 0
+    finally:
+        stranger.kill()
+        stranger.wait()
+
+
+@pytest.mark.slow
+def test_a_stranger_hears_what_is_published_and_nothing_else(graph, processes, tmp_path):
+    assert not a_stranger_hears(graph, processes)
     path = write_experiment(tmp_path / 'long.yaml', {'psi': (60.0, {'U4': 0.001})})
+    graph.start(Simulator, {'experiment': path, 'real_time_factor': 1.0,
+                            'wait_for_subscribers': False})
+    assert a_stranger_hears(graph, processes)
+
+
+def test_a_recorder_that_was_killed_goes_on_in_a_new_folder(graph, processes, tmp_path):
+    path = write_experiment(tmp_path / 'long.yaml', {'psi': (240.0, {'U4': 0.001})})
     heard = graph.listen(String, 'recorder/statistics', latched())
     recorder = processes.start('recorder', {'output': str(tmp_path / 'flights')})
     await_recorder(graph)

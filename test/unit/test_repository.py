@@ -65,9 +65,11 @@ def _flat(mapping, prefix=''):
             yield prefix + key, value
 
 
-@pytest.mark.parametrize('name', ['requirements.txt', '.ci/requirements-ament.txt',
+@pytest.mark.parametrize('name', ['requirements.txt', 'benchmarks/requirements.txt',
+                                  'withheld/requirements.txt', '.ci/requirements-ament.txt',
                                   '.ci/requirements-browser.txt',
                                   '.ci/requirements-colcon.txt',
+                                  '.ci/requirements-simulators.txt',
                                   '.ci/requirements-site.txt'])
 def test_what_is_installed_is_pinned_with_checksums_and_from_no_named_host(name):
     text = re.sub('#.*', '', (ROOT / name).read_text(encoding='utf-8'))

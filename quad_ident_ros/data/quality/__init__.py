@@ -43,7 +43,7 @@ COLUMNS = (columns.known, columns.incomplete, columns.differentiated, columns.fr
            rotors.count)
 """Checks of columns by themselves."""
 
-COMPARISONS = (stale.held, stale.marked, glitches.attitude,
+COMPARISONS = (stale.held, stale.marked, glitches.attitude, glitches.others,
                units.rates_in_degrees, units.euler_in_degrees, units.force_in_g,
                units.position_in_millimetres, units.speeds_in_rpm, *frames.CHECKS,
                rotors.hover, rotors.size, thrust.carried, thrust.other_vehicle,
@@ -108,11 +108,13 @@ def refuted(records, vehicle):
     Return the codes of errors that cannot be so, by another one of the flights of a vehicle.
 
     Rotors do not change their places from one flight to the next: where one flight shows that
-    order and spins are those of the vehicle file, something else turns the body in the others.
+    order or spins are those of the vehicle file, something else turns the body in the others.
     That the file is of another vehicle is then a warning, as it is by the thrust alone.
     """
-    told = len(records) > 1 and any(rotors.confirmed(record, vehicle) for record in records)
-    return ('rotor_order', 'rotor_spin', 'other_vehicle') if told else ()
+    if len(records) < 2:
+        return ()
+    return tuple(dict.fromkeys(code for record in records
+                               for code in rotors.confirmed(record, vehicle)))
 
 
 def refuse_errors(record, found):

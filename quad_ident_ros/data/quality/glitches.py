@@ -1,10 +1,17 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Short jumps of the attitude, off and back, which the gyro does not see."""
+"""Short jumps, off and back: of the attitude that the gyro does not see, and of other states."""
 
 import numpy as np
-from scipy.ndimage import maximum_filter1d, median_filter, minimum_filter1d, uniform_filter1d
+from scipy.ndimage import (
+    maximum_filter1d,
+    median_filter,
+    minimum_filter1d,
+    percentile_filter,
+    uniform_filter1d,
+)
 
+from quad_ident_ros.data.quality import units
 from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.quality.frames import best_reading, SURE
 from quad_ident_ros.data.quality.once import once
@@ -17,6 +24,14 @@ FAR = 7.0                 # standard deviations of the noise from which on it is
 LEAST = np.radians(0.5)   # and rad,
 LATE = 0.02               # and s of the change of the rate: a late attitude is not a glitch
 ALIKE = 0.7, 1.4          # rate of the attitude over that of the gyro
+BRIEF = 0.03              # s, that a jump of another state lasts: longer ones may be motion
+MOST = 80, 4.0            # so many percent of the samples around, turns of the motion among them,
+                          # are less far off; a jump is so many times as far as these
+# Columns of each other state, the jump from which on it is one, and its unit: in a few samples
+# smaller ones hardly show in a gap.
+STATES = {'position': (('px', 'py', 'pz'), 0.02, 'm'),
+          'velocity': (('vx', 'vy', 'vz'), 0.1, 'm/s'),
+          'rate': (('wx', 'wy', 'wz'), 0.2, 'rad/s')}
 
 
 def attitude(record, vehicle):
@@ -44,6 +59,60 @@ def attitude(record, vehicle):
         'gyro sees nothing of it',
         'fit and diagnosis give them no weight; look for markers that are hidden or taken for '
         'others')]
+
+
+def others(record, vehicle):
+    """
+    Find jumps of position, velocity and rate that are gone within a few samples.
+
+    They are told where they are as much as the noise, in the mean square, and the units are right.
+    """
+    if units.position_in_millimetres(record, vehicle) or units.rates_in_degrees(record, vehicle):
+        return []
+    found = []
+    for name, (columns, least, unit) in STATES.items():
+        if not record.has(*columns):
+            continue
+        size, off = _beside(record.t, record.stack(*columns), least)
+        if off.any() and np.sum(size[off] ** 2) > np.sum(size[~off] ** 2):
+            times = 'once' if off.sum() == 1 else f'in {off.sum()} samples'
+            found.append(Finding(
+                f'{name}_glitch', 'warning', f'{name}, t = {record.t[np.argmax(off)]:.3f} s',
+                f'{times} the {name} jumps off and back, by up to {size[off].max():.2g} {unit}',
+                'fit and diagnosis give them no weight; look for messages that are damaged or '
+                'markers that are taken for others'))
+    return found
+
+
+def spikes(t, values, name):
+    """
+    Return which samples (N,) of a state jump off and back within some 30 ms.
+
+    Args: t (N,) s; values (N, 3); name: which of STATES.
+    """
+    return _beside(t, values, STATES[name][1])[1]
+
+
+def _beside(t, values, least):
+    """
+    Return how far values (N, 3) are off the running median, (N,), and whether that is far.
+
+    Far is beyond FAR standard deviations of the noise and beyond what is usual around the sample,
+    where a vehicle that turns fast moves more; steps that stay are none. Nothing is far where
+    samples are too rare for a jump to differ from motion.
+    """
+    period = float(np.median(np.diff(t))) if len(t) > 1 else np.inf
+    if period > BRIEF:
+        return np.zeros(len(t)), np.zeros(len(t), bool)
+    half = max(1, round(BRIEF / period))
+    off = values - np.stack([median_filter(column, 2 * half + 1, mode='nearest')
+                             for column in values.T], axis=1)
+    noise = 1.4826 * np.median(np.abs(off), axis=0)
+    size = np.linalg.norm(off, axis=-1)
+    share, times = MOST
+    around = percentile_filter(size, share, 10 * half + 1, mode='nearest')
+    return size, size > np.maximum(times * around,
+                                   max(FAR * float(np.sqrt(np.mean(noise ** 2))), least))
 
 
 def jumps(record):

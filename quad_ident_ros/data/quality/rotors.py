@@ -14,6 +14,11 @@ from quad_ident_ros.model.vehicle import hover_fault
 
 SURE, BETTER = 0.5, 0.2   # mean correlation that an explanation needs, and its lead
 SLOW = 1.0                # s; what changes more slowly is trim, aerodynamics and battery
+# Yaw answers its commands weakly. Over TURN the reaction to the acceleration of the rotors and the
+# noise of the rate average out; headings change within some seconds.
+TURN, TURNS = 0.3, 3.0    # s
+CHANCE = 4.0              # standard errors of a correlation of noise (one over the root of the
+                          # number of independent samples)
 LATEST = 0.08             # s, motors follow their commands within
 ROUNDING = 1e-12          # of a power: less counts as 0
 COMPACT, WIDE = 0.01, 3.0   # moments of inertia over mass arm^2, beyond which no vehicle is built:
@@ -64,10 +69,17 @@ def order_and_spin(record, vehicle):
 
 
 def confirmed(record, vehicle):
-    """Return whether a flight shows that order and spins are those of the vehicle file."""
+    """
+    Return the codes of Findings that a flight speaks against: it shows what the vehicle file says.
+
+    A flight that hardly yaws shows the order of the rotors, but not their spins.
+    """
     told = _evidence(record, vehicle)
-    return (told is not None and told.scores[told.declared] >= SURE
-            and not _wrong(told, vehicle))
+    if told is None or told.scores[told.declared] < SURE or _wrong(told, vehicle):
+        return ()
+    spins = tuple(rotor.spin for rotor in vehicle.rotors)
+    yaws = _spin_scores(told, spins)[spins] >= _sure(told)
+    return ('rotor_order', 'other_vehicle', *(('rotor_spin',) if yaws else ()))
 
 
 def _wrong(told, vehicle):
@@ -91,9 +103,9 @@ class _Evidence:
     """
     What a flight says of the order of its rotors.
 
-    moment (N, 3) on the body and squared commands (N, n) at the times of a grid, fast parts alone;
-    lag: samples that the moment comes later; scores {order: mean correlation of roll and pitch};
-    declared: the order of the vehicle file.
+    moment (N, 3) on the body and squared commands (N, n) at the times of a grid; lag: samples
+    that the moment comes later; scores {order: mean correlation of roll and pitch}; declared: the
+    order of the vehicle file.
     """
 
     grid: Grid
@@ -115,18 +127,19 @@ def _evidence(record, vehicle):
         return None   # rates about other axes: that is to be mended first
     rate = grid.smooth(grid.signal('wx', 'wy', 'wz'))
     inertia = vehicle.inertia_matrix
-    moment = _fast(grid, np.gradient(rate, grid.period, axis=0) @ inertia
-                   + np.cross(rate, rate @ inertia))
-    squared = _fast(grid, grid.smooth(grid.held(*names) ** 2))
+    moment = (np.gradient(rate, grid.period, axis=0) @ inertia
+              + np.cross(rate, rate @ inertia))
+    squared = grid.smooth(grid.held(*names) ** 2)
     position = np.array([rotor.position for rotor in vehicle.rotors])
-    lag, scores = max((_scores(grid, moment, squared, position, shift) for shift in
+    fast = _fast(grid, moment), _fast(grid, squared)
+    lag, scores = max((_scores(grid, *fast, position, shift) for shift in
                        range(round(LATEST / grid.period) + 1)),
                       key=lambda entry: max(entry[1].values()))
     return _Evidence(grid, moment, squared, lag, scores, tuple(range(len(names))))
 
 
-def _fast(grid, signal):
-    return signal - grid.smooth(signal, SLOW)
+def _fast(grid, signal, slow=SLOW):
+    return signal - grid.smooth(signal, slow)
 
 
 def _scores(grid, moment, squared, position, lag):
@@ -149,17 +162,31 @@ def _scores(grid, moment, squared, position, lag):
     return lag, scores
 
 
-def _spin(told, vehicle):
-    target, drive = _aligned(told.grid, told.moment[:, 2:], told.squared, told.lag)
-    spins = tuple(rotor.spin for rotor in vehicle.rotors)
+def _spin_scores(told, spins):
+    """Return {spins: correlation of the moment about z with that of the commands}."""
+    target, drive = _aligned(told.grid, *(
+        _fast(told.grid, told.grid.smooth(signal, TURN), TURNS)
+        for signal in (told.moment[:, 2:], told.squared)), told.lag)
     power = np.sum(target ** 2)
     scores = {}
     for choice in product((1, -1), repeat=len(spins)):
         torque = drive @ np.array(choice, float)
         scale = np.sqrt(power * np.sum(torque ** 2))
         scores[choice] = float(np.sum(target[:, 0] * torque) / scale) if scale > 0 else 0.0
+    return scores
+
+
+def _sure(told):
+    """Return the correlation that spins need: in a short flight noise alone has much of one."""
+    seconds = np.count_nonzero(told.grid.good) * told.grid.period
+    return max(SURE, CHANCE * np.sqrt(TURN / seconds))
+
+
+def _spin(told, vehicle):
+    spins = tuple(rotor.spin for rotor in vehicle.rotors)
+    scores = _spin_scores(told, spins)
     best = max(scores, key=scores.get)
-    if scores[best] < SURE or scores[best] < scores[spins] + BETTER:
+    if scores[best] < _sure(told) or scores[best] < scores[spins] + BETTER:
         return []
     return [Finding(
         'rotor_spin', 'error', f'cmd1 to cmd{len(spins)}',

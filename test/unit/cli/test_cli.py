@@ -193,6 +193,7 @@ def test_bad_input_gets_one_line_and_exit_code_2(call, flights, tmp_path, capsys
 
 @pytest.mark.parametrize(('call', 'meant'), [
     ('diagnos a.csv', 'diagnose'), ('identify a.csv --metod ls', '--method'),
+    ('diagnose a.csv --vehicle iris --out-priors p.yaml', '--priors'),
     ('diagnose a.csv --vehicle hummingbrd', 'hummingbird'),
     ('diagnose a.csv --vehicle iris --effects rotor_drga', 'rotor_drag'),
     ('fly figur8 --vehicle iris -o a.csv', 'figure8'),

@@ -124,3 +124,12 @@ def test_a_bag_carries_a_true_wrench(tmp_path):
 def test_shipped_vehicles_have_arms_by_which_the_unit_is_told():
     for name in ('crazyflie', 'hummingbird', 'iris', 'paper_quadrotor'):
         assert load_vehicle(name).arm_length < 0.4
+
+
+@pytest.mark.parametrize('speed', [1e300, -1e200])
+def test_a_command_that_is_the_speed_of_no_rotor_is_named(speed):
+    vehicle = load_vehicle('iris')
+    columns = {f'cmd{j}': np.full(3, 500.0) for j in range(1, 5)}
+    columns['cmd2'] = np.array([500.0, speed, 500.0])
+    with pytest.raises(InputError, match=r"a\.csv, sample 1, column 'cmd2': .*e\+.*rad/s"):
+        with_inputs(FlightRecord([0.0, 0.1, 0.2], columns, {'source': 'a.csv'}), vehicle)

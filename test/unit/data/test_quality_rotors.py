@@ -16,6 +16,7 @@ from quad_ident_ros.data.csv import write_csv
 from quad_ident_ros.data.quality import cautions, findings, refuted
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.flight.fly import fly_closed_loop
+from quad_ident_ros.flight.measure import SENSORS
 from quad_ident_ros.model.vehicle import load_vehicle, write_vehicle
 
 
@@ -104,6 +105,33 @@ def test_an_order_that_another_flight_refutes_is_a_warning():
               if one['code'] == 'rotor_order']
     assert said['severity'] == 'warning' and said['flight'] == 'wrong'
     assert cautions(right, VEHICLE, refuted([wrong, right], VEHICLE)) == []
+
+
+def mirrored(vehicle):
+    return replace(vehicle, rotors=tuple(replace(rotor, spin=-rotor.spin)
+                                         for rotor in vehicle.rotors))
+
+
+def test_a_flight_that_hardly_yaws_says_nothing_of_the_spins():
+    vehicle = load_vehicle('hummingbird')
+    straight, turning = (fly_closed_loop(vehicle, {}, name, duration=20.0, seed=1,
+                                         noise=SENSORS['mocap_imu'])
+                         for name in ('low_passes', 'lissajous'))
+    assert 'rotor_spin' in refuted([straight, turning], vehicle)
+    wrong = mirrored(vehicle)
+    told = refuted([straight, turning], wrong)
+    assert 'rotor_order' in told and 'rotor_spin' not in told
+    with pytest.raises(InputError, match='spins'):
+        cautions(turning, wrong, told)
+
+
+def test_a_slow_turn_tells_the_spins_through_the_noise_of_a_gyro():
+    vehicle = load_vehicle('hummingbird')
+    record = fly_closed_loop(vehicle, {}, 'lissajous', duration=20.0, seed=1)
+    noise = 0.05 * np.random.default_rng(0).normal(size=len(record))
+    noisy = changed(record, wz=record.columns['wz'] + noise)
+    assert 'rotor_spin' in [one.code for one in findings(noisy, mirrored(vehicle))]
+    assert 'rotor_spin' not in [one.code for one in findings(noisy, vehicle)]
 
 
 OTHER = replace(VEHICLE, name='other', mass=1.5, speed_max=2500.0,

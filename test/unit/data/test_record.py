@@ -68,6 +68,8 @@ def test_records_can_be_copied_and_sent_to_other_processes():
 @pytest.mark.parametrize('times, parts', [
     ([0, 1, 1, 2], ['sample 2', "'t'", 'does not come after']),
     ([0, 2, 1, 3], ['sample 2', "'t'"]),
+    ([0, 1e-3, 1e-3 + 1e-13, 1], ['sample 2', "'t'", 'less than a picosecond after']),
+    (np.arange(4) * 1e-310, ['sample 1', "'t'", 'less than a picosecond after']),
     ([0, np.nan, 1, 2], ['sample 1', "'t'", 'nan']),
     ([0, 1, 2, np.inf], ['sample 3', "'t'", 'inf']),
     ([0], ['1 sample']),

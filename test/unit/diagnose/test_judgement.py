@@ -9,15 +9,17 @@ import numpy as np
 import pytest
 
 from quad_ident_ros.diagnose.bench import Bench, given, standard_errors_from_none
-from quad_ident_ros.diagnose.candidates import candidates
+from quad_ident_ros.diagnose.candidates import Candidate, candidates
 from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.diagnose.gap import Ends, gap
 from quad_ident_ros.diagnose.intake import take_in
 from quad_ident_ros.diagnose.judgement import (
+    _fewest,
     _weight,
     beyond,
     clear,
     closes_half,
+    in_forms_of,
     lost_shares,
     matters,
     pooled,
@@ -41,6 +43,14 @@ NOISE = {'position': 0.01, 'velocity': 0.04, 'attitude': 0.01, 'rate': 0.03}
 def of(**changes):
     """Return {group: gap}: the noise's but for the changes."""
     return NOISE | changes
+
+
+def test_what_is_judged_has_the_form_that_the_last_model_has_it_in():
+    hayden, usual = (Candidate('ground_effect', f'ground_effect {form}', (k,), form)
+                     for k, form in enumerate(('hayden', 'cheeseman_bennett')))
+    drag = Candidate('rotor_drag', 'rotor_drag', (2,))
+    assert in_forms_of((usual,), (drag, hayden)) == (drag, usual)
+    assert in_forms_of((), (hayden,)) == (hayden,)
 
 
 def test_the_tolerance_is_a_share_of_the_noise_but_no_less_than_its_floor():
@@ -264,6 +274,65 @@ def test_what_a_flight_has_by_itself_stays_when_effects_are_taken_out_and_flight
     columns = less.estimate.columns
     assert begun.z[columns] == pytest.approx(less.z[columns], abs=0.5 * less.estimate.errors.min())
     assert begun.gap == pytest.approx(less.gap, rel=0.01)
+
+
+def dragged():
+    """Return a vehicle that feels the wind."""
+    vehicle = load_vehicle('hummingbird')
+    return replace(vehicle, linear_drag=(0.3 * vehicle.mass,) * 3)
+
+
+@pytest.mark.slow
+def test_a_wind_that_flights_share_but_for_a_little_is_an_effect_and_no_nuisance():
+    """Two flights to learn from, whose winds differ by more than the noise."""
+    vehicle = dragged()
+    records = [fly_closed_loop(vehicle, {'wind': {'x': -0.5 * share, 'y': 0.9 / share}},
+                               'lissajous', duration=10.0, seed=seed, noise=SENSORS['mocap_imu'])
+               for seed, share in enumerate((1.1, 0.95, 1.0))]
+    found = diagnose(records, vehicle)
+    assert found.verdict == ('wind',)
+    assert 'wind_by_flight' in found.nuisances
+    [wind] = [row for row in found.ranking if row.effect == 'wind']
+    assert wind.parameters['y'].value == pytest.approx(0.9, abs=0.1)
+
+
+@pytest.mark.slow
+def test_what_flights_share_by_chance_is_their_own_where_no_effect_is_there():
+    """The winds of two flights to learn from are nearly the same; the one held out has another."""
+    vehicle = dragged()
+    records = [fly_closed_loop(vehicle, {'wind': {'x': x, 'y': y}}, 'lissajous', duration=10.0,
+                               seed=seed, noise=SENSORS['mocap_imu'])
+               for seed, (x, y) in enumerate(((0.9, 0.1), (0.9, 0.24), (-0.3, 0.9)))]
+    intake = take_in(records, vehicle, None, RULES)
+    selection = select(intake.flights, vehicle, candidates(intake.flights, vehicle, RULES), RULES)
+    bench = Bench(intake.flights, (*intake.tracks, intake.held_out), vehicle, selection,
+                  noise_of(selection, intake, RULES), RULES)
+    model = bench.model(selection.best.chosen, selection.best.estimate)
+    [wind] = [cause for cause in model.effects if cause.effect == 'wind']
+    column = INDEX['wind.x']
+    removed, gone = bench.without(model, (wind,)), bench.absent(model, (wind,))
+    assert np.mean([vector[column] for vector in removed.vectors[:-1]]) == pytest.approx(
+        0.0, abs=0.05)
+    assert [vector[column] for vector in gone.vectors] == pytest.approx([0.9, 0.9, -0.3], abs=0.1)
+    assert gone.gap['velocity'] < removed.gap['velocity']
+
+
+@pytest.mark.parametrize(('gaps', 'expected'), [
+    ({('drag',): 0.2, ('thrust',): 0.1}, ('thrust',)),      # the likelier one of two that do
+    ({('drag',): 0.2, ('thrust',): 0.5}, ('drag',)),        # the only one of them that does
+    ({('drag',): 0.5, ('thrust',): 0.5}, ('drag', 'thrust'))])
+def test_uncertain_effects_are_named_as_few_as_close_half_of_the_gap(gaps, expected):
+    def model(effects, velocity, cost=0.0):
+        return SimpleNamespace(effects=effects, gap=of(velocity=velocity),
+                               estimate=SimpleNamespace(cost=cost))
+
+    def without(whole, removed, _):
+        kept = tuple(one for one in whole.effects if one not in removed)
+        return model(kept, gaps[kept], cost=gaps[kept])
+
+    bench = SimpleNamespace(slopes=lambda _: None, without=without, rules=RULES)
+    whole = model(('drag', 'thrust'), NOISE['velocity'])
+    assert _fewest(bench, whole, of(velocity=0.64), NOISE).effects == expected
 
 
 @pytest.mark.slow

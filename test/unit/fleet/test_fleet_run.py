@@ -12,38 +12,121 @@ from quad_ident_ros.errors import InputError
 
 pytest.importorskip('pyarrow', reason="pyarrow is not installed: pip install '.[fleet]'")
 from quad_ident_ros.fleet import run  # noqa: E402, I100
-from quad_ident_ros.fleet.grouping import Group  # noqa: E402, I100
+from quad_ident_ros.fleet.grouping import Group, groups_of  # noqa: E402, I100
+from quad_ident_ros.fleet.look import look  # noqa: E402, I100
 from quad_ident_ros.fleet.plan import planned  # noqa: E402, I100
 from quad_ident_ros.fleet.store import read_table  # noqa: E402, I100
+from quad_ident_ros.fleet.superseded import give_way  # noqa: E402, I100
 from quad_ident_ros.fleet.work import Outcome, write  # noqa: E402, I100
 
 
-def test_two_runs_of_which_one_has_more_flights_leave_each_flight_once(tmp_path, monkeypatch):
-    """The narrower one ends while the wider one works; what it wrote gives way."""
+@pytest.fixture
+def beside(tmp_path, monkeypatch):
+    """
+    Return what runs over some of the flights a, b, c of one day while a run over others works.
+
+    The other run ends before the first one writes, or begins once the first one has written.
+    """
     folder = tmp_path / 'flights' / 'seven' / '2026-05-14'
     folder.mkdir(parents=True)
-    for name in 'ab':
+    for name in 'abc':
         (folder / f'{name}.csv').write_text(f't,px\n0,{ord(name)}\n0.1,2\n', encoding='utf-8')
 
-    def results(_, function, items, *__, other=None):
+    def results(_, function, items, *__, before=None, after=None, status='diagnosed'):
         for item in items:
             if isinstance(item, Group):
-                if other:
-                    other()
-                outcome = Outcome('diagnosed', '', 1.0)
+                if before:
+                    before()
+                outcome = Outcome(status, '', 1.0)
                 write(item, tmp_path, outcome)
+                if after:
+                    after()
                 yield Done(item, outcome)
             else:
                 yield Done(item, function(item))
 
-    def narrow():
-        monkeypatch.setattr(run, 'results', results)
-        run.run_fleet(None, planned([str(folder / 'a.csv')], vehicle='hummingbird'), tmp_path)
+    def fly(names, vehicle='hummingbird'):
+        return run.run_fleet(None, planned([str(folder / f'{name}.csv') for name in names],
+                                           vehicle=vehicle), tmp_path)
 
-    monkeypatch.setattr(run, 'results', lambda *some: results(*some, other=narrow))
-    run.run_fleet(None, planned([str(tmp_path / 'flights')], vehicle='hummingbird'), tmp_path)
-    assert sorted(path[-5:] for path in read_table(tmp_path, 'flights')['path'].to_pylist()) == [
-        'a.csv', 'b.csv']
+    def runs(names, others, when='before', status='diagnosed', vehicle='hummingbird'):
+        flown = []
+
+        def other():
+            if not flown:
+                flown.append(others)
+                monkeypatch.setattr(run, 'results', lambda *some: results(*some, status=status))
+                fly(others, vehicle)
+
+        monkeypatch.setattr(run, 'results', lambda *some: results(*some, **{when: other}))
+        return fly(names)
+
+    return runs
+
+
+def flights_in(out):
+    """Return the letters of the flights of a data set, one for each row."""
+    return ''.join(sorted(path[-5] for path in read_table(out, 'flights')['path'].to_pylist()))
+
+
+def test_two_runs_of_which_one_has_more_flights_leave_each_flight_once(tmp_path, beside):
+    """The narrower one ends while the wider one works; what it wrote gives way."""
+    beside('ab', 'a')
+    assert flights_in(tmp_path) == 'ab'
+
+
+def test_of_two_runs_that_share_a_flight_the_first_to_write_stays(tmp_path, beside):
+    with pytest.raises(InputError, match=r'c\.csv: another run has diagnosed it meanwhile'):
+        beside('ab', 'bc')
+    assert flights_in(tmp_path) == 'bc'
+    assert len(read_table(tmp_path, 'groups')) == 1
+
+
+def test_a_flight_of_another_group_is_left_once_where_one_group_gives_way(tmp_path, beside):
+    """The groups of the first run: a with b, and d on the day after."""
+    other = tmp_path / 'flights' / 'seven' / '2026-05-15'
+    other.mkdir()
+    (other / 'd.csv').write_text('t,px\n0,9\n0.1,2\n', encoding='utf-8')
+    with pytest.raises(InputError, match=r'c\.csv: another run has diagnosed it meanwhile'):
+        beside(['a', 'b', '../2026-05-15/d'], 'bc')
+    assert flights_in(tmp_path) == 'bcd'
+
+
+def test_what_is_diagnosed_stays_before_what_ran_out_of_time(tmp_path, beside):
+    beside('ab', 'bc', status='timeout')
+    assert flights_in(tmp_path) == 'ab'
+
+
+@pytest.mark.parametrize('when', ['before', 'after'])
+def test_of_two_runs_over_the_same_flights_with_other_vehicles_the_later_one_stays(
+        tmp_path, beside, when, monkeypatch):
+    monkeypatch.setattr(run, 'SHOWN_AFTER', 0.0)
+    beside('ab', 'ab', when, vehicle='iris')
+    assert flights_in(tmp_path) == 'ab'
+
+
+def test_two_runs_that_end_at_once_leave_one_group_of_the_same_flights(tmp_path):
+    """Each sees the group of the other before it removes any."""
+    groups = {}
+    for vehicle in ('hummingbird', 'iris'):
+        path = tmp_path / 'a.csv'
+        path.write_text('t,px\n0,1\n0.1,2\n', encoding='utf-8')
+        plan = planned([str(path)], vehicle=vehicle)
+        looks = [look(one, None) for one in plan.flights]
+        [group], _ = groups_of(zip(plan.flights, looks, strict=True), plan.nominal_of, None,
+                               plan.rules)
+        groups[vehicle] = group
+        write(group, tmp_path / 'out', Outcome('diagnosed', '', 1.0))
+    done = {group.key for group in groups.values()}
+    for group in groups.values():
+        assert give_way([group], tmp_path / 'out', done) == {}
+    assert read_table(tmp_path / 'out', 'groups')['group'].to_pylist() == [groups['iris'].key]
+
+
+def test_a_run_whose_results_a_wider_one_has_replaced_ends_well(tmp_path, beside, monkeypatch):
+    monkeypatch.setattr(run, 'SHOWN_AFTER', 0.0)
+    assert beside('a', 'ab', 'after').replaced == 1
+    assert flights_in(tmp_path) == 'ab'
 
 
 @pytest.fixture
@@ -76,6 +159,27 @@ def test_workers_in_another_folder_use_the_flights_and_data_set_that_are_meant(
     assert summary.groups['refused'] == 1
     assert read_table('fleet', 'flights')['path'].to_pylist() == [str(flight)]
     assert 'are too short' in read_table('fleet', 'groups')['reason'].to_pylist()[0]
+
+
+def test_each_flight_of_a_group_that_is_refused_has_its_reason(flight, tmp_path, monkeypatch):
+    (flight.parent / 'b.csv').write_text(
+        't,px\n' + ''.join(f'{k / 10},{k}\n' for k in range(100)), encoding='utf-8')
+    elsewhere(monkeypatch, tmp_path, lambda given, item: given(item))
+    run.run_fleet(None, planned(['flights'], vehicle='hummingbird'), 'fleet')
+    table = read_table('fleet', 'flights', ['path', 'status', 'reason', 'duration_s'])
+    short, long = sorted(table.to_pylist(), key=lambda row: row['path'])
+    assert short['status'] == long['status'] == 'refused'
+    assert 'too short' in short['reason'] and 'a.csv' in short['reason']
+    assert 'too short' not in long['reason'] and 'b.csv' in long['reason']
+    assert long['duration_s'] == pytest.approx(9.9)
+
+
+def test_a_nominal_vehicle_that_is_wrong_is_said_with_its_line(tmp_path):
+    (tmp_path / 'quad.yaml').write_text('a: 1')
+    manifest = tmp_path / 'm.csv'
+    manifest.write_text('path,vehicle_file\na.csv,iris\nb.csv,quad.yaml\n')
+    with pytest.raises(InputError, match=r'm\.csv, line 3, column vehicle_file: .*quad\.yaml'):
+        planned([str(manifest)])
 
 
 def test_a_name_that_is_no_text_stops_nothing(flight, tmp_path, monkeypatch):

@@ -26,6 +26,33 @@ def test_rows_come_back_and_what_a_row_does_not_have_is_null(tmp_path):
         **dict.fromkeys(TABLES['flights'].names), **FLIGHT}
 
 
+def by_pandas(library, folder):
+    return library.read_parquet(folder).to_dict('records')
+
+
+def by_polars(library, folder):
+    return library.read_parquet(f'{folder}/*.parquet').to_dicts()
+
+
+def by_duckdb(library, folder):
+    table = library.sql(f"select * from '{folder}/*.parquet'")
+    return [dict(zip(table.columns, row, strict=True)) for row in table.fetchall()]
+
+
+@pytest.mark.parametrize(('name', 'rows'), [('pandas', by_pandas), ('polars', by_polars),
+                                            ('duckdb', by_duckdb)])
+def test_tables_open_in_the_libraries_that_people_use(tmp_path, name, rows):
+    library = pytest.importorskip(name)
+    for key in 'gh':
+        write_rows(tmp_path, 'flights', key, [FLIGHT | {'group': key}])
+    found = sorted(rows(library, tmp_path / 'flights'), key=lambda row: row['group'])
+    assert [row['group'] for row in found] == ['g', 'h']
+    assert {row['path'] for row in found} == {'a.csv'}
+    assert [list(row['findings']) for row in found] == [FLIGHT['findings']] * 2
+    assert [dict(row['covariates']) for row in found] == [FLIGHT['covariates']] * 2
+    assert all(row['date'].timestamp() == DAY.timestamp() for row in found)
+
+
 def test_a_file_is_no_data_set(tmp_path):
     (tmp_path / 'a.csv').write_text('t', encoding='utf-8')
     with pytest.raises(InputError, match='this is a file'):

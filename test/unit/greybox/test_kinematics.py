@@ -47,13 +47,19 @@ def noise(random, memory):
 
 def told(states, error, z=None):
     """Return the noise found for recorded states with an error, (4,) by group."""
+    return drifting(states, error, z)[0]
+
+
+def drifting(states, error, z=None):
+    """Return that noise, and the drift of the velocity."""
     count = len(TIMES)
     course = Course(TIMES, np.ones((count, 4)), np.zeros(count))
     flight = Flight('a', course, moved(states, error), np.ones((count, 12), bool),
                     PERIOD, None, np.arange(0, count - 51, 50), 50)
     white = quick_noise(error.reshape(-1, 50, 12))
-    found = measurement_noise([flight], [nominal(VEHICLE) if z is None else z], white, white)
-    return np.array([np.sqrt(np.mean(found[part] ** 2)) for part in GROUPS.values()])
+    found, drift = measurement_noise([flight], [nominal(VEHICLE) if z is None else z], white,
+                                     white)
+    return np.array([np.sqrt(np.mean(found[part] ** 2)) for part in GROUPS.values()]), drift
 
 
 TRUE = np.array([np.sqrt(np.mean(SIZES[part] ** 2)) for part in GROUPS.values()])
@@ -75,6 +81,18 @@ def test_noise_with_a_memory_is_told_whole(memory):
     velocity, attitude = found[1] / TRUE[1], found[2] / TRUE[2]
     assert 0.75 < velocity < 1.25
     assert 0.8 < attitude < 1.2
+
+
+def test_an_error_of_the_velocity_that_stays_over_a_prediction_is_a_drift():
+    white = [noise(np.random.default_rng(seed), None) for seed in range(5)]
+    slow = [error.copy() for error in white]
+    keep, size = np.exp(-PERIOD / 2.0), 0.05
+    for seed, error in enumerate(slow):
+        steps = np.random.default_rng(10 + seed).normal(size=(len(TIMES), 3))
+        error[:, 3:6] += size * lfilter([np.sqrt(1 - keep ** 2)], [1, -keep], steps, axis=0)
+    stays, none = (np.mean([drifting(motion(), error)[1] for error in errors])
+                   for errors in (slow, white))
+    assert none < 0.1 * size < 0.3 * size < stays < 1.3 * size
 
 
 def test_a_bias_of_a_sensor_is_no_noise():

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from quad_ident_ros.data.quality import findings
-from quad_ident_ros.data.quality.glitches import glitches
+from quad_ident_ros.data.quality.glitches import glitches, spikes
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.experiment import fly, load_experiment
@@ -20,6 +20,7 @@ from quad_ident_ros.greybox.flights import flight_of, track_of
 from quad_ident_ros.greybox.nuisances import are_alike, nuisances, NuisanceValues
 from quad_ident_ros.model.attitude import product, rotation_matrix, turn
 from quad_ident_ros.model.dynamics import STATES
+from quad_ident_ros.model.vehicle import load_vehicle
 
 pytestmark = pytest.mark.slow
 EXPERIMENT = load_experiment('closed_loop')
@@ -158,19 +159,41 @@ def test_what_tilts_all_flights_alike_is_not_hidden_in_their_trims(dragged):
     assert set(data['verdict']) == {'rotor_drag', 'com_offset'}
 
 
+def test_what_flights_share_has_next_to_no_place_in_what_sums_to_zero():
+    def deviations(*values):
+        some = NuisanceValues((0,), np.array([0.2]), np.array(values)[:, None], np.array([True]))
+        return float(np.sqrt(some.values.ravel() @ some.precision @ some.values.ravel()))
+
+    little = 0.01 * 0.2
+    assert deviations(little, little, little) > 4.0
+    assert deviations(little, -little) == pytest.approx(0.01 * np.sqrt(2.0))
+
+
 @pytest.mark.parametrize(('alike', 'values'), [
     (True, [[2.58, 1.69], [2.51, 1.63], [2.46, 1.59]]),
     (False, [[0.5, -0.4], [0.9, 0.3], [-0.2, 0.6]]),
     (False, [[0.03], [0.01], [0.02]]), (True, [[0.03, 0.5], [0.031, -0.5], [0.0305, 0.1]]),
-    (False, [[2.5, 1.6]])])
+    (True, [[0.03], [0.031], [0.0305]]),
+    (False, [[2.5, 1.6]]),
+    # Two flights: in two places together they show what neither place shows.
+    (True, [[0.44, 0.91], [0.53, 0.79]]), (False, [[0.44], [0.53]])])
 def test_flights_are_alike_where_chance_would_hardly_have_them_so(alike, values):
-    assert are_alike(np.array(values), 0.02) is alike
+    values = np.array(values)
+    assert are_alike(values, np.ones(values.shape[1]), 0.02) is alike
+
+
+def test_places_count_by_how_much_flights_usually_differ_there():
+    values = np.array([[0.44, 3e-3], [0.5, -4e-3]])
+    assert are_alike(values, np.array([1.0, 1.0]), 0.02)
+    assert not are_alike(values, np.array([1.0, 0.001]), 0.02)
 
 
 @pytest.mark.parametrize('places', [1, 2, 3])
 def test_few_flights_that_differ_by_chance_are_alike(places):
-    values = np.random.default_rng(1).normal(size=(4000, 3, places))
-    assert np.mean([are_alike(one, 0.02) for one in values]) == pytest.approx(0.02, abs=0.006)
+    spreads = np.arange(1.0, places + 1.0)
+    values = np.random.default_rng(1).normal(size=(4000, 3, places)) * spreads
+    alike = [are_alike(one, spreads, 0.02) for one in values]
+    assert np.mean(alike) == pytest.approx(0.02, abs=0.006)
 
 
 def test_a_wind_that_all_flights_have_nearly_alike_is_one():
@@ -207,6 +230,23 @@ def test_biases_that_differ_from_flight_to_flight_are_no_effect(dragged):
     data = diagnose(flights, VEHICLE).as_data()
     assert data['verdict'] == ['rotor_drag']
     assert 'rate_bias' in data['nuisances']
+
+
+@pytest.mark.parametrize('seed', [0, 2])
+def test_a_bias_that_all_flights_have_nearly_alike_is_one(seed):
+    """Each flight's differs by half of what they share, and none was named."""
+    random = np.random.default_rng(seed)
+    shared = 0.01 * random.choice([-1.0, 1.0], 3)
+    flights = []
+    for number, course in enumerate(('lissajous', 'figure8', 'lissajous', 'figure8')):
+        record = fly_closed_loop(load_vehicle('hummingbird'), {}, course, duration=10.0,
+                                 seed=number, noise=SENSORS['mocap_imu'])
+        bias = shared + random.normal(0.0, 0.004, 3)
+        flights.append(changed(record, **{name: record.columns[name] + one
+                                          for name, one in zip(('wx', 'wy', 'wz'), bias,
+                                                               strict=True)}))
+    data = diagnose(flights, load_vehicle('hummingbird')).as_data()
+    assert data['verdict'] == ['gyro_bias'] and 'rate_bias' in data['nuisances']
 
 
 def test_how_far_biases_differ_is_part_of_the_uncertainty_of_the_one_they_share(dragged):
@@ -246,6 +286,34 @@ def test_single_attitudes_that_are_off_do_not_alter_the_verdict(dragged):
     assert abs(value - other) < 0.5 * std
 
 
+SPIKES = {'position': ('p', 0.5), 'velocity': ('v', 2.0), 'rate': ('w', 4.0)}
+
+
+def spiked(record, random):
+    """Return a record with five single samples of each state off by much, as damaged messages."""
+    columns = {}
+    for letter, size in SPIKES.values():
+        for axis in 'xyz':
+            name = f'{letter}{axis}'
+            columns[name] = record.columns[name].copy()
+        rows = random.choice(np.arange(10, len(record) - 10, 7), 5, replace=False)
+        for axis in 'xyz':
+            columns[f'{letter}{axis}'][rows] += size * random.normal(size=5)
+    return changed(record, **columns)
+
+
+def test_single_samples_that_are_off_do_not_alter_the_verdict(dragged):
+    random = np.random.default_rng(4)
+    data, clean = (diagnose(each, VEHICLE).as_data()
+                   for each in ([spiked(record, random) for record in dragged], dragged))
+    assert data['verdict'] == clean['verdict'] == ['rotor_drag']
+    for name in SPIKES:
+        assert data['gap']['after'][name] == pytest.approx(clean['gap']['after'][name], rel=0.2)
+    told = {one['code'] for one in data['findings']}
+    assert told >= {f'{name}_glitch' for name in SPIKES}
+    assert not {f'{name}_glitch' for name in SPIKES} & {one['code'] for one in clean['findings']}
+
+
 def test_single_attitudes_that_are_off_are_found_and_no_others(dragged):
     record, off = spoilt(dragged[0], np.random.default_rng(2))
     rates = record.stack('wx', 'wy', 'wz')
@@ -270,6 +338,23 @@ def test_an_attitude_that_is_off_beside_lost_rows_is_a_glitch_and_these_are_none
     assert not glitches(t[kept], q[kept], rates[kept]).any()
     q[150] = product(q[150], turn([0.0, 0.3, 0.0]))
     assert list(kept[glitches(t[kept], q[kept], rates[kept])]) == [150]
+
+
+@pytest.mark.parametrize(('rate', 'name', 'size'), [
+    (50.0, 'position', 0.2), (100.0, 'velocity', 2.0), (100.0, 'rate', 5.0),
+    (500.0, 'rate', 10.0)])
+def test_single_samples_that_are_off_are_found_and_steps_and_turns_are_none(rate, name, size):
+    t = np.arange(0.0, 8.0, 1.0 / rate)
+    noise = 0.005 * np.random.default_rng(5).normal(size=(len(t), 3))
+    values = size * np.sin(2.0 * np.pi * np.outer(t, [0.5, 1.0, 2.0])) + noise
+    assert not spikes(t, values, name).any()
+    one = len(t) // 3
+    values[one, 1] += size
+    found = np.flatnonzero(spikes(t, values, name))
+    # The median beside a jump is that of fewer samples.
+    assert one in found and np.abs(t[found] - t[one]).max() < 0.04
+    reset = noise + size * (t > 4.0)[:, None]
+    assert not spikes(t, reset, name).any()
 
 
 def test_an_attitude_that_turns_and_stays_is_no_glitch():

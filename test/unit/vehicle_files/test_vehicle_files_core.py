@@ -272,6 +272,7 @@ def test_the_command_says_what_is_wrong_in_one_line(tmp_path, capsys):
     path = written(tmp_path, PARAMETERS)
     for words, said in (([str(path), '--set', 'mass'], 'expected KEY=VALUE'),
                         (['iris', '--set', 'mass=1'], 'change a vehicle file itself'),
+                        (['nothing.urdf', '--set', 'mass=1'], 'there is no such file'),
                         ([str(path), '-o', str(tmp_path / 'v.xml')], 'to a .yaml file'),
                         ([str(written(tmp_path, '<html/>', 'a.xml'))], 'this kind of vehicle'),
                         ([str(tmp_path / 'none.xml')], 'is')):

@@ -20,7 +20,9 @@ from quad_ident_ros.model.vehicle import load_vehicle
 from quad_ident_ros.vehicle_files.export import export
 from quad_ident_ros.vehicle_files.kinds import kind_of
 from quad_ident_ros.vehicle_files.load import load_any_vehicle, read_vehicle
+from quad_ident_ros.vehicle_files.px4_sih import parameters_of
 from quad_ident_ros.vehicle_files.source import Source
+from quad_ident_ros.vehicle_files.toml_places import places_of
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -254,3 +256,18 @@ def test_bad_parameters_are_refused_with_their_line(old, new, said):
 
 def test_they_are_told_by_their_content():
     assert kind_of(DRONE).name == 'drone_models' and kind_of(SCRIPT).name == 'px4_sih'
+
+
+def test_a_value_in_a_comment_is_none():
+    text = 'param set-default SIH_MASS 0.5    # before: SIH_MASS 9.5\n# SIH_T_MAX 7.0\n'
+    [(name, one)] = parameters_of(text).items()
+    assert (name, one.value, text[slice(*one.span)]) == ('SIH_MASS', 0.5, '0.5')
+
+
+@pytest.mark.parametrize('header', ['[cf2x.battery]', '[[cells]]', '["cf2x".\'battery\']'])
+def test_keys_of_a_table_end_where_a_deeper_table_begins(header):
+    text = ('[cf2x]\nmass = 0.032\nrows = [\n[1.0, 2.0],\n[3.0, 4.0]]\nlength = 0.03\n'
+            f'{header}\nmass = 0.007\n')
+    found = places_of(text, 'cf2x')
+    assert {key: [text[slice(*one)] for one in place.numbers] for key, place in found.items()} == {
+        'mass': ['0.032'], 'rows': ['1.0', '2.0', '3.0', '4.0'], 'length': ['0.03']}

@@ -570,3 +570,10 @@ def test_a_floor_holds_what_stands_on_it():
         state = plant.hold(state, np.full(4, 0.4 * plant.hover), 0.01)
     assert state[2] == 0.05 and not np.any(state[3:6])
     assert plant.hold(state, np.full(4, 1.1 * plant.hover), 0.01)[5] > 0.0
+
+
+@pytest.mark.parametrize('exponent', [1.0, 1.8])
+def test_a_battery_that_is_empty_gives_no_thrust(exponent):
+    battery = Battery(3.0, exponent)
+    battery.drain(29.0, 0.01, np.ones(4))
+    assert battery.ratio < 0.0 and battery.gain(np.ones(4)) == 0.0

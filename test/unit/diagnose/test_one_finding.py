@@ -1,0 +1,40 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What motion cannot tell apart is one finding, with what would tell."""
+
+import pytest
+
+from quad_ident_ros.diagnose.diagnosis import diagnose
+from quad_ident_ros.flight.fly import fly_closed_loop
+from quad_ident_ros.flight.measure import SENSORS
+from quad_ident_ros.model.vehicle import load_vehicle
+from quad_ident_ros.report.diagnosis import one_finding_lines
+
+LATE = {'actuation_delay', 'motor_lag'}
+
+
+def diagnosed(effects):
+    """Return the diagnosis of flights at 100 Hz with some effects."""
+    vehicle = load_vehicle('hummingbird')
+    return diagnose([fly_closed_loop(vehicle, effects, course, duration=10.0, seed=seed,
+                                     noise=SENSORS['mocap_imu'])
+                     for seed, course in enumerate(('lissajous', 'figure8', 'lissajous'))],
+                    vehicle)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize('effects', [{'motor_lag': {'time_constant': 0.006}},
+                                     {'actuation_delay': {'delay': 0.004}}])
+def test_a_lag_and_a_delay_that_are_over_before_the_next_sample_are_one_finding(effects):
+    found = diagnosed(effects)
+    assert len(found.verdict) == 1 and set(found.verdict) < LATE
+    [row] = found.one_finding
+    assert row['effect'] == found.verdict[0] and set(row['effects']) == LATE
+    [line] = one_finding_lines(found)
+    assert 'measured rotor speeds' in line and '100 Hz' in line
+
+
+@pytest.mark.slow
+def test_a_lag_of_several_samples_is_a_lag():
+    found = diagnosed({'motor_lag': {'time_constant': 0.04}})
+    assert found.verdict == ('motor_lag',) and not found.one_finding
