@@ -30,9 +30,7 @@ RARE, LIKELY = 1e-4, 0.5    # odds of flights having one, before looking
 APART = 0.02        # s, how far clocks usually are apart where nothing shows it,
 REST = 0.001        # s, or
 REST_SHARE = 0.2    # periods, how far where they were put right
-# Of a spread, how far from zero the mean of what sums to zero may be: it turns no usual quadrotor
-# by more than some mrad in half a second.
-MEAN_SHARE = 0.002
+MEAN_SHARE = 0.01   # of a spread, how far from zero the mean of what sums to zero may be
 
 
 @dataclass(frozen=True)

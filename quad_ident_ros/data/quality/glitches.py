@@ -24,7 +24,8 @@ FAR = 7.0                 # standard deviations of the noise from which on it is
 LEAST = np.radians(0.5)   # and rad,
 LATE = 0.02               # and s of the change of the rate: a late attitude is not a glitch
 ALIKE = 0.7, 1.4          # rate of the attitude over that of the gyro
-BRIEF = 0.03              # s, that a jump of another state lasts: longer ones may be motion
+BRIEF = 0.03              # s, that a jump of another state lasts: longer ones may be motion;
+WIDEST = 60               # and samples, BRIEF at 2 kHz: what it takes to look grows with them
 MOST = 80, 4.0            # so many percent of the samples around, turns of the motion among them,
                           # are less far off; a jump is so many times as far as these
 # Columns of each other state, the jump from which on it is one, and its unit: in a few samples
@@ -104,7 +105,7 @@ def _beside(t, values, least):
     period = float(np.median(np.diff(t))) if len(t) > 1 else np.inf
     if period > BRIEF:
         return np.zeros(len(t)), np.zeros(len(t), bool)
-    half = max(1, round(BRIEF / period))
+    half = round(float(np.clip(BRIEF / max(period, BRIEF / WIDEST), 1, WIDEST)))
     off = values - np.stack([median_filter(column, 2 * half + 1, mode='nearest')
                              for column in values.T], axis=1)
     noise = 1.4826 * np.median(np.abs(off), axis=0)
