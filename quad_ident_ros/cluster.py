@@ -172,12 +172,12 @@ def results(client: Any, function: Callable[[Item], Any], items: Iterable[Item],
     on_tick is called a few times per second. Raises InputError where the scheduler is lost.
     """
     suspects: list[Item] = []
-    for done in _results(client, function, items, time_limit, on_tick, IN_FLIGHT):
+    for done in _results(client, function, items, time_limit, on_tick):
         if isinstance(done.error, WorkerDied):
             suspects.append(done.item)
         else:
             yield done
-    yield from _results(client, function, suspects, time_limit, on_tick, 1)
+    yield from _results(client, function, suspects, time_limit, on_tick, alone=True)
 
 
 def values(client: Any, function: Callable[[Item], Any], items: Iterable[Item]
@@ -194,7 +194,7 @@ def values(client: Any, function: Callable[[Item], Any], items: Iterable[Item]
 
 
 def _results(client: Any, function: Callable[[Item], Any], items: Iterable[Item],
-             time_limit: float | None, on_tick: Callable[[], None], each: int
+             time_limit: float | None, on_tick: Callable[[], None], alone: bool = False
              ) -> Iterator[Done[Item]]:
     news: queue.SimpleQueue = queue.SimpleQueue()
     flying: dict[_Key, tuple[Item, Any]] = {}
@@ -208,7 +208,7 @@ def _results(client: Any, function: Callable[[Item], Any], items: Iterable[Item]
         while more or flying:
             if monotonic() - looked > TICK:
                 looked = monotonic()
-                most = max(AT_LEAST if each > 1 else 1, each * len(client.ncores()))
+                most = 1 if alone else max(AT_LEAST, IN_FLIGHT * len(client.ncores()))
                 on_tick()
             for item in islice(waiting, max(0, most - len(flying))):
                 future = client.submit(_limited, function, item, time_limit, topic, key=next(keys),

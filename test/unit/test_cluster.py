@@ -10,6 +10,7 @@ import subprocess
 import sys
 import time
 
+import numpy as np
 import pytest
 
 from quad_ident_ros.cluster import cluster, Done, results, TimeOver, values, WorkerDied
@@ -18,7 +19,8 @@ from quad_ident_ros.errors import InputError
 pytest.importorskip('distributed', reason="Dask is not installed: pip install '.[fleet]'")
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group('dask')]
 
-LIMIT = 1.0     # s of a task; the others take milliseconds
+DYING = 0.2     # s from the beginning of a deadly task to its end
+LIMIT = 3.0     # s of a task; the others take milliseconds, and one fills the memory of a worker
 MEMORY = 400 * 2 ** 20
 
 
@@ -38,6 +40,17 @@ def trouble(number):
         held = []
         while True:
             held.append(bytearray(10 ** 7))
+    return number
+
+
+def die_often(item):
+    """Note the time in a file, and end the process for some numbers that are neighbours."""
+    path, number = item
+    if 3 <= number < 6:
+        with open(path, 'a') as notes:
+            notes.write(f'{number} {time.time()}\n')
+        time.sleep(DYING)
+        os.kill(os.getpid(), signal.SIGKILL)
     return number
 
 
@@ -83,6 +96,19 @@ def test_what_ends_hangs_or_fills_a_worker_does_not_stop_the_rest(client):
     assert 'may need more memory than a worker has' in str(found[3].error)
     assert all(found[number] == Done(number, number) for number in range(20)
                if number not in errors)
+
+
+def test_what_ended_several_workers_is_tried_again_alone(client, tmp_path):
+    """Else it would take along what waits behind it, which is counted as deadly, too."""
+    path = tmp_path / 'notes'
+    found = list(results(client, die_often, ((path, number) for number in range(12))))
+    assert {done.item[1] for done in found if done.error} == {3, 4, 5}
+    assert sorted(done.item[1] for done in found) == list(range(12))
+    begun = {number: [] for number in (3, 4, 5)}
+    for line in path.read_text().splitlines():
+        begun[int(line.split()[0])].append(float(line.split()[1]))
+    last = sorted(time for times in begun.values() for time in sorted(times)[-2:])
+    assert len(last) == 6 and np.diff(last).min() > DYING
 
 
 def test_values_come_with_their_items_and_the_first_error_is_raised(client):
