@@ -12,7 +12,7 @@ from scipy.ndimage import uniform_filter1d
 from quad_ident_ros.data.clocks import Clock
 from quad_ident_ros.data.inertial import FORCE, SUMMED
 from quad_ident_ros.data.quality import refuse_errors, timing
-from quad_ident_ros.data.quality.glitches import glitches, spikes
+from quad_ident_ros.data.quality.glitches import glitches, independent, spikes
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.data.thrust_level import FULL_SPEED
 from quad_ident_ros.errors import InputError
@@ -84,9 +84,10 @@ def track_of(record: FlightRecord, vehicle: Vehicle, reference_voltage: float | 
     period = float(np.median(np.diff(course.t)))
     seen = np.ones((len(states), ERRORS), bool)
     seen[glitches(course.t, states[:, 6:10], states[:, 10:]), GROUPS['attitude']] = False
-    for name, place in (('position', slice(0, 3)), ('velocity', slice(3, 6)),
-                        ('rate', slice(10, 13))):
-        seen[spikes(course.t, states[:, place], name), GROUPS[name]] = False
+    attitudes = states[:, 6:10] if independent(record) else None
+    for name, place, beside in (('position', slice(0, 3), None), ('velocity', slice(3, 6), None),
+                                ('rate', slice(10, 13), attitudes)):
+        seen[spikes(course.t, states[:, place], name, beside), GROUPS[name]] = False
     force = record.stack(*FORCE) if record.has(*FORCE) else None
     course, states, seen, force = _bridged(course, states, seen, force, period)
     skip = max(1, int(1.0 / (period * RATE) + 0.5))

@@ -11,6 +11,8 @@ from scipy.ndimage import (
     uniform_filter1d,
 )
 
+from quad_ident_ros.data.differentiated import DIFFERENTIATED
+from quad_ident_ros.data.inertial import SUMMED
 from quad_ident_ros.data.quality import units
 from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.quality.frames import best_reading, SURE
@@ -28,6 +30,7 @@ BRIEF = 0.03              # s, that a jump of another state lasts: longer ones m
 WIDEST = 60               # and samples, BRIEF at 2 kHz: what it takes to look grows with them
 MOST = 80, 4.0            # so many percent of the samples around, turns of the motion among them,
                           # are less far off; a jump is so many times as far as these
+MANY = 100_000            # pairs of samples that tell the bias of a gyro
 # Columns of each other state, the jump from which on it is one, and its unit: in a few samples
 # smaller ones hardly show in a gap.
 STATES = {'position': (('px', 'py', 'pz'), 0.02, 'm'),
@@ -74,8 +77,11 @@ def others(record, vehicle):
     for name, (columns, least, unit) in STATES.items():
         if not record.has(*columns):
             continue
-        size, off = _beside(record.t, record.stack(*columns), least)
-        if off.any() and np.sum(size[off] ** 2) > np.sum(size[~off] ** 2):
+        values = record.stack(*columns)
+        size, far = _beside(record.t, values, least)
+        off = far if name != 'rate' else _unturned(
+            record.t, values, far, attitudes_of(record) if independent(record) else None)
+        if off.any() and np.sum(size[off] ** 2) > np.sum(size[~far] ** 2):
             times = 'once' if off.sum() == 1 else f'in {off.sum()} samples'
             found.append(Finding(
                 f'{name}_glitch', 'warning', f'{name}, t = {record.t[np.argmax(off)]:.3f} s',
@@ -85,13 +91,62 @@ def others(record, vehicle):
     return found
 
 
-def spikes(t, values, name):
+def spikes(t, values, name, attitudes=None):
     """
     Return which samples (N,) of a state jump off and back within some 30 ms.
 
-    Args: t (N,) s; values (N, 3); name: which of STATES.
+    Args: t (N,) s; values (N, 3); name: which of STATES; attitudes (N, 4): of rates, those that
+    they are held against, or None where one is reckoned from the other: see independent.
     """
-    return _beside(t, values, STATES[name][1])[1]
+    return _unturned(t, values, _beside(t, values, STATES[name][1])[1], attitudes)
+
+
+def independent(record):
+    """Return whether neither attitude nor rate of a record is reckoned from the other one."""
+    return ('rate' not in record.info.get(DIFFERENTIATED, ())
+            and 'attitude' not in record.info.get(SUMMED, ()))
+
+
+def _unturned(t, rates, off, attitudes):
+    """
+    Return which of the samples (N,) that are off are so though the attitude does not turn so.
+
+    A vehicle that is quick turns and stops within BRIEF: its attitude moves by what the rates
+    beside their median sum up to, within half of it. Constant biases do not count.
+    """
+    if attitudes is None or not off.any():
+        return off
+    half = _half(t)
+    some = np.arange(0, len(t) - 1, -(-len(t) // MANY))
+    bias = np.median(_mismatch(t, rates, attitudes, some) / np.diff(t)[some, None], axis=0)
+    # What sums and medians around them take: a long record has few samples that are off.
+    near = np.flatnonzero(maximum_filter1d(off.view(np.uint8), 4 * half + 9, mode='constant'))
+    joined = np.diff(near) == 1
+    steps = np.where(joined, np.diff(t[near]), 0.0)[:, None]
+    beside = rates[near] - _median(rates[near], half)
+    apart = np.where(joined[:, None], _mismatch(t, rates, attitudes, near[:-1]), 0.0)
+    kept = np.zeros(len(t), bool)
+    kept[near] = (_reach(apart - bias * steps, half)
+                  > 0.5 * _reach(0.5 * (beside[1:] + beside[:-1]) * steps, half))
+    return off & kept
+
+
+def _mismatch(t, rates, attitudes, rows):
+    """Return by how much more than the rates say attitudes turn after samples (M,), (M, 3) rad."""
+    q = attitudes[rows], attitudes[rows + 1]
+    turned = product(conjugate(q[0]), q[1])
+    turned /= np.linalg.norm(turned, axis=-1, keepdims=True) * np.where(turned[:, :1] < 0, -1, 1)
+    return (2.0 * turned[:, 1:]
+            - 0.5 * (rates[rows] + rates[rows + 1]) * (t[rows + 1] - t[rows])[:, None])
+
+
+def _reach(parts, half):
+    """Return how far the sums (N, 3) of parts (N - 1, 3) spread around each sample, (N,)."""
+    sums = np.vstack([np.zeros((1, 3)), np.cumsum(parts, axis=0)])
+    # The noise of the attitude averages out; what the sums move by stays.
+    sums = uniform_filter1d(sums, half, axis=0, mode='nearest')
+    return np.linalg.norm(maximum_filter1d(sums, 2 * half + 3, axis=0, mode='nearest')
+                          - minimum_filter1d(sums, 2 * half + 3, axis=0, mode='nearest'), axis=-1)
 
 
 def _beside(t, values, least):
@@ -105,15 +160,26 @@ def _beside(t, values, least):
     period = float(np.median(np.diff(t))) if len(t) > 1 else np.inf
     if period > BRIEF:
         return np.zeros(len(t)), np.zeros(len(t), bool)
-    half = round(float(np.clip(BRIEF / max(period, BRIEF / WIDEST), 1, WIDEST)))
-    off = values - np.stack([median_filter(column, 2 * half + 1, mode='nearest')
-                             for column in values.T], axis=1)
+    half = _half(t)
+    off = values - _median(values, half)
     noise = 1.4826 * np.median(np.abs(off), axis=0)
     size = np.linalg.norm(off, axis=-1)
     share, times = MOST
     around = percentile_filter(size, share, 10 * half + 1, mode='nearest')
     return size, size > np.maximum(times * around,
                                    max(FAR * float(np.sqrt(np.mean(noise ** 2))), least))
+
+
+def _half(t):
+    """Return how many samples to each side BRIEF is, at times t (N,) s."""
+    period = float(np.median(np.diff(t)))
+    return round(float(np.clip(BRIEF / max(period, BRIEF / WIDEST), 1, WIDEST)))
+
+
+def _median(values, half):
+    """Return the running median (N, 3) of values over so many samples to each side."""
+    return np.stack([median_filter(column, 2 * half + 1, mode='nearest')
+                     for column in values.T], axis=1)
 
 
 def jumps(record):

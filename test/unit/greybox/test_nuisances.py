@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from quad_ident_ros.data.quality import findings
-from quad_ident_ros.data.quality.glitches import glitches, spikes
+from quad_ident_ros.data.quality.glitches import glitches, others, spikes
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.experiment import fly, load_experiment
@@ -345,6 +345,30 @@ def test_single_samples_that_are_off_are_found_and_steps_and_turns_are_none(rate
     assert one in found and np.abs(t[found] - t[one]).max() < 0.04
     reset = noise + size * (t > 4.0)[:, None]
     assert not spikes(t, reset, name).any()
+
+
+@pytest.mark.parametrize(('rate', 'speed'), [(50.0, 40.0), (100.0, 40.0), (100.0, 100.0),
+                                             (250.0, 60.0), (1000.0, 40.0)])
+def test_quick_turns_that_the_attitude_has_too_are_no_glitches_of_the_rate(rate, speed):
+    """Steps of 0.3 rad, as a controller of the second order follows them, and damaged messages."""
+    random = np.random.default_rng(0)
+    t = np.arange(0.0, 20.0, 1.0 / rate)
+    tilt, rates = np.zeros(len(t)), 0.01 * random.normal(size=(len(t), 3))
+    for number, begin in enumerate(range(1, 19, 2)):
+        after, size = np.maximum(t - begin, 0.0), 0.3 * (-1) ** number
+        tilt += size * (1.0 - (1.0 + speed * after) * np.exp(-speed * after))
+        rates[:, 0] += size * speed ** 2 * after * np.exp(-speed * after)
+    half = 0.5 * (tilt + 2e-3 * random.normal(size=len(t)))
+    q = np.stack([np.cos(half), np.sin(half), 0.0 * t, 0.0 * t], axis=1)
+    assert spikes(t, rates, 'rate').any()       # the rates alone do not tell
+    assert not spikes(t, rates + [0.02, 0.0, -0.02], 'rate', q).any()
+    one = len(t) // 2 + round(0.4 * rate)
+    rates[one] += 3.0, -3.0, 1.5
+    assert list(np.flatnonzero(spikes(t, rates, 'rate', q))) == [one]
+    record = FlightRecord(t, {**dict(zip(('qw', 'qx', 'qy', 'qz'), q.T, strict=True)),
+                              **dict(zip(('wx', 'wy', 'wz'), rates.T, strict=True))})
+    [found] = others(record, None)
+    assert found.code == 'rate_glitch' and 'once' in found.message
 
 
 def test_an_attitude_that_turns_and_stays_is_no_glitch():
