@@ -14,7 +14,7 @@ from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.diagnose.selection import Selection
 from quad_ident_ros.diagnose.verdict import Verdict
 from quad_ident_ros.effects.registry import EFFECTS
-from quad_ident_ros.greybox.flights import Flight, inertial
+from quad_ident_ros.greybox.flights import Flight, inertial, RATE
 from quad_ident_ros.greybox.parameters import NAMES
 from quad_ident_ros.model.vehicle import Vehicle
 
@@ -103,9 +103,9 @@ def one_finding(verdict: Verdict, flights: Sequence[Flight]) -> tuple[dict, ...]
                      'effects': sorted(ratio) if loose and ratio else [effect.name],
                      'tells': effect.told_by})
     late = sorted(name for name, effect in EFFECTS.items() if effect.actuator)
-    rate = 1.0 / max(flight.period for flight in flights)
-    tells = (f'measured rotor speeds, or a log much faster than {rate:.0f} Hz: it is over before '
-             'the next sample')
+    slow = 1.0 / max(flight.period for flight in flights) < RATE / 2
+    faster = f', or a log of {RATE:.0f} Hz and more' if slow else ''
+    tells = f'measured rotor speeds{faster}: it is over before the next sample that is compared'
     rows += [{'effect': name, 'effects': late, 'tells': tells,
               'may_be': [[EFFECTS[other].title for other in late if other != name]]}
              for name in verdict.brief]

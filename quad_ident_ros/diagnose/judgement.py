@@ -86,7 +86,7 @@ def judge(bench: Bench) -> Judgement:
     present = probabilities(bench.selection.posterior, weights, rules)
     absent = tuple(cause for cause in there.values() if present[cause.effect] < rules.present)
     if set(model.effects) <= set(absent) and closes_half(model.gap, before, noise, rules):
-        model = _fewest(bench, model, before, noise)
+        model = _fewest(bench, model, before, noise, present)
         absent = tuple(cause for cause in absent if cause not in model.effects)
     # What needs values that no vehicle has does the work of something else, which it stands for.
     untold = bench.untold(model)
@@ -208,11 +208,11 @@ def closes_half(after: dict, before: dict, noise: dict, rules: Rules) -> bool:
     return max(lost_shares(after, before, before, noise, rules).values()) >= rules.half
 
 
-def _fewest(bench: Bench, model: Model, before: dict, noise: dict) -> Model:
+def _fewest(bench: Bench, model: Model, before: dict, noise: dict, present: dict) -> Model:
     """
     Return the Model with the fewest effects that closes half of the gap of some group, too.
 
-    Of as many effects, those that are likeliest.
+    Of as many effects, those that are most probable together; args: present {effect: probability}.
     """
     slopes = bench.slopes(model)
     for size in range(1, len(model.effects)):
@@ -220,7 +220,8 @@ def _fewest(bench: Bench, model: Model, before: dict, noise: dict) -> Model:
                  for removed in combinations(model.effects, len(model.effects) - size)]
         fewer = [one for one in fewer if closes_half(one.gap, before, noise, bench.rules)]
         if fewer:
-            return min(fewer, key=lambda one: one.estimate.cost)
+            return max(fewer, key=lambda one: sum(present[cause.effect]
+                                                  for cause in one.effects))
     return model
 
 
