@@ -57,7 +57,7 @@ def attitude(record, vehicle):
         'attitude_glitch', 'warning', f'attitude, t = {record.t[begins[0]]:.3f} s',
         f'{times} the attitude jumps off and back within {LONGEST:g} s, by up to '
         f'{np.degrees(size.max()):.1f} deg in {100 * off.mean():.1f} % of the samples, and the '
-        'gyro sees nothing of it',
+        'gyro does not show it',
         'fit and diagnosis give them no weight; look for markers that are hidden or taken for '
         'others')]
 
