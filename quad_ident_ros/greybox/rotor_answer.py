@@ -18,8 +18,8 @@ from quad_ident_ros.model.actuators import actuated, DELAY, LAG
 
 MOST = 20_000           # samples, from the middle of a stretch: more show nothing new
 LEAST_RATE = 40.0       # Hz of measured speeds; slower ones do not show lags
-COPY, COPIED = 1e-9, 1e-4   # of the variance, and s: what is left, and how late, by a copy of
-                            # the commands, which no sensor measures
+COPY, COPIED = 1e-9, 1e-4   # of the variance, and s: residual and delay of a copy of the
+                            # commands, which no sensor measures
 DELAYS, LAGS = np.arange(-0.02, 0.121, 0.01), np.array([0.0, 0.01, 0.02, 0.04, 0.08, 0.16])
 SMALL = 0.5 / RATE      # s: half a sample of what a diagnosis looks at
 FINEST = 1e-5           # s: no clock is finer

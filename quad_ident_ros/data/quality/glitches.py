@@ -66,7 +66,7 @@ def others(record, vehicle):
     """
     Find jumps of position, velocity and rate that are gone within a few samples.
 
-    They are told where they are as much as the noise, in the mean square, and the units are right.
+    They are reported where they equal the noise in the mean square, and the units are right.
     """
     if units.position_in_millimetres(record, vehicle) or units.rates_in_degrees(record, vehicle):
         return []
