@@ -46,7 +46,8 @@ def learned(effects: pyarrow.Table, found: Iterable[History], rules: Rules = RUL
 
     Args: effects: the table of a data set; found: histories of its parameters. How often an effect
     is present is the mean of its probability over the vehicles whose flights can show it, with
-    DOUBT vehicles of Rules.usual_presence beside them; each vehicle counts once, however often it flew.
+    DOUBT vehicles of Rules.usual_presence beside them; each vehicle counts once, however often
+    it flew.
     """
     rows = effects.to_pylist()
     probability: dict[str, dict[str, list[float]]] = {}
