@@ -42,11 +42,11 @@ class TimeOver(Exception):
 
 
 class WorkerDied(InputError):
-    """The process of each worker that began a task ended, as where the memory is not enough."""
+    """Each worker process that began a task ended, for example because memory ran out."""
 
     def __init__(self) -> None:
-        super().__init__('the process of each worker that began a part of the work ended: it may '
-                         'need more memory than a worker has')
+        super().__init__('each worker process that began a certain part of the work ended: that '
+                         'part may need more memory than a worker has')
 
 
 @dataclass(frozen=True)
@@ -84,7 +84,7 @@ def cluster(scheduler: str | None = None, workers: int | None = None,
 
 
 def _there(scheduler: str) -> Iterator[Any]:
-    """Yield a Client of a scheduler that is there."""
+    """Yield a Client of a running scheduler."""
     import distributed
     _check_address(scheduler, distributed.Security())
     try:
@@ -225,7 +225,7 @@ def _results(client: Any, function: Callable[[Item], Any], items: Iterable[Item]
             yield from done.values()
             if client.status == 'closed':
                 raise InputError('the connection to the scheduler was lost; start the command '
-                                 'again: it goes on where it was')
+                                 'again: it continues where it stopped')
     finally:
         client.unsubscribe_topic(topic)
         for _, future in flying.values():
@@ -261,8 +261,8 @@ def _done(client: Any, ended: dict[_Key, tuple[Item, Any, bool]]) -> dict[_Key, 
             found[key] = Done(item, error=WorkerDied() if isinstance(error, KilledWorker)
                               else error)
         elif future.status == 'cancelled':
-            raise InputError('the scheduler has lost the work; start the command again: it goes '
-                             'on where it was')
+            raise InputError('the scheduler has lost the work; start the command again: it '
+                             'continues where it stopped')
     return found
 
 

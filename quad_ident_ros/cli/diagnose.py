@@ -90,21 +90,22 @@ def add(commands, summary):
                         help='a class of yours that controls the vehicle, or `ours`: the tracking '
                              'error and bandwidth with the nominal, the corrected and the real '
                              'vehicle, and what each effect costs; see below')
-    parser.add_argument('--json', metavar='FILE', help='write it as data; - prints it')
+    parser.add_argument('--json', metavar='FILE', help='write the diagnosis as data; - prints it')
     parser.add_argument('--report', metavar='FILE.html',
                         help='write a page for a browser: the verdict, pictures, all numbers')
     parser.add_argument('--out-vehicle', metavar='FILE',
                         help='write the vehicle file with the effects named, for the simulator')
     parser.add_argument('--residual', action='store_true',
-                        help='write into that file, too, what no effect explains, as a force and '
-                             'moment by state and command, where it helps on the flight held out')
+                        help='also write into that file what no effect explains, as a force and a '
+                             'moment that depend on state and command, if that helps on the '
+                             'held-out flight')
     amount = parser.add_mutually_exclusive_group()
     amount.add_argument('--quiet', '-q', dest='detail', action='store_const', const=VERDICT,
-                        default=USUAL, help='print the verdict, its size and the next step only, '
+                        default=USUAL, help='print only the verdict, its size and the next step, '
                         'and no progress')
     amount.add_argument('--verbose', '-v', dest='detail', action='store_const', const=ALL,
-                        help='print the gap at 0.1, 0.5 and 1 s, and what was estimated for '
-                        'each flight, too')
+                        help='also print the gap at 0.1, 0.5 and 1 s, and what was estimated '
+                        'for each flight')
     add_selection(parser)
     parser.set_defaults(run=run)
 

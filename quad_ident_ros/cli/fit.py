@@ -28,10 +28,10 @@ def add(commands, summary):
         'fit', help=summary,
         formatter_class=argparse.RawDescriptionHelpFormatter,
         description='Estimate chosen physical parameters of a vehicle from flight records, by '
-                    'prediction error over short\nrollouts, with standard errors and a word on '
-                    'what the flights cannot determine.',
-        epilog='what can be freed, several with commas between:\n'
-               f'  of the vehicle file: {", ".join(EXCITATION)},\n'
+                    'prediction error over short\nrollouts, with standard errors, and say what '
+                    'the flights cannot determine.',
+        epilog='what can be freed, separated by commas:\n'
+               f'  constants of the vehicle file: {", ".join(EXCITATION)},\n'
                '  or one component, such as inertia_x\n'
                + _wrapped(EFFECTS)
                + '  or one parameter of an effect, such as motor_lag.time_constant\n\n'

@@ -56,14 +56,14 @@ def add(commands, summary):
     parser.add_argument('--priors', metavar='FILE', help='diagnose with what another fleet has '
                         'taught; verdicts that use priors teach none')
     group = parser.add_argument_group('where the work is done')
-    group.add_argument('--scheduler', metavar='tcp://HOST:PORT', help='of a Dask cluster that is '
-                       'there (default: processes on this machine)')
+    group.add_argument('--scheduler', metavar='tcp://HOST:PORT', help='address of a running '
+                       'Dask cluster (default: processes on this machine)')
     group.add_argument('--workers', type=_count, metavar='N', help='processes on this machine '
                        '(default: one for each core)')
-    group.add_argument('--memory', type=_bytes, metavar='SIZE', help='that each of them may '
-                       'have, for example 2GB (default: together 80 %% of that of the machine)')
-    group.add_argument('--time-limit', type=_seconds, metavar='SECONDS', help='of a group, after '
-                       'which it is given up (default: 1800)')
+    group.add_argument('--memory', type=_bytes, metavar='SIZE', help='memory of each process, for '
+                       'example 2GB (default: an equal share of 80 %% of the memory here)')
+    group.add_argument('--time-limit', type=_seconds, metavar='SECONDS', help='time after which '
+                       'a group is given up (default: 1800)')
     parser.set_defaults(run=run)
 
 

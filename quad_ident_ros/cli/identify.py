@@ -25,9 +25,9 @@ def add(commands, summary):
         formatter_class=argparse.RawDescriptionHelpFormatter,
         description='Fit K/((s+a)(s+b)) to roll, pitch, yaw and altitude of flight records. '
                     'Several\nrecords, for instance one per axis, make one identification.',
-        epilog='A bag of our recorder knows its trim and that it starts at rest; for a CSV file '
-               'say it:\n  quad_ident identify flight_1.csv --trim hover --initial-state rest\n'
-               'The level at which a CSV file rests is estimated, that of a bag is known.')
+        epilog='A bag of our recorder states its trim and that it starts at rest; for a CSV file '
+               'give both:\n  quad_ident identify flight_1.csv --trim hover --initial-state rest\n'
+               'The level at which a CSV file rests is estimated; that of a bag is known.')
     parser.add_argument('flights', nargs='+', metavar='FLIGHT',
                         help='.csv, .csv.gz, the folder of a bag, or an .mcap or .db3 file')
     parser.add_argument('--method', choices=('all', *METHODS), default='all')

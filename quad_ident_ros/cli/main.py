@@ -39,7 +39,7 @@ examples:
   quad_ident fly circle --vehicle iris -o a.csv    make a closed-loop flight with known truth
   quad_ident identify flights/*.csv --trim hover --initial-state rest
   quad_ident fit flight.csv --vehicle v.yaml --free inertia,thrust_coefficient,motor_lag
-  quad_ident diagnose a.csv b.csv --vehicle v.yaml what the vehicle has beside its model
+  quad_ident diagnose a.csv b.csv --vehicle v.yaml where the vehicle differs from its model
   quad_ident fleet flights/ --vehicle v.yaml        the flights of many vehicles, on all cores
   quad_ident vehicle x500/model.sdf -o v.yaml      the vehicle that a simulator flies
   quad_ident export v.yaml --to gazebo --base model.sdf -o like_real.sdf

@@ -41,10 +41,10 @@ def add(commands, summary):
                         help='seeds of the searches: 0 to N - 1 (default 20; fewer than 6 decide '
                              'nothing about which is better)')
     parser.add_argument('--workers', type=int, metavar='N',
-                        help='processes of this machine that share the seeds, by Dask (default: '
-                             'one after the other in this one)')
+                        help='processes on this machine that share the seeds, by Dask (default: '
+                             'this process runs all of them)')
     parser.add_argument('--scheduler', metavar='tcp://HOST:PORT',
-                        help='of a Dask cluster that is there, whose workers share the seeds')
+                        help='address of a running Dask cluster, whose workers share the seeds')
     parser.add_argument('-o', '--output', default='quad_ident_paper', metavar='FOLDER',
                         help='where everything goes (default: quad_ident_paper)')
     parser.add_argument('--json', metavar='FILE',

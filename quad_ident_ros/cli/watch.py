@@ -17,7 +17,8 @@ Follow recorder, identifier and diagnoser of a vehicle in the terminal, over ssh
   history     verdicts, changes of the vehicle and answers to your keys
 
 keys: i identify, d diagnose, f flush (the recorder publishes what it has as a record), q quit;
-arrows and Page Up/Down scroll the history. It changes nothing but by a key."""
+arrows and Page Up/Down scroll the history. It changes nothing until you
+press a key."""
 
 EPILOG = """\
 It listens on the ROS domain of ROS_DOMAIN_ID. With ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST, which

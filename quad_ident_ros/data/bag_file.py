@@ -69,8 +69,8 @@ class BagFile:
             instead = (f'give the file in it, {inside[0]}' if len(inside) == 1 else
                        'give one of the files in it' if inside else
                        'give the path of a rosbag2 folder')
-            raise InputError(f'{path}: this folder has no metadata.yaml, as where its recorder '
-                             f'was killed; {instead}, or make metadata.yaml with: ros2 bag '
+            raise InputError(f'{path}: this folder has no metadata.yaml: its recorder may '
+                             f'have been killed; {instead}, or make metadata.yaml with: ros2 bag '
                              'reindex FOLDER')
         self.kind = kind_of(self.path)
         self._codecs = {}
@@ -102,7 +102,7 @@ class BagFile:
 
     @property
     def recovered(self):
-        """Whether the bag has no end, as where its recorder was killed while it wrote."""
+        """Whether the bag has no end: its recorder was killed, or the disk was full."""
         return getattr(self._reader, 'recovered', False)
 
     @property

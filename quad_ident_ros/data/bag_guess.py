@@ -40,9 +40,8 @@ def guessed(path, bag, mapping):
     if found['pose'][0]:
         found['position'] = found['attitude'] = [], []
     if bag.recovered and not topics:
-        raise InputError(f'{path}: this bag ends before its first message is whole, as where its '
-                         'recorder was killed at once or the file was not copied whole; copy it '
-                         'again')
+        raise InputError(f'{path}: this bag ends within its first message: its recorder was '
+                         'killed at once, or the file was not copied completely; copy it again')
     if not any(found[role][0] for role in MOTION):
         raise InputError(f'{path}: no topic of this bag is known to be a state of a vehicle; it '
                          f'has {_listed(topics)}; say which is what in a mapping file '
@@ -137,10 +136,10 @@ def _notes(found, topics):
     others = {topic: role for role, (best, rest) in found.items() if role in MOTION
               for topic in rest if topic not in taken}
     if others:
-        notes.append('not taken, as others go before: ' + ', '.join(
+        notes.append('not used, because others have priority: ' + ', '.join(
             f'{topic.name} ({role})' for topic, role in list(others.items())[:_LISTED]))
     if len(found['battery'][0]) > 1:
-        notes.append('not taken, as there are several batteries: '
+        notes.append('not used, because there are several batteries: '
                      + ', '.join(topic.name for topic in found['battery'][0][:_LISTED]))
     if not found['commands'][0]:
         unknown = [topic for topic in topics if topic not in taken

@@ -157,7 +157,7 @@ def _attitude(path: Path, table: Table, mapping: Mapping) -> tuple[list[str], np
         # As topics: what is far from a unit is no attitude, and rounding is undone.
         q = np.where(np.abs(norm - 1.0) < 0.1, q / norm, np.nan)
     if np.isfinite(q).all(axis=1).sum() < 2:
-        raise InputError(f'{path}, columns {shown(names)}: the quaternion has not the length 1; '
+        raise InputError(f'{path}, columns {shown(names)}: the quaternion does not have length 1; '
                          'correct the columns in the mapping')
     return names, frames.attitude(q, mapping.world, mapping.body)
 

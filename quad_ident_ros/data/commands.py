@@ -74,8 +74,8 @@ def _with_inputs(record: FlightRecord, vehicle: Vehicle) -> FlightRecord:
     beyond = np.abs(speeds) > FASTEST
     if beyond.any():
         k, j = np.argwhere(beyond)[0]
-        raise InputError(f'{record.label()}, sample {k}, column {wanted[j]!r}: {speeds[k, j]:g} '
-                         'rad/s is the speed of no rotor; give the commands in rad/s')
+        raise InputError(f'{record.label()}, sample {k}, column {wanted[j]!r}: no rotor turns '
+                         f'at {speeds[k, j]:g} rad/s; give the commands in rad/s')
     inputs = np.square(speeds) @ allocation_matrix(vehicle).T
     return FlightRecord(record.t, {**record.columns, **dict(zip(INPUTS, inputs.T, strict=True))},
                         record.info)

@@ -42,7 +42,7 @@ def load_all(path: str | Path, mapping: Mapping | None = None, vehicle: Vehicle 
     """
     Return the flight records in a file or bag, at least one; arguments and errors of load.
 
-    They are split where position or heading jump, as where an estimator was reset. Outputs to the
+    They are split where position or heading jump because an estimator was reset. Outputs to the
     motors become commands by the mapping or the vehicle, see data.outputs.
     Args: in_part: for data.selection.selected, which then refuses what is wrong inside the part.
     """

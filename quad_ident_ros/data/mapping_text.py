@@ -114,8 +114,8 @@ _ACTUATORS = ['# actuators:                     # how outputs become rotor speed
 
 def _text(source: object, lines: Sequence[str]) -> str:
     clean = ' '.join(str(source).split())
-    return '\n'.join([f'# Mapping to begin with, of {clean}: check each line; those after # do '
-                      'not hold.', *lines]) + '\n'
+    return '\n'.join([f'# Mapping to begin with, for {clean}: check each line; lines that '
+                      'begin with # have no effect.', *lines]) + '\n'
 
 
 def _quoted(name: str) -> str:

@@ -14,7 +14,7 @@ PX4 = {0: 'manual', 1: 'altitude', 2: 'position', 3: 'mission', 4: 'hold', 5: 'r
        21: 'orbit', 22: 'VTOL takeoff', **{22 + k: f'external {k}' for k in range(1, 9)}}
 """nav_state of PX4's vehicle_status."""
 
-MOST = 1000     # changes of mode that are kept: beyond any flight, as where a log is damaged
+MOST = 1000     # changes of mode that are kept: beyond any flight: the log is damaged
 
 
 def modes_from(stamps_ns: np.ndarray, numbers: np.ndarray, names: Mapping[int, str],

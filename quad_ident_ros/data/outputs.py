@@ -92,8 +92,8 @@ def _with_commands(records: list[FlightRecord], vehicle: Vehicle | None,
     made = _map_of(where, records[0].info.get('motors', {}), np.concatenate(signals), vehicle,
                    actuators)
     if made is None:
-        note = (f'the motors stand: outputs stay as output1..{signals[0].shape[1]}, whose values '
-                'do not show the kind')
+        note = ('the motors do not turn: outputs stay as '
+                f'output1..{signals[0].shape[1]}, whose values do not show the kind')
         return [_noted(record, note) for record in records]
     motors, said = made.motors, made.said
     info: dict[str, Any] = {BY_MOTORS: True} if made.motors.uncertainty else {}
@@ -171,7 +171,7 @@ def _signals(record: FlightRecord, vehicle: Vehicle | None,
 
 def _map_of(where: str, about: dict, values: np.ndarray, vehicle: Vehicle | None,
             actuators: Actuators | None) -> _Map | None:
-    """Return the _Map of signals (N, n), or None where the motors stand; InputError."""
+    """Return the _Map of signals (N, n), or None where the motors do not turn; InputError."""
     if actuators is not None:
         motors = motors_of(where, actuators, vehicle)
         return _Map(motors, '')     # who wrote the mapping knows

@@ -119,7 +119,7 @@ def _thrust(path: Path, motors: Motors,
     force = record.columns['az'] if record.has('az') else np.full(len(record), GRAVITY)
     use = (squares > 0) & (force > 0)
     if not use.any():
-        raise InputError(f'{path}: the motors stand in this log; give a vehicle file')
+        raise InputError(f'{path}: the motors do not turn in this log; give a vehicle file')
     said = next((note for note in record.info['notes'] if 'esc_status' in note), '')
     high = FULL
     if said:    # by measured speeds: as far as they reached, and a tenth on

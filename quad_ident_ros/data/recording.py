@@ -117,7 +117,7 @@ def _expanded(path):
     try:
         return Path(path).expanduser()
     except RuntimeError:
-        raise OSError(f'{Path(path).parts[0]} is the home of no user') from None
+        raise OSError(f'no user has the home {Path(path).parts[0]}') from None
 
 
 def make_next(parent, name):

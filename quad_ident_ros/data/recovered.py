@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""MCAP files that are not whole, as where a recorder was killed while it wrote."""
+"""MCAP files that are not whole, because a recorder was killed while it wrote."""
 
 from collections import Counter
 from functools import lru_cache

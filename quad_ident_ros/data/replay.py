@@ -136,10 +136,10 @@ def _sample(path, name, message):
         stamp = int(np.int64(stamp_ns(message)))
         values = tuple(map(float, FLIGHT_TOPICS[name].values(message)))
     except OTHER_SHAPE:
-        raise InputError(f'{path}, topic {name}: the bag defines {_TYPES[name]} otherwise than '
-                         'ROS 2 does; record it again') from None
+        raise InputError(f'{path}, topic {name}: the definition of {_TYPES[name]} in the bag '
+                         'differs from that of ROS 2; record it again') from None
     if name == 'pose' and not_unit(values[3:]):
-        raise InputError(f'{path}, topic {name}, stamp {stamp} ns: the quaternion has not the '
+        raise InputError(f'{path}, topic {name}, stamp {stamp} ns: the quaternion does not have '
                          'length 1; record a pose with an attitude')
     return stamp, values
 

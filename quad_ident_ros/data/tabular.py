@@ -21,8 +21,8 @@ SEPARATORS = (',', ';', '\t')
 VICON = ('objects', 'segments', 'trajectories', 'global angles', 'model outputs')
 """What is in a table of Vicon, by its first line; the second has the rate of the cameras."""
 BLANKS = ' '    # any number of them
-MOTIVE = ('world: Motive has y up unless it is told otherwise: export with Z up and name the '
-          'columns in a mapping, or turn them in it, such as py: {column: "Position Z", unit: -m}')
+MOTIVE = ('world: Motive has y up unless its settings say otherwise: export with Z up and name '
+          'the columns in a mapping, or turn them there: py: {column: "Position Z", unit: -m}')
 _HEAD = 20      # lines in which the first numbers come
 MOST_COLUMNS = 4096    # wide logs have hundreds; each costs the guess a look
 _FEW = 0.1      # of the cells of a column: with more text it is one of text

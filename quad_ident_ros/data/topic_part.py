@@ -161,8 +161,8 @@ class TopicPart:
         for stamp, came, values in rows:
             self._refuse_down(mapping)
             if self.role in ('pose', 'attitude') and not_unit(values[-4:]):
-                self.refused = (f'{self._here()}: the quaternion has not the length 1; publish a '
-                                f'{self.role} with an attitude')
+                self.refused = (f'{self._here()}: the quaternion does not have length 1; publish '
+                                f'a {self.role} with an attitude')
                 self._left['nan'] += 1
                 continue
             columns = self._columns(np.array([values]), mapping)
@@ -188,8 +188,8 @@ class TopicPart:
             raise self._defined_otherwise() from None
 
     def _defined_otherwise(self):
-        return InputError(f'{self._here()}: the bag defines {self._type} otherwise than ROS 2 '
-                          'does; record it again')
+        return InputError(f'{self._here()}: the definition of {self._type} in the bag '
+                          'differs from that of ROS 2; record it again')
 
     def _here(self):
         return f'{self._where}, message {self._messages}'
@@ -274,7 +274,7 @@ class TopicPart:
 
     def not_unit(self, number):
         """Return the error of a message, counted from 0, whose attitude is invalid."""
-        return (f'{self._where}, message {number + 1}: the quaternion has not the length 1; '
+        return (f'{self._where}, message {number + 1}: the quaternion does not have length 1; '
                 f'record a {self.role} with an attitude, or leave it out with --from and --to')
 
     def _is_unnamed(self, mapping, table):

@@ -39,7 +39,7 @@ COARSE = 0.025      # s between samples; lags and delays of motors are of this s
 PROFILE = ('set SDLOG_PROFILE to 25 (default set, system identification and high rate) and log '
            'again')
 
-CUT_OFF = ('the log ends within a message, as where it was not copied whole or power was lost: '
+CUT_OFF = ('the log ends within a message: it was not copied completely, or power was lost; '
            'what came after is missing')
 
 _LATEST = 2 ** 63 // 1000 - 1   # us, of a stamp that fits into ns
@@ -206,7 +206,7 @@ def _stamps(path, topic, data):
     if not (np.isfinite(stamps).all() and (stamps >= 0).all() and (stamps < _LATEST).all()):
         k = int(np.argmin(np.isfinite(stamps) & (stamps >= 0) & (stamps < _LATEST)))
         raise InputError(f'{path}, topic {topic}, message {k + 1}: the stamp {stamps[k]:g} us is '
-                         'no time; the log is damaged')
+                         'not a time; the log is damaged')
     return np.asarray(data[name]).astype(np.int64) * 1000
 
 

@@ -115,6 +115,6 @@ def _share(name: str, form: Form, forms: Sequence[Form], rules: Rules) -> float:
 
 
 def nuisance_candidates(vehicle: Vehicle, tracks: list) -> tuple[Candidate, ...]:
-    """Return the Candidates for the nuisances of Tracks, which are no effects."""
+    """Return the Candidates for the nuisances of Tracks, which are not effects."""
     return tuple(Candidate(kind.name, kind.name, kind.columns, nuisance=kind)
                  for kind in nuisances(vehicle, tracks))

@@ -28,7 +28,7 @@ from quad_ident_ros.diagnose.rules import RULES, Rules
 from quad_ident_ros.diagnose.select import select
 from quad_ident_ros.diagnose.together import known_together
 from quad_ident_ros.diagnose.verdict import verdict_of
-from quad_ident_ros.effects.registry import EFFECTS
+from quad_ident_ros.effects.registry import EFFECTS, titled
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.greybox.noise import whole_noise
 from quad_ident_ros.greybox.parameters import nominal
@@ -73,8 +73,10 @@ def diagnose(records: Iterable[FlightRecord], vehicle: Vehicle, *,
     causes = tuple(cause for cause in every if cause.effect not in intake.refuted)
     ruled_out = tuple(dict.fromkeys(cause.effect for cause in every if cause not in causes))
     if not causes:
-        raise InputError(f'these flights say nothing about {", ".join(effects or EFFECTS)}: '
-                         + (f'{", ".join(ruled_out)} is ruled out by measured rotor speeds'
+        asked = ', '.join(map(titled, effects)) if effects else 'any effect'
+        gone = ' and '.join(map(titled, ruled_out))
+        raise InputError(f'these flights say nothing about {asked}: '
+                         + (f'measured rotor speeds rule out {gone}'
                             if ruled_out else 'docs/diagnosis.md says what they would need')
                          + '; name other effects')
     selection = select(intake.flights, vehicle, causes, rules,

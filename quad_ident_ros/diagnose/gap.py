@@ -86,7 +86,7 @@ def surely(one: Ends, rules: Rules) -> dict[str, float]:
     """
     Return {group: gap} of a flight, less as many standard errors as show an effect.
 
-    Standard errors of the mean square are those of blocks in which errors may hang together
+    Standard errors of the mean square are those of blocks in which errors may be correlated
     (Künsch, Annals of Statistics 17, 1989).
     """
     block = np.unique((one.t // rules.steady_block).astype(int), return_inverse=True)[1]

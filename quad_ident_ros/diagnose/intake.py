@@ -23,7 +23,7 @@ from quad_ident_ros.data.thrust_level import on_one_level
 from quad_ident_ros.diagnose.blocks import interleaved, spans_seen
 from quad_ident_ros.diagnose.result import BLOCKS
 from quad_ident_ros.diagnose.rules import Rules
-from quad_ident_ros.effects.registry import FORMS, mapping, NULL, PLACE, vector
+from quad_ident_ros.effects.registry import FORMS, mapping, NULL, PLACE, titled, vector
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.greybox.flights import Flight, guided, highest_voltage, moved, Track, track_of
 from quad_ident_ros.greybox.near import near_flights
@@ -149,8 +149,8 @@ def _beside_records(vehicle: Vehicle, records: Sequence[FlightRecord], findings:
         [with_commands, without] = (records[driven.index(kind)].info.get('source', 'a flight')
                                     for kind in (False, True))
         raise InputError(f'{without} has measured rotor speeds alone, and {with_commands} has '
-                         f'commands: with {motors[0]} in the vehicle file, diagnose them '
-                         'separately')
+                         f'commands: with {titled(motors[0])} in the vehicle '
+                         'file, diagnose them separately')
     inertial = any(is_inertial(record) for record in records)
     no_height = not all(record.has(*POSITION) for record in records)
     gone = {PLACE[name, parameter.name] for name, form in FORMS for parameter in form.parameters
@@ -164,9 +164,9 @@ def _beside_records(vehicle: Vehicle, records: Sequence[FlightRecord], findings:
         findings.append({
             'flight': 'all flights', 'code': 'left_out', 'severity': 'info',
             'where': 'vehicle file',
-            'message': f'{", ".join(names)} of the vehicle file is omitted from the nominal '
-                       'model: the measurements of these records contain its action already, or '
-                       'the height that it needs is missing',
+            'message': f'{", ".join(map(titled, names))} of the vehicle file is omitted from '
+                       'the nominal model: the measurements of these records contain its '
+                       'action already, or the height that it needs is missing',
             'remedy': 'nothing to do; records with commands, position and velocity show it'})
     return replace(vehicle, effects=kept)
 
@@ -189,9 +189,9 @@ def _of_rotors(records: Sequence[FlightRecord], vehicle: Vehicle, clocks: Sequen
         replace(answer, delay=(answer.delay[0], np.inf)) if answer and clock and clock.late
         else answer for answer, clock in zip(told[:learnt], clocks, strict=False)],
         rules.shown, vehicle.effects)
-    names = [f'another {name} than that of the vehicle file' if name in vehicle.effects else name
-             for name in ruled_out]
-    so = f'; {" and ".join(names)} is ruled out by that' if names else ''
+    names = [f'a {titled(name)} other than that of the vehicle file' if name in vehicle.effects
+             else titled(name) for name in ruled_out]
+    so = f'; this rules out {" and ".join(names)}' if names else ''
     findings += [as_caution(Finding('rotor_answer', 'info', 'rotor1, rotor2, ...',
                                     answer.said() + so,
                                     'nothing to do if this is right'), record)

@@ -21,7 +21,7 @@ def noise_of(selection: Selection, intake: Intake, rules: Rules) -> Noise:
     """
     Return the Noise of the flights, from the residuals of the best set and from kinematics.
 
-    The part of the attitude's noise that hangs together counts as a tilt, what changes from
+    The autocorrelated part of the attitude's noise counts as a tilt, the part that changes from
     sample to sample as its mean over a prediction. The states of a filter that levels itself show
     little noise, and their tilt not at all: it is taken as usual ones are.
     """

@@ -4,7 +4,7 @@
 What no effect explains, learnt as a function of state and command.
 
 Ridge regression on the inputs and on random waves over few of them at a time (Rahimi and Recht,
-NIPS 20, 2007), which are taken in by how much of what is left they explain (Chen, Cowan and Grant,
+NIPS 20, 2007), which are taken in by how much of the residual they explain (Chen, Cowan and Grant,
 IEEE Transactions on Neural Networks 2, 1991).
 """
 
@@ -48,7 +48,7 @@ class Windows:
 
     x (N, 22): mean inputs, nan where a flight does not have one; y (N, 6) N and N m: the residual
     wrench; fold (N,): which part is predicted from the others; block (N,) of time, over which
-    errors may hang together.
+    errors may be autocorrelated.
     """
 
     x: np.ndarray
@@ -169,7 +169,7 @@ def _taken(sums: _Sums, always: int) -> list[int]:
     """
     Return the features that are used: the first ones, always, and waves that explain most.
 
-    A few waves in each round, of what is left of all channels, each in units of its size, by then.
+    A few waves in each round, by the residuals of all channels, each in units of its size then.
     """
     along = sums.along / np.sqrt(np.maximum(sums.power, 1e-300))
     size = np.maximum(np.diag(sums.products), 1e-300)

@@ -17,7 +17,7 @@ class Rules:
       shortest: s of a flight. Half of a single one is held out: four rollouts of half a second
         for each half; whether that suffices is a matter of information, see `not_shown`.
       held_block: s of a block of a single flight, of which half are held out: room for a few
-        rollouts, and longer than the errors of a formula hang together.
+        rollouts, and longer than the errors of a formula are correlated.
       follows: share of the spread of measured rotor speeds that the commands must explain for the
         speeds to say anything about the motors: with less, most of it comes from something else.
     Candidates:
@@ -25,7 +25,7 @@ class Rules:
         the coarsest loggers resolve. at_bound: usual sizes from a bound that are at it.
     Noise:
       coloured: times that all that is left may be the noise from sample to sample, or a part of
-        it, before it takes its place as the weight: errors then hang together.
+        it, before it takes its place as the weight: errors are then autocorrelated.
       levelling: rad, the usual error of the level of an attitude that accelerometer and GPS
         correct; autopilots' filters are good to half a degree to two. It does not show in their
         states. drift: m/s, that of the velocity of such a filter, which stays over a prediction.
@@ -70,7 +70,7 @@ class Rules:
       horizon: s ahead at which predictions are judged: the length of the rollouts that are fitted.
         near_horizon: that of inertial flights: what the air does is not modelled there, and soon
         turns the vehicle elsewhere.
-      steady_block: s of a flight over which errors may hang together, as for the scatter of the
+      steady_block: s of a flight over which errors may be correlated, as for the scatter of the
         cost. What helps in most of such blocks helps steadily.
     Naming:
       present: probability from which on an effect is named: more likely there than not.

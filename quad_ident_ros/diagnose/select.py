@@ -50,8 +50,9 @@ def select(flights: list[Flight], vehicle: Vehicle, causes: tuple[Candidate, ...
     """
     Return the Selection among candidate effects for flights of a vehicle.
 
-    The errors are weighed by the noise from sample to sample; where much more than that is left,
-    noise that hangs together or what no effect explains, by all that is left, until it is so.
+    The errors are weighed by the noise from sample to sample. Where the residuals are much larger,
+    by autocorrelated noise or by what no effect explains, their own size is the weight, until
+    the two agree.
     """
     search = _Search(flights, vehicle, causes, rules)
     # First the usual form of each effect, then all forms, around what the usual ones led to.
@@ -105,9 +106,9 @@ class _Search:
 
     def weigh_anew(self) -> bool:
         """
-        Weigh the residuals by all that is left where that is far from the noise they have.
+        Weigh the residuals by their own size where that is far from the noise assumed for them.
 
-        What hangs together in them counts as a slow force and moment. Return whether anything
+        Their autocorrelated part counts as a slow force and moment. Return whether anything
         changed. The best sets so far are where to go on from.
         """
         assert self.best is not None

@@ -22,8 +22,8 @@ class Selection:
     best: the simplest Fitted of those with about the most evidence; fitted: it and the others
     that were refitted; posterior: probability of each candidate effect; quadratic, rows: the cost
     around the best, with all candidates free; noise: per flight (12,); joint: the Joint of the
-    columns of the best; slow (6,): the force and moment that nothing explains, by which errors
-    that hang together counted less in the fits, or None.
+    columns of the best; slow (6,): the force and moment that nothing explains, by which
+    autocorrelated errors counted less in the fits, or None.
     """
 
     best: Fitted

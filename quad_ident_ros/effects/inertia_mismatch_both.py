@@ -24,7 +24,8 @@ def body(p: Table, k: int, s: Table) -> None:
 
 
 FORM = Form(
-    name='moments_and_inertia', title='other moments of the rotors and proportions of the inertia',
+    name='moments_and_inertia',
+    title='different moments of the rotors and proportions of the inertia',
     parameters=(
         Parameter('moment_x', '1', 0.2, 5.0, 0.1, "on the rotors' moments about body x", 1.0,
                   'roll', 1),

@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Mismatch of the whole matrix of inertia: other moments, and products beside them."""
+"""Mismatch of the whole matrix of inertia: different moments, and products beside them."""
 
 import math
 
@@ -26,7 +26,7 @@ WIDEST = 0.4        # of a product: less than half, so that the matrix stays pos
 PRODUCTS: tuple[tuple[str, Axis], ...] = (('xy', 'roll'), ('xz', 'roll'), ('yz', 'pitch'))
 
 FORM = Form(
-    name='matrix', title="another matrix of inertia, about axes that are not the body's",
+    name='matrix', title="a different inertia matrix, with axes that are not the body's",
     parameters=(*(Parameter(axes, '1', 0.2, 5.0, 0.1,
                             f'factor on the moment of inertia about body {axes[0]}', null=1.0,
                             excited_by=turn, gain=-1)

@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Mismatch of the inertia, which acts alike: other arms, and another torque coefficient."""
+"""Mismatch of the inertia, by causes that act alike: different arms and torque coefficient."""
 
 from quad_ident_ros.compiled import compiled
 from quad_ident_ros.effects.base import Axis, Form, Parameter, Table
@@ -22,7 +22,7 @@ FACTORS: tuple[tuple[str, str, Axis], ...] = (
     ('torque', 'the torque coefficient: moment about z', 'yaw'))
 
 FORM = Form(
-    name='moments', title='other arms or torque coefficient',
+    name='moments', title='different arms or torque coefficient',
     parameters=tuple(Parameter(name, '1', 0.2, 5.0, 0.1, f'on {what}', null=1.0,
                                excited_by=turn, gain=1)
                      for name, what, turn in FACTORS),

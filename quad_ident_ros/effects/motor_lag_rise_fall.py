@@ -5,7 +5,7 @@
 from quad_ident_ros.effects.base import Form, Parameter
 
 FORM = Form(
-    name='rise_fall', title='another lag up than down',
+    name='rise_fall', title='different lags up and down',
     parameters=tuple(Parameter(name, 's', 0.0, 0.5, 0.03,
                                f'time constant while the rotor {how}', later=0.5)
                      for name, how in (('rise', 'speeds up'), ('fall', 'slows down'))),

@@ -5,7 +5,7 @@
 from quad_ident_ros.effects.base import Form, Parameter
 
 FORM = Form(
-    name='second_order', title='a response of the second order',
+    name='second_order', title='second-order response',
     parameters=(Parameter('mean_lag', 's', 0.0, 0.5, 0.03,
                           'of the speed behind a command that rises evenly', later=1.0),
                 Parameter('inner_lag', 's', 0.0, 0.2, 0.01,

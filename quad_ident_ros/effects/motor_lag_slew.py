@@ -5,7 +5,7 @@
 from quad_ident_ros.effects.base import Form, Parameter
 
 FORM = Form(
-    name='slew', title='limited rate of the speed',
+    name='slew', title='limited rate of change of the speed',
     parameters=(Parameter('slew', 's^2/rad', 0.0, 1.0, 0.03,
                           'reciprocal of the most that a speed changes in a second'),),
     source="|speed'| <= 1 / slew: the current of speed controllers is limited, and so is the "

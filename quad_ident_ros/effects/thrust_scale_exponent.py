@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Scale of the thrust: another power of the speed than its square."""
+"""Scale of the thrust: a power of the speed other than its square."""
 
 from quad_ident_ros.compiled import compiled
 from quad_ident_ros.effects.base import Form, Parameter, Table
@@ -20,7 +20,7 @@ def thrust(p: Table, k: int, s: Table, rotors: Table) -> None:
 
 
 FORM = Form(
-    name='exponent', title='another power of the speed',
+    name='exponent', title='a power of the speed other than the square',
     parameters=(Parameter('hover_factor', '1', 0.2, 3.0, 0.1,
                           'on the thrust at hover speed', null=1.0),
                 Parameter('exponent', '1', 1.0, 3.0, 0.1, 'of the speed', null=2.0)),

@@ -45,8 +45,9 @@ def learned(effects: pyarrow.Table, found: Iterable[History], rules: Rules = RUL
     Return what a fleet teaches, {effect: EffectPrior}.
 
     Args: effects: the table of a data set; found: histories of its parameters. How often an effect
-    is there is the mean of its probability over the vehicles whose flights can show it, with DOUBT
-    vehicles of Rules.usual_presence beside them; each vehicle counts once, however often it flew.
+    is present is the mean of its probability over the vehicles whose flights can show it, with
+    DOUBT vehicles of Rules.usual_presence beside them; each vehicle counts once, however often
+    it flew.
     """
     rows = effects.to_pylist()
     probability: dict[str, dict[str, list[float]]] = {}

@@ -1,7 +1,7 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Measurement noise that hangs together in time, from what sensors say of one another.
+Autocorrelated measurement noise, from what sensors say of one another.
 
 The pose is the integral of velocity and rate, for any force: an unmodelled force cannot be
 mistaken for noise here, nor noise with a memory for such a force.

@@ -302,7 +302,7 @@ def _linear_of(tangent: Tangent, raw: np.ndarray, scale: np.ndarray, clock: bool
     basis = np.linalg.inv(lower) @ starts
     across = basis.transpose(0, 2, 1)
     along, shown = slope @ across, (basis @ error[..., None])[..., 0]
-    # Products of what is left are differences of products: the slopes themselves are large.
+    # Products of residuals are differences of products: the slopes themselves are large.
     products = slope @ slope.transpose(0, 2, 1) - along @ along.transpose(0, 2, 1)
     cross = (slope @ error[..., None] - along @ shown[..., None])[..., 0]
     power = np.sum(error ** 2, axis=1) - np.sum(shown ** 2, axis=1)

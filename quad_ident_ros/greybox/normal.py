@@ -13,7 +13,7 @@ from quad_ident_ros.greybox.linear import Linear
 from quad_ident_ros.greybox.nuisances import Layout
 
 WEAK = 1e-7         # of the largest information: a direction that says nothing
-CHANCE = 0.01       # of white noise to be taken for noise that hangs together
+CHANCE = 0.01       # that white noise is taken for autocorrelated noise
 BLOCK = 2.0         # s over which residuals may be autocorrelated
 
 
@@ -22,8 +22,8 @@ class Normal:
     """
     What flights say of the columns around a point: information (C, C), gradient (C,), cost.
 
-    scores (K, C): the gradient of each block of time, whose scatter shows what the errors that
-    hang together take from the information.
+    scores (K, C): the gradient of each block of time, whose scatter shows how much
+    information autocorrelated errors take away.
     """
 
     information: np.ndarray

@@ -1,7 +1,7 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Nuisances of flights, which are no effects: clocks, trims, biases, thrust and wind by flight.
+Nuisances of flights, which are not effects: clocks, trims, biases, thrust and wind by flight.
 
 An effect is shared by flights. What differs from one flight to the next is added to the
 parameters of each one, about zero and about as wide as its usual spread.

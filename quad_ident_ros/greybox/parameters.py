@@ -58,8 +58,8 @@ def nominal(vehicle: Vehicle) -> np.ndarray:
     """
     Return the vector (Z,) of the vehicle file, with the effects that it has.
 
-    A parameter that is there says nothing new of the vehicle, be that none of the effect or what
-    the file's own law is.
+    A parameter with this value adds nothing to the file: it is that of no effect, or of the
+    law that the file has.
     """
     return np.concatenate([vehicle_vector(vehicle), registry.vector(vehicle.effects, vehicle)])
 

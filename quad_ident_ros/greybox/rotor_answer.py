@@ -11,15 +11,15 @@ from scipy.optimize import minimize
 from quad_ident_ros.data.commands import BY_SPEEDS
 from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.record import FlightRecord
-from quad_ident_ros.effects.registry import EFFECTS, NULL, Values
+from quad_ident_ros.effects.registry import EFFECTS, NULL, titled, Values
 from quad_ident_ros.greybox.flights import BRIDGED, GAP, RATE
 from quad_ident_ros.greybox.normal import BLOCK
 from quad_ident_ros.model.actuators import actuated, DELAY, LAG
 
 MOST = 20_000           # samples, from the middle of a stretch: more show nothing new
 LEAST_RATE = 40.0       # Hz of measured speeds; slower ones do not show lags
-COPY, COPIED = 1e-9, 1e-4   # of the variance, and s: what is left, and how late, by a copy of
-                            # the commands, which no sensor measures
+COPY, COPIED = 1e-9, 1e-4   # of the variance, and s: residual and delay of a copy of the
+                            # commands, which no sensor measures
 DELAYS, LAGS = np.arange(-0.02, 0.121, 0.01), np.array([0.0, 0.01, 0.02, 0.04, 0.08, 0.16])
 SMALL = 0.5 / RATE      # s: half a sample of what a diagnosis looks at
 FINEST = 1e-5           # s: no clock is finer
@@ -30,7 +30,7 @@ OF_MOTORS = tuple(name for name, effect in EFFECTS.items() if effect.actuator)
 NO_COMMANDS = Finding(
     'rotor_speeds', 'info', 'rotor1, rotor2, ...',
     'the record has no commands, so the measured rotor speeds drive the model; the response of '
-    f'the motors, {" and ".join(OF_MOTORS)}, is not visible',
+    f'the motors is not visible: {" and ".join(map(titled, OF_MOTORS))}',
     'log the commands as well to have the motors diagnosed')
 """What is said of a record that is_driven_by_speeds."""
 
@@ -54,8 +54,8 @@ class RotorAnswer:
     def said(self) -> str:
         """Return it in words."""
         text = (f'measured rotor speeds follow the commands {_ms(self.delay)} late, with a lag of '
-                f'{_ms(self.lag)}, and change by {self.gain[0]:.3f} ± {self.gain[1]:.3f} of '
-                'theirs')
+                f'{_ms(self.lag)}, and change {self.gain[0]:.3f} ± {self.gain[1]:.3f} times '
+                'as much')
         if self.per_volt is not None:
             text += (f'; at one command they change by {100 * self.per_volt[0]:.2f} ± '
                      f'{100 * self.per_volt[1]:.2f} % per volt')

@@ -201,7 +201,7 @@ def reference_of(blocks, output, noise):
     alike = residual[1:] @ residual[:-1] / power if power > 0 else 0.0
     # The correlation of few residuals seems too small (M. G. Kendall, Biometrika 41, 1954).
     alike = min(max(alike + (1 + 3 * alike) / count, 0.0), MOST_ALIKE)
-    # And fewer of those that hang together are independent (M. S. Bartlett, JRSS 98, 1935).
+    # And fewer of autocorrelated ones are independent (M. S. Bartlett, JRSS 98, 1935).
     freedom = (count - size) * (1 - alike ** 2) / (1 + alike ** 2)
     variance = (power / (count - size) * freedom + noise[0] * noise[1]) / (freedom + noise[1])
     if not (freedom + noise[1] >= LEAST_FREEDOM and variance > 0):

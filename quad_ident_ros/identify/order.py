@@ -5,7 +5,7 @@ Whether another order than the second describes a response better.
 
 Models without zeros: K/(s+a), K/s^2 and K/((s+a)(s+b)(s+c)) with c > 0 beside K/((s+a)(s+b)). They
 are compared by the Bayesian information criterion (G. Schwarz, Annals of Statistics 6, 1978), in
-which residuals that hang together count as fewer (G. Zieba, Metrol. Meas. Syst. 17, 2010).
+which autocorrelated residuals count as fewer (G. Zieba, Metrol. Meas. Syst. 17, 2010).
 """
 
 from dataclasses import dataclass

@@ -37,7 +37,7 @@ VOLTAGES = (0.5, 1e3)       # V: less than a cell has, and ten times a car's
 MOST_BY_VOLTAGE = 10.0      # exponent of the voltage: thrust goes with its square at most
 FULL_THRUSTS = (1e-3, 1e3)  # in shares of the weight: racers lift ten times theirs, and a map in
                             # another unit is off by more
-MOST_STDS = 1e3             # of the scale of a constant: more says nothing of it
+MOST_STDS = 1e3             # of the scale of a constant: more says nothing
 
 
 def refuse_absurd(where: str, vehicle: Vehicle) -> None:
@@ -49,8 +49,8 @@ def refuse_absurd(where: str, vehicle: Vehicle) -> None:
     _refuse_one_place(where, vehicle)
     for key, std, most in _deviations(vehicle):
         if std > most:
-            raise InputError(f'{where}: {key}: std: {std:.6g} says nothing of it; expected at '
-                             f'most {most:.3g}')
+            raise InputError(f'{where}: {key}: std: {std:.6g} is so large that it says nothing; '
+                             f'expected at most {most:.3g}')
 
 
 def _refuse_one_place(where: str, vehicle: Vehicle) -> None:

@@ -37,7 +37,7 @@ NAMESPACE = Argument('namespace', 'Namespace of the nodes, their topics and thei
 SIMULATE = Argument('simulate', 'Start the simulator; false where a vehicle, a bag or another '
                     'simulator publishes its topics.', bool, default='true')
 PARAMS_FILE = Argument('params_file', 'Parameter file, such as config/parameters.yaml; arguments '
-                       'that are given go before it.')
+                       'that are given take precedence over it.')
 USE_SIM_TIME = Argument('use_sim_time', 'Follow the simulated time: that of the simulator here, '
                         'or with simulate:=false that on /clock.', bool, default='false')
 RESPAWN = Argument('respawn', 'Start a node that is killed or crashes once more, instead of '

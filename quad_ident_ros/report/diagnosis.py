@@ -285,7 +285,7 @@ def caution_lines(found: Diagnosis) -> list[str]:
 
 
 def _of_simulator(found: Diagnosis) -> list[str]:
-    """Return that a simulator flies otherwise than the vehicle file says, where that matters."""
+    """Return a warning where a simulator differs from the vehicle file by more than matters."""
     one = found.in_simulator
     far = [] if one is None else [
         f'{name} by {value:.3g} {found.gap.units[name]}'

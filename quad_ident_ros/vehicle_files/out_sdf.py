@@ -34,7 +34,7 @@ def write(base: Base) -> EditedXml:
         edited.say_several(link, len(layout.bodies))
     plugins = [plugin for plugin, _ in layout.plugins]
     if any(plugin.element.path != path for plugin in plugins):
-        edited.lack(HOLDS, f'the motors stand in {plugins[0].element.path}; give the whole model '
+        edited.lack(HOLDS, f'the motors are in {plugins[0].element.path}; give the whole model '
                     'as `gz sdf -p` prints it')
     else:
         write_motors(edited, base, plugins)

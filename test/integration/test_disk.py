@@ -279,7 +279,7 @@ def test_the_home_of_a_user_who_is_none_is_said_and_nothing_else_ends(fast_graph
     graph.start(Recorder, {'output': '~nosuch/x'})
     graph.spin_until(lambda: statistics and diagnostics, 'the account')
     assert statistics.data()[-1]['disk_error'].startswith(
-        '~nosuch/x: recording stopped: ~nosuch is the home of no user')
+        '~nosuch/x: recording stopped: no user has the home ~nosuch')
 
 
 def test_a_folder_that_goes_while_it_is_recorded_to_ends_the_recording_only(fast_graph, tmp_path):

@@ -229,7 +229,7 @@ def test_transforms_that_come_to_nothing_are_counted_and_said(graph, tmp_path):
     graph.spin_until(lambda: any(
         status.level == WARN and f'{count} duplicated' in status.message
         for message in diagnostics for status in message.status), 'the warning')
-    graph.spin_until(lambda: any('the quaternion has not the length 1; publish a pose' in line.msg
+    graph.spin_until(lambda: any('the quaternion does not have length 1; publish' in line.msg
                                  for line in log), 'the line on it')
     assert graph.trigger('recorder/flush').success
     graph.spin_until(lambda: records, 'the record')

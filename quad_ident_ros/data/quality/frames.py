@@ -150,7 +150,7 @@ def world(record, vehicle):
 
 
 def _motion(grid, attitude):
-    """Find velocities that change otherwise than attitude and specific force say."""
+    """Find velocities whose changes contradict attitude and specific force."""
     if not grid.record.has('vx', 'vy', 'vz'):
         return _height(grid.record)
     speeding = grid.derivative(grid.signal('vx', 'vy', 'vz'))[grid.good]
@@ -240,7 +240,7 @@ def _strangers(moved, velocity):
         return []
     return [Finding('velocity_other', 'warning', 'vx, vy, vz',
                     'the position does not change as the velocity says (correlation '
-                    f'{alike:.2f}): they are of different frames, clocks or vehicles',
+                    f'{alike:.2f}): they belong to different frames, clocks or vehicles',
                     'say frame: world or body of the velocity in a mapping, or leave it out')]
 
 

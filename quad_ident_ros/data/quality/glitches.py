@@ -60,7 +60,7 @@ def attitude(record, vehicle):
         'attitude_glitch', 'warning', f'attitude, t = {record.t[begins[0]]:.3f} s',
         f'{times} the attitude jumps off and back within {LONGEST:g} s, by up to '
         f'{np.degrees(size.max()):.1f} deg in {100 * off.mean():.1f} % of the samples, and the '
-        'gyro sees nothing of it',
+        'gyro does not show it',
         'fit and diagnosis give them no weight; look for markers that are hidden or taken for '
         'others')]
 
@@ -69,7 +69,7 @@ def others(record, vehicle):
     """
     Find jumps of position, velocity and rate that are gone within a few samples.
 
-    They are told where they are as much as the noise, in the mean square, and the units are right.
+    They are reported where they equal the noise in the mean square, and the units are right.
     """
     if units.position_in_millimetres(record, vehicle) or units.rates_in_degrees(record, vehicle):
         return []

@@ -12,8 +12,8 @@ from quad_ident_ros.data.readers.bags import topics_of
 from quad_ident_ros.data.readers.base import Reader
 from quad_ident_ros.data.replay import in_recording, is_recorded, read_bag
 
-NO_END = ('the bag has no end, as where its recorder was killed or the disk was full: read are '
-          'the messages before that')
+NO_END = ('the bag has no end: its recorder was killed or the disk was full; all whole messages '
+          'are read')
 SKIPPED = 'damaged parts (chunks) of the bag were left out, with all their messages: {}'
 
 

@@ -199,7 +199,7 @@ def test_more_or_fewer_outputs_than_rotors_are_refused(tmp_path):
 
 def test_motors_that_stand_are_left_as_they_are(tmp_path):
     read = load(with_outputs(tmp_path, 0 * SHARES), vehicle=VEHICLE)
-    assert read.has('output1') and 'the motors stand' in read.info['notes'][-1]
+    assert read.has('output1') and 'the motors do not turn' in read.info['notes'][-1]
 
 
 PLACES = {'crazyflie': ((1, -1), (-1, -1), (-1, 1), (1, 1)),

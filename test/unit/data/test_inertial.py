@@ -106,7 +106,7 @@ def test_vibration_is_no_blow():
 
 def test_what_needs_a_reference_says_so():
     lone = [bare(flown(seed=seed, duration=6.0)) for seed in range(2)]
-    with pytest.raises(InputError, match='say nothing about wind.*name other effects'):
+    with pytest.raises(InputError, match=r'about steady wind \(wind\).*name other effects'):
         diagnose(lone, IRIS, effects=['wind'])
     with pytest.raises(InputError, match='neither position nor velocity.*diagnose'):
         fit(lone[:1], IRIS, ['mass'])

@@ -148,7 +148,7 @@ def test_a_quaternion_that_is_none_in_the_frame_above_is_refused(tmp_path):
     bad = odom()
     bad[3][3]['transforms'][0]['transform']['rotation'] = dict.fromkeys('wxyz', 0.0)
     refused(write2(tmp_path / 'bag', in_order(bad, base(), imu(SMALL))),
-            'the quaternion has not the length 1')
+            'the quaternion does not have length 1')
 
 
 @pytest.mark.filterwarnings('error')
@@ -156,7 +156,7 @@ def test_numbers_of_a_damaged_message_end_in_a_sentence(tmp_path):
     """As the fuzzer found them: a quaternion whose square is no number any more."""
     wild = messages('world', 'map', [START], [(1e300, 0, 0)], [(1e300, 0, 0, 0)], '/tf_static')
     refused(write2(tmp_path / 'bag', in_order(wild, odom(), base(), imu(SMALL))),
-            'the quaternion has not the length 1')
+            'the quaternion does not have length 1')
 
 
 def twice_told(ns, place=(5.0, 0.0, 0.0)):
@@ -268,7 +268,7 @@ def test_one_quaternion_that_is_none_costs_one_live_pose(topics):
         refused += filter(None, [topics.refused])
     assert found == [ns for k, ns in enumerate(at.tolist()) if ns <= whole and k != 150]
     [line] = refused
-    assert 'the quaternion has not the length 1; publish a pose with an attitude' in line
+    assert 'the quaternion does not have length 1; publish a pose with an attitude' in line
     assert topics.left_out() == {'nan': 1}
 
 

@@ -12,6 +12,7 @@ from test_diagnosis import flown, HOVER, VEHICLE
 from quad_ident_ros.data.outputs import commanded
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.diagnose.diagnosis import diagnose
+from quad_ident_ros.effects.registry import titled
 from quad_ident_ros.model.motors import motors_from
 
 pytestmark = pytest.mark.slow
@@ -72,4 +73,4 @@ def test_measured_speeds_rule_out_the_other_actuator(truth, other):
     assert set(found.verdict) == set(truth)
     assert [row.probability for row in found.ranking if row.effect == other] == [0.0]
     said = [one['message'] for one in found.findings if one['code'] == 'rotor_answer']
-    assert len(said) == 4 and f'{other} is ruled out' in said[0]
+    assert len(said) == 4 and said[0].endswith(f'; this rules out {titled(other)}')

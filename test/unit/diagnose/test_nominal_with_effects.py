@@ -143,8 +143,8 @@ def test_measured_speeds_have_gone_through_the_motors():
     taken = take_in(driven, simulator(), None, RULES)
     assert taken.vehicle.effects == {'rotor_drag': TRUTH['rotor_drag']}
     [said] = [one for one in taken.findings if one['code'] == 'left_out']
-    assert said['message'].startswith('motor_lag of the vehicle file is omitted')
-    with pytest.raises(InputError, match='with motor_lag in the vehicle file'):
+    assert said['message'].startswith('lag of the motors (motor_lag) of the vehicle file')
+    with pytest.raises(InputError, match=r'with lag of the motors \(motor_lag\) in the'):
         take_in([records[0], *driven[1:]], simulator(), None, RULES)
     assert take_in(records, simulator(), None, RULES).vehicle.effects == TRUTH
 

@@ -325,7 +325,7 @@ ABSURD = [
     ({'rotor_inertia': 1e-2}, 'rotor_inertia: 0.01 kg m^2 cannot be'),
     ({'rotor_radius': 1e300}, 'rotor_radius: 1e+300 m cannot be'),
     ({'speed_max': 1e300}, 'speed_max: 1e+300 rad/s cannot be'),
-    ({'mass': {'value': 0.65, 'std': 1e300}}, 'mass: std: 1e+300 says nothing of it'),
+    ({'mass': {'value': 0.65, 'std': 1e300}}, 'mass: std: 1e+300 is so large that'),
     ({'linear_drag': [{'value': 0, 'std': 1e300}, 0, 0]}, 'linear_drag: std: 1e+300')]
 
 
