@@ -11,6 +11,7 @@ from quad_ident_ros.cli.main import main
 from quad_ident_ros.diagnose.candidates import candidates
 from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.diagnose.fitted import prior_deviations
+from quad_ident_ros.diagnose.frame import form_errors_of
 from quad_ident_ros.diagnose.priors import EffectPrior, load_priors, write_priors
 from quad_ident_ros.diagnose.probability import presence, Weight
 from quad_ident_ros.diagnose.rules import RULES
@@ -43,11 +44,15 @@ def test_a_file_is_read_as_it_was_written(tmp_path):
     ('a: [', 'not YAML'), ('day: 2026-13-45', 'cannot be read'), ('[' * 5000, 'cannot be read'),
     ('a: 1\na: 2', 'twice'),
     ('schema: other', 'schema'), ('- 1', 'expected `key: value`'),
-    ('schema: quad_ident/priors/1\neffects: {drag: {present: 1}}', 'drag'),
-    ('schema: quad_ident/priors/1\neffects: {rotor_drag: {present: 2}}', 'out of range'),
-    ('schema: quad_ident/priors/1\neffects: {rotor_drag: {}}', 'expected a number'),
-    ('schema: quad_ident/priors/1\neffects: {rotor_drag: {present: 1, sizes: {mass: 1}}}', 'mass'),
-    ('schema: quad_ident/priors/1\neffects: {rotor_drag: {present: 1, sizes: 3}}', 'sizes')])
+    ('schema: quad_ident/priors/2\neffects: {drag: {present: 1}}', 'drag'),
+    ('schema: quad_ident/priors/2\neffects: {rotor_drag: {present: 2}}', 'out of range'),
+    ('schema: quad_ident/priors/2\neffects: {rotor_drag: {}}', 'expected a number'),
+    ('schema: quad_ident/priors/2\neffects: {rotor_drag: {present: 1, sizes: {mass: 1}}}', 'mass'),
+    ('schema: quad_ident/priors/2\neffects: {rotor_drag: {present: 1, sizes: 3}}', 'sizes'),
+    ('schema: quad_ident/priors/1\neffects: {rotor_drag: {present: 1, exactness: 0.1}}',
+     'expected quad_ident/priors/2'),
+    ('schema: quad_ident/priors/2\neffects: {rotor_drag: {present: 1, form_error: 2}}',
+     'form_error')])
 def test_a_wrong_file_is_refused_in_one_line(tmp_path, text, said, capsys):
     """The message names the file and what is wrong; the command ends with 2."""
     path = tmp_path / 'priors.yaml'
@@ -80,6 +85,16 @@ def test_the_log_odds_of_an_effect_rise_by_those_of_the_fleet():
     assert known.shift('wind') == 0.0
     assert rules(wind=RULES.usual_presence).odds('wind') == pytest.approx(RULES.prior_odds)
     assert RULES.odds('wind') == pytest.approx(RULES.prior_odds)
+
+
+def test_the_error_of_form_is_that_of_the_fleet_where_it_is_known():
+    """Of the effect alone; of others and of nuisances it is the usual one."""
+    known = replace(RULES, priors={'rotor_drag': DRAG, 'wind': EffectPrior(0.5)})
+    assert known.form_error_of('rotor_drag') == DRAG.form_error
+    for name in ('wind', 'motor_lag', None):
+        assert known.form_error_of(name) == RULES.form_error
+    distances = {(name, (0,)): None for name in ('rotor_drag', None, 'wind')}
+    assert form_errors_of(distances, known).tolist() == [DRAG.form_error, 0.2, 0.2]
 
 
 def test_the_forms_of_an_effect_share_its_prior_probability():
