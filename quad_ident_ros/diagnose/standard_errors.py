@@ -20,6 +20,8 @@ from quad_ident_ros.model.vehicle import Vehicle
 
 # Relative errors of formulas to try; the likeliest is taken.
 FORM_ERRORS = (0.0, *(0.02 * 2.0 ** (0.5 * k) for k in range(10)))
+OF_EACH = FORM_ERRORS[1::2]
+"""Those that are tried of each effect by itself, by a factor of 2; no formula is exact."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,7 +32,7 @@ class Joint:
     covariance (C, C): the constants of the vehicle file taken as exact; constants: names of those
     that it states a deviation of, and stated (C + K, C + K): the covariance with these, as far as
     flights and deviations leave them; form_errors {effect: (G,)}: the log-likelihood of each of
-    FORM_ERRORS as the relative error of its formula.
+    OF_EACH as the relative error of its formula.
     """
 
     covariance: np.ndarray
@@ -69,7 +71,7 @@ def joint_of(fitted: Fitted, flights: Sequence[Flight], frame: Frame, vehicle: V
     # Of one effect, beside the others as exact as all are likeliest to be.
     form_errors = {effect: np.array([
         likelihood(np.where(np.arange(len(distances)) == place, size, form_error))
-        for size in FORM_ERRORS])
+        for size in OF_EACH])
         for place, (effect, _) in enumerate(distances) if effect is not None}
     constants = uncertain_constants(vehicle, fit.columns)
     columns = [*fit.columns, *(INDEX[name] for name in constants)]

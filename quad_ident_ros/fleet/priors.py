@@ -11,7 +11,7 @@ import pyarrow.compute as pc
 
 from quad_ident_ros.diagnose.priors import bounded, EffectPrior, Priors
 from quad_ident_ros.diagnose.rules import RULES, Rules
-from quad_ident_ros.diagnose.standard_errors import FORM_ERRORS
+from quad_ident_ros.diagnose.standard_errors import OF_EACH
 from quad_ident_ros.effects.registry import EFFECTS, NULL, PLACE
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.fleet.grouping import rules_hash
@@ -104,11 +104,11 @@ def _form_error(curves: Mapping[str, Sequence[Sequence[float]]], rules: Rules) -
     The groups of a vehicle count together as one: their errors may be the same. What was known
     before is about Rules.form_error, by a factor of UNSURE.
     """
-    sizes = np.array(FORM_ERRORS[1:])   # no formula is exact
     if not curves:
         return None
+    sizes = np.array(OF_EACH)
     value = -0.5 * (np.log(sizes / rules.form_error) / np.log(UNSURE)) ** 2
     for some in curves.values():
-        value = value + np.mean(some, axis=0)[1:]
+        value = value + np.mean(some, axis=0)
     share = np.exp(value - value.max())
     return float(share @ sizes / share.sum())

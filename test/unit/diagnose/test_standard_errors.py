@@ -11,7 +11,7 @@ from quad_ident_ros.diagnose.candidates import Candidate
 from quad_ident_ros.diagnose.fitted import Fitted, size_grids
 from quad_ident_ros.diagnose.frame import Frame, WRENCH
 from quad_ident_ros.diagnose.rules import RULES
-from quad_ident_ros.diagnose.standard_errors import FORM_ERRORS, joint_of
+from quad_ident_ros.diagnose.standard_errors import joint_of, OF_EACH
 from quad_ident_ros.greybox.linear import Slopes, Tangent
 from quad_ident_ros.greybox.nuisances import NuisanceValues
 from quad_ident_ros.greybox.parameters import INDEX, nominal
@@ -57,7 +57,7 @@ def estimated(form_error, seed):
 @pytest.mark.parametrize('form_error', [0.0, 0.1, 0.3])
 def test_estimates_scatter_about_the_truth_as_their_standard_errors_say(form_error):
     values, joints = zip(*(estimated(form_error, seed) for seed in range(200)), strict=True)
-    errors = np.array([joint.errors[0] for joint in joints])
+    values, errors = np.array(values), np.array([joint.errors[0] for joint in joints])
     # By least squares: noise over the slope, and the mean of the relative errors.
     expected = np.hypot(1.0 / (SLOPE * np.sqrt(BLOCKS * SAMPLES)),
                         VALUE * form_error / np.sqrt(BLOCKS))
@@ -69,7 +69,6 @@ def test_estimates_scatter_about_the_truth_as_their_standard_errors_say(form_err
 
 @pytest.mark.parametrize('form_error', [0.04, 0.16])
 def test_how_exact_a_formula_is_shows_over_several_flights(form_error):
-    """The relative error that all flights together find likeliest is the true one, to a step."""
+    """The relative error that all flights together find likeliest is the true one."""
     curves = [estimated(form_error, seed)[1].form_errors['rotor_drag'] for seed in range(8)]
-    likeliest = np.argmax(np.sum(curves, axis=0))
-    assert abs(likeliest - FORM_ERRORS.index(pytest.approx(form_error))) <= 1
+    assert OF_EACH[np.argmax(np.sum(curves, axis=0))] == pytest.approx(form_error)

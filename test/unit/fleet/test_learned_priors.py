@@ -10,7 +10,7 @@ import pytest
 
 from quad_ident_ros.diagnose.priors import EffectPrior
 from quad_ident_ros.diagnose.rules import RULES
-from quad_ident_ros.diagnose.standard_errors import FORM_ERRORS
+from quad_ident_ros.diagnose.standard_errors import OF_EACH
 from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.errors import InputError
 
@@ -77,22 +77,22 @@ def taught_form_error(errors, groups=1):
     Args: errors (V, K): of each second of the flights of a vehicle, each known to 0.01; groups: of
     a vehicle, with the same errors.
     """
-    squares = np.array(FORM_ERRORS)[:, None] ** 2 + 1e-4
+    squares = np.array(OF_EACH)[:, None] ** 2 + 1e-4
     rows = [{'vehicle': f'uav{vehicle}', 'effect': 'rotor_drag', 'probability': 1.0, 'named': True,
              'form': 'by_speed', 'form_errors': -0.5 * np.sum(
                  some ** 2 / squares + np.log(squares), axis=1)}
             for vehicle, some in enumerate(np.asarray(errors)) for _ in range(groups)]
-    rows.append(rows[0] | {'named': False, 'form_errors': -1e6 * np.arange(len(FORM_ERRORS))})
+    rows.append(rows[0] | {'named': False, 'form_errors': -1e6 * np.arange(len(OF_EACH))})
     rows.append(rows[0] | {'vehicle': 'of an older version', 'form_errors': None})
     return learned(pyarrow.Table.from_pylist(rows), ())['rotor_drag'].form_error
 
 
-@pytest.mark.parametrize('form_error', [0.05, 0.1, 0.3])
+@pytest.mark.parametrize('form_error', [0.04, 0.06, 0.16, 0.3])
 def test_the_error_of_form_is_that_of_the_fleet(form_error):
     """Of verdicts that name the effect, by a data set that knows it."""
     rng = np.random.default_rng(1)
     found = taught_form_error(form_error * rng.standard_normal((12, 20)))
-    assert found == pytest.approx(form_error, rel=0.25)
+    assert found == pytest.approx(form_error, rel=0.4)      # the sizes tried are apart by 2
 
 
 def test_flights_that_say_little_leave_the_usual_error_of_form(taught):
