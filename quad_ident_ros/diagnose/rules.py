@@ -170,9 +170,14 @@ class Rules:
         return 1.0 / (1.0 + exp(-log_odds(self.prior_odds) - self.shift(effect)))
 
     def form_error_of(self, effect: str | None) -> float:
-        """Return the relative error of the formula of an effect, or of a nuisance (None)."""
+        """
+        Return the relative error of the formula of an effect, or of a nuisance (None).
+
+        That of a fleet where it is smaller: what else is wrong with flights looks like a larger
+        one, above all beside weak effects.
+        """
         known = None if effect is None else self.priors.get(effect)
-        return self.form_error if known is None or known.form_error is None else known.form_error
+        return min(self.form_error, (known and known.form_error) or self.form_error)
 
     def least(self, group: str, noise: float) -> float:
         """Return the gap of a group of outputs below which shares of it mean nothing."""

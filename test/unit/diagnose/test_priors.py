@@ -88,10 +88,11 @@ def test_the_log_odds_of_an_effect_rise_by_those_of_the_fleet():
 
 
 def test_the_error_of_form_is_that_of_the_fleet_where_it_is_known():
-    """Of the effect alone; of others and of nuisances it is the usual one."""
-    known = replace(RULES, priors={'rotor_drag': DRAG, 'wind': EffectPrior(0.5)})
+    """Of the effect alone; of others and of nuisances, and at most, it is the usual one."""
+    known = replace(RULES, priors={'rotor_drag': DRAG, 'wind': EffectPrior(0.5),
+                                   'inflow': EffectPrior(0.5, form_error=0.3)})
     assert known.form_error_of('rotor_drag') == DRAG.form_error
-    for name in ('wind', 'motor_lag', None):
+    for name in ('wind', 'motor_lag', 'inflow', None):
         assert known.form_error_of(name) == RULES.form_error
     distances = {(name, (0,)): None for name in ('rotor_drag', None, 'wind')}
     assert form_errors_of(distances, known).tolist() == [DRAG.form_error, 0.2, 0.2]
