@@ -177,7 +177,9 @@ class Rules:
         one, above all beside weak effects.
         """
         known = None if effect is None else self.priors.get(effect)
-        return min(self.form_error, (known and known.form_error) or self.form_error)
+        if known is None or known.form_error is None:
+            return self.form_error
+        return min(known.form_error, self.form_error)
 
     def least(self, group: str, noise: float) -> float:
         """Return the gap of a group of outputs below which shares of it mean nothing."""
