@@ -68,10 +68,15 @@ def directions(wrench: np.ndarray, contributions: np.ndarray) -> np.ndarray:
                      np.hstack([wrench, none, contributions])])
 
 
-def scales(force: float, moment: float, form_error: float, count: int) -> np.ndarray:
-    """Return the prior standard deviation (D,) along each direction."""
-    return np.concatenate([np.full(AXES, force), np.full(AXES, moment),
-                           np.full(count - 2 * AXES, form_error)])
+def scales(force: float, moment: float, form_error: float | np.ndarray, count: int
+           ) -> np.ndarray:
+    """
+    Return the prior standard deviation (D,) along each of `count` directions.
+
+    form_error: the relative error of all formulas, or (E,) of each.
+    """
+    each = np.broadcast_to(form_error, count // 2 - AXES)
+    return np.concatenate([np.full(AXES, force), np.full(AXES, moment), each, each])
 
 
 def blocks_of(flights: list[tuple[Products, np.ndarray]]) -> Blocks:
@@ -109,13 +114,13 @@ def log_likelihood(blocks: Blocks, deviation: np.ndarray, scatter: float = 1.0) 
     return float(-0.5 * blocks.power / scatter + 0.5 * np.sum(white ** 2) - np.sum(logs))
 
 
-def fitted_sizes(blocks: Blocks, form_error: float, grids: tuple, scatter: float = 1.0,
-                 start: tuple = (0, 0)) -> tuple:
+def fitted_sizes(blocks: Blocks, form_error: float | np.ndarray, grids: tuple,
+                 scatter: float = 1.0, start: tuple = (0, 0)) -> tuple:
     """
     Return (log-likelihood, (force, moment)) at the likeliest sizes on two grids of them.
 
-    Args: grids: rising sizes of the force and of the moment, 0 first; start: where the search
-    begins in each.
+    Args: form_error as of scales; grids: rising sizes of the force and of the moment, 0 first;
+    start: where the search begins in each.
     """
     count = blocks.gram.shape[1]
     known = {}

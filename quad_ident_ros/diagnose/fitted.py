@@ -11,7 +11,7 @@ from scipy.linalg import block_diag
 from quad_ident_ros.diagnose.candidates import Candidate
 from quad_ident_ros.diagnose.discrepancy import fitted_sizes
 from quad_ident_ros.diagnose.evidence import key_of, occam, Quadratic
-from quad_ident_ros.diagnose.frame import blocks_at, Frame
+from quad_ident_ros.diagnose.frame import blocks_at, form_errors_of, Frame
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.effects.registry import NULL
 from quad_ident_ros.greybox.estimate import Estimate, estimate
@@ -71,13 +71,13 @@ def refitted(flights: Sequence[Flight], vehicle: Vehicle, z: np.ndarray, chosen:
 
 def distances_of(chosen: tuple, fit: Estimate, vehicle: Vehicle) -> dict:
     """
-    Return {columns: distance (F, K) of their parameters from none in each flight}.
+    Return {(effect, columns): distance (F, K) of their parameters from none in each flight}.
 
-    Of each effect and nuisance of a set: what a nuisance does is a formula, too.
+    Of each effect and, as None, nuisance of a set: what a nuisance does is a formula, too.
     """
     vectors = np.stack(fit.vectors)
     shared = np.broadcast_to(fit.z - nominal(vehicle), vectors.shape)
-    return {('nuisance' if cause.nuisance else 'effect', cause.columns):
+    return {(None if cause.nuisance else cause.effect, cause.columns):
             (vectors - fit.z if cause.nuisance else shared)[:, list(cause.columns)]
             for cause in chosen}
 
@@ -118,8 +118,10 @@ def fitted_of(chosen: tuple, fit: Estimate, vehicle: Vehicle, frame: Frame,
     The residuals count by the likelihood with the discrepancy marginalised out, the volume of the
     parameters by the information around the Frame's point.
     """
-    blocks = blocks_at(frame, fit, distances_of(chosen, fit, vehicle))
-    value, sizes = fitted_sizes(blocks, rules.form_error, grids, quadratic.scatter, start)
+    distances = distances_of(chosen, fit, vehicle)
+    blocks = blocks_at(frame, fit, distances)
+    value, sizes = fitted_sizes(blocks, form_errors_of(distances, rules), grids,
+                                quadratic.scatter, start)
     distance = np.append((fit.z - nominal(vehicle))[fit.columns], fit.nuisances.values)
     prior = block_diag(np.diag(prior_deviations(vehicle, rules)[fit.columns] ** -2.0),
                        fit.nuisances.precision)

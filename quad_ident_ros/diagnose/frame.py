@@ -128,8 +128,8 @@ def directions_of(distances: dict, flight: int, columns: list[int]) -> np.ndarra
     """
     Return the directions (2, N, D) of the discrepancy of a flight in N columns (places in z).
 
-    Args: distances: {(kind, columns): distance (F, K) of their parameters from none in each
-    flight} of each effect and nuisance.
+    Args: distances: {(effect, columns): distance (F, K) of their parameters from none in each
+    flight} of each effect and, as None, nuisance.
     """
     shares = np.zeros((len(columns), len(distances)))
     for k, ((_, own), away) in enumerate(distances.items()):
@@ -147,12 +147,18 @@ def blocks_at(frame: Frame, fit: Estimate, distances: dict) -> Blocks:
                       for k, errors in enumerate(fit.residuals)])
 
 
+def form_errors_of(distances: dict, rules: Rules) -> np.ndarray:
+    """Return the relative error (E,) that each formula in distances may have."""
+    return np.array([rules.form_error_of(effect) for effect, _ in distances])
+
+
 def normal_at(frame: Frame, fit: Estimate, layout: Layout, distances: dict,
-              sizes: tuple[float, float], rules: Rules) -> Normal:
+              sizes: tuple[float, float], form_error: float | np.ndarray) -> Normal:
     """
     Return the Normal in a Layout's columns with the discrepancy marginalised out.
 
-    Args: fit: at which the Frame is; sizes: force (N) and moment (N m) of the discrepancy.
+    Args: fit: at which the Frame is; sizes: force (N) and moment (N m) of the discrepancy, and
+    form_error, as of scales.
     """
     information = np.zeros((layout.size, layout.size))
     gradient, cost, scores = np.zeros(layout.size), 0.0, []
@@ -160,7 +166,7 @@ def normal_at(frame: Frame, fit: Estimate, layout: Layout, distances: dict,
     for number, errors in enumerate(fit.residuals):
         found = frame.with_residual(errors, number, slice(None))
         along = directions_of(distances, number, frame.wanted)
-        along *= scales(*sizes, rules.form_error, along.shape[2])
+        along *= scales(*sizes, form_error, along.shape[2])
         along = np.pad(along, ((0, 0), (0, 1), (0, 0)))[:, None]    # the clock has no part in them
         whole, ends = _without_discrepancy(found, along)
         # The clock of the pose is free in each flight: it is taken out of the others.

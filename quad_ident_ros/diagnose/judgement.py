@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What each effect contributes, which effects matter, and whether something unknown remains."""
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 from itertools import combinations
 
@@ -73,7 +73,8 @@ def judge(bench: Bench) -> Judgement:
         idle = [removed for removed, one in smaller.items()
                 if not matters(model.gap, one.gap, before, noise, rules,
                                clear([weights[cause] for cause in removed],
-                                     bench.distance(model, removed), rules))]
+                                     bench.distance(model, removed), rules),
+                               form_error_beside(model.effects, removed, rules))]
         if not idle:
             break
         # Where either of two does and their gaps hardly differ, the likelihood decides.
@@ -182,20 +183,28 @@ def lost_shares(after: dict, without: dict, before: dict, noise: dict, rules: Ru
 
 
 def matters(after: dict, without: dict, before: dict, noise: dict, rules: Rules,
-            apart: bool = False) -> bool:
+            apart: bool = False, form_error: float | None = None) -> bool:
     """
     Return whether effects matter, by the gap with and without them.
 
     In some group of outputs the share that is lost without them is material, beside the floors of
     the tolerance, too, and more than the error of form of the other effects may be, unless it is
-    known apart from these.
+    known apart from these. form_error: relative, of the others; usual where it is None.
     """
+    wrong = rules.form_error if form_error is None else form_error
     shares = lost_shares(after, without, before, noise, rules)
     return any(share >= rules.material
                and without[name] - after[name] >= rules.lost * rules.floors[name]
                and (apart or beyond(without[name], after[name])
-                    >= rules.form_error * beyond(before[name], without[name]))
+                    >= wrong * beyond(before[name], without[name]))
                for name, share in shares.items())
+
+
+def form_error_beside(effects: Iterable[Candidate], removed: Collection[Candidate], rules: Rules
+                      ) -> float:
+    """Return the largest relative error of form of the effects that are not removed."""
+    return max((rules.form_error_of(cause.effect) for cause in effects if cause not in removed),
+               default=rules.form_error)
 
 
 def closes_half(after: dict, before: dict, noise: dict, rules: Rules) -> bool:

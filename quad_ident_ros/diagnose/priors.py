@@ -15,7 +15,7 @@ from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.whole_file import write_whole
 
-SCHEMA = 'quad_ident/priors/1'
+SCHEMA = 'quad_ident/priors/2'
 LEAST, MOST = 1e-3, 0.999
 """Probabilities of being present, at least and at most: a fleet never rules an effect out."""
 
@@ -26,14 +26,14 @@ class EffectPrior:
     What a fleet knows of an effect.
 
     present: the probability that a vehicle has it; forms {form: share, of those that have it};
-    sizes {parameter: how far it usually is from no effect, SI}; exactness: how much the parameters
-    scatter from flight to flight beside what they do, or None where that is not known.
+    sizes {parameter: how far it usually is from no effect, SI}; form_error: the relative error of
+    its formula, or None where that is not known.
     """
 
     present: float
     forms: Mapping[str, float] = field(default_factory=dict)
     sizes: Mapping[str, float] = field(default_factory=dict)
-    exactness: float | None = None
+    form_error: float | None = None
 
 
 Priors = dict[str, EffectPrior]
@@ -74,21 +74,22 @@ def log_odds(probability: float) -> float:
 
 
 def _prior(where: str, name: str, entry: object) -> EffectPrior:
-    schema.check_keys(where, entry, ('present', 'forms', 'sizes', 'exactness'))
+    schema.check_keys(where, entry, ('present', 'forms', 'sizes', 'form_error'))
     assert isinstance(entry, dict)
     effect = EFFECTS[name]
     present = bounded(schema.number(f'{where}: present', entry.get('present'), 0.0, 1.0))
     forms, sizes = entry.get('forms') or {}, entry.get('sizes') or {}
     schema.check_keys(f'{where}: forms', forms, [form.name for form in effect.forms])
     schema.check_keys(f'{where}: sizes', sizes, [one.name for one in effect.parameters])
-    exactness = entry.get('exactness')
+    form_error = entry.get('form_error')
     return EffectPrior(
         present,
         {form: schema.number(f'{where}: forms: {form}', share, 0.0, 1.0, exclusive=True)
          for form, share in forms.items()},
         {key: schema.number(f'{where}: sizes: {key}', size, 0.0, exclusive=True)
          for key, size in sizes.items()},
-        None if exactness is None else schema.number(f'{where}: exactness', exactness, 0.0))
+        None if form_error is None else schema.number(f'{where}: form_error', form_error, 0.0,
+                                                      1.0))
 
 
 def _rounded(value: Any) -> Any:

@@ -229,7 +229,8 @@ class Diagnosis:
     covariance: how well their parameters are known together, with the constants whose deviations
     the vehicle file states, or None where there are none; residual: the function of state and
     command that reaches the ceiling, None where effects do; recorded: the flights as they came;
-    run: the Run of the program, None where a library made the diagnosis.
+    run: the Run of the program, None where a library made the diagnosis; form_errors {effect:
+    (G,)}: log-likelihoods of how exact its formula is, see Joint.
     """
 
     vehicle: Vehicle
@@ -260,6 +261,7 @@ class Diagnosis:
     closed_loop: ClosedLoop | None = None
     recorded: tuple[Recorded, ...] = ()
     run: Run | None = None
+    form_errors: dict[str, np.ndarray] = field(default_factory=dict)
 
     def effects(self) -> dict:
         """Return {effect: {parameter: value}} of the vehicle, as flights and file have it."""

@@ -57,7 +57,7 @@ class Rules:
         fleet differs: one to three of some seventeen in the flights of `calibration`.
     Discrepancy (see discrepancy.py):
       form_error: relative error of an effect's formula. Published laws of one effect differ from
-        one another by 10 to 30 % over the range in which they are used.
+        one another by 10 to 30 % over the range in which they are used. A fleet may know better.
       form_time: s over which that error stays the same: that of a turn or a stop of a flight.
     Probability:
       calibration: constant, and weights of the root of the contribution, of the logarithm of one
@@ -168,6 +168,18 @@ class Rules:
         if effect not in self.priors:
             return self.prior_odds
         return 1.0 / (1.0 + exp(-log_odds(self.prior_odds) - self.shift(effect)))
+
+    def form_error_of(self, effect: str | None) -> float:
+        """
+        Return the relative error of the formula of an effect, or of a nuisance (None).
+
+        That of a fleet where it is smaller: what else is wrong with flights looks like a larger
+        one, above all beside weak effects.
+        """
+        known = None if effect is None else self.priors.get(effect)
+        if known is None or known.form_error is None:
+            return self.form_error
+        return min(known.form_error, self.form_error)
 
     def least(self, group: str, noise: float) -> float:
         """Return the gap of a group of outputs below which shares of it mean nothing."""

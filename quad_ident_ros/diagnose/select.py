@@ -21,7 +21,13 @@ from quad_ident_ros.diagnose.fitted import (
     size_grids,
     within_bounds,
 )
-from quad_ident_ros.diagnose.frame import blocks_at, Frame, frame_at, normal_at
+from quad_ident_ros.diagnose.frame import (
+    blocks_at,
+    form_errors_of,
+    Frame,
+    frame_at,
+    normal_at,
+)
 from quad_ident_ros.diagnose.promising import other_actuators, promising, REFITS
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.diagnose.selection import posteriors, Selection
@@ -158,8 +164,9 @@ class _Search:
         fit, chosen = self.best.estimate, self.best.chosen
         force, moment = (float(grid[k]) for grid, k in zip(self.grids, self.best.sizes,
                                                            strict=True))
-        blocks = blocks_at(self.frame, fit, distances_of(chosen, fit, self.vehicle))
-        gain, none = (log_likelihood(blocks, scales(*sizes, self.rules.form_error,
+        distances = distances_of(chosen, fit, self.vehicle)
+        blocks = blocks_at(self.frame, fit, distances)
+        gain, none = (log_likelihood(blocks, scales(*sizes, form_errors_of(distances, self.rules),
                                                     blocks.gram.shape[1]), self.quadratic.scatter)
                       for sizes in ((force, moment), (0.0, 0.0)))
         return np.repeat([force, moment], AXES) if gain - none > self.rules.alike else None
@@ -211,10 +218,10 @@ class _Search:
     def quadratic_of(self, fit: Estimate, chosen: tuple, layout: Layout, everyone: NuisanceValues,
                      grids: tuple, sizes: tuple) -> Quadratic:
         """Return the Quadratic around an Estimate, all candidates free."""
-        normal = normal_at(self.frame, fit, layout,
-                           distances_of(chosen, fit, self.vehicle),
+        distances = distances_of(chosen, fit, self.vehicle)
+        normal = normal_at(self.frame, fit, layout, distances,
                            tuple(grid[k] for grid, k in zip(grids, sizes, strict=True)),
-                           self.rules)
+                           form_errors_of(distances, self.rules))
         lower, upper, _ = limits(self.vehicle)
         wide = prior_deviations(self.vehicle, self.rules)[self.columns]
         null = nominal(self.vehicle)[self.columns]

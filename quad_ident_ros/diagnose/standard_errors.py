@@ -3,7 +3,7 @@
 """Standard errors of a fitted set: by noise, and by how wrong flights show its formulas to be."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.linalg import block_diag
@@ -20,6 +20,8 @@ from quad_ident_ros.model.vehicle import Vehicle
 
 # Relative errors of formulas to try; the likeliest is taken.
 FORM_ERRORS = (0.0, *(0.02 * 2.0 ** (0.5 * k) for k in range(10)))
+OF_EACH = FORM_ERRORS[1::2]
+"""Those that are tried of each effect by itself, by a factor of 2; no formula is exact."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,12 +31,14 @@ class Joint:
 
     covariance (C, C): the constants of the vehicle file taken as exact; constants: names of those
     that it states a deviation of, and stated (C + K, C + K): the covariance with these, as far as
-    flights and deviations leave them.
+    flights and deviations leave them; form_errors {effect: (G,)}: the log-likelihood of each of
+    OF_EACH as the relative error of its formula.
     """
 
     covariance: np.ndarray
     constants: tuple[str, ...]
     stated: np.ndarray
+    form_errors: dict[str, np.ndarray] = field(default_factory=dict)
 
     @property
     def errors(self) -> np.ndarray:
@@ -58,21 +62,29 @@ def joint_of(fitted: Fitted, flights: Sequence[Flight], frame: Frame, vehicle: V
     distances = distances_of(fitted.chosen, fit, vehicle)
     blocks = blocks_at(frame, fit, distances)
     force, moment = (float(grid[k]) for grid, k in zip(grids, fitted.sizes, strict=True))
-    form_error = max(FORM_ERRORS, key=lambda size: log_likelihood(
-        blocks, scales(force, moment, size, blocks.gram.shape[1]), scatter))
+    count = blocks.gram.shape[1]
+
+    def likelihood(size: float | np.ndarray) -> float:
+        return log_likelihood(blocks, scales(force, moment, size, count), scatter)
+
+    form_error = max(FORM_ERRORS, key=likelihood)
+    # Of one effect, beside the others as exact as all are likeliest to be.
+    form_errors = {effect: np.array([
+        likelihood(np.where(np.arange(len(distances)) == place, size, form_error))
+        for size in OF_EACH])
+        for place, (effect, _) in enumerate(distances) if effect is not None}
     constants = uncertain_constants(vehicle, fit.columns)
     columns = [*fit.columns, *(INDEX[name] for name in constants)]
     layout = Layout(columns, fit.nuisances.columns, len(fit.nuisances.values))
     if constants:
         frame = frame_at(list(flights), vehicle, fit, layout.wanted, rules)
-    normal = normal_at(frame, fit, layout, distances, (force, moment),
-                       replace(rules, form_error=form_error))
+    normal = normal_at(frame, fit, layout, distances, (force, moment), form_error)
     shared = marginal(normal, len(columns), block_diag(np.zeros((len(columns), len(columns))),
                                                        fit.nuisances.precision))
     size, count = limits(vehicle)[2, columns], len(fit.columns)
     exact = covariance_of(_first(shared, count), size[:count])
     if not constants:
-        return Joint(exact, (), exact)
+        return Joint(exact, (), exact, form_errors)
     # One scatter for all, the largest: what scales the whole motion stays in proportion.
     widest = float(scatter_of(shared).max())
     information, gradient = shared.information / widest, shared.gradient / widest
@@ -81,7 +93,7 @@ def joint_of(fitted: Fitted, flights: Sequence[Flight], frame: Frame, vehicle: V
     whole = covariance_of(replace(white, information=information + np.diag(known)), size)
     shift = whole @ gradient
     shift[:count] -= covariance_of(_first(white, count), size[:count]) @ gradient[:count]
-    return Joint(exact, tuple(constants), whole + np.outer(shift, shift))
+    return Joint(exact, tuple(constants), whole + np.outer(shift, shift), form_errors)
 
 
 def _first(normal: Normal, count: int) -> Normal:

@@ -13,7 +13,14 @@ from quad_ident_ros.diagnose.bench import Bench, Model
 from quad_ident_ros.diagnose.candidates import Candidate
 from quad_ident_ros.diagnose.doubts import doubts_of
 from quad_ident_ros.diagnose.fitted import Fitted
-from quad_ident_ros.diagnose.judgement import beyond, Judgement, matters, pooled, unexplained
+from quad_ident_ros.diagnose.judgement import (
+    beyond,
+    form_error_beside,
+    Judgement,
+    matters,
+    pooled,
+    unexplained,
+)
 from quad_ident_ros.diagnose.probability import told_apart
 from quad_ident_ros.diagnose.result import FlightCheck, Minor, Ranked, Value
 from quad_ident_ros.effects.registry import EFFECTS
@@ -79,7 +86,8 @@ def _replaces(bench: Bench, judged: Judgement, cause: Candidate, rival: Candidat
         return False
     instead = bench.instead(judged.model, cause, rival, having.estimate.z)
     return not matters(judged.model.gap, instead.gap, gaps.gap(judged.before),
-                       pooled(judged.noise), bench.rules)
+                       pooled(judged.noise), bench.rules, form_error=form_error_beside(
+                           judged.model.effects, (cause,), bench.rules))
 
 
 def is_brief(bench: Bench, model: Model, cause: Candidate) -> bool:

@@ -1,8 +1,8 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What a fleet teaches about each effect: how often it is present, how large, in which form."""
+"""What a fleet teaches of each effect: how often it is present, how large, how exact its form."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +11,7 @@ import pyarrow.compute as pc
 
 from quad_ident_ros.diagnose.priors import bounded, EffectPrior, Priors
 from quad_ident_ros.diagnose.rules import RULES, Rules
+from quad_ident_ros.diagnose.standard_errors import OF_EACH
 from quad_ident_ros.effects.registry import EFFECTS, NULL, PLACE
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.fleet.grouping import rules_hash
@@ -21,6 +22,11 @@ DOUBT = 4.0
 """
 Vehicles' worth of what was known before: four vehicles that all have an effect make it as likely
 as not in the fifth.
+"""
+UNSURE = 2.0
+"""
+Factor by which the error of an effect's formula usually differs from Rules.form_error: published
+laws of one effect differ by 10 to 30 %.
 """
 
 
@@ -52,17 +58,21 @@ def learned(effects: pyarrow.Table, found: Iterable[History], rules: Rules = RUL
     rows = effects.to_pylist()
     probability: dict[str, dict[str, list[float]]] = {}
     forms: dict[str, dict[str, set[str]]] = {}
+    curves: dict[str, dict[str, list[list[float]]]] = {}
     for row in rows:
         probability.setdefault(row['effect'], {}).setdefault(row['vehicle'], []).append(
             row['probability'])
         if row['named'] and row['form']:
             forms.setdefault(row['effect'], {}).setdefault(row['form'], set()).add(row['vehicle'])
+        if row['named'] and row['form_errors']:
+            curves.setdefault(row['effect'], {}).setdefault(row['vehicle'], []).append(
+                row['form_errors'])
     some = tuple(found)
     return {name: EffectPrior(
         bounded((float(sum(map(np.mean, probability[name].values())))
                  + DOUBT * rules.usual_presence) / (len(probability[name]) + DOUBT)),
         _forms(name, {form: len(those) for form, those in forms.get(name, {}).items()}, rules),
-        _sizes(name, some), _exactness(name, some, rules))
+        _sizes(name, some), _form_error(curves.get(name, {}), rules))
         for name in EFFECTS if name in probability}
 
 
@@ -88,17 +98,18 @@ def _sizes(name: str, found: Iterable[History]) -> dict[str, float]:
             if (size := np.sqrt(np.mean(np.square(some)))) > 0.0}
 
 
-def _exactness(name: str, found: Iterable[History], rules: Rules) -> float | None:
+def _form_error(curves: Mapping[str, Sequence[Sequence[float]]], rules: Rules) -> float | None:
     """
-    Return the median scatter between flights over the distance from no effect.
+    Return the mean relative error of a formula by the log-likelihoods of each vehicle's groups.
 
-    The error of the form is in it, and what differs from flight to flight: it is a bound. Only of
-    parameters that clearly differ from none: a share of nothing says nothing.
+    The groups of a vehicle count together as one: their errors may be the same. What was known
+    before is about Rules.form_error, by a factor of UNSURE.
     """
-    shares = []
-    for one in found:
-        if one.series.effect == name and (name, one.series.parameter) in PLACE:
-            away = abs(one.level - NULL[PLACE[name, one.series.parameter]])
-            if away > rules.shown * one.std:
-                shares.append(one.scatter / away)
-    return float(np.median(shares)) if shares else None
+    if not curves:
+        return None
+    sizes = np.array(OF_EACH)
+    value = -0.5 * (np.log(sizes / rules.form_error) / np.log(UNSURE)) ** 2
+    for some in curves.values():
+        value = value + np.mean(some, axis=0)
+    share = np.exp(value - value.max())
+    return float(share @ sizes / share.sum())

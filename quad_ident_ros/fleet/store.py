@@ -42,7 +42,7 @@ TABLES = {
         ('covariates', pyarrow.map_(TEXT, NUMBER))]),
     'effects': pyarrow.schema([
         *_WHOSE, ('effect', TEXT), ('probability', NUMBER), ('contribution', NUMBER),
-        ('form', TEXT), ('named', YES), ('minor', YES)]),
+        ('form', TEXT), ('named', YES), ('minor', YES), ('form_errors', NUMBERS)]),
     'parameters': pyarrow.schema([
         ('flight', TEXT), *_WHOSE, ('effect', TEXT), ('parameter', TEXT), ('unit', TEXT),
         ('value', NUMBER), ('std', NUMBER)]),

@@ -100,7 +100,8 @@ def write(group: Group, out: str | Path, outcome: Outcome, reads: Sequence[_Read
         write_rows(out, 'effects', group.key, [dated | {
             'effect': one.effect, 'probability': one.probability,
             'contribution': one.contribution, 'form': one.form,
-            'named': one.effect in found.verdict, 'minor': one.effect in minor}
+            'named': one.effect in found.verdict, 'minor': one.effect in minor,
+            'form_errors': np.asarray(found.form_errors.get(one.effect, ())).tolist()}
             for one in found.ranking])
     write_rows(out, 'groups', group.key, [dated | {
         'flights': len(group.flights), 'status': outcome.status, 'reason': outcome.reason,

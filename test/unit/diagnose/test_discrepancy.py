@@ -93,6 +93,13 @@ def test_without_effects_only_force_and_moment_remain():
     assert scales(0.1, 0.2, 0.3, 6).tolist() == [0.1] * 3 + [0.2] * 3
 
 
+def test_each_formula_may_have_an_error_of_its_own():
+    """In translation and in rotation; one number is that of all."""
+    found = scales(0.1, 0.2, np.array([0.05, 0.3]), 6 + 2 * EFFECTS)
+    assert found.tolist() == [0.1] * 3 + [0.2] * 3 + [0.05, 0.3] * 2
+    assert scales(0.1, 0.2, 0.3, 6 + 2 * EFFECTS).tolist() == [0.1] * 3 + [0.2] * 3 + [0.3] * 4
+
+
 def test_an_error_that_an_effect_may_have_costs_what_its_prior_says():
     """A tenth of what it does is half a standard deviation, in two blocks and two parts each."""
     wrench, parts, _ = flight(5)

@@ -19,6 +19,7 @@ from quad_ident_ros.diagnose.judgement import (
     beyond,
     clear,
     closes_half,
+    form_error_beside,
     in_forms_of,
     lost_shares,
     matters,
@@ -27,6 +28,7 @@ from quad_ident_ros.diagnose.judgement import (
     unexplained,
 )
 from quad_ident_ros.diagnose.noise import noise_of
+from quad_ident_ros.diagnose.priors import EffectPrior
 from quad_ident_ros.diagnose.probability import Weight
 from quad_ident_ros.diagnose.rules import RULES
 from quad_ident_ros.diagnose.select import select
@@ -91,6 +93,19 @@ def test_a_further_effect_matters_beside_more_than_the_error_of_form_of_the_firs
         share = (remains - 0.04) / (2.0 - 0.04)
         assert share > RULES.material
         assert matters(of(), of(velocity=remains), before, NOISE, RULES) is expected
+
+
+def test_a_further_effect_matters_beside_less_where_a_fleet_knows_the_form_of_the_first():
+    """It may err by a twentieth then, 0.1 m/s; of several others the largest error counts."""
+    drag, lag, wind = (SimpleNamespace(effect=name) for name in ('rotor_drag', 'motor_lag',
+                                                                 'wind'))
+    known = replace(RULES, priors={'rotor_drag': EffectPrior(0.5, form_error=0.05)})
+    assert form_error_beside((drag, wind), (wind,), known) == 0.05
+    assert form_error_beside((drag, lag, wind), (wind,), known) == RULES.form_error
+    assert form_error_beside((wind,), (wind,), known) == RULES.form_error
+    before, without = of(velocity=2.0), of(velocity=0.3)
+    assert not matters(of(), without, before, NOISE, known)
+    assert matters(of(), without, before, NOISE, known, form_error=0.05)
 
 
 def test_what_is_known_apart_matters_whatever_the_error_of_form_of_others():

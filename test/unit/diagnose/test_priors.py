@@ -11,9 +11,11 @@ from quad_ident_ros.cli.main import main
 from quad_ident_ros.diagnose.candidates import candidates
 from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.diagnose.fitted import prior_deviations
+from quad_ident_ros.diagnose.frame import form_errors_of
 from quad_ident_ros.diagnose.priors import EffectPrior, load_priors, write_priors
 from quad_ident_ros.diagnose.probability import presence, Weight
 from quad_ident_ros.diagnose.rules import RULES
+from quad_ident_ros.diagnose.standard_errors import OF_EACH
 from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.flight.fly import fly_closed_loop
@@ -43,11 +45,15 @@ def test_a_file_is_read_as_it_was_written(tmp_path):
     ('a: [', 'not YAML'), ('day: 2026-13-45', 'cannot be read'), ('[' * 5000, 'cannot be read'),
     ('a: 1\na: 2', 'twice'),
     ('schema: other', 'schema'), ('- 1', 'expected `key: value`'),
-    ('schema: quad_ident/priors/1\neffects: {drag: {present: 1}}', 'drag'),
-    ('schema: quad_ident/priors/1\neffects: {rotor_drag: {present: 2}}', 'out of range'),
-    ('schema: quad_ident/priors/1\neffects: {rotor_drag: {}}', 'expected a number'),
-    ('schema: quad_ident/priors/1\neffects: {rotor_drag: {present: 1, sizes: {mass: 1}}}', 'mass'),
-    ('schema: quad_ident/priors/1\neffects: {rotor_drag: {present: 1, sizes: 3}}', 'sizes')])
+    ('schema: quad_ident/priors/2\neffects: {drag: {present: 1}}', 'drag'),
+    ('schema: quad_ident/priors/2\neffects: {rotor_drag: {present: 2}}', 'out of range'),
+    ('schema: quad_ident/priors/2\neffects: {rotor_drag: {}}', 'expected a number'),
+    ('schema: quad_ident/priors/2\neffects: {rotor_drag: {present: 1, sizes: {mass: 1}}}', 'mass'),
+    ('schema: quad_ident/priors/2\neffects: {rotor_drag: {present: 1, sizes: 3}}', 'sizes'),
+    ('schema: quad_ident/priors/1\neffects: {rotor_drag: {present: 1, exactness: 0.1}}',
+     'expected quad_ident/priors/2'),
+    ('schema: quad_ident/priors/2\neffects: {rotor_drag: {present: 1, form_error: 2}}',
+     'form_error')])
 def test_a_wrong_file_is_refused_in_one_line(tmp_path, text, said, capsys):
     """The message names the file and what is wrong; the command ends with 2."""
     path = tmp_path / 'priors.yaml'
@@ -80,6 +86,17 @@ def test_the_log_odds_of_an_effect_rise_by_those_of_the_fleet():
     assert known.shift('wind') == 0.0
     assert rules(wind=RULES.usual_presence).odds('wind') == pytest.approx(RULES.prior_odds)
     assert RULES.odds('wind') == pytest.approx(RULES.prior_odds)
+
+
+def test_the_error_of_form_is_that_of_the_fleet_where_it_is_known():
+    """Of the effect alone; of others and of nuisances, and at most, it is the usual one."""
+    known = replace(RULES, priors={'rotor_drag': DRAG, 'wind': EffectPrior(0.5),
+                                   'inflow': EffectPrior(0.5, form_error=0.3)})
+    assert known.form_error_of('rotor_drag') == DRAG.form_error
+    for name in ('wind', 'motor_lag', 'inflow', None):
+        assert known.form_error_of(name) == RULES.form_error
+    distances = {(name, (0,)): None for name in ('rotor_drag', None, 'wind')}
+    assert form_errors_of(distances, known).tolist() == [DRAG.form_error, 0.2, 0.2]
 
 
 def test_the_forms_of_an_effect_share_its_prior_probability():
@@ -122,3 +139,19 @@ def test_a_weak_effect_is_named_where_most_sisters_have_it():
     unnamed, usual = verdict(RULES)
     assert unnamed == ('none',) and 0.05 < usual < 0.5
     assert verdict(rules(rotor_drag=0.005))[1] < 0.5 * usual
+
+
+@pytest.mark.slow
+def test_a_weak_effect_is_more_probable_beside_a_form_that_the_fleet_knows_to_be_exact():
+    """Thrust of 0.8 % more beside a strong drag, whose formula flights show to be exact to 4 %."""
+    truth = {'rotor_drag': {'coefficient': 0.2}, 'thrust_scale': {'factor': 1.008}}
+    flights = [fly_closed_loop(VEHICLE, truth, name, duration=8.0, seed=seed, noise=MOCAP_IMU)
+               for seed, name in enumerate(('lissajous', 'figure8'))]
+    exact = replace(RULES, priors={'rotor_drag': EffectPrior(RULES.usual_presence,
+                                                             form_error=0.03)})
+    usual, known = (diagnose(flights, VEHICLE, effects=['rotor_drag', 'thrust_scale'], rules=each)
+                    for each in (RULES, exact))
+    before, after = ({row.effect: row.probability for row in found.ranking}['thrust_scale']
+                     for found in (usual, known))
+    assert known.verdict == ('rotor_drag', 'thrust_scale') and after > before + 0.05
+    assert OF_EACH[np.argmax(usual.form_errors['rotor_drag'])] <= 0.05

@@ -7,6 +7,8 @@ import hashlib
 import json
 import os
 from pathlib import Path
+import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -170,6 +172,41 @@ if __name__ == '__main__':
     from quad_ident_ros.cli.main import main
     sys.exit(main(['fleet', sys.argv[1], '--vehicle', 'hummingbird', '-o', sys.argv[2],
                    '--workers', '1']))
+"""
+
+
+def test_a_disk_that_fills_up_in_the_middle_is_said_and_the_run_goes_on_later(runs, folder,
+                                                                              tmp_path):
+    """On a disk of its own, in memory, that only root may mount; later it has more room."""
+    if not shutil.which('unshare') or subprocess.run(
+            ['unshare', '-m', 'true'], capture_output=True, check=False).returncode:
+        pytest.skip('only root may mount a disk')
+    disk, first, second = (tmp_path / name for name in ('disk', 'first', 'second'))
+    disk.mkdir()
+    runs.out = disk / 'fleet'
+    kept = tmp_path / 'kept'
+    words = [sys.executable, '-m', 'quad_ident_ros', 'fleet', str(folder), '--vehicle',
+             'hummingbird', '-o', str(runs.out), '--workers', '1']
+    env = {**os.environ, 'PYTHONPATH': os.pathsep.join([str(ROOT), *sys.path])}
+    done = subprocess.run(['unshare', '-m', 'sh', '-c', DISK, 'sh', disk, kept, first, second,
+                           *words], capture_output=True, text=True, env=env, check=False,
+                          timeout=2 * LONGEST)
+    assert done.returncode == 0, done.stderr + second.read_text()
+    code, *said = first.read_text().splitlines()
+    assert code == '2' and 'Traceback' not in first.read_text()
+    assert said[-1].endswith('No space left on device')
+    check_complete(folder, kept)
+    assert re.search(rf'\(([1-{FLIGHTS}]) of them before\)', second.read_text())
+
+
+DISK = """
+disk=$1 kept=$2 first=$3 second=$4
+shift 4
+mount -t tmpfs -o size=120k none "$disk" || exit 98
+"$@" 2> "$first.errors"
+{ echo $?; cat "$first.errors"; } > "$first"
+mount -o remount,size=64m "$disk" || exit 98
+"$@" > "$second" 2>&1 && cp -r "$disk/fleet" "$kept"
 """
 
 

@@ -5,14 +5,17 @@
 from dataclasses import replace
 
 from fleets import data_set, START, TRACKED
+import numpy as np
 import pytest
 
 from quad_ident_ros.diagnose.priors import EffectPrior
 from quad_ident_ros.diagnose.rules import RULES
+from quad_ident_ros.diagnose.standard_errors import OF_EACH
 from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.errors import InputError
 
-pytest.importorskip('pyarrow', reason="pyarrow is not installed: pip install '.[fleet]'")
+pyarrow = pytest.importorskip(
+    'pyarrow', reason="pyarrow is not installed: pip install '.[fleet]'")
 from quad_ident_ros.fleet.grouping import rules_hash  # noqa: E402, I100
 from quad_ident_ros.fleet.insight import insight  # noqa: E402, I100
 from quad_ident_ros.fleet.priors import DOUBT, effects_without_priors, learned  # noqa: E402, I100
@@ -67,10 +70,40 @@ def test_sizes_are_those_of_the_vehicles(taught):
     assert taught['com_offset'].sizes['x'] == pytest.approx(5e-4, rel=0.6)
 
 
-def test_exactness_is_the_scatter_between_flights_over_the_effect(taught):
-    """The drag scatters by 1 in 60 from flight to flight."""
-    _, mean, _, scatter = TRACKED['rotor_drag', 'coefficient']
-    assert taught['rotor_drag'].exactness == pytest.approx(scatter / mean, rel=0.3)
+def taught_form_error(errors, groups=1):
+    """
+    Return the form_error that a fleet teaches whose formula is wrong by such relative errors.
+
+    Args: errors (V, K): of each second of the flights of a vehicle, each known to 0.01; groups: of
+    a vehicle, with the same errors.
+    """
+    squares = np.array(OF_EACH)[:, None] ** 2 + 1e-4
+    rows = [{'vehicle': f'uav{vehicle}', 'effect': 'rotor_drag', 'probability': 1.0, 'named': True,
+             'form': 'by_speed', 'form_errors': -0.5 * np.sum(
+                 some ** 2 / squares + np.log(squares), axis=1)}
+            for vehicle, some in enumerate(np.asarray(errors)) for _ in range(groups)]
+    rows.append(rows[0] | {'named': False, 'form_errors': -1e6 * np.arange(len(OF_EACH))})
+    rows.append(rows[0] | {'vehicle': 'of an older version', 'form_errors': None})
+    return learned(pyarrow.Table.from_pylist(rows), ())['rotor_drag'].form_error
+
+
+@pytest.mark.parametrize('form_error', [0.04, 0.06, 0.16, 0.3])
+def test_the_error_of_form_is_that_of_the_fleet(form_error):
+    """Of verdicts that name the effect, by a data set that knows it."""
+    rng = np.random.default_rng(1)
+    found = taught_form_error(form_error * rng.standard_normal((12, 20)))
+    assert found == pytest.approx(form_error, rel=0.4)      # the sizes tried are apart by 2
+
+
+def test_flights_that_say_little_leave_the_usual_error_of_form(taught):
+    """One vehicle with a second of flight; groups of a vehicle say no more than one of them."""
+    assert taught_form_error(np.full((1, 1), 0.05)) == pytest.approx(RULES.form_error, rel=0.5)
+    rng = np.random.default_rng(2)
+    errors = 0.03 * rng.standard_normal((1, 5))
+    once = taught_form_error(errors)
+    assert taught_form_error(errors, groups=40) == pytest.approx(once)
+    assert once > 1.2 * taught_form_error(np.repeat(errors, 40, axis=0))
+    assert taught['rotor_drag'].form_error is None
 
 
 def test_forms_that_were_named_are_likelier(taught):
