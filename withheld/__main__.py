@@ -65,10 +65,14 @@ def main(arguments=None):
                         help='processes that fly and that diagnose (default: one per core)')
     parser.add_argument('--keep', metavar='FOLDER',
                         help='keep flights, diagnoses and opened labels in this new folder')
+    parser.add_argument('--table', metavar='FILE',
+                        help='in-mujoco: write all cases as a page in Markdown')
     parser.add_argument('--json', metavar='FILE', help='write the score as data; - prints it')
     options = parser.parse_args(arguments)
     if options.keep and Path(options.keep).exists():
         parser.error(f'--keep {options.keep}: it exists already; name a new folder')
+    if options.table and options.action != 'in-mujoco':
+        parser.error('--table: it is of in-mujoco')
     if options.action == 'in-mujoco':
         return _in_mujoco(parser, options)
     if options.action:
@@ -97,15 +101,21 @@ def main(arguments=None):
 
 def _in_mujoco(parser: argparse.ArgumentParser, options: argparse.Namespace) -> int:
     """Print how far gaps fall in MuJoCo; return 1 where one falls by less than promised."""
-    from withheld.in_mujoco import falls_of, summary
+    from withheld.in_mujoco import falls_of, page, summary
     if not options.folders:
         parser.error('in-mujoco: name a folder that --keep has written')
     cases = [case for folder in map(Path, options.folders)
              for case in sorted((folder / 'flights').glob('*/vehicle.yaml'))][:options.count]
     if not cases:
         parser.error(f'in-mujoco {options.folders[0]}: there are no flights of a kept run')
-    said, fell_short = summary(falls_of([case.parent for case in cases], options.jobs))
+    found = falls_of([case.parent for case in cases], options.jobs)
+    said, fell_short = summary(found)
     print(said)
+    if options.table:
+        folders = ' '.join(Path(folder).name for folder in options.folders)
+        count = f' --count {options.count}' if options.count else ''
+        command = f'./run withheld in-mujoco {folders}{count}'
+        Path(options.table).write_text(page(found, command, _version()), encoding='utf-8')
     return 1 if fell_short else 0
 
 

@@ -188,6 +188,25 @@ def summary(results: Sequence[Fall | str]) -> tuple[str, bool]:
     return said, len(true) < len(judged)
 
 
+def page(results: Sequence[Fall | str], command: str, version: str) -> str:
+    """Return the Falls of a run as a page in Markdown, with the command that made it."""
+    lines = ['# From flights into MuJoCo', '', f'`{command}`, version {version}:', '',
+             f'{summary(results)[0]}.', '',
+             'Velocity gaps in m/s along the flight held out; what was promised is by our own '
+             'equations, with what the written', 'model and its code carry.', '',
+             '| case | named | in MuJoCo | after | promised from | to | share come true |',
+             '| --- | --- | --: | --: | --: | --: | --: |']
+    for one in sorted(results, key=lambda one: one.name if isinstance(one, Fall) else one):
+        if isinstance(one, str):
+            lines.append(f'| {one.replace("|", "/")} | | | | | | - |')
+            continue
+        gaps_there = (one.before, one.after, one.promised_before, one.promised)
+        share = f'{100 * one.share:.1f} %' if one.judged else '-'
+        lines.append('| ' + ' | '.join([one.name, ', '.join(one.verdict),
+                                        *(f'{gap:.4f}' for gap in gaps_there), share]) + ' |')
+    return '\n'.join(lines) + '\n'
+
+
 def _held_out(records: Sequence[FlightRecord], vehicle: Vehicle) -> Track:
     return replace(take_in(records, vehicle, None, RULES).held_out, guide=None)
 

@@ -25,6 +25,7 @@ BEGIN = 3.0         # s that do not count: a flight may begin in motion, the loo
 LOST = 100.0        # arms off the path, from where on a vehicle has left it
 
 Errors = dict[str, float | None]
+Bandwidths = dict[str, float | None] | None
 
 
 @dataclass(frozen=True)
@@ -37,7 +38,8 @@ class ClosedLoop:
     seconds: of the path; units of tracking; tracking {vehicle: {group: rms error}}, None
     where it leaves its path; bandwidth {vehicle: {axis: Hz}}, None of an axis where it is beyond
     what shows it, and of a vehicle that leaves the path which shows it; without
-    {effect: {group: rms error}} of the corrected vehicle without an effect.
+    {effect: {group: rms error}} and bandwidth_without {effect: {axis: Hz}} of the corrected
+    vehicle without an effect.
     """
 
     controller: str
@@ -45,8 +47,9 @@ class ClosedLoop:
     seconds: float
     units: dict[str, str]
     tracking: dict[str, Errors]
-    bandwidth: dict[str, dict[str, float | None] | None]
+    bandwidth: dict[str, Bandwidths]
     without: dict[str, Errors]
+    bandwidth_without: dict[str, Bandwidths]
 
 
 class _LeavesPathError(Exception):
@@ -81,31 +84,34 @@ def compare(name: str, controller: Controller, reference: Reference, vehicle: Ve
     vectors of effects; without {effect: (P,)}: corrected without each.
     """
     watched = _Watched(controller, LOST * vehicle.arm_length)
-    jobs, done = {NOMINAL: nominal, CORRECTED: corrected}, 0
-    tracking: dict[str, Errors] = {}
-    bandwidth: dict[str, dict[str, float | None] | None] = {}
+    flights = 2 * (2 + len(without))
+    done = 0
 
     def told() -> None:
         nonlocal done
         done += 1
-        on_progress(done / (2 * len(jobs) + len(without)))
+        on_progress(done / flights)
 
-    for who, theta in jobs.items():
-        tracking[who] = _tracked(watched, reference, vehicle, theta)
-        told()
-        bandwidth[who] = _bandwidth(watched, reference, vehicle, theta)
-        told()
-    left_out = {}
-    for effect, theta in without.items():
-        left_out[effect] = _tracked(watched, reference, vehicle, theta)
-        told()
+    def shown(jobs: Mapping[str, np.ndarray]
+              ) -> tuple[dict[str, Errors], dict[str, Bandwidths]]:
+        errors: dict[str, Errors] = {}
+        bands: dict[str, Bandwidths] = {}
+        for who, theta in jobs.items():
+            errors[who] = _tracked(watched, reference, vehicle, theta)
+            told()
+            bands[who] = _bandwidth(watched, reference, vehicle, theta)
+            told()
+        return errors, bands
+
+    tracking, bandwidth = shown({NOMINAL: nominal, CORRECTED: corrected})
+    left_out = shown(without)
     if reference.asked:
         tracking[REAL] = errors_of(reference, reference.flown)
         # The smooth path has nothing above the frequencies of its knots.
         bandwidth[REAL] = bandwidth_of_flight(reference.path, reference.flown[:, [0, 1, 2, 6]],
                                               reference.rate)
     return ClosedLoop(name, reference.asked, len(reference.wanted) / reference.rate, dict(UNITS),
-                      tracking, bandwidth, left_out)
+                      tracking, bandwidth, *left_out)
 
 
 def errors_of(reference: Reference, path: np.ndarray) -> Errors:
@@ -126,7 +132,7 @@ def _tracked(controller: Controller, reference: Reference, vehicle: Vehicle, the
 
 
 def _bandwidth(controller: Controller, reference: Reference, vehicle: Vehicle,
-               theta: np.ndarray) -> dict[str, float | None] | None:
+               theta: np.ndarray) -> Bandwidths:
     """Return the bandwidths about hover at the begin of a Reference, or None off the path."""
     asked = multisine(reference.rate)
     path = asked + reference.wanted[0, [0, 1, 2, 12]]

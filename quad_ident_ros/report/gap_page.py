@@ -145,7 +145,7 @@ def _closed_loop(found: Diagnosis) -> list:
     one = found.closed_loop
     if one is None:
         return []
-    costs = ([table(COSTS, cost_rows(one), kinds=('text', '', '', '', ''),
+    costs = ([table(COSTS, cost_rows(one), kinds=('text', 'text', '', '', '', 'text'),
                     caption=sentence(COST_LINE))] if one.without else [])
     return [tag('h2', 'In closed loop'), tag('p', sentence(loop_line(one, found.held_out))),
             table(TITLES, loop_rows(one), kinds=('text', '', '', '', 'text'),

@@ -139,8 +139,10 @@ class Drone:
         speed = hover * TO_SPEED
         draft.take('thrust_coefficient', share / speed ** 2, 'N/(rad/s)^2',
                    self.place('rpm2thrust'))
-        draft.take('torque_coefficient', float(np.polynomial.polynomial.polyval(hover, torque))
-                   / speed ** 2, 'N m/(rad/s)^2', self.place('rpm2torque'))
+        # By the slope: of rotors that turn alike the torques cancel, and their changes turn it.
+        slope = float(torque[1] + 2.0 * torque[2] * hover)
+        draft.take('torque_coefficient', slope / (2.0 * hover * TO_SPEED ** 2), 'N m/(rad/s)^2',
+                   self.place('rpm2torque'))
         for ours, theirs in (('speed_min', 'thrust_min'), ('speed_max', 'thrust_max')):
             if theirs in self.table:
                 lift = self.number(theirs, positive=ours == 'speed_max')
@@ -158,7 +160,7 @@ class Drone:
         draft.assumed.append(
             f'thrust goes with the power {exponent:.4g} that it is at hover, {speed:.4g} '
             f'rad/s; from 0.7 to 1.3 of that it is off by up to {100 * off:.2g} % (rpm2thrust); '
-            'torque goes with the square (rpm2torque)')
+            'torque goes with the square that has the slope of rpm2torque at hover')
         rise = fall = 0.0
         spun = self.spun()
         if 'rotor_dyn_coef' in self.table:

@@ -115,10 +115,13 @@ def _write_limits(edited: _EditedDrone, base: Base, drone: Drone, curve: np.ndar
 
 
 def _write_lags(edited: _EditedDrone, base: Base, drone: Drone, curve: np.ndarray) -> None:
-    """Have the rates of the motors hold the lags at hover."""
+    """Have the rates of the motors hold the lags at hover, which another mass moves."""
     wanted, key = base.wanted, 'rotor_dyn_coef'
     lags = np.array([wanted.rise, wanted.fall])
-    now = np.array([base.effect('motor_lag', name) for name in ('rise', 'fall')])
+    hover = drone.rpm(curve, wanted.mass * base.constant('gravity') / ROTORS)
+    stated = drone.numbers(key, 4) if key in drone.table else np.zeros(4)
+    there = stated[[0, 2]] + 2.0 * stated[[1, 3]] * hover
+    now = 1.0 / there if key in drone.table else np.zeros(2)
     if not any(differs(*pair) for pair in zip(now, lags, strict=True)):
         return
     if not lags.all():
@@ -126,10 +129,6 @@ def _write_lags(edited: _EditedDrone, base: Base, drone: Drone, curve: np.ndarra
         return
     rates = np.array([1.0 / wanted.rise, 0.0, 1.0 / wanted.fall, 0.0])
     if key in drone.table:
-        share = wanted.mass * base.constant('gravity') / ROTORS
-        hover = drone.rpm(curve, share)
-        stated = drone.numbers(key, 4)
-        there = stated[[0, 2]] + 2.0 * stated[[1, 3]] * hover
         rates = stated * np.repeat(1.0 / (there * lags), 2)
     edited.key(key, rates, '1/s and 1/(s rpm)', wanted.sources['rise'])
 

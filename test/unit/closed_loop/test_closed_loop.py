@@ -30,7 +30,7 @@ from quad_ident_ros.flight.measure import SENSORS
 from quad_ident_ros.flight.trajectories import plan
 from quad_ident_ros.model.attitude import euler_from_quaternion
 from quad_ident_ros.model.vehicle import load_vehicle
-from quad_ident_ros.report.closed_loop import loop_rows
+from quad_ident_ros.report.closed_loop import cost_rows, loop_rows
 
 pytestmark = pytest.mark.slow
 BARE = load_vehicle('hummingbird')
@@ -76,7 +76,7 @@ def test_a_real_vehicle_that_is_the_nominal_one_costs_nothing():
     found = along(flight(effects={}), effects={})
     assert found.tracking['corrected'] == found.tracking['nominal']
     assert found.bandwidth['corrected'] == found.bandwidth['nominal']
-    assert found.without == {}
+    assert found.without == found.bandwidth_without == {}
 
 
 def test_what_an_effect_costs_is_lost_without_it():
@@ -87,13 +87,52 @@ def test_what_an_effect_costs_is_lost_without_it():
     assert found.without['motor_lag']['position'] == pytest.approx(whole, rel=0.1)
     alone = along(flight(), effects={'rotor_drag': TRUTH['rotor_drag']})
     assert alone.without['rotor_drag'] == alone.tracking['nominal']
+    assert alone.bandwidth_without['rotor_drag'] == alone.bandwidth['nominal']
+
+
+def test_a_lag_costs_bandwidth_and_a_drag_costs_tracking():
+    found = along(flight())
+    corrected, rows = found.bandwidth['corrected'], cost_rows(found)
+    # Each without the other is the vehicle that has the other alone.
+    for effect, other in (('motor_lag', 'rotor_drag'), ('rotor_drag', 'motor_lag')):
+        alone = along(flight(), {other: TRUTH[other]})
+        assert found.bandwidth_without[effect] == alone.bandwidth['corrected']
+        assert found.without[effect] == alone.tracking['corrected']
+    # The lag makes the loop of height slow, and its drag along z is none.
+    fast = found.bandwidth_without['motor_lag']['z']
+    assert fast is None or fast > 1.5 * corrected['z']
+    assert found.bandwidth_without['rotor_drag']['z'] == pytest.approx(corrected['z'], rel=0.02)
+    cells = {tuple(row[:2]): row[2:] for row in rows}
+    assert set(cells) == {(effect, of) for effect in TRUTH for of in (
+        'position error', 'velocity error', 'yaw error', 'bandwidth x', 'bandwidth y',
+        'bandwidth z', 'bandwidth yaw')}
+    whole, less = found.tracking['corrected']['position'], found.without['rotor_drag']['position']
+    assert cells['rotor_drag', 'position error'] == [
+        f'{less:.3g}', f'{whole:.3g}', f'{whole - less:+.3g}', 'm']
+    slow, less = corrected['x'], found.bandwidth_without['motor_lag']['x']
+    assert cells['motor_lag', 'bandwidth x'] == [
+        f'{less:.3g}', f'{slow:.3g}', f'{less - slow:+.3g}', 'Hz']
+
+
+def test_a_cost_in_bandwidth_beyond_what_is_shown_is_told_as_a_bound():
+    band = {'x': 3.0, 'y': None, 'z': 4.0, 'yaw': None}
+    less = {'x': None, 'y': 6.0, 'z': 5.0, 'yaw': None}
+    found = along(flight('hover', effects={}), {})
+    found = replace(found, bandwidth={**found.bandwidth, 'corrected': band},
+                    without={'motor_lag': found.tracking['nominal']},
+                    bandwidth_without={'motor_lag': less})
+    assert [row[2:5] for row in cost_rows(found)[3:]] == [
+        ['over 8', '3', 'over +5'], ['6', 'over 8', 'under -2'], ['5', '4', '+1'],
+        ['over 8', 'over 8', '?']]
+    left = replace(found, bandwidth_without={'motor_lag': None})
+    assert [row[2:5:2] for row in cost_rows(left)[3:]] == [['leaves the path', '?']] * 4
 
 
 def test_progress_is_told_up_to_the_end():
     told = []
     compare('ours', controller_of('ours', BARE).controller, reference_of(flight()), BARE, NONE,
             NONE, {'rotor_drag': NONE}, told.append)
-    assert told == pytest.approx([0.2, 0.4, 0.6, 0.8, 1.0])
+    assert told == pytest.approx(np.arange(1, 7) / 6.0)
 
 
 def test_without_what_was_asked_the_path_is_that_of_the_flight_and_reality_is_not_told():
@@ -281,4 +320,7 @@ def test_the_command_tells_the_closed_loop_in_table_json_and_page(tmp_path, caps
     assert data['tracking']['corrected']['position'] == pytest.approx(
         data['tracking']['real']['position'], rel=0.05)
     assert set(data['without']) == {'rotor_drag', 'motor_lag'} and data['asked'] is True
+    assert set(data['bandwidth_without']) == {'rotor_drag', 'motor_lag'}
+    assert set(data['bandwidth_without']['motor_lag']) == {'x', 'y', 'z', 'yaw'}
+    assert 'cost of each effect in tracking and bandwidth' in said and 'bandwidth yaw' in said
     assert 'In closed loop' in (tmp_path / 'p.html').read_text()

@@ -24,9 +24,6 @@ from quad_ident_ros.vehicle_files.load import load_any_vehicle, source_of
 
 FOLDER = Path(__file__).resolve().parents[3] / 'docs' / 'simulators'
 WITHIN = 0.05       # of the gap that our model has
-# Of the rate with drone-models, whose curves of torque and lag are read at hover: 0.077; with a
-# square and one lag in the file it is 0.005.
-CURVED = 0.1
 
 
 def rotorpy():
@@ -132,8 +129,7 @@ def test_the_exported_model_flies_there_as_the_vehicle_file_does_in_ours(simulat
     with Simulator(written(simulator, tmp_path, found), vehicle) as there:
         in_simulator = gaps_of(vehicle, tracks, nominal(vehicle), there)
     for group, ours in gaps_of(vehicle, tracks, nominal(vehicle)).items():
-        curved = simulator in (drone_models, crazyflow) and group == 'rate'
-        assert in_simulator[group] == pytest.approx(ours, rel=CURVED if curved else WITHIN)
+        assert in_simulator[group] == pytest.approx(ours, rel=WITHIN)
     # The nominal model is off by far more than that: the numbers that were written matter.
     without = gaps_of(nominal_one, tracks, nominal(nominal_one))
     assert without['velocity'] > (1.0 + 5.0 * WITHIN) * in_simulator['velocity']

@@ -145,6 +145,22 @@ def test_lag_and_drag_of_drone_models_are_those_when_read_again():
 
 
 @TOML
+def test_the_lag_of_drone_models_is_the_same_at_the_hover_of_another_mass():
+    source, vehicle = base('crazyflow')
+    found = export(with_effects(vehicle, mass_offset={'mass': 0.2 * vehicle.mass}), 'crazyflow',
+                   source)
+    read = again(source, found)
+    assert read.hover_speed > 1.05 * vehicle.hover_speed
+    assert read.effects['motor_lag'] == pytest.approx(vehicle.effects['motor_lag'], rel=1e-9)
+    # Rates that do not go with the speed stay as they are.
+    plain = replace(source, text=re.sub(r'(?m)^rotor_dyn_coef = .*$',
+                                        'rotor_dyn_coef = [20.0, 0.0, 15.0, 0.0]', source.text))
+    loaded = with_effects(read_vehicle(plain).vehicle, mass_offset={'mass': 0.2 * vehicle.mass})
+    assert all(line.startswith('mass') for line in
+               lines(plain.text, export(loaded, 'crazyflow', plain).text))
+
+
+@TOML
 def test_the_inertia_of_the_rotors_goes_into_a_new_file_of_drone_models():
     vehicle = with_effects(load_vehicle('hummingbird'), rotor_gyro={'rotor_inertia': 4e-5})
     found = export(vehicle, 'crazyflow')

@@ -98,6 +98,18 @@ def test_a_drone_of_drone_models_is_reduced_at_hover():
 
 
 @TOML
+def test_the_torque_is_the_square_that_has_the_slope_of_the_curve_at_hover():
+    """About hover the torques of the rotors cancel, and just their changes turn the vehicle."""
+    vehicle = reading(DRONE.replace('[0.0, 0.0, 2e-12]', '[0.0, 3e-9, 2e-12]')).vehicle
+    change = 1e-4 * np.array([1, -1, 1, -1])        # of the hover speed, with the spins
+    speeds = vehicle.hover_speed * (1.0 + change)
+    rpm = speeds * 30 / math.pi
+    spins = np.sign(change)
+    assert vehicle.torque_coefficient * spins @ speeds ** 2 == pytest.approx(
+        spins @ (3e-9 * rpm + 2e-12 * rpm ** 2), rel=1e-6)
+
+
+@TOML
 def test_a_drone_of_crazyflow_may_have_zeros_and_no_gravity():
     text = DRONE.replace('gravity_vec = [0.0, 0.0, -10.0]', 'prop_inertia = 0.0').replace(
         'thrust_min = 0.01', 'thrust_min = 0.0')

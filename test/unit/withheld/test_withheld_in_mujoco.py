@@ -48,3 +48,11 @@ def test_a_fall_that_stays_short_of_its_promise_is_told(in_mujoco):
     said, fell_short = in_mujoco.summary([whole, half, none, 'd: refused: why'])
     assert fell_short and said.startswith('1 of 2 gaps fall') and '2 cases had nothing' in said
     assert not in_mujoco.summary([whole, none])[1]
+    text = in_mujoco.page(['d: refused: why', none, half, whole],
+                          './run withheld in-mujoco K', '2')
+    assert '`./run withheld in-mujoco K`, version 2:\n\n1 of 2 gaps fall in MuJoCo' in text
+    assert text.splitlines()[-4:] == [
+        '| a | wind | 0.2000 | 0.1000 | 0.2000 | 0.1000 | 100.0 % |',
+        '| b | wind | 0.2000 | 0.1500 | 0.2000 | 0.1000 | 50.0 % |',
+        '| c | none | 0.2000 | 0.2000 | 0.2000 | 0.2000 | - |',
+        '| d: refused: why | | | | | | - |']
