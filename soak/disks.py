@@ -10,6 +10,7 @@ import os
 from pathlib import Path
 import re
 import resource
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -32,8 +33,8 @@ COMMANDS = {
     'fleet --report': ('html', f'fleet {FLIGHT} --vehicle hummingbird --workers 1 -o fleet '
                        '--report {out}'),
 }
-# What a fleet says while it works.
-PROGRESS = re.compile(r"data set: |Dask's dashboard |\w+: \d+ of \d+ |\[\d+/\d+\] ")
+# What a fleet and a demo say while they work.
+PROGRESS = re.compile(r"data set: |Dask's dashboard |\w+: \d+ of \d+ |\[\d+/\d+\] |.* \.\.\.$")
 SMALL = {
     'diagnose --out-vehicle': ('yaml', f'diagnose {FLIGHT} --vehicle hummingbird '
                                '--out-vehicle {out}'),
@@ -67,16 +68,42 @@ WRITTEN = {
     'demo': ('in/kept', 'demo -o in'),
     'demo --gap': ('in/kept', 'demo --gap -o in'),
 }
-# Runs a command, which meets what happens just when it opens or renames its first file in `in`
-# after it has tried whether it may.
+# The same of files that are written after others, which are whole by then.
+LATER = {
+    **{f'{title} --json': ('in/out.json', f'{words} --json in/out.json') for title, words in {
+        'fly': 'fly lissajous --vehicle hummingbird --duration 10 -o out.csv',
+        'convert': f'convert {FLIGHT} out.csv',
+        'export': f'export {VEHICLE} --to rotorpy -o out.py',
+        'export --randomise': f'export {VEHICLE} --randomise 5 -o out',
+        'simulate': 'simulate small_angle -o out',
+        'paper': 'paper --preset paper_table3 --seeds 1 -o out',
+        'fleet': f'fleet {FLIGHT} --vehicle hummingbird --workers 1 -o out',
+        'demo': 'demo -o out',
+        'demo --gap': 'demo --gap --seed 1 -o out'}.items()},
+    'paper, its data': ('in/paper.json', 'paper --preset paper_table3 --seeds 1 -o in'),
+    'fleet --out-priors': ('in/out.yaml', f'fleet {FLIGHT} --vehicle hummingbird --workers 1 '
+                           '-o out --out-priors in/out.yaml'),
+}
+# Runs a command, which meets what happens just when it opens or renames its first file in `in`,
+# or the one of a name, after it has tried whether it may.
 CHILD = """
 import os
+import resource
 import shutil
 import subprocess
 import sys
 
-place, event, what = sys.argv[1:4]
+place, event, what, most, file = sys.argv[1:6]
 tried = happened = False
+
+def fill():
+    with open(f'{place}/filled', 'wb', buffering=0) as rest:
+        for size in (1 << 20, 1 << 12):
+            try:
+                while rest.write(bytes(size)) == size:
+                    pass
+            except OSError:
+                pass
 
 def hook(name, values):
     global happened
@@ -84,10 +111,15 @@ def hook(name, values):
         return
     if name == 'open' and not values[2] & (os.O_WRONLY | os.O_RDWR):
         return
-    if os.path.abspath(values[0]).startswith(f'{place}/in/'):
+    path = os.path.abspath(values[0])
+    if path.startswith(f'{place}/in/') and path.endswith(file):
         happened = True
         if what == 'gone':
             shutil.rmtree(f'{place}/in')
+        elif what == 'full':
+            fill()
+        elif what == 'limit':
+            resource.setrlimit(resource.RLIMIT_FSIZE, (int(most), int(most)))
         else:
             subprocess.run(['mount', '-o', 'remount,ro', place], check=True)
 
@@ -100,13 +132,13 @@ sys.addaudithook(hook)
 from quad_ident_ros.cli import outputs
 from quad_ident_ros.cli.main import main
 check, outputs.check_outputs = outputs.check_outputs, check_outputs
-code = main(sys.argv[4:])
+code = main(sys.argv[6:])
 sys.exit(code if happened else 99)
 """
 # On a disk in memory of its own: its content is all that is said on standard output.
 MOUNTED = """
-mount -t tmpfs none "$1" && cp "$2" "$3" "$1" && cd "$1" && mkdir in && printf %s "$5" > "$4" \
-  || exit 98
+mount -t tmpfs -o size=64m none "$1" && cp "$2" "$3" "$1" && cd "$1" && mkdir in \
+  && printf %s "$5" > "$4" || exit 98
 kept=$4
 shift 5
 "$@" > /dev/null
@@ -117,6 +149,10 @@ exit $code
 
 
 SHORT = ('fly', 'convert to CSV', 'convert to a bag')
+SHORT_LATER = ('export --json',)
+# Of the first file that does not fit: a picture of a report is drawn beside it before.
+FULL = rf'\S+\.\w+: .*{os.strerror(errno.EFBIG)}'
+ERRORS = {'full': errno.ENOSPC, 'read-only': errno.EROFS, 'gone': errno.ENOENT}
 
 
 def run(short: bool = False, **_: object) -> Iterator[Finding]:
@@ -136,12 +172,16 @@ def run(short: bool = False, **_: object) -> Iterator[Finding]:
                 yield _full(title, words, folder, f'out.{ending}',
                             LIMIT if title in COMMANDS else LITTLE)
                 yield _gone(title, words, folder, f'file/out.{ending}')
+        for title, (file, words) in LATER.items():
+            if not short or title in SHORT_LATER:
+                yield _full_later(title, file, words, folder)
         if subprocess.run(['unshare', '-m', 'true'], capture_output=True, check=False).returncode:
             return    # only root may mount
-        for title, (file, words) in WRITTEN.items():
+        for title, (file, words) in (WRITTEN | LATER).items():
             if short and title != SHORT[0]:
                 continue
-            for event, what in product(('open', 'os.rename'), ('read-only', 'gone')):
+            for event, what in (('open', 'full'), *product(('open', 'os.rename'),
+                                                           ('read-only', 'gone'))):
                 # A demo renames nothing itself, a bag only what is open, which keeps a disk from
                 # becoming read-only.
                 if event == 'open' or not (title == 'demo' or (title, what) == (
@@ -151,16 +191,37 @@ def run(short: bool = False, **_: object) -> Iterator[Finding]:
 
 def _halfway(title: str, file: str, words: str, folder: Path, event: str,
              what: str) -> Finding:
-    """Have the disk become read-only, or the folder go, while a command writes."""
+    """Have the disk become full or read-only, or the folder go, while a command writes."""
     place = folder / 'mounted'
     place.mkdir(exist_ok=True)
     done = subprocess.run(
         ['unshare', '-m', 'sh', '-c', MOUNTED, 'sh', str(place),
          *(str(folder / name) for name in (FLIGHT, VEHICLE)), file, KEPT,
-         sys.executable, '-c', CHILD, str(place), event, what, *words.split()],
+         *_child(title, file, words, place, event, what)],
         env={**os.environ, 'PYTHONPATH': ROOT}, capture_output=True, text=True, check=False)
     return _finding(f'{what} at {event}', title, done, what == 'gone' or done.stdout == KEPT,
-                    os.strerror(errno.ENOENT if what == 'gone' else errno.EROFS))
+                    os.strerror(ERRORS[what]))
+
+
+def _child(title: str, file: str, words: str, place: Path, event: str, what: str) -> list[str]:
+    """Return the words that start a command to which something happens."""
+    return [sys.executable, '-c', CHILD, str(place), event, what, str(LITTLE),
+            Path(file).name if title in LATER else '', *words.split()]
+
+
+def _full_later(title: str, file: str, words: str, folder: Path) -> Finding:
+    """Have the disk become full when a file is opened that others come before."""
+    place = folder / 'later'
+    (place / 'in').mkdir(parents=True)
+    for name in (FLIGHT, VEHICLE):
+        shutil.copy(folder / name, place)
+    (place / file).write_text(KEPT)
+    done = subprocess.run(_child(title, file, words, place, 'open', 'limit'), cwd=place,
+                          env={**os.environ, 'PYTHONPATH': ROOT}, capture_output=True, text=True,
+                          check=False)
+    kept = (place / file).read_text('utf-8', 'replace') == KEPT
+    shutil.rmtree(place)
+    return _finding('disk full', title, done, kept, FULL)
 
 
 def _full(title: str, words: str, folder: Path, out: str, limit: int) -> Finding:
@@ -168,8 +229,7 @@ def _full(title: str, words: str, folder: Path, out: str, limit: int) -> Finding
     done = _quad_ident(words.format(out=out), folder, limit)
     kept = (folder / out).is_file() and (folder / out).read_text('utf-8', 'replace') == KEPT
     (folder / out).unlink(missing_ok=True)
-    # The first file that does not fit: a picture of a report is drawn beside it before.
-    return _finding('disk full', title, done, kept, rf'\S+\.\w+: .*{os.strerror(errno.EFBIG)}')
+    return _finding('disk full', title, done, kept, FULL)
 
 
 def _gone(title: str, words: str, folder: Path, out: str) -> Finding:

@@ -5,13 +5,13 @@
 from contextlib import suppress
 from importlib.util import find_spec
 import json
-from pathlib import Path
 import sys
 from time import monotonic
 
 from quad_ident_ros.data.counted import counted
 from quad_ident_ros.report.data import finite
 from quad_ident_ros.report.screen import progress_bar
+from quad_ident_ros.whole_file import Lines
 
 OFTEN = 0.2     # s between two changes of the line, and
 RARELY = 30.0   # between two lines where standard error is no terminal
@@ -23,7 +23,8 @@ class Reporter:
     """
     Says how far a run is, on standard error and as lines of JSON; to be used in a `with`.
 
-    Args: client of Dask; out: the data set; json: file, - for standard output, or None.
+    Args: client of Dask; out: the data set; json: file, - for standard output, or None. The file
+    takes the place of an older one when the run ends or is interrupted, not where it fails.
     """
 
     def __init__(self, client, out, json):
@@ -35,21 +36,21 @@ class Reporter:
 
     def __enter__(self):
         """Name the data set, the workers and the dashboard."""
-        if self._path == '-':
-            self._lines = sys.stdout
-        elif self._path:
-            Path(self._path).parent.mkdir(parents=True, exist_ok=True)
-            self._lines = open(self._path, 'w', encoding='utf-8')
+        if self._path and self._path != '-':
+            self._lines = Lines(self._path)
         self._note(f'data set: {self._out}; {workers(self._client)}')
         self._note(dashboard(self._client))
         self._bar.start()
         return self
 
     def __exit__(self, kind, error, trace):
-        """Take the line away and close the file."""
+        """Take the line away and end the file."""
         self._bar.stop()
-        if self._lines not in (None, sys.stdout):
-            self._lines.close()
+        if self._lines is not None:
+            if kind in (None, KeyboardInterrupt):
+                self._lines.keep()
+            else:
+                self._lines.drop()
 
     def tell(self, progress):
         """Say how far the run is."""
@@ -95,9 +96,12 @@ class Reporter:
         return seconds_left(progress, monotonic() - self._begun)
 
     def _write(self, data):
-        if self._lines is not None:
-            self._lines.write(json.dumps(finite(data), allow_nan=False) + '\n')
-            self._lines.flush()
+        if self._path:
+            text = json.dumps(finite(data), allow_nan=False)
+            if self._lines is None:
+                print(text, flush=True)
+            else:
+                self._lines.write(text)
 
     def _note(self, text):
         print(text, file=sys.stderr)

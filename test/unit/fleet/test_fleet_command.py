@@ -6,9 +6,11 @@ from dataclasses import replace
 import json
 from types import SimpleNamespace
 
+from full_disk import file_size_limit
 import pytest
 
 from quad_ident_ros.cli.main import main, parser
+from quad_ident_ros.errors import InputError
 
 pytest.importorskip('pyarrow', reason="pyarrow is not installed: pip install '.[fleet]'")
 from quad_ident_ros.fleet.run import COMPARING, DIAGNOSING, Progress, Summary  # noqa: E402, I100
@@ -63,17 +65,46 @@ def test_the_dashboard_is_named_where_the_scheduler_can_draw_it(drawn, said):
     assert dashboard(client) == said
 
 
+def reporter_of(path):
+    """Return a Reporter of a cluster without workers, and what a run ends with."""
+    client = SimpleNamespace(scheduler_info=lambda **_: {'workers': {}})
+    return Reporter(client, path.parent, path), Summary(
+        0, dict.fromkeys(('diagnosed', 'refused', 'failed', 'timeout'), 0), 0, ())
+
+
 def test_lines_for_a_machine_go_into_a_folder_that_is_made(tmp_path):
-    class Client:
-
-        def scheduler_info(self, **_):
-            return {'workers': {}}
-
-    with Reporter(Client(), tmp_path, tmp_path / 'new' / 'lines.json') as reporter:
-        reporter.end(Summary(0, dict.fromkeys(('diagnosed', 'refused', 'failed', 'timeout'), 0),
-                             0, ()))
-    line, = (tmp_path / 'new' / 'lines.json').read_text(encoding='utf-8').splitlines()
+    path = tmp_path / 'new' / 'lines.json'
+    reporter, summary = reporter_of(path)
+    with reporter:
+        reporter.end(summary)
+    line, = path.read_text(encoding='utf-8').splitlines()
     assert json.loads(line)['schema'] == 'quad_ident/fleet_run/1'
+    assert list(path.parent.iterdir()) == [path]
+
+
+def test_on_a_full_disk_the_lines_of_the_run_before_stay(tmp_path, capsys):
+    path = tmp_path / 'lines.json'
+    path.write_text('before')
+    reporter, summary = reporter_of(path)
+    with file_size_limit(64), pytest.raises(OSError, match='File too large') as raised, reporter:
+        reporter.end(summary)
+    assert raised.value.filename == str(path)
+    assert path.read_text() == 'before' and list(tmp_path.iterdir()) == [path]
+
+
+@pytest.mark.parametrize('error, kept', [(InputError('a worker cannot write'), False),
+                                         (OSError(28, 'full', 'fleet/groups'), False),
+                                         (KeyboardInterrupt(), True)])
+def test_the_lines_of_a_run_that_fails_do_not_take_the_place_of_others(tmp_path, error, kept):
+    path = tmp_path / 'lines.json'
+    path.write_text('before')
+    reporter, summary = reporter_of(path)
+    with pytest.raises(type(error)) as raised, reporter:
+        reporter.end(summary)
+        raise error
+    assert raised.value is error
+    assert getattr(error, 'filename', None) in (None, 'fleet/groups')
+    assert (path.read_text() != 'before') == kept and list(tmp_path.iterdir()) == [path]
 
 
 @pytest.mark.parametrize('text, size', [('2GB', 2e9), ('500MB', 5e8), ('1.5 GiB', 1.5 * 2 ** 30)])
