@@ -13,20 +13,24 @@ class CurrentLimited(Motor):
     """
     A lag of the first order whose torque is limited, as its controller limits the current.
 
-    The propeller's own torque helps to slow it and leaves less to drive it, the more so the
-    faster it turns. Drives with a limit of the current inside the loop of the speed: R. Krishnan,
-    Permanent Magnet Synchronous and Brushless DC Motor Drives, 2010.
+    The limit is a little above what the top speed takes. The propeller's own torque helps to slow
+    it and leaves less to drive it, the more so the faster it turns. Drives with a limit of the
+    current inside the loop of the speed: R. Krishnan, Permanent Magnet Synchronous and Brushless
+    DC Motor Drives, 2010.
     """
 
-    SLOWING = 9.0       # 1/s, of a propeller alone at the speed of hover, for size 1
-    LIMIT = 1.8         # of the torque in hover
+    DRIVES = 8.0        # 1/s, of the speed in hover, what is left there at the limit, for size 1
+    LIMIT = 1.1         # of the torque at the top speed
 
     def __init__(self, size, params, rng):
-        """Set the time constant of small changes, and what the propeller's torque slows it by."""
+        """Set the time constant of small changes, the limit, and what the propeller slows by."""
         grown = size ** 0.7     # the gap grows faster than the lag
         self.parameters = {'time': 0.7 * TIME * grown}
         self.hover = hover_speed(params)
-        self.slowing = self.SLOWING * self.hover / grown if size else np.inf    # rad/s^2, in hover
+        # Of the torque in hover; and what that slows the propeller by, rad/s^2.
+        self.limit = self.LIMIT * (params['rotor_speed_max'] / self.hover) ** 2
+        self.slowing = (self.DRIVES * self.hover / (self.limit - 1.0) / grown if size
+                        else np.inf)
 
     def turn(self, speeds, command, step):
         """Return the speeds."""
@@ -34,7 +38,7 @@ class CurrentLimited(Motor):
         if not np.isfinite(self.slowing):
             return driven
         drag = (speeds / self.hover) ** 2
-        least, most = (step * self.slowing * (sign * self.LIMIT - drag) for sign in (-1.0, 1.0))
+        least, most = (step * self.slowing * (sign * self.limit - drag) for sign in (-1.0, 1.0))
         return np.clip(driven, speeds + least, speeds + most)
 
 

@@ -16,7 +16,7 @@ class Jet(Wind):
     2).
     """
 
-    AWAY, SPREAD, HEIGHT = 14.0, 0.11, 1.2      # m from that point; width per m; m of the axis
+    AWAY, SPREAD, HEIGHT = 14.0, 0.11, 1.5      # m from that point; width per m; m of the axis
     PEAK = 1.5          # of the mean, on the axis
 
     def __init__(self, size, params, rng):

@@ -20,13 +20,20 @@ def turned(motor, speeds, command, seconds, step=0.001):
 def test_a_motor_at_its_limit_of_current_speeds_up_slowly_and_slows_down_fast():
     motor = drives.CurrentLimited(3.0, PARAMS, None)
     slow, fast, *_ = turned(motor, [0.7, 1.3, 1.0, 1.0], [1.3, 0.7, 1.0, 1.0], 0.02)
-    grown = 3.0 ** 0.7          # dw/dt = B (1.8 - w^2) or -B (1.8 + w^2), B = 9 / grown per s
-    root = np.sqrt(1.8)
+    # dw/dt = B (L - w^2) or -B (L + w^2), in terms of hover; B (L - 1) = 8 / grown per s.
+    limit = 1.1 * (PARAMS['rotor_speed_max'] / HOVER) ** 2
+    root, change = np.sqrt(limit), 8.0 / (limit - 1.0) / 3.0 ** 0.7 * 0.02
     assert slow == pytest.approx(
-        root * np.tanh(root * 9.0 / grown * 0.02 + np.arctanh(0.7 / root)), rel=2e-3)
+        root * np.tanh(root * change + np.arctanh(0.7 / root)), rel=2e-3)
     assert fast == pytest.approx(
-        root * np.tan(np.arctan(1.3 / root) - root * 9.0 / grown * 0.02), rel=2e-3)
-    assert 1.3 - fast > 1.5 * (slow - 0.7)
+        root * np.tan(np.arctan(1.3 / root) - root * change), rel=2e-3)
+    assert 1.3 - fast > 1.3 * (slow - 0.7)
+
+
+def test_a_limit_of_current_leaves_a_motor_its_top_speed():
+    top = PARAMS['rotor_speed_max'] / HOVER
+    assert turned(drives.CurrentLimited(6.0, PARAMS, None), [1.0] * 4, [top] * 4, 3.0) == (
+        pytest.approx(np.full(4, top)))
 
 
 def test_a_motor_below_its_limit_of_current_is_a_lag():
