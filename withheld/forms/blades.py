@@ -32,8 +32,8 @@ class Pitched(Thrust):
         turn = np.maximum(now.speeds / self.hover, 0.2)
         hubs = now.hubs() / (self.induced * turn[:, None])
         across = np.minimum(hubs[:, 0] ** 2 + hubs[:, 1] ** 2, 4.0)
-        return 1.0 + self.size * (0.004 * across - 0.045 * (self._fall(hubs[:, 2])
-                                                            - self._fall(0.0)))
+        falls = self._fall(np.clip(hubs[:, 2], -3.0, 3.0)) - self._fall(0.0)
+        return 1.0 + self.size * (0.008 * across - 0.09 * falls)
 
     def _fall(self, climb):
         return self.WIDE * np.logaddexp(0.0, np.clip(
@@ -59,7 +59,7 @@ class Descending(Thrust):
         flow = swept(forward) * np.where(
             climb < 0.0, np.polyval(self.CURVE, np.clip(climb, -2.0, 0.0)),
             np.sqrt(0.25 * climb ** 2 + 1.0) - 0.5 * climb)
-        return 1.0 - 0.03 * self.size * np.clip(climb + flow - 1.0, -3.0, 3.0)
+        return 1.0 - 0.08 * self.size * np.clip(climb + flow - 1.0, -3.0, 3.0)
 
 
 class Bubble(Influence):
