@@ -70,13 +70,13 @@ class Bubble(Influence):
     Aerodynamics of small vehicles, Annual Review of Fluid Mechanics 35, 2003.
     """
 
-    STEP, WIDE = 1.0, 0.05      # by the factor that it is about, either way; of the hover speed
+    STEP, WIDE = 0.8, 0.05      # of the factor that it is about, either way; of the hover speed
 
     def __init__(self, size, params, rng):
         """Draw whether it is more or less on the whole, and where the step is."""
         self.share = 0.007 * size * float(signs(rng, 1)[0])
         self.step = 0.007 * size * self.STEP
-        self.hover, self.middle = hover_speed(params), rng.uniform(0.94, 1.0)
+        self.hover, self.middle = hover_speed(params), rng.uniform(0.97, 1.03)
         self.parameters = {'share': self.share}
 
     def gain(self, now):
