@@ -36,6 +36,7 @@ from withheld.sensors import declared, moved, Noise, noise_of, WHITE
 PARAMS = {
     'mass': 0.5, 'Ixx': 3e-3, 'Iyy': 3e-3, 'Izz': 5e-3, 'Ixy': 0.0, 'Ixz': 0.0, 'Iyz': 0.0,
     'num_rotors': 4, 'k_eta': 5e-6, 'k_m': 1e-7, 'rotor_radius': 0.1,
+    'rotor_speed_max': 800.0,
     'rotor_directions': np.array([1, -1, 1, -1]), 'linear_drag': np.array([0.05, 0.05, 0.06]),
     'rotor_pos': {'r1': np.array([0.12, 0.12, 0.0]), 'r2': np.array([0.12, -0.12, 0.0]),
                   'r3': np.array([-0.12, -0.12, 0.0]), 'r4': np.array([-0.12, 0.12, 0.0])}}

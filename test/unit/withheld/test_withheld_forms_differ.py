@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """No form of the evaluation is one that the library has: what the best fit of these leaves."""
 
+from dataclasses import replace
+
 from library_forms import COUNT, flown, instants, of_battery, of_part, remainder, STEP
 import numpy as np
 import pytest
@@ -24,6 +26,9 @@ FORCES = [(effect, form) for effect in (
 FLIGHT = flown(PARAMS, HOVER)
 STEP_OF_MOTORS = 0.002
 VEHICLE = load_vehicle('iris')
+# Where the vehicle is at the times of FLIGHT, m.
+WAY = np.column_stack([1.2 * np.sin(0.9 * FLIGHT['time']), 1.2 * np.cos(0.7 * FLIGHT['time']),
+                       1.0 + 0.5 * np.sin(0.5 * FLIGHT['time'])])
 
 
 def made(effect, form, size=SIZE):
@@ -141,9 +146,9 @@ def heave(part):
     """Return the force, (COUNT,) N along z, of a load on a body that heaves, and its pull."""
     pull = 9.81 + 3.0 * np.sin(2.0 * np.pi * 0.8 * FLIGHT['time'])
     steps, force = 20, []
-    for now, one in zip(instants(PLACES, FLIGHT), pull, strict=True):
+    for now, one, place in zip(instants(PLACES, FLIGHT), pull, WAY, strict=True):
         for _ in range(steps):
-            extra = part.wrench(now)
+            extra = part.wrench(replace(now, position=place))
             part.after(STEP / steps, np.eye(3), np.array([0.0, 0.0, one - 9.81]))
         force.append(0.0 if extra is None else extra[0][2])
     return np.array(force), pull
@@ -184,8 +189,9 @@ def test_a_bias_is_not_constant(form):
 def test_a_tilt_is_not_that_of_an_attitude_or_of_a_block(form):
     part, turns = made('attitude_misalignment', form), []
     thrusts, rates = np.mean((FLIGHT['speeds'] / HOVER) ** 2, axis=1), FLIGHT['rate']
-    seen = np.array([part.measured(t, np.array([*np.zeros(9), 1.0, *rate]), thrust)
-                     for t, thrust, rate in zip(FLIGHT['time'], thrusts, rates, strict=True)])
+    seen = np.array([
+        part.measured(t, np.array([*place, *np.zeros(6), 1.0, *rate]), thrust)
+        for t, place, thrust, rate in zip(FLIGHT['time'], WAY, thrusts, rates, strict=True)])
     turns = Rotation.from_quat(seen[:, 6:10]).as_rotvec()
     mean = np.mean(turns, axis=0)
     # The rates of a block that is tilted so, or of one that is not: whichever is nearer.
