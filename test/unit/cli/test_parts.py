@@ -332,7 +332,7 @@ def test_an_attitude_that_is_none_outside_the_times_does_not_refuse_a_bag(tmp_pa
     for k in range(1500, 1600):
         rows[k][3]['pose']['pose']['orientation'] = {}
     path = write(tmp_path / ('f.bag' if write is write1 else 'f'), rows)
-    with pytest.raises(InputError, match='message 1501.*not the length 1.*--from'):
+    with pytest.raises(InputError, match='message 1501.*not have length 1.*--from'):
         load_all(path)
     pieces = load_all(path, in_part=True)
     [kept] = selected(path, pieces, Selection(end=12.0))

@@ -124,7 +124,7 @@ def test_a_counter_that_is_no_number_is_said():
     for counter in ('two', [1, 2]):
         message = SimpleNamespace(__msgtype__=PX4 + 'VehicleAttitude', timestamp=1,
                                   q=(1.0, 0.0, 0.0, 0.0), quat_reset_counter=counter)
-        with pytest.raises(InputError, match='defines'):
+        with pytest.raises(InputError, match='the definition of'):
             part.add(0, message)
     message.quat_reset_counter, message.delta_q_reset = 2, (1.0,)
     part.add(0, message)

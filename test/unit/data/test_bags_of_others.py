@@ -58,7 +58,7 @@ def test_a_bag_that_was_not_copied_whole_says_so_without_any_message(tmp_path):
     [file] = (tmp_path / 'bag').glob('*.mcap')
     cut = tmp_path / 'cut.mcap'
     cut.write_bytes(file.read_bytes()[:file.stat().st_size // 2])   # within its one chunk
-    refused(cut, 'ends before its first message is whole', 'copy it again')
+    refused(cut, 'ends within its first message', 'copy it again')
 
 
 def test_lists_of_a_laboratory_are_named_as_outputs(tmp_path, types):
