@@ -60,6 +60,8 @@ setup(
         'numpy>=1.26',
         'scipy>=1.11',
         'numba>=0.58',
+        # Later ones have no wheels for Macs of Intel.
+        'numba<0.63; sys_platform == "darwin" and platform_machine == "x86_64"',
         'matplotlib>=3.6',
         'PyYAML>=6',
         'rich>=13',

@@ -22,6 +22,8 @@ from quad_ident_ros.report.closed_loop import (
     TITLES,
 )
 from quad_ident_ros.report.diagnosis import (
+    AHEAD,
+    ahead_rows,
     FAR,
     far_line,
     far_rows,
@@ -125,6 +127,8 @@ def _far(found: Diagnosis, pictures: dict) -> list:
             tag('p', sentence(ceiling_line(found))),
             table(FAR, far_rows(found), kinds=('text', *[''] * 5, 'text'),
                   caption=f'Error of predictions {found.gap.horizon:g} s ahead'),
+            table(['s ahead', *AHEAD], ahead_rows(found),
+                  caption='Velocity error by horizon, m/s'),
             pictures['horizons'], pictures['predictions'],
             *([pictures['path']] if 'path' in pictures else [])]
 

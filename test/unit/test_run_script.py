@@ -79,9 +79,38 @@ def mode_on(system, tmp_path):
 
 
 @pytest.mark.parametrize('system, mode', [('Linux x86_64', 'wheels'), ('Linux aarch64', 'plain'),
-                                          ('Darwin arm64', 'plain')])
+                                          ('Darwin arm64', 'plain'),
+                                          ('Darwin x86_64', 'plain')])
 def test_ros_comes_along_only_where_pip_has_it(tmp_path, system, mode):
     assert mode_on(system, tmp_path) == mode
+
+
+def installed_on(system, tmp_path):
+    """Return what `run` has pip install on a machine of which uname says this, without ROS 2."""
+    (tmp_path / 'uname').write_text(f'#!/bin/sh\necho "{system}"\n')
+    (tmp_path / 'uname').chmod(0o755)
+    text = RUN.read_text(encoding='utf-8')
+    additions = re.search(r'^additions=\(.*?^\)$', text, re.MULTILINE | re.DOTALL)[0]
+    choice = re.search(r'^  if \[ "\$mode" = ros \]; then\n    # The message.*?^  fi$', text,
+                       re.MULTILINE | re.DOTALL)[0]
+    code = ['install_packages() { printf "%s\\n" "$@"; }', f'root={RUN.parent}', 'mode=plain',
+            f'venv={tmp_path}', additions, choice]
+    return subprocess.run(['bash', '-euc', '\n'.join(code)], capture_output=True, text=True,
+                          check=True, env={'PATH': f'{tmp_path}:{os.environ["PATH"]}'}
+                          ).stdout.splitlines()
+
+
+@pytest.mark.parametrize('system', ['Linux aarch64', 'Darwin arm64'])
+def test_without_ros_the_pinned_versions_are_installed(tmp_path, system):
+    assert installed_on(system, tmp_path) == ['--requirement', f'{tmp_path}/requirements.txt']
+
+
+def test_macs_of_intel_get_the_last_numba_that_has_wheels_for_them(tmp_path):
+    words = installed_on('Darwin x86_64', tmp_path)
+    assert {'--prefer-binary', 'numba<0.63', 'pyarrow>=17'} < set(words)
+    [limit] = re.findall(r"^ +'(numba<[^']*)',$", (RUN.parent / 'setup.py').read_text('utf-8'),
+                         re.MULTILINE)
+    assert limit == 'numba<0.63; sys_platform == "darwin" and platform_machine == "x86_64"'
 
 
 def test_without_ros_its_packages_are_left_out_and_all_others_stay():

@@ -132,6 +132,7 @@
     const state = {quiet: false};   // while the chart follows, and does not lead
     const plot = new uPlot(options(data, panel, link, field, state),
                            [data.x, ...panel.lines.map(line => line.values)], field);
+    plot.root.setAttribute('aria-hidden', 'true');  // the slider says what it shows
     const follow = action => { state.quiet = true; plot.batch(action); };
     const show = () => {
       const [min, max] = link.span.map(place => data.x[place]);
@@ -257,7 +258,8 @@
     function space(stage) {
       const head = element('p', {class: 'head'});
       const canvas = element('canvas', {tabindex: 0, role: 'img', class: 'space', 'aria-label':
-        `Flight path in space, ${stage}, velocity errors to ${most} m/s; arrow keys turn it`});
+        `Flight path in space, ${stage}, velocity errors to ${Math.max(...data.errors[stage])}` +
+        ' m/s; arrow keys turn it'});
       grid.append(element('div', {class: 'panel'}, head, canvas));
       let held = null;
       canvas.addEventListener('keydown', event => act({

@@ -202,6 +202,21 @@ def test_a_page_that_scrolls_below_the_pointer_takes_no_value_away(shown, over_t
     assert over_time.first.get_attribute('aria-valuetext').startswith(f'{data["x"][0]} s, ')
 
 
+def test_a_screen_reader_gets_names_and_numbers_of_every_picture(shown):
+    """The lines of a chart are behind its slider; a path says the largest error of its stage."""
+    page, _ = shown
+    hidden = page.locator('.field canvas').evaluate_all(
+        'all => all.map(one => one.closest("[aria-hidden=true]") !== null)')
+    assert len(hidden) == 18 and all(hidden)
+    path = json.loads(page.locator('figure:has(.space) > script').inner_text())
+    for canvas, (stage, errors) in zip(page.locator('canvas.space').all(),
+                                       path['errors'].items(), strict=True):
+        assert f'{stage}, velocity errors to {max(errors):g} m/s' in canvas.get_attribute(
+            'aria-label')
+    rows = page.get_by_role('table', name='Velocity error by horizon').get_by_role('rowheader')
+    assert rows.all_inner_texts() == ['0.1', '0.5', '1']
+
+
 def test_buttons_zoom_where_there_is_no_keyboard(shown, over_time):
     page, data = shown
     tools = page.get_by_role('group', name='Zoom over time')
