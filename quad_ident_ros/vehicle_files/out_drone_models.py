@@ -115,7 +115,7 @@ def _write_limits(edited: _EditedDrone, base: Base, drone: Drone, curve: np.ndar
 
 
 def _write_lags(edited: _EditedDrone, base: Base, drone: Drone, curve: np.ndarray) -> None:
-    """Have the rates of the motors hold the lags at hover, which another mass moves."""
+    """Have the rates of the motors hold the lags at hover, which mass and thrust move."""
     wanted, key = base.wanted, 'rotor_dyn_coef'
     lags = np.array([wanted.rise, wanted.fall])
     hover = drone.rpm(curve, wanted.mass * base.constant('gravity') / ROTORS)

@@ -105,15 +105,19 @@ def test_rotorpy_itself_has_the_wrench_of_what_is_written(tmp_path):
 
 
 @TOML
-def test_a_factor_scales_the_curve_of_drone_models_and_nothing_else():
+def test_a_factor_scales_the_curve_of_drone_models_and_the_lag_at_hover_stays():
     source, vehicle = base('crazyflow')
     scale = vehicle.effects['thrust_scale']
     found = export(with_effects(vehicle, thrust_scale={**scale, 'hover_factor': 1.2}),
                    'crazyflow', source)
     added = lines(source.text, found.text)
     assert added[0] == 'rpm2thrust = [0.0, -6e-07, 3.6e-10]'
-    # The limits stand for the same speeds on the new curve.
-    assert added[1:] == ['thrust_min = 0.012', 'thrust_max = 0.24']
+    # The rates of the lag at the new hover are those of before at the old one, and the limits
+    # stand for the same speeds on the new curve.
+    assert added[1].startswith('rotor_dyn_coef = ')
+    assert again(source, found).effects['motor_lag'] == pytest.approx(
+        vehicle.effects['motor_lag'], rel=1e-9)
+    assert added[2:] == ['thrust_min = 0.012', 'thrust_max = 0.24']
 
 
 @TOML
