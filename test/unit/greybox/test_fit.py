@@ -280,7 +280,7 @@ def test_where_measured_speeds_drive_the_model_fit_says_what_of_the_motors_is_no
               if 'measured rotor speeds drive the model' in line]
     assert 'lag of the motors (motor_lag) and delay of the commands (actuation_delay)' in line
     for name in ('motor_lag', 'actuation_delay'):
-        with pytest.raises(InputError, match=f'is not visible; leave {name}.* out of --free'):
+        with pytest.raises(InputError, match=f'is not visible: .*; leave {name}.* out of --free'):
             fit([record, driven], VEHICLE, ['inertia', name])
     assert not [line for line in fit([record], VEHICLE, ['inertia']).findings
                 if 'drive the model' in line]
