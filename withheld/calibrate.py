@@ -14,14 +14,16 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize
 
+from quad_ident_ros.diagnose.probability import size_shown
 from withheld.score import column_of, findings_of, named_in, reliability, TITLES
 
 Array = NDArray[np.float64]
 
 # Of a row of the ranking, as the library takes them (diagnose/probability.py), in its order.
-FEATURES: dict[str, Callable[[float], float]] = {
-    'contribution': lambda value: float(np.sqrt(np.clip(value, 0.0, 1.0))),
-    'distance': lambda value: float(np.log1p(value)), 'companions': float}
+FEATURES: dict[str, Callable[[dict], float]] = {
+    'contribution': lambda row: size_shown(row['contribution'], row.get('distance') or 0.0),
+    'distance': lambda row: float(np.log1p(row.get('distance') or 0.0)),
+    'companions': lambda row: float(row.get('companions') or 0.0)}
 # Effects that act alike: where one is present, a probability of the other is not wrong.
 ALIKE = ({'thrust_scale', 'mass_offset'}, {'actuation_delay', 'motor_lag'})
 RIDGE = 0.01        # on the weights, in units of log likelihood: keeps what a few rows say finite
@@ -75,7 +77,7 @@ def rows_of(pairs: Iterable[tuple[dict, dict]], features: dict = FEATURES) -> Ro
             if row.get('contribution') is None or (effect not in there and (
                     effect in allowed or _alike(effect, there, found))):
                 continue
-            x.append([change(row.get(name) or 0.0) for name, change in features.items()])
+            x.append([value_of(row) for value_of in features.values()])
             present.append(float(effect in there))
             groups.append(column_of(label))
     return Rows(tuple(features), np.array(x, float).reshape(-1, len(features)),

@@ -97,7 +97,7 @@ def judge(label, found):
     also right where the records cannot decide (poor flights, twins_of) and `undetermined` names
     what is present beside what the verdict names rightly; with twins, `first` is right with
     either. `instead`: the verdict is `unknown` where known effects are present, and names none of
-    them.
+    them; without effects `alarm` has it.
     """
     truth = truth_of(label)
     out = {'refused': 'refused' in found, 'failed': 'failed' in found,
@@ -123,7 +123,7 @@ def judge(label, found):
         'alarm': not exact if truth == {'none'} else None,
         'unknown': 'unknown' in verdict or bool(verdict) and verdict <= allowed
         if label['stranger'] else 'unknown' in verdict,
-        'instead': None if label['stranger'] or 'unknown' in allowed
+        'instead': None if not effects or 'unknown' in allowed
         else 'unknown' in verdict and not right,
         'undetermined': bool(doubts) and truth <= doubts | {'unknown'} if doubts else None,
         'closed': _closed(label, found),

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Models of sets of effects, refitted with some of them taken out, and the gap that they leave."""
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 
@@ -20,6 +20,7 @@ from quad_ident_ros.diagnose.fitted import (
     within_bounds,
 )
 from quad_ident_ros.diagnose.gap import Noise
+from quad_ident_ros.diagnose.noise import noise_in
 from quad_ident_ros.diagnose.nuisances import nuisances_of
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.diagnose.selection import Selection
@@ -67,7 +68,7 @@ class Bench:
     Flights on which models are refitted and measured.
 
     flights: those learnt from, cut into rollouts; tracks: these and, last, the one held out;
-    noise of the measurement.
+    noise of all flights.
     """
 
     flights: list
@@ -97,10 +98,15 @@ class Bench:
         return tuple(gaps.ends(track, self.vehicle, z, self.horizon)
                      for track, z in zip(self.tracks, vectors, strict=True))
 
-    def noise_gaps(self, model: Model) -> list:
-        """Return {group: the gap that the noise makes} of each flight."""
-        return [gaps.noise_gap(track, self.vehicle, z, self.noise, self.horizon)
-                for track, z in zip(self.tracks, model.vectors, strict=True)]
+    def noises(self, model: Model) -> tuple[Noise, ...]:
+        """Return the Noise of each flight, with its vector of a Model."""
+        return tuple(noise_in(track, z, self.noise)
+                     for track, z in zip(self.tracks, model.vectors, strict=True))
+
+    def noise_gaps(self, model: Model, noises: Sequence[Noise]) -> list:
+        """Return {group: the gap that its Noise makes} of each flight."""
+        return [gaps.noise_gap(track, self.vehicle, z, noise, self.horizon)
+                for track, z, noise in zip(self.tracks, model.vectors, noises, strict=True)]
 
     def slopes(self, model: Model) -> Slopes:
         """Return the Slopes of the flights learnt from at a Model, in all that it has free."""

@@ -73,7 +73,7 @@ def _share(bench: Bench, judged: Judgement, track: Track, after: Ends, group: st
     model, part = judged.model, GROUPS[group]
     z = model.vectors[-1]
     before = gaps.ends(track, bench.vehicle, nominal(bench.vehicle) + z - model.z, bench.horizon)
-    noise = gaps.noise_gap(track, bench.vehicle, z, bench.noise, bench.horizon)[group]
+    noise = gaps.noise_gap(track, bench.vehicle, z, judged.noises[-1], bench.horizon)[group]
     block = np.unique((before.t // bench.rules.steady_block).astype(int), return_inverse=True)[1]
     sums = [np.bincount(block, np.sum(one.errors[:, part] ** 2, axis=1))
             for one in (before, after)]

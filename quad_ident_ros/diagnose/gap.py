@@ -38,6 +38,7 @@ class Noise:
     """
     What no model can predict: standard deviation (12,) of measured states, tilt, drift, walk.
 
+    white (12,): what of the deviation changes from sample to sample.
     Tilt and drift stay the same over a prediction. The drift (m/s) is the error of the velocity
     that does, beside that in the deviation. The tilt (rad) is that of the attitude: a vehicle
     whose attitude is taken from the record is pulled sideways by it. The walk (3,) (rad/s)^2/s is
@@ -46,6 +47,7 @@ class Noise:
     """
 
     deviation: np.ndarray
+    white: np.ndarray
     tilt: float
     drift: float
     walk: np.ndarray

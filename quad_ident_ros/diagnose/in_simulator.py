@@ -54,7 +54,7 @@ def gap_in_simulator(simulator: Simulator, bench: Bench, judged: Judgement,
                                         bench.noise.deviation, simulator))
         told()
     before, before_own, after = (gaps.gap([one]) for one in stages)
-    noise = gaps.noise_gap(free[-1], bench.vehicle, model.vectors[-1], bench.noise,
+    noise = gaps.noise_gap(free[-1], bench.vehicle, model.vectors[-1], judged.noises[-1],
                            bench.horizon)
     apart = gaps.Ends(stages[0].errors - by_model.errors, by_model.t)
     return GapInSimulator(

@@ -11,6 +11,7 @@ import numpy as np
 from quad_ident_ros.diagnose import gap as gaps
 from quad_ident_ros.diagnose.bench import Bench, Model, tie
 from quad_ident_ros.diagnose.candidates import Candidate
+from quad_ident_ros.diagnose.gap import Noise
 from quad_ident_ros.diagnose.probability import presence, probabilities, Weight, with_companions
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.effects.registry import EFFECTS
@@ -28,7 +29,8 @@ class Judgement:
     what errors of the commands may have made; weights {candidate: Weight} and
     probability {effect: of being present}; without {candidate: Model without it};
     before: the Ends of the nominal vehicle with the nuisances of each flight; left_out: those of
-    each flight by the model fitted to the others; noise: {group: gap} of each flight;
+    each flight by the model fitted to the others; noises: the Noise of each flight, noise: its
+    {group: gap};
     unexplained: {group: gap beyond tolerance and error of form}.
     """
 
@@ -41,6 +43,7 @@ class Judgement:
     without: dict
     before: tuple
     left_out: tuple
+    noises: tuple[Noise, ...]
     noise: list
     unexplained: dict
 
@@ -54,8 +57,9 @@ def judge(bench: Bench) -> Judgement:
     """
     best, rules = bench.selection.best, bench.rules
     full = model = bench.model(best.chosen, best.estimate)
-    noises = bench.noise_gaps(full)
-    before, noise = gaps.gap(_nominal_ends(bench, full)), pooled(noises)
+    noises = bench.noises(full)
+    noise_gaps = bench.noise_gaps(full, noises)
+    before, noise = gaps.gap(_nominal_ends(bench, full)), pooled(noise_gaps)
     weights: dict[Candidate, Weight] = {}
     without: dict[Candidate, Model] = {}
     while model.effects:
@@ -86,7 +90,8 @@ def judge(bench: Bench) -> Judgement:
                if there.get(cause.effect) is cause}
     present = probabilities(bench.selection.posterior, weights, rules)
     absent = tuple(cause for cause in there.values() if present[cause.effect] < rules.present)
-    if set(model.effects) <= set(absent) and closes_half(model.gap, before, noise, rules):
+    if (set(model.effects) <= set(absent) and closes_half(model.gap, before, noise, rules)
+            and unexplained(before, before, noise, False, rules)):
         model = _fewest(bench, model, before, noise, present)
         absent = tuple(cause for cause in absent if cause not in model.effects)
     # What needs values that no vehicle has does the work of something else, which it stands for.
@@ -106,7 +111,7 @@ def judge(bench: Bench) -> Judgement:
                      dict(zip(in_forms_of(final.effects, weights), weights.values(), strict=True)),
                      present,
                      dict(zip(in_forms_of(final.effects, without), without.values(), strict=True)),
-                     ends, bench.left_out(final), noises,
+                     ends, bench.left_out(final), noises, noise_gaps,
                      unexplained(final.gap, gaps.gap(ends), noise, bool(material), rules))
 
 
@@ -211,8 +216,8 @@ def closes_half(after: dict, before: dict, noise: dict, rules: Rules) -> bool:
     """
     Return whether a model closes half of the gap of some group of outputs.
 
-    What does is named, though each of its effects may be less probable than not: `unknown` in its
-    place would say less than the flights do.
+    What does is named, though each of its effects may be less probable than not, where `unknown`
+    in its place would say less than the flights do.
     """
     return max(lost_shares(after, before, before, noise, rules).values()) >= rules.half
 

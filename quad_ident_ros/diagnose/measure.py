@@ -60,7 +60,7 @@ def _gap(track: Track, bench: Bench, judged: Judgement, horizon: float) -> dict:
         z0, z0 + after_z - judged.model.z, after_z))
     return {'before': gaps.gap([before]), 'before_own': gaps.gap([nuisance]),
             'after': gaps.gap([after]),
-            'noise': gaps.noise_gap(track, bench.vehicle, after_z, bench.noise, horizon),
+            'noise': gaps.noise_gap(track, bench.vehicle, after_z, judged.noises[-1], horizon),
             'before_interval': gaps.interval([before], bench.rules),
             'after_interval': gaps.interval([after], bench.rules)}
 

@@ -3,6 +3,7 @@
 """What a perfect model would be off by: noise of the measurement and of the motion."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -10,11 +11,10 @@ from quad_ident_ros.diagnose.gap import horizon_of, Noise
 from quad_ident_ros.diagnose.intake import Intake
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.diagnose.selection import Selection
+from quad_ident_ros.diagnose.state_filter import levels_itself, noise_by_samples
 from quad_ident_ros.greybox.errors import GROUPS
-from quad_ident_ros.greybox.estimate import Estimate
-from quad_ident_ros.greybox.flights import Flight
+from quad_ident_ros.greybox.flights import Track
 from quad_ident_ros.greybox.kinematics import measurement_noise
-from quad_ident_ros.greybox.noise import near_noise, quick_noise
 
 
 def noise_of(selection: Selection, intake: Intake, rules: Rules) -> Noise:
@@ -26,35 +26,31 @@ def noise_of(selection: Selection, intake: Intake, rules: Rules) -> Noise:
     little noise, and their tilt not at all: it is taken as usual ones are.
     """
     best = selection.best.estimate
-    near, white = (np.median([kind(raw) for raw in best.residuals], axis=0)
-                   for kind in (near_noise, quick_noise))
+    near, white = noise_by_samples(best)
     deviation, drift = measurement_noise(intake.flights, best.vectors, near, white)
-    attitude, position = GROUPS['attitude'], GROUPS['position']
+    attitude = GROUPS['attitude']
     period = float(np.median([flight.period for flight in intake.flights]))
     steady = max(0.0, float(np.mean(deviation[attitude] ** 2 - white[attitude] ** 2)))
     mean = float(np.mean(white[attitude] ** 2)) * period / horizon_of(intake.flights, rules)
-    # A position that is the integral of the velocity has no noise to go by.
-    summed = {name for flight in intake.flights for name in flight.summed}
-    levels = (_is_filtered(near, intake.flights, rules)
-              and ('position' in summed or np.mean(near[position]) > rules.tracked_position))
+    levels = levels_itself(best, intake.flights, rules)
     level, drift = (rules.levelling, max(rules.drift, drift)) if levels else (0.0, drift)
     walk = rate_walk([(raw[..., GROUPS['rate']], flight.period) for raw, flight in
                       zip(best.residuals, intake.flights, strict=True)], rules)
-    return Noise(deviation, float(np.sqrt(steady + mean + level ** 2)), drift, walk)
+    return Noise(deviation, white, float(np.sqrt(steady + mean + level ** 2)), drift, walk)
 
 
-def _is_filtered(near: np.ndarray, flights: Sequence[Flight], rules: Rules) -> bool:
-    """Return whether the attitude of flights, by its near_noise, is that of a filter."""
-    return (not any('attitude' in flight.summed for flight in flights)
-            and bool(np.mean(near[GROUPS['attitude']]) < rules.filtered_attitude))
+def noise_in(track: Track, z: np.ndarray, noise: Noise) -> Noise:
+    """
+    Return the Noise of one flight: that of all, or more where its kinematics show more.
 
-
-def follows_gyro(best: Estimate, flights: Sequence[Flight], rules: Rules) -> bool:
-    """Return whether the attitude of flights is that of a filter which follows a gyro."""
-    near, white = (np.median([kind(raw) for raw in best.residuals], axis=0)
-                   for kind in (near_noise, quick_noise))
-    return (_is_filtered(near, flights, rules)
-            and bool(np.mean(white[GROUPS['rate']]) > rules.quiet_gyro))
+    A filter wanders more in one flight than in another, and motion capture loses markers in one.
+    Kinematics tell that from a force that acts in one flight alone.
+    Args: z (Z,): the vector of the flight; noise: that of all flights.
+    """
+    deviation, drift = measurement_noise([track], [z], noise.deviation, noise.white)
+    more = deviation[GROUPS['attitude']] ** 2 - noise.deviation[GROUPS['attitude']] ** 2
+    return replace(noise, deviation=deviation, drift=max(noise.drift, drift),
+                   tilt=float(np.sqrt(noise.tilt ** 2 + np.mean(more))))
 
 
 def rate_walk(parts: Sequence[tuple[np.ndarray, float]], rules: Rules) -> np.ndarray:

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from quad_ident_ros.data.clocks import Clock, controllers_own, SURE
-from quad_ident_ros.diagnose.noise import follows_gyro
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.diagnose.selection import Selection
+from quad_ident_ros.diagnose.state_filter import follows_gyro
 from quad_ident_ros.effects.registry import EFFECTS, PARAMETERS
 from quad_ident_ros.greybox.estimate import estimate
 from quad_ident_ros.greybox.flights import Flight, flight_of, Track
@@ -88,7 +88,9 @@ def late_gyro(selection: Selection, flights: Sequence[Flight], vehicle: Vehicle,
             return 0.0
         late += part
         weights[[best.estimate.columns.index(column) for column in columns]] = later
-    error = float(np.sqrt(weights @ selection.covariance @ weights))
+    # That a gyro is late is what is asked here, and no error of the answer.
+    covariance = selection.covariance - selection.joint.sensors
+    error = float(np.sqrt(max(weights @ covariance @ weights, 0.0)))
     return min(float(late), rules.low_pass) if late - SURE * error <= rules.low_pass else 0.0
 
 

@@ -85,11 +85,22 @@ def presence(weight: Weight, rules: Rules, shift: float = 0.0) -> float:
 
     shift: prior knowledge of the effect, see Rules.shift.
 
-    The root of its contribution is as its size: a gap grows with the square of what is small
-    beside the rest of it. Of standard errors the logarithm counts: ten more tell little where
-    there are thirty, for what formulas are wrong by is not known well.
+    Of standard errors the logarithm counts: ten more tell little where there are thirty, for what
+    formulas are wrong by is not known well.
     """
     base, share, far, beside = rules.calibration
-    value = (base + share * np.sqrt(np.clip(weight.contribution, 0.0, 1.0))
+    value = (base + share * size_shown(weight.contribution, weight.distance)
              + far * np.log1p(weight.distance) + beside * weight.companions + shift)
     return float(1.0 / (1.0 + np.exp(-value)))
+
+
+def size_shown(contribution: float, distance: float) -> float:
+    """
+    Return the relative size of an effect, 0 to 1, by its contribution.
+
+    That is as its square: a gap grows with the square of what is small beside the rest of it. Of
+    the square of what is D standard errors from none, 1 / D^2 is expected by chance (James and
+    Stein, Fourth Berkeley Symposium, 1961); the rest counts.
+    """
+    by_chance = 1.0 / max(distance, 1.0) ** 2
+    return float(np.sqrt(np.clip(contribution, 0.0, 1.0) * (1.0 - by_chance)))

@@ -33,6 +33,9 @@ class Rules:
         a filter; tracked_position: m, above which its position is not from motion capture.
         quiet_gyro: rad/s from sample to sample, below which a rate is no gyro's but a
         simulation's: the best ones of autopilots have 0.003 deg/s/Hz^0.5 over 50 Hz.
+      tracked_level: rad, the usual error of the level of a filter's attitude that tracking
+        corrects: what motion capture makes of a body. sensitivity: tolerance of the sensitivity of
+        a gyro, as a share.
       low_pass: s by which the low pass of a gyro makes a rate late, and the attitude that a filter
         has from it: 5.9 ms for that of 41 Hz in an MPU-9250.
       walk_lags: s, which separate the growth of the rate's errors from their noise: gyros are
@@ -117,11 +120,13 @@ class Rules:
     at_bound: float = 1e-3
     coloured: float = 2.0
     levelling: float = 0.015
+    tracked_level: float = 0.003
     drift: float = 0.05
     filtered_attitude: float = 5e-4
     tracked_position: float = 1e-3
     quiet_gyro: float = 3e-4
     low_pass: float = 0.006
+    sensitivity: float = 0.01
     walk_lags: tuple[float, float, float] = (0.02, 0.05, 0.1)
     prior_odds: float = 0.02
     usual_form: float = 0.5

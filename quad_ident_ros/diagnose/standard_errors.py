@@ -12,6 +12,8 @@ from quad_ident_ros.diagnose.discrepancy import log_likelihood, scales
 from quad_ident_ros.diagnose.fitted import distances_of, Fitted
 from quad_ident_ros.diagnose.frame import blocks_at, Frame, frame_at, normal_at
 from quad_ident_ros.diagnose.rules import Rules
+from quad_ident_ros.diagnose.sensor_errors import sensor_covariance
+from quad_ident_ros.greybox.estimate import Estimate
 from quad_ident_ros.greybox.flights import Flight
 from quad_ident_ros.greybox.normal import covariance_of, marginal, Normal, scatter_of
 from quad_ident_ros.greybox.nuisances import Layout
@@ -29,13 +31,15 @@ class Joint:
     """
     What of a set's columns is known together, the discrepancy marginalised out.
 
-    covariance (C, C): the constants of the vehicle file taken as exact; constants: names of those
+    covariance (C, C): the constants of the vehicle file taken as exact; sensors (C, C): what of
+    it errors of the sensors make; constants: names of those
     that it states a deviation of, and stated (C + K, C + K): the covariance with these, as far as
     flights and deviations leave them; form_errors {effect: (G,)}: the log-likelihood of each of
     OF_EACH as the relative error of its formula.
     """
 
     covariance: np.ndarray
+    sensors: np.ndarray
     constants: tuple[str, ...]
     stated: np.ndarray
     form_errors: dict[str, np.ndarray] = field(default_factory=dict)
@@ -78,13 +82,19 @@ def joint_of(fitted: Fitted, flights: Sequence[Flight], frame: Frame, vehicle: V
     layout = Layout(columns, fit.nuisances.columns, len(fit.nuisances.values))
     if constants:
         frame = frame_at(list(flights), vehicle, fit, layout.wanted, rules)
-    normal = normal_at(frame, fit, layout, distances, (force, moment), form_error)
-    shared = marginal(normal, len(columns), block_diag(np.zeros((len(columns), len(columns))),
-                                                       fit.nuisances.precision))
+    precision = block_diag(np.zeros((len(columns), len(columns))), fit.nuisances.precision)
+
+    def of(one: Estimate) -> Normal:
+        return marginal(normal_at(frame, one, layout, distances, (force, moment), form_error),
+                        len(columns), precision)
+
+    shared = of(fit)
     size, count = limits(vehicle)[2, columns], len(fit.columns)
-    exact = covariance_of(_first(shared, count), size[:count])
+    sensors = sensor_covariance(fit, flights, vehicle.gravity, rules, size[:count],
+                                lambda one: _first(of(one), count))
+    exact = covariance_of(_first(shared, count), size[:count]) + sensors
     if not constants:
-        return Joint(exact, (), exact, form_errors)
+        return Joint(exact, sensors, (), exact, form_errors)
     # One scatter for all, the largest: what scales the whole motion stays in proportion.
     widest = float(scatter_of(shared).max())
     information, gradient = shared.information / widest, shared.gradient / widest
@@ -93,7 +103,9 @@ def joint_of(fitted: Fitted, flights: Sequence[Flight], frame: Frame, vehicle: V
     whole = covariance_of(replace(white, information=information + np.diag(known)), size)
     shift = whole @ gradient
     shift[:count] -= covariance_of(_first(white, count), size[:count]) @ gradient[:count]
-    return Joint(exact, tuple(constants), whole + np.outer(shift, shift), form_errors)
+    whole += np.outer(shift, shift)
+    whole[:count, :count] += sensors
+    return Joint(exact, sensors, tuple(constants), whole, form_errors)
 
 
 def _first(normal: Normal, count: int) -> Normal:

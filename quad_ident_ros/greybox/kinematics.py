@@ -13,7 +13,7 @@ import numpy as np
 from scipy.optimize import nnls
 
 from quad_ident_ros.greybox.errors import difference, GROUPS
-from quad_ident_ros.greybox.flights import Flight, GAP
+from quad_ident_ros.greybox.flights import GAP, Track
 from quad_ident_ros.greybox.parameters import SPLIT
 from quad_ident_ros.model.attitude import product, rotation_matrix, turn
 from quad_ident_ros.model.sensors import underlying
@@ -28,7 +28,7 @@ KEPT = 0.995    # of pairs of samples, the others being glitches that were not t
 FEWEST = 50     # pairs of samples from which on a lag is used
 
 
-def measurement_noise(flights: Sequence[Flight], vectors: Sequence[np.ndarray],
+def measurement_noise(flights: Sequence[Track], vectors: Sequence[np.ndarray],
                       near: np.ndarray, white: np.ndarray) -> tuple[np.ndarray, float]:
     """
     Return the standard deviation of the measurement noise, with what of it has a memory, (12,).
@@ -60,7 +60,7 @@ def measurement_noise(flights: Sequence[Flight], vectors: Sequence[np.ndarray],
     return found, drift
 
 
-def _drifts(flight: Flight, z: np.ndarray) -> list[np.ndarray]:
+def _drifts(flight: Track, z: np.ndarray) -> list[np.ndarray]:
     """Return position (N, 3) and rotation (N, 3), world, less the integrals of their rates."""
     states, t = underlying(z[SPLIT:], flight.states), flight.course.t
     good = np.flatnonzero(flight.seen[:, GROUPS['attitude']].all(axis=1))
@@ -82,7 +82,7 @@ def _drifts(flight: Flight, z: np.ndarray) -> list[np.ndarray]:
             for part in (errors[:, GROUPS['position']], turned)]
 
 
-def _spreads(flights: Sequence[Flight], drifts: Sequence[np.ndarray], group: slice
+def _spreads(flights: Sequence[Track], drifts: Sequence[np.ndarray], group: slice
              ) -> tuple[np.ndarray, np.ndarray]:
     """Return times (L,) s between samples and the variance of the drift over them (L,)."""
     period = float(np.median([flight.period for flight in flights]))

@@ -79,7 +79,10 @@ def nuisances(vehicle: Vehicle, tracks: Sequence[Track]) -> tuple[Nuisance, ...]
     kinds: list[tuple] = []
     # Inertial flights have one clock and no attitude, and slow moments count for little there.
     if not inertial(tracks):
-        kinds.append((CLOCK, CLOCK_TITLE, 's', ('actuation_delay.delay',), (apart,), odds))
+        # Where nothing tells clocks, what all flights have alike is a delay of the actuators.
+        alike = '' if put_right(tracks) else 'actuation_delay'
+        kinds.append((CLOCK, CLOCK_TITLE, 's', ('actuation_delay.delay',), (apart,), odds, '', (),
+                      alike))
         kinds += [('rate_bias', 'bias of the rate', 'rad/s', rate, (spread,) * 3, RARE, '', (),
                    'gyro_bias') for spread in (0.01, 0.003)]
         kinds += [('attitude_bias', 'tilt of the attitude', 'rad', tilt, (spread,) * 3, RARE, '',

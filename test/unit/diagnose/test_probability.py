@@ -11,6 +11,7 @@ import pytest
 from quad_ident_ros.diagnose.probability import (
     presence,
     probabilities,
+    size_shown,
     told_apart,
     Weight,
     with_companions,
@@ -25,10 +26,14 @@ def of(contribution, distance, companions=0, stability=5.0):
     return Weight(contribution, stability, 0.9, {}, distance, companions)
 
 
-@pytest.mark.parametrize(('contribution', 'distance', 'companions'),
-                         [(1.0, 0.0, 0), (0.1, 1.0, 3), (0.01, 40.0, 1)])
-def test_it_is_the_logistic_function_of_a_weighted_sum(contribution, distance, companions):
-    value = -1.0 + 1.5 * np.sqrt(contribution) + 2.0 * np.log(1.0 + distance) + 0.3 * companions
+@pytest.mark.parametrize(('contribution', 'distance', 'companions', 'size'),
+                         [(1.0, 0.0, 0, 0.0), (0.25, 1.0, 3, 0.0),
+                          (0.25, 2.0, 3, 0.5 * 0.75 ** 0.5),
+                          (0.01, 1e4, 1, 0.1), (-1.0, 9.0, 0, 0.0), (4.0, 1e6, 0, 1.0)])
+def test_it_is_the_logistic_function_of_a_weighted_sum(contribution, distance, companions, size):
+    """Of the square of what is twice its standard error, a quarter is by chance."""
+    assert size_shown(contribution, distance) == pytest.approx(size, rel=1e-6)
+    value = -1.0 + 1.5 * size + 2.0 * np.log(1.0 + distance) + 0.3 * companions
     assert presence(of(contribution, distance, companions), RULE) == pytest.approx(
         1.0 / (1.0 + np.exp(-value)))
 

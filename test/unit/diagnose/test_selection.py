@@ -19,7 +19,7 @@ from quad_ident_ros.diagnose.standard_errors import Joint
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import SENSORS
 from quad_ident_ros.greybox.flights import flight_of, track_of
-from quad_ident_ros.greybox.nuisances import Nuisance, NuisanceValues, RARE
+from quad_ident_ros.greybox.nuisances import CLOCK, Nuisance, NuisanceValues, RARE
 from quad_ident_ros.greybox.parameters import INDEX, nominal
 from quad_ident_ros.model.vehicle import load_vehicle
 
@@ -38,7 +38,8 @@ def fitted(chosen, value, error, evidence):
 
 def selection(*sets, least=0.0):
     covariance = np.array([[least ** 2]])
-    return Selection(sets[0], sets, {}, None, {}, [], Joint(covariance, (), covariance))
+    joint = Joint(covariance, 0.0 * covariance, (), covariance)
+    return Selection(sets[0], sets, {}, None, {}, [], joint)
 
 
 def errors(*sets, least=0.0):
@@ -160,12 +161,35 @@ def test_what_flights_have_alike_is_an_effect_by_the_law_whose_parameter_it_is()
     best = SimpleNamespace(chosen=(by_flight,), causes=(), estimate=SimpleNamespace(
         z=nominal(vehicle), nuisances=values, starts=[]))
     search = SimpleNamespace(all_causes=candidates([], vehicle, RULES, ['thrust_scale']),
-                             rules=RULES, best=best, judge=lambda chosen: best,
+                             vehicle=vehicle, rules=RULES, best=best, judge=lambda chosen: best,
                              fit=lambda chosen, start, *_: fits.append((chosen, start)))
     _Search.share_alike(search)
     [(chosen, start)] = fits
     free = {column for cause in chosen if cause.nuisance is None for column in cause.columns}
     assert set(np.flatnonzero(start != nominal(vehicle))) == free == {INDEX['thrust_scale.factor']}
+
+
+@pytest.mark.parametrize(('offsets', 'joins'), [
+    ((0.037, 0.037, 0.028), True),      # states of all flights answer late: a delay
+    ((0.03, -0.02, 0.01), False),       # clocks that differ by chance
+    ((-0.03, -0.031, -0.029), False)])  # states that are stamped early
+def test_clocks_that_all_flights_have_late_are_a_delay(offsets, joins):
+    vehicle = load_vehicle('hummingbird')
+    record = fly_closed_loop(vehicle, {}, 'hover', duration=5.0, seed=0)
+    [clock] = [one for one in nuisance_candidates(vehicle, 3 * [track_of(record, vehicle)])
+               if one.nuisance.name == CLOCK]
+    values = replace(NuisanceValues.of([clock.nuisance], 3), values=np.array(offsets)[:, None])
+    fits = []
+    best = SimpleNamespace(chosen=(clock,), causes=(), estimate=SimpleNamespace(
+        z=nominal(vehicle), nuisances=values, starts=[]))
+    search = SimpleNamespace(all_causes=candidates([], vehicle, RULES, ['actuation_delay']),
+                             vehicle=vehicle, rules=RULES, best=best, judge=lambda chosen: best,
+                             fit=lambda chosen, start, *_: fits.append((chosen, start)))
+    _Search.share_alike(search)
+    assert bool(fits) is joins
+    for chosen, start in fits:
+        assert start[INDEX['actuation_delay.delay']] == pytest.approx(np.mean(offsets))
+        assert {cause.effect for cause in chosen} == {CLOCK, 'actuation_delay'}
 
 
 def test_from_a_delay_that_does_the_work_of_a_lag_the_lag_is_found():

@@ -69,7 +69,8 @@ def test_rows_are_those_of_the_best_set_with_the_librarys_limits():
     found['ranking'].append({'effect': 'body_drag', 'contribution': None})
     rows = calibrate.rows_of([(label('wind'), found)])
     assert rows.names == ('contribution', 'distance', 'companions')
-    assert rows.x == pytest.approx(np.tile([np.sqrt(0.5), np.log(10.0), 2.0], (2, 1)))
+    assert rows.x == pytest.approx(np.tile([np.sqrt(0.5 * 80.0 / 81.0), np.log(10.0), 2.0],
+                                          (2, 1)))
     assert rows.present.tolist() == [1.0, 0.0] and rows.groups == ('ours', 'ours')
 
 
@@ -81,7 +82,8 @@ def test_what_is_neither_there_nor_not_is_left_out(truth, named):
 
 
 def test_another_feature_is_another_line():
-    features = {'contribution': float, 'distance': lambda value: value ** 2}
+    features = {'contribution': lambda row: row['contribution'],
+                'distance': lambda row: row['distance'] ** 2}
     rows = calibrate.rows_of([(label('wind'), ranked('wind'))], features)
     assert rows.names == ('contribution', 'distance')
     assert rows.x[0] == pytest.approx([0.5, 81.0])

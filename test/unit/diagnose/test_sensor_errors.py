@@ -1,0 +1,96 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Errors of sensors that go with the motion are errors of what is fitted to it."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.signal import savgol_filter
+from scipy.spatial.transform import Rotation
+
+from quad_ident_ros.diagnose.diagnosis import diagnose
+from quad_ident_ros.diagnose.rules import RULES
+from quad_ident_ros.flight.fly import fly_closed_loop
+from quad_ident_ros.flight.measure import Noise, Sensors
+from quad_ident_ros.model.vehicle import load_vehicle
+
+HUMMINGBIRD = load_vehicle('hummingbird')
+FILTER = Sensors(white=Noise(position=5e-4, velocity=1e-2, attitude=2e-4, rate=1e-2))
+LEVELLED = Sensors(white=Noise(position=2e-2, velocity=2e-2, attitude=2e-4, rate=1e-2))
+TRACKED = Sensors(white=Noise(position=5e-4, velocity=1e-2, attitude=2e-3, rate=1e-2))
+INERTIA = {'inertia_mismatch': {'factor_x': 1.1, 'factor_y': 1.1}}
+RATES, ATTITUDE = ('wx', 'wy', 'wz'), ('qw', 'qx', 'qy', 'qz')
+
+
+def flights(effects, sensors):
+    """Return three flights of a vehicle with effects."""
+    return [fly_closed_loop(HUMMINGBIRD, effects, course, duration=12.0, seed=seed, noise=sensors)
+            for seed, course in enumerate(('lissajous', 'figure8', 'lissajous'))]
+
+
+def parameters_of(found, effect):
+    """Return the first two parameters of an effect."""
+    return list(next(row for row in found.ranking if row.effect == effect).parameters.values())[:2]
+
+
+def with_columns(record, **columns):
+    return replace(record, columns={**record.columns, **columns})
+
+
+def turned(record, errors):
+    """Return a record whose attitude is off by rotations (N, 3) in the world."""
+    told = Rotation.from_rotvec(errors) * Rotation.from_quat(
+        np.column_stack([record.columns[name] for name in ATTITUDE]), scalar_first=True)
+    return with_columns(record, **dict(zip(ATTITUDE, told.as_quat(scalar_first=True).T,
+                                           strict=True)))
+
+
+def followed(pushed, t, gain):
+    """Return (N, 3) what a filter has that forgets what pushes it with a gain, 1/s."""
+    found = np.zeros(pushed.shape)
+    for k, step in enumerate(np.diff(t)):
+        found[k + 1] = found[k] + step * (pushed[k] - gain * found[k])
+    return found
+
+
+def by_filter(record, off):
+    """Return a record whose gyro reads high by a share, and whose attitude follows it for 2 s."""
+    rates = np.column_stack([record.columns[name] for name in RATES])
+    to_world = Rotation.from_quat(np.column_stack([record.columns[name] for name in ATTITUDE]),
+                                  scalar_first=True)
+    return with_columns(turned(record, followed(to_world.apply(off * rates), record.t, 0.5)), **{
+        name: (1.0 + off) * record.columns[name] for name in RATES})
+
+
+def levelled(record):
+    """Return a record whose level follows the acceleration, which it takes for gravity."""
+    speed = np.column_stack([record.columns[name] for name in ('vx', 'vy')])
+    force = savgol_filter(speed, 25, 2, deriv=1, delta=float(np.median(np.diff(record.t))), axis=0)
+    lean = followed(np.column_stack([-force[:, 1], force[:, 0], 0.0 * record.t]), record.t, 0.3)
+    return turned(record, RULES.levelling * lean / np.sqrt(np.mean(lean[:, :2] ** 2)))
+
+
+@pytest.mark.slow
+def test_inertia_is_known_no_better_than_the_sensitivity_of_a_gyro_that_a_filter_follows():
+    """Rates that read high by half of the tolerance look like a vehicle with less inertia."""
+    found = diagnose([by_filter(one, 0.5 * RULES.sensitivity) for one in flights(INERTIA, FILTER)],
+                     HUMMINGBIRD)
+    for value in parameters_of(found, 'inertia_mismatch'):
+        assert abs(value.value - 1.1) <= 2.0 * value.std
+        assert value.std >= 0.5 * RULES.sensitivity
+
+
+@pytest.mark.slow
+def test_inertia_is_known_as_well_as_the_noise_lets_it_where_the_attitude_follows_no_gyro():
+    found = diagnose(flights(INERTIA, TRACKED), HUMMINGBIRD)
+    for value in parameters_of(found, 'inertia_mismatch'):
+        assert abs(value.value - 1.1) <= 3.0 * value.std
+        assert value.std < 0.3 * RULES.sensitivity
+
+
+@pytest.mark.slow
+def test_a_level_that_follows_the_acceleration_is_no_effect():
+    """A filter takes some of each acceleration for gravity: its level leans with it."""
+    records = [levelled(one) for one in flights({}, LEVELLED)]
+    assert diagnose(records, HUMMINGBIRD).verdict == ('none',)
