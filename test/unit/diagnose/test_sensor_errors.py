@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.signal import savgol_filter
+from scipy.signal import lfilter, savgol_filter
 from scipy.spatial.transform import Rotation
 
 from quad_ident_ros.diagnose.diagnosis import diagnose
@@ -94,3 +94,18 @@ def test_a_level_that_follows_the_acceleration_is_no_effect():
     """A filter takes some of each acceleration for gravity: its level leans with it."""
     records = [levelled(one) for one in flights({}, LEVELLED)]
     assert diagnose(records, HUMMINGBIRD).verdict == ('none',)
+
+
+@pytest.mark.slow
+def test_a_flight_whose_filter_wanders_more_than_that_of_the_others_is_not_unknown():
+    """Its position says that its velocity is wrong: no force needs to be looked for."""
+    records = flights({}, TRACKED)
+    wanders, random = records[1], np.random.default_rng(5)
+    keep = np.exp(-np.median(np.diff(wanders.t)) / 0.3)
+    records[1] = with_columns(wanders, **{
+        name: wanders.columns[name] + 0.1 * lfilter([np.sqrt(1.0 - keep ** 2)], [1.0, -keep],
+                                                    random.normal(size=len(wanders.t)))
+        for name in ('vx', 'vy', 'vz')})
+    found = diagnose(records, HUMMINGBIRD)
+    assert found.verdict == ('none',)
+    assert found.flight_checks[1].gap_over_noise['velocity'] == pytest.approx(1.0, abs=0.2)
