@@ -32,7 +32,8 @@ def sensor_covariance(fit: Estimate, flights: Sequence[Flight], gravity: float, 
     """
     Return the covariance (C, C) of an Estimate's columns by the errors of the sensors.
 
-    Zero where the states are not those of a filter which follows a gyro, or of a gyro alone.
+    Zero where the states are not those of a filter which follows a gyro, or of a gyro alone. A
+    gyro alone that is late is a delay: nothing else says there when the vehicle moved.
     Args: gravity m/s^2; size (C,): usual sizes of the columns; normal: what makes of an Estimate,
     by its residuals, the Normal of its columns.
     """
@@ -54,12 +55,12 @@ def _patterns(flights: Sequence[Flight], gravity: float, level: float, rules: Ru
     yield [_of(one, attitude=off * _integral(one[..., 10:], flight.period),
                rate=off * one[..., 10:])
            for one, flight in zip(recorded, flights, strict=True)]
+    if inertial(flights):
+        return
     late = rules.low_pass * UNIFORM
     yield [_of(one, attitude=late * one[..., 10:],
                rate=late * np.gradient(one[..., 10:], flight.period, axis=1))
            for one, flight in zip(recorded, flights, strict=True)]
-    if not level:
-        return
     # The error of the level goes with the velocity, with the acceleration, or with neither.
     pull = gravity * level * UNIFORM
     moves = [_gained(one) for one in recorded]

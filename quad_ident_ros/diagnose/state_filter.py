@@ -34,10 +34,8 @@ def levels_itself(best: Estimate, flights: Sequence[Flight], rules: Rules) -> bo
 
 
 def level_error(best: Estimate, flights: Sequence[Flight], rules: Rules) -> float:
-    """Return the usual error (rad) of the level of a filter's attitude; 0 without a filter."""
-    if levels_itself(best, flights, rules):
-        return rules.levelling
-    return rules.tracked_level if _is_filtered(noise_by_samples(best)[0], flights, rules) else 0.0
+    """Return the usual error (rad) of the level of a filter's attitude."""
+    return rules.levelling if levels_itself(best, flights, rules) else rules.tracked_level
 
 
 def noise_by_samples(best: Estimate) -> tuple[np.ndarray, np.ndarray]:
