@@ -12,8 +12,8 @@ from quad_ident_ros.closed_loop.bandwidth import (
     bandwidth_of_multisine,
     multisine,
 )
-from quad_ident_ros.closed_loop.controller import Controller
 from quad_ident_ros.closed_loop.reference import Reference, wanted_of
+from quad_ident_ros.flight.controller import Controller
 from quad_ident_ros.flight.fly import flown
 from quad_ident_ros.model.attitude import euler_from_quaternion
 from quad_ident_ros.model.sensors import recorded

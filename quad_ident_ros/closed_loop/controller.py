@@ -3,13 +3,12 @@
 """The controller that closes the loop: ours, or a class in a user's Python file."""
 
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.flight.controller import Tracking, WANTED
+from quad_ident_ros.flight.controller import Controller, Tracking, WANTED
 from quad_ident_ros.model.rigid_body import STATE
 from quad_ident_ros.model.vehicle import Vehicle
 from quad_ident_ros.user_class import UserClass
@@ -26,17 +25,6 @@ class Name:                                # made without arguments
         # wx wy wz rad/s, body, x forward, y left
         # reference (14,): position m, velocity, acceleration, jerk (3 each, world), yaw rad,
         # yaw rate rad/s"""
-
-
-class Controller(Protocol):
-    """What closes the loop."""
-
-    def reset(self) -> None:
-        """Begin a flight, in hover."""
-
-    def control(self, seen: np.ndarray, wanted: np.ndarray, dt: float, command: np.ndarray
-                ) -> None:
-        """Write rotor speeds (n,) rad/s: see flight.controller."""
 
 
 class UserController:

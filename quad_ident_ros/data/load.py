@@ -2,10 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """One way to read a flight from any kind of file."""
 
+from collections.abc import Callable
 from pathlib import Path
+from typing import TypeVar
 
 from quad_ident_ros.data.mapping import Mapping
 from quad_ident_ros.data.outputs import commanded
+from quad_ident_ros.data.readers.base import Content, Reader
 from quad_ident_ros.data.readers.others import (
     is_text,
     refuse_no_file,
@@ -18,6 +21,8 @@ from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.data.split import split_at_jumps
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.vehicle import Vehicle
+
+Result = TypeVar('Result')
 
 
 def load(path: str | Path, mapping: Mapping | None = None,
@@ -54,14 +59,14 @@ def load_all(path: str | Path, mapping: Mapping | None = None, vehicle: Vehicle 
     return commanded(pieces, vehicle, mapping.actuators if mapping else None)
 
 
-def contents_of(path):
+def contents_of(path: str | Path) -> tuple[str, list[Content]]:
     """Return (title of its kind, Content of each stream) of a file or bag; errors of load."""
     path = Path(path)
     reader = reader_of(path)
     return reader.title, _with_package(path, reader, lambda one: one.contents(path))
 
 
-def reader_of(path):
+def reader_of(path: Path) -> Reader:
     """Return the Reader of a path, by its first bytes; InputError for what is no record."""
     refuse_no_file(path)
     start = b''
@@ -82,7 +87,7 @@ def reader_of(path):
     return told or READERS[-1]
 
 
-def _with_package(path, reader, use):
+def _with_package(path: Path, reader: Reader, use: Callable[[Reader], Result]) -> Result:
     """Return what use(reader) does; InputError where its package is not installed."""
     try:
         return use(reader)

@@ -2,12 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """The flight record: the samples of one flight, by column name."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 import re
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from quad_ident_ros.data.counted import counted
 from quad_ident_ros.data.cutting import without
@@ -55,12 +56,12 @@ class Fault(NamedTuple):
     remedy: str
 
 
-def unit(name):
+def unit(name: str) -> str | None:
     """Return the unit of a known column (str), or None for an unknown one."""
     return 'rad/s' if _ROTOR_COLUMN.fullmatch(name) else KNOWN.get(name)
 
 
-def find_fault(t, columns):
+def find_fault(t: np.ndarray, columns: Mapping[str, np.ndarray]) -> Fault | None:
     """
     Return the first value that a flight record may not hold.
 
@@ -84,7 +85,7 @@ def find_fault(t, columns):
     return None
 
 
-def faulty(t: np.ndarray, columns: Mapping) -> np.ndarray:
+def faulty(t: np.ndarray, columns: Mapping[str, np.ndarray]) -> np.ndarray:
     """Return whether a sample (N,) has to go so that find_fault finds nothing; its arguments."""
     wrong = ~np.isfinite(t)
     for name, values in columns.items():
@@ -138,10 +139,10 @@ class FlightRecord:
     """
 
     t: np.ndarray
-    columns: Mapping
-    info: Mapping = field(default_factory=dict)
+    columns: Mapping[str, np.ndarray]
+    info: Mapping[str, Any] = field(default_factory=dict)
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         """Check the samples and make them read-only float64 arrays."""
         object.__setattr__(self, 'info', dict(self.info))
         t = self._checked('t', self.t, None)
@@ -157,22 +158,22 @@ class FlightRecord:
         object.__setattr__(self, 't', t)
         object.__setattr__(self, 'columns', columns)
 
-    def __len__(self):
+    def __len__(self) -> int:
         """Return the number of samples."""
         return len(self.t)
 
-    def has(self, *names):
+    def has(self, *names: str) -> bool:
         """Return whether the record has all of the named columns (it always has t)."""
         return all(name == 't' or name in self.columns for name in names)
 
-    def numbered(self, prefix):
+    def numbered(self, prefix: str) -> list[str]:
         """Return the names prefix1, prefix2, ... of the columns, as far as they go."""
-        names = []
+        names: list[str] = []
         while self.has(f'{prefix}{len(names) + 1}'):
             names.append(f'{prefix}{len(names) + 1}')
         return names
 
-    def stack(self, *names):
+    def stack(self, *names: str) -> np.ndarray:
         """Return the named columns side by side, (N, k); InputError names those missing."""
         missing = [name for name in names if not self.has(name)]
         if missing:
@@ -180,11 +181,11 @@ class FlightRecord:
                              f'{", ".join(["t", *self.columns])}')
         return np.stack([self.t if name == 't' else self.columns[name] for name in names], axis=-1)
 
-    def inputs(self):
+    def inputs(self) -> np.ndarray:
         """Return the paper's inputs U1..U4, (N, 4) N, N, N, N m; InputError without them."""
         return self.stack(*INPUTS)
 
-    def euler(self):
+    def euler(self) -> np.ndarray:
         """
         Return roll, pitch and yaw without jumps, (N, 3) rad.
 
@@ -206,18 +207,18 @@ class FlightRecord:
         folded = euler_from_quaternion(quaternion / norm[:, None])
         return unwrap_euler(folded, folded[0])
 
-    def slice(self, start, stop=None):
+    def slice(self, start: int, stop: int | None = None) -> 'FlightRecord':
         """Return the record of samples start..stop - 1, counted as Python slices do."""
         part = slice(start, stop)
         return FlightRecord(self.t[part],
                             {name: values[part] for name, values in self.columns.items()},
                             self.info)
 
-    def last(self, seconds):
+    def last(self, seconds: float) -> 'FlightRecord':
         """Return the record of the samples of the last seconds (s); all where it is shorter."""
         return self.starting(int(np.searchsorted(self.t, self.t[-1] - seconds)))
 
-    def starting(self, first):
+    def starting(self, first: int) -> 'FlightRecord':
         """Return the record from a sample on, which beyond the first does not begin at rest."""
         if first == 0:
             return self
@@ -227,7 +228,7 @@ class FlightRecord:
             info['start_ns'] = int(info['start_ns'] + round(shift * 1e9))
         return FlightRecord(part.t, part.columns, info)
 
-    def period(self):
+    def period(self) -> float:
         """
         Return the median time between samples, s, of bursts at least a DENSEST-th of the mean.
 
@@ -238,12 +239,12 @@ class FlightRecord:
         rest = np.partition(steps, count - 1)[:count]
         return float(max(np.median(steps), rest.mean() / DENSEST))
 
-    def label(self):
+    def label(self) -> str:
         """Return what messages call the record: its source, or its name."""
         source = self.info.get('source') or self.info.get('name')
         return f'{source}' if source else 'the flight record'
 
-    def _checked(self, name, values, length):
+    def _checked(self, name: object, values: ArrayLike, length: int | None) -> np.ndarray:
         if not isinstance(name, str) or not name.isprintable() or name != name.strip() or not name:
             raise InputError(f'{self.label()}: {str(name)[:40]!r} is not a column name; use '
                              'printable text without spaces around it')
@@ -261,14 +262,14 @@ class FlightRecord:
         return array
 
 
-def same_flight(one, other):
+def same_flight(one: FlightRecord, other: FlightRecord) -> bool:
     """Return whether two records have the same samples."""
     return len(one) == len(other) and np.array_equal(one.t, other.t) and all(
         name in other.columns and np.array_equal(values, other.columns[name])
         for name, values in one.columns.items())
 
 
-def refuse_twice(records):
+def refuse_twice(records: Sequence[FlightRecord]) -> None:
     """Raise InputError where a flight is given twice: errors would seem smaller than they are."""
     for k, record in enumerate(records):
         if any(same_flight(record, other) for other in records[:k]):

@@ -8,12 +8,14 @@ error as Goodarzi, Lee, Lee, ECC 2013. The change of the desired rate is left ou
 """
 
 import math
+from typing import Protocol
 
 import numpy as np
 
 from quad_ident_ros.compiled import compiled
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.mixing import allocation_matrix
+from quad_ident_ros.model.vehicle import Vehicle
 
 WANTED = 14     # position, velocity, acceleration, jerk (3 each), yaw, yaw rate
 SEEN = 18       # position, velocity, rotation matrix by rows, rate
@@ -27,7 +29,7 @@ LIGHTEST = 0.4  # force along it
  MOST_X, MOST_Y, MOST_Z, SQUARE_MIN, SQUARE_MAX, IXY, IXZ, IYZ, GAINS) = range(24)
 
 
-def gains_of(vehicle):
+def gains_of(vehicle: Vehicle) -> np.ndarray:
     """
     Return the controller's constants (GAINS,) for a vehicle.
 
@@ -49,7 +51,7 @@ def gains_of(vehicle):
     return gains
 
 
-def mixer_of(vehicle):
+def mixer_of(vehicle: Vehicle) -> np.ndarray:
     """
     Return the squared rotor speeds per thrust (N) and moments (N m), (n, 4).
 
@@ -65,29 +67,42 @@ def mixer_of(vehicle):
     return np.linalg.pinv(matrix)
 
 
+class Controller(Protocol):
+    """What closes the loop."""
+
+    def reset(self) -> None:
+        """Begin a flight, in hover."""
+
+    def control(self, seen: np.ndarray, wanted: np.ndarray, dt: float, command: np.ndarray
+                ) -> None:
+        """Write rotor speeds (n,) rad/s; see control."""
+
+
 class Tracking:
     """The controller of a vehicle: what it sees and what is wanted to rotor speeds, over time."""
 
-    def __init__(self, vehicle):
+    def __init__(self, vehicle: Vehicle) -> None:
         self._gains, self._mixer = gains_of(vehicle), mixer_of(vehicle)
         self._memory = np.zeros(MEMORY)
 
-    def reset(self):
+    def reset(self) -> None:
         """Forget what was flown."""
         self._memory[:] = 0.0
 
-    def control(self, seen, wanted, dt, command):
+    def control(self, seen: np.ndarray, wanted: np.ndarray, dt: float, command: np.ndarray
+                ) -> None:
         """Write rotor speeds command (n,) rad/s for what is SEEN and WANTED; dt s since."""
         control(seen, wanted, dt, self._gains, self._mixer, self._memory, command)
 
 
 @compiled
-def _clamp(value, most):
+def _clamp(value: float, most: float) -> float:
     return min(max(value, -most), most)
 
 
 @compiled
-def control(seen, wanted, dt, gains, mixer, memory, command):
+def control(seen: np.ndarray, wanted: np.ndarray, dt: float, gains: np.ndarray, mixer: np.ndarray,
+            memory: np.ndarray, command: np.ndarray) -> None:
     """Write rotor speeds command (n,) rad/s for what is SEEN and WANTED; dt s since the last."""
     g = gains
     rotation = seen[6:15].reshape(3, 3)
@@ -140,7 +155,8 @@ def control(seen, wanted, dt, gains, mixer, memory, command):
 
 
 @compiled
-def _mix(lift, turn, least, most, mixer, command):
+def _mix(lift: float, turn: np.ndarray, least: float, most: float, mixer: np.ndarray,
+         command: np.ndarray) -> None:
     """Write rotor speeds for a thrust and moments; where limits bind yaw yields, then thrust."""
     n = len(command)
     share = 1.0

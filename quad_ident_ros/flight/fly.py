@@ -3,6 +3,7 @@
 """Flights with known truth: the vehicle model with effects, under control, along a trajectory."""
 
 from collections.abc import Sequence
+from typing import TypeAlias
 
 import numpy as np
 
@@ -10,7 +11,7 @@ from quad_ident_ros import schema
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.effects.registry import Values, vector
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.flight.controller import Tracking
+from quad_ident_ros.flight.controller import Controller, Tracking
 from quad_ident_ros.flight.loop import close_loop
 from quad_ident_ros.flight.measure import CLEAN, errors_of, measured, Sensors
 from quad_ident_ros.flight.trajectories import plan, scale_of
@@ -31,6 +32,9 @@ SHORTEST, LONGEST = 5.0, 3600.0     # s
 
 REMEMBERING = ('battery_sag', 'motor_lag', 'actuation_delay')
 MEASURING = ('com_offset', 'attitude_misalignment', 'gyro_bias')
+
+Parts: TypeAlias = Sequence[tuple[float, np.ndarray]]    # see _parts_of
+Samples: TypeAlias = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]
 
 
 def fly_closed_loop(vehicle: Vehicle, effects: Values, trajectory: str, *,
@@ -86,14 +90,16 @@ def fly_closed_loop(vehicle: Vehicle, effects: Values, trajectory: str, *,
     return FlightRecord(t[rows], {name: values[rows] for name, values in columns.items()}, info)
 
 
-def _parts_of(effects, changes, vehicle, duration):
+def _parts_of(effects: Values, changes: Sequence[tuple[float, Values]], vehicle: Vehicle,
+              duration: float) -> list[tuple[float, np.ndarray]]:
     """
     Return [(time s from which, parameter vector)] of the changes in flight; raises InputError.
 
     Effects with a memory of their own, of rotors or battery, would forget it at a change, and
     those of what is measured would move it in a step: these cannot change.
     """
-    parts, before = [], 0.0
+    parts: list[tuple[float, np.ndarray]] = []
+    before = 0.0
     for number, (time, wanted) in enumerate(changes, 1):
         where = f'change {number}'
         schema.number(f'{where}: at (s)', time, before, duration, exclusive=True)
@@ -109,7 +115,8 @@ def _parts_of(effects, changes, vehicle, duration):
     return parts
 
 
-def _phases(theta, parts, wanted, errors, rate):
+def _phases(theta: np.ndarray, parts: Parts, wanted: np.ndarray, errors: np.ndarray, rate: float
+            ) -> list[tuple[np.ndarray, np.ndarray, np.ndarray, float]]:
     """Return (theta, wanted, errors, clock) of the hover before the record and of its parts."""
     still = np.tile(wanted[0], (int(SETTLING * rate), 1))
     phases = [(theta, still, np.zeros((len(still), 12)), 0.0)]
@@ -120,7 +127,8 @@ def _phases(theta, parts, wanted, errors, rate):
     return phases
 
 
-def flown(vehicle, theta, wanted, errors, rate, controller, parts=()):
+def flown(vehicle: Vehicle, theta: np.ndarray, wanted: np.ndarray, errors: np.ndarray, rate: float,
+          controller: Controller, parts: Parts = ()) -> Samples:
     """
     Return true states, commands, rotor speeds, forces and fall of the voltage by sample.
 
@@ -133,13 +141,14 @@ def flown(vehicle, theta, wanted, errors, rate, controller, parts=()):
     x[:3] = wanted[0, :3]
     x[6:10] = quaternion_from_euler([0.0, 0.0, wanted[0, 12]])
     controller.reset()
-    flown_parts, fallen = [], 0.0
+    flown_parts: list[Samples] = []
+    fallen = 0.0
     for acting, phase, seen, clock in _phases(theta, parts, wanted, errors, rate):
         count, n = len(phase), len(vehicle.rotors)
         out = (np.empty((count, STATE)), np.empty((count, n)), np.empty((count, n)),
                np.empty((count, 3)), np.empty(count))
 
-        def act(k, sight, command, phase=phase):
+        def act(k: int, sight: np.ndarray, command: np.ndarray, phase: np.ndarray = phase) -> None:
             controller.control(sight, phase[k], 1 / rate, command)
 
         close_loop(with_residual(vehicle_vector(vehicle), vehicle)[:, None], rotor_table(vehicle),
@@ -149,10 +158,12 @@ def flown(vehicle, theta, wanted, errors, rate, controller, parts=()):
             out[-1][:] += fallen
             fallen = out[-1][-1]
             flown_parts.append(out)
-    return tuple(np.concatenate(each) for each in zip(*flown_parts, strict=True))
+    states, commands, speeds, forces, drop = (
+        np.concatenate(each) for each in zip(*flown_parts, strict=True))
+    return states, commands, speeds, forces, drop
 
 
-def _check_course(vehicle, states, wanted, t):
+def _check_course(vehicle: Vehicle, states: np.ndarray, wanted: np.ndarray, t: np.ndarray) -> None:
     """Raise InputError where the vehicle is away from its course by more than it spans."""
     away = np.linalg.norm(states[:, :3] - wanted[:, :3], axis=1)
     lost = ~(away < 2 * scale_of(vehicle, np.inf).length)

@@ -6,12 +6,22 @@ from dataclasses import replace
 
 import numpy as np
 
-from quad_ident_ros.effects.registry import bounds, EFFECTS, mapping, NULL, PARAMETERS, SLICES
+from quad_ident_ros.effects.base import Effect
+from quad_ident_ros.effects.registry import (
+    bounds,
+    EFFECTS,
+    mapping,
+    NULL,
+    PARAMETERS,
+    SLICES,
+    Values,
+)
+from quad_ident_ros.model.vehicle import Vehicle
 
 STRENGTHS = 1.5, 2.5    # of the usual size of a parameter
 
 
-def draw_reality(vehicle, seed):
+def draw_reality(vehicle: Vehicle, seed: int) -> Vehicle:
     """
     Return a vehicle with one effect, drawn with its parameters by a seed.
 
@@ -20,18 +30,18 @@ def draw_reality(vehicle, seed):
     rng = np.random.default_rng([seed, 5])
     name = str(rng.choice(list(EFFECTS)))
     names = [name, 'rotor_drag'] if EFFECTS[name].needs_air else [name]
-    effects = {}
+    effects: Values = {}
     for each in names:
         effects |= mapping(strengthened(EFFECTS[each], vehicle, rng))
     return replace(vehicle, effects=effects)
 
 
-def strengthened(effect, vehicle, rng):
+def strengthened(effect: Effect, vehicle: Vehicle, rng: np.random.Generator) -> np.ndarray:
     """Return the parameter vector (P,) of an effect, some usual sizes of each parameter."""
     low, high, size = bounds(vehicle)
     places = np.arange(len(PARAMETERS))[SLICES[effect.name]]
     if effect.per_rotor:
-        places = [rng.choice(places[:len(vehicle.rotors)])]
+        places = np.array([rng.choice(places[:len(vehicle.rotors)])])
     theta = NULL.copy()
     for place in places:
         step = rng.uniform(*STRENGTHS) * size[place]

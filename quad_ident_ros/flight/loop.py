@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The closed loop of plant and controller, sample by sample."""
 
+from collections.abc import Callable
+
 import numpy as np
 
 from quad_ident_ros.compiled import compiled
@@ -35,7 +37,8 @@ EMPTY = 0.7     # of the full voltage, below which none falls: 3 V of the 4.2 V 
 
 
 @compiled
-def _look(x, arm, tilt, rate_tilt, bias, error, seen):
+def _look(x: np.ndarray, arm: np.ndarray, tilt: np.ndarray, rate_tilt: np.ndarray,
+          bias: np.ndarray, error: np.ndarray, seen: np.ndarray) -> None:
     """Write what the controller sees (SEEN,) of the centre of mass's state x: model.sensors."""
     w, a, b, c = x[6:10]
     rotation = np.array([
@@ -54,8 +57,11 @@ def _look(x, arm, tilt, rate_tilt, bias, error, seen):
 
 
 @compiled(fused=True)
-def _advance(k, v, places, theta, dt, clock, fall, full, longest, state, speed, inner, energy, u,
-             s, rotors, commands, speeds, forces, drop):
+def _advance(k: int, v: np.ndarray, places: np.ndarray, theta: np.ndarray, dt: float, clock: float,
+             fall: float, full: float, longest: float, state: np.ndarray, speed: np.ndarray,
+             inner: np.ndarray, energy: np.ndarray, u: np.ndarray, s: np.ndarray,
+             rotors: np.ndarray, commands: np.ndarray, speeds: np.ndarray, forces: np.ndarray,
+             drop: np.ndarray) -> None:
     """
     Fly from sample k to the next with the commands so far; write what is at sample k.
 
@@ -126,13 +132,18 @@ def _advance(k, v, places, theta, dt, clock, fall, full, longest, state, speed, 
 
 
 @compiled(fused=True)
-def _begin(v, places, theta, s, rotors):
+def _begin(v: np.ndarray, places: np.ndarray, theta: np.ndarray, s: np.ndarray, rotors: np.ndarray
+           ) -> None:
     """Write what stays the same along a flight."""
     prepare(v, places, theta, s, rotors)
 
 
-def close_loop(v, places, theta, tilt, rate_tilt, dt, clock, fall, full, longest, x, errors,
-               controller, states, commands, speeds, forces, drop):
+def close_loop(v: np.ndarray, places: np.ndarray, theta: np.ndarray, tilt: np.ndarray,
+               rate_tilt: np.ndarray, dt: float, clock: float, fall: float, full: float,
+               longest: float, x: np.ndarray, errors: np.ndarray,
+               controller: Callable[[int, np.ndarray, np.ndarray], None], states: np.ndarray,
+               commands: np.ndarray, speeds: np.ndarray, forces: np.ndarray, drop: np.ndarray
+               ) -> None:
     """
     Fly and write what is at each sample: true states (N, 13), commands and speeds (N, n) rad/s.
 

@@ -2,7 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """What motion capture, IMU and autopilot record of a flight: noise, delays, rates and faults."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import TypeAlias
 
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
@@ -38,11 +40,11 @@ class Stream:
     rate: float | None = None
     held: bool = True
 
-    def times(self, t):
+    def times(self, t: np.ndarray) -> np.ndarray:
         """Return the times, (N,), of what is recorded at t (N,) s; before the flight its start."""
         return np.maximum(t - self.delay - self.drift * (t - t[0]), t[0])
 
-    def latest(self, t):
+    def latest(self, t: np.ndarray) -> np.ndarray:
         """Return the times (N,) of the sensor's latest samples before those."""
         return np.floor(self.times(t) * self.rate + 1e-9) / self.rate
 
@@ -84,10 +86,13 @@ FAULTY = Sensors(
     differentiated=True, lost=0.01, glitches=0.2, voltage=False, rotors=False)
 SENSORS = {'clean': CLEAN, 'mocap_imu': MOCAP_IMU, 'faulty': FAULTY}
 
+Course: TypeAlias = Callable[[np.ndarray], np.ndarray]   # of times (N,) s
+
 _WIDTHS = {'position': 3, 'velocity': 3, 'attitude': 3, 'rate': 3, 'force': 3}
 
 
-def gauss_markov(rng, count, width, step, time):
+def gauss_markov(rng: np.random.Generator, count: int, width: int, step: float, time: float
+                 ) -> np.ndarray:
     """Return unit Gauss-Markov noise (count, width), stationary from the first sample on."""
     keep = np.exp(-step / time)
     noise = rng.standard_normal((count, width))
@@ -95,7 +100,7 @@ def gauss_markov(rng, count, width, step, time):
     return lfilter([1.0], [1.0, -keep], noise, axis=0)
 
 
-def errors_of(sensors, count, step, seed):
+def errors_of(sensors: Sensors, count: int, step: float, seed: int) -> np.ndarray:
     """Return the errors of position, velocity, attitude, rate and force, (count, 15)."""
     rng = np.random.default_rng([seed, 2])
     columns = []
@@ -107,7 +112,8 @@ def errors_of(sensors, count, step, seed):
     return np.concatenate(columns, axis=1)
 
 
-def measured(sensors, t, states, forces, errors, seed):
+def measured(sensors: Sensors, t: np.ndarray, states: np.ndarray, forces: np.ndarray,
+             errors: np.ndarray, seed: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """
     Return the states (N, 13) and forces (N, 3) recorded at t (N,) s, and which rows exist.
 
@@ -133,7 +139,7 @@ def measured(sensors, t, states, forces, errors, seed):
     return out, forces, rows
 
 
-def _shown(stream, t, sample):
+def _shown(stream: Stream, t: np.ndarray, sample: Course) -> np.ndarray:
     """Return what stands in the record at t (N,) of a sensor that gives sample(times)."""
     at = stream.times(t)
     if stream.rate is None:
@@ -145,7 +151,7 @@ def _shown(stream, t, sample):
     return (1 - share) * sample(before) + share * sample(before + 1 / stream.rate)
 
 
-def _fresh(stream, t):
+def _fresh(stream: Stream, t: np.ndarray) -> np.ndarray:
     """Return the row (N,) whose error each row has: that of the sensor's sample it shows."""
     if stream.rate is None or not stream.held:
         return np.arange(len(t))
@@ -153,7 +159,7 @@ def _fresh(stream, t):
     return first[which]
 
 
-def _pose(t, states):
+def _pose(t: np.ndarray, states: np.ndarray) -> Course:
     """Return position, velocity and quaternion as a function of time, between samples too."""
     spin = product(states[:, 6:10], np.pad(states[:, 10:], ((0, 0), (1, 0)))) / 2
     place = CubicHermiteSpline(t, states[:, :3], states[:, 3:6])
@@ -163,12 +169,12 @@ def _pose(t, states):
                                       attitude(np.minimum(at, t[-1]))], axis=1)
 
 
-def _linear(t, values):
+def _linear(t: np.ndarray, values: np.ndarray) -> Course:
     """Return columns as a function of time, straight between samples."""
     return lambda at: np.stack([np.interp(at, t, column) for column in values.T], axis=1)
 
 
-def _glitches(sensors, t, rng):
+def _glitches(sensors: Sensors, t: np.ndarray, rng: np.random.Generator) -> np.ndarray:
     """Return the jumps of the attitude as rotation vectors (N, 3) rad."""
     jumps = np.zeros((len(t), 3))
     for begin in rng.uniform(t[0], t[-1], rng.poisson(sensors.glitches * (t[-1] - t[0]))):

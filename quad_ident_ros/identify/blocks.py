@@ -14,7 +14,7 @@ from functools import cache
 import numpy as np
 
 from quad_ident_ros.gravity import GRAVITY
-from quad_ident_ros.identify.signals import OUTPUTS
+from quad_ident_ros.identify.signals import OUTPUTS, Signal
 from quad_ident_ros.model.attitude import body_rate
 
 LENGTH = 0.5        # s, over which noise of mm averages to some cm/s^2
@@ -42,27 +42,27 @@ class Blocks:
     neglected: np.ndarray
     tilt: np.ndarray
 
-    def __len__(self):
+    def __len__(self) -> int:
         """Return how many blocks there are."""
         return len(self.target)
 
-    def part(self, rows):
+    def part(self, rows: slice | np.ndarray) -> 'Blocks':
         """Return some of the blocks, by a slice or a mask."""
         return Blocks(*(values[rows] for values in vars(self).values()))
 
-    def followed_by(self, others):
+    def followed_by(self, others: 'Blocks') -> 'Blocks':
         """Return these blocks and others after them."""
         return Blocks(*(np.concatenate(pair) for pair in zip(
             vars(self).values(), vars(others).values(), strict=True)))
 
 
-def samples_of(period):
+def samples_of(period: float) -> int:
     """Return how many periods a block has, even, so that blocks overlap by half."""
     return 2 * max(FEWEST // 2, round(LENGTH / period / 2))
 
 
 @cache
-def _weights(count):
+def _weights(count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Return the weight, its first and second derivative (count + 1,), and its held integral."""
     s = np.linspace(0.0, 1.0, count + 1)
     base = np.polynomial.Polynomial([0, 1, -1]) ** POWER
@@ -70,7 +70,7 @@ def _weights(count):
     return base(s), base.deriv()(s), base.deriv(2)(s), np.diff(base.integ()(s))
 
 
-def blocks_of(signal, after_ns):
+def blocks_of(signal: Signal, after_ns: int) -> Blocks:
     """
     Return the Blocks of a Signal with a start_ns that end after a stamp.
 
@@ -111,7 +111,7 @@ def blocks_of(signal, after_ns):
     return Blocks(ends, target, np.column_stack(features), most, tilt)
 
 
-def neglected(signal, tilts):
+def neglected(signal: Signal, tilts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """
     Return what the linear model leaves out: a rate (N,) and the most of an acceleration (N,).
 
@@ -125,13 +125,14 @@ def neglected(signal, tilts):
         lost = 1 - np.cos(tilts) if signal.at_rest else 0.0
         share = np.tan(np.minimum(tilts, STEEP)) * np.abs(np.sin(tilts)) + lost
         return np.zeros_like(tilts), GRAVITY * share
+    assert signal.attitude is not None
     rates = _rates(signal.attitude, signal.period)
     body = body_rate(signal.attitude, rates)
     axis = OUTPUTS.index(signal.output)
     return (rates - body)[:, axis], np.abs(np.prod(np.delete(body, axis, axis=1), axis=1))
 
 
-def _rates(angles, period):
+def _rates(angles: np.ndarray, period: float) -> np.ndarray:
     """Return the rates (N, 3) rad/s of angles: the slopes of lines through those around."""
     half = max(2, round(SMOOTHED / period / 2))
     padded = np.pad(angles, ((half, half), (0, 0)), 'reflect', reflect_type='odd')

@@ -9,15 +9,17 @@ another block of it, each of which gives one equation (see blocks). What counts 
 from a rate of false alarms that is stated beforehand, shared among all tests (Bonferroni).
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from typing import TypeAlias
 
 import numpy as np
 from scipy.stats import t as student
 
 from quad_ident_ros.gravity import GRAVITY
-from quad_ident_ros.identify.blocks import blocks_of, PRIOR_DAMPING
-from quad_ident_ros.identify.signals import OUTPUTS
+from quad_ident_ros.identify.blocks import Blocks, blocks_of, PRIOR_DAMPING
+from quad_ident_ros.identify.signals import OUTPUTS, Signal
 
 FALSE_PER_HOUR = 0.1        # alarms of all outputs of a vehicle that stays as it is, at most
 LENGTHS = ((2, 3, 4), (6, 8), (12, 16))     # blocks after a change that are looked at, 0.75 to
@@ -31,6 +33,8 @@ MOST_ALIKE = 0.95           # correlation of neighbours
 # Share of the acceleration that the linear model may leave out: two thirds of what a payload of
 # 30 % takes of K. Drag may reach it in z at a tilt of 22 degrees.
 LARGEST_SHARE = 0.15
+
+Moves: TypeAlias = dict[str, tuple[float, float]]   # see _move, by parameter
 
 
 @dataclass(frozen=True)
@@ -46,8 +50,8 @@ class Change:
     output: str
     time: float
     advantage: float
-    moved: dict
-    stamp_ns: int | None = None
+    moved: dict[str, tuple[float, float]]
+    stamp_ns: int
 
 
 @dataclass(frozen=True)
@@ -71,20 +75,21 @@ class Reference:
 class Watch:
     """Watches one output of a flight."""
 
-    def __init__(self, output):
+    def __init__(self, output: str) -> None:
         self._output = output
-        self._blocks = None
+        self._blocks: Blocks | None = None
         self._reached = 0
         self._noise = (0.0, 0.0)    # variance and freedom of what was before a change
         self._unusual = 0           # blocks since the first that was
 
-    def update(self, signal):
+    def update(self, signal: Signal) -> Change | None:
         """
         Return the Change that a Signal with a start_ns shows in what is new of it, or None.
 
         It is reported LASTING blocks after the first that is unusual, if it still is: then most of
         it is from after the change, and a knock is over.
         """
+        assert signal.start_ns is not None
         new = blocks_of(signal, self._reached)
         for k in range(len(new)):
             one = new.part(slice(k, k + 1))
@@ -99,7 +104,7 @@ class Watch:
                     return replace(change, time=(change.stamp_ns - signal.start_ns) * 1e-9)
         return None
 
-    def restart(self, at_ns):
+    def restart(self, at_ns: int) -> None:
         """Forget what was before a stamp but its noise: from there on the vehicle is another."""
         if self._blocks is None:
             return
@@ -111,7 +116,7 @@ class Watch:
         self._blocks, self._reached, self._unusual = None, at_ns, 0
 
 
-def holding(blocks, output):
+def holding(blocks: Blocks, output: str) -> np.ndarray:
     """Return for which blocks (n,) the linear model holds: it leaves out less than its share."""
     if output == 'z':
         return blocks.neglected <= LARGEST_SHARE * GRAVITY
@@ -119,12 +124,13 @@ def holding(blocks, output):
     return blocks.neglected <= LARGEST_SHARE * usual
 
 
-def watched(output):
+def watched(output: str) -> dict[str, int]:
     """Return the columns of the features whose parameters are watched, by name."""
     return {'K': 0} if output == 'z' else {'K': 0, 'disturbance': 2}
 
 
-def find_change(blocks, output, noise=(0.0, 0.0)):
+def find_change(blocks: Blocks, output: str, noise: tuple[float, float] = (0.0, 0.0)
+                ) -> Change | None:
     """
     Return the Change that the last Blocks show against those before, or None; without its time.
 
@@ -157,7 +163,7 @@ def find_change(blocks, output, noise=(0.0, 0.0)):
     return found
 
 
-def _lasts(blocks, moves, reference, columns):
+def _lasts(blocks: Blocks, moves: Moves, reference: Reference, columns: Mapping[str, int]) -> bool:
     """
     Return whether the very last block has half of the largest move.
 
@@ -170,11 +176,12 @@ def _lasts(blocks, moves, reference, columns):
 
 
 @lru_cache(1000)
-def _limit(rare, freedom):
+def _limit(rare: float, freedom: float) -> float:
     return float(student.isf(rare, freedom))
 
 
-def _change(output, last, moves, reference, limit, hop):
+def _change(output: str, last: Blocks, moves: Moves, reference: Reference, limit: float, hop: int
+            ) -> Change:
     largest, columns = max(size for size, _ in moves.values()), watched(output)
     moved = {name: (float(reference.parameters[columns[name]]), float(value))
              for name, (size, value) in moves.items() if size > limit}
@@ -183,7 +190,7 @@ def _change(output, last, moves, reference, limit, hop):
     return Change(output, 0.0, float(advantage), moved, int(last.ends_ns[0]) - 3 * hop // 2)
 
 
-def reference_of(blocks, output, noise):
+def reference_of(blocks: Blocks, output: str, noise: tuple[float, float]) -> Reference | None:
     """Return the Reference that Blocks are, or None where they are too few."""
     features, target = blocks.features, blocks.target
     count, size = features.shape
@@ -210,7 +217,7 @@ def reference_of(blocks, output, noise):
                      float(blocks.neglected.mean()))
 
 
-def _move(last, column, reference):
+def _move(last: Blocks, column: int, reference: Reference) -> tuple[float, float]:
     """Return by how many errors a parameter moved, beyond what is neglected, and its value."""
     direction = last.features[:, column]
     power = direction @ direction

@@ -6,15 +6,16 @@ import numpy as np
 
 from quad_ident_ros.identify.levy import levy_sigma
 from quad_ident_ros.identify.moves import exchange, fly, shuffle
+from quad_ident_ros.identify.search import Search
 from quad_ident_ros.identify.space import SIZE
 
 
-def cs(search):
+def cs(search: Search) -> None:
     """Minimise by cuckoo search; two evaluations per nest and generation."""
     hatch(search, 0.0)
 
 
-def hatch(search, pull):
+def hatch(search: Search, pull: float) -> None:
     """Minimise by Levy flights with a pull to the best, up to that share, and abandoned nests."""
     settings, random = search.settings, search.random
     sigma = levy_sigma(settings.levy_lambda, settings.levy)
@@ -28,7 +29,7 @@ def hatch(search, pull):
         abandon(search, nests, costs)
 
 
-def abandon(search, nests, costs):
+def abandon(search: Search, nests: np.ndarray, costs: np.ndarray) -> None:
     """
     Replace, in place, the eggs that hosts discover: eq. (28).
 

@@ -21,7 +21,8 @@ ROUNDING = 1e-30     # share of the squared data that rounding leaves of a perfe
 
 
 @compiled
-def solve_linear(factor, unknowns, step1, step0, linear, found):
+def solve_linear(factor: np.ndarray, unknowns: int, step1: float, step0: float, linear: np.ndarray,
+                 found: np.ndarray) -> None:
     """Write the gain and unknowns that go with a step of c1 and c0."""
     count = unknowns + 1
     last = unknowns + 3
@@ -42,14 +43,14 @@ def solve_linear(factor, unknowns, step1, step0, linear, found):
 
 
 @compiled
-def cost_of(factor, unknowns):
+def cost_of(factor: np.ndarray, unknowns: int) -> float:
     """Return the squared error with gain and unknowns solved for."""
     i = unknowns + 1
     return (factor[i, i + 2] ** 2 + factor[i + 1, i + 2] ** 2) + factor[i + 2, i + 2] ** 2
 
 
 @compiled
-def _tells_gain(factor, unknowns):
+def _tells_gain(factor: np.ndarray, unknowns: int) -> bool:
     """Return whether the response differs from what the unknowns alone explain."""
     size = 0.0
     for j in range(unknowns + 1):
@@ -58,7 +59,8 @@ def _tells_gain(factor, unknowns):
 
 
 @compiled
-def _pole_step(factor, unknowns, damping, edge, c1):
+def _pole_step(factor: np.ndarray, unknowns: int, damping: float, edge: bool, c1: float
+               ) -> tuple[float, float, float]:
     """
     Return the step of c1 and c0 and what it is expected to save, all from the factor.
 
@@ -91,7 +93,9 @@ def _pole_step(factor, unknowns, damping, edge, c1):
 
 
 @compiled
-def descend(c1, c0, real, period, u, y, measured, unknowns, arrived, linear):
+def descend(c1: float, c0: float, real: bool, period: float, u: np.ndarray, y: np.ndarray,
+            measured: np.ndarray, unknowns: int, arrived: float, linear: np.ndarray
+            ) -> tuple[float, float, float, int]:
     """
     Return c1, c0, the squared error and the passes over the data of the best poles near c1, c0.
 

@@ -2,10 +2,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a result says in words about what its model cannot say."""
 
+from collections.abc import Iterator
+
 import numpy as np
 
-from quad_ident_ros.identify.space import at_bounds
-from quad_ident_ros.identify.uncertainty import level_spread
+from quad_ident_ros.identify.order import Alternative
+from quad_ident_ros.identify.residuals import ResidualTests
+from quad_ident_ros.identify.signals import Signal
+from quad_ident_ros.identify.space import at_bounds, Space
+from quad_ident_ros.identify.transfer import SecondOrder
+from quad_ident_ros.identify.uncertainty import level_spread, Uncertainty
 
 UNDETERMINED = 'these data do not determine K, a and b: the information matrix is singular'
 LEVEL = ('the input never changes and the start is free: K cannot be distinguished from the level '
@@ -15,7 +21,8 @@ SAME = 1e-9        # of an input's range: changes below are rounding
 TRACELESS = 10.0   # pole x period beyond which e^-10 of its response is left at the next sample
 
 
-def findings_of(signal, model, sure, tests, bounds=None):
+def findings_of(signal: Signal, model: SecondOrder, sure: Uncertainty, tests: ResidualTests,
+                bounds: Space | None = None) -> Iterator[str]:
     """
     Yield what a reader must know about how certain a model is.
 
@@ -26,7 +33,7 @@ def findings_of(signal, model, sure, tests, bounds=None):
         yield UNDETERMINED
     # Of two poles that are closer than their errors only the sum and the product are known.
     apart = model.form == 'real' and sure.errors['a']
-    mixed = model.form == 'equal' or apart and apart > model.a - model.b
+    mixed = model.form == 'equal' or apart and apart > (model.a - model.b).real
     if mixed and sure.errors['c1'] is not None:
         yield ('a and b are closer than their errors: the data determine only '
                f'a + b = {model.c1:.4g} ± {sure.errors["c1"]:.1g} and '
@@ -55,22 +62,22 @@ def findings_of(signal, model, sure, tests, bounds=None):
         low, high = getattr(bounds, name)
         yield (f'the search ended on the bounds of the {name}, {low:.4g} to {high:.4g}: a better '
                'model may lie beyond')
-    if model.form != 'complex' and model.a * signal.period > TRACELESS:
+    if model.form != 'complex' and model.a.real * signal.period > TRACELESS:
         yield (f'a = {model.a:.4g} 1/s dies out within a sample: of K and a, the record '
                f'determines only K/a = {model.gain / model.a:.4g}')
 
 
-def _gaps(signal):
+def _gaps(signal: Signal) -> tuple[int, int]:
     """Return how many gaps the samples of a Signal have, and across how many the input differs."""
     ends = signal.measured[1:] & ~signal.measured[:-1]
     if not ends.any():
         return 0, 0
     # In a gap the input stands as it was before.
     changes = np.abs(np.diff(signal.u)[ends]) > SAME * np.ptp(signal.u)
-    return np.count_nonzero(ends), np.count_nonzero(changes)
+    return int(np.count_nonzero(ends)), int(np.count_nonzero(changes))
 
 
-def order_finding(other):
+def order_finding(other: Alternative) -> str | None:
     """Return the finding on an order.Alternative, or None."""
     if not other.is_better:
         return None

@@ -5,6 +5,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 import time
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -12,15 +13,22 @@ from quad_ident_ros import __version__
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.identify.findings import findings_of, order_finding
-from quad_ident_ros.identify.methods import METHODS
+from quad_ident_ros.identify.methods import Direct, Method, METHODS
 from quad_ident_ros.identify.metrics import errors, UNITS
 from quad_ident_ros.identify.objective import Fitted, Objective
 from quad_ident_ros.identify.order import alternatives
 from quad_ident_ros.identify.residuals import examine
 from quad_ident_ros.identify.result import Identification, MethodFit, OutputFit
 from quad_ident_ros.identify.search import Search, SwarmSettings
-from quad_ident_ros.identify.signals import OUTPUTS, signals
-from quad_ident_ros.identify.space import check_bounds, find_space, literal_space, no_space, SIZE
+from quad_ident_ros.identify.signals import OUTPUTS, Signal, signals
+from quad_ident_ros.identify.space import (
+    check_bounds,
+    find_space,
+    literal_space,
+    no_space,
+    SIZE,
+    Space,
+)
 from quad_ident_ros.identify.transfer import response, SecondOrder
 from quad_ident_ros.identify.uncertainty import KEYS, Uncertainty, uncertainty
 from quad_ident_ros.identify.validity import validity
@@ -34,6 +42,8 @@ LEVEL_UNKNOWN = ('unlike a bag of the recorder, the record does not say at which
 POOR = 50.0   # fit %
 FEWEST_FOR_ORDERS = 30   # samples
 OVERFLOW = 'no model was found that stays finite over the record'
+
+Progress: TypeAlias = Callable[[str, str, float], None]     # method, output, share done
 
 
 @dataclass(frozen=True)
@@ -49,27 +59,30 @@ class Settings:
     looks at models of other orders (see order.alternatives).
     """
 
-    methods: tuple = tuple(METHODS)
+    methods: tuple[str, ...] = tuple(METHODS)
     seed: int = 0
     swarm: SwarmSettings = field(default_factory=SwarmSettings)
     search: str = 'per_output'
     box: str = 'scaled'
     poles: str = 'auto'
-    pole_bounds: tuple | None = None
-    gain_bounds: tuple | None = None
+    pole_bounds: tuple[float, float] | None = None
+    gain_bounds: tuple[float, float] | None = None
     initial_state: str = 'auto'
-    trim: tuple | None = None
+    trim: tuple[float, ...] | None = None
     compare_orders: bool = True
 
 
-def collect(records, settings):
+def collect(records: Sequence[FlightRecord], settings: Settings
+            ) -> tuple[dict[str, Signal], list[str]]:
     """
     Return the signals of records, one per output (the last record that excites it), and remarks.
 
     Of several that excite an output a remark says which was taken.
     Raises InputError where no record excites any input.
     """
-    found, sources, remarks = {}, {}, []
+    found: dict[str, Signal] = {}
+    sources: dict[str, list[str]] = {}
+    remarks: list[str] = []
     for number, record in enumerate(records, 1):
         pairs, said = signals(record, trim=settings.trim, initial_state=settings.initial_state)
         found.update({pair.output: pair for pair in pairs})
@@ -93,7 +106,7 @@ def collect(records, settings):
 
 
 def identify(records: Sequence[FlightRecord], settings: Settings | None = None, *,
-             on_progress: Callable[[str, str, float], None] = lambda method, output, share: None,
+             on_progress: Progress = lambda method, output, share: None,
              near: Mapping[str, SecondOrder] | None = None) -> Identification:
     """
     Fit K/((s+a)(s+b)) to each excited output of flight records by each method.
@@ -135,8 +148,8 @@ def identify(records: Sequence[FlightRecord], settings: Settings | None = None, 
         method = METHODS[name]
         random = np.random.default_rng([settings.seed, number])
         started = time.perf_counter()
-        if method.direct:
-            fits = {output: _direct(method, objectives[output], spaces[output], output)
+        if method.direct is not None:
+            fits = {output: _direct(method.direct, objectives[output], spaces[output], output)
                     for output in pairs}
             if method.name == 'vp' and settings.compare_orders:
                 fits = {output: _with_orders(fit, pairs[output]) for output, fit in fits.items()}
@@ -153,14 +166,14 @@ def identify(records: Sequence[FlightRecord], settings: Settings | None = None, 
                           _provenance(records), validity=held)
 
 
-def _direct(method, objective, space, output):
-    fitted, spent, remarks = method.direct(objective, space)
+def _direct(direct: Direct, objective: Objective, space: Space, output: str) -> OutputFit:
+    fitted, spent, remarks = direct(objective, space)
     if fitted is not None and not space.holds(fitted.model):
         remarks = [*remarks, 'beyond the bounds: these are for the searches; this method has none']
     return _finish(objective.signal, output, fitted, spent, remarks)
 
 
-def _with_orders(fit, signal):
+def _with_orders(fit: OutputFit, signal: Signal) -> OutputFit:
     """Return the OutputFit with what other orders give, and a word where one is better."""
     if fit.model is None or signal.samples < FEWEST_FOR_ORDERS:
         return fit
@@ -169,9 +182,11 @@ def _with_orders(fit, signal):
         said for said in map(order_finding, found) if said)))
 
 
-def _search(method, objective, space, output, settings, random, on_progress):
+def _search(method: Method, objective: Objective, space: Space, output: str, settings: Settings,
+            random: np.random.Generator, on_progress: Progress) -> OutputFit:
     search = Search(lambda points: space.cost(objective, points), 2, settings.swarm, random,
                     lambda share: on_progress(method.name, output, share))
+    assert method.search is not None
     method.search(search)
     if not np.isfinite(search.best_cost):
         return _finish(objective.signal, output, None, search.spent, [OVERFLOW])
@@ -180,15 +195,18 @@ def _search(method, objective, space, output, settings, random, on_progress):
                    bounds=_bounded(space, objective))
 
 
-def _joint(method, objectives, spaces, settings, random, on_progress):
-    def models(points, output, space):
+def _joint(method: Method, objectives: Mapping[str, Objective], spaces: Mapping[str, Space],
+           settings: Settings, random: np.random.Generator, on_progress: Progress
+           ) -> dict[str, OutputFit]:
+    def models(points: np.ndarray, output: str, space: Space
+               ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         i = 3 * list(objectives).index(output)
         low = np.array([space.gain[0], space.poles[0], space.poles[0]])
         high = np.array([space.gain[1], space.poles[1], space.poles[1]])
         gain, a, b = (low + (high - low) * points[:, i:i + 3] / SIZE).T
         return gain, a, b
 
-    def cost(points):
+    def cost(points: np.ndarray) -> np.ndarray:
         total = np.zeros(len(points))
         for output, objective in objectives.items():
             gain, a, b = models(points, output, spaces[output])
@@ -197,6 +215,7 @@ def _joint(method, objectives, spaces, settings, random, on_progress):
 
     search = Search(cost, 3 * len(objectives), settings.swarm, random,
                     lambda share: on_progress(method.name, 'all', share))
+    assert method.search is not None
     method.search(search)
     if not np.isfinite(search.best_cost):
         return {output: _finish(objective.signal, output, None, search.spent, [OVERFLOW])
@@ -211,12 +230,13 @@ def _joint(method, objectives, spaces, settings, random, on_progress):
     return fits
 
 
-def _bounded(space, objective):
+def _bounded(space: Space, objective: Objective) -> Space:
     """Return the space with the bounds of the gain that the objective keeps: it may have none."""
     return replace(space, gain=objective.gain_bounds)
 
 
-def _finish(signal, output, fitted, evaluations, remarks=(), bounds=None):
+def _finish(signal: Signal, output: str, fitted: Fitted | None, evaluations: int,
+            remarks: Sequence[str] = (), bounds: Space | None = None) -> OutputFit:
     """Return the OutputFit of a Fitted model, or of none; bounds: the Space it was searched in."""
     if fitted is not None:
         model = fitted.model
@@ -238,7 +258,7 @@ def _finish(signal, output, fitted, evaluations, remarks=(), bounds=None):
                      fitted.least_cost)
 
 
-def _described(settings, spaces):
+def _described(settings: Settings, spaces: Mapping[str, Space]) -> dict[str, Any]:
     swarm = {name: getattr(settings.swarm, name) for name in settings.swarm.__dataclass_fields__}
     return {'methods': list(settings.methods), 'seed': settings.seed, 'search': settings.search,
             'box': settings.box, 'poles': settings.poles, 'initial_state': settings.initial_state,
@@ -250,12 +270,12 @@ def _described(settings, spaces):
                        for name, space in spaces.items()}}
 
 
-def _provenance(records):
+def _provenance(records: Sequence[FlightRecord]) -> dict[str, Any]:
     dropped = sum(int(record.info.get('dropped', 0)) for record in records)
     return {'version': __version__, 'dropped_samples': dropped,
             'records': [dict(record.info) for record in records]}
 
 
-def with_budget(settings, evaluations):
+def with_budget(settings: Settings, evaluations: int | None) -> Settings:
     """Return settings in which every search may spend the same count of evaluations."""
     return replace(settings, swarm=replace(settings.swarm, evaluations=evaluations))

@@ -9,7 +9,7 @@ from quad_ident_ros.errors import InputError
 LEAST = 0.1     # below it steps span a hundred decades, which no search can use
 
 
-def levy_sigma(exponent, form='mantegna'):
+def levy_sigma(exponent: float, form: str = 'mantegna') -> float:
     """
     Return the standard deviation of Mantegna's numerator for a Levy exponent lambda.
 

@@ -11,8 +11,15 @@ input allows that, by the factor that fits best.
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from quad_ident_ros.identify.objective import Objective
-from quad_ident_ros.identify.transfer import Discrete, printed_parameters, to_continuous
+from quad_ident_ros.identify.objective import Fitted, Objective
+from quad_ident_ros.identify.signals import Signal
+from quad_ident_ros.identify.space import Space
+from quad_ident_ros.identify.transfer import (
+    Discrete,
+    printed_parameters,
+    SecondOrder,
+    to_continuous,
+)
 
 DOUBLED = ('the poles found were complex, without halving the error: refitted with the best '
            'double pole near their real part')
@@ -24,7 +31,7 @@ THINNED = 20   # samples that thinning leaves, at least
 EQUAL = 1e-5
 
 
-def least_squares_fit(objective, space):
+def least_squares_fit(objective: Objective, space: Space) -> tuple[Fitted | None, int, list[str]]:
     """
     Return the Fitted of the LS method, or None, no evaluations, and remarks or why it failed.
 
@@ -54,28 +61,28 @@ def least_squares_fit(objective, space):
     return double, 0, [*remarks, DOUBLED]
 
 
-def _double_pole(objective, guess):
+def _double_pole(objective: Objective, guess: float) -> Fitted:
     """Return the best fit with a = b near a guess."""
     size = abs(guess) + 1 / objective.signal.t[-1]
 
-    def cost(mean):
+    def cost(mean: float) -> float:
         return min(objective.of_poles([2 * mean], [mean ** 2])[0][0], WORST)
 
     found = minimize_scalar(cost, bounds=(guess - 3 * size, guess + 3 * size), method='bounded')
     return objective.fit(found.x, 0.0)
 
 
-def _fit_of(signal, model):
+def _fit_of(signal: Signal, model: SecondOrder) -> Fitted:
     """Return the Fitted of a model, its gain kept."""
     mean = model.c1 / 2
     half = (model.a - model.b) / 2
-    half = -half.imag if model.form == 'complex' else half
+    half = -half.imag if isinstance(half, complex) else half
     if abs(half) < EQUAL * (abs(mean) + 1 / signal.t[-1]):
         half = 0.0
     return Objective(signal, (model.gain, model.gain)).fit(mean, half)
 
 
-def thinnings(signal):
+def thinnings(signal: Signal) -> list[int]:
     """Return factors, from large to 1, by which a record can be thinned with a held input."""
     longest = max(1, (len(signal.u) - 1) // THINNED)
     changes = np.flatnonzero(np.diff(signal.u[:-1])) + 1
@@ -87,7 +94,7 @@ def thinnings(signal):
     return factors if factors[-1] == 1 else [*factors, 1]
 
 
-def regression(u, y):
+def regression(u: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """
     Return matrix F and vector Y of eq. (35), rows k = 0..N-3, columns y0, y1, u0, u1.
 
@@ -101,7 +108,7 @@ def regression(u, y):
     return np.column_stack([-first, -y[:-2], held]), second
 
 
-def estimate(u, y, period):
+def estimate(u: np.ndarray, y: np.ndarray, period: float) -> Discrete:
     """Return the Discrete model of least squares: eq. (34), solved by orthogonal factors."""
     matrix, target = regression(u, y)
     scale = np.linalg.norm(matrix, axis=0)
@@ -112,7 +119,8 @@ def estimate(u, y, period):
     return Discrete.from_steps(root_sum, root_product, b0, b1, period)
 
 
-def printed_estimate(u, y, period):
+def printed_estimate(u: np.ndarray, y: np.ndarray, period: float
+                     ) -> tuple[complex, complex, complex]:
     """
     Return K, a, b of eqs. (35)-(37) to the letter: complex nonsense, kept for comparison.
 

@@ -4,12 +4,19 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TypeAlias
 
 from quad_ident_ros.identify.cs import cs
 from quad_ident_ros.identify.ls import least_squares_fit
+from quad_ident_ros.identify.objective import Fitted, Objective
 from quad_ident_ros.identify.pso import pso
 from quad_ident_ros.identify.pso_cs import pso_cs
+from quad_ident_ros.identify.search import Search
+from quad_ident_ros.identify.space import Space
 from quad_ident_ros.identify.vp import vp_fit
+
+Searching: TypeAlias = Callable[[Search], None]
+Direct: TypeAlias = Callable[[Objective, Space], tuple[Fitted | None, int, list[str]]]
 
 
 @dataclass(frozen=True)
@@ -24,8 +31,8 @@ class Method:
 
     name: str
     label: str
-    search: Callable | None = None
-    direct: Callable | None = None
+    search: Searching | None = None
+    direct: Direct | None = None
 
 
 METHODS = {method.name: method for method in (

@@ -9,7 +9,7 @@ UNITS = {'iae': 'unit s', 'ise': 'unit^2 s', 'itae': 'unit s^2', 'itse': 'unit^2
          'nrmse_percent': '%', 'fit_percent': '%'}
 
 
-def errors(t, measured, fitted):
+def errors(t: np.ndarray, measured: np.ndarray, fitted: np.ndarray) -> dict[str, float]:
     """
     Return the errors of a fit as a dict with the keys of UNITS.
 

@@ -17,7 +17,9 @@ BLOCK = 256   # candidates whose states fit into the fastest cache
 
 
 @compiled(fused=True)
-def _step_held(count, f, d, slip, keep, push, ff, fy, y0, y1, y2, y3):
+def _step_held(count: int, f: np.ndarray, d: np.ndarray, slip: np.ndarray, keep: np.ndarray,
+               push: np.ndarray, ff: np.ndarray, fy: np.ndarray, y0: float, y1: float, y2: float,
+               y3: float) -> None:
     """Advance by four measured samples while the input stays as it is."""
     for i in range(count):
         value, change, squares, products = f[i], d[i], ff[i], fy[i]
@@ -41,7 +43,10 @@ def _step_held(count, f, d, slip, keep, push, ff, fy, y0, y1, y2, y3):
 
 
 @compiled(fused=True)
-def _step_any(count, f, d, slip, keep, early, late, ff, fy, y0, y1, y2, y3, u0, u1, u2, u3, u4):
+def _step_any(count: int, f: np.ndarray, d: np.ndarray, slip: np.ndarray, keep: np.ndarray,
+              early: np.ndarray, late: np.ndarray, ff: np.ndarray, fy: np.ndarray, y0: float,
+              y1: float, y2: float, y3: float, u0: float, u1: float, u2: float, u3: float,
+              u4: float) -> None:
     """Advance by four measured samples under inputs u0..u4."""
     for i in range(count):
         value, change, squares, products = f[i], d[i], ff[i], fy[i]
@@ -65,7 +70,9 @@ def _step_any(count, f, d, slip, keep, early, late, ff, fy, y0, y1, y2, y3, u0, 
 
 
 @compiled(fused=True)
-def _step_one(count, f, d, slip, keep, early, late, ff, fy, y, weight, u0, u1):
+def _step_one(count: int, f: np.ndarray, d: np.ndarray, slip: np.ndarray, keep: np.ndarray,
+              early: np.ndarray, late: np.ndarray, ff: np.ndarray, fy: np.ndarray, y: float,
+              weight: float, u0: float, u1: float) -> None:
     """Advance by one sample, which counts with a weight of one or zero."""
     for i in range(count):
         value, change = f[i], d[i]
@@ -77,7 +84,8 @@ def _step_one(count, f, d, slip, keep, early, late, ff, fy, y, weight, u0, u1):
 
 
 @compiled
-def moments(c1, c0, period, u, y, measured, ff, fy):
+def moments(c1: np.ndarray, c0: np.ndarray, period: float, u: np.ndarray, y: np.ndarray,
+            measured: np.ndarray, ff: np.ndarray, fy: np.ndarray) -> None:
     """
     Write the sums of f f and f y over the measured samples per candidate (n,).
 

@@ -8,13 +8,14 @@ from quad_ident_ros.compiled import compiled
 
 
 @compiled
-def levy_step(u, v, sigma, exponent):
+def levy_step(u: float, v: float, sigma: float, exponent: float) -> float:
     """Return the Levy-distributed step of two standard normal numbers, eq. (25)."""
     return sigma * u * np.abs(v) ** (-1.0 / exponent)
 
 
 @compiled
-def fly(points, best, normals, pulls, sigma, exponent, size, pull, limit, new):
+def fly(points: np.ndarray, best: np.ndarray, normals: np.ndarray, pulls: np.ndarray, sigma: float,
+        exponent: float, size: float, pull: float, limit: float, new: np.ndarray) -> None:
     """
     Write the points after a Levy flight, eq. (27), and a pull to the best, eq. (29).
 
@@ -30,7 +31,8 @@ def fly(points, best, normals, pulls, sigma, exponent, size, pull, limit, new):
 
 
 @compiled
-def exchange(points, found, shares, orders, probability, limit, new):
+def exchange(points: np.ndarray, found: np.ndarray, shares: np.ndarray, orders: np.ndarray,
+             probability: float, limit: float, new: np.ndarray) -> None:
     """
     Write the points after R H(Pa - r) (Xj - Xk), eq. (28) put right.
 
@@ -46,7 +48,7 @@ def exchange(points, found, shares, orders, probability, limit, new):
 
 
 @compiled
-def shuffle(uniforms, orders):
+def shuffle(uniforms: np.ndarray, orders: np.ndarray) -> None:
     """Write permutations (n, N) from numbers in [0, 1), by Fisher and Yates."""
     for row in range(orders.shape[0]):
         for i in range(orders.shape[1]):
@@ -57,7 +59,8 @@ def shuffle(uniforms, orders):
 
 
 @compiled
-def swarm(points, velocity, own_best, best, pulls, inertia, c1, c2, limit):
+def swarm(points: np.ndarray, velocity: np.ndarray, own_best: np.ndarray, best: np.ndarray,
+          pulls: np.ndarray, inertia: float, c1: float, c2: float, limit: float) -> None:
     """Move particles in place: eqs. (21), (22); pulls (4, N, D) in [0, 1]."""
     for i in range(points.shape[0]):
         for d in range(points.shape[1]):
@@ -69,7 +72,8 @@ def swarm(points, velocity, own_best, best, pulls, inertia, c1, c2, limit):
 
 
 @compiled
-def keep_better(points, costs, new, new_costs):
+def keep_better(points: np.ndarray, costs: np.ndarray, new: np.ndarray, new_costs: np.ndarray
+                ) -> None:
     """Replace, in place, the points that new ones improve."""
     for i in range(points.shape[0]):
         if new_costs[i] < costs[i]:

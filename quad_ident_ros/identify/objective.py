@@ -7,8 +7,10 @@ F = 1/2 sum of e^2 / (N range^2). The raw sum of eq. (30) lets the output with t
 erase the others, and E_k there is not defined over time (docs/paper.md).
 """
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TypeAlias
 
 import numpy as np
 
@@ -17,9 +19,13 @@ from quad_ident_ros.identify.moments import moments
 from quad_ident_ros.identify.signals import LARGEST, Signal
 from quad_ident_ros.identify.transfer import response, SecondOrder, zoh
 
+Floats: TypeAlias = Sequence[float] | np.ndarray
+
 
 @compiled
-def project_gain(c1, c0, period, u, y, measured, gain_low, gain_high, costs, linear):
+def project_gain(c1: np.ndarray, c0: np.ndarray, period: float, u: np.ndarray, y: np.ndarray,
+                 measured: np.ndarray, gain_low: float, gain_high: float, costs: np.ndarray,
+                 linear: np.ndarray) -> None:
     """Write, per candidate, the squared error from rest with the gain at its best."""
     squares, products = np.empty(c1.size), np.empty(c1.size)
     moments(c1, c0, period, u, y, measured, squares, products)
@@ -34,7 +40,8 @@ def project_gain(c1, c0, period, u, y, measured, gain_low, gain_high, costs, lin
 
 
 @compiled
-def _squared_errors(gain, c1, c0, period, u, y, measured, costs):
+def _squared_errors(gain: np.ndarray, c1: np.ndarray, c0: np.ndarray, period: float, u: np.ndarray,
+                    y: np.ndarray, measured: np.ndarray, costs: np.ndarray) -> None:
     """Write, per candidate with its gain, the squared error of the response from rest."""
     squares, products = np.empty(c1.size), np.empty(c1.size)
     moments(c1, c0, period, u, y, measured, squares, products)
@@ -45,7 +52,7 @@ def _squared_errors(gain, c1, c0, period, u, y, measured, costs):
 
 
 @compiled
-def _squared_error(y, found, measured):
+def _squared_error(y: np.ndarray, found: np.ndarray, measured: np.ndarray) -> float:
     total = 0.0
     for k in range(y.size):
         if measured[k]:
@@ -54,7 +61,7 @@ def _squared_error(y, found, measured):
 
 
 @compiled
-def _power(y, measured):
+def _power(y: np.ndarray, measured: np.ndarray) -> float:
     total = 0.0
     for k in range(y.size):
         if measured[k]:
@@ -63,7 +70,9 @@ def _power(y, measured):
 
 
 @compiled
-def project_all(c1, c0, period, u, y, measured, unknowns, gain_low, gain_high, costs, linear):
+def project_all(c1: np.ndarray, c0: np.ndarray, period: float, u: np.ndarray, y: np.ndarray,
+                measured: np.ndarray, unknowns: int, gain_low: float, gain_high: float,
+                costs: np.ndarray, linear: np.ndarray) -> None:
     """
     Write, per candidate, the squared error with the gain and the unknowns at their best.
 
@@ -146,10 +155,10 @@ class Fitted:
     """
 
     model: SecondOrder
-    initial: tuple
+    initial: tuple[float, float]
     cost: float
     disturbance: float = 0.0
-    noise: tuple = ()
+    noise: tuple[float, ...] = ()
     least_cost: float | None = None
 
 
@@ -158,16 +167,16 @@ class Objective:
     """The cost F of one output; gain_bounds limit the gain that the poles bring along."""
 
     signal: Signal
-    gain_bounds: tuple = (-np.inf, np.inf)
+    gain_bounds: tuple[float, float] = (-np.inf, np.inf)
 
     @cached_property
-    def weight(self):
+    def weight(self) -> float:
         """Return what makes F of a squared error: 1/(2 N range^2)."""
         span = float(np.ptp(self.signal.y))
         span = span if span > 1 / LARGEST else 1.0
         return 0.5 / (self.signal.samples * span ** 2)
 
-    def of_poles(self, c1, c0):
+    def of_poles(self, c1: Floats, c0: Floats) -> tuple[np.ndarray, np.ndarray]:
         """
         Return F (n,) and the best gain and unknowns (n, 4) for pole coefficients (n,).
 
@@ -183,7 +192,7 @@ class Objective:
         return costs, linear
 
     @cached_property
-    def _projection(self):
+    def _projection(self) -> tuple[Callable[..., None], tuple[float | np.ndarray, ...]]:
         """Return what projects gain and unknowns out, and its data: they never change."""
         signal = self.signal
         data = (signal.period, signal.u, signal.y, signal.measured)
@@ -192,20 +201,20 @@ class Objective:
             return project_gain, (*data, *bounds)
         return project_all, (*data, signal.unknowns, *bounds)
 
-    def of_models(self, gain, c1, c0):
+    def of_models(self, gain: Floats, c1: Floats, c0: Floats) -> np.ndarray:
         """Return F (n,) of models with given gains, from rest."""
         costs = np.empty(len(c1))
-        _squared_errors(*(np.ascontiguousarray(v, float) for v in (gain, c1, c0)),
-                        self.signal.period, self.signal.u, self.signal.y, self.signal.measured,
-                        costs)
+        _squared_errors(np.ascontiguousarray(gain, float), np.ascontiguousarray(c1, float),
+                        np.ascontiguousarray(c0, float), self.signal.period, self.signal.u,
+                        self.signal.y, self.signal.measured, costs)
         return costs * self.weight
 
-    def fit(self, mean, half):
+    def fit(self, mean: float, half: float) -> Fitted:
         """Return the Fitted of poles mean +- half (see SecondOrder.from_half_difference)."""
         _, linear = self.of_poles(np.array([2 * mean]), np.array([mean ** 2 - half * abs(half)]))
         return self.fitted(SecondOrder.from_half_difference(linear[0, 0], mean, half), linear[0])
 
-    def fitted(self, model, linear):
+    def fitted(self, model: SecondOrder, linear: np.ndarray) -> Fitted:
         """Return the Fitted of a model with the gain and the unknowns (4,) of of_poles."""
         initial, disturbance = (float(linear[1]), float(linear[2])), float(linear[3])
         if self.signal.unknowns == 1:

@@ -2,11 +2,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """Identification from window to window of a flight that goes on."""
 
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
+from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.identify.change import Watch
-from quad_ident_ros.identify.identify import identify
+from quad_ident_ros.identify.change import Change, Watch
+from quad_ident_ros.identify.identify import identify, Progress, Settings
+from quad_ident_ros.identify.result import Identification
+from quad_ident_ros.identify.signals import Signal
+from quad_ident_ros.identify.transfer import SecondOrder
 
 AFRESH = 20     # windows after which the search begins without the last model
 SHORTEST = 40   # samples of a window
@@ -15,10 +20,10 @@ SHORTEST = 40   # samples of a window
 class Changes:
     """Watches all outputs of one flight."""
 
-    def __init__(self):
-        self._watches = {}
+    def __init__(self) -> None:
+        self._watches: dict[str, Watch] = {}
 
-    def update(self, signals):
+    def update(self, signals: Mapping[str, Signal]) -> tuple[tuple[Change, ...], int | None]:
         """
         Return the Changes that Signals by output show, and the stamp from which they are over.
 
@@ -36,7 +41,7 @@ class Changes:
             watch.restart(settled)
         return tuple(found), settled
 
-    def _watch(self, output):
+    def _watch(self, output: str) -> Watch:
         return self._watches.setdefault(output, Watch(output))
 
 
@@ -48,13 +53,14 @@ class Tracker:
     are those of the vehicle as it is.
     """
 
-    def __init__(self):
-        self._near = {}
+    def __init__(self) -> None:
+        self._near: dict[str, SecondOrder] = {}
         self._windows = 0
-        self._since_ns = None
+        self._since_ns: int | None = None
         self._changes = Changes()
 
-    def update(self, records, settings, **options):
+    def update(self, records: Sequence[FlightRecord], settings: Settings, **options: Progress
+               ) -> Identification:
         """
         Return the Identification of the newest windows, with the changes found in them.
 
@@ -78,11 +84,12 @@ class Tracker:
                       result.methods[result.best].outputs.items() if fit.model is not None}
         return replace(result, changes=changes)
 
-    def _identify(self, records, settings, options):
+    def _identify(self, records: Sequence[FlightRecord], settings: Settings,
+                  options: Mapping[str, Progress]) -> Identification:
         return identify([self._newest(record) for record in records], settings, near=self._near,
                         **options)
 
-    def _newest(self, record):
+    def _newest(self, record: FlightRecord) -> FlightRecord:
         """Return the part of a record since the last change, but no less than the shortest."""
         start = record.info.get('start_ns')
         if self._since_ns is None or start is None or start >= self._since_ns:
@@ -92,5 +99,5 @@ class Tracker:
         return record.starting(max(min(first, len(record) - SHORTEST), 0))
 
 
-def _end_ns(signal):
+def _end_ns(signal: Signal) -> int:
     return signal.start_ns + round(signal.t[-1] * 1e9)

@@ -8,12 +8,15 @@ are compared by the Bayesian information criterion (G. Schwarz, Annals of Statis
 which autocorrelated residuals count as fewer (G. Zieba, Metrol. Meas. Syst. 17, 2010).
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.optimize import least_squares, minimize_scalar
 
 from quad_ident_ros.compiled import compiled
+from quad_ident_ros.identify.signals import Signal
+from quad_ident_ros.identify.transfer import SecondOrder
 
 STRONG = 10.0      # advantage that counts as very strong evidence for more numbers,
 ENOUGH = 2.0       # and as evidence for fewer
@@ -37,15 +40,15 @@ class Alternative:
     name: str
     nrmse_percent: float
     advantage: float
-    denominator: tuple
+    denominator: tuple[float, ...]
 
     @property
-    def is_better(self):
+    def is_better(self) -> bool:
         """Whether the record asks for this model instead."""
         return self.advantage > (STRONG if len(self.denominator) > 2 else ENOUGH)
 
 
-def alternatives(signal, model):
+def alternatives(signal: Signal, model: SecondOrder) -> tuple[Alternative, ...]:
     """
     Return an Alternative for each other order, for a signal and its best second-order model.
 
@@ -55,7 +58,7 @@ def alternatives(signal, model):
     second = task.residual([model.c1, model.c0])
     count, duration = independent_count(second), task.duration
 
-    def criterion(residual, parameters):
+    def criterion(residual: np.ndarray, parameters: int) -> float:
         return count * np.log(max(residual @ residual, 1e-300)) + parameters * np.log(count)
 
     found = []
@@ -70,8 +73,8 @@ def alternatives(signal, model):
     return tuple(found)
 
 
-def _first(task, duration):
-    def cost(place):
+def _first(task: '_Task', duration: float) -> tuple[np.ndarray, list[float]]:
+    def cost(place: float) -> float:
         residual = task.residual([np.sinh(place) / duration])
         return residual @ residual
 
@@ -81,24 +84,21 @@ def _first(task, duration):
     return task.residual(denominator), denominator
 
 
-def _third(task, model, duration):
-    def denominator(point):
+def _third(task: '_Task', model: SecondOrder, duration: float) -> tuple[np.ndarray, list[float]]:
+    def denominator(point: np.ndarray) -> list[float]:
         c = np.exp(min(point[2], fastest)) / duration
         c1, c0 = point[0] / duration, point[1] / duration ** 2
         return [c1 + c, c0 + c1 * c, c0 * c]
 
     fastest = np.log(10 * task.samples)   # poles beyond leave no trace
-    best = None
-    for start in THIRD_STARTS:
-        found = least_squares(lambda point: task.residual(denominator(point)),
+    best = min((least_squares(lambda point: task.residual(denominator(point)),
                               [model.c1 * duration, model.c0 * duration ** 2, np.log(start)],
-                              x_scale='jac', max_nfev=STEPS)
-        if best is None or found.cost < best.cost:
-            best = found
+                              x_scale='jac', max_nfev=STEPS) for start in THIRD_STARTS),
+               key=lambda found: found.cost)
     return task.residual(denominator(best.x)), denominator(best.x)
 
 
-def independent_count(residual):
+def independent_count(residual: np.ndarray) -> float:
     """Return how many independent residuals these are worth."""
     power = residual @ residual
     if not power > 0:
@@ -110,7 +110,7 @@ def independent_count(residual):
 class _Task:
     """The residuals of all-pole models of any order for one signal, all linear numbers solved."""
 
-    def __init__(self, signal):
+    def __init__(self, signal: Signal) -> None:
         self._signal = signal
         self.samples = len(signal.y)
         self._stride = -(-self.samples // MOST)
@@ -119,7 +119,7 @@ class _Task:
         self.span = float(np.ptp(signal.y)) or 1.0
         self.duration = signal.t[-1] + signal.period
 
-    def residual(self, denominator):
+    def residual(self, denominator: Sequence[float]) -> np.ndarray:
         """Return y minus the best response with these poles, at the places compared."""
         signal, order = self._signal, len(denominator)
         matrix = np.zeros((order + 1, order + 1))
@@ -136,7 +136,7 @@ class _Task:
 
 
 @compiled
-def _columns(matrix, stride, u, unknowns):
+def _columns(matrix: np.ndarray, stride: int, u: np.ndarray, unknowns: int) -> np.ndarray:
     """
     Return what is fitted linearly, at every stride (n, M): responses to u and to each unknown.
 
@@ -163,7 +163,7 @@ def _columns(matrix, stride, u, unknowns):
 
 
 @compiled
-def _left(columns, there, y):
+def _left(columns: np.ndarray, there: np.ndarray, y: np.ndarray) -> np.ndarray:
     """
     Return the residuals of y after a linear fit of columns (n, M), where y is known (M,).
 
@@ -194,7 +194,7 @@ def _left(columns, there, y):
 
 
 @compiled
-def _exponential(matrix):
+def _exponential(matrix: np.ndarray) -> np.ndarray:
     """Return the matrix exponential, by Taylor's series of a part and squaring."""
     size = np.abs(matrix).max() * matrix.shape[0]
     doublings = max(0, int(np.ceil(np.log2(size))) + 2) if 0.0 < size < 1e9 else 0
@@ -209,7 +209,7 @@ def _exponential(matrix):
 
 
 @compiled
-def _kernel(phi, gamma, stride):
+def _kernel(phi: np.ndarray, gamma: np.ndarray, stride: int) -> np.ndarray:
     """Return what inputs of one add to the state by the end of a stride, (order, stride)."""
     order = gamma.size
     kernel = np.empty((order, stride))
@@ -224,7 +224,7 @@ def _kernel(phi, gamma, stride):
 
 
 @compiled(fused=True, reordered=True)
-def _pushes(kernel, u, count):
+def _pushes(kernel: np.ndarray, u: np.ndarray, count: int) -> np.ndarray:
     """Return what each stride of inputs u (N,) adds to the state, (count, order)."""
     order, stride = kernel.shape
     found = np.zeros((count, order))
@@ -238,7 +238,7 @@ def _pushes(kernel, u, count):
 
 
 @compiled
-def _leap(leap, pushes, start, out):
+def _leap(leap: np.ndarray, pushes: np.ndarray, start: np.ndarray, out: np.ndarray) -> None:
     """Write the first state (M,) of x(m+1) = leap x(m) + pushes(m), exact at every stride."""
     order = start.size
     state, following = start.copy(), np.empty(order)

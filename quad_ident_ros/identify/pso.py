@@ -5,10 +5,11 @@
 import numpy as np
 
 from quad_ident_ros.identify.moves import keep_better, swarm
+from quad_ident_ros.identify.search import Search
 from quad_ident_ros.identify.space import SIZE
 
 
-def pso(search):
+def pso(search: Search) -> None:
     """
     Minimise by a swarm with one global best.
 

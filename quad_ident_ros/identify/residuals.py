@@ -10,6 +10,7 @@ from scipy.signal import lfilter
 from scipy.stats import chi2, f
 
 from quad_ident_ros.compiled import compiled
+from quad_ident_ros.identify.signals import Signal
 from quad_ident_ros.identify.tangent import CHUNK, fold
 
 FEWEST = 50            # residuals that a test needs
@@ -34,20 +35,20 @@ class ResidualTests:
 
     white: float | None
     independent: float | None
-    noise: tuple = ()
+    noise: tuple[float, ...] = ()
 
     @property
-    def is_coloured(self):
+    def is_coloured(self) -> bool:
         """Whether the residuals are not white."""
         return self.white is not None and self.white < SIGNIFICANT
 
     @property
-    def depends_on_input(self):
+    def depends_on_input(self) -> bool:
         """Whether the residuals contain what the model left of the input's effect."""
         return self.independent is not None and self.independent < SIGNIFICANT
 
 
-def examine(signal, residual, noise=()):
+def examine(signal: Signal, residual: np.ndarray, noise: tuple[float, ...] = ()) -> ResidualTests:
     """
     Return the ResidualTests of residuals (N,) of a Signal; noise: see ResidualTests.
 
@@ -64,12 +65,12 @@ def examine(signal, residual, noise=()):
     return ResidualTests(white, _independence(u, residual, measured), tuple(noise))
 
 
-def _is_rounding(signal, residual):
+def _is_rounding(signal: Signal, residual: np.ndarray) -> bool:
     left, y = residual[signal.measured], signal.y[signal.measured]
-    return left @ left <= len(left) * (ROUNDING * np.ptp(y)) ** 2
+    return bool(left @ left <= len(left) * (ROUNDING * np.ptp(y)) ** 2)
 
 
-def noise_model(residual, measured):
+def noise_model(residual: np.ndarray, measured: np.ndarray) -> tuple[float, ...]:
     """
     Return the coefficients n1.. of the autoregression that residuals follow, () for white ones.
 
@@ -90,12 +91,12 @@ def noise_model(residual, measured):
     return chosen
 
 
-def can_tell_noise(signal):
+def can_tell_noise(signal: Signal) -> bool:
     """Return whether the input separates noise from dynamics left out: a step alone does not."""
-    return np.count_nonzero(np.diff(signal.u[:-1])) >= ENOUGH_CHANGES
+    return int(np.count_nonzero(np.diff(signal.u[:-1]))) >= ENOUGH_CHANGES
 
 
-def whitened(signal, noise):
+def whitened(signal: Signal, noise: tuple[float, ...]) -> Signal:
     """
     Return the Signal in which noise of a model is white: u and y through the same filter.
 
@@ -109,7 +110,8 @@ def whitened(signal, noise):
     return replace(signal, u=u, y=y, measured=measured)
 
 
-def _filtered(noise, values, measured):
+def _filtered(noise: tuple[float, ...], values: np.ndarray, measured: np.ndarray
+              ) -> tuple[np.ndarray, np.ndarray]:
     """Return values through the filter of a noise model, and where the result is known."""
     if not noise:
         return values, measured
@@ -120,7 +122,7 @@ def _filtered(noise, values, measured):
     return lfilter([1.0, *noise], [1.0], values), known
 
 
-def _autocovariances(residual, measured, lags):
+def _autocovariances(residual: np.ndarray, measured: np.ndarray, lags: int) -> np.ndarray:
     """Return the autocovariances at lags 0..lags, from the measured samples."""
     values = np.where(measured, residual, 0.0)
     count, pairs = np.count_nonzero(measured), _pairs(measured, lags)
@@ -130,7 +132,7 @@ def _autocovariances(residual, measured, lags):
                             for lag in range(lags + 1)]
 
 
-def _pairs(measured, lags):
+def _pairs(measured: np.ndarray, lags: int) -> np.ndarray:
     """Return how many pairs of samples at lags 0..lags were both measured."""
     if measured.all():
         return len(measured) - np.arange(lags + 1)
@@ -138,8 +140,8 @@ def _pairs(measured, lags):
                      for lag in range(lags + 1)])
 
 
-def _whiteness(residual, measured, fitted):
-    count = np.count_nonzero(measured)
+def _whiteness(residual: np.ndarray, measured: np.ndarray, fitted: int) -> float:
+    count = int(np.count_nonzero(measured))
     lags = min(LAGS, count // 5)
     covariances = _autocovariances(residual, measured, lags)
     pairs, spaces = _pairs(measured, lags)[1:], count - np.arange(1, lags + 1)
@@ -149,7 +151,7 @@ def _whiteness(residual, measured, fitted):
     return float(chi2.sf(statistic, max(1, lags - fitted)))
 
 
-def _independence(u, residual, measured):
+def _independence(u: np.ndarray, residual: np.ndarray, measured: np.ndarray) -> float:
     longest = len(u) // 4
     lags = np.unique(np.round(np.concatenate([[0], np.geomspace(1, longest, INPUT_LAGS - 1)])
                               ).astype(int))
@@ -168,7 +170,8 @@ def _independence(u, residual, measured):
 
 
 @compiled
-def _lagged(u, residual, measured, lags):
+def _lagged(u: np.ndarray, residual: np.ndarray, measured: np.ndarray, lags: np.ndarray
+            ) -> np.ndarray:
     """Return the triangular factor (n + 1, n + 1) of u at n lags, zero before it, and residual."""
     last = lags.size
     factor, columns = np.zeros((last + 1, last + 1)), np.empty((last + 1, CHUNK))

@@ -2,17 +2,20 @@
 # SPDX-License-Identifier: Apache-2.0
 """What an identification gives, and its form as data."""
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 import math
+from typing import Any
 
 import numpy as np
 
 from quad_ident_ros.identify import metrics
+from quad_ident_ros.identify.change import Change
 from quad_ident_ros.identify.order import Alternative
 from quad_ident_ros.identify.residuals import ResidualTests
-from quad_ident_ros.identify.signals import GAIN_UNITS, INPUT_OF, OUTPUT_UNITS, OUTPUTS
+from quad_ident_ros.identify.signals import GAIN_UNITS, INPUT_OF, OUTPUT_UNITS, OUTPUTS, Signal
 from quad_ident_ros.identify.transfer import response, SecondOrder
-from quad_ident_ros.identify.uncertainty import Uncertainty
+from quad_ident_ros.identify.uncertainty import Errors, Uncertainty
 from quad_ident_ros.identify.validity import Validity
 
 
@@ -30,26 +33,26 @@ class OutputFit:
 
     output: str
     model: SecondOrder | None
-    initial: tuple
+    initial: tuple[float, float]
     response: np.ndarray | None
     cost: float
-    errors: dict
+    errors: Errors
     uncertainty: Uncertainty
     evaluations: int
-    remarks: tuple = ()
-    findings: tuple = ()
+    remarks: tuple[str, ...] = ()
+    findings: tuple[str, ...] = ()
     disturbance: float = 0.0
     residuals: ResidualTests = ResidualTests(None, None)
     least_cost: float | None = None
-    orders: tuple = ()
+    orders: tuple[Alternative, ...] = ()
 
     @property
-    def standard_errors(self):
+    def standard_errors(self) -> Errors:
         """Return standard errors by name, None where there is none."""
         return self.uncertainty.errors
 
     @property
-    def rank(self):
+    def rank(self) -> float:
         """F for comparing methods: with coloured noise the best model may not have the least F."""
         return self.cost if self.least_cost is None else min(self.cost, self.least_cost)
 
@@ -59,16 +62,16 @@ class MethodFit:
     """All outputs fitted by one method."""
 
     method: str
-    outputs: dict
+    outputs: dict[str, OutputFit]
     seconds: float
 
     @property
-    def evaluations(self):
+    def evaluations(self) -> int:
         """Return the evaluations of F over all outputs."""
         return sum(fit.evaluations for fit in self.outputs.values())
 
     @property
-    def cost(self):
+    def cost(self) -> float:
         """Sum of F over the outputs; infinite where one has no model."""
         return sum(fit.cost for fit in self.outputs.values())
 
@@ -82,30 +85,30 @@ class Identification:
     validity maps output to whether the linear model holds (see validity.Validity).
     """
 
-    methods: dict
-    signals: dict
-    settings: dict
-    remarks: tuple = ()
-    provenance: dict = field(default_factory=dict)
-    changes: tuple = ()
-    validity: dict = field(default_factory=dict)
+    methods: dict[str, MethodFit]
+    signals: dict[str, Signal]
+    settings: dict[str, Any]
+    remarks: tuple[str, ...] = ()
+    provenance: dict[str, Any] = field(default_factory=dict)
+    changes: tuple[Change, ...] = ()
+    validity: dict[str, Validity] = field(default_factory=dict)
 
     @property
-    def best(self):
+    def best(self) -> str:
         """Name of the method with the smallest cost (see OutputFit.rank)."""
         return self._least(lambda method: sum(fit.rank for fit in method.outputs.values()))
 
-    def best_of(self, output):
+    def best_of(self, output: str) -> str:
         """Return the name of the method that is best for one output."""
         return self._least(lambda method: method.outputs[output].rank)
 
-    def _least(self, cost):
+    def _least(self, cost: Callable[[MethodFit], float]) -> str:
         # Methods that reach the same optimum differ by rounding: of those the last one has it.
         return min(reversed(self.methods),
                    key=lambda name: float(f'{cost(self.methods[name]):.8g}'))
 
 
-def parameter_table(fit):
+def parameter_table(fit: MethodFit) -> np.ndarray:
     """
     Return K, a, b (4, 3) in the order phi, theta, psi, z of a MethodFit.
 
@@ -122,7 +125,7 @@ def parameter_table(fit):
     return table
 
 
-def error_table(fit):
+def error_table(fit: MethodFit) -> np.ndarray:
     """Return the standard errors of parameter_table (4, 3); NaN where there is none."""
     table = np.full((4, 3), np.nan)
     for i, name in enumerate(OUTPUTS):
@@ -135,7 +138,7 @@ def error_table(fit):
     return table
 
 
-def as_data(identification):
+def as_data(identification: Identification) -> dict[str, Any]:
     """Return an Identification as JSON-able data: NaN and infinities become None."""
     return clean({
         'schema': 'quad_ident/identification/1',
@@ -150,12 +153,12 @@ def as_data(identification):
         **identification.provenance})
 
 
-def _method(fit):
+def _method(fit: MethodFit) -> dict[str, Any]:
     return {'seconds': fit.seconds, 'evaluations': fit.evaluations, 'cost': fit.cost,
             'outputs': {name: _output(output) for name, output in fit.outputs.items()}}
 
 
-def _output(fit):
+def _output(fit: OutputFit) -> dict[str, Any]:
     model = fit.model
     unit = OUTPUT_UNITS[fit.output]
     units = {'K': GAIN_UNITS[fit.output], 'a': '1/s', 'b': '1/s', 'c1': '1/s', 'c0': '1/s^2',
@@ -185,13 +188,13 @@ def _output(fit):
     return {**data, 'a': model.a, 'b': model.b}
 
 
-def _correlations(sure):
+def _correlations(sure: Uncertainty) -> dict[str, Any] | None:
     if sure.correlations is None:
         return None
     return {'names': list(sure.names), 'matrix': sure.correlations.tolist()}
 
 
-def clean(value):
+def clean(value: Any) -> Any:
     """Return a value as JSON-able data: NaN and infinities become None."""
     if isinstance(value, dict):
         return {str(key): clean(entry) for key, entry in value.items()}
@@ -206,7 +209,7 @@ def clean(value):
     return value
 
 
-def from_data(data, signals):
+def from_data(data: Mapping[str, Any], signals: dict[str, Signal]) -> Identification:
     """
     Return the Identification that as_data described.
 
@@ -226,7 +229,7 @@ def from_data(data, signals):
                           validity=held)
 
 
-def _output_from(output, data, signal):
+def _output_from(output: str, data: Mapping[str, Any], signal: Signal) -> OutputFit:
     model = fitted = None
     if data['form'] == 'complex':
         pair = complex(data['pair']['real'], data['pair']['imaginary'])

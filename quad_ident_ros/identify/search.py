@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What every search shares: counting evaluations, the budget, progress and cancelling."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -35,7 +36,7 @@ class SwarmSettings:
     levy: str = 'mantegna'
 
     @property
-    def step_size(self):
+    def step_size(self) -> float:
         """Alpha in coordinates of the box."""
         return self.alpha * (SIZE if self.alpha_units == 'range' else 1.0)
 
@@ -49,23 +50,31 @@ class Search:
     on_progress: called with the share done, from 0 to 1, and may raise Cancelled.
     """
 
-    def __init__(self, cost, dimension, settings, random, on_progress=lambda share: None):
+    def __init__(self, cost: Callable[[np.ndarray], np.ndarray], dimension: int,
+                 settings: SwarmSettings, random: np.random.Generator,
+                 on_progress: Callable[[float], None] = lambda share: None) -> None:
         self.settings = settings
         self.dimension = dimension
         self.random = random
         self.spent = 0
-        self.best = None
+        self._best: np.ndarray | None = None
         self.best_cost = np.inf
         self._cost = cost
         self._on_progress = on_progress
         self._generation = 0
 
-    def start(self):
+    @property
+    def best(self) -> np.ndarray:
+        """The best point (D,); there is one from the first evaluation on."""
+        assert self._best is not None
+        return self._best
+
+    def start(self) -> tuple[np.ndarray, np.ndarray]:
         """Return random first points (N, D) and their costs (N,)."""
         points = self.random.uniform(0.0, SIZE, (self.settings.population, self.dimension))
         return points, self.evaluate(points)
 
-    def going(self):
+    def going(self) -> bool:
         """Tell whether another generation may begin, and report the progress."""
         budget = self.settings.evaluations
         share = self.spent / budget if budget else self._generation / self.settings.generations
@@ -73,7 +82,7 @@ class Search:
         self._generation += 1
         return self.spent < budget if budget else self._generation <= self.settings.generations
 
-    def evaluate(self, points):
+    def evaluate(self, points: np.ndarray) -> np.ndarray:
         """Return the costs (n,) of points (n, D); infinite for those beyond the budget."""
         budget, allowed = self.settings.evaluations, len(points)
         if budget and self.spent + allowed > budget:
@@ -87,10 +96,10 @@ class Search:
             self.spent += allowed
             k = int(np.argmin(costs))
             # The first point is kept even where no cost is finite, so that there is always one.
-            if costs[k] < self.best_cost or self.best is None:
-                self.best, self.best_cost = points[k].copy(), float(costs[k])
+            if costs[k] < self.best_cost or self._best is None:
+                self._best, self.best_cost = points[k].copy(), float(costs[k])
         return costs
 
-    def keep_better(self, points, costs, new):
+    def keep_better(self, points: np.ndarray, costs: np.ndarray, new: np.ndarray) -> None:
         """Replace, in place, the points that their new positions improve."""
         keep_better(points, costs, new, self.evaluate(new))

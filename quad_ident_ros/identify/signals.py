@@ -2,12 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """From a flight record to the four input-output pairs that are identified."""
 
-from dataclasses import dataclass
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from quad_ident_ros.data.cutting import options, without
-from quad_ident_ros.data.record import EULER, MOMENTS, QUATERNION, SATURATED
+from quad_ident_ros.data.record import EULER, FlightRecord, MOMENTS, QUATERNION, SATURATED
 from quad_ident_ros.errors import InputError
 
 OUTPUTS = ('phi', 'theta', 'psi', 'z')
@@ -45,24 +46,24 @@ class Signal:
     period: float
     at_rest: bool
     level_known: bool = True
-    measured: np.ndarray | None = None
+    measured: np.ndarray = field(default_factory=lambda: np.empty(0, bool))
     start_ns: int | None = None
     trim: float = 0.0
     attitude: np.ndarray | None = None
     saturated: np.ndarray | None = None
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         """Take all samples as measured unless stated otherwise."""
-        if self.measured is None:
+        if not len(self.measured):
             object.__setattr__(self, 'measured', np.ones(len(self.y), bool))
 
     @property
-    def samples(self):
+    def samples(self) -> int:
         """How many samples of y were measured."""
         return int(np.count_nonzero(self.measured))
 
     @property
-    def unknowns(self):
+    def unknowns(self) -> int:
         """
         How many numbers beside the model the response depends on.
 
@@ -75,7 +76,9 @@ class Signal:
         return 2 if np.all(self.u[:-1] == self.u[0]) else 3
 
 
-def signals(record, *, trim=None, outputs=None, initial_state='auto'):
+def signals(record: FlightRecord, *, trim: Sequence[float] | None = None,
+            outputs: Collection[str] | None = None, initial_state: str = 'auto'
+            ) -> tuple[list[Signal], list[str]]:
     """
     Return the pairs of a record whose input is excited, and remarks on the data.
 
@@ -136,7 +139,7 @@ def signals(record, *, trim=None, outputs=None, initial_state='auto'):
     return found, remarks
 
 
-def _saturated(record, t):
+def _saturated(record: FlightRecord, t: np.ndarray) -> np.ndarray | None:
     """Return where the input held at times t (N,) of the grid is beyond the rotors, or None."""
     if not record.has(SATURATED):
         return None
@@ -144,7 +147,7 @@ def _saturated(record, t):
     return record.columns[SATURATED][last] > 0
 
 
-def vertical_share(phi, theta):
+def vertical_share(phi: np.ndarray, theta: np.ndarray) -> np.ndarray:
     """
     Return the share of the thrust that acts along the vertical while each input is held, (N,).
 
@@ -157,11 +160,11 @@ def vertical_share(phi, theta):
     return np.append((share[:-1] + share[1:]) / 2, share[-1])
 
 
-def _has_attitude(record):
+def _has_attitude(record: FlightRecord) -> bool:
     return record.has(*EULER) or record.has(*QUATERNION)
 
 
-def _vertical(thrust, attitude, trim):
+def _vertical(thrust: np.ndarray, attitude: np.ndarray, trim: float) -> np.ndarray:
     """Return the vertical part of U1 (N,), or U1 where the tilt takes next to nothing of it."""
     vertical = vertical_share(attitude[:, 0], attitude[:, 1]) * thrust
     most = np.abs(thrust[:-1] - trim).max()
@@ -171,7 +174,7 @@ def _vertical(thrust, attitude, trim):
     return vertical if np.abs(thrust - vertical)[:-1].max() > TILT_MATTERS * most else thrust
 
 
-def _check_size(t, inputs, measured):
+def _check_size(t: np.ndarray, inputs: np.ndarray, measured: np.ndarray) -> None:
     """Raise InputError for numbers whose squares and ratios no longer fit into a double."""
     largest = max(np.abs(inputs).max(), np.abs(measured).max())
     if largest > LARGEST:
@@ -186,7 +189,7 @@ def _check_size(t, inputs, measured):
                          'unit of t')
 
 
-def _columns(record):
+def _columns(record: FlightRecord) -> tuple[np.ndarray, np.ndarray, list[str]]:
     """
     Return inputs (N, 4), outputs (N, 4), and the names of the outputs that can be identified.
 
@@ -214,7 +217,8 @@ def _columns(record):
     return inputs, np.column_stack([angles, record.columns.get('pz', none)]), there
 
 
-def _even_grid(t, inputs, measured):
+def _even_grid(t: np.ndarray, inputs: np.ndarray, measured: np.ndarray
+               ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, list[str]]:
     """Return times, inputs and outputs on an even grid, where they were measured, and remarks."""
     steps = np.diff(t)
     period = float(np.median(steps))
@@ -255,7 +259,7 @@ def _even_grid(t, inputs, measured):
     return grid, _mean_inputs(t, inputs, grid), columns, there, [remark]
 
 
-def _mean_inputs(t, inputs, grid):
+def _mean_inputs(t: np.ndarray, inputs: np.ndarray, grid: np.ndarray) -> np.ndarray:
     """
     Return the means of held inputs over the steps of a grid, (M, k).
 

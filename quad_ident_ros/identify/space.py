@@ -23,7 +23,8 @@ AT_BOUNDS = 1e-6    # share of the space within which a model lies on its bounds
 
 
 @compiled
-def _read(points, low, high, complex_penalty, c1, c0, weights):
+def _read(points: np.ndarray, low: float, high: float, complex_penalty: float, c1: np.ndarray,
+          c0: np.ndarray, weights: np.ndarray) -> None:
     """Write c1 and c0 of points (n, 2) of the box, and by how much their cost counts."""
     scale = (high - low) / SIZE
     for i in range(points.shape[0]):
@@ -46,13 +47,13 @@ class Space:
     pair (p + q)/2 +- j (q - p)/2, which joins on at the diagonal of equal poles.
     """
 
-    poles: tuple
-    gain: tuple
+    poles: tuple[float, float]
+    gain: tuple[float, float]
     complex_penalty: float
     evaluations: int = 0
     near: SecondOrder | None = None
 
-    def mean_and_half(self, points):
+    def mean_and_half(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return mean and signed half-difference (n,) of the poles of points (n, 2)."""
         low, high = self.poles
         p, q = (low + (high - low) * points / SIZE).T
@@ -61,7 +62,7 @@ class Space:
             half = np.abs(half)
         return (p + q) / 2, half
 
-    def cost(self, objective, points):
+    def cost(self, objective: Objective, points: np.ndarray) -> np.ndarray:
         """Return F (n,) of points (n, 2), with complex pairs penalised."""
         c1, c0, weights = np.empty((3, len(points)))
         _read(points, *self.poles, self.complex_penalty, c1, c0, weights)
@@ -69,14 +70,14 @@ class Space:
         costs *= weights
         return costs
 
-    def holds(self, model):
+    def holds(self, model: SecondOrder) -> bool:
         """Tell whether gain and poles of a model lie within the bounds."""
         reach, mean = abs(model.a - model.b) / 2, model.c1 / 2
         return (self.gain[0] <= model.gain <= self.gain[1]
                 and self.poles[0] <= mean - reach and mean + reach <= self.poles[1])
 
 
-def at_bounds(space, model):
+def at_bounds(space: Space, model: SecondOrder) -> list[str]:
     """Return the names of the bounds, 'poles' and 'gain', on which a model found lies."""
     reach, mean = abs(model.a - model.b) / 2, model.c1 / 2
     values = {'poles': (mean - reach, mean + reach), 'gain': (model.gain,)}
@@ -88,7 +89,8 @@ def at_bounds(space, model):
     return found
 
 
-def check_bounds(pole_bounds, gain_bounds):
+def check_bounds(pole_bounds: tuple[float, float] | None, gain_bounds: tuple[float, float] | None
+                 ) -> None:
     """Raise InputError for bounds, (low, high) or None, that hold nothing."""
     for name, bounds in (('pole_bounds', pole_bounds), ('gain_bounds', gain_bounds)):
         if bounds is not None and not (np.isfinite(bounds).all() and bounds[0] < bounds[1]):
@@ -96,7 +98,10 @@ def check_bounds(pole_bounds, gain_bounds):
                              f'[{bounds[0]:g}, {bounds[1]:g}]')
 
 
-def find_space(objective, poles='auto', pole_bounds=None, gain_bounds=None, near=None):
+def find_space(objective: Objective, poles: str = 'auto',
+               pole_bounds: tuple[float, float] | None = None,
+               gain_bounds: tuple[float, float] | None = None, near: SecondOrder | None = None
+               ) -> Space:
     """
     Return the search space of an output, from the data where bounds are not given.
 
@@ -121,15 +126,15 @@ def find_space(objective, poles='auto', pole_bounds=None, gain_bounds=None, near
         size = 3 * max(abs(best.model.gain),
                        abs(Objective(objective.signal).fit(0.0, 0.0).model.gain))
         gain_bounds = (-size, size) if size > 0 else (-1.0, 1.0)
-    return Space(tuple(map(float, pole_bounds)), tuple(map(float, gain_bounds)), penalty, spent,
-                 near)
+    return Space((float(pole_bounds[0]), float(pole_bounds[1])),
+                 (float(gain_bounds[0]), float(gain_bounds[1])), penalty, spent, near)
 
 
-def literal_space(poles='auto'):
+def literal_space(poles: str = 'auto') -> Space:
     """Return the box [0, 200] taken at its word, for gain and poles."""
     return Space((0.0, SIZE), (0.0, SIZE), COMPLEX_PENALTY[poles])
 
 
-def no_space(poles='auto', near=None):
+def no_space(poles: str = 'auto', near: SecondOrder | None = None) -> Space:
     """Return the space of methods that search in none."""
     return Space((-np.inf, np.inf), (-np.inf, np.inf), COMPLEX_PENALTY[poles], near=near)

@@ -7,12 +7,14 @@ Coefficients c1 = a + b and c0 = a b stand for real poles and complex pairs alik
 """
 
 from functools import lru_cache
+from typing import TypeAlias
 
 import numpy as np
 
 from quad_ident_ros.compiled import compiled
 from quad_ident_ros.identify.descent import descend
 from quad_ident_ros.identify.objective import project_all, project_gain
+from quad_ident_ros.identify.signals import Signal
 
 # The grid, in pole x record length: real poles from growing ones to one per sample, and pairs by
 # frequency and by the ratio of decay to frequency.
@@ -29,8 +31,10 @@ STARTS_FREE, MINIMA_FREE = 10, 6   # and where the start is not known
 ROUGHLY = 1e-2     # squared distance to the optimum, in standard errors, of these descents
 THINNED = 1024     # samples of a long record that are enough for that
 
+Part: TypeAlias = tuple[float, np.ndarray, np.ndarray, np.ndarray]
 
-def parts(signal):
+
+def parts(signal: Signal) -> list[Part]:
     """
     Return period, input, output and what of it is measured of records not too long to start from.
 
@@ -52,7 +56,9 @@ def parts(signal):
 
 
 @compiled
-def best_start(period, u, y, measured, real_count, neighbours, c1, c0, unknowns):
+def best_start(period: float, u: np.ndarray, y: np.ndarray, measured: np.ndarray, real_count: int,
+               neighbours: np.ndarray, c1: np.ndarray, c0: np.ndarray, unknowns: int
+               ) -> tuple[float, float, int]:
     """Return c1, c0 of the best of what the best candidates lead to, and the evaluations."""
     scale = 1.0 / (u.size * period)
     c1, c0 = c1 * scale, c0 * scale * scale
@@ -81,7 +87,7 @@ def best_start(period, u, y, measured, real_count, neighbours, c1, c0, unknowns)
             if here[2] < best[2]:
                 best = here[0], here[1], here[2]
     if not real:
-        lowest = count + np.argmin(costs[count:])
+        lowest = count + int(np.argmin(costs[count:]))
         # The shortest times see what turns fast, however little of it there is.
         for i, tuned in ((lowest, False), (lowest, True), (c1.size - 1, True)):
             at1, at0 = c1[i], c0[i]
@@ -98,7 +104,8 @@ def best_start(period, u, y, measured, real_count, neighbours, c1, c0, unknowns)
 
 
 @compiled
-def _tuned(c1, c0, period, u, y, measured, unknowns):
+def _tuned(c1: float, c0: float, period: float, u: np.ndarray, y: np.ndarray, measured: np.ndarray,
+           unknowns: int) -> tuple[float, float]:
     """Return c1, c0 of the best pair that turns a little slower or faster than one."""
     turn = np.sqrt(c0 - 0.25 * c1 * c1)
     step = COMB_STEP / (u.size * period)
@@ -115,7 +122,8 @@ def _tuned(c1, c0, period, u, y, measured, unknowns):
 
 
 @compiled
-def _by_averages(period, u, y, unknowns):
+def _by_averages(period: float, u: np.ndarray, y: np.ndarray, unknowns: int
+                 ) -> tuple[np.ndarray, np.ndarray]:
     """
     Return c1, c0 (SCALES,) by least squares of the model, averaged over shorter and shorter times.
 
@@ -157,7 +165,7 @@ def _by_averages(period, u, y, unknowns):
 
 
 @compiled
-def _first_two(table, columns):
+def _first_two(table: np.ndarray, columns: int) -> tuple[float, float]:
     """Return minus the first two numbers that solve normal equations (upper part, side last)."""
     size, solved = np.ones(columns), np.zeros(columns)
     lower = np.eye(columns)
@@ -185,7 +193,7 @@ def _first_two(table, columns):
 
 
 @compiled
-def _held(c1, c0, period):
+def _held(c1: float, c0: float, period: float) -> tuple[float, float]:
     """Return c1, c0 whose integrals by the trapezoidal rule give those of the arguments."""
     root = np.sqrt(complex(0.25 * c1 * c1 - c0))
     first, second = (-0.5 * c1 + root) * 0.5 * period, (-0.5 * c1 - root) * 0.5 * period
@@ -197,7 +205,8 @@ def _held(c1, c0, period):
 
 
 @compiled
-def _lowest(costs, neighbours, first, last, minimum):
+def _lowest(costs: np.ndarray, neighbours: np.ndarray, first: int, last: int, minimum: bool
+            ) -> int:
     """Return the candidate of least cost, if wanted that no neighbour undercuts, or -1."""
     lowest = -1
     for i in range(first, last):
@@ -211,7 +220,7 @@ def _lowest(costs, neighbours, first, last, minimum):
     return lowest
 
 
-def real_poles(samples, free):
+def real_poles(samples: int, free: bool) -> np.ndarray:
     """Return the poles x T (n,) of the grid for a record of length T; free: where starts are."""
     ratio = REAL_RATIO_FREE if free else REAL_RATIO
     steps = int(np.log(samples) / np.log(ratio)) + 1
@@ -219,7 +228,7 @@ def real_poles(samples, free):
 
 
 @lru_cache
-def grid(samples, pairs, free):
+def grid(samples: int, pairs: bool, free: bool) -> tuple[int, np.ndarray, np.ndarray, np.ndarray]:
     """
     Return the candidates for a record of a length T.
 
@@ -243,7 +252,7 @@ def grid(samples, pairs, free):
             np.concatenate([a * b, ((1 + decay ** 2) * turn ** 2).ravel()]))
 
 
-def _neighbours(index):
+def _neighbours(index: np.ndarray) -> np.ndarray:
     """Return the eight neighbours (rows, columns, 8) of a grid's entries; themselves at edges."""
     padded = np.pad(index, 1, mode='edge')
     rows, columns = index.shape

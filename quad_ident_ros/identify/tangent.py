@@ -23,7 +23,7 @@ CHUNK = 256   # samples that are folded in at a time
 
 
 @compiled
-def zoh_slopes(c1, c0, period):
+def zoh_slopes(c1: float, c0: float, period: float) -> tuple[float, ...]:
     """
     Return what transfer.zoh returns and, in the same order, its derivatives with respect to c0.
 
@@ -69,7 +69,7 @@ def zoh_slopes(c1, c0, period):
 
 
 @compiled(fused=True, reordered=True)
-def _dot(a, b, count):
+def _dot(a: np.ndarray, b: np.ndarray, count: int) -> float:
     total = 0.0
     for k in range(count):
         total += a[k] * b[k]
@@ -77,13 +77,13 @@ def _dot(a, b, count):
 
 
 @compiled(fused=True)
-def _take_away(a, share, b, count):
+def _take_away(a: np.ndarray, share: float, b: np.ndarray, count: int) -> None:
     for k in range(count):
         a[k] -= share * b[k]
 
 
 @compiled
-def fold(factor, columns, width, rows):
+def fold(factor: np.ndarray, columns: np.ndarray, width: int, rows: int) -> None:
     """Fold rows of columns (width, rows) into the triangular factor, by Householder's mirrors."""
     for j in range(width):
         power = _dot(columns[j], columns[j], rows)
@@ -104,7 +104,8 @@ def fold(factor, columns, width, rows):
 
 
 @compiled
-def factorise(c1, c0, linear, period, u, y, measured, unknowns, factor):
+def factorise(c1: float, c0: float, linear: np.ndarray, period: float, u: np.ndarray,
+              y: np.ndarray, measured: np.ndarray, unknowns: int, factor: np.ndarray) -> int:
     """
     Write the factor R (WIDTH, WIDTH) of the fit linearised at a model; return its width.
 

@@ -9,10 +9,12 @@ special case. docs/paper.md derives the formulas and lists what eqs. (36), (37) 
 """
 
 import cmath
+from collections.abc import Sequence
 from dataclasses import dataclass
 import math
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from quad_ident_ros.compiled import compiled
 
@@ -34,12 +36,12 @@ class SecondOrder:
     b: float | complex
 
     @classmethod
-    def from_poles(cls, gain, a, b):
+    def from_poles(cls, gain: float, a: float, b: float) -> 'SecondOrder':
         """Return the model of real a, b in any order (a >= b is kept)."""
         return cls(float(gain), float(max(a, b)), float(min(a, b)))
 
     @classmethod
-    def from_half_difference(cls, gain, mean, half):
+    def from_half_difference(cls, gain: float, mean: float, half: float) -> 'SecondOrder':
         """
         Return the model of a, b = mean +- half; a negative half means mean +- j|half|.
 
@@ -51,24 +53,24 @@ class SecondOrder:
         return cls(float(gain), float(mean + half), float(mean - half))
 
     @property
-    def c1(self):
+    def c1(self) -> float:
         """Sum of a and b, 1/s."""
         return (self.a + self.b).real
 
     @property
-    def c0(self):
+    def c0(self) -> float:
         """Product of a and b, 1/s^2."""
         return (self.a * self.b).real
 
     @property
-    def form(self):
+    def form(self) -> str:
         """'real', 'equal' or 'complex': what kind of poles the model has."""
         if isinstance(self.a, complex):
             return 'complex'
         return 'equal' if self.a == self.b else 'real'
 
     @property
-    def stability(self):
+    def stability(self) -> str:
         """'stable', 'integrating' (a pole at zero) or 'unstable'."""
         slowest = self.b.real
         if slowest > 0:
@@ -77,7 +79,7 @@ class SecondOrder:
 
 
 @compiled
-def zoh(c1, c0, period):
+def zoh(c1: float, c0: float, period: float) -> tuple[float, float, float, float, float, float]:
     """
     Return the exact discrete form of y'' + c1 y' + c0 y = u under a held input.
 
@@ -119,7 +121,8 @@ def zoh(c1, c0, period):
 
 
 @compiled
-def _respond(c1, c0, period, u, y0, v0, out):
+def _respond(c1: float, c0: float, period: float, u: np.ndarray, y0: float, v0: float,
+             out: np.ndarray) -> None:
     p11, p12, p21, p22, g1, g2 = zoh(c1, c0, period)
     y, v = y0, v0
     for k in range(u.size):
@@ -127,7 +130,8 @@ def _respond(c1, c0, period, u, y0, v0, out):
         y, v = p11 * y + p12 * v + g1 * u[k], p21 * y + p22 * v + g2 * u[k]
 
 
-def response(model, u, period, initial=(0.0, 0.0), disturbance=0.0):
+def response(model: SecondOrder, u: ArrayLike, period: float,
+             initial: Sequence[float] = (0.0, 0.0), disturbance: float = 0.0) -> np.ndarray:
     """
     Return the exact response of the model to an input held between samples, (N,).
 
@@ -160,7 +164,8 @@ class Discrete:
     period: float
 
     @classmethod
-    def from_coefficients(cls, a0, a1, b0, b1, period):
+    def from_coefficients(cls, a0: float, a1: float, b0: float, b1: float, period: float
+                          ) -> 'Discrete':
         """
         Return the discrete model of given coefficients.
 
@@ -172,13 +177,14 @@ class Discrete:
         return cls(a0, a1, 2.0 + a1, difference, b0, b1, period)
 
     @classmethod
-    def from_steps(cls, root_sum, root_product, b0, b1, period):
+    def from_steps(cls, root_sum: float, root_product: float, b0: float, b1: float, period: float
+                   ) -> 'Discrete':
         """Return the discrete model whose roots z have these sum and product of 1 - z."""
         return cls(1.0 - root_sum + root_product, root_sum - 2.0, root_sum,
                    root_sum ** 2 - 4.0 * root_product, b0, b1, period)
 
 
-def to_discrete(model, period):
+def to_discrete(model: SecondOrder, period: float) -> Discrete:
     """
     Return the zero-order-hold equivalent of a model: eq. (36) put right.
 
@@ -194,16 +200,16 @@ def to_discrete(model, period):
         difference = -(2.0 * decay * math.sin(turn)) ** 2
         a1 = -2.0 * decay * math.cos(turn)
     else:
-        root_sum = -math.expm1(-model.a * period) - math.expm1(-model.b * period)
-        difference = (math.exp(-model.b * period)
-                      * math.expm1((model.b - model.a) * period)) ** 2
-        a1 = -math.exp(-model.a * period) - math.exp(-model.b * period)
+        a, b = model.a.real, model.b.real
+        root_sum = -math.expm1(-a * period) - math.expm1(-b * period)
+        difference = (math.exp(-b * period) * math.expm1((b - a) * period)) ** 2
+        a1 = -math.exp(-a * period) - math.exp(-b * period)
     _, p12, _, p22, g1, g2 = zoh(model.c1, model.c0, period)
     return Discrete(math.exp(-model.c1 * period), a1, root_sum, difference,
                     model.gain * (p12 * g2 - p22 * g1), model.gain * g1, period)
 
 
-def to_continuous(discrete):
+def to_continuous(discrete: Discrete) -> SecondOrder | None:
     """
     Return the model K/((s+a)(s+b)) with a given zero-order-hold equivalent, or None.
 
@@ -227,22 +233,23 @@ def to_continuous(discrete):
     return SecondOrder(gain, a, b)
 
 
-def _log_root(root, step):
+def _log_root(root: float, step: float) -> float:
     """Return the logarithm of a root z, known as z and as 1 - z, from the sharper of the two."""
     return math.log1p(-step) if step < 0.5 else math.log(root)
 
 
-def _hold(c, period):
+def _hold(c: float | complex, period: float) -> float | complex:
     """Return E(c) = (1 - exp(-c T))/c, the held input's gain through 1/(s+c); any c."""
     x = c * period
     if abs(x) < 1e-4:
         return period * (1 - x / 2 * (1 - x / 3 * (1 - x / 4 * (1 - x / 5))))
-    if isinstance(c, complex):
+    if isinstance(x, complex):
         return (1 - cmath.exp(-x)) / c
     return -math.expm1(-x) / c
 
 
-def printed_coefficients(gain, a, b, period):
+def printed_coefficients(gain: float, a: float, b: float, period: float
+                         ) -> tuple[float, float, float, float]:
     """Return a0, a1, b0, b1 as eq. (36) prints them: wrong, kept for comparison."""
     pa, pb = math.exp(-a * period), math.exp(-b * period)
     dc = gain / (a * b)
@@ -251,7 +258,8 @@ def printed_coefficients(gain, a, b, period):
             dc * (-pb - pa - b / (a - b) * pb - a / (a - b) * pa))
 
 
-def printed_parameters(a0, a1, b0, b1, period):
+def printed_parameters(a0: float, a1: float, b0: float, b1: float, period: float
+                       ) -> tuple[complex, complex, complex]:
     """Return K, a, b as eq. (37) prints them, complex in general: wrong, kept for comparison."""
     a = -cmath.log((-a0 + cmath.sqrt(a0 * a0 - a1)) / 2) / period
     b = -cmath.log(a1) / period - a

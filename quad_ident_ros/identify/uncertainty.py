@@ -2,13 +2,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """How certain a fitted model is: standard errors, correlations, and what the data leave open."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 
 from quad_ident_ros.identify.descent import solve_linear
+from quad_ident_ros.identify.objective import Fitted
 from quad_ident_ros.identify.residuals import whitened
+from quad_ident_ros.identify.signals import Signal
 from quad_ident_ros.identify.tangent import factorise, WIDTH
+from quad_ident_ros.identify.transfer import SecondOrder
 
 # Beyond this condition of the scaled factor its inverse is rounding, not knowledge.
 WORST_CONDITION = 1e8
@@ -16,6 +21,8 @@ WORST_CONDITION = 1e8
 # a pole is at least 1 / the record's length: a slower one is an integrator to this record.
 TOO_UNSURE = 0.5
 KEYS = ('K', 'a', 'b', 'c1', 'c0')
+
+Errors: TypeAlias = Mapping[str, float | None]     # by name, None where there is none
 
 
 @dataclass(frozen=True)
@@ -29,13 +36,13 @@ class Uncertainty:
     record does not determine.
     """
 
-    errors: dict
-    names: tuple = ()
+    errors: Errors
+    names: tuple[str, ...] = ()
     correlations: np.ndarray | None = None
-    unidentifiable: tuple = ()
+    unidentifiable: tuple[str, ...] = ()
 
 
-def uncertainty(signal, fitted):
+def uncertainty(signal: Signal, fitted: Fitted) -> Uncertainty:
     """
     Return the Uncertainty of a fit.
 
@@ -68,7 +75,7 @@ def uncertainty(signal, fitted):
                        names, full / np.outer(spread, spread) if spread.all() else None, unsure)
 
 
-def level_spread(signal, model):
+def level_spread(signal: Signal, model: SecondOrder) -> float:
     """
     Return by how much K is off where the output's level is off by the output's range.
 
@@ -80,12 +87,12 @@ def level_spread(signal, model):
     return abs(model.c0 * np.ptp(signal.y[signal.measured]) / signal.u[0])
 
 
-def _factor(signal, fitted):
-    """Return the factor of the fit linearised at a model and the variance, or None, None."""
+def _factor(signal: Signal, fitted: Fitted) -> tuple[np.ndarray, float] | None:
+    """Return the factor of the fit linearised at a model and the variance, or None."""
     model, last = fitted.model, signal.unknowns + 3
     freedom = signal.samples - last
     if freedom < 1:
-        return None, None
+        return None
     factor = np.zeros((WIDTH, WIDTH))
     linear = np.array([model.gain, *fitted.initial, fitted.disturbance])
     point = (signal.period, signal.u, signal.y, signal.measured, signal.unknowns, factor)
@@ -97,17 +104,18 @@ def _factor(signal, fitted):
         linear[0] = model.gain
     factorise(model.c1, model.c0, linear, *point)
     if not np.isfinite(factor).all():
-        return None, None
+        return None
     rest = factor[last - 2:last + 1, last]
-    return factor, rest @ rest / freedom
+    return factor, float(rest @ rest / freedom)
 
 
-def _covariance(signal, fitted):
+def _covariance(signal: Signal, fitted: Fitted) -> np.ndarray | None:
     """Return the covariance (3, 3) of K, c1 and c0, or None where the data do not determine it."""
     model, first = fitted.model, signal.unknowns
-    factor, variance = _factor(signal, fitted)
-    if factor is None:
+    found = _factor(signal, fitted)
+    if found is None:
         return None
+    factor, variance = found
     # The unknowns come first: the rows below them are what K, c1 and c0 explain as well.
     columns = slice(first, first + 3)
     root, rest = factor[columns, columns], factor[columns, first + 3]
@@ -128,7 +136,7 @@ def _covariance(signal, fitted):
     return covariance if np.isfinite(covariance).all() else None
 
 
-def _pole_gradient(model):
+def _pole_gradient(model: SecondOrder) -> tuple[tuple[str, ...], np.ndarray]:
     """Return the names of three numbers, and their derivatives (3, 3) by K, c1 and c0."""
     root = (model.a - model.b) / 2    # c1^2 / 4 - c0 would round to nothing, or below
     if model.form == 'equal' or abs(root) <= 1e-9 * abs(model.c1):

@@ -9,6 +9,7 @@ import numpy as np
 from quad_ident_ros.gravity import GRAVITY
 from quad_ident_ros.identify.blocks import blocks_of
 from quad_ident_ros.identify.change import LARGEST_SHARE
+from quad_ident_ros.identify.signals import Signal
 
 
 @dataclass(frozen=True)
@@ -26,7 +27,7 @@ class Validity:
     why: str
 
 
-def validity(signal):
+def validity(signal: Signal) -> Validity:
     """Return the Validity of a Signal: of z the largest block counts, of angles the rms."""
     blocks = blocks_of(signal if signal.start_ns is not None else replace(signal, start_ns=0), 0)
     if not len(blocks):

@@ -9,11 +9,12 @@ starts, from which descent.descend goes down; of a long record, on a thinned one
 """
 
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from quad_ident_ros.identify.descent import descend
-from quad_ident_ros.identify.objective import Objective
+from quad_ident_ros.identify.objective import Fitted, Objective
 from quad_ident_ros.identify.order import independent_count
 from quad_ident_ros.identify.residuals import (
     can_tell_noise,
@@ -21,8 +22,12 @@ from quad_ident_ros.identify.residuals import (
     noise_model,
     whitened,
 )
+from quad_ident_ros.identify.signals import Signal
 from quad_ident_ros.identify.starts import best_start, grid, parts, real_poles
 from quad_ident_ros.identify.transfer import response, SecondOrder
+
+if TYPE_CHECKING:
+    from quad_ident_ros.identify.space import Space
 
 # How much larger the squared error of a complex pair counts, by the parameter `poles`. The paper's
 # model has real a and b, and a pair's are no numbers to publish: with `auto` it is taken only
@@ -36,7 +41,7 @@ COLOURED = 'the noise is coloured: it was modelled, and the fit is the most like
 FULLY = 1e-8       # squared distance to the optimum, in standard errors, of the last descent
 
 
-def vp(signal, poles='auto', near=None):
+def vp(signal: Signal, poles: str = 'auto', near: SecondOrder | None = None) -> Fitted:
     """
     Return the Fitted of least cost.
 
@@ -48,7 +53,8 @@ def vp(signal, poles='auto', near=None):
     return best_poles(signal, COMPLEX_PENALTY[poles], near)[0]
 
 
-def best_poles(signal, penalty, near=None):
+def best_poles(signal: Signal, penalty: float, near: SecondOrder | None = None
+               ) -> tuple[Fitted, int]:
     """Return the Fitted of `vp` for a penalty on pairs, and the evaluations of F that it took."""
     pairs = bool(np.isfinite(penalty))
     if near is not None:
@@ -70,13 +76,13 @@ def best_poles(signal, penalty, near=None):
     return best, spent
 
 
-def _gains(signal, pair, real):
+def _gains(signal: Signal, pair: Fitted, real: Fitted) -> bool:
     """Return whether a pair explains more than real poles by more than noise that is left."""
     left = residual_of(signal, pair)[signal.measured]
     return real.cost > pair.cost * np.exp(BY_NOISE / independent_count(left))
 
 
-def vp_fit(objective, space):
+def vp_fit(objective: Objective, space: 'Space') -> tuple[Fitted | None, int, list[str]]:
     """
     Return the Fitted of `vp`, or None, the evaluations of F, and remarks: see methods.Method.
 
@@ -88,7 +94,8 @@ def vp_fit(objective, space):
     fitted, spent = best_poles(signal, space.complex_penalty, space.near)
     if not np.isfinite(fitted.cost):
         return None, spent, []
-    least, noise = fitted.cost, ()
+    least = fitted.cost
+    noise: tuple[float, ...] = ()
     for _ in range(NOISE_ROUNDS if can_tell_noise(signal) else 0):
         residual = residual_of(signal, fitted)
         tests = examine(signal, residual)
@@ -106,13 +113,13 @@ def vp_fit(objective, space):
     return replace(fitted, noise=noise, least_cost=least), spent, [COLOURED]
 
 
-def residual_of(signal, fitted):
+def residual_of(signal: Signal, fitted: Fitted) -> np.ndarray:
     """Return what a fit leaves of the output of a signal, (N,)."""
     return signal.y - response(fitted.model, signal.u, signal.period, fitted.initial,
                                fitted.disturbance)
 
 
-def _refined(objective, fitted, signal):
+def _refined(objective: Objective, fitted: Fitted, signal: Signal) -> tuple[Fitted | None, int]:
     """Return the Fitted near another that a filtered signal asks for, or None; evaluations."""
     found, spent = _down_from(fitted.model, signal)
     if found is None:
@@ -123,7 +130,7 @@ def _refined(objective, fitted, signal):
     return (found if np.isfinite(found.cost) else None), spent
 
 
-def _down_from(model, signal):
+def _down_from(model: SecondOrder, signal: Signal) -> tuple[Fitted | None, int]:
     """Return the best Fitted near a model, with poles of its kind, or None; evaluations."""
     linear = np.zeros(4)
     c1, c0, cost, spent = descend(model.c1, model.c0, model.form != 'complex', signal.period,
@@ -135,7 +142,7 @@ def _down_from(model, signal):
     return Objective(signal).fitted(found, linear), spent
 
 
-def _best(signal, pairs):
+def _best(signal: Signal, pairs: bool) -> tuple[Fitted, int]:
     """Return the best Fitted with real poles, or pairs too, and the evaluations spent."""
     unknowns, whole = signal.unknowns, (signal.period, signal.u, signal.y, signal.measured)
     starts = [best_start(*part, *grid(len(part[1]), pairs, unknowns > 0), unknowns)
@@ -154,7 +161,7 @@ def _best(signal, pairs):
     return found, spent + more
 
 
-def _with_other_partners(found, signal, spent):
+def _with_other_partners(found: Fitted, signal: Signal, spent: int) -> tuple[Fitted, int]:
     """
     Return the best Fitted that has a pole near one of another's, and the evaluations, added up.
 
@@ -182,7 +189,7 @@ def _with_other_partners(found, signal, spent):
     return found, spent
 
 
-def mean_and_half(c1, c0):
+def mean_and_half(c1: float, c0: float) -> tuple[float, float]:
     """Return the mean and the signed half-difference of the poles with sum c1 and product c0."""
     root = c1 * c1 / 4 - c0
     # At the edge of real poles rounding leaves a root of a size that means none.

@@ -4,13 +4,15 @@
 
 import json
 import math
+from pathlib import Path
 import sys
+from typing import Any
 
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.whole_file import write_whole
 
 
-def write_json(path, data):
+def write_json(path: str | Path, data: object) -> None:
     """
     Write data to a JSON file, or to standard output for '-'; raises InputError.
 
@@ -26,7 +28,7 @@ def write_json(path, data):
         raise InputError(f'{path}: cannot be written: {error.strerror}') from None
 
 
-def finite(data):
+def finite(data: Any) -> Any:
     """Return data with None in place of numbers that are not finite."""
     if isinstance(data, dict):
         return {key: finite(value) for key, value in data.items()}

@@ -3,18 +3,25 @@
 """The table of a fit that a person reads."""
 
 import math
+from typing import TYPE_CHECKING
 
 from rich import box
+from rich.console import JustifyMethod
 from rich.table import Table
 
+if TYPE_CHECKING:
+    from quad_ident_ros.greybox.fit import Fit, Parameter
+
 FEWEST, MOST = 1e-3, 1e5    # values that are shown without an exponent
+COLUMNS: tuple[tuple[str, JustifyMethod], ...] = (
+    ('parameter', 'left'), ('value', 'right'), ('unit', 'left'), ('vehicle file', 'right'),
+    ('', 'left'))
 
 
-def fit_table(fit):
+def fit_table(fit: 'Fit') -> Table:
     """Return a rich Table of a fit: name, value with standard error, unit, nominal value."""
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1), header_style='bold')
-    for name, side in (('parameter', 'left'), ('value', 'right'), ('unit', 'left'),
-                       ('vehicle file', 'right'), ('', 'left')):
+    for name, side in COLUMNS:
         table.add_column(name, justify=side, no_wrap=True)
     for parameter in fit.parameters:
         value = '-' if parameter.value is None else shown(parameter.value, parameter.std)
@@ -23,7 +30,7 @@ def fit_table(fit):
     return table
 
 
-def _remark(parameter):
+def _remark(parameter: 'Parameter') -> str:
     if parameter.status == 'bound':
         return 'at its bound'
     if parameter.status == 'determined':
@@ -32,7 +39,7 @@ def _remark(parameter):
     return f'undetermined; this if {given}' if given else 'undetermined'
 
 
-def shown(value, error):
+def shown(value: float, error: float | None) -> str:
     """Return a value with its standard error, to two digits of the error."""
     if not error:
         return f'{value:.5g}'

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Small pictures of a fleet, drawn as SVG: a parameter along its flights, a gap that shrinks."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from html import escape
 
 import numpy as np
@@ -93,7 +93,7 @@ def _limits(one: History) -> tuple[float, float]:
     return low - margin, high + margin
 
 
-def _course(one: History, x: np.ndarray, y) -> str:
+def _course(one: History, x: np.ndarray, y: Callable[[float], float]) -> str:
     """Return the path of the course, which is broken at each change."""
     first = {change.place for change in one.changes}
     return ''.join(f'{"M" if k == 0 or k in first else "L"}{x[k]:.1f} {y(value):.1f}'
@@ -111,7 +111,7 @@ def _place(values: np.ndarray, span: tuple[float, float], first: float, last: fl
     return first + (values - span[0]) / max(span[1] - span[0], 1e-9) * (last - first)
 
 
-def _scale(low: float, high: float):
+def _scale(low: float, high: float) -> Callable[[float], float]:
     return lambda value: TOP + (high - value) / (high - low) * (HIGH - FOOT - TOP)
 
 

@@ -5,10 +5,17 @@
 from contextlib import suppress
 from importlib.util import find_spec
 import json
+from pathlib import Path
 import sys
 from time import monotonic
+from types import TracebackType
+from typing import Any
+
+from rich.progress import TaskID
 
 from quad_ident_ros.data.counted import counted
+from quad_ident_ros.fleet.insight import Insight
+from quad_ident_ros.fleet.run import Progress, Summary
 from quad_ident_ros.report.data import finite
 from quad_ident_ros.report.screen import progress_bar
 from quad_ident_ros.whole_file import Lines
@@ -27,14 +34,15 @@ class Reporter:
     takes the place of an older one when the run ends or is interrupted, not where it fails.
     """
 
-    def __init__(self, client, out, json):
+    def __init__(self, client: Any, out: str | Path, json: str | Path | None) -> None:
         self._client, self._out, self._path = client, out, json
         self._bar = progress_bar()
-        self._lines = None
-        self._stage = self._task = None
+        self._lines: Lines | None = None
+        self._stage: str | None = None
+        self._task: TaskID | None = None
         self._begun = self._said = 0.0
 
-    def __enter__(self):
+    def __enter__(self) -> 'Reporter':
         """Name the data set, the workers and the dashboard."""
         if self._path and self._path != '-':
             self._lines = Lines(self._path)
@@ -43,7 +51,8 @@ class Reporter:
         self._bar.start()
         return self
 
-    def __exit__(self, kind, error, trace):
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None,
+                 trace: TracebackType | None) -> None:
         """Take the line away and end the file."""
         self._bar.stop()
         if self._lines is not None:
@@ -52,7 +61,7 @@ class Reporter:
             else:
                 self._lines.drop()
 
-    def tell(self, progress):
+    def tell(self, progress: Progress) -> None:
         """Say how far the run is."""
         if progress.stage != self._stage:
             self._stage, self._begun = progress.stage, monotonic()
@@ -73,11 +82,12 @@ class Reporter:
         text = line(progress, monotonic() - self._begun)
         if not self._client.ncores():
             text += '; waiting for a worker to join'
+        assert self._task is not None
         self._bar.update(self._task, description=text, completed=progress.done)
         if self._bar.disable:
             self._note(text)
 
-    def end(self, summary):
+    def end(self, summary: Summary) -> None:
         """Say what the run has come to."""
         self._bar.stop()
         groups = summary.groups
@@ -88,14 +98,14 @@ class Reporter:
         if self._path != '-':
             sys.stdout.write(summary_text(summary, self._out))
 
-    def tell_insight(self, found):
+    def tell_insight(self, found: Insight) -> None:
         """Write an Insight as a line of JSON."""
         self._write(found.as_data())
 
-    def _left(self, progress):
+    def _left(self, progress: Progress) -> float | None:
         return seconds_left(progress, monotonic() - self._begun)
 
-    def _write(self, data):
+    def _write(self, data: object) -> None:
         if self._path:
             text = json.dumps(finite(data), allow_nan=False)
             if self._lines is None:
@@ -103,11 +113,11 @@ class Reporter:
             else:
                 self._lines.write(text)
 
-    def _note(self, text):
+    def _note(self, text: str) -> None:
         print(text, file=sys.stderr)
 
 
-def line(progress, seconds):
+def line(progress: Progress, seconds: float) -> str:
     """Return how far a Progress is after so many seconds of its stage, in one line."""
     what = UNITS.get(progress.stage, 'groups')
     new = progress.done - progress.here
@@ -122,13 +132,13 @@ def line(progress, seconds):
     return ', '.join(parts)
 
 
-def seconds_left(progress, seconds):
+def seconds_left(progress: Progress, seconds: float) -> float | None:
     """Return the time (s) that a stage still takes at its rate until now, None where unknown."""
     new = progress.done - progress.here
     return seconds * (progress.total - progress.done) / new if new else None
 
 
-def summary_text(summary, out):
+def summary_text(summary: Summary, out: str | Path) -> str:
     """Return what a run has come to, as lines."""
     groups = summary.groups
     lines = [f'{counted(summary.flights, "flight")} in {counted(sum(groups.values()), "group")}: '
@@ -153,7 +163,7 @@ def summary_text(summary, out):
     return '\n'.join(lines) + '\n'
 
 
-def workers(client):
+def workers(client: Any) -> str:
     """Return how many workers a client has, and what memory each may have, in words."""
     found = client.scheduler_info(n_workers=-1)['workers'].values()
     if not found:
@@ -163,7 +173,7 @@ def workers(client):
     return f'{counted(len(found), "worker")}{bound}'
 
 
-def dashboard(client):
+def dashboard(client: Any) -> str:
     """Return where the dashboard of Dask is, or how to have it, in words."""
     link = drawn = None
     with suppress(Exception):       # a scheduler may have none
@@ -174,7 +184,7 @@ def dashboard(client):
     return "Dask's dashboard needs bokeh where the scheduler runs: pip install bokeh"
 
 
-def _span(seconds):
+def _span(seconds: float) -> str:
     hours, rest = divmod(round(seconds), 3600)
     return f'{hours} h {rest // 60} min' if hours else (
         f'{rest // 60} min {rest % 60} s' if rest >= 60 else f'{rest} s')

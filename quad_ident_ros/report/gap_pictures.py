@@ -3,6 +3,7 @@
 """Pictures of a diagnosis."""
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 import numpy as np
@@ -12,6 +13,9 @@ from quad_ident_ros.diagnose.result import Gap
 from quad_ident_ros.greybox.errors import GROUPS
 from quad_ident_ros.model.vehicle import Vehicle
 from quad_ident_ros.report.picture import pyplot, save
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 BEFORE, AFTER, NOISE = '#d55e00', '#0072b2', '#555555'
 THIRDS = ('low', 'mid', 'high')
@@ -104,7 +108,7 @@ def _by_third(flights: tuple[ResidualWrench, ...], names: list[str],
     return np.stack(columns, axis=1)
 
 
-def _plain(axis):
+def _plain(axis: 'Axes') -> None:
     axis.grid(color='0.92')
     axis.set_axisbelow(True)
     axis.spines[['top', 'right']].set_visible(False)

@@ -2,9 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Pages for a browser, in one file: tables and embedded pictures."""
 
+from collections.abc import Iterable, Sequence
 from html import escape
 from importlib.resources import files
 import json
+from pathlib import Path
 
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.report.data import finite
@@ -18,23 +20,24 @@ class Markup(str):
     """Text that is HTML already."""
 
 
-def markup(value):
+def markup(value: object) -> Markup:
     """Return a value as HTML: text is escaped, Markup is not."""
     return value if isinstance(value, Markup) else Markup(escape(str(value)))
 
 
-def tag(name, content, kind=''):
+def tag(name: str, content: object, kind: str = '') -> Markup:
     """Return an HTML element with content and, where there is one, a class."""
     attribute = f' class="{kind}"' if kind else ''
     return Markup(f'<{name}{attribute}>{markup(content)}</{name}>')
 
 
-def join(parts, between='\n'):
+def join(parts: Iterable[object], between: str = '\n') -> Markup:
     """Return parts as HTML, one after another."""
     return Markup(between.join(markup(part) for part in parts))
 
 
-def table(head, rows, kinds=(), *, caption):
+def table(head: Sequence[object], rows: Iterable[Sequence[object]], kinds: Iterable[str] = (), *,
+          caption: str) -> Markup:
     """
     Return an HTML table, which can be scrolled with the keys where it is wider than the screen.
 
@@ -55,18 +58,18 @@ def table(head, rows, kinds=(), *, caption):
                   f'<tbody>{join(lines)}</tbody></table></div>')
 
 
-def _cell(cell, kind, place):
+def _cell(cell: object, kind: str, place: int) -> Markup:
     if isinstance(cell, Markup) and cell.startswith('<td'):
         return cell
     return _title(cell, 'row', kind) if place == 0 and cell != '' else tag('td', cell, kind)
 
 
-def _title(content, scope, kind):
+def _title(content: object, scope: str, kind: str) -> Markup:
     attribute = f' class="{kind}"' if kind else ''
     return Markup(f'<th scope="{scope}"{attribute}>{markup(content)}</th>')
 
 
-def drawing(content, alt, caption, data=None):
+def drawing(content: object, alt: str, caption: str, data: object = None) -> Markup:
     """
     Return an SVG element as a figure, which can be scrolled where it is wider than it fits.
 
@@ -77,29 +80,29 @@ def drawing(content, alt, caption, data=None):
                   f'"{escape(alt)}">{content}</div>{moving}{tag("figcaption", caption)}</figure>')
 
 
-def script_data(data):
+def script_data(data: object) -> Markup:
     """Return data for the script of a page, as an element in which no text can be markup."""
     text = json.dumps(finite(data), separators=(',', ':'), ensure_ascii=False, allow_nan=False)
     return Markup(SCRIPT_DATA + text.replace('<', '\\u003c') + '</script>')
 
 
-def bar(share):
+def bar(share: float) -> Markup:
     """Return a horizontal bar for a share from 0 to 1, as a drawing beside its number."""
     return Markup(f'<span class="bar" aria-hidden="true"><span style="width:{100 * share:.0f}%">'
                   '</span></span>')
 
 
-def details(summary, content):
+def details(summary: object, content: object) -> Markup:
     """Return content that unfolds under a summary."""
     return Markup(f'<details><summary>{markup(summary)}</summary>{markup(content)}</details>')
 
 
-def web(name):
+def web(name: str) -> str:
     """Return the text of a file that goes into pages: style, or script."""
     return files('quad_ident_ros.report').joinpath('web', name).read_text(encoding='utf-8')
 
 
-def write_page(path, title, body, also=''):
+def write_page(path: str | Path, title: str, body: object, also: str = '') -> None:
     """
     Write a page of HTML; raises InputError where the file cannot be written.
 
@@ -121,7 +124,7 @@ def write_page(path, title, body, also=''):
         raise InputError(f'{path}: cannot be written: {error.strerror}') from None
 
 
-def _scripts():
+def _scripts() -> str:
     """Return what draws the values of drawings: uPlot with its licence, and page.js."""
     return (f'\n<script>\n/*\n{web("uPlot.LICENSE")}\n*/\n{web("uPlot.iife.min.js")}</script>\n'
             f'<script>\n{web("page.js")}</script>\n')

@@ -2,7 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Pictures of an identification."""
 
+from collections.abc import Mapping
 from pathlib import Path
+from types import ModuleType
+from typing import TYPE_CHECKING
 
 import matplotlib
 from matplotlib.ticker import NullFormatter, StrMethodFormatter
@@ -10,8 +13,12 @@ import numpy as np
 
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.identify.methods import METHODS
+from quad_ident_ros.identify.result import Identification
 from quad_ident_ros.identify.signals import INPUT_OF, OUTPUT_UNITS
 from quad_ident_ros.whole_file import replacing
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 NAMES = {'phi': 'roll φ', 'theta': 'pitch θ', 'psi': 'yaw ψ', 'z': 'altitude z'}
 MEASURED = '#9aa0a6'
@@ -22,7 +29,8 @@ STYLES = (('#0072b2', '-'), ('#e69f00', (0, (6, 2))), ('#009e73', (0, (3, 2))),
           ('#d55e00', (0, (1, 1.5))), ('#cc79a7', (0, (5, 1, 1, 1))))
 
 
-def save_responses(identification, path, title, given='measured'):
+def save_responses(identification: Identification, path: str | Path, title: str,
+                   given: str = 'measured') -> None:
     """
     Save a picture of the given responses with the fitted ones over them, errors beneath.
 
@@ -68,14 +76,15 @@ def save_responses(identification, path, title, given='measured'):
     save(plt, figure, path)
 
 
-def _line(y):
+def _line(y: np.ndarray) -> float:
     """Return how thick a line, in pt, leaves the turns of y (N,) to be seen."""
     above = y > (y.min() + y.max()) / 2
-    crossings = max(1, np.count_nonzero(above[1:] != above[:-1]))
+    crossings = max(1, int(np.count_nonzero(above[1:] != above[:-1])))
     return float(np.clip(WIDTH / crossings / 3, THIN, THICK))
 
 
-def save_spread(panels, path, title, quantity):
+def save_spread(panels: Mapping[str, Mapping[str, np.ndarray]], path: str | Path, title: str,
+                quantity: str) -> None:
     """
     Save a picture of how values spread, by panel and method: a dot each, a line at the median.
 
@@ -84,10 +93,10 @@ def save_spread(panels, path, title, quantity):
     Raises InputError where the file cannot be written.
     """
     plt = pyplot(path)
-    everything = [values for methods in panels.values() for values in methods.values()]
-    spread = np.concatenate([values for values in everything if len(values) > 1] or everything)
+    every = [values for methods in panels.values() for values in methods.values()]
+    spread = np.concatenate([values for values in every if len(values) > 1] or every)
     everything, spread = (values[np.isfinite(values) & (values > 0)]
-                          for values in (np.concatenate(everything), spread))
+                          for values in (np.concatenate(every), spread))
     bottom = max(everything.min() / 1.5, spread.min() / 10)
     figure, axes = plt.subplots(1, len(panels), figsize=(3.2 * len(panels) + 0.4, 3.3), dpi=130,
                                 sharey=True, squeeze=False, layout='constrained')
@@ -119,7 +128,7 @@ def save_spread(panels, path, title, quantity):
     save(plt, figure, path)
 
 
-def pyplot(path):
+def pyplot(path: str | Path) -> ModuleType:
     """Return pyplot for files; raises InputError where a path says no kind of picture."""
     if not Path(path).suffix:
         raise InputError(f'{path}: the name of a picture ends in .png, .svg or .pdf')
@@ -128,7 +137,7 @@ def pyplot(path):
     return plt
 
 
-def save(plt, figure, path):
+def save(plt: ModuleType, figure: 'Figure', path: str | Path) -> None:
     """Write a figure to a file and forget it; raises InputError."""
     try:
         with replacing(path) as temporary:

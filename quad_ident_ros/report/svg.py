@@ -6,18 +6,22 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 import re
+from typing import TYPE_CHECKING
 
 from matplotlib import rc_context
 
 from quad_ident_ros.report.html import drawing, Markup
+
+if TYPE_CHECKING:
+    from matplotlib.typing import RcKeyType
 
 COLOURS = {'#000000': 'ink', '#ffffff': 'paper', '#ebebeb': 'grid', '#e0e0e0': 'noise',
            '#555555': 'second', '#999999': 'line', '#9aa0a6': 'measured', '#d55e00': 'before',
            '#0072b2': 'after', '#e69f00': 'amber', '#009e73': 'green', '#cc79a7': 'rose'}
 """What a colour of the pictures is in web/page.css, light and dark."""
 
-SETTINGS = {'svg.fonttype': 'none', 'svg.hashsalt': 'quad_ident_ros',
-            'path.simplify_threshold': 0.25}
+SETTINGS: 'dict[RcKeyType, object]' = {
+    'svg.fonttype': 'none', 'svg.hashsalt': 'quad_ident_ros', 'path.simplify_threshold': 0.25}
 """Of Matplotlib: text stays text, the same picture has the same names, and lines have no points
 that move them by less than a quarter of a point, a third of a pixel at the width of a page."""
 

@@ -8,10 +8,11 @@ from rich import box
 from rich.table import Table
 
 from quad_ident_ros.identify.methods import METHODS
+from quad_ident_ros.identify.result import Identification, OutputFit
 from quad_ident_ros.identify.signals import GAIN_UNITS
 
 
-def identification_table(identification):
+def identification_table(identification: Identification) -> Table:
     """Return a rich Table: K, a, b with standard errors and the errors of each fit."""
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1), header_style='bold')
     table.add_column('output', no_wrap=True)
@@ -30,20 +31,20 @@ def identification_table(identification):
     return table
 
 
-def legend(identification):
+def legend(identification: Identification) -> str:
     """Return the units of the table in a line."""
     units = [f'{output} {GAIN_UNITS[output]}' for output in identification.signals]
     return (f'K in: {", ".join(units)}. ± is one standard error. '
             '*: the smallest error of its output.')
 
 
-def notes(identification):
+def notes(identification: Identification) -> list[str]:
     """
     Return the remarks on data and fits as lines of text.
 
     How each method found its model; what is to be known of a model, of the best one only.
     """
-    who = {}
+    who: dict[tuple[str, str], list[str]] = {}     # outputs, by label and text
     for name, method in identification.methods.items():
         for output, fit in method.outputs.items():
             for remark in fit.remarks:
@@ -56,7 +57,7 @@ def notes(identification):
                                        for (label, text), outputs in who.items())]
 
 
-def with_error(value, error):
+def with_error(value: float, error: float | None) -> str:
     """Return a value with the decimals that its standard error gives a meaning to, at least 3."""
     if error is None or not error > 0:
         return f'{value:.5g}'
@@ -64,19 +65,20 @@ def with_error(value, error):
     return f'{value:.{decimals}f} ± {error:.2g}'
 
 
-def _cells(fit):
+def _cells(fit: OutputFit) -> list[str]:
     if fit.model is None:
         return ['none'] * 3 + ['-'] * 5
     model, error = fit.model, fit.standard_errors
     if model.form == 'complex':
         poles = [f'{model.a.real:.4g}', f'±{abs(model.a.imag):.4g}j']
     else:
-        poles = [with_error(model.a, error['a']), with_error(model.b, error['b'])]
-    values = [fit.errors[key] for key in ('iae', 'ise', 'itae', 'itse')]
+        poles = [with_error(model.a.real, error['a']), with_error(model.b.real, error['b'])]
+    found = {key: value for key, value in fit.errors.items() if value is not None}
+    values = [found[key] for key in ('iae', 'ise', 'itae', 'itse')]
     return [with_error(model.gain, error['K']), *poles,
             *[f'{value:.2e}' if value < 1e-3 else f'{value:.3g}' for value in values],
-            f'{fit.errors["fit_percent"]:.3f}']
+            f'{found["fit_percent"]:.3f}']
 
 
-def _exponent(number):
+def _exponent(number: float) -> int:
     return math.floor(math.log10(abs(number))) if number else 0

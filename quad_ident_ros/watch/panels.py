@@ -154,7 +154,7 @@ def _numbers(model: Model) -> list[str]:
         real, imaginary = model.pair
         return [with_error(model.values[0], model.errors[0]), f'{real:.4g}',
                 f'±{abs(imaginary):.4g}j']
-    return [with_error(value, error)
+    return ['' if value is None else with_error(value, error)
             for value, error in zip(model.values, model.errors, strict=True)]
 
 
