@@ -53,13 +53,13 @@ class StampedParameters:
             self._vectors.publish(f'outputs/{name}', stamp, values)
             self._vectors.publish(f'outputs/{name}/standard_errors', stamp, errors)
         for change in result.changes:
-            self._events.publish(change_message(change, self._node, self._now()))
+            self._events.publish(change_message(change, self._node))
 
     def _now(self):
         return self._node.get_clock().now().nanoseconds
 
 
-def change_message(change, node, now_ns):
+def change_message(change, node):
     """Return the event of a Change: its stamp, its output, and what moved, before and after."""
     moved = ', '.join(f'{name} {values[0]:.4g} -> {values[1]:.4g}'
                       for name, values in change.moved.items())
@@ -70,7 +70,7 @@ def change_message(change, node, now_ns):
                      for name, values in change.moved.items()
                      for when, value in zip(('before', 'after'), values, strict=True)]
     message = DiagnosticArray(status=[status])
-    _set_stamp(message.header, now_ns if change.stamp_ns is None else change.stamp_ns)
+    _set_stamp(message.header, change.stamp_ns)
     return message
 
 

@@ -79,7 +79,7 @@ def test_verdicts_and_changes_that_came_before_are_shown_too(graph, domain):
     latched_json.publish(String(data=json.dumps(published(found))))
     changes = node.create_publisher(DiagnosticArray, 'change', latched(10))
     changes.publish(change_message(Change('phi', 3.2, 90.0, {'K': (4.35, 3.3)}, 63_200_000_000),
-                                   node, 0))
+                                   node))
     with watched(graph, domain) as (watching, until):
         until(lambda state: len(state.history) == 2, 'both')
         assert {(event.time, event.about, event.text) for event in watching.state.history} == {
