@@ -7,6 +7,8 @@ import math
 from rich import box
 from rich.table import Table
 
+from quad_ident_ros.effects.registry import titled
+
 FEWEST, MOST = 1e-3, 1e5    # values that are shown without an exponent
 
 
@@ -15,10 +17,11 @@ def fit_table(fit):
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1), header_style='bold')
     for name, side in (('parameter', 'left'), ('value', 'right'), ('unit', 'left'),
                        ('vehicle file', 'right'), ('', 'left')):
-        table.add_column(name, justify=side, no_wrap=True)
+        # Names with titles are long: they are wrapped, and no number is cut off.
+        table.add_column(name, justify=side, overflow='fold', no_wrap=side == 'right')
     for parameter in fit.parameters:
         value = '-' if parameter.value is None else shown(parameter.value, parameter.std)
-        table.add_row(parameter.name, value, parameter.unit, f'{parameter.nominal:.5g}',
+        table.add_row(titled(parameter.name), value, parameter.unit, f'{parameter.nominal:.5g}',
                       _remark(parameter))
     return table
 
@@ -28,6 +31,7 @@ def _remark(parameter):
         return 'at its bound'
     if parameter.status == 'determined':
         return ''
+    # By the names alone: each of them has a row of its own, with its title.
     given = ', '.join(f'{name} is {value:g}' for name, value in parameter.given.items())
     return f'undetermined; this if {given}' if given else 'undetermined'
 

@@ -10,7 +10,7 @@ import yaml
 
 from quad_ident_ros import __version__
 from quad_ident_ros.diagnose.result import Diagnosis
-from quad_ident_ros.effects.registry import EFFECTS, titled
+from quad_ident_ros.effects.registry import titled
 from quad_ident_ros.model.vehicle import vehicle_to_mapping
 from quad_ident_ros.report.ceiling import ceiling_line
 from quad_ident_ros.report.closed_loop import (
@@ -79,7 +79,7 @@ def write(path: str | Path, found: Diagnosis) -> None:
 
 
 def _verdict(found: Diagnosis) -> list:
-    words = join((tag('span', titled(name) if name in EFFECTS else name,
+    words = join((tag('span', titled(name),
                       f'tag {KINDS.get(name, "part")}') for name in found.verdict), ' ')
     return [tag('p', sentence(verdict_line(found)), 'lead'),
             tag('p', size_line(found)), tag('p', next_step(found)),
@@ -189,7 +189,7 @@ def _provenance(found: Diagnosis) -> list:
                            caption='Flights as recorded'))
     if found.findings:
         parts.append(table(['flight', 'where', 'finding'], [
-            [one['flight'], _prose(one['where']), _prose(one['message'])]
+            [one['flight'], _prose(titled(one['where'])), _prose(one['message'])]
             for one in found.findings], ('text', 'text', 'text'), caption='Findings'))
     if run:
         parts.append(table(['file', 'SHA-256'], [
