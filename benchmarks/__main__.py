@@ -32,7 +32,11 @@ PACKAGES = ('numpy', 'scipy', 'numba', 'pyswarms', 'mealpy', 'nevergrad', 'cma',
 
 def main(arguments=None):
     """Run the sections that are asked for, print their tables, and keep them if asked to."""
-    parser = argparse.ArgumentParser(prog='./run bench', description=__doc__)
+    parser = argparse.ArgumentParser(
+        prog='./run bench', description=__doc__,
+        epilog='There is no --scheduler: most sections measure times of this machine, which a '
+        'cluster would not have. The draws of accuracy, cautions and changes go over the cores of '
+        'this machine, by functions of the checkout that workers elsewhere do not have.')
     parser.add_argument('sections', nargs='*', metavar='SECTION',
                         help=f'one of {", ".join(SECTIONS)}; by default all but '
                         f'{" and ".join(APART)}')

@@ -42,6 +42,9 @@ examples:
   ./run withheld calibrate KEPT                  the same of a folder that --keep has written
   ./run withheld in-mujoco KEPT --count 40       diagnose against MuJoCo's model of the vehicle,
                                                  export, and compare the gaps there
+
+There is no --scheduler: workers of a cluster are processes that others started, of which the check
+cannot show that they know nothing of the labels. docs/withheld.md describes the seal.
 """
 
 

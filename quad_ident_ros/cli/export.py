@@ -3,20 +3,21 @@
 """`quad_ident export`: a vehicle with its effects into a simulator's own file."""
 
 import argparse
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
 from quad_ident_ros import resources
 from quad_ident_ros.cli.export_draws import run_draws
-from quad_ident_ros.cli.options import flights_from
+from quad_ident_ros.cli.options import flights_with_bar
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.diagnose.carried import Carried, carried
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.vehicle import load_vehicle, Vehicle
 from quad_ident_ros.report.data import write_json
 from quad_ident_ros.report.export import CODE, FILE, show, show_cost
+from quad_ident_ros.report.screen import progress_bar
 from quad_ident_ros.vehicle_files.export import Export, export, mean_left
 from quad_ident_ros.vehicle_files.kinds import KINDS
 from quad_ident_ros.vehicle_files.load import source_of
@@ -83,11 +84,18 @@ def run(options: argparse.Namespace) -> None:
                          f'{endings}{bare}; give such a name')
     vehicle = load_vehicle(_file_of_ours(options.vehicle))
     source = _base(options)
-    records = [record for path in options.flight or [] for record in
-               flights_from(path, None, vehicle)]
-    found = export(vehicle, options.to, source, mean_left(vehicle, records) if records else None,
-                   Path(options.output).name)
-    cost = cost_of(found, vehicle, records) if records else None
+    with progress_bar() as bar:
+        task = bar.add_task('', total=None)
+        records = flights_with_bar(options.flight or [], vehicle, bar, task)
+        bar.update(task, description=f'changing {options.base or "a new file"}', total=None)
+        found = export(vehicle, options.to, source,
+                       mean_left(vehicle, records) if records else None,
+                       Path(options.output).name)
+        cost = None
+        if records:
+            bar.update(task, description='measuring the gap', total=1.0, completed=0.0)
+            cost = cost_of(found, vehicle, records,
+                           lambda share: bar.update(task, completed=share))
     if found.code is not None:
         _refuse_others(_beside(options.output))
     _write(options.output, mark_of(source) + found.text)
@@ -101,14 +109,19 @@ def run(options: argparse.Namespace) -> None:
         write_json(options.json, as_data(found, cost, options))
 
 
-def cost_of(found: Export, vehicle: Vehicle, records: Sequence[FlightRecord]) -> Carried:
-    """Return what of the gap on flights the written file closes; raises InputError."""
+def cost_of(found: Export, vehicle: Vehicle, records: Sequence[FlightRecord],
+            on_progress: Callable[[float], object] = lambda share: None) -> Carried:
+    """
+    Return what of the gap on flights the written file closes; raises InputError.
+
+    on_progress is called with the share done.
+    """
     written = replace(found.base, text=found.text)
     before, after = (read_back(found, source, vehicle) for source in (found.base, written))
     parts = {FILE: after}
     if found.code is not None:
         parts[CODE] = with_code(found, after, vehicle)
-    return carried(records, before, vehicle, parts)
+    return carried(records, before, vehicle, parts, on_progress=on_progress)
 
 
 def _base(options: argparse.Namespace) -> Source | None:

@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 
 from quad_ident_ros import schema
-from quad_ident_ros.cli.options import flights_from
+from quad_ident_ros.cli.options import flights_with_bar
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.vehicle import Vehicle
 from quad_ident_ros.report.data import write_json
@@ -30,20 +30,23 @@ def run_draws(options: argparse.Namespace, vehicle: Vehicle, source: Source | No
     if options.to is None and (source is not None or options.flight):
         raise InputError('--to is missing: --base and --flight are for files of a simulator')
     check_place(options.output)
-    records = [record for path in options.flight or []
-               for record in flights_from(path, None, vehicle)]
-    sag = mean_left(vehicle, records) if records else None
-    middle = None if options.to is None else export(vehicle, options.to, source, sag)
     with progress_bar() as bar:
-        task = bar.add_task('drawing vehicles', total=1.0)
-        draws = draw(vehicle, count, seed, lambda share: bar.update(task, completed=share))
+        task = bar.add_task('', total=None)
+        records = flights_with_bar(options.flight or [], vehicle, bar, task)
+        sag = mean_left(vehicle, records) if records else None
+        middle = None if options.to is None else export(vehicle, options.to, source, sag)
+
+        def tell(share: float) -> None:
+            bar.update(task, total=1.0, completed=share)
+
+        bar.update(task, description='drawing vehicles')
+        draws = draw(vehicle, count, seed, tell)
+        bar.update(task, description=f'writing {options.output}', completed=0.0)
         if array:
-            write_array(options.output, draws)
+            write_array(options.output, draws, tell)
             files = [Path(options.output).name]
         else:
-            task = bar.add_task('writing files', total=1.0)
-            files = write_folder(options.output, draws, options.to, source, records,
-                                 lambda share: bar.update(task, completed=share))
+            files = write_folder(options.output, draws, options.to, source, records, tell)
     if options.json != '-':
         show_draws(draws)
         if middle is not None:

@@ -13,7 +13,7 @@ from quad_ident_ros.cli.options import (
     thrust_by_log,
     vehicle_from,
 )
-from quad_ident_ros.effects.registry import EFFECTS
+from quad_ident_ros.effects.registry import EFFECTS, titled
 from quad_ident_ros.greybox.cautions import cautions
 from quad_ident_ros.greybox.free import columns_of_names, EXCITATION
 from quad_ident_ros.greybox.taken_in import taken_in
@@ -94,6 +94,6 @@ def show(found):
 
 
 def _wrapped(names):
-    """Return the names of the effects as lines of the help."""
-    return textwrap.fill(f'effects: {", ".join(names)},', 95, initial_indent='  ',
+    """Return the titles and names of the effects as lines of the help."""
+    return textwrap.fill(f'effects: {", ".join(map(titled, names))},', 95, initial_indent='  ',
                          subsequent_indent='  ') + '\n'

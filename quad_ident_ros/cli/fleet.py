@@ -13,7 +13,7 @@ from quad_ident_ros.errors import InputError
 
 DEFAULT_OUT = 'fleet'
 FAULTY = 3
-"""Exit code where groups failed, which the next run tries again."""
+"""Exit code where groups failed, which the next run tries again, or gave way to another run."""
 _BYTES = re.compile(r'(\d+(?:\.\d+)?) ?([kMGT]?)(i?)B?')
 
 
@@ -109,7 +109,8 @@ def run(options):
         write_priors(options.out_priors, learned(effects, found.histories),
                      len(effects['vehicle'].unique()))
     groups = summary.groups
-    return FAULTY if groups['failed'] or groups['timeout'] or summary.untracked else 0
+    faulty = groups['failed'] or groups['timeout'] or summary.untracked or summary.gave_way
+    return FAULTY if faulty else 0
 
 
 def _count(text):

@@ -10,7 +10,7 @@ import numpy as np
 from quad_ident_ros import resources, schema
 from quad_ident_ros.closed_loop.reference import with_asked
 from quad_ident_ros.data.csv import write_csv
-from quad_ident_ros.effects.registry import EFFECTS, from_entries
+from quad_ident_ros.effects.registry import EFFECTS, from_entries, titled
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import SENSORS
@@ -90,7 +90,7 @@ def run(options):
         print(f'{path}: {len(record)} samples, {record.t[-1]:g} s, up to {speed.max():.3g} m/s, '
               f'{record.columns["pz"].min():.3g} to {record.columns["pz"].max():.3g} m high')
         print('  effects: ' + ('; '.join(
-            name + ' ' + ', '.join(f'{key} = {value:g}' for key, value in values.items())
+            titled(name) + ' ' + ', '.join(f'{key} = {value:g}' for key, value in values.items())
             for name, values in effects.items()) or 'none'))
     if options.json:
         write_json(options.json, {**record.info, 'noise': options.noise, 'file': str(path),

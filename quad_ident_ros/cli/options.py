@@ -3,7 +3,10 @@
 """Options that several commands share."""
 
 import argparse
+from collections.abc import Sequence
 from pathlib import Path
+
+from rich.progress import Progress, TaskID
 
 from quad_ident_ros.data.load import load_all, reader_of
 from quad_ident_ros.data.mapping import load_mapping
@@ -63,6 +66,16 @@ def flights_from(path: str | Path, mapping: str | None = None,
         vehicle = load_any_vehicle(vehicle)
     found = read_flights(path, mapping, vehicle, selection, by_log)
     return found if selection is None else selected(path, found, selection)
+
+
+def flights_with_bar(paths: Sequence[str], vehicle: Vehicle, bar: Progress, task: TaskID
+                     ) -> list[FlightRecord]:
+    """Return the flight records of several paths, and say in a task of a bar which is read."""
+    records = []
+    for number, path in enumerate(paths):
+        bar.update(task, description=f'reading {path}', total=1.0, completed=number / len(paths))
+        records += flights_from(path, None, vehicle)
+    return records
 
 
 def read_flights(path: str | Path, mapping: str | None, vehicle: Vehicle | None,

@@ -12,6 +12,7 @@ from quad_ident_ros.data.csv import write_csv
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.experiment import fly, load_experiment, NOISE_UNITS
 from quad_ident_ros.report.data import write_json
+from quad_ident_ros.report.screen import progress_bar
 
 
 def add(commands, summary):
@@ -44,12 +45,15 @@ def run(options):
     noise = {**experiment.noise, **noise_from(options.noise)}
     report = []
     for flight_run in experiment.runs:
-        flight = fly(experiment, flight_run, noise=noise, seed=options.seed)
         path = Path(options.output) / f'{experiment.name}_{flight_run.name}.csv'
-        try:
-            write_csv(path, flight.record)
-        except OSError as error:
-            raise InputError(f'{path}: cannot be written: {error.strerror}') from None
+        # A bar for each run: while one is shown, nothing may be printed.
+        with progress_bar() as bar:
+            flight = _flown(experiment, flight_run, noise, options.seed, bar)
+            bar.add_task(f'writing {path}', total=None)
+            try:
+                write_csv(path, flight.record)
+            except OSError as error:
+                raise InputError(f'{path}: cannot be written: {error.strerror}') from None
         info = flight.record.info
         report.append({**info, 'file': str(path), 'samples': len(flight.record)})
         if options.json != '-':
@@ -65,3 +69,12 @@ def run(options):
         write_json(options.json, [{key: None if isinstance(value, float)
                                    and not math.isfinite(value) else value
                                    for key, value in entry.items()} for entry in report])
+
+
+def _flown(experiment, run, noise, seed, bar):
+    """Return what flying a run gives; how far it is in closed loop, nobody says."""
+    task = bar.add_task(f'flying {run.name}', total=None)
+    flight = fly(experiment, run, noise=noise, seed=seed,
+                 on_progress=lambda share: bar.update(task, total=1.0, completed=share))
+    bar.remove_task(task)
+    return flight

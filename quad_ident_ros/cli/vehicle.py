@@ -13,7 +13,7 @@ from quad_ident_ros.effects.registry import titled
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.vehicle import load_vehicle, vehicle_to_mapping, write_vehicle
 from quad_ident_ros.report.data import write_json
-from quad_ident_ros.report.screen import console, say, table_of
+from quad_ident_ros.report.screen import console, progress_bar, say, table_of
 from quad_ident_ros.vehicle_files.kinds import KINDS
 from quad_ident_ros.vehicle_files.load import read_vehicle, source_of
 from quad_ident_ros.vehicle_files.reading import needed_vehicle, Reading, SETTABLE
@@ -53,20 +53,27 @@ def add(commands: Any, summary: str) -> None:
 def run(options: argparse.Namespace) -> None:
     """Read the file, show what is in it, and write the vehicle file asked for."""
     supplied = dict(_entry(entry) for entry in options.set)
-    source = source_of(options.vehicle)
-    if source is None:
-        reading = Reading(options.vehicle, OURS, load_vehicle(options.vehicle), (), {}, ())
-        if supplied:
-            raise InputError('--set: supplies what the file of a simulator does not have; change '
-                             'a vehicle file itself')
-    else:
-        reading = read_vehicle(source, supplied)
+    with progress_bar() as bar:
+        bar.add_task(f'reading {options.vehicle}', total=None)
+        reading = _read(options.vehicle, supplied)
     if options.json != '-':
         show(reading)
     if options.out_vehicle:
         write_vehicle(options.out_vehicle, needed_vehicle(reading))
     if options.json:
         write_json(options.json, as_data(reading))
+
+
+def _read(path: str, supplied: dict[str, Any]) -> Reading:
+    """Return what a file says, with what --set supplies; raises InputError."""
+    source = source_of(path)
+    if source is not None:
+        return read_vehicle(source, supplied)
+    reading = Reading(path, OURS, load_vehicle(path), (), {}, ())
+    if supplied:
+        raise InputError('--set: supplies what the file of a simulator does not have; change a '
+                         'vehicle file itself')
+    return reading
 
 
 def as_data(reading: Reading) -> dict[str, Any]:

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What of a gap a vehicle closes when it has gone through the file of a simulator."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from quad_ident_ros.data.record import FlightRecord
@@ -35,20 +35,26 @@ class Carried:
 
 
 def carried(records: Sequence[FlightRecord], before: Vehicle, whole: Vehicle,
-            parts: Mapping[str, Vehicle], rules: Rules = RULES) -> Carried:
+            parts: Mapping[str, Vehicle], rules: Rules = RULES,
+            on_progress: Callable[[float], object] = lambda share: None) -> Carried:
     """
     Return the gaps of a nominal vehicle, `before`, one with effects, `whole`, and parts of that.
 
     All on the same flights, open loop, by the definition of gap.py, and all with rotor speeds in
-    the same unit: that of the records. Raises InputError as take_in.
+    the same unit: that of the records. on_progress is called with the share done. Raises
+    InputError as take_in.
     """
     intake = take_in(records, whole, None, rules)
     tracks = [replace(track, guide=None) for track in (*intake.tracks, intake.held_out)]
     horizon = gaps.horizon_of(tracks, rules)
     gone = {(name, key) for name, values in whole.effects.items() for key in values
             if key not in intake.vehicle.effects.get(name, {})}
-    found = {name: _gap(tracks, replace(vehicle, effects=_without(vehicle.effects, gone)), horizon)
-             for name, vehicle in {NOMINAL: before, WHOLE: whole, **parts}.items()}
+    found: dict[str, dict[str, float]] = {}
+    every = {NOMINAL: before, WHOLE: whole, **parts}
+    for name, vehicle in every.items():
+        on_progress((1 + len(found)) / (1 + len(every)))    # the first step is the intake
+        found[name] = _gap(tracks, replace(vehicle, effects=_without(vehicle.effects, gone)),
+                           horizon)
     room = found[NOMINAL]['velocity'] - found[WHOLE]['velocity']
     shares = {name: (found[NOMINAL]['velocity'] - found[name]['velocity']) / room
               for name in parts} if room > LEAST * found[NOMINAL]['velocity'] else {}

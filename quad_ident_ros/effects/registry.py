@@ -78,8 +78,13 @@ OWNERS = np.array([ROWS_OF[name, form.name] for name, form in FORMS for _ in for
 
 
 def titled(name: str) -> str:
-    """Return an effect as a person reads it: its title, then its name."""
-    return f'{EFFECTS[name].title} ({name})'
+    """
+    Return an effect, or a parameter of one, as a person reads it: the title, then the name.
+
+    A name of anything else, such as a constant of the vehicle file, comes back as it is.
+    """
+    effect = EFFECTS.get(name.partition('.')[0])
+    return name if effect is None else f'{effect.title} ({name})'
 
 
 @lru_cache(maxsize=8)

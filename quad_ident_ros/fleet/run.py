@@ -31,6 +31,7 @@ from quad_ident_ros.fleet.work import (
     DIAGNOSED,
     DONE,
     FAILED,
+    one_line,
     Outcome,
     outcome_of,
     REFUSED,
@@ -79,7 +80,8 @@ class Summary:
 
     before: groups that were done; untracked: reasons of the groups to whose single flights nothing
     could be fitted, which the next run tries again; replaced: groups whose flights another run has
-    put into groups of its own.
+    put into groups of its own; gave_way: why groups of this run have no result, because one of
+    another run has some of their flights.
     """
 
     flights: int
@@ -88,6 +90,7 @@ class Summary:
     copies: tuple[str, ...]
     untracked: tuple[str, ...] = ()
     replaced: int = 0
+    gave_way: tuple[str, ...] = ()
 
 
 Tell = Callable[[Progress], None]
@@ -133,13 +136,12 @@ def run_fleet(client: Any, plan: Plan, out: str | Path, *, time_limit: float = T
     before, went = _diagnose_all(client, groups, out, time_limit, tell)
     replaced = _check_written([group for group in groups if group.key not in went], out)
     untracked = _track_all(client, groups, out, time_limit, tell)
-    for why in went.values():
-        raise InputError(why)
     status = _statuses(out)
     ended = [status.get(group.key) for group in groups]
     return Summary(len(plan.flights) - len(copies), {name: ended.count(name) for name in
                                                      (DIAGNOSED, REFUSED, FAILED, TIMEOUT)},
-                   before, tuple(one.path for one in copies), untracked, len(replaced))
+                   before, tuple(one.path for one in copies), untracked, len(replaced),
+                   tuple(went.values()))
 
 
 def _looked(client: Any, flights: Sequence[Listed], mapping: Mapping | None, out: str | Path,
@@ -274,13 +276,20 @@ def _track(out: str | Path, tracking: Tracking) -> None:
 
 
 def _reason(error: Exception, time_limit: float) -> str:
-    """Return why a task has no result, in words; raises what no other task can escape either."""
+    """
+    Return why a task has no result, in words; raises what no other task can escape either.
+
+    That is bad input, such as workers of another version, a disk that is full, a package that is
+    missing. Anything else is of the flights of this task, and takes no other with it.
+    """
     if isinstance(error, TimeOver):
         return f'it took more than {time_limit:g} s (--time-limit)'
     if isinstance(error, WorkerDied):
         return ('the process of each worker that began it ended: it may need more memory than a '
                 'worker has (--memory), or it hung in a library')
-    raise error
+    if isinstance(error, (InputError, OSError, ImportError)):
+        raise error
+    return f'{type(error).__name__}: {one_line(error)}'
 
 
 def _statuses(out: str | Path) -> dict[str, str]:

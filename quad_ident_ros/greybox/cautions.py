@@ -5,7 +5,7 @@
 from collections.abc import Iterable, Sequence
 
 from quad_ident_ros.data.quality.finding import Finding
-from quad_ident_ros.effects.registry import PARAMETERS
+from quad_ident_ros.effects.registry import PARAMETERS, titled
 
 CONSTANTS = {
     'roll': ('inertia_x', 'rotational_drag_x'),
@@ -32,9 +32,9 @@ def cautions(flights: Sequence[tuple[str, Sequence[Finding]]], names: Iterable[s
     for axis, shown in SHOWS.items():
         touched = [name for name in names if name in shown]
         if touched and all(axis in axes for axes in still):
-            said.append(f'{", ".join(touched)}: the {axis} axis is hardly excited in any flight: '
-                        'the value may be off by far more than its standard error; add a flight '
-                        f'that moves the {axis} axis')
+            said.append(f'{", ".join(map(titled, touched))}: the {axis} axis is hardly excited '
+                        'in any flight: the value may be off by far more than its standard '
+                        f'error; add a flight that moves the {axis} axis')
     for code in dict.fromkeys(finding.code for _, found in flights for finding in found
                               if finding.severity == 'warning'):
         (name, finding), *more = [(name, finding) for name, found in flights for finding in found

@@ -14,7 +14,7 @@ from quad_ident_ros.data.differentiated import with_motion
 from quad_ident_ros.data.inertial import is_inertial, with_position
 from quad_ident_ros.data.record import FlightRecord, refuse_twice
 from quad_ident_ros.data.thrust_level import FULL_SPEED, on_one_level
-from quad_ident_ros.effects.registry import mapping
+from quad_ident_ros.effects.registry import mapping, titled
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.greybox.errors import GROUPS, UNITS
 from quad_ident_ros.greybox.estimate import Estimate, estimate
@@ -248,20 +248,20 @@ def _parameter(name: str, start: float, value: float, error: float | None,
 
 def _said(freedom: Freedom, names: Sequence[str], values: np.ndarray) -> str:
     """Return what a Freedom means, in words."""
-    members = [names[k] for k in freedom.members]
+    members = [titled(names[k]) for k in freedom.members]
     held = names[freedom.held]
     value = _with_unit(values[freedom.held], held)
     if freedom.scale:
         return (f'{", ".join(members)} are undetermined: multiplied by one factor they give the '
                 f'same motion, so the flights determine only their ratios. Leave {held} out of '
-                f'--free if it is known; the values hold if {held} is {value}')
+                f'--free if it is known; the values hold if {titled(held)} is {value}')
     if len(members) == 1:
-        return (f'{held} is undetermined: the flights do not show it. Fly: {excitation_of(held)}; '
-                f'until then it stays at {value}')
-    wanted = '; '.join(dict.fromkeys(excitation_of(name) for name in members))
+        return (f'{titled(held)} is undetermined: the flights do not show it. Fly: '
+                f'{excitation_of(held)}; until then it stays at {value}')
+    wanted = '; '.join(dict.fromkeys(excitation_of(names[k]) for k in freedom.members))
     return (f'{", ".join(members)} are undetermined: the flights do not determine them '
-            f'separately. Leave one out of --free, or fly: {wanted}; the values hold if {held} is '
-            f'{value}')
+            f'separately. Leave one out of --free, or fly: {wanted}; the values hold if '
+            f'{titled(held)} is {value}')
 
 
 def _findings(found: Estimate, parameters: Iterable[Parameter],
@@ -274,11 +274,11 @@ def _findings(found: Estimate, parameters: Iterable[Parameter],
     for parameter in parameters:
         if parameter.status == 'bound' and parameter.value is not None:
             why = 'the best value lies beyond it' if parameter.value else 'it is not there'
-            said.append(f'{parameter.name} ends at its bound, '
+            said.append(f'{titled(parameter.name)} ends at its bound, '
                         f'{_with_unit(parameter.value, parameter.name)}: {why}, or it stands in '
                         'for something that is not in the model')
     if pairs:
-        names = ', '.join(f'{a} and {b} ({share:.3f})' for a, b, share in pairs)
+        names = ', '.join(f'{titled(a)} and {titled(b)} ({share:.3f})' for a, b, share in pairs)
         said.append(f'correlated by more than {STRONG:g}, so a combination of them is known '
                     f'better than each one: {names}')
     widest = float(np.sqrt(scatter_of(found.normal).max(initial=1.0)))

@@ -42,8 +42,8 @@ def columns_of_names(names: Iterable[str], vehicle: Vehicle) -> dict[str, int]:
         found |= table[name]
     for constant, parameter in SAME.items():
         if constant in found and parameter in found:
-            raise InputError(f'--free: {constant} and {parameter} are the same physical number; '
-                             'free one of them')
+            raise InputError(f'--free: {constant} and {registry.titled(parameter)} are the same '
+                             'physical number; free one of them')
     if not found:
         raise InputError(f'--free: names nothing; {_KNOWN}')
     return found

@@ -10,6 +10,7 @@ from quad_ident_ros.closed_loop.compare import (
     NOMINAL,
     REAL,
 )
+from quad_ident_ros.effects.registry import titled
 
 TITLES = ('', NOMINAL, CORRECTED, REAL, 'unit')
 """What loop_rows say."""
@@ -46,12 +47,13 @@ def cost_rows(one: ClosedLoop) -> list[list[str]]:
     rows = []
     errors, bands = one.tracking[CORRECTED], one.bandwidth[CORRECTED]
     for effect, others in one.without.items():
+        name = titled(effect)
         for group, unit in one.units.items():
             left, whole = others[group], errors[group]
             cost = UNKNOWN if left is None or whole is None else f'{whole - left:+.3g}'
-            rows.append([effect, f'{group} error', _error(left), _error(whole), cost, unit])
+            rows.append([name, f'{group} error', _error(left), _error(whole), cost, unit])
         other_bands = one.bandwidth_without[effect]
-        rows += [[effect, f'bandwidth {axis}', _hertz(other_bands, axis), _hertz(bands, axis),
+        rows += [[name, f'bandwidth {axis}', _hertz(other_bands, axis), _hertz(bands, axis),
                   _lost(other_bands, bands, axis), 'Hz'] for axis in AXES]
     return rows
 

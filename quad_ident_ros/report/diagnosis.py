@@ -280,7 +280,8 @@ def caution_lines(found: Diagnosis) -> list[str]:
         alike.setdefault((words, said[one['flight'], words]), []).append(one)
     lines = [f'{"" if first.get("severity") == "info" else "warning: "}{first["flight"]}'
              + (f' ({", ".join(one["flight"] for one in others)} alike)' if others else '')
-             + f': {first["where"]}: {first["message"]}' for first, *others in alike.values()]
+             + f': {titled(first["where"])}: {first["message"]}'
+             for first, *others in alike.values()]
     return [*(farther if found.gap.closed < 0.0 else []), *_of_simulator(found), *lines]
 
 

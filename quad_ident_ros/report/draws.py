@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from quad_ident_ros.effects.registry import titled
 from quad_ident_ros.report.screen import console, say, table_of
 from quad_ident_ros.vehicle_files.draws import Draws
 
@@ -16,7 +17,7 @@ def show_draws(draws: Draws) -> None:
     """Print the numbers that were drawn, and what of the distribution was cut off."""
     screen = console()
     screen.print(table_of(TITLES, [
-        (row['name'], *(f'{row[key]:.4g}' for key in ('value', 'std', 'std_drawn', 'least',
+        (titled(row['name']), *(f'{row[key]:.4g}' for key in ('value', 'std', 'std_drawn', 'least',
                                                       'most')), row['unit'])
         for row in rows_of(draws)], TITLES[1:-1]))
     if draws.cut:

@@ -3,9 +3,10 @@
 """What a person reads of an export: numbers, what is carried, and what it costs."""
 
 from pathlib import Path
+import re
 
 from quad_ident_ros.diagnose.carried import Carried, NOMINAL, WHOLE
-from quad_ident_ros.effects.registry import EFFECTS, titled
+from quad_ident_ros.effects.registry import titled
 from quad_ident_ros.report.screen import console, say, table_of
 from quad_ident_ros.vehicle_files.export import Export
 
@@ -28,7 +29,8 @@ def show(found: Export, path: str, new: bool, beside: Path) -> None:
         screen.print(table_of(
             ('place', 'old', 'new', 'std', 'unit', 'from'),
             [(change.place, _shown(change.old), _shown(change.new), _shown(change.std),
-              change.unit, change.source) for change in found.changes], ('old', 'new', 'std')))
+              change.unit, source_of(change.source)) for change in found.changes],
+            ('old', 'new', 'std')))
     for text in found.remarks:
         say(screen, f'note: {text}')
     show_fates(found)
@@ -45,9 +47,8 @@ def show_fates(found: Export) -> None:
     screen = console()
     for key, said in _CLASSES.items():
         for fate in getattr(found.fates, key):
-            name = titled(fate.name) if fate.name in EFFECTS else fate.name
             form = f', form {fate.form}' if fate.form else ''
-            say(screen, f'{said}: {name}{form}: {fate.reason}')
+            say(screen, f'{said}: {titled(fate.name)}{form}: {fate.reason}')
 
 
 def show_cost(cost: Carried) -> None:
@@ -63,6 +64,11 @@ def show_cost(cost: Carried) -> None:
                     'the velocity gap')
     if not cost.shares:
         say(screen, 'the vehicle file closes nothing of the velocity gap on these flights')
+
+
+def source_of(names: str) -> str:
+    """Return what a number comes from, such as "mass, mass_offset", with the effects' titles."""
+    return re.sub(r'\w+', lambda one: titled(one[0]), names)
 
 
 def _shown(value: float | None) -> str:

@@ -9,6 +9,8 @@ from rich import box
 from rich.console import JustifyMethod
 from rich.table import Table
 
+from quad_ident_ros.effects.registry import titled
+
 if TYPE_CHECKING:
     from quad_ident_ros.greybox.fit import Fit, Parameter
 
@@ -22,10 +24,11 @@ def fit_table(fit: 'Fit') -> Table:
     """Return a rich Table of a fit: name, value with standard error, unit, nominal value."""
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1), header_style='bold')
     for name, side in COLUMNS:
-        table.add_column(name, justify=side, no_wrap=True)
+        # Names with titles are long: they are wrapped, and no number is cut off.
+        table.add_column(name, justify=side, overflow='fold', no_wrap=side == 'right')
     for parameter in fit.parameters:
         value = '-' if parameter.value is None else shown(parameter.value, parameter.std)
-        table.add_row(parameter.name, value, parameter.unit, f'{parameter.nominal:.5g}',
+        table.add_row(titled(parameter.name), value, parameter.unit, f'{parameter.nominal:.5g}',
                       _remark(parameter))
     return table
 
@@ -35,6 +38,7 @@ def _remark(parameter: 'Parameter') -> str:
         return 'at its bound'
     if parameter.status == 'determined':
         return ''
+    # By the names alone: each of them has a row of its own, with its title.
     given = ', '.join(f'{name} is {value:g}' for name, value in parameter.given.items())
     return f'undetermined; this if {given}' if given else 'undetermined'
 

@@ -4,9 +4,9 @@
 
 from typing import TextIO
 
+from quad_ident_ros.effects.registry import titled
 from quad_ident_ros.fleet.insight import Insight
 from quad_ident_ros.report.fleet_words import (
-    known_effect,
     listed,
     nothing_line,
     of_vehicles,
@@ -45,7 +45,7 @@ def show_insight(found: Insight, stream: TextIO) -> None:
 
 def effect_rows(found: Insight) -> list[list[str]]:
     """Return a row for each effect that is at all probable."""
-    return [[f'{known_effect(one.effect)} ({one.effect})',
+    return [[titled(one.effect),
              of_vehicles(one), f'{one.probability:.2f}',
              '' if one.contribution is None else f'{100 * one.contribution:.0f} %',
              'most: the model is wrong' if one.shared else listed(one.having)]

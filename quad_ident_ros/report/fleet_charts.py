@@ -8,6 +8,7 @@ from html import escape
 import numpy as np
 
 from quad_ident_ros.data.counted import counted
+from quad_ident_ros.effects.registry import titled
 from quad_ident_ros.fleet.history import History, Series
 from quad_ident_ros.report.fleet_words import with_configuration
 from quad_ident_ros.report.html import Markup
@@ -55,8 +56,9 @@ def small_multiple(one: History, unit: str, factor: float) -> Markup:
 def in_words(one: History, unit: str, factor: float) -> str:
     """Return what a picture shows, for who does not see it."""
     series = one.series
-    told = [f'{with_configuration(series.vehicle, series.configuration)}, {series.effect} '
-            f'{series.parameter} in {unit} over {counted(len(series.values), "flight")}: '
+    told = [f'{with_configuration(series.vehicle, series.configuration)}, '
+            f'{titled(series.effect)} {series.parameter} in {unit} over '
+            f'{counted(len(series.values), "flight")}: '
             f'{with_error(factor * one.level, factor * one.std)} at the last']
     told += [f'it changes before flight {change.place + 1} by {factor * change.size:.3g}'
              for change in one.changes]

@@ -10,6 +10,7 @@ import numpy as np
 
 from quad_ident_ros import __version__
 from quad_ident_ros.data.counted import counted
+from quad_ident_ros.effects.registry import titled
 from quad_ident_ros.fleet.history import History, SURE
 from quad_ident_ros.fleet.insight import Insight
 from quad_ident_ros.fleet.sisters import Sister, Sisters
@@ -107,7 +108,7 @@ def _cell(one: Sister, factor: float, has_sisters: bool) -> Markup:
 
 def _effects(found: Insight) -> list:
     rows = effect_rows(found)
-    shared = [[with_configuration(_title(each.effect), each.configuration), each.parameter,
+    shared = [[with_configuration(titled(each.effect), each.configuration), each.parameter,
                sized(each.mean, each.mean_std, each.unit), sized(each.spread, 0.0, each.unit),
                str(len(each.vehicles)), str(len(each.odd))] for each in found.sisters
               if len(each.vehicles) > 1
@@ -143,10 +144,6 @@ def _time(found: Insight) -> list:
             Markup(f'<div class="multiples">{figures}</div>')]
 
 
-def _title(effect: str) -> str:
-    return f'{known_effect(effect)} ({effect})'
-
-
 def _usual(values: Sequence[float]) -> tuple[float]:
     """Return the usual size of values: the unit of all vehicles is that of most."""
     return (float(np.median(np.abs(values))),)
@@ -157,10 +154,10 @@ def _figure(one: History, unit: str, factor: float) -> Markup:
     told = ' and '.join([*(['changed'] * bool(one.changes)), *(['drifts'] * bool(one.drift))])
     sign = tag('span', told, 'tag part') if told else ''
     caption = join([tag('strong', with_configuration(series.vehicle, series.configuration)),
-                    f'{_title(series.effect)} {series.parameter}'
+                    f'{titled(series.effect)} {series.parameter}'
                     + (f', {unit}' if unit not in ('1', '') else ''), sign], ' ')
     return Markup(f'<figure data-vehicle="{escape(series.vehicle)}" data-effect="'
-                  f'{escape(series.effect)}" data-title="{escape(_title(series.effect))}" '
+                  f'{escape(series.effect)}" data-title="{escape(titled(series.effect))}" '
                   f'data-event="{int(bool(told))}">'
                   f'<figcaption>{caption}</figcaption>{small_multiple(one, unit, factor)}'
                   '</figure>')

@@ -94,7 +94,7 @@ class Reporter:
         self._write({'schema': 'quad_ident/fleet_run/1', 'out': str(self._out),
                      'flights': summary.flights, 'groups': groups, 'before': summary.before,
                      'copies': list(summary.copies), 'untracked': list(summary.untracked),
-                     'replaced': summary.replaced})
+                     'replaced': summary.replaced, 'gave_way': list(summary.gave_way)})
         if self._path != '-':
             sys.stdout.write(summary_text(summary, self._out))
 
@@ -154,6 +154,9 @@ def summary_text(summary: Summary, out: str | Path) -> str:
     if summary.replaced:
         lines.append(f'{counted(summary.replaced, "group")} not counted: another run has put the '
                      'flights into groups of its own meanwhile')
+    if summary.gave_way:
+        lines.append(f'{counted(len(summary.gave_way), "group")} without a result: '
+                     + '; '.join(summary.gave_way))
     if summary.untracked:
         lines.append(f'{counted(len(summary.untracked), "group")} without values of single '
                      f'flights: {summary.untracked[0]}; the same command tries again')

@@ -108,7 +108,7 @@ def event_line(event: Event) -> str:
                 f'{event.flights}, is the first after it')
     if others:
         text += ', with ' + ', '.join(
-            f'{part.effect} {part.parameter} {_signed(part)}' for part in others)
+            f'{titled(part.effect)} {part.parameter} {_signed(part)}' for part in others)
     return f'{text} (probability {_probability(event.probability)})'
 
 

@@ -39,7 +39,8 @@ def figures(found: Diagnosis) -> dict[str, Figure]:
         'map': Figure(
             lambda file: save_map(pictures.wrench_before, pictures.wrench_after, found.vehicle,
                                   file),
-            'Residual force and moment by channel and regime, before and after',
+            'Residual force and moment by channel and regime, before and after; the tables under '
+            '"The map in numbers" have every cell',
             'Force and moment that the model does not explain, by channel and regime: each '
             'feature is split into thirds of the flight time. The colour is the velocity that '
             'they cause in half a second, without the noise, on one scale for both.')}

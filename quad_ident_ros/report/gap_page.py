@@ -9,8 +9,9 @@ import tempfile
 import yaml
 
 from quad_ident_ros import __version__
+from quad_ident_ros.diagnose.residual_wrench import CHANNELS
 from quad_ident_ros.diagnose.result import Diagnosis
-from quad_ident_ros.effects.registry import EFFECTS, titled
+from quad_ident_ros.effects.registry import titled
 from quad_ident_ros.model.vehicle import vehicle_to_mapping
 from quad_ident_ros.report.ceiling import ceiling_line
 from quad_ident_ros.report.closed_loop import (
@@ -45,6 +46,7 @@ from quad_ident_ros.report.diagnosis import (
     without_it,
 )
 from quad_ident_ros.report.gap_figures import figures
+from quad_ident_ros.report.gap_pictures import map_rows, regimes
 from quad_ident_ros.report.html import (
     bar,
     details,
@@ -79,7 +81,7 @@ def write(path: str | Path, found: Diagnosis) -> None:
 
 
 def _verdict(found: Diagnosis) -> list:
-    words = join((tag('span', titled(name) if name in EFFECTS else name,
+    words = join((tag('span', titled(name),
                       f'tag {KINDS.get(name, "part")}') for name in found.verdict), ' ')
     return [tag('p', sentence(verdict_line(found)), 'lead'),
             tag('p', size_line(found)), tag('p', next_step(found)),
@@ -88,9 +90,21 @@ def _verdict(found: Diagnosis) -> list:
 
 def _where(found: Diagnosis, pictures: dict) -> list:
     rows = [where_row(row) for row in shown(found.where)]
-    return [tag('h2', 'Where'), pictures['map'], pictures['spectrum'],
+    return [tag('h2', 'Where'), pictures['map'], _map_in_numbers(found), pictures['spectrum'],
             table(WHERE, rows, kinds=('text', '', '', '', 'text', ''),
                   caption='Force and moment that the nominal vehicle does not explain')]
+
+
+def _map_in_numbers(found: Diagnosis) -> Markup:
+    """Return every cell of the map as a cell of a table, for who does not see its colours."""
+    pictures, head = found.pictures, ['regime, third', *(f'{name}, m/s' for name in CHANNELS)]
+    names = regimes(pictures.wrench_before)
+    return details('The map in numbers', join(table(
+        head, map_rows(flights, names, found.vehicle),
+        caption=f'Velocity that the force and moment not explained {stage} cause in half a '
+                'second, by channel and regime')
+        for stage, flights in (('before', pictures.wrench_before),
+                               ('after', pictures.wrench_after))))
 
 
 def _which(found: Diagnosis) -> list:
@@ -189,7 +203,7 @@ def _provenance(found: Diagnosis) -> list:
                            caption='Flights as recorded'))
     if found.findings:
         parts.append(table(['flight', 'where', 'finding'], [
-            [one['flight'], _prose(one['where']), _prose(one['message'])]
+            [one['flight'], _prose(titled(one['where'])), _prose(one['message'])]
             for one in found.findings], ('text', 'text', 'text'), caption='Findings'))
     if run:
         parts.append(table(['file', 'SHA-256'], [

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Pictures of a diagnosis."""
 
+from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -68,7 +69,7 @@ def save_map(before: tuple[ResidualWrench, ...], after: tuple[ResidualWrench, ..
     taken off.
     """
     plt = pyplot(path)
-    names = [name for name, (_, values) in before[0].features.items() if np.ptp(values) > 0]
+    names = regimes(before)
     tables = [_by_third(flights, names, vehicle) for flights in (before, after)]
     most = max(float(np.nanmax(tables[0])), 1e-9)
     figure, axes = plt.subplots(2, 1, figsize=(11.4, 5.6), dpi=110, sharex=True,
@@ -91,6 +92,23 @@ def save_map(before: tuple[ResidualWrench, ...], after: tuple[ResidualWrench, ..
                                  for name in names], fontsize='x-small')
     figure.colorbar(image, ax=axes, label='m/s in half a second', pad=0.01)
     save(plt, figure, path)
+
+
+def regimes(flights: tuple[ResidualWrench, ...]) -> list[str]:
+    """Return the names of the features that vary in a flight, which the map has columns of."""
+    return [name for name, (_, values) in flights[0].features.items() if np.ptp(values) > 0]
+
+
+def map_rows(flights: tuple[ResidualWrench, ...], names: list[str],
+             vehicle: Vehicle) -> list[list[str]]:
+    """
+    Return the numbers of a map as rows of text: a third of a feature, then m/s of each channel.
+
+    Args: flights: before or after; names: of the features.
+    """
+    columns = _by_third(flights, names, vehicle).T
+    return [[f'{name}, {third}', *(f'{value:.3g}' for value in column)]
+            for (name, third), column in zip(product(names, THIRDS), columns, strict=True)]
 
 
 def _by_third(flights: tuple[ResidualWrench, ...], names: list[str],

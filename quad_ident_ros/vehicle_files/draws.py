@@ -93,17 +93,24 @@ def draw(vehicle: Vehicle, count: int, seed: int = 0,
                  cut, why)
 
 
-def table_of_draws(draws: Draws) -> tuple[tuple[str, ...], tuple[str, ...], np.ndarray]:
+def table_of_draws(draws: Draws, on_progress: Callable[[float], None] = lambda share: None
+                   ) -> tuple[tuple[str, ...], tuple[str, ...], np.ndarray]:
     """
     Return names (C,), units and values (N, C) of drawn vehicles for simulators that batch.
 
     What was drawn, and what a simulator has of it with the effects in it, which begins with
     `with_effects.`: mass, place of the centre of mass in body axes, inertia about it, thrust
-    coefficient of each rotor and torque coefficient; a sag of the battery is left out of it.
+    coefficient of each rotor and torque coefficient; a sag of the battery is left out of
+    it. on_progress is called with the share done.
     """
-    wanted = [wanted_of(vehicle, None, ()) for vehicle in draws.vehicles]
-    first = _with_effects(wanted[0])
-    table = np.array([list(_with_effects(one).values()) for one in wanted])
+    first: dict[str, float] = {}
+    rows: list[list[float]] = []
+    for number, vehicle in enumerate(draws.vehicles):
+        if number % AT_ONCE == 0:
+            on_progress(number / len(draws.vehicles))
+        first = _with_effects(wanted_of(vehicle, None, ()))
+        rows.append(list(first.values()))
+    table = np.array(rows)
     units = {'mass': 'kg', 'centre': 'm', 'inertia': 'kg m^2', 'thrust': 'N/(rad/s)^2',
              'torque': 'N m/(rad/s)^2'}
     return ((*draws.names, *(f'with_effects.{name}' for name in first)),

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from quad_ident_ros import schema
-from quad_ident_ros.effects.registry import Values
+from quad_ident_ros.effects.registry import titled, Values
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.vehicle import Vehicle
 from quad_ident_ros.vehicle_files.bodies import Body
@@ -126,8 +126,8 @@ class Drone:
             draft.take('rotor_radius', self.number('prop_radius'), 'm', self.place('prop_radius'))
         if self.spun() > 0.0:
             draft.take('rotor_inertia', self.spun(), 'kg m2', self.place('prop_inertia'))
-            draft.assumed.append('the angular momentum of the rotors is rotor_gyro, as in '
-                                 'crazyflow; drone-models to 0.1 has its moment about x the other '
+            draft.assumed.append(f'the {titled("rotor_gyro")} acts as in crazyflow; '
+                                 'drone-models to 0.1 has its moment about x the other '
                                  'way, which is small where the rotors turn about equally fast')
         return draft
 

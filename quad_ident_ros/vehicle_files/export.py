@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 from quad_ident_ros.data.record import FlightRecord
-from quad_ident_ros.effects.registry import Values
+from quad_ident_ros.effects.registry import titled, Values
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.greybox.flights import highest_voltage
 from quad_ident_ros.model.vehicle import Vehicle
@@ -130,8 +130,8 @@ def mean_left(vehicle: Vehicle, records: Iterable[FlightRecord]) -> float | None
     shares = []
     for record in records:
         if by_voltage and (full is None or not record.has('vbat')):
-            raise InputError('--flight: battery_sag depends on the voltage, which some of these '
-                             'flights do not have; give flights with vbat')
+            raise InputError(f'--flight: {titled("battery_sag")} depends on the voltage, which '
+                             'some of these flights do not have; give flights with vbat')
         time = record.t - record.t[0]
         left = 1.0 - (sag.get('per_second', 0.0) + sag.get('drain', 0.0)) * time
         if by_voltage and full is not None:
@@ -141,8 +141,8 @@ def mean_left(vehicle: Vehicle, records: Iterable[FlightRecord]) -> float | None
         shares.append(np.maximum(left, 0.0))
     mean = float(np.mean(np.concatenate(shares)))
     if not mean > 0.0:
-        raise InputError('--flight: battery_sag leaves no thrust in these flights; give shorter '
-                         'ones')
+        raise InputError(f'--flight: {titled("battery_sag")} leaves no thrust in these flights; '
+                         'give shorter ones')
     return mean
 
 

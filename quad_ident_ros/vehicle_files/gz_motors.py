@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from quad_ident_ros.effects.registry import Values
+from quad_ident_ros.effects.registry import titled, Values
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.vehicle import Vehicle
 from quad_ident_ros.vehicle_files.reading import Draft, per_sum_of_speeds
@@ -96,7 +96,7 @@ def take_motors(draft: Draft, plugins: Sequence[MotorPlugin], spinning: Sequence
     if rolling > 0.0:
         draft.assumed.append(
             f'rollingMomentCoefficient {rolling:g} is left out: its moment lies along the air '
-            'velocity, that of blade_flapping across it')
+            f'velocity, that of {titled("blade_flapping")} across it')
     draft.assumed.append(
         f'speeds are those of the rotors; the joints turn {slow:g} times slower '
         '(rotorVelocitySlowdownSim)')

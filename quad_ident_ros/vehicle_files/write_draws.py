@@ -38,13 +38,15 @@ def check_place(path: str | Path) -> None:
         raise InputError(f'{path}: this folder has files already; empty it, or name another')
 
 
-def write_array(path: str | Path, draws: Draws) -> None:
+def write_array(path: str | Path, draws: Draws,
+                on_progress: Callable[[float], None] = lambda share: None) -> None:
     """
     Write drawn vehicles as `names` (C,), `units` (C,) and `values` (N, C); raises InputError.
 
     By np.savez: numpy.load(path) has them, and the columns are those of table_of_draws.
+    on_progress is called with the share done, but for the writing itself.
     """
-    names, units, values = table_of_draws(draws)
+    names, units, values = table_of_draws(draws, on_progress)
     try:
         with replacing(path) as temporary:
             np.savez_compressed(temporary, names=np.array(names), units=np.array(units),

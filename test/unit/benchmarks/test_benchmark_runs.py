@@ -5,6 +5,7 @@
 import pytest
 
 from benchmarks import runs, tables
+from benchmarks.__main__ import main
 
 ROW = ('| what | target | measured | met |\n| ---- | -----: | -------: | --: |\n'
        '| time | <= 3 s | {} s | {} |\n\nMeasured: {}; Some CPU, 2 cores, one used; Python 3.')
@@ -31,6 +32,13 @@ def test_the_page_has_the_latest_run_and_a_file_the_older_ones(page):
     assert older.index('## 2026-01-02, Some CPU') < older.index('## 2026-01-01, Some CPU')
     [row] = [line for line in text.partition('bench: trend')[2].splitlines() if 'time' in line]
     assert [cell.strip() for cell in row.split('|')[1:-1]] == ['time', '4 s', '3 s', '2 s']
+
+
+def test_the_help_says_why_no_cluster_is_used(capsys):
+    with pytest.raises(SystemExit):
+        main(['--help'])
+    assert 'There is no --scheduler: most sections measure times of this machine' in ' '.join(
+        capsys.readouterr().out.split())
 
 
 def test_the_first_run_replaces_none(page):

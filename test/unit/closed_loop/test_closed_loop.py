@@ -23,7 +23,7 @@ from quad_ident_ros.closed_loop.reference import ASKED, reference_of, with_asked
 from quad_ident_ros.data.csv import write_csv
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.data.split import joined, split
-from quad_ident_ros.effects.registry import vector
+from quad_ident_ros.effects.registry import titled, vector
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import SENSORS
@@ -103,14 +103,14 @@ def test_a_lag_costs_bandwidth_and_a_drag_costs_tracking():
     assert fast is None or fast > 1.5 * corrected['z']
     assert found.bandwidth_without['rotor_drag']['z'] == pytest.approx(corrected['z'], rel=0.02)
     cells = {tuple(row[:2]): row[2:] for row in rows}
-    assert set(cells) == {(effect, of) for effect in TRUTH for of in (
+    assert set(cells) == {(titled(effect), of) for effect in TRUTH for of in (
         'position error', 'velocity error', 'yaw error', 'bandwidth x', 'bandwidth y',
         'bandwidth z', 'bandwidth yaw')}
     whole, less = found.tracking['corrected']['position'], found.without['rotor_drag']['position']
-    assert cells['rotor_drag', 'position error'] == [
+    assert cells[titled('rotor_drag'), 'position error'] == [
         f'{less:.3g}', f'{whole:.3g}', f'{whole - less:+.3g}', 'm']
     slow, less = corrected['x'], found.bandwidth_without['motor_lag']['x']
-    assert cells['motor_lag', 'bandwidth x'] == [
+    assert cells[titled('motor_lag'), 'bandwidth x'] == [
         f'{less:.3g}', f'{slow:.3g}', f'{less - slow:+.3g}', 'Hz']
 
 

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What `quad_ident fleet` takes and says, without the work itself."""
 
+from contextlib import nullcontext
 from dataclasses import replace
 import json
 from types import SimpleNamespace
@@ -9,11 +10,14 @@ from types import SimpleNamespace
 from full_disk import file_size_limit
 import pytest
 
+from quad_ident_ros import cluster
 from quad_ident_ros.cli.main import main, parser
 from quad_ident_ros.errors import InputError
 
 pytest.importorskip('pyarrow', reason="pyarrow is not installed: pip install '.[fleet]'")
+from quad_ident_ros.fleet import run  # noqa: E402, I100
 from quad_ident_ros.fleet.run import COMPARING, DIAGNOSING, Progress, Summary  # noqa: E402, I100
+from quad_ident_ros.fleet.store import prepare  # noqa: E402, I100
 from quad_ident_ros.report.fleet_run import (  # noqa: E402, I100
     dashboard,
     line,
@@ -54,6 +58,27 @@ def test_the_end_says_which_groups_have_no_values_of_single_flights():
     assert summary_text(Summary(12, groups, 0, (), ('it took long',) * 2), 'out').splitlines() == [
         '12 flights in 7 groups: 7 diagnosed', '2 groups without values of single flights: it '
         'took long; the same command tries again']
+
+
+def test_the_end_says_which_groups_gave_way_and_the_command_ends_with_3(tmp_path, monkeypatch):
+    groups = {'diagnosed': 1, 'refused': 0, 'failed': 0, 'timeout': 0}
+    summary = Summary(3, groups, 0, (), gave_way=('c.csv: another run has diagnosed it',))
+    assert summary_text(summary, 'out').splitlines() == [
+        '3 flights in 1 group: 1 diagnosed',
+        '1 group without a result: c.csv: another run has diagnosed it']
+    client = SimpleNamespace(scheduler_info=lambda **_: {'workers': {}}, ncores=dict)
+
+    def run_fleet(client, plan, out, **_):
+        prepare(out)
+        return summary
+
+    monkeypatch.setattr(cluster, 'cluster', lambda *_: nullcontext(client))
+    monkeypatch.setattr(run, 'run_fleet', run_fleet)
+    (tmp_path / 'a.csv').write_text('t,px\n0,1\n0.1,2\n')
+    assert main(['fleet', str(tmp_path / 'a.csv'), '--vehicle', 'hummingbird', '-o',
+                 str(tmp_path / 'out'), '--json', str(tmp_path / 'run.json')]) == 3
+    last = json.loads((tmp_path / 'run.json').read_text().splitlines()[-1])
+    assert last['gave_way'] == list(summary.gave_way)
 
 
 @pytest.mark.parametrize('drawn, said', [

@@ -76,8 +76,8 @@ def test_two_runs_of_which_one_has_more_flights_leave_each_flight_once(tmp_path,
 
 
 def test_of_two_runs_that_share_a_flight_the_first_to_write_stays(tmp_path, beside):
-    with pytest.raises(InputError, match=r'c\.csv: another run has diagnosed it meanwhile'):
-        beside('ab', 'bc')
+    why, = beside('ab', 'bc').gave_way
+    assert 'c.csv: another run has diagnosed it meanwhile' in why
     assert flights_in(tmp_path) == 'bc'
     assert len(read_table(tmp_path, 'groups')) == 1
 
@@ -87,8 +87,9 @@ def test_a_flight_of_another_group_is_left_once_where_one_group_gives_way(tmp_pa
     other = tmp_path / 'flights' / 'seven' / '2026-05-15'
     other.mkdir()
     (other / 'd.csv').write_text('t,px\n0,9\n0.1,2\n', encoding='utf-8')
-    with pytest.raises(InputError, match=r'c\.csv: another run has diagnosed it meanwhile'):
-        beside(['a', 'b', '../2026-05-15/d'], 'bc')
+    summary = beside(['a', 'b', '../2026-05-15/d'], 'bc')
+    assert summary.groups['diagnosed'] == 1 and summary.flights == 3
+    assert 'c.csv: another run has diagnosed it meanwhile' in summary.gave_way[0]
     assert flights_in(tmp_path) == 'bcd'
 
 
@@ -191,6 +192,53 @@ def test_a_name_that_is_no_text_stops_nothing(flight, tmp_path, monkeypatch):
         assert summary.groups['refused'] == 1
         assert read_table('fleet', 'flights')['path'].to_pylist() == [
             str(flight.parent / 'bad\\udcff.csv')]
+
+
+def unexpected(error):
+    """Return the work of workers in which an error of a library ends the group of one vehicle."""
+    def work(given, item):
+        if isinstance(item, Group) and item.vehicle == 'seven':
+            raise error
+        return given(item)
+
+    return work
+
+
+def test_an_unexpected_error_fails_its_group_alone(flight, tmp_path, monkeypatch):
+    """As of a library that ends outside the diagnosis: of a file that cannot be sent back."""
+    other = flight.parents[2] / 'eight' / '2026-05-14' / 'b.csv'
+    other.parent.mkdir(parents=True)
+    other.write_text('t,px\n0,3\n0.1,2\n', encoding='utf-8')
+    plan = planned(['flights'], vehicle='hummingbird')
+    caught(monkeypatch, unexpected(RuntimeError('a library\nends')))
+    summary = run.run_fleet(None, plan, 'fleet')
+    assert summary.groups == {'diagnosed': 0, 'refused': 1, 'failed': 1, 'timeout': 0}
+    rows = {row['vehicle']: row for row in read_table('fleet', 'groups').to_pylist()}
+    assert rows['seven']['status'] == 'failed'
+    assert rows['seven']['reason'] == 'RuntimeError: a library ends'
+    assert rows['eight']['status'] == 'refused'
+    caught(monkeypatch, lambda given, item: given(item))
+    assert run.run_fleet(None, plan, 'fleet').groups['refused'] == 2
+
+
+@pytest.mark.parametrize('error', [OSError(28, 'full', 'fleet/groups'), InputError('a version'),
+                                   ModuleNotFoundError('pyarrow')])
+def test_an_error_that_all_groups_would_have_ends_the_run(flight, monkeypatch, error):
+    caught(monkeypatch, unexpected(error))
+    with pytest.raises(type(error)):
+        run.run_fleet(None, planned(['flights'], vehicle='hummingbird'), 'fleet')
+
+
+def caught(monkeypatch, function):
+    """Have the work done here, and its errors come as those of workers do."""
+    def results(_, given, items, *__):
+        for item in items:
+            try:
+                yield Done(item, function(given, item))
+            except Exception as error:
+                yield Done(item, error=error)
+
+    monkeypatch.setattr(run, 'results', results)
 
 
 def test_results_that_are_written_somewhere_else_are_missed(flight, tmp_path, monkeypatch):

@@ -26,7 +26,7 @@ from quad_ident_ros.flight.measure import MOCAP_IMU
 from quad_ident_ros.model.vehicle import load_vehicle
 from quad_ident_ros.report import gap_page
 from quad_ident_ros.report.diagnosis import ALL, caution_lines, show, USUAL, VERDICT
-from quad_ident_ros.report.gap_pictures import _by_third, save_map
+from quad_ident_ros.report.gap_pictures import _by_third, map_rows, regimes, save_map
 from quad_ident_ros.report.received import diagnosis_from
 
 pytestmark = pytest.mark.slow
@@ -431,6 +431,28 @@ def test_the_map_shows_where_the_force_acts():
     assert table[0, 2] == pytest.approx(push, rel=1e-3) and (table[0, :2] < 0.1 * push).all()
     np.testing.assert_allclose(table[0, 3:], push / np.sqrt(3.0), rtol=0.1)
     assert not table[1:].any()      # what noise alone gives is taken off
+
+
+def test_the_numbers_of_the_map_name_the_regime_of_each_row():
+    flight = wrench(lambda speed: np.where(speed > 2.0, 1.0, 0.0))
+    rows = map_rows((flight,), ['speed', 'height'], VEHICLE)
+    assert [row[0] for row in rows] == [f'{name}, {third}' for name in ('speed', 'height')
+                                        for third in ('low', 'mid', 'high')]
+    assert rows[2][1:] == [f'{0.5 / VEHICLE.mass:.3g}', *['0'] * 5]
+
+
+def test_the_page_has_each_cell_of_the_map_as_text_with_channel_regime_and_unit(page, found):
+    text = page()
+    pictures = found.pictures
+    for stage, flights in (('before', pictures.wrench_before), ('after', pictures.wrench_after)):
+        caption = f'<caption>Velocity that the force and moment not explained {stage} cause'
+        content = text[text.index(caption):].partition('</table>')[0]
+        assert re.findall(r'<th scope="col"[^>]*>([^<]*)</th>', content) == [
+            'regime, third', *(f'{name}, m/s' for name in CHANNELS)]
+        rows = map_rows(flights, regimes(pictures.wrench_before), found.vehicle)
+        assert len(rows) > 6 and content.count('<th scope="row"') == len(rows)
+        for name, *cells in rows:
+            assert f'{name}</th>' + ''.join(f'<td>{cell}</td>' for cell in cells) in content
 
 
 def test_the_map_has_ink(tmp_path):

@@ -217,6 +217,19 @@ def test_a_screen_reader_gets_names_and_numbers_of_every_picture(shown):
     assert rows.all_inner_texts() == ['0.1', '0.5', '1']
 
 
+def test_a_screen_reader_gets_every_cell_of_the_map(shown):
+    page, _ = shown
+    page.get_by_text('The map in numbers').click()
+    for stage in ('before', 'after'):
+        cells = page.get_by_role('table', name=f'not explained {stage} cause')
+        assert cells.get_by_role('columnheader').all_inner_texts() == [
+            'regime, third', *(f'{name}, m/s' for name in ('Fx', 'Fy', 'Fz', 'Mx', 'My', 'Mz'))]
+        rows = cells.get_by_role('rowheader').all_inner_texts()
+        assert 'horizontal air speed, high' in rows
+        numbers = cells.get_by_role('cell').all_inner_texts()
+        assert len(numbers) == 6 * len(rows) and all(float(one) >= 0.0 for one in numbers)
+
+
 def test_buttons_zoom_where_there_is_no_keyboard(shown, over_time):
     page, data = shown
     tools = page.get_by_role('group', name='Zoom over time')

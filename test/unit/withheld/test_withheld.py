@@ -641,6 +641,13 @@ def test_the_trend_has_what_the_runs_reached():
     assert with_trend(DOCUMENT) == DOCUMENT.read_text(encoding='utf-8')
 
 
+def test_the_help_says_why_no_cluster_is_used(capsys):
+    from withheld.__main__ import main
+    with pytest.raises(SystemExit):
+        main(['--help'])
+    assert 'There is no --scheduler: workers of a cluster' in capsys.readouterr().out
+
+
 @pytest.mark.slow
 def test_the_command_hands_its_arguments_on(capfd):
     from quad_ident_ros.cli.main import main
