@@ -19,28 +19,30 @@ NEAR = 2            # flights, by which a step that is found may be dated wrongl
 
 def run(size, bar):
     """Return the results as Markdown; size: a Size; bar: makes progress bars."""
-    rows = []
     with bar('days', len(LAYOUTS) * size.day_fleets) as advance:
-        for days, each, apart in LAYOUTS:
-            places = days // 2 * each, days // 2 * each + each // 2
-            steps = [(place, step) for place in places for step in SIZES]
-            false, found = 0, np.zeros(len(steps), int)
-            for seed in range(size.day_fleets):
-                fleet = made(seed, days, each, apart, len(steps))
-                false += any(one.changes or one.drift for one in histories(fleet))
-                for one, (place, step) in zip(fleet, steps, strict=True):
-                    one.values[place:] += step
-                found += [any(abs(change.place - place) <= NEAR for change in one.changes)
-                          for one, (place, _) in zip(histories(fleet), steps, strict=True)]
-                advance()
-            shares = [f'{100 * count / size.day_fleets:.0f} %' for count in found]
-            if each == 1:       # no day has an inside
-                shares[len(SIZES):] = ['–'] * len(SIZES)
-            rows.append((f'{days} × {each}', f'{apart:g}', f'{false} of {size.day_fleets}',
-                         *shares))
+        rows = [row(*layout, size.day_fleets, advance) for layout in LAYOUTS]
     return markdown(('days × flights', 'days differ by', 'fleets with a false alarm',
-                     *(f'step of {step:g} between days' for step in SIZES),
-                     *(f'of {step:g} within a day' for step in SIZES)), rows)
+                     *(f'found: {step:g} between days' for step in SIZES),
+                     *(f'{step:g} within a day' for step in SIZES)), rows)
+
+
+def row(days, each, apart, fleets, advance=lambda: None):
+    """Return a row: false alarms of so many fleets, and shares of the steps that are found."""
+    places = days // 2 * each, days // 2 * each + each // 2
+    steps = [(place, step) for place in places for step in SIZES]
+    false, found = 0, np.zeros(len(steps), int)
+    for seed in range(fleets):
+        fleet = made(seed, days, each, apart, len(steps))
+        false += any(one.changes or one.drift for one in histories(fleet))
+        for one, (place, step) in zip(fleet, steps, strict=True):
+            one.values[place:] += step
+        found += [any(abs(change.place - place) <= NEAR for change in one.changes)
+                  for one, (place, _) in zip(histories(fleet), steps, strict=True)]
+        advance()
+    shares = [f'{100 * count / fleets:.0f} %' for count in found]
+    if each == 1:       # no day has an inside
+        shares[len(SIZES):] = ['–'] * len(SIZES)
+    return f'{days} × {each}', f'{apart:g}', f'{false} of {fleets}', *shares
 
 
 def made(seed, days, each, apart, vehicles):
