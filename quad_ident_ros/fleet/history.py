@@ -3,8 +3,11 @@
 """
 A parameter of a vehicle along its flights: whether it drifts, and at which flight it changed.
 
-A value is a level, a slope over time, steps, covariates (battery, temperature, season), and a
-scatter between flights that is estimated with them; single flights may be off. The posterior over
+A value is a level, a slope over time, steps, covariates (battery, temperature, season), and two
+scatters that are estimated with them: of single flights, and of days, because the flights of one
+day share weather, batteries and calibration. A step between days is therefore held against the
+scatter of days, one within a day against that of its flights. Where each day has one flight, both
+scatters are one. Single flights may be off. The posterior over
 the flight at which a step happened is that of a Bayesian change point (A. F. M. Smith, Biometrika
 62, 1975). Before looking, one change or drift is expected in all series together, so that a fleet
 with more vehicles, parameters or flights gives no more false alarms: an event of probability
@@ -60,6 +63,11 @@ class Series:
     covariates: np.ndarray
     names: tuple[str, ...] = ()
 
+    @property
+    def days(self) -> np.ndarray:
+        """Return the day (N,) of each flight, which begins at midnight UTC as that of a group."""
+        return np.floor(self.t / DAY)
+
 
 @dataclass(frozen=True)
 class Change:
@@ -100,8 +108,9 @@ class History:
     What a Series says.
 
     odd: numbers of the flights that are off by themselves; level, std: what the parameter is at
-    the last flight, of usual covariates; scatter: between flights, beside the standard errors;
-    course (N,): level, slope and steps along the flights.
+    the last flight, of usual covariates and on a usual day; scatter: of single flights, beside the
+    standard errors; day_scatter: of days, 0 where it cannot be distinguished from scatter or from
+    level; course (N,): level, slope and steps along the flights.
     """
 
     series: Series
@@ -111,6 +120,7 @@ class History:
     level: float
     std: float
     scatter: float
+    day_scatter: float
     course: np.ndarray
 
 
@@ -139,7 +149,7 @@ def history(series: Series, change: float, drift: float) -> History:
     """
     always = _with_season(series)
     terms = _terms(series, change, drift)
-    model = Regression(series.values, series.errors, always, terms)
+    model = Regression(series.values, series.errors, always, terms, series.days)
     _, chosen = model.search() if len(series.values) >= LEAST else (0.0, ())
     known = model.posterior(chosen)
     before = 1 + always.shape[1]
@@ -166,7 +176,7 @@ def history(series: Series, change: float, drift: float) -> History:
     return History(series, tuple(sorted(changes, key=lambda one: one.place)), slope,
                    tuple(sorted(odd)), float(row @ known.mean[lasting]),
                    float(np.sqrt(row @ known.covariance[np.ix_(lasting, lasting)] @ row)),
-                   known.scatter, design @ known.mean[lasting])
+                   known.scatter, known.day_scatter, design @ known.mean[lasting])
 
 
 def _terms(series: Series, change: float, drift: float) -> Terms:

@@ -3,11 +3,11 @@
 """
 Which terms a regression of values with standard errors needs, and how probable each one is.
 
-A value is normal about the sum of the terms, with its standard error and, beside it, a scatter
-that is the same for all values and is not known: standard errors that are too small make nothing
-sure. The evidence of a set of terms is a closed form at each scatter and width, and is summed over
-both (Bayesian model choice with conjugate priors; J. M. Bernardo and A. F. M. Smith, Bayesian
-Theory, 1994, section 6.1).
+A value is normal about the sum of the terms, with its standard error and, beside it, scatters
+that are the same for all values and are not known (see Scatter): standard errors that are too
+small make nothing sure. The evidence of a set of terms is a closed form at each scatter and width,
+and is summed over both (Bayesian model choice with conjugate priors; J. M. Bernardo and A. F. M.
+Smith, Bayesian Theory, 1994, section 6.1).
 """
 
 from collections.abc import Collection, Iterable
@@ -16,13 +16,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import logsumexp
 
-SCATTERS = 40
-"""
-Scatters that are summed over. Before looking all are as probable up to the most: one that is even
-in the logarithm would prefer none (A. Gelman, Bayesian Analysis 1, 2006).
-"""
-LEAST, MOST = 0.05, 10.0
-"""Standard errors, the least and the most scatter: less cannot be seen, more is a wrong error."""
+from quad_ident_ros.fleet.scatter import Scatter
+
 WIDTHS = (3.0, 30.0, 300.0)
 """
 Prior standard deviations of a term, in errors of one value: what concerns anybody is more than
@@ -32,8 +27,7 @@ ALWAYS = 30.0
 """The same of the terms that are always in: covariates."""
 LEVEL = 1e4
 """The same for the level, which has no prior value. All sets have it alike."""
-FARTHEST = 5.0      # standard deviations of the values, up to which the scatter is looked for
-NORMAL = 1.4826     # times the median absolute deviation is the standard deviation
+NEGLIGIBLE = -40.0  # log: what is less than this share of a sum changes none of its 16 digits
 PATIENCE = 2        # terms that a search adds without a gain: a change and the way back are two
 
 
@@ -64,54 +58,54 @@ class Posterior:
     """
     What is known of the coefficients of a set of terms: mean (M,), covariance (M, M).
 
-    In the order: level, terms that are always in, terms of the set. scatter: its posterior mean,
-    beside the standard errors.
+    In the order: level, terms that are always in, terms of the set. scatter, day_scatter: the
+    posterior means of those of single values and of days, beside the standard errors.
     """
 
     mean: np.ndarray
     covariance: np.ndarray
     scatter: float
+    day_scatter: float
 
 
 class Regression:
-    """Values (N,) with standard errors (N,), columns (N, A) that are always in, and Terms."""
+    """
+    Values (N,) with standard errors (N,), columns (N, A) that are always in, and Terms.
+
+    days (N,): which day each value is of, see Scatter; scatters, day_scatters (P,): of single
+    values and of days, at the points of its grid.
+    """
 
     def __init__(self, values: np.ndarray, errors: np.ndarray, always: np.ndarray,
-                 terms: Terms) -> None:
+                 terms: Terms, days: np.ndarray | None = None) -> None:
         self.terms = terms
+        self._scatter = Scatter(values, errors, days)
+        self.scatters, self.day_scatters = self._scatter.singles, self._scatter.days
         self._level = float(np.median(values))
-        self._values = values - self._level
-        usual = float(np.median(errors))
-        most = max(MOST * usual, FARTHEST * NORMAL * float(np.median(np.abs(self._values))))
-        self.scatters = np.geomspace(LEAST * usual, most, SCATTERS)
-        self._prior = np.log(self.scatters / self.scatters.sum())   # even, on a grid that is not
-        self._weights = 1.0 / (errors ** 2 + self.scatters[:, None] ** 2)
-        self._unit = np.mean(self._weights, axis=1) ** -0.5     # error of one value, (G,)
         self._always = np.column_stack([np.ones(len(values)), always])
-        self._known: dict[frozenset, float] = {}
+        self._columns = np.column_stack([self._always, terms.columns])
+        centred = values - self._level
+        self._along = self._scatter.products(centred, self._columns)
+        self._squares = self._scatter.squares(self._columns)
+        self._whole = self._scatter.squares(centred[:, None])[:, 0]
+        # What is worked out once: a search asks for the same again and again.
+        self._rows: dict[int, np.ndarray] = {}
+        self._scores: dict[frozenset, float] = {}
+        self._gained: dict[frozenset, np.ndarray] = {}
 
     def score(self, chosen: Collection[Term]) -> float:
         """Return the log of the posterior of a set of terms, up to a constant of the values."""
         key = frozenset(chosen)
-        if key not in self._known:
-            self._known[key] = float(logsumexp(self._evidence(chosen)[0])) + self._odds(chosen)
-        return self._known[key]
+        if key not in self._scores:
+            self._scores[key] = float(logsumexp(self._evidence(chosen)[0])) + self._odds(chosen)
+        return self._scores[key]
 
     def gains(self, chosen: Collection[Term]) -> np.ndarray:
         """Return by how much each term in each width, (K, W), raises the score of a set."""
-        evidence, design, factor, cross = self._evidence(chosen)
-        columns, weights = self.terms.columns, self._weights
-        power = weights @ columns ** 2
-        shared = np.einsum('gn,nm,nk->gmk', weights, design, columns, optimize=True)
-        along = (weights * self._values) @ columns
-        solved = np.linalg.solve(factor, np.concatenate([shared, cross[..., None]], axis=2))
-        power = power - np.sum(solved[..., :-1] ** 2, axis=1)
-        along = along - np.einsum('gmk,gm->gk', solved[..., :-1], solved[..., -1])
-        widths = (np.array(WIDTHS) * self._unit[:, None])[:, None, :] ** 2      # (G, 1, W)
-        spread = 1.0 + widths * np.maximum(power, 0.0)[..., None]
-        gain = -0.5 * np.log(spread) + 0.5 * widths * along[..., None] ** 2 / spread
-        told = logsumexp(evidence[:, None, None] + gain, axis=0) - logsumexp(evidence)
-        return told + self.terms.log_odds[:, None] - np.log(len(WIDTHS))
+        key = frozenset(chosen)
+        if key not in self._gained:
+            self._gained[key] = self._gains(chosen)
+        return self._gained[key]
 
     def search(self, start: Iterable[Term] = (), among: Collection[str] = ()
                ) -> tuple[float, tuple[Term, ...]]:
@@ -126,7 +120,7 @@ class Regression:
         chosen: tuple[Term, ...] = ()
         best = (self.score(fixed), fixed)
         idle = 0
-        while idle < PATIENCE and len(fixed) + len(chosen) < len(self._values) // 2:
+        while idle < PATIENCE and len(fixed) + len(chosen) < len(self._columns) // 2:
             chosen = self._settled(fixed, (*chosen, self._top((*fixed, *chosen), allowed)),
                                    allowed)
             value = self.score((*fixed, *chosen))
@@ -142,11 +136,10 @@ class Regression:
             kept = top
 
     def coefficients(self, chosen: Collection[Term]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return the shares (G,) of the scatters, means (G, M) and covariances (G, M, M)."""
-        evidence, _, factor, cross = self._evidence(chosen)
-        inverse = np.linalg.inv(factor)
+        """Return the shares (P,) of the grid, means (P, M) and covariances (P, M, M)."""
+        evidence, inverse, solved = self._evidence(chosen)
         covariances = np.swapaxes(inverse, 1, 2) @ inverse
-        means = (covariances @ cross[..., None])[..., 0]
+        means = (solved[:, None] @ inverse)[:, 0]
         means[:, 0] += self._level
         return np.exp(evidence - logsumexp(evidence)), means, covariances
 
@@ -169,7 +162,8 @@ class Regression:
         apart = means - mean
         whole = (np.einsum('g,gij->ij', shares, covariances)
                  + np.einsum('g,gi,gj->ij', shares, apart, apart))
-        return Posterior(mean, whole, float(shares @ self.scatters))
+        return Posterior(mean, whole, float(shares @ self.scatters),
+                         float(shares @ self.day_scatters))
 
     def design(self, chosen: Collection[Term]) -> np.ndarray:
         """Return the columns (N, M) of the coefficients of a set: level, always, terms."""
@@ -200,25 +194,63 @@ class Regression:
         return float(sum(self.terms.log_odds[term.number] - np.log(len(WIDTHS))
                          for term in chosen))
 
-    def _evidence(self, chosen: Collection[Term]) -> tuple:
+    def _evidence(self, chosen: Collection[Term]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """
-        Return the log-evidence (G,) at each scatter, the design and what solves it.
+        Return the log-evidence (P,) at each point of the grid, and what solves a set.
 
-        Design (N, M); factor (G, M, M): Cholesky's of the precision; cross (G, M).
+        The inverse (P, M, M) of Cholesky's factor of the precision; it times the values (P, M).
         """
-        design = self.design(chosen)
+        numbers = self._numbers(chosen)
         given = np.array([LEVEL, *np.full(self._always.shape[1] - 1, ALWAYS),
                           *(WIDTHS[term.width] for term in chosen)])
-        prior = (given * self._unit[:, None]) ** -2.0
-        weighted = self._weights[:, :, None] * design
-        precision = np.swapaxes(weighted, 1, 2) @ design
-        precision = precision + prior[:, :, None] * np.eye(design.shape[1])
+        prior = (given * self._scatter.error[:, None]) ** -2.0
+        precision = np.stack([self._row(number)[:, numbers] for number in numbers], axis=1)
+        precision = precision + prior[:, :, None] * np.eye(len(numbers))
         factor = np.linalg.cholesky(precision)
-        cross = np.einsum('gnm,n->gm', weighted, self._values)
-        solved = np.linalg.solve(factor, cross[..., None])[..., 0]
-        power = self._weights @ self._values ** 2
+        inverse = np.linalg.inv(factor)
+        solved = (inverse @ self._along[:, numbers, None])[..., 0]
         logs = 2.0 * np.sum(np.log(np.einsum('gii->gi', factor)), axis=1)
-        evidence = self._prior + 0.5 * (np.sum(np.log(self._weights), axis=1)
-                                        + np.sum(np.log(prior), axis=1)
-                                        - logs - power + np.sum(solved ** 2, axis=1))
-        return evidence, design, factor, cross
+        evidence = self._scatter.prior + 0.5 * (
+            self._scatter.determinant + np.sum(np.log(prior), axis=1) - logs - self._whole
+            + np.sum(solved ** 2, axis=1))
+        return evidence, inverse, solved
+
+    def _gains(self, chosen: Collection[Term]) -> np.ndarray:
+        evidence, inverse, solved = self._evidence(chosen)
+        always = self._always.shape[1]
+        shared = np.stack([self._row(number)[:, always:] for number in self._numbers(chosen)],
+                          axis=1)
+        shared = inverse @ shared
+        power = self._squares[:, always:] - np.einsum('pmk,pmk->pk', shared, shared)
+        power = np.maximum(power, 0.0)
+        along = self._along[:, always:] - (solved[:, None] @ shared)[:, 0]
+        evidence = (evidence - logsumexp(evidence))[:, None]
+        widths = (np.array(WIDTHS) * self._scatter.error[:, None]) ** 2      # (P, W)
+        # A term raises a point by no more than this, and is worth what it is at the best one.
+        most = evidence + 0.5 * along ** 2 / (1.0 / widths[:, -1:] + power)
+        best = [int(np.argmax(evidence))]
+        least = np.min(_gain(widths[best], power[best], along[best]), axis=(0, 2)) + evidence[best]
+        kept = np.flatnonzero(np.max(most - least, axis=1) > NEGLIGIBLE)
+        gain = _gain(widths[kept], power[kept], along[kept]) + evidence[kept][..., None]
+        top = np.max(gain, axis=0)      # by hand, for it is most of the work
+        told = top + np.log(np.sum(np.exp(gain - top), axis=0))
+        return told + self.terms.log_odds[:, None] - np.log(len(WIDTHS))
+
+    def _numbers(self, chosen: Collection[Term]) -> list[int]:
+        """Return which columns a set has: those that are always in, and those of its terms."""
+        always = self._always.shape[1]
+        return [*range(always), *(always + term.number for term in chosen)]
+
+    def _row(self, number: int) -> np.ndarray:
+        """Return the products (P, A + K) of a column with all columns."""
+        if number not in self._rows:
+            self._rows[number] = self._scatter.products(
+                self._columns[:, number], self._columns)
+        return self._rows[number]
+
+
+def _gain(widths: np.ndarray, power: np.ndarray, along: np.ndarray) -> np.ndarray:
+    """Return the gains (P, K, W) of terms by widths (P, W), their power and along (P, K)."""
+    squares = widths[:, None, :]
+    spread = 1.0 + squares * power[..., None]
+    return 0.5 * (squares * along[..., None] ** 2 / spread - np.log(spread))

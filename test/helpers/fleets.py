@@ -38,6 +38,18 @@ def steady(rng, count, *, error=1.0, scatter=1.0, told=1.0, **options):
     return series(values, told * error, **options)
 
 
+def in_days(rng, days, each, *, apart=0.0, error=0.3, **options):
+    """
+    Return a Series of a vehicle that stays as it is, with flights an hour apart on each of days.
+
+    Args: each: flights of a day, whose values differ by 1, error of it their standard errors;
+    apart: standard deviation of days.
+    """
+    day = np.repeat(np.arange(days), each)
+    values = 3.0 + rng.standard_normal(days * each) + apart * rng.standard_normal(days)[day]
+    return series(values, error, days=day + np.tile(np.arange(each), days) / 24.0, **options)
+
+
 TRACKED = {('rotor_drag', 'coefficient'): ('kg/s', 0.06, 0.004, 0.001),
            ('com_offset', 'x'): ('m', 0.0, 5e-4, 2e-4),
            ('thrust_scale', 'factor'): ('1', 1.0, 0.01, 0.004)}

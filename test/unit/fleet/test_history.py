@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Drifts and changes along the flights of vehicles whose truth is known."""
 
-from fleets import series, steady
+from fleets import in_days, series, steady
 import numpy as np
 import pytest
 from scipy.stats import binom
@@ -132,3 +132,52 @@ def test_units_do_not_matter(factor):
     assert scaled.place == plain.place
     assert scaled.probability == pytest.approx(plain.probability, abs=1e-6)
     assert scaled.size == pytest.approx(factor * plain.size, rel=1e-4)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize('apart', [0.0, 1.0, 2.0, 4.0])
+def test_days_that_differ_are_no_change(apart):
+    """
+    Whatever whole days differ by, no more fleets without a change have an alarm than stated.
+
+    Six vehicles with five flights on each of six days; of 40 such fleets 28 had one where each
+    flight was held against single flights alone, and days differed by twice what these do.
+    """
+    fleets = 40
+    false = sum(alarms(histories([in_days(rng, 6, 5, apart=apart) for _ in range(6)])) > 0
+                for rng in map(np.random.default_rng, range(fleets)))
+    assert false <= binom.ppf(0.999, fleets, FALSE)
+
+
+def test_the_scatter_of_days_is_estimated_beside_that_of_their_flights():
+    """Days that differ by 2, flights of one day by 1, of which 0.3 is told as standard error."""
+    found, = histories([in_days(np.random.default_rng(14), 40, 4, apart=2.0)])
+    # Estimates from 40 days and 120 differences within them: three standard errors of each.
+    assert found.day_scatter == pytest.approx(2.0, rel=3 / np.sqrt(2 * 40))
+    assert np.hypot(found.scatter, 0.3) == pytest.approx(1.0, rel=3 / np.sqrt(2 * 120))
+
+
+@pytest.mark.parametrize('place', [34, 36])
+def test_a_change_within_a_day_and_between_days_is_found_although_days_differ(place):
+    """A crash at noon, in the middle of a day of four flights, or a part changed overnight."""
+    rng = np.random.default_rng(15)
+    one = in_days(rng, 18, 4, apart=1.0)
+    one.values[place:] += 8.0
+    change, = histories([one])[0].changes
+    assert abs(change.place - place) <= 2 and change.first <= place <= change.last
+    assert change.size == pytest.approx(8.0, abs=3 * change.std)
+
+
+def test_a_crash_at_noon_is_found_where_days_differ_as_much():
+    """Its step within the day is held against the flights of that day, and not against days."""
+    one = in_days(np.random.default_rng(16), 6, 6, apart=4.0)
+    one.values[15:] += 8.0
+    change, = histories([one])[0].changes
+    assert change.place == 15
+
+
+def test_days_count_only_where_they_have_several_flights():
+    """A day of one flight has no scatter of its own, and neither has one day alone."""
+    rng = np.random.default_rng(17)
+    for one in (steady(rng, 12), in_days(rng, 1, 12)):
+        assert histories([one])[0].day_scatter == 0.0

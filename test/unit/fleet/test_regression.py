@@ -69,3 +69,35 @@ def test_coefficients_of_exact_values_are_recovered():
     assert [term.number for term in chosen] == [1]
     assert score == one.score(chosen)
     assert one.posterior(chosen).mean == pytest.approx([4.0, 2.5], abs=1e-3)
+
+
+def test_the_evidence_with_days_is_the_normal_density_summed_over_both_scatters():
+    """Values of one day are correlated; the score is that of the density that is written out."""
+    rng = np.random.default_rng(4)
+    days = np.array([3.0, 3.0, 5.0, 8.0, 8.0, 8.0, 9.0])
+    values, errors = rng.normal(2.0, 1.0, COUNT), rng.uniform(0.2, 0.6, COUNT)
+    columns = rng.normal(size=(COUNT, 4))
+    terms = Terms(columns, np.full(4, -2.0), np.array(['a'] * 4), np.arange(4))
+    one = Regression(values, errors, np.zeros((COUNT, 0)), terms, days)
+    together = (days[:, None] == days).astype(float)
+
+    def density(chosen):
+        logs = []
+        for scatter, apart in zip(one.scatters, one.day_scatters, strict=True):
+            cover = np.diag(errors ** 2 + scatter ** 2) + apart ** 2 * together
+            unit = np.mean(1.0 / np.diag(cover)) ** -0.5
+            cover += (LEVEL * unit) ** 2
+            for term in chosen:
+                column = columns[:, term.number]
+                cover += (WIDTHS[term.width] * unit) ** 2 * np.outer(column, column)
+            away = values - np.median(values)
+            logs.append(np.log(scatter * apart) - 0.5 * (
+                np.linalg.slogdet(cover)[1] + away @ np.linalg.solve(cover, away)))
+        return logsumexp(logs)
+
+    chosen = (Term(1, 0), Term(2, 1))
+    odds = 2 * (-2.0 - np.log(len(WIDTHS)))
+    assert one.score(chosen) - one.score(()) == pytest.approx(
+        density(chosen) - density(()) + odds, abs=1e-5)
+    gains = one.gains(chosen[:1])
+    assert gains[2, 1] == pytest.approx(one.score(chosen) - one.score(chosen[:1]), abs=1e-6)
