@@ -107,7 +107,9 @@ def judge(label, found):
     verdict, findings = set(found.get('verdict', ())), findings_of(found)
     doubts = undetermined_of(found)
     named, effects = verdict & set(EFFECTS), truth & set(EFFECTS)
-    ranking = [row['effect'] for row in found.get('ranking', ())]
+    # What the label allows beside the effects is there, too, and decides nothing.
+    ranking = [row['effect'] for row in found.get('ranking', ())
+               if row['effect'] not in label.get('beside', ())]
     exact = is_exact(label, found)
     twins = twins_of(label)
     if doubts and (label['kind'] == 'poor' or doubts == twins):

@@ -178,6 +178,13 @@ def test_unknown_is_said_instead_where_nothing_right_is_named(verdict, said):
     assert scores.judge(label(['wind']), diagnosis(*verdict))['instead'] is said
 
 
+def test_what_a_label_allows_beside_the_effects_decides_nothing_about_the_first():
+    wrong_file = label(['wind']) | {'beside': ['inertia_mismatch']}
+    assert scores.judge(wrong_file, diagnosis('inertia_mismatch', 'wind'))['first']
+    assert not scores.judge(wrong_file, diagnosis('inertia_mismatch', 'inflow'))['first']
+    assert not scores.judge(label(['wind']), diagnosis('inertia_mismatch', 'wind'))['first']
+
+
 def test_precision_and_recall_of_a_mixture():
     row = scores.judge(label(['wind', 'motor_lag', 'inflow'], kind='mixture'),
                        diagnosis('motor_lag', 'wind', 'body_drag', 'gyro_bias'))
