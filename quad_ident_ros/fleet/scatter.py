@@ -14,8 +14,9 @@ from scipy.special import logsumexp
 
 SCATTERS = 40
 """
-Scatters of single values that are summed over. Before looking all are as probable up to the most,
-and so are those of days: what is even in the logarithm would prefer none (A. Gelman, Bayesian
+Scatters of single values that are summed over. Before looking all are as probable up to the most:
+what is even in the logarithm would prefer none. That of days has half of Cauchy's distribution, as
+wide as single values scatter: few days would leave an even one too wide (A. Gelman, Bayesian
 Analysis 1, 2006).
 """
 COARSER = 3
@@ -57,7 +58,9 @@ class Scatter:
         between = np.zeros(1) if alike else singles[::COARSER]
         self.singles = np.repeat(singles, len(between))
         self.days = np.tile(between, SCATTERS)
-        even = np.log(self.singles) + (0.0 if alike else np.log(self.days))
+        even = np.log(self.singles)
+        if not alike:
+            even += np.log(self.days) - np.log1p(self.days ** 2 / (usual ** 2 + self.singles ** 2))
         self.prior = even - logsumexp(even)
         squares = between[:, None] ** 2
         self._weights = 1.0 / (errors ** 2 + singles[:, None] ** 2)             # (G, N)

@@ -91,7 +91,9 @@ def test_the_evidence_with_days_is_the_normal_density_summed_over_both_scatters(
                 column = columns[:, term.number]
                 cover += (WIDTHS[term.width] * unit) ** 2 * np.outer(column, column)
             away = values - np.median(values)
-            logs.append(np.log(scatter * apart) - 0.5 * (
+            # Half of Cauchy's distribution for days, about as wide as single values scatter.
+            prior = scatter * apart / (1.0 + apart ** 2 / (np.median(errors) ** 2 + scatter ** 2))
+            logs.append(np.log(prior) - 0.5 * (
                 np.linalg.slogdet(cover)[1] + away @ np.linalg.solve(cover, away)))
         return logsumexp(logs)
 
