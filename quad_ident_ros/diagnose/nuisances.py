@@ -89,8 +89,7 @@ def late_gyro(selection: Selection, flights: Sequence[Flight], vehicle: Vehicle,
         late += part
         weights[[best.estimate.columns.index(column) for column in columns]] = later
     # That a gyro is late is what is asked here, and no error of the answer.
-    covariance = selection.covariance - selection.joint.sensors
-    error = float(np.sqrt(max(weights @ covariance @ weights, 0.0)))
+    error = float(np.sqrt(max(weights @ selection.covariance_by_noise @ weights, 0.0)))
     return min(float(late), rules.low_pass) if late - SURE * error <= rules.low_pass else 0.0
 
 
@@ -107,7 +106,8 @@ def late_controller(selection: Selection, flights: Sequence[Flight], vehicle: Ve
     if not columns or not put_right(flights):
         return 0.0
     [column] = columns
-    error = selection.errors[best.estimate.columns.index(column)]
+    place = best.estimate.columns.index(column)
+    error = float(np.sqrt(max(selection.covariance_by_noise[place, place], 0.0)))
     delay = best.estimate.z[column] - nominal(vehicle)[column]
     period = max(flight.clock.period for flight in flights if flight.clock is not None)
     return float(delay) if controllers_own(delay, error, period) else 0.0

@@ -63,10 +63,10 @@ class Rules:
         one another by 10 to 30 % over the range in which they are used. A fleet may know better.
       form_time: s over which that error stays the same: that of a turn or a stop of a flight.
     Probability:
-      calibration: constant, and weights of the root of the contribution, of the logarithm of one
-        plus the standard errors from no effect and of the companions in the log odds of being
-        present, fitted to the flights of development of the withheld check: docs/method.md has
-        the command.
+      calibration: constant, and weights of the size that the contribution shows, of the logarithm
+        of one plus the standard errors from no effect and of the companions in the log odds of
+        being present, fitted to the flights of development of the withheld check: docs/method.md
+        has the command.
       companion: contribution and stability (standard errors) from which on another effect clearly
         contributes.
     Gap (see gap.py):

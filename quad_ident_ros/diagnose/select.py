@@ -344,9 +344,10 @@ class _Search:
             if are_alike(values, fit.nuisances.spreads[places], self.rules.prior_odds):
                 start = fit.z.copy()
                 start[list(cause.columns)] += values.mean(axis=0)
-                lower, upper, _ = limits(self.vehicle)
-                if np.any((start < lower) | (start > upper)):
-                    continue    # states that are stamped early are no delay
+                lower, upper, _ = limits(self.vehicle)[:, list(cause.columns)]
+                moved = start[list(cause.columns)]
+                if np.any((moved < lower) | (moved > upper)):
+                    continue    # no vehicle has it: states that are stamped early are no delay
                 whole = key_of((laws[0], *self.best.chosen))
                 self.fit(whole, start, fit.nuisances, fit.starts)
                 self.best = self.judge(whole)

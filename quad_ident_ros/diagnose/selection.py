@@ -58,6 +58,13 @@ class Selection:
                          self.errors / np.maximum(self.joint.errors, 1e-300), 1.0)
         return self.joint.covariance * np.outer(wider, wider)
 
+    @property
+    def covariance_by_noise(self) -> np.ndarray:
+        """Return the covariance (C, C) without what errors of the sensors make of it."""
+        wider = np.sqrt(np.diag(self.covariance) / np.maximum(np.diag(self.joint.covariance),
+                                                              1e-300))
+        return self.covariance - self.joint.sensors * np.outer(wider, wider)
+
 
 def posteriors(fitted: Sequence[Fitted], ranked: list, causes: Sequence[Candidate],
                tried: Collection[tuple], rules: Rules) -> dict:

@@ -25,6 +25,7 @@ from quad_ident_ros.greybox.normal import Normal, solve
 
 UNIFORM = 3.0 ** -0.5       # standard deviation of what is anywhere within its tolerance
 HORIZONTAL = slice(0, 2)
+STILL = 1e-6        # m/s, m/s^2 of a mean motion: below it there is none to go with
 
 
 def sensor_covariance(fit: Estimate, flights: Sequence[Flight], gravity: float, rules: Rules,
@@ -50,7 +51,8 @@ def sensor_covariance(fit: Estimate, flights: Sequence[Flight], gravity: float, 
 def _patterns(flights: Sequence[Flight], gravity: float, level: float, rules: Rules
               ) -> Iterator[list[np.ndarray]]:
     """Yield one standard deviation of each error of a sensor, (B, n, 12) of each flight."""
-    recorded = [recorded_along(flight) for flight in flights]
+    recorded = [recorded_along(replace(flight, states=_without_gaps(flight)))
+                for flight in flights]
     off = rules.sensitivity * UNIFORM
     yield [_of(one, attitude=off * _integral(one[..., 10:], flight.period),
                rate=off * one[..., 10:])
@@ -65,9 +67,22 @@ def _patterns(flights: Sequence[Flight], gravity: float, level: float, rules: Ru
     pull = gravity * level * UNIFORM
     moves = [_gained(one) for one in recorded]
     for gained in zip(*moves, strict=True):
-        usual = np.sqrt(np.mean([np.mean(one[:, -1] ** 2) for one in gained])) / flights[0].segment
-        yield [_pulled(pull / max(usual, 1e-300) * each, flight.period)
-               for each, flight in zip(gained, flights, strict=True)]
+        usual = np.sqrt(np.mean([np.mean((one[:, -1] / flight.segment) ** 2)
+                                 for one, flight in zip(gained, flights, strict=True)]))
+        if usual > STILL:
+            yield [_pulled(pull / usual * each, flight.period)
+                   for each, flight in zip(gained, flights, strict=True)]
+
+
+def _without_gaps(flight: Flight) -> np.ndarray:
+    """Return the states (N, 13) with what is not seen, such as a glitch, drawn through."""
+    states, t = flight.states.copy(), flight.course.t
+    # Errors have three numbers for the four of an attitude, of which the patterns need none.
+    for column, error in zip((*range(6), *range(10, 13)), (*range(6), *range(9, 12)), strict=True):
+        seen = flight.seen[:, error].astype(bool)
+        if seen.any():
+            states[:, column] = np.interp(t, t[seen], states[seen, column])
+    return states
 
 
 def _gained(recorded: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

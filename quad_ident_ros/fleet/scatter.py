@@ -60,7 +60,10 @@ class Scatter:
         self.days = np.tile(between, SCATTERS)
         even = np.log(self.singles)
         if not alike:
-            even += np.log(self.days) - np.log1p(self.days ** 2 / (usual ** 2 + self.singles ** 2))
+            # Of the scatters of days at each one of single values, all of them together one.
+            wide = usual ** 2 + singles[:, None] ** 2
+            share = np.log(between) - np.log1p(between ** 2 / wide)
+            even += (share - logsumexp(share, axis=1, keepdims=True)).ravel()
         self.prior = even - logsumexp(even)
         squares = between[:, None] ** 2
         self._weights = 1.0 / (errors ** 2 + singles[:, None] ** 2)             # (G, N)

@@ -191,13 +191,15 @@ def _spin(told, vehicle):
     if scores[best] < _sure(told) or scores[best] < scores[spins] + BETTER:
         return []
     # Roll and pitch leak into the yaw of real vehicles, which looks like other spins, too.
-    severity = 'error' if scores[spins] < PART * scores[best] else 'warning'
+    wrong = scores[spins] < PART * scores[best]
+    severity, verb, mend = (('error', 'not', 'correct') if wrong
+                            else ('warning', 'rather than', 'check'))
     return [Finding(
         'rotor_spin', severity, f'cmd1 to cmd{len(spins)}',
         f'the commands yaw the body as spins {list(best)} would (correlation '
-        f'{scores[best]:.2f}), not as those of {vehicle.name}, {list(spins)} '
+        f'{scores[best]:.2f}), {verb} as those of {vehicle.name}, {list(spins)} '
         f'({scores[spins]:.2f})',
-        'correct the spins in the vehicle file (+1: the reaction torque on the body is about +z), '
+        f'{mend} the spins in the vehicle file (+1: the reaction torque on the body is about +z), '
         'or the order of the commands')]
 
 

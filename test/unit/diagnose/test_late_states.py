@@ -77,8 +77,7 @@ def test_delays_and_lags_together_are_held_against_the_low_pass(values, errors, 
         covariance[0, 1] = covariance[1, 0] = correlation * errors[0] * errors[1]
     causes = [SimpleNamespace(effect=name.partition('.')[0], columns=(INDEX[name],))
               for name in values]
-    joint = SimpleNamespace(sensors=np.zeros(covariance.shape))
-    selection = SimpleNamespace(covariance=covariance, joint=joint, best=SimpleNamespace(
+    selection = SimpleNamespace(covariance_by_noise=covariance, best=SimpleNamespace(
         estimate=SimpleNamespace(z=z, columns=columns), causes=causes))
     assert nuisances.late_gyro(selection, [], vehicle, RULES) == pytest.approx(late, abs=1e-12)
 

@@ -36,9 +36,9 @@ def fitted(chosen, value, error, evidence):
     return Fitted(chosen, estimate, evidence, (0, 0))
 
 
-def selection(*sets, least=0.0):
+def selection(*sets, least=0.0, sensors=0.0):
     covariance = np.array([[least ** 2]])
-    joint = Joint(covariance, 0.0 * covariance, (), covariance)
+    joint = Joint(covariance, np.array([[sensors ** 2]]), (), covariance)
     return Selection(sets[0], sets, {}, None, {}, [], joint)
 
 
@@ -55,6 +55,16 @@ def test_one_set_has_its_own():
 
 def test_no_error_is_smaller_than_what_formulas_may_be_wrong_by():
     assert errors(NARROW, least=0.3) == pytest.approx([0.3])
+
+
+def test_errors_of_sensors_can_be_left_out_of_the_covariance():
+    """Where sets differ by more than the Joint says, all parts of it are as much wider."""
+    chosen = selection(NARROW, least=0.5, sensors=0.3)
+    assert chosen.covariance_by_noise == pytest.approx(np.array([[0.5 ** 2 - 0.3 ** 2]]))
+    wide = fitted((EFFECT, own(0.01)), 3.0, 0.1, 0.0)
+    chosen = selection(NARROW, wide, least=0.5, sensors=0.3)
+    assert chosen.covariance_by_noise == pytest.approx(0.64 * chosen.covariance)
+    assert chosen.errors[0] > 1.0
 
 
 def test_the_covariance_has_the_errors_that_are_told():

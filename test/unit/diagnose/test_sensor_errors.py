@@ -11,8 +11,10 @@ from scipy.spatial.transform import Rotation
 
 from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.diagnose.rules import RULES
+from quad_ident_ros.diagnose.sensor_errors import _patterns
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import Noise, Sensors
+from quad_ident_ros.greybox.flights import flight_of, track_of
 from quad_ident_ros.model.vehicle import load_vehicle
 
 HUMMINGBIRD = load_vehicle('hummingbird')
@@ -87,6 +89,36 @@ def test_inertia_is_known_as_well_as_the_noise_lets_it_where_the_attitude_follow
     for value in parameters_of(found, 'inertia_mismatch'):
         assert abs(value.value - 1.1) <= 3.0 * value.std
         assert value.std < 0.3 * RULES.sensitivity
+
+
+def patterns_of(flight):
+    """Return the patterns of a flight, as one array."""
+    return np.array([pattern for [pattern] in _patterns([flight], 9.81, RULES.levelling, RULES)])
+
+
+@pytest.mark.parametrize(('column', 'error', 'spike'), [(11, 10, 30.0), (1, 1, 20.0)])
+def test_a_sample_that_is_not_seen_has_no_part_in_a_pattern(column, error, spike):
+    """A glitch of the rate, or of the position, has no weight: its neighbours have."""
+    [record, *_] = flights({}, TRACKED)
+    flight = flight_of(track_of(record, HUMMINGBIRD))
+    place = int(flight.first[5] + flight.count)
+    states, seen = flight.states.copy(), flight.seen.copy()
+    states[place, column] += spike
+    seen[place, error] = False
+    right, wrong = patterns_of(flight), patterns_of(replace(flight, states=states, seen=seen))
+    scale = np.sqrt(np.mean(right ** 2, axis=(1, 2), keepdims=True))
+    assert np.max(np.abs(wrong - right) / np.maximum(scale, 1e-12)) < 1.0
+    seen[:] = True
+    glitch = patterns_of(replace(flight, states=states, seen=seen))
+    assert np.max(np.abs(glitch - right) / np.maximum(scale, 1e-12)) > 10.0
+
+
+def test_a_vehicle_that_stands_still_has_no_level_to_go_with_its_motion():
+    record = fly_closed_loop(HUMMINGBIRD, {}, 'hover', duration=5.0, seed=0)
+    flight = flight_of(track_of(record, HUMMINGBIRD))
+    still = np.zeros(flight.states.shape)
+    still[:, 6] = 1.0
+    assert len(list(_patterns([replace(flight, states=still)], 9.81, RULES.levelling, RULES))) == 2
 
 
 @pytest.mark.slow

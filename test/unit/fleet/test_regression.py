@@ -91,9 +91,12 @@ def test_the_evidence_with_days_is_the_normal_density_summed_over_both_scatters(
                 column = columns[:, term.number]
                 cover += (WIDTHS[term.width] * unit) ** 2 * np.outer(column, column)
             away = values - np.median(values)
-            # Half of Cauchy's distribution for days, about as wide as single values scatter.
-            prior = scatter * apart / (1.0 + apart ** 2 / (np.median(errors) ** 2 + scatter ** 2))
-            logs.append(np.log(prior) - 0.5 * (
+            # Half of Cauchy's distribution for days, as wide as single values scatter: of all that
+            # there are beside one scatter of these the shares sum to 1.
+            wide = np.median(errors) ** 2 + scatter ** 2
+            beside = one.day_scatters[one.scatters == scatter]
+            share = apart / (1.0 + apart ** 2 / wide) / np.sum(beside / (1.0 + beside ** 2 / wide))
+            logs.append(np.log(scatter * share) - 0.5 * (
                 np.linalg.slogdet(cover)[1] + away @ np.linalg.solve(cover, away)))
         return logsumexp(logs)
 
