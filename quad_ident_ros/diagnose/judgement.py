@@ -90,8 +90,7 @@ def judge(bench: Bench) -> Judgement:
                if there.get(cause.effect) is cause}
     present = probabilities(bench.selection.posterior, weights, rules)
     absent = tuple(cause for cause in there.values() if present[cause.effect] < rules.present)
-    if (set(model.effects) <= set(absent) and closes_half(model.gap, before, noise, rules)
-            and unexplained(before, before, noise, False, rules)):
+    if set(model.effects) <= set(absent) and closes_half(model.gap, before, noise, rules):
         model = _fewest(bench, model, before, noise, present)
         absent = tuple(cause for cause in absent if cause not in model.effects)
     # What needs values that no vehicle has does the work of something else, which it stands for.
@@ -216,10 +215,12 @@ def closes_half(after: dict, before: dict, noise: dict, rules: Rules) -> bool:
     """
     Return whether a model closes half of the gap of some group of outputs.
 
-    What does is named, though each of its effects may be less probable than not, where `unknown`
-    in its place would say less than the flights do.
+    What does is named, though each of its effects may be less probable than not: `unknown` in its
+    place would say less than the flights do. Of what is hardly more than the noise a half is none.
     """
-    return max(lost_shares(after, before, before, noise, rules).values()) >= rules.half
+    return any(share >= rules.half
+               and beyond(before[name], noise[name]) >= rules.least(name, noise[name])
+               for name, share in lost_shares(after, before, before, noise, rules).items())
 
 
 def _fewest(bench: Bench, model: Model, before: dict, noise: dict, present: dict) -> Model:

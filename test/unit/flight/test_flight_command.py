@@ -40,7 +40,7 @@ def test_the_command_writes_what_the_library_flies(tmp_path, capsys):
 def test_the_command_says_what_it_flew(tmp_path, capsys):
     assert main([*CALL, '--effect', 'wind:x=2', '-o', str(tmp_path / 'a.csv')]) == 0
     said = capsys.readouterr().out
-    assert '501 samples' in said and 'wind x = 2' in said
+    assert '501 samples' in said and '(wind) x = 2' in said
 
 
 def test_effects_of_the_command_go_over_those_of_the_vehicle():
