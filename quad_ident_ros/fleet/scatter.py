@@ -75,7 +75,7 @@ class Scatter:
         self.error = np.mean(precise, axis=2).ravel() ** -0.5
 
     def products(self, column: np.ndarray, columns: np.ndarray) -> np.ndarray:
-        """Return the products (P, K) of a column (N,) with columns (N, K), through V inverse."""
+        """Return what a column (N,) has in common with others (N, K), by V inverse, (P, K)."""
         weighted = self._weights * column
         shared = self._shared * np.add.reduceat(weighted, self._starts, axis=1)[:, None]
         solved = weighted[:, None] - self._weights[:, None] * shared[:, :, self._day]

@@ -65,7 +65,7 @@ class Search:
 
     @property
     def best(self) -> np.ndarray:
-        """The best point (D,); there is one from the first evaluation on."""
+        """Return the best point (D,); there is one from the first evaluation on."""
         assert self._best is not None
         return self._best
 

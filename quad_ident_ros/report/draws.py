@@ -17,8 +17,9 @@ def show_draws(draws: Draws) -> None:
     """Print the numbers that were drawn, and what of the distribution was cut off."""
     screen = console()
     screen.print(table_of(TITLES, [
-        (titled(row['name']), *(f'{row[key]:.4g}' for key in ('value', 'std', 'std_drawn', 'least',
-                                                      'most')), row['unit'])
+        (titled(row['name']),
+         *(f'{row[key]:.4g}' for key in ('value', 'std', 'std_drawn', 'least', 'most')),
+         row['unit'])
         for row in rows_of(draws)], TITLES[1:-1]))
     if draws.cut:
         say(screen, f'note: {draws.cut} of {draws.cut + len(draws.vehicles)} draws cannot be '

@@ -69,8 +69,8 @@ def test_rows_are_those_of_the_best_set_with_the_librarys_limits():
     found['ranking'].append({'effect': 'body_drag', 'contribution': None})
     rows = calibrate.rows_of([(label('wind'), found)])
     assert rows.names == ('contribution', 'distance', 'companions')
-    assert rows.x == pytest.approx(np.tile([np.sqrt(0.5 * 80.0 / 81.0), np.log(10.0), 2.0],
-                                          (2, 1)))
+    row = [np.sqrt(0.5 * 80.0 / 81.0), np.log(10.0), 2.0]
+    assert rows.x == pytest.approx(np.array([row, row]))
     assert rows.present.tolist() == [1.0, 0.0] and rows.groups == ('ours', 'ours')
 
 
