@@ -216,7 +216,7 @@ def closes_half(after: dict, before: dict, noise: dict, rules: Rules) -> bool:
     Return whether a model closes half of the gap of some group of outputs.
 
     What does is named, though each of its effects may be less probable than not: `unknown` in its
-    place would say less than the flights do. Of what is hardly more than the noise a half is none.
+    place would say less than the flights do. A gap that hardly exceeds the noise does not count.
     """
     return any(share >= rules.half
                and beyond(before[name], noise[name]) >= rules.least(name, noise[name])

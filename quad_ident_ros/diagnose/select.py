@@ -347,7 +347,7 @@ class _Search:
                 lower, upper, _ = limits(self.vehicle)[:, list(cause.columns)]
                 moved = start[list(cause.columns)]
                 if np.any((moved < lower) | (moved > upper)):
-                    continue    # no vehicle has it: states that are stamped early are no delay
+                    continue    # outside its bounds: states that are stamped early are no delay
                 whole = key_of((laws[0], *self.best.chosen))
                 self.fit(whole, start, fit.nuisances, fit.starts)
                 self.best = self.judge(whole)

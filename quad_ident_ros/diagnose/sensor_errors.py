@@ -51,7 +51,7 @@ def sensor_covariance(fit: Estimate, flights: Sequence[Flight], gravity: float, 
 def _patterns(flights: Sequence[Flight], gravity: float, level: float, rules: Rules
               ) -> Iterator[list[np.ndarray]]:
     """Yield one standard deviation of each error of a sensor, (B, n, 12) of each flight."""
-    recorded = [recorded_along(replace(flight, states=_without_gaps(flight)))
+    recorded = [recorded_along(replace(flight, states=_interpolated(flight)))
                 for flight in flights]
     off = rules.sensitivity * UNIFORM
     yield [_of(one, attitude=off * _integral(one[..., 10:], flight.period),
@@ -74,10 +74,10 @@ def _patterns(flights: Sequence[Flight], gravity: float, level: float, rules: Ru
                    for each, flight in zip(gained, flights, strict=True)]
 
 
-def _without_gaps(flight: Flight) -> np.ndarray:
-    """Return the states (N, 13) with what is not seen, such as a glitch, drawn through."""
+def _interpolated(flight: Flight) -> np.ndarray:
+    """Return the states (N, 13), interpolated where they do not count, as at a glitch."""
     states, t = flight.states.copy(), flight.course.t
-    # Errors have three numbers for the four of an attitude, of which the patterns need none.
+    # The patterns need no attitude, whose four numbers have three errors.
     for column, error in zip((*range(6), *range(10, 13)), (*range(6), *range(9, 12)), strict=True):
         seen = flight.seen[:, error].astype(bool)
         if seen.any():

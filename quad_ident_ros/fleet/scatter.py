@@ -60,7 +60,7 @@ class Scatter:
         self.days = np.tile(between, SCATTERS)
         even = np.log(self.singles)
         if not alike:
-            # Of the scatters of days at each one of single values, all of them together one.
+            # For each scatter of single values the prior over those of days sums to 1.
             wide = usual ** 2 + singles[:, None] ** 2
             share = np.log(between) - np.log1p(between ** 2 / wide)
             even += (share - logsumexp(share, axis=1, keepdims=True)).ravel()
@@ -75,7 +75,7 @@ class Scatter:
         self.error = np.mean(precise, axis=2).ravel() ** -0.5
 
     def products(self, column: np.ndarray, columns: np.ndarray) -> np.ndarray:
-        """Return what a column (N,) has in common with others (N, K), by V inverse, (P, K)."""
+        """Return a column (N,) times others (N, K), weighted by the inverse of V, (P, K)."""
         weighted = self._weights * column
         shared = self._shared * np.add.reduceat(weighted, self._starts, axis=1)[:, None]
         solved = weighted[:, None] - self._weights[:, None] * shared[:, :, self._day]

@@ -79,7 +79,7 @@ def nuisances(vehicle: Vehicle, tracks: Sequence[Track]) -> tuple[Nuisance, ...]
     kinds: list[tuple] = []
     # Inertial flights have one clock and no attitude, and slow moments count for little there.
     if not inertial(tracks):
-        # Where nothing tells clocks, what all flights have alike is a delay of the actuators.
+        # Unless clocks are known, an offset that all flights share is a delay of the actuators.
         alike = '' if put_right(tracks) else 'actuation_delay'
         kinds.append((CLOCK, CLOCK_TITLE, 's', ('actuation_delay.delay',), (apart,), odds, '', (),
                       alike))

@@ -415,7 +415,7 @@ def test_what_closes_half_of_a_gap_in_one_group_is_named_in_place_of_unknown(aft
     assert closes_half(of(velocity=after), before, NOISE, RULES) is expected
 
 
-def test_half_of_what_is_hardly_more_than_the_noise_is_none():
+def test_half_of_a_gap_that_hardly_exceeds_the_noise_does_not_count():
     noise = NOISE | {'velocity': 0.12}
     for before, expected in ((0.1, False), (0.121, False), (0.15, True)):
         assert closes_half(of(velocity=0.06), of(velocity=before), noise, RULES) is expected

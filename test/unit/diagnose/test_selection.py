@@ -159,22 +159,27 @@ def test_an_effect_beside_the_simplest_of_sets_that_are_alike_is_as_rare_as_befo
     assert found[other] == pytest.approx(RULES.prior_odds * np.exp(2.0) / (1.0 + np.exp(2.0)))
 
 
-def test_what_flights_have_alike_is_an_effect_by_the_law_whose_parameter_it_is():
-    """A vehicle file may have the thrust by another law, which is then the usual one."""
-    vehicle = replace(load_vehicle('hummingbird'), effects={'thrust_scale': {'exponent': 1.9}})
+def shared_by_flights(vehicle, nuisance, effect, offsets):
+    """Return the (set, start) that are fitted where three flights have offsets of a nuisance."""
     record = fly_closed_loop(vehicle, {}, 'hover', duration=5.0, seed=0)
-    [by_flight] = [one for one in nuisance_candidates(vehicle, 3 * [track_of(record, vehicle)])
-                   if one.nuisance.name == 'thrust_scale_by_flight']
-    values = replace(NuisanceValues.of([by_flight.nuisance], 3),
-                     values=np.array([[-0.09], [-0.1], [-0.11]]))
+    [own] = [one for one in nuisance_candidates(vehicle, 3 * [track_of(record, vehicle)])
+             if one.nuisance.name == nuisance]
+    values = replace(NuisanceValues.of([own.nuisance], 3), values=np.array(offsets)[:, None])
     fits = []
-    best = SimpleNamespace(chosen=(by_flight,), causes=(), estimate=SimpleNamespace(
+    best = SimpleNamespace(chosen=(own,), causes=(), estimate=SimpleNamespace(
         z=nominal(vehicle), nuisances=values, starts=[]))
-    search = SimpleNamespace(all_causes=candidates([], vehicle, RULES, ['thrust_scale']),
+    search = SimpleNamespace(all_causes=candidates([], vehicle, RULES, [effect]),
                              vehicle=vehicle, rules=RULES, best=best, judge=lambda chosen: best,
                              fit=lambda chosen, start, *_: fits.append((chosen, start)))
     _Search.share_alike(search)
-    [(chosen, start)] = fits
+    return fits
+
+
+def test_what_flights_have_alike_is_an_effect_by_the_law_whose_parameter_it_is():
+    """A vehicle file may have the thrust by another law, which is then the usual one."""
+    vehicle = replace(load_vehicle('hummingbird'), effects={'thrust_scale': {'exponent': 1.9}})
+    [(chosen, start)] = shared_by_flights(vehicle, 'thrust_scale_by_flight', 'thrust_scale',
+                                          (-0.09, -0.1, -0.11))
     free = {column for cause in chosen if cause.nuisance is None for column in cause.columns}
     assert set(np.flatnonzero(start != nominal(vehicle))) == free == {INDEX['thrust_scale.factor']}
 
@@ -184,18 +189,7 @@ def test_what_flights_have_alike_is_an_effect_by_the_law_whose_parameter_it_is()
     ((0.03, -0.02, 0.01), False),       # clocks that differ by chance
     ((-0.03, -0.031, -0.029), False)])  # states that are stamped early
 def test_clocks_that_all_flights_have_late_are_a_delay(offsets, joins):
-    vehicle = load_vehicle('hummingbird')
-    record = fly_closed_loop(vehicle, {}, 'hover', duration=5.0, seed=0)
-    [clock] = [one for one in nuisance_candidates(vehicle, 3 * [track_of(record, vehicle)])
-               if one.nuisance.name == CLOCK]
-    values = replace(NuisanceValues.of([clock.nuisance], 3), values=np.array(offsets)[:, None])
-    fits = []
-    best = SimpleNamespace(chosen=(clock,), causes=(), estimate=SimpleNamespace(
-        z=nominal(vehicle), nuisances=values, starts=[]))
-    search = SimpleNamespace(all_causes=candidates([], vehicle, RULES, ['actuation_delay']),
-                             vehicle=vehicle, rules=RULES, best=best, judge=lambda chosen: best,
-                             fit=lambda chosen, start, *_: fits.append((chosen, start)))
-    _Search.share_alike(search)
+    fits = shared_by_flights(load_vehicle('hummingbird'), CLOCK, 'actuation_delay', offsets)
     assert bool(fits) is joins
     for chosen, start in fits:
         assert start[INDEX['actuation_delay.delay']] == pytest.approx(np.mean(offsets))

@@ -113,7 +113,7 @@ def test_a_sample_that_is_not_seen_has_no_part_in_a_pattern(column, error, spike
     assert np.max(np.abs(glitch - right) / np.maximum(scale, 1e-12)) > 10.0
 
 
-def test_a_vehicle_that_stands_still_has_no_level_to_go_with_its_motion():
+def test_the_level_of_a_vehicle_that_stands_still_has_no_pattern():
     record = fly_closed_loop(HUMMINGBIRD, {}, 'hover', duration=5.0, seed=0)
     flight = flight_of(track_of(record, HUMMINGBIRD))
     still = np.zeros(flight.states.shape)

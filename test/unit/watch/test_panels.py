@@ -4,13 +4,10 @@
 
 from dataclasses import replace
 
-import pytest
+from rich.console import Console
 
-pytest.importorskip('rich', reason='Rich is not installed')
-from rich.console import Console  # noqa: E402, I100
-
-from quad_ident_ros.watch.panels import identifier_panel  # noqa: E402
-from quad_ident_ros.watch.state import Fit, Model, State  # noqa: E402
+from quad_ident_ros.watch.panels import identifier_panel
+from quad_ident_ros.watch.state import Fit, Model, State
 
 
 def text_of(panel):
