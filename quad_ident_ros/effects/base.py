@@ -54,6 +54,7 @@ class Parameter:
         weight = mass * vehicle.gravity
         scales: dict[str, float] = {
             'kg': mass, 'kg/s': mass, 'kg/m': mass, 'kg m/s': mass * arm, 'm': arm,
+            'kg m^2/s': mass * arm ** 2,
             'kg m^2': vehicle.inertia[0], 's^2/rad': 1.0 / vehicle.hover_speed,
             'N': weight, 'N m': weight * arm}
         return scales.get(self.unit, 1.0)

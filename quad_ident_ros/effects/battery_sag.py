@@ -3,7 +3,12 @@
 """Thrust falls as the battery empties."""
 
 from quad_ident_ros.compiled import compiled
-from quad_ident_ros.effects import battery_sag_load, battery_sag_power, battery_sag_time
+from quad_ident_ros.effects import (
+    battery_sag_curve,
+    battery_sag_load,
+    battery_sag_power,
+    battery_sag_time,
+)
 from quad_ident_ros.effects.base import Effect, Form, Parameter, Table
 from quad_ident_ros.model.situation import GAIN, VOLT_DROP
 
@@ -25,6 +30,7 @@ FORM = Form(
     thrust=thrust, needs_voltage=True)
 EFFECT = Effect(
     name='battery_sag', title='voltage sag of the battery',
-    forms=(FORM, battery_sag_time.FORM, battery_sag_power.FORM, battery_sag_load.FORM),
+    forms=(FORM, battery_sag_time.FORM, battery_sag_power.FORM, battery_sag_load.FORM,
+           battery_sag_curve.FORM),
     excitation='a flight long enough for the voltage to fall',
     confused_with=('thrust_scale', 'mass_offset'))

@@ -3,7 +3,11 @@
 """Pitching and rolling moments that grow with air velocity."""
 
 from quad_ident_ros.compiled import compiled
-from quad_ident_ros.effects import blade_flapping_drag_centre, blade_flapping_drag_point
+from quad_ident_ros.effects import (
+    blade_flapping_damping,
+    blade_flapping_drag_centre,
+    blade_flapping_drag_point,
+)
 from quad_ident_ros.effects.base import Effect, Form, Parameter, Table
 from quad_ident_ros.model.situation import MX, MY, PER_HOVER, SPEED, UX, UY
 
@@ -29,6 +33,7 @@ FORM = Form(
     wrench=wrench, needs_reference=True)
 EFFECT = Effect(
     name='blade_flapping', title='blade flapping',
-    forms=(FORM, blade_flapping_drag_centre.FORM, blade_flapping_drag_point.FORM),
+    forms=(FORM, blade_flapping_damping.FORM, blade_flapping_drag_centre.FORM,
+           blade_flapping_drag_point.FORM),
     excitation='horizontal flight at different speeds',
     confused_with=('com_offset', 'rotor_drag'))

@@ -3,7 +3,11 @@
 """More thrust close to the ground."""
 
 from quad_ident_ros.compiled import compiled
-from quad_ident_ros.effects import ground_effect_exponential, ground_effect_hayden
+from quad_ident_ros.effects import (
+    ground_effect_curve,
+    ground_effect_exponential,
+    ground_effect_hayden,
+)
 from quad_ident_ros.effects.base import Effect, Form, Parameter, Table
 from quad_ident_ros.model.situation import GAIN, HEIGHT, RADIUS
 
@@ -31,6 +35,7 @@ FORM = Form(
     thrust=thrust, needs_height=True)
 EFFECT = Effect(
     name='ground_effect', title='ground effect',
-    forms=(FORM, ground_effect_exponential.FORM, ground_effect_hayden.FORM),
+    forms=(FORM, ground_effect_exponential.FORM, ground_effect_hayden.FORM,
+           ground_effect_curve.FORM),
     excitation='flight below about three rotor radii',
     confused_with=('thrust_scale', 'battery_sag'))

@@ -3,7 +3,11 @@
 """Thrust coefficient off by a constant factor."""
 
 from quad_ident_ros.compiled import compiled
-from quad_ident_ros.effects import thrust_scale_exponent, thrust_scale_offset
+from quad_ident_ros.effects import (
+    thrust_scale_curve,
+    thrust_scale_exponent,
+    thrust_scale_offset,
+)
 from quad_ident_ros.effects.base import Effect, Form, Parameter, Table
 from quad_ident_ros.model.situation import GAIN
 
@@ -23,7 +27,8 @@ FORM = Form(
     thrust=thrust)
 EFFECT = Effect(
     name='thrust_scale', title='error in thrust',
-    forms=(FORM, thrust_scale_offset.FORM, thrust_scale_exponent.FORM),
+    forms=(FORM, thrust_scale_offset.FORM, thrust_scale_exponent.FORM,
+           thrust_scale_curve.FORM),
     excitation='any flight, with roll or pitch manoeuvres to separate it from mass',
     confused_with=('mass_offset', 'battery_sag', 'inflow'),
     scale_group=True, per_flight=(0.03,), ratio='thrust per mass',

@@ -11,6 +11,7 @@ import math
 import numpy as np
 
 from quad_ident_ros.data.record import FlightRecord
+from quad_ident_ros.effects.battery_sag_curve import ZONE_TIME
 from quad_ident_ros.effects.registry import titled, Values
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.greybox.flights import highest_voltage
@@ -133,7 +134,9 @@ def mean_left(vehicle: Vehicle, records: Iterable[FlightRecord]) -> float | None
             raise InputError(f'--flight: {titled("battery_sag")} depends on the voltage, which '
                              'some of these flights do not have; give flights with vbat')
         time = record.t - record.t[0]
-        left = 1.0 - (sag.get('per_second', 0.0) + sag.get('drain', 0.0)) * time
+        left = 1.0 - sum(sag.get(key, 0.0) for key in ('per_second', 'drain', 'slope')) * time
+        left -= sag.get('bend', 0.0) * time ** 2
+        left -= sag.get('zone', 0.0) * (1.0 - np.exp(-time / sag.get('zone_time', ZONE_TIME)))
         if by_voltage and full is not None:
             voltage = record.columns['vbat']
             left = left - sag.get('per_volt', 0.0) * (full - voltage)

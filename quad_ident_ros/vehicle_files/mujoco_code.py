@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from textwrap import indent
 
+from quad_ident_ros.effects import ground_effect_curve, thrust_scale_curve
 from quad_ident_ros.model.vehicle import Vehicle
 from quad_ident_ros.vehicle_files.edits import shown
 from quad_ident_ros.vehicle_files.mjcf_thrust import Push
@@ -16,6 +17,10 @@ from quad_ident_ros.vehicle_files.wanted import Wanted
 from quad_ident_ros.vehicle_files.ways import forms_of
 
 Values = Mapping[str, float]
+SPEEDS_AT = dict(zip((one.name for one in thrust_scale_curve.FORM.parameters),
+                     thrust_scale_curve.SPEEDS, strict=True))
+HEIGHTS_AT = dict(zip((*(one.name for one in ground_effect_curve.FORM.parameters), 'above'),
+                      ground_effect_curve.HEIGHTS, strict=True))
 # Of each form the lines that add to `gain` (n,) on the thrusts, `push` (n, 3) of the rotors, or
 # `force` and `moment` (3,) on the body, in the order in which they act. `air` (3,) and `u` (n, 3)
 # are velocities of the centre of mass and of the rotors against the air, `w` (n,) the speeds of
@@ -27,6 +32,13 @@ LINES: dict[tuple[str, str], Callable[[Values, int, float], str]] = {
         'least = np.maximum(w, 0.05)\n'
         f'gain *= (np.maximum(least + {_one(p["offset"])}, 0.0) '
         f'/ ({_one(1.0 + p["offset"])} * least)) ** 2'),
+    ('thrust_scale', 'curve'): lambda p, n, r: (
+        f'gain *= np.interp(w, {_row(SPEEDS_AT, tuple(SPEEDS_AT))}, '
+        f'{_row({**dict.fromkeys(SPEEDS_AT, 1.0), **p}, tuple(SPEEDS_AT))})'),
+    ('ground_effect', 'curve'): lambda p, n, r: (
+        f'radii = np.maximum(height / {_one(r)}, {_one(ground_effect_curve.HEIGHTS[0])})\n'
+        f'known = np.log({_row(HEIGHTS_AT, tuple(HEIGHTS_AT))})\n'
+        f'gain *= 1.0 + np.interp(np.log(radii), known, {_row(p, tuple(HEIGHTS_AT))})'),
     ('ground_effect', 'cheeseman_bennett'): lambda p, n, r: (
         f'square = 16.0 * np.maximum(height, {_one(0.5 * r)}) ** 2\n'
         f'gain *= square / (square - np.minimum({_one(p["strength"] * r * r)}, 0.75 * square))'),
@@ -51,6 +63,10 @@ LINES: dict[tuple[str, str], Callable[[Values, int, float], str]] = {
         f'push[:, 2] -= {_one(p.get("climb_square", 0.0) / n)} * u[:, 2] * np.abs(u[:, 2])'),
     ('blade_flapping', 'hub_moment'): lambda p, n, r: (
         f'moment += {_one(p["coefficient"] / n)} * np.array([-w @ u[:, 1], w @ u[:, 0], 0.0])'),
+    ('blade_flapping', 'damped_hub'): lambda p, n, r: (
+        f'moment += {_one(p.get("hub_coefficient", 0.0) / n)} '
+        '* np.array([-w @ u[:, 1], w @ u[:, 0], 0.0])\n'
+        f'moment -= {_one(p.get("rate_damping", 0.0))} * rate * [1.0, 1.0, 0.0]'),
     ('blade_flapping', 'drag_centre'): lambda p, n, r: (
         'across = force[:2] + push[:, :2].sum(axis=0)\n'
         f'moment += {_one(p["arm"])} * np.array([-across[1], across[0], 0.0])'),

@@ -45,15 +45,19 @@ WAYS: dict[tuple[str, str], tuple[Way, ...]] = {
     ('wind', 'steady'): (Way(('wind',)),),
     ('inflow', 'linear'): (Way(('inflow',)),),
     ('blade_flapping', 'hub_moment'): (Way(('flapping',)),),
+    ('blade_flapping', 'damped_hub'): (Way(('flapping',), 'its moment with the velocity; that '
+                                           'with the rate nothing'),),
     ('battery_sag', 'voltage'): (_MEAN,),
     ('battery_sag', 'time'): (_MEAN,),
     ('battery_sag', 'voltage_power'): (_MEAN,),
     ('battery_sag', 'time_and_load'): (_MEAN,),
+    ('battery_sag', 'discharge'): (_MEAN,),
     ('thrust_scale', 'factor'): (Way(('thrust',), 'a factor on the thrust coefficient, which is '
                                      'the same motion'),),
     ('thrust_scale', 'exponent'): (Way(('thrust', 'exponent')), _AT_HOVER),
     ('thrust_scale', 'offset'): (Way(('thrust', 'exponent'), 'the power of the speed that it is '
                                      'at hover'), _AT_HOVER),
+    ('thrust_scale', 'curve'): (_AT_HOVER,),
     ('rotor_fault', 'thrust'): (Way(('losses',)),),
     ('mass_offset', 'at_centre'): (Way(('mass',), 'a part of the mass, which is the same '
                                        'motion'),),

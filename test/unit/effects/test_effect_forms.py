@@ -32,11 +32,13 @@ OTHERS = {
     ('battery_sag', 'time'): {'per_second': 0.01},
     ('battery_sag', 'voltage_power'): {'exponent': 2.0, 'load': 0.1},
     ('battery_sag', 'time_and_load'): {'drain': 0.01, 'sink': 0.1},
+    ('battery_sag', 'discharge'): {'zone': 0.05, 'slope': 0.01, 'bend': 1e-3, 'load_sink': 0.1},
     ('motor_lag', 'rise_fall'): {'rise': 0.03, 'fall': 0.06},
     ('motor_lag', 'slew'): {'slew': 2e-4},
     ('motor_lag', 'second_order'): {'mean_lag': 0.05, 'inner_lag': 0.03},
     ('ground_effect', 'exponential'): {'gain': 0.5, 'length': 2.0},
     ('ground_effect', 'hayden'): {'hayden': 4.0},
+    ('ground_effect', 'curve'): {'at_half': 0.3, 'at_one': 0.2, 'at_two': 0.1, 'at_four': 0.05},
     ('rotor_drag', 'axes'): {'x': 0.3, 'y': 0.2, 'z': -0.1},
     ('rotor_drag', 'axes_by_speed'): {'x_by_speed': 0.3, 'y_by_speed': 0.2, 'z_by_speed': 0.1},
     ('body_drag', 'axes'): {'x': 0.05, 'y': 0.08, 'z': 0.1},
@@ -45,11 +47,13 @@ OTHERS = {
     ('attitude_misalignment', 'gyro'): {'gyro_roll': 0.03, 'gyro_pitch': -0.02, 'gyro_yaw': 0.1},
     ('thrust_scale', 'offset'): {'at_hover': 1.02, 'offset': 0.2},
     ('thrust_scale', 'exponent'): {'hover_factor': 1.02, 'exponent': 1.7},
+    ('thrust_scale', 'curve'): {'at_70': 0.9, 'at_85': 1.05, 'at_115': 1.1, 'at_130': 0.95},
     ('inertia_mismatch', 'moments'): {'arms_y': 1.1, 'arms_x': 0.9, 'torque': 1.2},
     ('inertia_mismatch', 'moments_and_inertia'): {
         'moment_x': 1.1, 'moment_y': 0.9, 'moment_z': 1.2, 'inertia_y': 1.1, 'inertia_z': 0.9},
     ('inertia_mismatch', 'matrix'): {'xx': 1.1, 'yy': 0.9, 'zz': 1.05, 'xy': 0.1, 'xz': -0.05,
                                      'yz': 0.08},
+    ('blade_flapping', 'damped_hub'): {'hub_coefficient': 0.05, 'rate_damping': 0.002},
     ('blade_flapping', 'drag_centre'): {'arm': 0.05},
     ('blade_flapping', 'drag_point'): {'arm_x': 0.03, 'arm_y': -0.02, 'arm_z': 0.05},
     ('inflow', 'momentum'): {'through': 0.5},
@@ -79,7 +83,7 @@ def test_every_form_of_some_strength_shows_and_is_addressed_by_effect_and_parame
 
 @pytest.mark.parametrize('effects', [
     {'ground_effect': {'length': 4.0}}, {'thrust_scale': {'at_hover': 1.0}},
-    {'battery_sag': {'exponent': 0.0}}], ids=lambda effects: next(iter(effects)))
+    {'battery_sag': {'exponent': 0.0}}, {'battery_sag': {'zone_time': 9.0}}], ids=lambda effects: next(iter(effects)))
 def test_what_only_shapes_a_form_has_no_effect_without_its_strength(effects):
     course = rising(steps(VEHICLE))
     assert (roll(VEHICLE, effects, course, START) == roll(VEHICLE, {}, course, START)).all()
@@ -318,6 +322,30 @@ def test_curves_of_the_thrust_turn_about_hover(speed):
     assert found == pytest.approx(GRAVITY * (1.05 * speed ** 1.6 - 1), rel=1e-6)
 
 
+@pytest.mark.parametrize(('speed', 'factor'), [
+    (0.5, 0.9), (0.7, 0.9), (0.775, 0.95), (1.0, 1.1), (1.1, 1.1), (1.225, 1.15), (1.5, 1.2)])
+def test_a_curve_over_the_speed_is_linear_between_its_values_and_level_beyond(speed, factor):
+    curve = {'at_70': 0.9, 'at_85': 1.0, 'at_100': 1.1, 'at_115': 1.1, 'at_130': 1.2}
+    found = climb({'thrust_scale': curve}, speed)
+    assert found == pytest.approx(GRAVITY * (factor * speed ** 2 - 1), rel=1e-6)
+
+
+def test_a_discharge_begins_in_its_zone_and_bends_at_the_end():
+    course = held(BARE, HOVER, 4.0)
+    found = roll(BARE, {'battery_sag': {'zone': 0.05, 'zone_time': 2.0, 'slope': 0.004,
+                                        'bend': 3e-4}}, course, state())[:, 5]
+    t = course.t
+    lost = (0.05 * (t - 2.0 * (1.0 - np.exp(-t / 2.0))) + 0.004 * t ** 2 / 2 + 3e-4 * t ** 3 / 3)
+    assert np.abs(found + GRAVITY * lost).max() < 1e-6
+
+
+def test_a_straight_discharge_is_the_law_of_time_and_load():
+    course = steps(VEHICLE)
+    one, other = (roll(VEHICLE, {'battery_sag': each}, course, START) for each in (
+        {'slope': 0.01, 'load_sink': 0.1}, {'drain': 0.01, 'sink': 0.1}))
+    assert np.abs(one - other).max() < 1e-10
+
+
 def test_rotors_that_stand_lift_nothing_by_any_curve():
     for effects in ({'offset': -0.5}, {'offset': 0.5}, {'exponent': 1.0}):
         assert climb({'thrust_scale': effects}, 0.0) == pytest.approx(-GRAVITY, rel=1e-9)
@@ -344,7 +372,15 @@ def test_thrust_near_the_ground_by_either_law(height):
     assert lifted({'hayden': 1.0}, height) == pytest.approx(hayden, rel=1e-5)
 
 
-@pytest.mark.parametrize('effects', [{'gain': 3.0}, {'hayden': 10.0}])
+@pytest.mark.parametrize(('radii', 'gain'), [
+    (0.2, 0.4), (0.5, 0.4), (0.5 * 2 ** 0.5, 0.3), (1.0, 0.2), (2.0, 0.1), (4.0, 0.1),
+    (4.0 * 2 ** 0.5, 0.05), (8.0, 0.0), (30.0, 0.0)])
+def test_a_curve_over_the_height_has_its_values_and_ends_at_eight_radii(radii, gain):
+    curve = {'at_half': 0.4, 'at_one': 0.2, 'at_two': 0.1, 'at_four': 0.1}
+    assert lifted(curve, radii * BARE.rotor_radius) == pytest.approx(1 + gain, abs=1e-5)
+
+
+@pytest.mark.parametrize('effects', [{'gain': 3.0}, {'hayden': 10.0}, {'at_half': 3.0}])
 def test_the_ground_is_felt_near_it_alone_and_stays_finite(effects):
     assert lifted(effects, 1000.0) == pytest.approx(1.0, abs=1e-5)
     for height in (-10.0, 0.0, 1e-3):
@@ -401,6 +437,17 @@ def moment_at(velocity, effects, vehicle):
     course = held(vehicle, hover_speed(vehicle), 0.02)
     states = np.tile(state(velocity=velocity), (len(course.t), 1))
     return contribution(vehicle, vector(effects, vehicle), course, states)[1][0]
+
+
+def test_a_damped_hub_has_the_moment_of_a_hub_and_opposes_roll_and_pitch():
+    damped = {'hub_coefficient': 0.05, 'rate_damping': 0.002}
+    assert moment_at((5, 2, 1), {'blade_flapping': damped}, BARE) == pytest.approx(
+        moment_at((5, 2, 1), {'blade_flapping': {'coefficient': 0.05}}, BARE))
+    course = held(BARE, HOVER, 0.02)
+    states = np.tile(state(rate=(1, -2, 3)), (len(course.t), 1))
+    theta = vector({'blade_flapping': {'rate_damping': 0.002}}, BARE)
+    moment = contribution(BARE, theta, course, states)[1][0]
+    assert moment == pytest.approx([-0.002, 0.004, 0.0])
 
 
 @pytest.mark.slow
