@@ -29,7 +29,8 @@ FORM = Form(
     name='curve', title='by a curve over the height',
     parameters=tuple(Parameter(f'at_{name}', '1', -0.5, 3.0, 0.1,
                                f'share of the thrust won at a height of {height:g} rotor radii')
-                     for name, height in zip(('half', 'one', 'two', 'four'), HEIGHTS)),
+                     for name, height in zip(('half', 'one', 'two', 'four'), HEIGHTS[:-1],
+                                             strict=True)),
     source='thrust (1 + gain), the gain linear in log z between its values and 0 from 8 radii on, '
            'z the height of the rotor: laws that were measured differ from vehicle to vehicle; '
            'Sanchez-Cuevas, Heredia, Ollero, International Journal of Aerospace Engineering '

@@ -103,7 +103,7 @@ def wanted_of(vehicle: Vehicle, sag: float | None, holds: Collection[Key]) -> Wa
                             zip('xyz', ('horizontal', 'horizontal', 'vertical'), strict=True)]),
         inflow=(inflow.get('axial', 0.0) / speeds,
                 inflow.get('translational', 0.0) / len(vehicle.rotors)),
-        flapping=(flapping.get('coefficient', 0.0) + flapping.get('hub_coefficient', 0.0)) / speeds,
+        flapping=sum(flapping.get(key, 0.0) for key in ('coefficient', 'hub_coefficient')) / speeds,
         wind=np.array([wind.get(axis, 0.0) for axis in 'xyz']),
         sources=_sources(vehicle, sag, holds))
 

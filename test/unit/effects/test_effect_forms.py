@@ -83,7 +83,8 @@ def test_every_form_of_some_strength_shows_and_is_addressed_by_effect_and_parame
 
 @pytest.mark.parametrize('effects', [
     {'ground_effect': {'length': 4.0}}, {'thrust_scale': {'at_hover': 1.0}},
-    {'battery_sag': {'exponent': 0.0}}, {'battery_sag': {'zone_time': 9.0}}], ids=lambda effects: next(iter(effects)))
+    {'battery_sag': {'exponent': 0.0}}, {'battery_sag': {'zone_time': 9.0}}],
+    ids=lambda effects: next(iter(effects)))
 def test_what_only_shapes_a_form_has_no_effect_without_its_strength(effects):
     course = rising(steps(VEHICLE))
     assert (roll(VEHICLE, effects, course, START) == roll(VEHICLE, {}, course, START)).all()
