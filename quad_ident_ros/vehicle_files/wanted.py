@@ -89,7 +89,7 @@ def wanted_of(vehicle: Vehicle, sag: float | None, holds: Collection[Key]) -> Wa
     linear, by_speed = _drags(vehicle, holds)
     body, inflow = effects.get('body_drag', {}), effects.get('inflow', {})
     shift, wind = effects.get('com_offset', {}), effects.get('wind', {})
-    fault, flapping = effects.get('rotor_fault', {}), effects.get('blade_flapping', {})
+    fault, flaps = effects.get('rotor_fault', {}), effects.get('blade_flapping', {})
     return Wanted(
         mass=vehicle.mass + effects.get('mass_offset', {}).get('mass', 0.0),
         centre=np.array([shift.get(axis, 0.0) for axis in 'xyz']),
@@ -103,7 +103,7 @@ def wanted_of(vehicle: Vehicle, sag: float | None, holds: Collection[Key]) -> Wa
                             zip('xyz', ('horizontal', 'horizontal', 'vertical'), strict=True)]),
         inflow=(inflow.get('axial', 0.0) / speeds,
                 inflow.get('translational', 0.0) / len(vehicle.rotors)),
-        flapping=sum(flapping.get(key, 0.0) for key in ('coefficient', 'hub_coefficient')) / speeds,
+        flapping=(flaps.get('coefficient', 0.0) + flaps.get('hub_coefficient', 0.0)) / speeds,
         wind=np.array([wind.get(axis, 0.0) for axis in 'xyz']),
         sources=_sources(vehicle, sag, holds))
 
