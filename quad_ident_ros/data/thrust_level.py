@@ -20,7 +20,8 @@ FLYING = 0.4    # of the strong thrust: rotors that idle turn at up to half the 
                 # flights of crazyflie_usd and starts from the ground give the same speed at full
                 # signal to within 1.1 % for 0.25 to 0.5
 
-FACTORS = ('factor', 'at_hover', 'hover_factor')    # of thrust_scale, on the thrust at hover
+FACTORS = ('factor', 'at_hover', 'hover_factor', 'at_100')
+"""Parameters of thrust_scale that are a factor on the thrust at hover, one of each form."""
 
 FULL_SPEED = 'full_speed'
 """Info of a record: speed in rad/s at full signal, where the weight determines it."""

@@ -7,6 +7,8 @@ from quad_ident_ros.effects.base import Form, Parameter, Table
 from quad_ident_ros.model.situation import GAIN, PER_HOVER, SPEED
 
 SPEEDS = (0.7, 0.85, 1.0, 1.15, 1.3)    # over that of hover: most of a flight is within
+SPEED_OF = {f'at_{100.0 * speed:.0f}': speed for speed in SPEEDS}
+"""{parameter: the speed, over that of hover, at which it is the factor on the thrust}."""
 STEP = SPEEDS[1] - SPEEDS[0]
 KNOTS = len(SPEEDS)
 
@@ -26,9 +28,9 @@ def thrust(p: Table, k: int, s: Table, rotors: Table) -> None:
 
 FORM = Form(
     name='curve', title='factor by a curve over the speed',
-    parameters=tuple(Parameter(f'at_{100.0 * speed:.0f}', '1', 0.2, 3.0, 0.1,
+    parameters=tuple(Parameter(name, '1', 0.2, 3.0, 0.1,
                                f'factor on the thrust at {speed:g} times the hover speed',
-                               null=1.0) for speed in SPEEDS),
+                               null=1.0) for name, speed in SPEED_OF.items()),
     source='thrust = factor(speed / hover) thrust_coefficient speed^2, the factor linear between '
            'its values and constant beyond them: coefficients of small propellers vary with the '
            'Reynolds number; Deters, Ananda, Selig, AIAA 2014-2151',

@@ -7,7 +7,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from quad_ident_ros.effects import registry
+from quad_ident_ros.effects import registry, thrust_scale_curve
 from quad_ident_ros.model.motors import spread
 from quad_ident_ros.model.quantities import stated
 from quad_ident_ros.model.rigid_body import vehicle_vector
@@ -23,7 +23,8 @@ INDEX = {name: k for k, name in enumerate(NAMES)}
 SPLIT = len(CONSTANTS)
 FACTORS = {
     'thrust_coefficient': ('thrust_scale.factor', 'thrust_scale.at_hover',
-                           'thrust_scale.hover_factor'),
+                           'thrust_scale.hover_factor',
+                           *(f'thrust_scale.{name}' for name in thrust_scale_curve.SPEED_OF)),
     'torque_coefficient': ('inertia_mismatch.torque',),
     **{f'inertia_{axis}': (f'inertia_mismatch.factor_{axis}',) for axis in 'xyz'}}
 """Parameters of effects that are a factor on a constant, by constant."""
@@ -133,6 +134,9 @@ def _put_in_map(sizes: np.ndarray, vehicle: Vehicle) -> None:
         sizes[INDEX['thrust_scale.exponent']] = power
         # The power of (speed + offset)^2 is 2 / (1 + offset) at hover.
         sizes[INDEX['thrust_scale.offset']] = 0.5 * power
+        for name, speed in thrust_scale_curve.SPEED_OF.items():
+            column = INDEX[f'thrust_scale.{name}']
+            sizes[column] = np.hypot(sizes[column], power * np.log(speed))
 
 
 def columns_of(effects: Iterable[str], rotor_count: int) -> list[int]:

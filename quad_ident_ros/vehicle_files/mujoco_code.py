@@ -8,7 +8,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from textwrap import indent
 
-from quad_ident_ros.effects import ground_effect_curve, thrust_scale_curve
+from quad_ident_ros.effects import ground_effect_curve
+from quad_ident_ros.effects.thrust_scale_curve import SPEED_OF
 from quad_ident_ros.model.vehicle import Vehicle
 from quad_ident_ros.vehicle_files.edits import shown
 from quad_ident_ros.vehicle_files.mjcf_thrust import Push
@@ -17,8 +18,6 @@ from quad_ident_ros.vehicle_files.wanted import Wanted
 from quad_ident_ros.vehicle_files.ways import forms_of
 
 Values = Mapping[str, float]
-SPEEDS_AT = dict(zip((one.name for one in thrust_scale_curve.FORM.parameters),
-                     thrust_scale_curve.SPEEDS, strict=True))
 HEIGHTS_AT = dict(zip((*(one.name for one in ground_effect_curve.FORM.parameters), 'above'),
                       ground_effect_curve.HEIGHTS, strict=True))
 # Of each form the lines that add to `gain` (n,) on the thrusts, `push` (n, 3) of the rotors, or
@@ -33,8 +32,9 @@ LINES: dict[tuple[str, str], Callable[[Values, int, float], str]] = {
         f'gain *= (np.maximum(least + {_one(p["offset"])}, 0.0) '
         f'/ ({_one(1.0 + p["offset"])} * least)) ** 2'),
     ('thrust_scale', 'curve'): lambda p, n, r: (
-        f'gain *= np.interp(w, {_row(SPEEDS_AT, tuple(SPEEDS_AT))}, '
-        f'{_row({**dict.fromkeys(SPEEDS_AT, 1.0), **p}, tuple(SPEEDS_AT))})'),
+        f'gain *= np.interp(w, {_row(SPEED_OF, tuple(SPEED_OF))}, '
+        # The gears hold the factor at hover.
+        f'{_row({**dict.fromkeys(SPEED_OF, 1.0), **p}, tuple(SPEED_OF), p.get("at_100", 1.0))})'),
     ('ground_effect', 'curve'): lambda p, n, r: (
         f'radii = np.maximum(height / {_one(r)}, {_one(ground_effect_curve.HEIGHTS[0])})\n'
         f'known = np.log({_row(HEIGHTS_AT, tuple(HEIGHTS_AT))})\n'
@@ -224,6 +224,6 @@ def _one(value: float) -> str:
     return shown([value])
 
 
-def _row(values: Values, keys: Sequence[str], count: int = 1) -> str:
+def _row(values: Values, keys: Sequence[str], count: float = 1) -> str:
     """Return numbers by key as an array; count: what each is divided by."""
     return ('np.array([' + ', '.join(_one(values.get(key, 0.0) / count) for key in keys) + '])')

@@ -10,6 +10,7 @@ import math
 
 import numpy as np
 
+from quad_ident_ros.data.thrust_level import FACTORS
 from quad_ident_ros.effects.registry import Values
 from quad_ident_ros.model.vehicle import Vehicle
 from quad_ident_ros.vehicle_files.ways import forms_of, Key, way_of
@@ -67,8 +68,7 @@ def wanted_of(vehicle: Vehicle, sag: float | None, holds: Collection[Key]) -> Wa
     """
     effects = vehicle.effects
     scale = effects.get('thrust_scale', {})
-    factor = math.prod(scale.get(key, 1.0) for key in ('factor', 'hover_factor', 'at_hover',
-                                                          'at_100'))
+    factor = math.prod(scale.get(key, 1.0) for key in FACTORS)
     if sag is not None:
         factor *= sag
     # About hover the curve with an offset goes with this power.

@@ -5,6 +5,9 @@
 from collections.abc import Mapping
 from dataclasses import replace
 
+import numpy as np
+
+from quad_ident_ros.effects.thrust_scale_curve import SPEED_OF
 from quad_ident_ros.model.vehicle import Vehicle
 from quad_ident_ros.vehicle_files.export import Export
 from quad_ident_ros.vehicle_files.load import read_vehicle
@@ -13,7 +16,8 @@ from quad_ident_ros.vehicle_files.source import Source
 from quad_ident_ros.vehicle_files.speed_unit import counted
 from quad_ident_ros.vehicle_files.ways import forms_of
 
-PER_SPEED = ('coefficient', 'axial', 'x_by_speed', 'y_by_speed', 'z_by_speed')
+PER_SPEED = ('coefficient', 'hub_coefficient', 'axial', 'climb', 'edgewise', 'x_by_speed',
+             'y_by_speed', 'z_by_speed')
 """Parameters that go with the speed of the rotors over that at hover."""
 
 
@@ -60,4 +64,9 @@ def _at_hover(name: str, form: str, values: Mapping[str, float], there: float
     if (name, form) == ('thrust_scale', 'offset'):
         offset = values['offset'] / there
         return {'at_hover': ((1.0 + offset) / (1.0 + values['offset'])) ** 2, 'offset': offset}
+    if (name, form) == ('thrust_scale', 'curve'):
+        speeds, factors = SPEED_OF.values(), [values.get(key, 1.0) for key in SPEED_OF]
+        # The thrust coefficient that was written has the factor at hover in it.
+        now = np.interp([there * speed for speed in speeds], list(speeds), factors)
+        return dict(zip(SPEED_OF, (now / values.get('at_100', 1.0)).tolist(), strict=True))
     return {key: value * there if key in PER_SPEED else value for key, value in values.items()}

@@ -31,7 +31,8 @@ SETS = ({'rotor_drag': {'coefficient': 0.2}, 'body_drag': {'horizontal': 0.02, '
          'ground_effect': {'at_half': 0.3, 'at_one': 0.2, 'at_two': 0.1, 'at_four': 0.05}},
         {'rotor_drag': {'x_by_speed': 0.1, 'y_by_speed': 0.2, 'z_by_speed': 0.05},
          'blade_flapping': {'arm_x': 0.03, 'arm_y': -0.02, 'arm_z': 0.05},
-         'thrust_scale': {'at_70': 0.9, 'at_85': 1.05, 'at_115': 1.1, 'at_130': 0.95},
+         'thrust_scale': {'at_70': 0.9, 'at_85': 1.0, 'at_100': 1.05, 'at_115': 1.1,
+                          'at_130': 0.95},
          'inertia_mismatch': {'xx': 1.2, 'yy': 1.1, 'zz': 0.9, 'xy': 0.1, 'xz': -0.08,
                               'yz': 0.05}},
         {'blade_flapping': {'hub_coefficient': 0.01, 'rate_damping': 2e-3}})
