@@ -110,6 +110,9 @@ def remainder(target, form, params, places, flight, hover):
         made = of_library(form, null + size * x, params, places, flight, hover) / scale
         return (made - wanted).ravel() / np.sqrt(np.mean(wanted ** 2))
 
-    best = min((least_squares(missed, sign * np.full(len(null), 0.3), max_nfev=60)
+    lower, upper = ((np.array([getattr(one, name) for one in form.parameters]) - null) / size
+                    for name in ('lower', 'upper'))
+    best = min((least_squares(missed, np.clip(sign * 0.3, lower + 1e-3, upper - 1e-3),
+                              bounds=(lower, upper), max_nfev=60)
                 for sign in (1.0, -1.0)), key=lambda one: one.cost)
     return float(np.sqrt(np.mean(best.fun ** 2)))
