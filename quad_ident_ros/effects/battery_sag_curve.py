@@ -27,13 +27,15 @@ def thrust(p: Table, k: int, s: Table, rotors: Table) -> None:
 FORM = Form(
     name='discharge', title='curve of a discharge, and load',
     parameters=(Parameter('zone', '1', -0.5, 0.5, 0.02,
-                          'share of the thrust lost in the first part of a discharge'),
-                Parameter('zone_time', 's', 1.0, 60.0, 5.0, 'time constant of that',
+                          'share of the thrust lost in the first part of a discharge, or, '
+                          'negative, won as a cold battery warms'),
+                Parameter('zone_time', 's', 1.0, 60.0, 5.0, 'time constant of that first part',
                           null=ZONE_TIME),
                 Parameter('slope', '1/s', -0.02, 0.05, 0.002,
                           'share of the thrust lost per second of flight'),
                 Parameter('bend', '1/s^2', -0.002, 0.002, 0.0001,
-                          'share lost per square of a second, as towards the end of a discharge'),
+                          'share lost per square of a second, as towards the end of a '
+                          'discharge; it holds for the length of these flights'),
                 Parameter('load_sink', '1', 0.0, 1.0, 0.05,
                           'share of the thrust lost at twice the power of hover')),
     source='thrust (1 - zone (1 - exp(-t / zone_time)) - slope t - bend t^2 - load_sink '

@@ -30,4 +30,5 @@ FORM = Form(
                   'moment of all rotors against a roll or pitch rate, per rate')),
     source='moment of hub_moment, and -rate_damping (p, q, 0): the disks lag behind a body that '
            'turns; Pounds, Mahony, Corke, Control Engineering Practice 18, 2010',
+    # The damping alone would show in a gyro, but beside it the moment by the velocity would not.
     acts_on='rotation', wrench=wrench, needs_reference=True)

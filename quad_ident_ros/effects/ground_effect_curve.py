@@ -17,9 +17,11 @@ def thrust(p: Table, k: int, s: Table, rotors: Table) -> None:
     """Raise the thrust of each rotor by what the curve has at its height."""
     for j in range(rotors.shape[0]):
         for i in range(s.shape[1]):
-            height = max(rotors[j, HEIGHT, i] / s[RADIUS, i], LEAST)
-            place = min(math.log2(height / LEAST), KNOTS - 1e-9)
-            knot = int(place)
+            # A vehicle without a radius is far from any ground.
+            height = max(rotors[j, HEIGHT, i], 1e-9) / max(s[RADIUS, i], 1e-12)
+            place = min(math.log2(max(height, LEAST) / LEAST), KNOTS - 1e-9)
+            # What is not a number has no place.
+            knot = int(place) if place >= 0.0 else 0
             share = place - knot
             above = p[k + knot + 1, i] if knot < KNOTS - 1 else 0.0
             rotors[j, GAIN, i] *= 1.0 + (1.0 - share) * p[k + knot, i] + share * above
@@ -28,11 +30,11 @@ def thrust(p: Table, k: int, s: Table, rotors: Table) -> None:
 FORM = Form(
     name='curve', title='by a curve over the height',
     parameters=tuple(Parameter(f'at_{name}', '1', -0.5, 3.0, 0.1,
-                               f'share of the thrust won at a height of {height:g} rotor radii')
+                               f'share of the thrust won at {height:g} times the rotor radius')
                      for name, height in zip(('half', 'one', 'two', 'four'), HEIGHTS[:-1],
                                              strict=True)),
-    source='thrust (1 + gain), the gain linear in log z between its values and 0 from 8 radii on, '
-           'z the height of the rotor: laws that were measured differ from vehicle to vehicle; '
-           'Sanchez-Cuevas, Heredia, Ollero, International Journal of Aerospace Engineering '
-           '2017, 1823056',
+    source='thrust (1 + gain), the gain linear in log z between its values, constant below 0.5 '
+           'radii and 0 from 8 radii on, z the height of the rotor: laws that were measured '
+           'differ from vehicle to vehicle; Sanchez-Cuevas, Heredia, Ollero, International '
+           'Journal of Aerospace Engineering 2017, 1823056',
     acts_on='translation', thrust=thrust, needs_height=True)

@@ -21,7 +21,8 @@ def thrust(p: Table, k: int, s: Table, rotors: Table) -> None:
         for i in range(s.shape[1]):
             place = (rotors[j, SPEED, i] * s[PER_HOVER, i] * count - SPEEDS[0]) / STEP
             place = min(max(place, 0.0), KNOTS - 1.0)
-            knot = min(int(place), KNOTS - 2)
+            # What is not a number has no place.
+            knot = min(int(place), KNOTS - 2) if place >= 0.0 else 0
             share = place - knot
             rotors[j, GAIN, i] *= (1.0 - share) * p[k + knot, i] + share * p[k + knot + 1, i]
 
@@ -29,7 +30,7 @@ def thrust(p: Table, k: int, s: Table, rotors: Table) -> None:
 FORM = Form(
     name='curve', title='factor by a curve over the speed',
     parameters=tuple(Parameter(name, '1', 0.2, 3.0, 0.1,
-                               f'factor on the thrust at {speed:g} times the hover speed',
+                               f'factor on the thrust at {100.0 * speed:.0f} % of the hover speed',
                                null=1.0) for name, speed in SPEED_OF.items()),
     source='thrust = factor(speed / hover) thrust_coefficient speed^2, the factor linear between '
            'its values and constant beyond them: coefficients of small propellers vary with the '

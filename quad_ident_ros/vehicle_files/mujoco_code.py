@@ -36,7 +36,8 @@ LINES: dict[tuple[str, str], Callable[[Values, int, float], str]] = {
         # The gears hold the factor at hover.
         f'{_row({**dict.fromkeys(SPEED_OF, 1.0), **p}, tuple(SPEED_OF), p.get("at_100", 1.0))})'),
     ('ground_effect', 'curve'): lambda p, n, r: (
-        f'radii = np.maximum(height / {_one(r)}, {_one(ground_effect_curve.HEIGHTS[0])})\n'
+        f'radii = np.maximum(height / {_one(max(r, 1e-12))}, '
+        f'{_one(ground_effect_curve.HEIGHTS[0])})\n'
         f'known = np.log({_row(HEIGHTS_AT, tuple(HEIGHTS_AT))})\n'
         f'gain *= 1.0 + np.interp(np.log(radii), known, {_row(p, tuple(HEIGHTS_AT))})'),
     ('ground_effect', 'cheeseman_bennett'): lambda p, n, r: (

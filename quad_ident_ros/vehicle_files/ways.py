@@ -45,8 +45,8 @@ WAYS: dict[tuple[str, str], tuple[Way, ...]] = {
     ('wind', 'steady'): (Way(('wind',)),),
     ('inflow', 'linear'): (Way(('inflow',)),),
     ('blade_flapping', 'hub_moment'): (Way(('flapping',)),),
-    ('blade_flapping', 'damped_hub'): (Way(('flapping',), 'its moment with the velocity; that '
-                                           'with the rate nothing'),),
+    ('blade_flapping', 'damped_hub'): (Way(('flapping',), 'its moment with the velocity; the '
+                                           'damping is lost'),),
     ('battery_sag', 'voltage'): (_MEAN,),
     ('battery_sag', 'time'): (_MEAN,),
     ('battery_sag', 'voltage_power'): (_MEAN,),

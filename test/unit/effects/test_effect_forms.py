@@ -381,6 +381,27 @@ def test_a_curve_over_the_height_has_its_values_and_ends_at_eight_radii(radii, g
     assert lifted(curve, radii * BARE.rotor_radius) == pytest.approx(1 + gain, abs=1e-5)
 
 
+@pytest.mark.parametrize('effects', [
+    {'ground_effect': OTHERS['ground_effect', 'curve']},
+    {'thrust_scale': OTHERS['thrust_scale', 'curve']}], ids=lambda effects: next(iter(effects)))
+def test_a_state_that_is_no_number_stays_one_by_a_curve(effects):
+    # As a rollout that has diverged hands on.
+    fast = state(position=(0, 0, 0.1), velocity=(np.nan, 0, np.nan))
+    fast[2] = np.nan
+    course = held(BARE, HOVER, 0.05)
+    course.commands[2] = np.nan
+    assert np.isnan(roll(BARE, effects, course, fast)[-1]).any()
+
+
+def test_a_vehicle_without_a_radius_feels_no_ground_by_the_curve():
+    bare = replace(BARE, rotor_radius=0.0)
+    course = held(bare, HOVER, 0.05)
+    start = state(position=(0, 0, 0.1))
+    one, other = (roll(bare, each, course, start) for each in (
+        {}, {'ground_effect': OTHERS['ground_effect', 'curve']}))
+    assert np.abs(one - other).max() < 1e-9
+
+
 @pytest.mark.parametrize('effects', [{'gain': 3.0}, {'hayden': 10.0}, {'at_half': 3.0}])
 def test_the_ground_is_felt_near_it_alone_and_stays_finite(effects):
     assert lifted(effects, 1000.0) == pytest.approx(1.0, abs=1e-5)
