@@ -172,6 +172,7 @@ def test_priors_are_as_wide_as_the_file_says():
         'inertia_z': 1.3e-4, 'inertia_mismatch.factor_z': 0.1,
         'thrust_coefficient': 2.9842e-6, 'thrust_scale.factor': 0.1, 'thrust_scale.at_hover': 0.1,
         'thrust_scale.hover_factor': 0.1, 'torque_coefficient': 1.616e-6,
+        **{f'thrust_scale.at_{speed}': 0.1 for speed in (70, 85, 100, 115, 130)},
         'inertia_mismatch.torque': 0.5,
         # A ratio is known as far as both of its constants are: of the inertia about y nothing is.
         'inertia_mismatch.inertia_z': np.hypot(0.1, 0.2),
