@@ -13,6 +13,12 @@ def hover_speed(params):
     return float(np.sqrt(params['mass'] * GRAVITY / (params['num_rotors'] * params['k_eta'])))
 
 
+def induced_velocity(params):
+    """Return the induced velocity of the rotors in hover, m/s: momentum theory."""
+    area = params['num_rotors'] * np.pi * params['rotor_radius'] ** 2
+    return float(np.sqrt(params['mass'] * GRAVITY / (2.0 * AIR_DENSITY * area)))
+
+
 def arm_length(params):
     """Return the distance, m, of the first rotor from the body origin."""
     return float(np.linalg.norm(list(params['rotor_pos'].values())[0]))

@@ -4,7 +4,7 @@
 
 import numpy as np
 
-from withheld.constants import AIR_DENSITY, arm_length, GRAVITY, hover_speed
+from withheld.constants import arm_length, hover_speed, induced_velocity
 from withheld.influence import Influence
 
 
@@ -187,9 +187,7 @@ class Thrust(Influence):
         self.hover = hover_speed(params)
         self.radius = params['rotor_radius']
         self.parameters = {'size': size}
-        weight = params['mass'] * GRAVITY / params['num_rotors']
-        area = np.pi * self.radius ** 2
-        self.induced = float(np.sqrt(weight / (2.0 * AIR_DENSITY * area)))      # m/s, in hover
+        self.induced = induced_velocity(params)
 
 
 class Momentum(Thrust):
@@ -319,9 +317,7 @@ class Ground(Influence):
         """Take what heights and velocities are measured by."""
         self.size, self.radius = size, params['rotor_radius']
         self.parameters = {'size': size}
-        weight = params['mass'] * GRAVITY / params['num_rotors']
-        self.induced = float(np.sqrt(weight / (
-            2.0 * AIR_DENSITY * np.pi * self.radius ** 2)))
+        self.induced = induced_velocity(params)
 
     def gain(self, now):
         """Return the factors."""

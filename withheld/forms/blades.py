@@ -4,7 +4,7 @@
 
 import numpy as np
 
-from withheld.constants import AIR_DENSITY, arm_length, GRAVITY, hover_speed
+from withheld.constants import arm_length, hover_speed, induced_velocity
 from withheld.forms.air import Thrust
 from withheld.forms.body import signs
 from withheld.influence import Influence
@@ -101,8 +101,7 @@ class ThroughFlow(Influence):
         self.moment = 0.002 * size * params['mass'] * arm_length(params)
         self.parameters = {'coefficient': self.moment}
         self.hover, self.count = hover_speed(params), params['num_rotors']
-        area = self.count * np.pi * params['rotor_radius'] ** 2
-        self.induced = float(np.sqrt(params['mass'] * GRAVITY / (2.0 * AIR_DENSITY * area)))
+        self.induced = induced_velocity(params)
 
     def wrench(self, now):
         """Return the moment of all rotors."""

@@ -202,19 +202,23 @@ class Outriggers(Influence):
         set_inertia(true, inertia_of(true) + self.size * true['Ixx'] * spread)
 
 
-class Sliding(Influence):
-    """A centre of mass that slides on in flight, as of a battery that is not fixed."""
+class Centre(Influence):
+    """A centre of mass that is off by as much on average."""
 
     def __init__(self, size, params, rng):
-        """Draw where it is."""
+        """Draw where it is on average."""
         along = np.array([*signs(rng, 2) * rng.uniform(0.3, 1.0, 2), rng.uniform(-0.3, 0.3)])
         self.centre = 0.002 * size * arm_length(params) * along
         self.parameters = dict(zip('xyz', self.centre.tolist(), strict=True))
         self.thrust = params['k_eta']
 
     def alter(self, true, params):
-        """Put the centre where it is halfway."""
+        """Put the centre where it is on average."""
         true['centre'] = true['centre'] + self.centre
+
+
+class Sliding(Centre):
+    """A centre of mass that slides on in flight, as of a battery that is not fixed."""
 
     def wrench(self, now):
         """Return the moment of the thrust about a centre that is between 0.8 and 1.2 of it."""

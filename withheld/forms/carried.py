@@ -4,8 +4,8 @@
 
 import numpy as np
 
-from withheld.constants import arm_length, GRAVITY
-from withheld.forms.body import Coupled, signs
+from withheld.constants import GRAVITY
+from withheld.forms.body import Centre, Coupled
 from withheld.influence import Influence
 
 
@@ -101,22 +101,11 @@ class Rattling(Coupled):
         return side * np.where(into > 0.0, np.maximum(push, 0.0), 0.0)
 
 
-class Panning(Influence):
+class Panning(Centre):
     """A camera on a boom that pans to and fro, and takes the centre of mass around with it."""
 
     SWINGS, PERIOD = 0.9, 6.0       # rad to either side; s
     MEAN = 0.8075                   # of the distance: Bessel's J0 of what it swings
-
-    def __init__(self, size, params, rng):
-        """Draw where it points on average."""
-        along = np.array([*signs(rng, 2) * rng.uniform(0.3, 1.0, 2), rng.uniform(-0.3, 0.3)])
-        self.centre = 0.002 * size * arm_length(params) * along
-        self.parameters = dict(zip('xyz', self.centre.tolist(), strict=True))
-        self.thrust = params['k_eta']
-
-    def alter(self, true, params):
-        """Put the centre where it is on average."""
-        true['centre'] = true['centre'] + self.centre
 
     def begin(self, rng):
         """Draw the phase."""

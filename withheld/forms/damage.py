@@ -4,7 +4,7 @@
 
 import numpy as np
 
-from withheld.constants import AIR_DENSITY, GRAVITY, hover_speed
+from withheld.constants import hover_speed, induced_velocity
 from withheld.forms.body import Fault
 from withheld.influence import Influence
 
@@ -46,8 +46,7 @@ class Rough(Fault):
     def __init__(self, size, params, rng):
         """Set the induced velocity in hover, m/s."""
         super().__init__(size, params, rng)
-        area = params['num_rotors'] * np.pi * params['rotor_radius'] ** 2
-        self.induced = float(np.sqrt(params['mass'] * GRAVITY / (2.0 * AIR_DENSITY * area)))
+        self.induced = induced_velocity(params)
 
     def gain(self, now):
         """Return the factors."""

@@ -4,7 +4,7 @@
 
 import numpy as np
 
-from withheld.constants import AIR_DENSITY, GRAVITY
+from withheld.constants import induced_velocity
 from withheld.forms.air import Drag
 
 
@@ -21,9 +21,7 @@ class Trailing(Drag):
     def __init__(self, size, params, rng):
         """Set the time that it takes, s, in hover."""
         super().__init__(size, params, rng)
-        area = params['num_rotors'] * np.pi * params['rotor_radius'] ** 2
-        induced = np.sqrt(params['mass'] * GRAVITY / (2.0 * AIR_DENSITY * area))
-        self.time = float(self.RADII * params['rotor_radius'] / induced)
+        self.time = self.RADII * params['rotor_radius'] / induced_velocity(params)
 
     def begin(self, rng):
         """Start with a wake that has answered."""

@@ -4,8 +4,8 @@
 
 import numpy as np
 
-from withheld.constants import arm_length, GRAVITY
-from withheld.forms.body import Coupled, signs
+from withheld.constants import GRAVITY
+from withheld.forms.body import Centre, Coupled
 from withheld.influence import Influence
 
 
@@ -95,7 +95,7 @@ class Slipping(Coupled):
         self._turning = self._rate - self.SMOOTH * rest
 
 
-class Jumping(Influence):
+class Jumping(Centre):
     """
     A battery in a loose strap that sticks and slips: its centre jumps a few times in a flight.
 
@@ -104,17 +104,6 @@ class Jumping(Influence):
     """
 
     EVERY = 4.0         # s on average
-
-    def __init__(self, size, params, rng):
-        """Draw where it is on average."""
-        along = np.array([*signs(rng, 2) * rng.uniform(0.3, 1.0, 2), rng.uniform(-0.3, 0.3)])
-        self.centre = 0.002 * size * arm_length(params) * along
-        self.parameters = dict(zip('xyz', self.centre.tolist(), strict=True))
-        self.thrust = params['k_eta']
-
-    def alter(self, true, params):
-        """Put the centre where it is on average."""
-        true['centre'] = true['centre'] + self.centre
 
     def begin(self, rng):
         """Draw when it jumps, and how far off it is then."""

@@ -4,7 +4,7 @@
 
 import numpy as np
 
-from withheld.constants import AIR_DENSITY, GRAVITY
+from withheld.constants import induced_velocity
 from withheld.forms.air import Drag
 
 
@@ -22,8 +22,7 @@ class InflowDrag(Drag):
     def __init__(self, size, params, rng):
         """Set the induced velocity in hover, m/s."""
         super().__init__(size, params, rng)
-        area = params['num_rotors'] * np.pi * params['rotor_radius'] ** 2
-        self.induced = float(np.sqrt(params['mass'] * GRAVITY / (2.0 * AIR_DENSITY * area)))
+        self.induced = induced_velocity(params)
 
     def law(self, now):
         """Return what the coefficient is of."""

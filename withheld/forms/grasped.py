@@ -1,11 +1,10 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Loads that are seized or move air, harness, arms that reach, sensors that change over."""
+"""What is grasped on the way, moves air, is bundled, or reaches out."""
 
 import numpy as np
 
-from withheld.constants import arm_length
-from withheld.forms.body import Bias, Coupled, signs, Tilt
+from withheld.forms.body import Centre, Coupled
 from withheld.influence import Influence
 
 
@@ -94,7 +93,7 @@ class Bundled(Coupled):
                 self._twist + h * (self._rate - self._turning), -most, most)
 
 
-class Reaching(Influence):
+class Reaching(Centre):
     """
     An arm that reaches out and back again, smoothly, and takes the centre of mass with it.
 
@@ -103,17 +102,6 @@ class Reaching(Influence):
     """
 
     PERIOD, LASTS, SWING = 7.0, 1.5, 0.5        # s; s; of the mean, either way
-
-    def __init__(self, size, params, rng):
-        """Draw where it is on average."""
-        along = np.array([*signs(rng, 2) * rng.uniform(0.3, 1.0, 2), rng.uniform(-0.3, 0.3)])
-        self.centre = 0.002 * size * arm_length(params) * along
-        self.parameters = dict(zip('xyz', self.centre.tolist(), strict=True))
-        self.thrust = params['k_eta']
-
-    def alter(self, true, params):
-        """Put the centre where it is on average."""
-        true['centre'] = true['centre'] + self.centre
 
     def begin(self, rng):
         """Draw the phase."""
@@ -127,43 +115,3 @@ class Reaching(Influence):
         x, y, _ = self.SWING * (-out if int(number) % 2 else out) * self.centre
         lift = self.thrust * np.sum(now.speeds ** 2)
         return np.zeros(3), lift * np.array([-y, x, 0.0])
-
-
-class Occluded(Tilt):
-    """
-    Motion capture that loses a marker for moments, in which the attitude is tilted by more.
-
-    That its accuracy depends on the cameras that see: A. M. Aurand, J. S. Dufour, W. S. Marras,
-    Accuracy map of an optical motion capture system, Journal of Biomechanics 58, 2017.
-    """
-
-    STAYS, SHARES = (1.2, 0.5), (0.7, 1.7)      # s on average; of the mean tilt
-
-    def begin(self, rng):
-        """Draw when it changes."""
-        self.times = np.cumsum(rng.exponential(np.tile(self.STAYS, 200)))
-
-    def measured(self, time, state, thrust):
-        """Return what is said."""
-        return self.tilted(state, self.SHARES[int(np.searchsorted(self.times, time)) % 2])[0]
-
-
-class ChangedOver(Bias):
-    """
-    An autopilot with two gyroscopes that changes over from one to the other on the way.
-
-    As autopilots vote between several sensors in practice; each has a bias of its own.
-    """
-
-    def __init__(self, size, params, rng):
-        """Draw how they differ by axis."""
-        super().__init__(size, params, rng)
-        self.differ = rng.uniform(0.3, 0.9, 3) * signs(rng, 3)
-
-    def begin(self, rng):
-        """Draw when, s."""
-        self.when = rng.uniform(6.0, 14.0)
-
-    def share(self, time, thrust):
-        """Return the shares of the bias by axis."""
-        return 1.0 + self.differ if time < self.when else 1.0 - self.differ
