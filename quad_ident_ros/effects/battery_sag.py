@@ -4,7 +4,7 @@
 
 from quad_ident_ros.compiled import compiled
 from quad_ident_ros.effects import (
-    battery_sag_curve,
+    battery_sag_discharge,
     battery_sag_load,
     battery_sag_power,
     battery_sag_time,
@@ -31,6 +31,6 @@ FORM = Form(
 EFFECT = Effect(
     name='battery_sag', title='voltage sag of the battery',
     forms=(FORM, battery_sag_time.FORM, battery_sag_power.FORM, battery_sag_load.FORM,
-           battery_sag_curve.FORM),
+           battery_sag_discharge.FORM),
     excitation='a flight long enough for the voltage to fall',
     confused_with=('thrust_scale', 'mass_offset'))

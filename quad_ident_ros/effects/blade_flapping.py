@@ -2,25 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Pitching and rolling moments that grow with air velocity."""
 
-from quad_ident_ros.compiled import compiled
 from quad_ident_ros.effects import (
     blade_flapping_damping,
     blade_flapping_drag_centre,
     blade_flapping_drag_point,
 )
-from quad_ident_ros.effects.base import Effect, Form, Parameter, Table
-from quad_ident_ros.model.situation import MX, MY, PER_HOVER, SPEED, UX, UY
-
-
-@compiled(fused=True, inlined=True)
-def wrench(p: Table, k: int, s: Table, rotors: Table) -> None:
-    """Add the moment of each rotor."""
-    for j in range(rotors.shape[0]):
-        for i in range(s.shape[1]):
-            share = p[k, i] * rotors[j, SPEED, i] * s[PER_HOVER, i]
-            s[MX, i] -= share * rotors[j, UY, i]
-            s[MY, i] += share * rotors[j, UX, i]
-
+from quad_ident_ros.effects.base import Effect, Form, Parameter
+from quad_ident_ros.effects.hub_moment import wrench
 
 FORM = Form(
     name='hub_moment', title='moment at each rotor',

@@ -3,18 +3,15 @@
 """Flapping of the blades with the damping that it gives: disks lag behind a body that turns."""
 
 from quad_ident_ros.compiled import compiled
+from quad_ident_ros.effects import hub_moment
 from quad_ident_ros.effects.base import Form, Parameter, Table
-from quad_ident_ros.model.situation import MX, MY, PER_HOVER, SPEED, UX, UY, WX, WY
+from quad_ident_ros.model.situation import MX, MY, WX, WY
 
 
 @compiled(fused=True, inlined=True)
 def wrench(p: Table, k: int, s: Table, rotors: Table) -> None:
     """Add the moment of each rotor by its velocity, and that of all of them by the rate."""
-    for j in range(rotors.shape[0]):
-        for i in range(s.shape[1]):
-            share = p[k, i] * rotors[j, SPEED, i] * s[PER_HOVER, i]
-            s[MX, i] -= share * rotors[j, UY, i]
-            s[MY, i] += share * rotors[j, UX, i]
+    hub_moment.wrench(p, k, s, rotors)
     for i in range(s.shape[1]):
         s[MX, i] -= p[k + 1, i] * s[WX, i]
         s[MY, i] -= p[k + 1, i] * s[WY, i]

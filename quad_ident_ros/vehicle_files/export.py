@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 from quad_ident_ros.data.record import FlightRecord
-from quad_ident_ros.effects.battery_sag_curve import ZONE_TIME
+from quad_ident_ros.effects.battery_sag_discharge import ZONE_TIME
 from quad_ident_ros.effects.registry import titled, Values
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.greybox.flights import highest_voltage

@@ -66,7 +66,8 @@ def _at_hover(name: str, form: str, values: Mapping[str, float], there: float
         return {'at_hover': ((1.0 + offset) / (1.0 + values['offset'])) ** 2, 'offset': offset}
     if (name, form) == ('thrust_scale', 'curve'):
         speeds, factors = SPEED_OF.values(), [values.get(key, 1.0) for key in SPEED_OF]
-        # The thrust coefficient that was written has the factor at hover in it.
+        # The thrust coefficient that was written has the factor at hover in it. Between values
+        # that move the curve is cut straight.
         now = np.interp([there * speed for speed in speeds], list(speeds), factors)
         return dict(zip(SPEED_OF, (now / values.get('at_100', 1.0)).tolist(), strict=True))
     return {key: value * there if key in PER_SPEED else value for key, value in values.items()}

@@ -11,8 +11,9 @@ import numpy as np
 import pytest
 from scipy.signal import lsim
 
+from quad_ident_ros.effects import ground_effect_curve, thrust_scale_curve
 from quad_ident_ros.effects.inflow_momentum import AIR_DENSITY, induced_velocity
-from quad_ident_ros.effects.registry import EFFECTS, FORMS, from_entries, vector
+from quad_ident_ros.effects.registry import EFFECTS, FORMS, from_entries, TABLE, vector
 from quad_ident_ros.flight.fly import fly_closed_loop, FULL_VOLTAGE, LONGEST_STEP
 from quad_ident_ros.model.actuators import actuated
 from quad_ident_ros.model.attitude import rotation_matrix, turn
@@ -20,6 +21,7 @@ from quad_ident_ros.model.contribution import contribution
 from quad_ident_ros.model.dynamics import Course, course_of, predict, states_of
 from quad_ident_ros.model.sensors import recorded, underlying
 from quad_ident_ros.model.simulate import simulate
+from quad_ident_ros.model.situation import GAIN, HEIGHT, ROTOR_ROWS, SPEED
 from quad_ident_ros.model.vehicle import load_vehicle
 
 FAST = settings(deadline=None, max_examples=60)
@@ -381,16 +383,16 @@ def test_a_curve_over_the_height_has_its_values_and_ends_at_eight_radii(radii, g
     assert lifted(curve, radii * BARE.rotor_radius) == pytest.approx(1 + gain, abs=1e-5)
 
 
-@pytest.mark.parametrize('effects', [
-    {'ground_effect': OTHERS['ground_effect', 'curve']},
-    {'thrust_scale': OTHERS['thrust_scale', 'curve']}], ids=lambda effects: next(iter(effects)))
-def test_a_state_that_is_no_number_stays_one_by_a_curve(effects):
-    # As a rollout that has diverged hands on.
-    fast = state(position=(0, 0, 0.1), velocity=(np.nan, 0, np.nan))
-    fast[2] = np.nan
-    course = held(BARE, HOVER, 0.05)
-    course.commands[2] = np.nan
-    assert np.isnan(roll(BARE, effects, course, fast)[-1]).any()
+@pytest.mark.parametrize(('module', 'row'), [(ground_effect_curve, HEIGHT),
+                                             (thrust_scale_curve, SPEED)])
+@pytest.mark.parametrize('value', [np.nan, np.inf, -np.inf, 0.0, -1.0])
+def test_a_curve_is_read_at_its_values_alone_whatever_a_diverged_rollout_has(module, row, value):
+    hook = getattr(module.thrust, 'py_func', module.thrust)     # Python checks every index
+    count = len(module.FORM.parameters)
+    s, rotors = np.ones((TABLE, 1)), np.ones((1, ROTOR_ROWS, 1))
+    rotors[0, row, 0] = value
+    hook(np.full((count, 1), 0.5), 0, s, rotors)
+    assert np.isnan(rotors[0, GAIN, 0]) or 0.0 <= rotors[0, GAIN, 0] <= 1.5
 
 
 def test_a_vehicle_without_a_radius_feels_no_ground_by_the_curve():

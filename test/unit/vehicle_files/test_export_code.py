@@ -12,11 +12,15 @@ import pytest
 
 from quad_ident_ros.cli.main import main
 from quad_ident_ros.effects.registry import vector
+from quad_ident_ros.effects.thrust_scale_curve import SPEED_OF
 from quad_ident_ros.model.motors import rotor_speeds
 from quad_ident_ros.model.rigid_body import derivatives, INPUT, rotor_table, vehicle_vector
 from quad_ident_ros.model.vehicle import load_vehicle, write_vehicle
 from quad_ident_ros.vehicle_files.export import export
 from quad_ident_ros.vehicle_files.mujoco_code import LINES
+from quad_ident_ros.vehicle_files.source import Source
+from quad_ident_ros.vehicle_files.ways import forms_of
+from quad_ident_ros.vehicle_files.written import read_back, with_code
 
 # Some sets, because forms of one effect take the place of one another.
 SETS = ({'rotor_drag': {'coefficient': 0.2}, 'body_drag': {'horizontal': 0.02, 'vertical': 0.05},
@@ -62,8 +66,29 @@ def model_of(vehicle, source=None):
 
 
 def test_every_law_is_in_one_of_the_sets():
-    names = {name for effects in SETS for name in effects}
-    assert {name for name, _ in LINES} <= names
+    assert set(LINES) <= {(name, form) for effects in SETS for name, form, _ in forms_of(effects)}
+
+
+def accelerations(vehicle, start, speeds):
+    out = np.empty((1, 13))
+    derivatives(vehicle_vector(vehicle)[:, None], rotor_table(vehicle),
+                vector(vehicle.effects, vehicle), np.zeros(1), start[None], speeds,
+                np.zeros((1, 4)), np.zeros((1, INPUT)), out)
+    return [*out[0, 3:6], *out[0, 10:]]
+
+
+@pytest.mark.parametrize('speed', SPEED_OF.values())
+@pytest.mark.parametrize('effects', [SETS[1], {**SETS[2], **SETS[3]}])
+def test_the_file_and_the_code_read_back_are_the_vehicle_at_a_heavier_hover(effects, speed):
+    effects = {name: values for name, values in effects.items() if name not in IN_NUMBERS}
+    vehicle = replace(VEHICLE, effects={**effects, 'mass_offset': {'mass': 0.15}})
+    found = export(vehicle, 'mujoco', None)
+    read = with_code(found, read_back(found, Source('a.xml', found.text), vehicle), vehicle)
+    assert read.hover_speed > 1.1 * vehicle.hover_speed
+    start = state((0, 0, 0.15), (2, -3, 1), (0.2, -0.1, 0.3), (1, -2, 0.5))
+    speeds = np.full((1, 4), speed * read.hover_speed)
+    np.testing.assert_allclose(accelerations(read, start, speeds),
+                               accelerations(vehicle, start, speeds), rtol=1e-6, atol=1e-6)
 
 
 @pytest.mark.parametrize('effects', SETS)
@@ -77,15 +102,12 @@ def test_accelerations_are_those_of_our_equations(effects):
         start = state((0, 0, 0.15), draw.normal(0, 4, 3), draw.uniform(-0.5, 0.5, 3),
                       draw.normal(0, 2, 3))
         speeds = vehicle.hover_speed * draw.uniform(0.7, 1.3, (1, 4))
-        out = np.empty((1, 13))
-        derivatives(vehicle_vector(vehicle)[:, None], rotor_table(vehicle),
-                    vector(effects, vehicle), np.zeros(1), start[None], speeds,
-                    np.zeros((1, 4)), np.zeros((1, INPUT)), out)
         data.qpos[:] = [*start[:3], *start[6:10]]
         data.qvel[:] = [*start[3:6], *start[10:]]
         data.ctrl[:] = vehicle.thrust_coefficient * speeds[0] ** 2
         mujoco.mj_forward(model, data)
-        np.testing.assert_allclose(data.qacc, [*out[0, 3:6], *out[0, 10:]], rtol=1e-9, atol=1e-9)
+        np.testing.assert_allclose(data.qacc, accelerations(vehicle, start, speeds), rtol=1e-9,
+                                   atol=1e-9)
 
 
 @pytest.mark.parametrize('effects', [
