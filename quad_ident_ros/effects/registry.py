@@ -158,48 +158,87 @@ def mark(theta: Table, s: Table) -> None:
                 s[OWNERS[n]] = 1.0
 
 
+Link = tuple[Hook, int, int]    # a form's function, where its parameters begin, its row of s
+AT_ONCE = 4     # links that are compiled as one function
+
+
 def _chain(hook: str) -> Hook:
     """Return one compiled function that does what all forms do at a hook, one after another."""
     early = hook in BEFORE
-    chain: Hook = _nothing_early if early else _nothing
-    for effect in (RESIDUAL_WRENCH, *reversed(EFFECTS.values())):
-        for form in reversed(effect.forms):
+    links: list[Link] = []
+    for effect in (*EFFECTS.values(), RESIDUAL_WRENCH):
+        for form in effect.forms:
             key = effect.name, form.name
             function = getattr(form, hook)
             if function is not None:
-                place, row = PLACES[key].start, ROWS_OF[key]
-                chain = (_early_then(function, place, chain) if early else
-                         _then(function, place, row, chain))
-    return chain
+                links.append((function, PLACES[key].start, ROWS_OF[key]))
+    # Compilation takes as long as functions are many, and what they call is compiled in each.
+    nothing: Link = (_nothing_early if early else _nothing, 0, 0)
+    links += [nothing] * (-len(links) % AT_ONCE)
+    some, both = (_some_early, _both_early) if early else (_some, _both)
+    hooks = [some(*links[k:k + AT_ONCE]) for k in range(0, len(links), AT_ONCE)]
+    while len(hooks) > 1:
+        hooks = [both(*pair) if len(pair) > 1 else pair[0]
+                 for pair in (hooks[k:k + 2] for k in range(0, len(hooks), 2))]
+    return hooks[0]
 
 
 @compiled(inlined=True)
-def _nothing_early(_theta: Table, _s: Table) -> None:
+def _nothing_early(_theta: Table, _place: int, _s: Table) -> None:
     pass
 
 
 @compiled(inlined=True)
-def _nothing(_theta: Table, _s: Table, _rotors: Table) -> None:
+def _nothing(_theta: Table, _place: int, _s: Table, _rotors: Table) -> None:
     pass
 
 
-def _early_then(function: Hook, place: int, rest: Hook) -> Hook:
+def _some_early(one: Link, two: Link, three: Link, four: Link) -> Hook:
+    (f, i, _), (g, j, _), (h, k, _), (o, m, _) = one, two, three, four
+
     @compiled(inlined=True)
-    def both(theta: Table, s: Table) -> None:
-        function(theta, place, s)
-        rest(theta, s)
+    def act(theta: Table, s: Table) -> None:
+        f(theta, i, s)
+        g(theta, j, s)
+        h(theta, k, s)
+        o(theta, m, s)
 
-    return both
+    return act
 
 
-def _then(function: Hook, place: int, row: int, rest: Hook) -> Hook:
+def _some(one: Link, two: Link, three: Link, four: Link) -> Hook:
+    (f, i, a), (g, j, b), (h, k, c), (o, m, d) = one, two, three, four
+
     @compiled(inlined=True)
-    def both(theta: Table, s: Table, rotors: Table) -> None:
-        if s[row, 0] != 0.0:
-            function(theta, place, s, rotors)
-        rest(theta, s, rotors)
+    def act(theta: Table, s: Table, rotors: Table) -> None:
+        if s[a, 0] != 0.0:
+            f(theta, i, s, rotors)
+        if s[b, 0] != 0.0:
+            g(theta, j, s, rotors)
+        if s[c, 0] != 0.0:
+            h(theta, k, s, rotors)
+        if s[d, 0] != 0.0:
+            o(theta, m, s, rotors)
 
-    return both
+    return act
+
+
+def _both_early(first: Hook, second: Hook) -> Hook:
+    @compiled(inlined=True)
+    def act(theta: Table, s: Table) -> None:
+        first(theta, s)
+        second(theta, s)
+
+    return act
+
+
+def _both(first: Hook, second: Hook) -> Hook:
+    @compiled(inlined=True)
+    def act(theta: Table, s: Table, rotors: Table) -> None:
+        first(theta, s, rotors)
+        second(theta, s, rotors)
+
+    return act
 
 
 BEFORE = ('body', 'air')    # hooks that act before the flight, and know nothing of the rotors

@@ -31,7 +31,9 @@ from quad_ident_ros.model.situation import (
 
 LAG = SLICES['motor_lag'].start
 GYRO, GYRO_ROW = SLICES['rotor_gyro'].start, ROWS_OF['rotor_gyro', 'momentum']
-CHANGE = 4  # row of work[3]: what of the rate of change of the rotors' spin no lag gives
+# Rows of work[3] after the shares of begin, middle and end: one over the lag, and what of the rate
+# of change of the rotors' spin no lag gives.
+RATE, CHANGE = 3, 4
 
 
 @compiled(fused=True, inlined=True)
@@ -91,41 +93,33 @@ def step(x: np.ndarray, h: np.ndarray, u: np.ndarray, v: np.ndarray, places: np.
     work has what take_up wrote.
     """
     k, y, total = work[0], work[1], work[2]
-    half, full, rate, begin, change = (work[3, 0], work[3, 1], work[3, 2], work[3, 3],
-                                       work[3, CHANGE])
+    rate, change = work[3, RATE], work[3, CHANGE]
     for i in range(s.shape[1]):
         rate[i] = 1.0 / lag[i] if lag[i] > 0.0 else 0.0
-        begin[i], half[i], full[i] = shares(h[i], lag[i])
+        work[3, 0, i], work[3, 1, i], work[3, 2, i] = shares(h[i], lag[i])
         s[VOLT_DROP, i], s[VOLT_SHARE, i] = u[5, i], u[6, i]
-        s[STAGE, i] = 0.0
-    _set_speeds(begin, speed, command, added[0], places, rate, change, s, rotors)
-    derivative(x, u, v, places, theta, s, rotors, k)
     for n in range(STATE):
         for i in range(s.shape[1]):
-            total[n, i] = k[n, i]
-            y[n, i] = x[n, i] + 0.5 * h[i] * k[n, i]
-    for i in range(s.shape[1]):
-        s[TIME, i] += 0.5 * h[i]
-        s[STAGE, i] = 0.5
-    _set_speeds(half, speed, command, added[1], places, rate, change, s, rotors)
-    derivative(y, u, v, places, theta, s, rotors, k)
+            total[n, i], y[n, i] = 0.0, x[n, i]
+    # One call of the derivative, which is long: it is compiled once.
+    for stage in range(4):
+        place = (stage + 1) // 2    # begin, middle, middle, end
+        if stage != 2:
+            for i in range(s.shape[1]):
+                s[STAGE, i] = 0.5 * place
+                s[TIME, i] += 0.5 * h[i] if stage else 0.0
+            _set_speeds(work[3, place], speed, command, added[place], places, rate, change, s,
+                        rotors)
+        derivative(y, u, v, places, theta, s, rotors, k)
+        weight = 2.0 if place == 1 else 1.0
+        ahead = 1.0 if stage == 2 else 0.5
+        for n in range(STATE):
+            for i in range(s.shape[1]):
+                total[n, i] += weight * k[n, i]
+                y[n, i] = x[n, i] + ahead * h[i] * k[n, i]
     for n in range(STATE):
         for i in range(s.shape[1]):
-            total[n, i] += 2.0 * k[n, i]
-            y[n, i] = x[n, i] + 0.5 * h[i] * k[n, i]
-    derivative(y, u, v, places, theta, s, rotors, k)
-    for n in range(STATE):
-        for i in range(s.shape[1]):
-            total[n, i] += 2.0 * k[n, i]
-            y[n, i] = x[n, i] + h[i] * k[n, i]
-    for i in range(s.shape[1]):
-        s[TIME, i] += 0.5 * h[i]
-        s[STAGE, i] = 1.0
-    _set_speeds(full, speed, command, added[2], places, rate, change, s, rotors)
-    derivative(y, u, v, places, theta, s, rotors, k)
-    for n in range(STATE):
-        for i in range(s.shape[1]):
-            x[n, i] += h[i] / 6.0 * (total[n, i] + k[n, i])
+            x[n, i] += h[i] / 6.0 * total[n, i]
     for i in range(s.shape[1]):
         norm = 1.0 / math.sqrt(x[6, i] ** 2 + x[7, i] ** 2 + x[8, i] ** 2 + x[9, i] ** 2)
         for n in range(6, 10):
