@@ -2,6 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """metadata.yaml of a rosbag2 folder, rewritten many times while the bag grows."""
 
+from collections.abc import Iterable, Mapping
+
+from rosbags.interfaces import Connection
 from rosbags.rosbag2.metadata import dump_qos_v9
 import yaml
 
@@ -9,7 +12,7 @@ _TOP = 'rosbag2_bagfile_information'
 _TOTAL, _BEGIN, _SPAN, _COUNT = 'TOTAL!', 'BEGIN!', 'SPAN!', 'COUNT{}!'    # no topics
 
 
-def metadata_template(name, connections):
+def metadata_template(name: str, connections: Iterable[Connection]) -> str:
     """
     Return the text of metadata.yaml (version 9) with marks in the place of counts and times.
 
@@ -32,7 +35,7 @@ def metadata_template(name, connections):
         width=10 ** 6)
 
 
-def metadata_text(template, counts, first, last):
+def metadata_text(template: str, counts: Mapping[int, int], first: int, last: int) -> str:
     """Return metadata.yaml: counts of messages by the id of a connection; times in ns."""
     values = {_TOTAL: sum(counts.values()), _BEGIN: first, _SPAN: max(0, last - first),
               **{_COUNT.format(key): count for key, count in counts.items()}}
@@ -41,7 +44,7 @@ def metadata_text(template, counts, first, last):
     return template
 
 
-def inner_metadata(text):
+def inner_metadata(text: str) -> str:
     """Return what the MCAP file itself keeps of metadata.yaml."""
     return '\n'.join(line[2:] for line in text.splitlines()[1:])
 
@@ -49,6 +52,6 @@ def inner_metadata(text):
 class _Plain(yaml.SafeDumper):
     """A dumper that has each QoS written out: the readers of ROS know no anchors."""
 
-    def ignore_aliases(self, data):
+    def ignore_aliases(self, data: object) -> bool:
         """Return True: nothing is written as a reference."""
         return True

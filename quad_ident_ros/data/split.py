@@ -247,7 +247,7 @@ def _steps(record: FlightRecord, rest: np.ndarray, least: float, value: np.ndarr
 
 def _merged(found: list[Reset]) -> list[Reset]:
     """Return jumps in order of time, those at one time as one."""
-    merged = []
+    merged: list[Reset] = []
     for before, after, why in sorted(found):
         if merged and before <= merged[-1][1]:
             last = merged[-1]
