@@ -218,9 +218,10 @@ def _stack(messages: Messages, fields: Sequence[str]) -> np.ndarray:
 def _attitude(data: dict[str, Messages | None]) -> Stream | None:
     fields = ('Q1', 'Q2', 'Q3', 'Q4')
     for name in ('XKQ', 'NKQ'):
-        if _has(data[name], *fields):
-            q = unit_quaternions(_stack(data[name], fields))
-            return _stream(data[name], QUATERNION, frames.attitude(q, 'NED', 'FRD'))
+        messages = data[name]
+        if _has(messages, *fields):
+            q = unit_quaternions(_stack(messages, fields))
+            return _stream(messages, QUATERNION, frames.attitude(q, 'NED', 'FRD'))
     if _has(data['ATT'], 'Roll', 'Pitch', 'Yaw'):
         with np.errstate(all='ignore'):
             q = quaternion_from_euler(np.radians(_stack(data['ATT'], ('Roll', 'Pitch', 'Yaw'))))
@@ -232,9 +233,10 @@ def _motion(data: dict[str, Messages | None]) -> list[Stream]:
     """Return the streams of position and velocity, from the EKF, or else from POS and GPS."""
     position, velocity = ('px', 'py', 'pz'), ('vx', 'vy', 'vz')
     for name in ('XKF1', 'NKF1'):
-        if _has(data[name], 'PN', 'PE', 'PD', 'VN', 'VE', 'VD'):
-            return [_stream(data[name], (*position, *velocity), np.hstack(
-                [frames.world_vector(_stack(data[name], fields), 'NED')
+        messages = data[name]
+        if _has(messages, 'PN', 'PE', 'PD', 'VN', 'VE', 'VD'):
+            return [_stream(messages, (*position, *velocity), np.hstack(
+                [frames.world_vector(_stack(messages, fields), 'NED')
                  for fields in (('PN', 'PE', 'PD'), ('VN', 'VE', 'VD'))]))]
     streams, gps = [], data['GPS']
     if _has(gps, 'Status'):
@@ -283,8 +285,9 @@ def _specific_force(data: dict[str, Messages | None]) -> Stream | None:
 
 def _battery(data: dict[str, Messages | None]) -> Stream | None:
     for name in ('BAT', 'CURR'):
-        if _has(data[name], 'Volt') and np.isfinite(data[name].values('Volt')).sum() > 1:
-            return _stream(data[name], ('vbat',), _stack(data[name], ('Volt',)), SLOW)
+        messages = data[name]
+        if _has(messages, 'Volt') and np.isfinite(messages.values('Volt')).sum() > 1:
+            return _stream(messages, ('vbat',), _stack(messages, ('Volt',)), SLOW)
     return None
 
 

@@ -30,6 +30,7 @@ from rosbags.rosbag2.storage_mcap import McapWriter, PendingChunk
 from rosbags.typesys import get_typestore, Stores
 from rosbags.typesys.store import Typestore
 
+from quad_ident_ros.data.alike import Field
 from quad_ident_ros.data.bag_metadata import inner_metadata, metadata_template, metadata_text
 from quad_ident_ros.data.message import Message
 from quad_ident_ros.data.recovered import (
@@ -70,7 +71,8 @@ def serialize(msgtype: str, fields: Mapping[str, Any]) -> bytes:
 def _message(msgtype: str, fields: Mapping[str, Any]) -> Message:
     store = _typestore()
     values = {}
-    for name, (node, kind) in store.fielddefs[msgtype][1]:
+    declared: Iterable[tuple[str, Field]] = store.fielddefs[msgtype][1]
+    for name, (node, kind) in declared:
         if node == Nodetype.NAME:
             values[name] = _message(kind, fields[name])
         elif node == Nodetype.SEQUENCE and kind[0][0] == Nodetype.NAME:

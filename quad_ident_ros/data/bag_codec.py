@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """How the messages of a type in a bag are read, and bounds beyond which a type is absurd."""
 
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
 from functools import cache, lru_cache
 from typing import TYPE_CHECKING
 
@@ -55,7 +55,7 @@ class Codec:
         self._ros1 = ros1
         definition = connection.msgdef
         if definition.format != MessageDefinitionFormat.NONE and definition.data.strip():
-            candidates = [('', definition)]
+            candidates: list[tuple[str, MessageDefinition | str | None]] = [('', definition)]
         elif self._type in _defaults(ros1):
             candidates = [('', None)]
         else:
@@ -68,10 +68,13 @@ class Codec:
         self._topic = connection.topic
         self._candidates = [(version, _store(self._type, source, ros1))
                             for version, source in candidates]
-        self._chosen = self._store = None
+        self._chosen: Callable[[bytes], Message] | None = None
+        self._store: Typestore | None = None
 
     def layout(self, data: bytes, message: Message, fixed: Collection[str]) -> Layout | None:
         """Return the Layout of a message that was read, or None, see alike.layout_of."""
+        if self._store is None:
+            return None
         return layout_of(data, message, self._store, ros1=self._ros1, fixed=fixed)
 
     def paths(self) -> tuple[str, ...]:
@@ -82,7 +85,7 @@ class Codec:
         """Return the message in bytes; the length decides between several layouts of a type."""
         if self._chosen is not None:
             return self._chosen(data)
-        problem = None
+        problem: Exception | None = None
         for version, store in self._candidates:
             read = self._reader(version, store)
             try:
@@ -96,6 +99,7 @@ class Codec:
             raise BadType(f'topic {self._topic}: the bag has no definition of {self._type}, '
                           'and its messages have the length of none that ships; convert it '
                           'to MCAP where the package is installed: ros2 bag convert')
+        assert problem is not None
         raise problem
 
     def _reader(self, version: str, store: Typestore) -> Callable[[bytes], Message]:
@@ -207,7 +211,8 @@ def _paths(msgtype: str, types: 'Typesdict') -> Iterator[str]:
 
     def walk(name: str, before: str) -> Iterator[str]:
         nonlocal left
-        for field, (node, what) in types[name][1]:
+        declared: Iterable[tuple[str, Field]] = types[name][1]
+        for field, (node, what) in declared:
             if left <= 0 or field == _NO_FIELD:
                 return
             path = f'{before}{field}'

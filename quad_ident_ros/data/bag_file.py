@@ -7,6 +7,7 @@ from collections.abc import Callable, Collection, Container, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from rosbags.interfaces import Connection, MessageDefinition
@@ -21,6 +22,9 @@ from quad_ident_ros.data.readers.others import is_text
 from quad_ident_ros.data.recovered import Recovering, RecoveringFolder
 from quad_ident_ros.data.unpack import BoundedReader1, TooLarge
 from quad_ident_ros.errors import InputError, reason_of
+
+if TYPE_CHECKING:
+    from rosbags.rosbag2.reader import ReaderProtocol
 
 MAGIC = {b'#ROSBAG V': '.bag', b'\x89MCAP0\r\n': '.mcap', b'SQLite format 3\0': '.db3'}
 """How bags begin, and the ends of their usual names."""
@@ -77,7 +81,12 @@ class BagFile:
                              'reindex FOLDER')
         self.kind = kind_of(self.path)
         self._codecs: dict[tuple[str, MessageDefinition], Codec] = {}
-        self._reader = None
+        self._reader: BoundedReader1 | ReaderProtocol | None = None
+
+    @property
+    def _open(self) -> 'BoundedReader1 | ReaderProtocol':
+        assert self._reader is not None     # within `with`
+        return self._reader
 
     def __enter__(self) -> 'BagFile':
         """Open the bag and return it."""
@@ -89,9 +98,9 @@ class BagFile:
                            '.mcap': Recovering}
                 self._reader = plugins.get('dir' if self.kind == 'folder' else self.kind,
                                            plugins['.mcap'])(self.path)
-            self._reader.open()
+            self._open.open()
             # SQLite keeps anything in any column, and a damaged name is not to break a line.
-            names = [text for one in self._reader.connections
+            names = [text for one in self._open.connections
                      for text in (one.topic, one.msgtype)]
             if not all(isinstance(text, str) and text.isprintable() for text in names):
                 self.__exit__()
@@ -101,7 +110,7 @@ class BagFile:
     def __exit__(self, *_: object) -> None:
         """Close the bag."""
         with suppress(Exception):
-            self._reader.close()
+            self._open.close()
 
     @property
     def recovered(self) -> bool:
@@ -119,7 +128,7 @@ class BagFile:
         """Return the topics, by name; one of several types occurs once for each."""
         counts: dict[tuple[str, str], int] = {}
         with self._guarded():
-            for one in self._reader.connections:
+            for one in self._open.connections:
                 key = one.topic, normalize_msgtype(one.msgtype)
                 counts[key] = counts.get(key, 0) + one.msgcount
         return [Topic(name, kind, count) for (name, kind), count in sorted(counts.items())]
@@ -168,7 +177,7 @@ class BagFile:
                 if codec is None:
                     codec = codecs[id(connection)] = self._codec(connection)
                 before, now = waiting.get(topic, (None, None))
-                if before is codec and now.fits(data):
+                if now is not None and before is codec and now.fits(data):
                     if now.add(stamp, data):
                         yield from ((topic, *one) for one in now.taken())
                     continue
@@ -195,7 +204,7 @@ class BagFile:
         return found
 
     def _connections(self, topics: Container[str] | None) -> list[Connection]:
-        return [one for one in self._reader.connections if topics is None or one.topic in topics]
+        return [one for one in self._open.connections if topics is None or one.topic in topics]
 
     def _raw(self, topics: Container[str] | None) -> Iterator[tuple[Connection, int, bytes]]:
         """Yield (connection, time of receipt, bytes) by time."""
@@ -203,7 +212,7 @@ class BagFile:
             wanted = self._connections(topics)
             left = most(size_on_disk(self.path))
             # Without connections, messages() would yield those of all.
-            for connection, stamp, data in self._reader.messages(wanted) if wanted else ():
+            for connection, stamp, data in self._open.messages(wanted) if wanted else ():
                 left -= len(data) + _MESSAGE_BYTES
                 if left < 0:
                     raise TooLarge('its messages unpack to far more than measurements do')

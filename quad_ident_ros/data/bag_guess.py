@@ -120,7 +120,7 @@ def _holds(role: str, msgtype: str, message: Message) -> bool:
         with np.errstate(invalid='ignore'):     # a signalling not-a-number becomes a quiet one
             values = np.array(reading.values(message), float)
         if role == 'velocity' and msgtype.startswith('geometry_msgs/'):
-            return reading.frame(message) != ''
+            return reading.frame is not None and reading.frame(message) != ''
     except (NoSuch, *OTHER_SHAPE):
         return False
     if role == 'attitude':

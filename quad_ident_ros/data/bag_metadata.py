@@ -4,7 +4,7 @@
 
 from collections.abc import Iterable, Mapping
 
-from rosbags.interfaces import Connection
+from rosbags.interfaces import Connection, ConnectionExtRosbag2
 from rosbags.rosbag2.metadata import dump_qos_v9
 import yaml
 
@@ -19,12 +19,7 @@ def metadata_template(name: str, connections: Iterable[Connection]) -> str:
     Args: name of the MCAP file; connections: rosbags' Connections.
     """
     begin, span = {'nanoseconds_since_epoch': _BEGIN}, {'nanoseconds': _SPAN}
-    topics = [{'topic_metadata': {
-        'name': one.topic, 'type': one.msgtype,
-        'serialization_format': one.ext.serialization_format,
-        'offered_qos_profiles': dump_qos_v9(one.ext.offered_qos_profiles),
-        'type_description_hash': one.digest},
-        'message_count': _COUNT.format(one.id)} for one in connections]
+    topics = [_topic(one) for one in connections]
     return yaml.dump({_TOP: {
         'version': 9, 'storage_identifier': 'mcap', 'relative_file_paths': [name],
         'duration': dict(span), 'starting_time': dict(begin), 'message_count': _TOTAL,
@@ -33,6 +28,16 @@ def metadata_template(name: str, connections: Iterable[Connection]) -> str:
                    'message_count': _TOTAL}],
         'custom_data': None, 'ros_distro': 'jazzy'}}, Dumper=_Plain, sort_keys=False,
         width=10 ** 6)
+
+
+def _topic(connection: Connection) -> dict[str, object]:
+    assert isinstance(connection.ext, ConnectionExtRosbag2)
+    return {'topic_metadata': {
+        'name': connection.topic, 'type': connection.msgtype,
+        'serialization_format': connection.ext.serialization_format,
+        'offered_qos_profiles': dump_qos_v9(connection.ext.offered_qos_profiles),
+        'type_description_hash': connection.digest},
+        'message_count': _COUNT.format(connection.id)}
 
 
 def metadata_text(template: str, counts: Mapping[int, int], first: int, last: int) -> str:

@@ -11,6 +11,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 import re
 import struct
+from typing import Any
 
 import numpy as np
 
@@ -123,7 +124,7 @@ def _there(log: Log, names: Iterable[str]) -> bool:
 
 def _number(log: Log, name: str) -> float | None:
     """Return a header as a positive float, or None."""
-    value = log.headers.get(name)
+    value: Any = log.headers.get(name)
     try:
         value = float(value)
     except (OverflowError, TypeError, ValueError):

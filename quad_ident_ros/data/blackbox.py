@@ -92,6 +92,7 @@ def _bounded(path: Path, number: int | None = None) -> 'Reader':
     from orangebox.reader import Reader
 
     class Bounded(Reader):
+        _frame_data_ptr: int
         left = 0
 
         def set_log_index(self, index: int) -> None:

@@ -135,6 +135,7 @@ def _attitude(path: Path, table: Table, mapping: Mapping
               ) -> tuple[Sequence[str], np.ndarray] | None:
     """Return (names of columns, quaternions (N, 4) of FLU in ENU) or None."""
     chosen = mapping.columns
+    names: Sequence[str]
     if ATTITUDE in chosen:
         names, q = chosen[ATTITUDE].names, _values(table, chosen[ATTITUDE])
         q = q if mapping.quaternion == 'wxyz' else q[:, [3, 0, 1, 2]]

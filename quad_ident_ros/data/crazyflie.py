@@ -151,12 +151,12 @@ def read_crazyflie(path: str | Path, mapping: Mapping | None = None) -> FlightRe
     if mapping.actuators is not None and 'output1' not in has:
         raise InputError(f'{path}: has no motor.m1 to motor.m4 for the actuators of the mapping; '
                          'log them, or leave actuators out')
-    start, t, columns, left_out = join(path, streams)
+    start, t, joined, left_out = join(path, streams)
     unread = [name for name in _names(events) if name not in used]
-    notes = [*notes, *([f'variables that are not read: {_listed(unread)}'] if unread else []),
-             *([ORDER] if has & {'output1', 'rotor1'} else []), *left_out]
-    return FlightRecord(t, columns, {'name': path.stem, 'source': str(path), 'start_ns': start,
-                                     'notes': notes, 'motors': MOTORS})
+    said = [*notes, *([f'variables that are not read: {_listed(unread)}'] if unread else []),
+            *([ORDER] if has & {'output1', 'rotor1'} else []), *left_out]
+    return FlightRecord(t, joined, {'name': path.stem, 'source': str(path), 'start_ns': start,
+                                    'notes': said, 'motors': MOTORS})
 
 
 def contents(path: str | Path) -> list[Content]:

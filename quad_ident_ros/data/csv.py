@@ -39,6 +39,7 @@ def read_csv(path: str | Path, spoilt: bool = False) -> FlightRecord:
     path = Path(path)
     plain = plain_numbers(path, skip=1)
     names = _header(path, plain.head[0]) if plain else []
+    lines: Sequence[int] | np.ndarray
     if plain and plain.values.shape[1] == len(names):
         lines, truncated = plain.lines, plain.truncated
         columns = plain.columns(names)
@@ -53,7 +54,8 @@ def read_csv(path: str | Path, spoilt: bool = False) -> FlightRecord:
                          'give at least 2')
     _refuse_empty(path, columns)
     t = columns.pop('t')
-    info: dict[str, Any] = {'name': path.name.removesuffix('.gz').removesuffix('.csv'), 'source': str(path)}
+    info: dict[str, Any] = {'name': path.name.removesuffix('.gz').removesuffix('.csv'),
+                            'source': str(path)}
     fault = find_fault(t, columns)
     if fault is not None:
         wrong = faulty(t, columns)
@@ -87,7 +89,7 @@ def _faulty(path: Path, lines: Sequence[int] | np.ndarray, t: np.ndarray, wrong:
             fault: Fault) -> InputError:
     """Return the error of a Fault; wrong (N,) bool: all samples that have to go, on lines (N,)."""
     part = keeping(t, ~wrong)
-    ways = [deletion([lines[k] for k in np.flatnonzero(wrong)], len(wrong)), fault.remedy,
+    ways = [deletion([lines[k] for k in np.flatnonzero(wrong).tolist()], len(wrong)), fault.remedy,
             f'take a part: {part}' if part else '']
     return error_at(path, lines[fault.sample], fault.column, fault.problem,
                     ', or '.join(filter(None, ways)))

@@ -36,7 +36,7 @@ def read_mapped_bag(path: str | Path, mapping: Mapping, spoilt: bool = False
     in the info, see record.SPOILT.
     Raises InputError that names file, topic and message.
     """
-    notes = []
+    notes: list[str] = []
     with BagFile(path) as bag:
         if not mapping.topics:
             mapping, notes = guessed(path, bag, mapping)
@@ -87,9 +87,10 @@ def _by_topic(parts: Sequence[TopicPart], types: Pairs[str, str]) -> dict[str, l
 
 
 def _spoilt(parts: Sequence[TopicPart], streams: Sequence[Stream], start: int
-            ) -> dict[str, list[list[float | str]]]:
+            ) -> dict[str, list[list[object]]]:
     """Return the info of the samples that were left out as spoilt; start: of the record, ns."""
-    told = [[(int(stream.stamps[k]) - start) * 1e-9, part.not_unit(k)]
+    told: list[list[object]] = [
+        [(int(stream.stamps[k]) - start) * 1e-9, part.not_unit(k)]
             for part, stream in zip(parts, streams, strict=True) for k in part.spoilt]
     return {SPOILT: told} if told else {}
 

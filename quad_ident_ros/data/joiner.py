@@ -3,7 +3,7 @@
 """Joining of topics into rows by stamp, with an account of everything that went wrong."""
 
 from collections import deque
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 import heapq
 import math
@@ -17,7 +17,7 @@ Row: TypeAlias = tuple[int, tuple[float, ...]]
 """A stamp in ns, and the values of all topics at it."""
 
 _Key: TypeAlias = tuple[int, int]
-_Parts: TypeAlias = dict[str, tuple[float, ...] | None]
+_Parts: TypeAlias = dict[str, Sequence[float] | None]
 
 
 @dataclass
@@ -80,9 +80,9 @@ class Joiner:
         self._emitted = (0, -1)
         self._recent: deque[_Key] = deque(maxlen=REMEMBERED)
 
-    def add(self, topic: str, stamp_ns: int, values: tuple[float, ...]) -> list[Row]:
+    def add(self, topic: str, stamp_ns: int, values: Sequence[float]) -> list[Row]:
         """
-        Take a message's values (tuple of float) and return the rows that it completes.
+        Take a message's values and return the rows that it completes.
 
         A row is (stamp_ns, values of all topics in their order). Rows come in rising order of
         stamps; after a restart of the clock they begin again.

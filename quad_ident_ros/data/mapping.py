@@ -243,6 +243,7 @@ def rotor_speeds(where: str, outputs: ArrayLike, actuators: Actuators, vehicle: 
         return chosen * TO_SPEED[actuators.kind]
     found = motors_of(where, actuators, vehicle)
     if not found.whole:
+        assert vehicle is not None      # else the actuators have speeds
         raise InputError(f'{where}: actuators: the rotor speed at the maximum is not known; give '
                          f'speeds: [low, high] in rad/s, or {vehicle.name} a speed_max (rad/s)')
     return motors.rotor_speeds(found, chosen, _thrust_coefficient(vehicle))
@@ -301,10 +302,12 @@ def _limits(where: str, actuators: Actuators, vehicle: Vehicle | None) -> tuple[
     """Return the outputs at the lowest and at the full speed; InputError."""
     said = {key: getattr(actuators, key) for key in ('minimum', 'maximum')}
     told = None if vehicle is None else vehicle.motors
-    usual = dict(zip(said, KINDS[actuators.kind], strict=True))
+    ends = KINDS[actuators.kind]
+    assert ends is not None     # outputs that are speeds have no map
+    usual = dict(zip(said, ends, strict=True))
     if told is not None and told.kind == actuators.kind:
         usual = {key: getattr(told, key) for key in said}
-    elif (told is not None and told.gives and actuators.speeds is None
+    elif (vehicle is not None and told is not None and told.gives and actuators.speeds is None
           and None in said.values()):
         raise InputError(f'{where}: actuators: kind: {actuators.kind}, and the map of the motors '
                          f'of {vehicle.name} is of {told.kind}; give minimum and maximum, the '
@@ -331,7 +334,8 @@ def _source(where: str, role: str, entry: Any) -> Source:
             raise InputError(f'{where}: {key}: expected a name, got {schema.shown(value)}')
     frame = (schema.choice(f'{where}: frame', entry['frame'], ('body', 'world'))
              if 'frame' in entry else '')
-    units = ('rad/s', 'rpm') if role == 'rotors' else tuple(UNITS.get(UNIT_OF_ROLE.get(role), ()))
+    units = ('rad/s', 'rpm') if role == 'rotors' else tuple(
+        UNITS.get(UNIT_OF_ROLE.get(role, ''), ()))
     said = schema.choice(f'{where}: unit', entry['unit'], units) if 'unit' in entry else ''
     return Source(texts['topic'], texts['field'], frame, texts['child'].strip('/'), said)
 

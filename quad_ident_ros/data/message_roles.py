@@ -298,7 +298,7 @@ def at_path(message: Message, path: str, msgtype: str) -> Any:
     values, through_list = [message], False
     for part in path.split('.'):
         name = part.partition('[')[0]
-        following = []
+        following: list[Any] = []
         for value in values:
             fields = getattr(value, '__dataclass_fields__', None)
             fields = fields or getattr(value, 'get_fields_and_field_types', dict)()

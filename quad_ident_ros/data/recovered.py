@@ -37,6 +37,8 @@ class Recovering(McapReader):
     recovered: whether the end is missing.
     """
 
+    path: Path
+
     def __init__(self, path: Path) -> None:
         """Take the path of a file."""
         super().__init__(path)
@@ -47,7 +49,7 @@ class Recovering(McapReader):
     def skipped(self) -> int:
         """How many chunks are damaged and left out."""
         self._leave_out_damaged()
-        return self._skipped
+        return self._skipped or 0
 
     def messages(self, *args: Any, **kwargs: Any
                  ) -> Generator[tuple[Connection, int, bytes], None, None]:
@@ -80,6 +82,7 @@ class Recovering(McapReader):
 
     def _check_summary(self) -> None:
         """Raise ReaderError where the summary has a checksum, and that of another."""
+        assert self.bio is not None
         end = self.bio.seek(-END_BYTES, 2)
         begin, _, checksum = struct.unpack_from('<QQI', self.bio.read(END_BYTES), 9)
         self.bio.seek(begin)
@@ -89,6 +92,7 @@ class Recovering(McapReader):
 
     def _recover(self) -> bool:
         """Find the chunks that are whole, and make the index of them; return whether any is."""
+        assert self.bio is not None
         with mmap(self.bio.fileno(), 0, access=ACCESS_READ) as data:
             chunks, topics, self._skipped = _search(data, self.data_start)
         if not chunks:
@@ -107,6 +111,7 @@ class Recovering(McapReader):
         count, filled = counts.total(), [one for one in chunks if one.channel_count]
         begin = min((one.message_start_time for one in filled), default=2 ** 63 - 1)
         end = max((one.message_end_time for one in filled), default=0)
+        assert self.statistics is not None
         self.statistics = self.statistics._replace(
             message_count=count, chunk_count=len(chunks), start_time=begin, end_time=end,
             channel_message_counts=dict(counts))
@@ -164,9 +169,10 @@ def _search(data: mmap, at: int) -> tuple[list[ChunkInfo], bytes, int]:
             topics += data[at:end] if kind in TOPICS else b''
             at = end
         else:
-            at = _next_chunk(data, good)
-            if at is None:
+            following = _next_chunk(data, good)
+            if following is None:
                 break
+            at = following
             damaged += 1
     return chunks, bytes(topics), damaged
 
@@ -209,7 +215,8 @@ def _whole_chunk(data: mmap, at: int, length: int) -> tuple[ChunkInfo, bytes] | 
 
 def _counted(data: bytes) -> tuple[dict[int, int], bytes]:
     """Return messages by topic in an unpacked chunk, and its records of topics; or ReaderError."""
-    counts, topics, at = Counter(), bytearray(), 0
+    counts: Counter[int] = Counter()
+    topics, at = bytearray(), 0
     while at < len(data):
         kind, length = struct.unpack_from('<BQ', data, at)
         end = at + HEAD + length

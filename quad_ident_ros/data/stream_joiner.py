@@ -131,8 +131,9 @@ class StreamJoiner:
             if any(part is None for part in parts) and not given_up:
                 break
             waiting.popleft()
-            if all(parts):
-                rows.append((stamp, tuple(value for part in parts for value in part)))
+            there = [part for part in parts if part]
+            if len(there) == len(parts):
+                rows.append((stamp, tuple(value for part in there for value in part)))
             else:
                 self.counts.dropped += 1
         # What is before the sample before the next row will not be asked for again.

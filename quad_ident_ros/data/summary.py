@@ -75,7 +75,8 @@ def summarise(record: FlightRecord, vehicle: Vehicle | None = None, more: Sequen
 def _findings(record: FlightRecord, vehicle: Vehicle | None) -> tuple[Finding, ...]:
     """Return the Findings on a record, those of OF_GROUND on what diagnose and fit keep of it."""
     found = findings(record, vehicle)
-    if not any(one.code == 'ground' and one.severity == 'warning' for one in found):
+    if vehicle is None or not any(one.code == 'ground' and one.severity == 'warning'
+                                  for one in found):
         return found
     flown = findings(airborne(record, vehicle), vehicle)
     return gravest_first([*(one for one in found if one.code not in OF_GROUND),

@@ -4,7 +4,7 @@
 
 from array import array
 from collections import Counter
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 import math
 import re
 from typing import TypeAlias
@@ -19,6 +19,7 @@ from quad_ident_ros.data.message_roles import (
     is_px4,
     is_tf,
     NoSuch,
+    Reading,
     reading_of,
     ROLES_OF,
     shaped,
@@ -44,7 +45,7 @@ _COLUMNS = {'position': ('px', 'py', 'pz'), 'velocity': ('vx', 'vy', 'vz'),
             'rate': ('wx', 'wy', 'wz'), 'specific_force': ('ax', 'ay', 'az')}
 
 
-_Sample: TypeAlias = tuple[tuple[str, str] | None, int, tuple[float, ...]]
+_Sample: TypeAlias = tuple[tuple[str, str], int, tuple[float, ...]]
 
 
 class TopicPart:
@@ -70,7 +71,8 @@ class TopicPart:
         self.spoilt: Sequence[int] = ()     # messages, counted from 0, whose attitude was left out
         self.note = ''          # on how its values came about
         self.refused = ''       # why poses that the last live message completes were left out
-        self._left: Counter[str] = Counter()    # live poses without an attitude, as transforms have them
+        # Live poses without an attitude, as transforms have them.
+        self._left: Counter[str] = Counter()
         self._messages = 0
         self._transforms = Transforms(where, source.topic, source.child)
 
@@ -186,7 +188,7 @@ class TopicPart:
         return new
 
     def _read(self, message: Message, kind: str) -> list[_Sample]:
-        """Return [(frame and that it is in, stamp in ns or 0, numbers)] in a message."""
+        """Return [(frame and that it is in, or no names, stamp in ns or 0, numbers)] in a message."""
         self._messages += 1
         try:
             return [self._one(part, kind) for part in self._parts(message, kind)]
@@ -220,7 +222,7 @@ class TopicPart:
         if len(values) != self._width:
             raise NoSuch(f'{len(values)} values where the first has {self._width}')
         stamp = stamp_of(message, kind)
-        frame = (message.child_frame_id, message.header.frame_id) if self.is_tf else None
+        frame = (message.child_frame_id, message.header.frame_id) if self.is_tf else ('', '')
         return frame, stamp if 0 < stamp < 2 ** 63 else 0, values
 
     def _refuse_down(self, mapping: Mapping) -> None:

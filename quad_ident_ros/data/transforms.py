@@ -188,7 +188,7 @@ class Transforms:
         """
         if not self._chain:
             links = self._of(self.chain())
-            own = links[-1].stamps if links else ()
+            own = links[-1].stamps if links else array('q')
             if len(own) < 2 or own[-1] - own[0] < SETTLED:
                 return []
             self._chain = self.chain()

@@ -334,7 +334,7 @@ def _outputs(path: Path, log: ULog, data: dict, actuators: Actuators | None,
     Args: instance: of actuator_outputs, as a mapping names it, or None.
     """
     if actuators is not None:
-        choices = ('actuator_outputs', 'actuator_motors')
+        choices: tuple[str, ...] = ('actuator_outputs', 'actuator_motors')
         choices = choices[1:] if actuators.kind == 'normalised' else choices
     elif vehicle is not None and vehicle.motors is not None and vehicle.motors.kind == 'pwm':
         choices = ('actuator_outputs', 'actuator_motors')
@@ -359,7 +359,7 @@ def _outputs(path: Path, log: ULog, data: dict, actuators: Actuators | None,
     columns, measured = commands(path, topic, (stamps, values), speeds, actuators, vehicle, motors,
                                  log.initial_parameters, simulated, notes, bank)
     streams = [Stream(f'topic {topic}', stamps, columns, HELD)]
-    if measured:
+    if measured and speeds is not None:
         streams.append(Stream('topic esc_status', speeds[0], measured, INTERPOLATED))
     return streams
 

@@ -131,13 +131,13 @@ def _whole(data: bytes, topics: Collection[str]) -> Log | None:
     if log.file_corruption or not content.used_up:
         return None
     for topic in log.data_list:
-        kind = np.dtype([(field.field_name, ULog._UNPACK_TYPES[field.type_str][2])
-                         for field in topic.field_data]).newbyteorder('<')
+        row = np.dtype([(field.field_name, ULog._UNPACK_TYPES[field.type_str][2])
+                        for field in topic.field_data]).newbyteorder('<')
         mine = messages.numbers == topic.msg_id
-        if (messages.sizes[mine] != kind.itemsize + 2).any():
+        if (messages.sizes[mine] != row.itemsize + 2).any():
             return None
-        rows = rows_of(data, messages.data[mine] + 2, kind.itemsize).view(kind)[:, 0]
-        topic.data = {name: rows[name] for name in kind.names}
+        rows = rows_of(data, messages.data[mine] + 2, row.itemsize).view(row)[:, 0]
+        topic.data = {name: rows[name] for name in row.names or ()}
     log.cut_off = messages.cut
     return log
 

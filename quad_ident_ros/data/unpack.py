@@ -6,10 +6,10 @@ import bz2
 from collections import OrderedDict
 from collections.abc import Callable, Collection, Generator
 from heapq import merge
-from io import BytesIO
+from io import BufferedIOBase, BytesIO
 from os import SEEK_CUR
 from types import SimpleNamespace
-from typing import BinaryIO
+from typing import BinaryIO, Literal
 
 from lz4.frame import LZ4FrameDecompressor
 from rosbags.interfaces import Connection
@@ -55,7 +55,7 @@ def _message(data: bytes) -> bytes:
     return message
 
 
-def _open(file: BinaryIO, mode: str) -> '_File':
+def _open(file: BinaryIO, mode: Literal['r', 'rb']) -> '_File':
     packed = file.seek(0, 2)
     file.seek(0)
     return _File(_zstd_module.open(file, mode), limits.most(packed))
@@ -64,7 +64,7 @@ def _open(file: BinaryIO, mode: str) -> '_File':
 class _File:
     """A packed file that is read up to a limit."""
 
-    def __init__(self, file: BinaryIO, limit: int) -> None:
+    def __init__(self, file: BufferedIOBase, limit: int) -> None:
         self._file, self._limit, self._done = file, limit, 0
 
     def read(self, size: int) -> bytes:
@@ -125,8 +125,10 @@ class BoundedReader1(reader1.Reader):
         those that were used last stay unpacked, as far as one chunk may unpack to.
         """
         self._check_open()
+        assert self.bio is not None
         connected = {one.id: one for one in self.connections}
-        unpacked, size = OrderedDict(), 0
+        unpacked: OrderedDict[int, BytesIO] = OrderedDict()
+        size = 0
         for entry in merge(*(self.indexes[one.id] for one in connections or self.connections)):
             if start is not None and entry.time < start:
                 continue
@@ -150,6 +152,7 @@ class BoundedReader1(reader1.Reader):
 
     def read_index_data(self, pos: int, indexes: dict[int, list[reader1.IndexData]]) -> None:
         """Read an index, of which all together are no longer than the file."""
+        assert self.bio is not None
         before = self.bio.tell()
         super().read_index_data(pos, indexes)
         self._index += self.bio.tell() - before

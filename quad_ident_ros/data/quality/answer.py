@@ -96,7 +96,8 @@ def answer_of(record: FlightRecord) -> Answer | None:
     return Answer(float(lag * period), std, float(drift), float(share), period)
 
 
-def _series(record: FlightRecord) -> tuple[float, np.ndarray, np.ndarray, np.ndarray, np.ndarray] | None:
+def _series(record: FlightRecord
+            ) -> tuple[float, np.ndarray, np.ndarray, np.ndarray, np.ndarray] | None:
     """
     Return what changes from sample to sample on an even grid, or None without a controller's.
 
@@ -216,12 +217,12 @@ def _step(model: np.ndarray, rest: np.ndarray, slopes: Sequence[np.ndarray]
           ) -> tuple[np.ndarray, np.ndarray] | None:
     """Return the step (2,) along slopes that lessens a rest most, its standard errors; or None."""
     # What other gains explain as well says nothing.
-    slopes = np.stack([one - model @ _gain(model, one) for one in slopes])
-    curvature = np.tensordot(slopes, slopes, ([1, 2], [1, 2]))
+    free = np.stack([one - model @ _gain(model, one) for one in slopes])
+    curvature = np.tensordot(free, free, ([1, 2], [1, 2]))
     if not np.linalg.cond(curvature) < WORST:
         return None
     inverse = np.linalg.inv(curvature)
-    return (inverse @ np.tensordot(slopes, rest, 2),
+    return (inverse @ np.tensordot(free, rest, 2),
             np.sqrt(np.mean(rest ** 2) * np.diag(inverse)))
 
 

@@ -172,6 +172,7 @@ def believable(record: FlightRecord) -> FlightRecord:
 
 def _too_large(name: str, values: np.ndarray) -> np.ndarray:
     """Return where a column (N,) holds what no flight has, (N,) bool; unknown ones never do."""
-    if unit(name) is None:
+    said = unit(name)
+    if said is None:
         return np.zeros(len(values), bool)
-    return np.abs(values) > LARGEST.get(unit(name), LARGEST_OTHER)
+    return np.abs(values) > LARGEST.get(said, LARGEST_OTHER)

@@ -77,7 +77,7 @@ def quaternion(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     if grid is None or not record.has(*QUATERNION, 'wx', 'wy', 'wz'):
         return []
     name, attitude = best_reading(record)
-    if attitude is None or _still(grid, attitude):
+    if name is None or attitude is None or _still(grid, attitude):
         return []
     if name != 'as it is':
         code = {'x, y, z, w': 'quaternion_order', 'world to body': 'quaternion_inverse'}

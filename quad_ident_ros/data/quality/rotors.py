@@ -69,7 +69,7 @@ def order_and_spin(record: FlightRecord, vehicle: Vehicle | None) -> list[Findin
     for each order (roll and pitch), then for each choice of spins (yaw).
     """
     told = _evidence(record, vehicle)
-    return [] if told is None else _wrong(told, vehicle)
+    return [] if told is None or vehicle is None else _wrong(told, vehicle)
 
 
 def confirmed(record: FlightRecord, vehicle: Vehicle | None) -> tuple[str, ...]:
@@ -79,7 +79,8 @@ def confirmed(record: FlightRecord, vehicle: Vehicle | None) -> tuple[str, ...]:
     A flight that hardly yaws shows the order of the rotors, but not their spins.
     """
     told = _evidence(record, vehicle)
-    if told is None or told.scores[told.declared] < SURE or _wrong(told, vehicle):
+    if (told is None or vehicle is None or told.scores[told.declared] < SURE
+            or _wrong(told, vehicle)):
         return ()
     spins = tuple(rotor.spin for rotor in vehicle.rotors)
     yaws = _spin_scores(told, spins)[spins] >= _sure(told)
@@ -89,7 +90,7 @@ def confirmed(record: FlightRecord, vehicle: Vehicle | None) -> tuple[str, ...]:
 def _wrong(told: '_Evidence', vehicle: Vehicle) -> list[Finding]:
     """Return the Findings on the order and the spins by what a flight says of them."""
     scores, declared = told.scores, told.declared
-    best = max(scores, key=scores.get)
+    best = max(scores, key=scores.__getitem__)
     if scores[best] < SURE:
         return []
     if scores[best] > scores[declared] + BETTER:
@@ -169,9 +170,9 @@ def _scores(grid: Grid, moment: np.ndarray, squared: np.ndarray, position: np.nd
 
 def _spin_scores(told: _Evidence, spins: Sequence[int]) -> dict[tuple[int, ...], float]:
     """Return {spins: correlation of the moment about z with that of the commands}."""
-    target, drive = _aligned(told.grid, *(
-        _fast(told.grid, told.grid.smooth(signal, TURN), TURNS)
-        for signal in (told.moment[:, 2:], told.squared)), told.lag)
+    moment, squared = (_fast(told.grid, told.grid.smooth(signal, TURN), TURNS)
+                       for signal in (told.moment[:, 2:], told.squared))
+    target, drive = _aligned(told.grid, moment, squared, told.lag)
     power = np.sum(target ** 2)
     scores = {}
     for choice in product((1, -1), repeat=len(spins)):
@@ -190,7 +191,7 @@ def _sure(told: _Evidence) -> float:
 def _spin(told: _Evidence, vehicle: Vehicle) -> list[Finding]:
     spins = tuple(rotor.spin for rotor in vehicle.rotors)
     scores = _spin_scores(told, spins)
-    best = max(scores, key=scores.get)
+    best = max(scores, key=scores.__getitem__)
     if scores[best] < _sure(told) or scores[best] < scores[spins] + BETTER:
         return []
     # Roll and pitch leak into the yaw of real vehicles, which looks like other spins, too.

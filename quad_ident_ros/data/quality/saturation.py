@@ -30,7 +30,7 @@ def speeds(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     found = []
     for limit, bad in (('speed_max', table >= vehicle.speed_max - margin),
                        ('speed_min', table <= vehicle.speed_min + margin)):
-        rows = bad.any(axis=1)
+        rows = np.any(bad, axis=1)
         if rows.any():
             share = rows.mean()
             worst = int(np.argmax(bad.sum(axis=0)))

@@ -42,7 +42,7 @@ def level(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
 def carried(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     """Find flights that the commands do not explain: they give far less thrust, or far more."""
     thrust = _Thrust.of(record, vehicle)
-    if thrust is None:
+    if thrust is None or vehicle is None:
         return []
     names, grid, found = record.numbered('cmd'), thrust.grid, []
     for bad, what in ((thrust.given * APART < thrust.needed, 'less than a tenth of'),
@@ -61,7 +61,8 @@ def carried(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
 def other_vehicle(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     """Find vehicle files of another vehicle: its thrust is off by a factor, its rotors may be."""
     thrust = _Thrust.of(record, vehicle)
-    if thrust is None or thrust.flying.sum() * thrust.grid.period < LONGEST:
+    if (thrust is None or vehicle is None
+            or thrust.flying.sum() * thrust.grid.period < LONGEST):
         return []
     ratio = float(np.median(thrust.given[thrust.flying] / thrust.needed[thrust.flying]))
     if 1.0 / OTHER < ratio < OTHER or not 1.0 / APART < ratio < APART:

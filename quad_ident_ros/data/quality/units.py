@@ -75,8 +75,8 @@ def euler_in_degrees(record: FlightRecord, vehicle: Vehicle | None) -> list[Find
     reference = None
     if record.has('wx', 'wy', 'wz'):
         reference = grid.smooth(grid.signal('wx', 'wy', 'wz'))
-    elif not alone and grid.attitude() is not None:
-        reference = grid.rate_of(grid.attitude())
+    elif not alone and (attitude := grid.attitude()) is not None:
+        reference = grid.rate_of(attitude)
     if reference is not None:
         rate = body_rate(euler * DEGREE, grid.derivative(euler))
         sure, slope = correlation(rate[grid.good], reference[grid.good])
@@ -85,10 +85,10 @@ def euler_in_degrees(record: FlightRecord, vehicle: Vehicle | None) -> list[Find
         if abs(sure) >= SURE and alone and _is(abs(slope), DEGREE):
             return [_gyro_in_degrees(f'the rates are {1 / abs(slope):.1f} times those of the '
                                      'angles')]
-    slope = _tilted_by_degrees(grid, euler) if alone else None
-    if slope is None:
+    tilted = _tilted_by_degrees(grid, euler) if alone else None
+    if tilted is None:
         return []
-    found = [_in_degrees(f'the vehicle accelerates {slope:.2f} times what the angles give, read '
+    found = [_in_degrees(f'the vehicle accelerates {tilted:.2f} times what the angles give, read '
                          'as degrees')]
     return found + ([_gyro_in_degrees('they are those of angles in degrees')]
                     if reference is not None and abs(sure) >= SURE else [])
