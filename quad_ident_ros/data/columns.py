@@ -65,7 +65,7 @@ def record_of(path: Path, table: Table, mapping: Mapping, notes: Sequence[str]) 
     columns = velocity_in_world(path, columns)
     kept = _kept(table, chosen, columns, stamps[known], known, seconds, start)
     info: dict[str, Any] = {'name': path.name.partition('.')[0], 'source': str(path),
-            'notes': [*table.notes, *notes, *joined]}
+                            'notes': [*table.notes, *notes, *joined]}
     if abs(origin) < CLOCK:
         seconds = seconds + start * 1e-9 + origin
     else:

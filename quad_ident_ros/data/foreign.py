@@ -91,7 +91,7 @@ def _spoilt(parts: Sequence[TopicPart], streams: Sequence[Stream], start: int
     """Return the info of the samples that were left out as spoilt; start: of the record, ns."""
     told: list[list[object]] = [
         [(int(stream.stamps[k]) - start) * 1e-9, part.not_unit(k)]
-            for part, stream in zip(parts, streams, strict=True) for k in part.spoilt]
+        for part, stream in zip(parts, streams, strict=True) for k in part.spoilt]
     return {SPOILT: told} if told else {}
 
 

@@ -43,9 +43,9 @@ def topics_text(source: object, found: Sequence[Content],
     """
     roles = {role: [content for content in found if role in content.roles] for role in ROLES}
     sole = {role: topics[0].name for role, topics in roles.items() if len(topics) == 1
-           and not (roles['pose'] and role in ('position', 'attitude'))}    # a pose has both
+            and not (roles['pose'] and role in ('position', 'attitude'))}   # a pose has both
     if sole.get('rotors') == sole.get('commands'):
-        sole.pop('rotors', None)     # measured speeds that are the commands would deny every lag
+        sole.pop('rotors', None)    # measured speeds that are the commands would deny every lag
     chosen = sole | dict(chosen or {})
     lines = []
     for role, topics in roles.items():

@@ -3,13 +3,12 @@
 """MCAP files that are not whole, because a recorder was killed while it wrote."""
 
 from collections import Counter
-from collections.abc import Generator
+from collections.abc import Collection, Generator
 from functools import lru_cache
 from io import BytesIO
 from mmap import ACCESS_READ, mmap
 from pathlib import Path
 import struct
-from typing import Any
 from zlib import crc32
 
 from rosbags.interfaces import Connection
@@ -51,11 +50,11 @@ class Recovering(McapReader):
         self._leave_out_damaged()
         return self._skipped or 0
 
-    def messages(self, *args: Any, **kwargs: Any
-                 ) -> Generator[tuple[Connection, int, bytes], None, None]:
+    def messages(self, connections: Collection[Connection], start: int | None = None,
+                 stop: int | None = None) -> Generator[tuple[Connection, int, bytes], None, None]:
         """Read messages as McapReader, without those of damaged chunks."""
         self._leave_out_damaged()
-        yield from super().messages(*args, **kwargs)
+        yield from super().messages(connections, start, stop)
 
     def _leave_out_damaged(self) -> None:
         if self._skipped is not None:

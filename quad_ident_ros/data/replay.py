@@ -5,7 +5,6 @@
 from collections.abc import Container, Iterable, Sequence
 from contextlib import suppress
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -120,8 +119,8 @@ def read_bag(path: str | Path) -> list[FlightRecord]:
             for record in records]
 
 
-def _joined(topics: Sequence[str], spaces: Container[str], samples: Iterable[tuple[str, str, Any]]
-            ) -> list[FlightRecord]:
+def _joined(topics: Sequence[str], spaces: Container[str],
+            samples: Iterable[tuple[str, str, Message | Row]]) -> list[FlightRecord]:
     joiner, buffer = Joiner(topics), RecordBuffer(raw_columns(topics), UNBOUNDED)
     records = []
     for space, name, sample in samples:

@@ -46,6 +46,7 @@ _COLUMNS = {'position': ('px', 'py', 'pz'), 'velocity': ('vx', 'vy', 'vz'),
 
 
 _Sample: TypeAlias = tuple[tuple[str, str], int, tuple[float, ...]]
+"""A frame and the one that it is in, both '' but for transforms; stamp in ns or 0; numbers."""
 
 
 class TopicPart:
@@ -188,7 +189,7 @@ class TopicPart:
         return new
 
     def _read(self, message: Message, kind: str) -> list[_Sample]:
-        """Return [(frame and that it is in, or no names, stamp in ns or 0, numbers)] in a message."""
+        """Return the samples in a message, one or those of its transforms."""
         self._messages += 1
         try:
             return [self._one(part, kind) for part in self._parts(message, kind)]

@@ -79,7 +79,7 @@ def read_ulog(path: str | Path, mapping: Mapping | None = None,
     read = [_attitude(path, data), *_position(path, data, logging), _rate(path, data),
             _specific_force(path, data), _battery(path, data)]
     read += _outputs(path, log, data, mapping.actuators, vehicle, commands,
-                        mapping.instances.get('actuator_outputs'))
+                     mapping.instances.get('actuator_outputs'))
     streams = [stream for stream in read if stream is not None]
     logging += _slow(streams)
     notes += [*commands, *logging]
