@@ -5,6 +5,7 @@
 from collections.abc import Container, Iterable, Sequence
 from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -120,7 +121,8 @@ def read_bag(path: str | Path) -> list[FlightRecord]:
 
 
 def _joined(topics: Sequence[str], spaces: Container[str],
-            samples: Iterable[tuple[str, str, Message | Row]]) -> list[FlightRecord]:
+            samples: Iterable[tuple[str, str, Any]]) -> list[FlightRecord]:
+    """Return records of samples: namespace, topic, and a Row, or the message of a run."""
     joiner, buffer = Joiner(topics), RecordBuffer(raw_columns(topics), UNBOUNDED)
     records = []
     for space, name, sample in samples:
