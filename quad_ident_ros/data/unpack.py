@@ -86,8 +86,8 @@ class _File:
 
 _zstd_module = storage_mcap.zstd
 storage_mcap.DECOMPRESSORS.update(zstd=_bounded(_zstd), lz4=_bounded(_lz4))
-# rosbags asks the module, and has no other place where a limit could be set.
-reader.zstd = SimpleNamespace(decompress=_message, open=_open)  # type: ignore[assignment]
+reader.zstd = SimpleNamespace(  # type: ignore[assignment]  # rosbags takes a limit nowhere else
+    decompress=_message, open=_open)
 
 
 def _entry(chunk: BinaryIO, entry: reader1.IndexData, connected: dict[int, Connection]
